@@ -1,0 +1,25 @@
+"""The simulated laboratory: an IMU on a turntable, hidden effects, byte-true logs.
+
+    recording = perform(read("data/simulated/demo.yaml"))
+    write(recording, Path("data/raw/demo"))
+
+It shares no code with stages/, so what hides effects cannot agree with what finds them by mistake.
+"""
+
+from laboratory.errors import Complaint, SpecificationError
+from laboratory.folder import write
+from laboratory.performance import perform
+from laboratory.recording import LogTruth, Recording
+from laboratory.specification import Specification, read, specify
+
+__all__ = [
+    "Complaint",
+    "LogTruth",
+    "Recording",
+    "Specification",
+    "SpecificationError",
+    "perform",
+    "read",
+    "specify",
+    "write",
+]

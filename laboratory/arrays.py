@@ -1,0 +1,9 @@
+"""The one kind of array that the laboratory reckons with: double precision."""
+
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array: TypeAlias = NDArray[np.float64]
+Counts: TypeAlias = NDArray[np.int64]

@@ -1,0 +1,61 @@
+"""A case that rings about one of its axes while the table turns."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import pi
+from typing import Any, Self
+
+import numpy as np
+
+from laboratory.arrays import Array
+from laboratory.axes import direction
+from laboratory.effects.effect import Effect
+from laboratory.instants import Instants
+from laboratory.motion import Turning
+from laboratory.profiles import smooth_step
+from laboratory.units import DEGREE
+
+
+@dataclass(frozen=True)
+class Oscillation(Effect):
+    """A vibration of the case by the angle ψ = A/(2πf) w sin(2πf t + phase) about `axis`.
+
+    A: amplitude, rad/s; f: frequency, Hz; t: from the start of the manoeuvre; w: how fast the
+    table turns, as a share of its steady rate and without corners, so 0 at rest: over a whole
+    turn the vibration adds no angle. It is a motion like any other: it tilts gravity, shakes a
+    lever arm, and reaches the other sensors through M. Seen in S0, figures 5-14 to 5-16.
+    """
+
+    frequency: float
+    amplitude: float
+    axis: Array  # unit vector, (3,), body axes
+    phase: float  # rad
+
+    @classmethod
+    def specified(cls, parameters: Mapping[str, Any]) -> Self:
+        return cls(
+            parameters["frequency_hz"],
+            parameters["amplitude_rad_s"],
+            direction(parameters["axis"]),
+            parameters.get("phase_deg", 0.0) * DEGREE,
+        )
+
+    def moves(self, turnings: Sequence[Turning], instants: Instants) -> Sequence[Turning]:
+        if not turnings or self.amplitude == 0:
+            return turnings
+        table = turnings[0]
+        per_second = np.sign(table.rate) * table.acceleration / table.steady_rate
+        w, slope, bend = smooth_step(np.abs(table.rate) / table.steady_rate)
+        w1, w2 = slope * per_second, bend * per_second**2
+        angular = 2 * pi * self.frequency
+        sine = np.sin(angular * instants.elapsed + self.phase)
+        cosine = np.cos(angular * instants.elapsed + self.phase)
+        size = self.amplitude / angular
+        vibration = Turning(
+            self.axis,
+            angle=size * w * sine,
+            rate=size * (w1 * sine + w * angular * cosine),
+            acceleration=size * (w2 * sine + 2 * w1 * angular * cosine - w * angular**2 * sine),
+            steady_rate=self.amplitude,
+        )
+        return [*turnings, vibration]

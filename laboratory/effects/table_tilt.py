@@ -1,0 +1,31 @@
+"""A table that is not level."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+
+from laboratory.arrays import Array
+from laboratory.effects.effect import Effect
+from laboratory.rotation import rotation_of
+from laboratory.units import ARCSECOND
+
+
+@dataclass(frozen=True)
+class TableTilt(Effect):
+    """The base of the table, and with it all its axes, leans towards north and east.
+
+    north, east: rad, where the table's vertical points: (east, north, 1) in the level frame, to
+    first order. The rotation vector is (−north, east, 0).
+    """
+
+    north: float
+    east: float
+
+    @classmethod
+    def specified(cls, parameters: Mapping[str, Any]) -> Self:
+        return cls(parameters["north_arcsec"] * ARCSECOND, parameters["east_arcsec"] * ARCSECOND)
+
+    def tilts(self) -> Array:
+        return rotation_of(np.array([-self.north, self.east, 0.0]))

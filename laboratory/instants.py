@@ -1,0 +1,49 @@
+"""The instants at which the truth is reckoned: the ends of every sample interval, two between.
+
+They are the four nodes of Lobatto's rule, which is exact for polynomials of degree 5:
+∫ y dt ≈ h/12 (y₀ + 5 y₁ + 5 y₂ + y₃), nodes at 0, (1 ∓ 1/√5)/2, 1 of the interval h. For a
+vibration of 20 Hz at 100 samples a second its error is 3e-6 of the amplitude (Simpson's: 9e-4,
+about a count). Abramowitz & Stegun, 25.4.32.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import sqrt
+
+import numpy as np
+
+from laboratory.arrays import Array
+
+NODES_PER_INTERVAL = 3  # the fourth is the first of the next interval
+INNER_NODES = (0.5 - 0.5 / sqrt(5), 0.5 + 0.5 / sqrt(5))
+
+
+@dataclass(frozen=True)
+class Instants:
+    """The instants of `samples` sample intervals that follow each other; m = 3 samples + 1."""
+
+    start: float  # s since the campaign's first sample: where the first interval begins
+    samples: int
+    interval: float  # s
+
+    @cached_property
+    def elapsed(self) -> Array:
+        """Time since the start, (m,), s."""
+        nodes = np.array([0.0, *INNER_NODES])
+        inside = (np.arange(self.samples)[:, None] + nodes).ravel()
+        return np.append(inside, self.samples) * self.interval
+
+    @property
+    def time(self) -> Array:
+        """Time since the campaign's first sample, (m,), s."""
+        return self.start + self.elapsed
+
+    def integral(self, values: Array) -> Array:
+        """Integral over every interval: values (m, …) → (samples, …), their unit × s."""
+        ends = values[::NODES_PER_INTERVAL]
+        inner = values[1::NODES_PER_INTERVAL] + values[2::NODES_PER_INTERVAL]
+        return self.interval / 12 * (ends[:-1] + 5 * inner + ends[1:])
+
+    def difference(self, values: Array) -> Array:
+        """Value at the end less value at the start of every interval: (m, …) → (samples, …)."""
+        return np.diff(values[::NODES_PER_INTERVAL], axis=0)

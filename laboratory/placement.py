@@ -1,0 +1,92 @@
+"""How the IMU stands at every position of the plan: as it was set, and as it truly stands."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from laboratory.arrays import Array
+from laboratory.chance import Chance
+from laboratory.plan import Manoeuvre
+from laboratory.rotation import rotation_of
+
+
+@dataclass(frozen=True)
+class Placement:
+    """One position. Matrices (3, 3), level (east, north, up) from body."""
+
+    set_attitude: Array  # as the plan says, at the azimuth that it truly had, on a level table
+    tilt: Array  # (3, 3), level frame: the error of the position
+    base: Array  # (3, 3), level frame: how the whole table leans
+
+    @property
+    def attitude(self) -> Array:
+        """C = base · tilt · set attitude."""
+        return self.base @ self.tilt @ self.set_attitude
+
+    def true_axis(self, about: Array) -> Array:
+        """The table's axis in body axes, (3,), where the plan names `about`.
+
+        The table turns about the axis that it has, base · set attitude · about; the case leans
+        against it by the position's error. So up stays where the table has it, and the case's
+        own axis goes round it.
+        """
+        in_level = self.base @ self.set_attitude @ about
+        return self.attitude.T @ in_level
+
+
+def place(
+    manoeuvres: Sequence[Manoeuvre],
+    *,
+    heading: float | None,
+    position_sigma: float,
+    base: Array,
+    chance: Chance,
+) -> dict[str, Placement]:
+    """The placement at every position, by its name.
+
+    heading: azimuth of the table's zero mark, rad clockwise from north; None: drawn, the same for
+    all positions with a mark. A position without mark stands at an azimuth of its own, drawn.
+    position_sigma: rad, of the rotation about east and about north that the position is off.
+    """
+    if heading is None:
+        heading = azimuth(chance, "the table's zero mark")
+    placements: dict[str, Placement] = {}
+    for manoeuvre in manoeuvres:
+        name = manoeuvre.position
+        if name in placements:
+            continue
+        east, north = chance.stream("tilt", name).normal(0.0, position_sigma, 2)
+        if manoeuvre.mark is None:
+            # Any direction will do as a mark: the azimuth is by chance.
+            across = np.eye(3)[np.argmin(np.abs(manoeuvre.up))]
+            set_attitude = facing(manoeuvre.up, across, azimuth(chance, name))
+        else:
+            set_attitude = facing(manoeuvre.up, manoeuvre.mark, heading)
+        tilt = rotation_of(np.array([east, north, 0.0]))
+        placements[name] = Placement(set_attitude, tilt, base)
+    return placements
+
+
+def azimuth(chance: Chance, name: str) -> float:
+    """An azimuth by chance, rad."""
+    return float(chance.stream("azimuth", name).uniform(0.0, 2 * np.pi))
+
+
+def facing(up: Array, mark: Array, azimuth: float) -> Array:
+    """The attitude, level from body, with `up` upwards and `mark` at an azimuth (rad, clockwise).
+
+    Only the horizontal part of the mark counts. The two triads of directions (horizontal mark,
+    up × mark, up) are the same in the body and in the level frame.
+    """
+    ahead = mark - (mark @ up) * up
+    ahead = ahead / np.linalg.norm(ahead)
+    in_body = np.column_stack([ahead, np.cross(up, ahead), up])
+    in_level = np.array(
+        [
+            [np.sin(azimuth), -np.cos(azimuth), 0.0],
+            [np.cos(azimuth), np.sin(azimuth), 0.0],
+            [0.0, 0.0, 1.0],
+        ]
+    )
+    return in_level @ in_body.T

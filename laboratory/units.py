@@ -1,0 +1,14 @@
+"""The units in which a laboratory writes its numbers, each as its value in SI and radians.
+
+A number is multiplied by its unit when it is read: `rate = 10 * DEGREE`.
+"""
+
+from math import pi
+from typing import Final
+
+DEGREE: Final = pi / 180  # rad
+ARCSECOND: Final = DEGREE / 3600  # rad
+HOUR: Final = 3600.0  # s
+ROOT_HOUR: Final = 60.0  # √s
+STANDARD_GRAVITY: Final = 9.80665  # m/s², the "g" of deg/h/g and of µg; not the local gravity
+MICROGRAVITY: Final = 1e-6 * STANDARD_GRAVITY  # m/s²

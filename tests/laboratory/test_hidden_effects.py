@@ -1,0 +1,136 @@
+"""Every effect by the physics that it stands for, and every one absent when zero."""
+
+from collections.abc import Callable
+from math import pi, radians
+from typing import Any
+
+import numpy as np
+import pytest
+
+from laboratory import Recording, perform, specify
+from laboratory.checking import the_schema
+from laboratory.effects import EFFECTS
+from laboratory.faults import FAULTS
+
+GRAVITY, STANDARD, ARCSECOND = 9.7936174, 9.80665, radians(1 / 3600)
+Performed = Callable[..., Recording]
+REST = {"id": "still", "do": "rest", "up": "+z", "mark": "+x", "seconds": 20, "log": "rest.asc"}
+TURN = {
+    "id": "turn",
+    "do": "turn",
+    "up": "+z",
+    "mark": "+x",
+    "degrees": 360,
+    "rate_deg_s": 40,
+    "accel_deg_s2": 40,
+    "log": "turn.asc",
+}
+ZERO, ONE = [0, 0, 0], [1, 1, 1]
+AT_ZERO_AND_NOT: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
+    "table_tilt": (
+        {"north_arcsec": 0, "east_arcsec": 0},
+        {"north_arcsec": 60, "east_arcsec": 0},
+    ),
+    "oscillation": (
+        {"frequency_hz": 20, "amplitude_rad_s": 0, "axis": "+y"},
+        {"frequency_hz": 20, "amplitude_rad_s": 0.01, "axis": "+y"},
+    ),
+    "lever_arm": ({"arm_m": ZERO}, {"arm_m": [0.05, 0, 0]}),
+    "gyro_g_sensitivity": ({"matrix_deg_h_g": [ZERO] * 3}, {"matrix_deg_h_g": [ONE] * 3}),
+    "gyro_bias_ramp": ({"ramp_deg_h_h": ZERO}, {"ramp_deg_h_h": [100] * 3}),
+    "accel_quadratic": ({"k2_micro_g_g2": ZERO}, {"k2_micro_g_g2": ONE}),
+    "accel_bias_ramp": ({"ramp_m_s2_h": ZERO}, {"ramp_m_s2_h": ONE}),
+}
+
+
+def test_the_schema_and_these_tests_know_every_effect_and_fault() -> None:
+    properties = the_schema()["properties"]
+    assert set(properties["effects"]["properties"]) == set(EFFECTS) == set(AT_ZERO_AND_NOT)
+    assert set(properties["faults"]["items"]["properties"]) == set(FAULTS)
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_zero_is_absent_and_anything_else_is_not(name: str, ideal: Callable[..., Any]) -> None:
+    document = ideal(REST, TURN)
+    zero, other = AT_ZERO_AND_NOT[name]
+    absent = perform(specify(document)).logs
+    assert perform(specify(document | {"effects": {name: zero}})).logs == absent
+    assert perform(specify(document | {"effects": {name: other}})).logs != absent
+
+
+def test_a_lever_arm_feels_the_centripetal_and_the_tangential_force(performed: Performed) -> None:
+    """ω² r towards the axis, ω′ r along the path, and after a turn no velocity from the latter."""
+    truth = performed(TURN, effects={"lever_arm": {"arm_m": [0.05, 0, 0.03]}}).truth["turn.asc"]
+    steady, spin_up = truth.force[1150:1800], truth.force[1000:1100]
+    assert steady[:, 0] == pytest.approx(-(radians(40) ** 2) * 0.05, abs=1e-12)
+    assert steady[:, 1:] == pytest.approx(np.broadcast_to([0, GRAVITY], (650, 2)), abs=1e-12)
+    assert spin_up[:, 1] == pytest.approx(radians(40) * 0.05, abs=1e-12)
+    assert truth.force[:, 1].sum() == pytest.approx(0, abs=1e-12)
+
+
+def test_a_tilted_table_leans_towards_north_and_east(performed: Performed) -> None:
+    """x to the north, y to the west. The case's up leans north: gravity's reaction falls behind."""
+    tilt = {"north_arcsec": 60, "east_arcsec": 20}
+    recording = performed(REST, TURN, effects={"table_tilt": tilt})
+    force = recording.truth["rest.asc"].force.mean(axis=0)
+    expected = GRAVITY * ARCSECOND * np.array([-60, 20])
+    assert force[:2] == pytest.approx(expected, abs=GRAVITY * (1e-3) ** 2)
+    # The direction of the lean stays in the room while the case turns: half a turn, other sign.
+    turning = recording.truth["turn.asc"]
+    half = len(turning.time) // 2
+    assert turning.force[half - 1 : half + 1, :2].mean(axis=0) == pytest.approx(-expected, abs=1e-5)
+
+
+def test_gyros_that_feel_force(performed: Performed) -> None:
+    matrix = [[1.4, 0, 3.0], [0, -1.0, 0], [0.5, 0, 1.2]]
+    effects = {"gyro_g_sensitivity": {"matrix_deg_h_g": matrix}}
+    truth = performed(REST, effects=effects).truth["rest.asc"]
+    added = np.diff(truth.noiseless.gyro, axis=0) / 0.01 - truth.rate[1:]
+    expected = radians(1 / 3600) * GRAVITY / STANDARD * np.array([3.0, 0, 1.2])
+    assert added == pytest.approx(np.broadcast_to(expected, added.shape), abs=1e-12)
+
+
+def test_ramps_run_on_through_the_pause(performed: Performed) -> None:
+    """t counts from the campaign's first sample, which stands at the end of its interval."""
+    effects = {
+        "gyro_bias_ramp": {"ramp_deg_h_h": [1, -2, 3]},
+        "accel_bias_ramp": {"ramp_m_s2_h": [0.01, 0, -0.02]},
+    }
+    recording = performed(REST, REST | {"id": "b", "log": "b.asc"}, effects=effects)
+    truth = recording.truth["b.asc"]
+    assert truth.time[0] == pytest.approx(19.99 + 60)
+    middle = (truth.time[1:] - 0.005)[:, None]
+    gyro = np.diff(truth.noiseless.gyro, axis=0) / 0.01 - truth.rate[1:]
+    assert gyro == pytest.approx(middle * radians(1) / 3600**2 * [1, -2, 3], abs=1e-12)
+    force = np.diff(truth.noiseless.accelerometer, axis=0) / 0.01 - truth.force[1:]
+    assert force == pytest.approx(middle / 3600 * [0.01, 0, -0.02], abs=1e-10)
+
+
+@pytest.mark.parametrize("up", ["+z", "-z"])
+def test_a_quadratic_accelerometer_errs_upwards_both_ways_up(performed: Performed, up: str) -> None:
+    effects = {"accel_quadratic": {"k2_micro_g_g2": [50, 60, 70]}}
+    truth = performed(REST | {"up": up}, effects=effects).truth["rest.asc"]
+    added = truth.noiseless.accelerometer[-1] / 20 - truth.force.mean(axis=0)
+    expected = 70e-6 * STANDARD * (GRAVITY / STANDARD) ** 2
+    assert added == pytest.approx([0, 0, expected], abs=1e-9)
+
+
+def test_an_oscillation_rings_only_while_turning_and_adds_no_angle(performed: Performed) -> None:
+    """0.01 rad/s at 20 Hz about x: one line in the spectrum, none at rest, no angle in the end."""
+    effects = {"oscillation": {"frequency_hz": 20, "amplitude_rad_s": 0.01, "axis": "+x"}}
+    with_it = performed(REST, TURN, effects=effects)
+    without = performed(REST, TURN)
+    assert with_it.logs["rest.asc"] == without.logs["rest.asc"]
+    rung = with_it.truth["turn.asc"].rate - without.truth["turn.asc"].rate
+    assert np.abs(rung[:1000]).max() < 1e-15
+    assert np.abs(rung[-1000:]).max() < 1e-15
+    steady = rung[1150:1650, 0]  # 5 s
+    spectrum = np.abs(np.fft.rfft(steady)) * 2 / len(steady)
+    # A sample is a mean over 0.01 s: the amplitude shrinks by sinc(f dt).
+    assert spectrum[100] == pytest.approx(0.01 * np.sinc(20 * 0.01), rel=1e-5)
+    assert np.delete(spectrum, 100).max() < 1e-7
+    assert rung[:, 0].sum() * 0.01 == pytest.approx(0, abs=1e-12)
+    # It is a motion: as the case rocks about x, gravity swings on y by g A / (2πf).
+    swing = with_it.truth["turn.asc"].force[1150:1650, 1]
+    amplitude = np.sqrt(2 * np.mean(swing**2)) / np.sinc(20 * 0.01)
+    assert amplitude == pytest.approx(GRAVITY * 0.01 / (2 * pi * 20), rel=1e-4)
