@@ -1,0 +1,170 @@
+"""A table contract, and the only place that reads or writes Parquet."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from stages.contracts.errors import Refusal
+
+if TYPE_CHECKING:  # decode streams record batches and starts faster without pandas
+    import pandas as pd
+
+BATCH_ROWS = 65536  # rows that a stream holds in memory at a time
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: what its numbers mean, in which unit and frame."""
+
+    name: str
+    type: pa.DataType
+    unit: str
+    meaning: str
+    frame: str = ""
+    nullable: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    """Whoever reads this table gets these columns, in this order.
+
+    `version` counts up with every change of the columns or of what they mean.
+    """
+
+    name: str
+    version: int
+    columns: tuple[Column, ...]
+
+    @cached_property
+    def schema(self) -> pa.Schema:
+        """The Arrow schema, with unit, frame and meaning of each column in its metadata."""
+        return pa.schema(
+            [
+                pa.field(
+                    column.name,
+                    column.type,
+                    column.nullable,
+                    {"unit": column.unit, "frame": column.frame, "meaning": column.meaning},
+                )
+                for column in self.columns
+            ],
+            {"table": self.name, "version": str(self.version)},
+        )
+
+    def read(self, path: Path) -> pd.DataFrame:
+        """The whole table; for tables that are small."""
+        self._check(path, pq.read_schema(path))
+        return pq.read_table(path).to_pandas()
+
+    def stream(self, path: Path) -> Stream:
+        """The table batch by batch, as often as wanted; for tables that may be large."""
+        self._check(path, pq.read_schema(path))
+        return Stream(path)
+
+    def arrow(self, rows: pd.DataFrame | pa.RecordBatch) -> pa.Table:
+        """`rows` in the columns of the contract.
+
+        Raises
+        ------
+        ValueError
+            where a column is missing, or has gaps that the contract does not allow
+        """
+        if isinstance(rows, pa.RecordBatch):
+            table = pa.Table.from_batches([rows]).select(self.schema.names).cast(self.schema)
+        else:
+            columns = [column.name for column in self.columns]
+            if missing := [name for name in columns if name not in rows]:
+                raise ValueError(f"the {self.name} table lacks {', '.join(missing)}")
+            table = pa.Table.from_pandas(rows[columns], schema=self.schema, preserve_index=False)
+        for column in self.columns:
+            if not column.nullable and table[column.name].null_count:
+                raise ValueError(f"the {self.name} table has gaps in {column.name}")
+        return table.replace_schema_metadata(self.schema.metadata)
+
+    def empty(self) -> pd.DataFrame:
+        """A table without rows."""
+        return self.schema.empty_table().to_pandas()
+
+    def _check(self, path: Path, schema: pa.Schema) -> None:
+        told = {key.decode(): value.decode() for key, value in (schema.metadata or {}).items()}
+        found = f"{told.get('table')} table of version {told.get('version')}"
+        expected = f"{self.name} table of version {self.version}"
+        if found != expected:
+            raise Refusal(
+                str(path), "", found, expected, "delete the file and run the campaign again"
+            )
+
+
+@dataclass(frozen=True)
+class Stream:
+    """A table on disk that is read batch by batch; every loop over it starts anew."""
+
+    path: Path
+
+    def __iter__(self) -> Iterator[pa.RecordBatch]:
+        with pq.ParquetFile(self.path) as file:
+            yield from file.iter_batches(batch_size=BATCH_ROWS)
+
+    def columns(self, names: list[str]) -> Iterator[pa.RecordBatch]:
+        """The same, of some columns only."""
+        with pq.ParquetFile(self.path) as file:
+            yield from file.iter_batches(batch_size=BATCH_ROWS, columns=names)
+
+
+def provenance(path: Path) -> dict[str, Any]:
+    """What made the table at `path`: stage, settings, hash of its code, hashes of its inputs."""
+    metadata = pq.read_schema(path).metadata
+    return dict(json.loads(metadata[b"made_by"]))
+
+
+class Writer:
+    """The tables of one stage, written beside their place and moved there all at the end.
+
+    A stage that fails or is killed leaves no table under a final name; the parts
+    it may leave are overwritten by its next run.
+    """
+
+    def __init__(self, folder: Path, tables: Mapping[str, Table], made_by: dict[str, Any]) -> None:
+        self._folder = folder
+        self._tables = tables
+        self._made_by = {b"made_by": json.dumps(made_by, sort_keys=True).encode()}
+        self._files: dict[str, pq.ParquetWriter] = {}
+        self._open = ExitStack()
+
+    def __enter__(self) -> Self:
+        self._folder.mkdir(parents=True, exist_ok=True)
+        for name, table in self._tables.items():
+            schema = table.schema.with_metadata({**table.schema.metadata, **self._made_by})
+            writer = pq.ParquetWriter(self._part(name), schema, compression="zstd")
+            self._files[name] = self._open.enter_context(writer)
+        return self
+
+    def write(self, name: str, rows: pd.DataFrame | pa.RecordBatch) -> None:
+        """Add `rows` to the table `name`."""
+        self._files[name].write_table(self._tables[name].arrow(rows))
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._open.close()
+        for name in self._tables:
+            if kind is None:
+                self._part(name).replace(self._folder / f"{name}.parquet")
+            else:
+                self._part(name).unlink(missing_ok=True)
+
+    def _part(self, name: str) -> Path:
+        return self._folder / f"{name}.parquet.part"

@@ -1,0 +1,352 @@
+"""The tables that pass between stages, each column with its unit, frame and meaning."""
+
+import pyarrow as pa
+
+from stages.contracts.parquet import Column, Table
+
+AXES = ("x", "y", "z")
+CHANNELS = tuple(f"{sensor}_{axis}" for sensor in ("accel", "gyro") for axis in AXES)
+UNITS = {"accel": "m/s²", "gyro": "rad/s"}
+PHASES = "rest; for a turn rest-before, spin-up, steady, spin-down, rest-after; by hand: turning"
+BODY = "body"  # axes x, y, z of the IMU's case, right-handed
+
+_double, _text, _integer, _truth = pa.float64(), pa.string(), pa.int64(), pa.bool_()
+_label = pa.dictionary(pa.int32(), pa.string())
+
+
+def _vector(stem: str, unit: str, meaning: str, *, nullable: bool = True) -> list[Column]:
+    return [
+        Column(f"{stem}_{axis}", _double, unit, f"{meaning}, {axis}", BODY, nullable)
+        for axis in AXES
+    ]
+
+
+def _channels(meaning: str, *, prefix: str = "") -> list[Column]:
+    return [
+        Column(
+            f"{prefix}{channel}", _double, UNITS[channel[:-2]], f"{meaning}, {channel}", BODY, True
+        )
+        for channel in CHANNELS
+    ]
+
+
+_LOG = Column(
+    "log", _text, "", "file name; with ':' and the format's name where it is read in several"
+)
+_RECORDS = (
+    Column("from_record", _integer, "1", "first record"),
+    Column("to_record", _integer, "1", "record after the last"),
+)
+
+# ---- plan
+
+CAMPAIGN = Table(
+    "campaign",
+    1,
+    (
+        Column("campaign", _text, "", "name of the campaign's folder"),
+        Column("simulated", _truth, "", "recorded by the simulated laboratory"),
+        Column("instrument", _text, "", "name of the IMU's type"),
+        Column("serial", _text, "", "serial number, or unknown"),
+        Column("date", _text, "", "date as the campaign states it, or unknown"),
+        Column("laboratory", _text, "", "where", nullable=True),
+        Column("operator", _text, "", "by whom", nullable=True),
+        Column("notes", _text, "", "remarks of the laboratory", nullable=True),
+        Column("table", _text, "", "name of the table"),
+        Column("rate", _double, "Hz", "stated sample rate", nullable=True),
+        Column("latitude", _double, "rad", "geodetic latitude", "earth", True),
+        Column("height", _double, "m", "height above the ellipsoid", "earth", True),
+        Column("must_be_set", _integer, "", "bits that are set in the status of a valid record"),
+        Column("must_be_clear", _integer, "", "bits that are clear in the status of a valid record"),
+    ),
+)
+KNOWN = Table(
+    "known",
+    1,
+    (
+        Column("quantity", _text, "", "name of what is taken as known"),
+        Column("value", _double, "as unit", "its value; none where it is not known", nullable=True),
+        Column("sigma", _double, "as unit", "standard deviation of the value", nullable=True),
+        Column("unit", _text, "", "unit of value and sigma"),
+        Column("origin", _text, "", "stated in the campaign, computed, or assumed, and from what"),
+    ),
+)
+SENSORS = Table(
+    "sensors",
+    1,
+    (
+        Column("channel", _text, "", "one of the six channels"),
+        Column("count_size", _double, "rad, m/s", "increment of one count", nullable=True),
+        Column("full_scale", _double, "rad/s, m/s²", "largest input", nullable=True),
+        Column(
+            "white_noise", _double, "rad/√s, m/s/√s", "random walk of the data sheet", nullable=True
+        ),
+        Column("source", _text, "", "where these figures are from", nullable=True),
+    ),
+)
+LOGS = Table(
+    "logs",
+    1,
+    (
+        _LOG,
+        Column("file", _text, "", "file name inside the campaign's folder"),
+        Column("layout", _text, "", "how its bytes are read, as JSON"),
+    ),
+)
+INPUTS = Table(
+    "inputs",
+    1,
+    (
+        Column("file", _text, "", "file name"),
+        Column("size", _integer, "byte", "size of the file"),
+        Column("sha256", _text, "", "SHA-256 of the file"),
+    ),
+)
+MANOEUVRES = Table(
+    "manoeuvres",
+    1,
+    (
+        Column("manoeuvre", _text, "", "identifier, unique in the campaign"),
+        Column("do", _text, "", "rest, turn or positions"),
+        _LOG,
+        Column("position", _text, "", "manoeuvres of one position share its error"),
+        Column("mount", _text, "", "how the IMU sits on the table"),
+        *_vector("up", "1", "unit vector that points up at the start"),
+        *_vector("mark", "1", "unit vector to the table's zero mark at the start"),
+        *_vector("about", "1", "unit vector of the axis of the turn"),
+        Column("angle", _double, "rad", "angle of the turn about `about`, right-hand rule", BODY, True),
+        Column("angle_sigma", _double, "rad", "standard deviation of the angle", nullable=True),
+        Column("rate", _double, "rad/s", "signed rate of the turn about `about`", BODY, True),
+        Column("acceleration", _double, "rad/s²", "of the table at start and stop", nullable=True),
+        Column("seconds", _double, "s", "planned duration", nullable=True),
+        Column("recorded", _text, "", "whole: rest on both sides is in the log; steady: it is not"),
+        Column("from_s", _double, "s", "start of the stated span, in the log's own time", nullable=True),
+        Column("to_s", _double, "s", "end of the stated span", nullable=True),
+        Column("from_row", _integer, "1", "first data row of the stated rows", nullable=True),
+        Column("to_row", _integer, "1", "data row after the last", nullable=True),
+        Column("label", _text, "", "the records with this label", nullable=True),
+    ),
+)
+
+# ---- decode
+
+SAMPLES = Table(
+    "samples",
+    1,
+    (
+        Column("log", _label, "", "as in logs"),
+        Column("record", _integer, "1", "number of the record in its log, refused ones counted"),
+        Column("offset", _integer, "byte", "where its line begins in the file"),
+        Column("line", _integer, "1", "number of its line, from 1"),
+        Column("time", _double, "s", "since the start of its clock", "", True),
+        Column("status", pa.uint32(), "", "status word of the instrument", nullable=True),
+        Column("mean_of", _double, "1", "number of samples that this record is the mean of", nullable=True),
+        *_channels("specific force, angular rate"),
+        Column("table_angle", _double, "rad", "as the table's encoder gives it", nullable=True),
+        Column("temperature", _double, "K", "of the instrument", nullable=True),
+        Column("label", _label, "", "label that the plan selects by", nullable=True),
+    ),
+)
+REFUSED = Table(
+    "refused",
+    1,
+    (
+        _LOG,
+        Column("line", _integer, "1", "number of the line, from 1"),
+        Column("offset", _integer, "byte", "where the line begins in the file"),
+        Column("bytes", _integer, "byte", "its length with its line end"),
+        Column("reason", _text, "", "what was found and what was expected"),
+        Column("text", _text, "", "its beginning"),
+    ),
+)
+ACCOUNTS = Table(
+    "accounts",
+    1,
+    (
+        _LOG,
+        Column("kind", _text, "", "decoded, other message, header, blank, not selected, refused"),
+        Column("name", _text, "", "name of the message, where it has one"),
+        Column("lines", _integer, "1", "number of lines"),
+        Column("bytes", _integer, "byte", "their bytes; all rows of a log add up to its size"),
+    ),
+)
+CLOCKS = Table(
+    "clocks",
+    1,
+    (
+        _LOG,
+        Column("clock", _text, "", "GPS: shared by the logs; own: each log from its first sample; none"),
+        Column("epoch_gps", _double, "s", "GPS time at time 0", nullable=True),
+        Column("recorded_on", _text, "", "UTC date of the first sample", nullable=True),
+        Column("from_s", _double, "s", "time of the first sample", nullable=True),
+        Column("to_s", _double, "s", "time of the last sample", nullable=True),
+        Column("records", _integer, "1", "number of decoded records"),
+        Column("interval", _double, "s", "median sample interval", nullable=True),
+    ),
+)
+
+# ---- quality, segment
+
+FINDINGS = Table(
+    "findings",
+    1,
+    (
+        Column("id", _text, "", "stable identifier: stage/cause/place"),
+        Column("cause", _text, "", "what it is"),
+        Column("sensor", _text, "", "accel or gyro, where one is concerned", nullable=True),
+        Column("axis", _text, "", "x, y or z, where one is concerned", nullable=True),
+        Column("log", _text, "", "as in logs", nullable=True),
+        Column("manoeuvre", _text, "", "as in manoeuvres", nullable=True),
+        Column("from_s", _double, "s", "from, in the time of the log", nullable=True),
+        Column("to_s", _double, "s", "to, in the time of the log", nullable=True),
+        Column("count", _integer, "1", "how many equal ones this stands for"),
+        Column("size", _double, "as unit", "how large", nullable=True),
+        Column("unit", _text, "", "unit of size"),
+        Column("p_value", _double, "1", "chance of such a size if nothing is wrong", nullable=True),
+        Column("consequence", _text, "", "what it does to the result"),
+        Column("action", _text, "", "what the pipeline did, or what the laboratory should do"),
+        Column("sentence", _text, "", "the finding in words"),
+    ),
+)
+MASKS = Table(
+    "masks",
+    1,
+    (
+        _LOG,
+        *_RECORDS,
+        Column("finding", _text, "", "id of the finding that masks these records"),
+    ),
+)
+GAPS = Table(
+    "gaps",
+    1,
+    (
+        _LOG,
+        Column("record", _integer, "1", "first record after the gap"),
+        Column("from_s", _double, "s", "time of the record before the gap"),
+        Column("to_s", _double, "s", "time of the record after the gap"),
+        Column("missing", _integer, "1", "number of samples that are missing"),
+    ),
+)
+SEGMENTS = Table(
+    "segments",
+    1,
+    (
+        Column("manoeuvre", _text, "", "as in manoeuvres"),
+        Column("phase", _text, "", PHASES),
+        _LOG,
+        *_RECORDS,
+        Column("from_s", _double, "s", "time of its first record", nullable=True),
+        Column("to_s", _double, "s", "time of its last record", nullable=True),
+    ),
+)
+PERFORMED = Table(
+    "performed",
+    1,
+    (
+        Column("manoeuvre", _text, "", "as in manoeuvres"),
+        Column("found", _truth, "", "found in its log"),
+        Column("complete", _truth, "", "recorded from rest to rest without a gap, as planned"),
+        Column("angle", _double, "rad", "angle that was recorded, about `about`", BODY, True),
+        Column("missing_angle", _double, "rad", "angle that was planned but not recorded", BODY, True),
+        Column("missing_s", _double, "s", "time that is missing while it turns"),
+        Column("rate", _double, "rad/s", "mean rate of the steady part, about `about`", BODY, True),
+        Column("seconds", _double, "s", "duration of the rest, or from start to stop of the turn"),
+        Column("sentence", _text, "", "what was recorded of it, in words"),
+    ),
+)
+BLOCKS = Table(
+    "blocks",
+    1,
+    (
+        Column("manoeuvre", _text, "", "as in manoeuvres"),
+        Column("phase", _text, "", PHASES),
+        _LOG,
+        *_RECORDS,
+        Column("time", _double, "s", "middle of the block", nullable=True),
+        Column(
+            "seconds", _double, "s", "count × interval: mean × seconds is a sum", nullable=True
+        ),
+        Column("count", _double, "1", "number of samples in the means"),
+        *_channels("mean"),
+        Column("table_angle", _double, "rad", "mean angle of the table", nullable=True),
+        Column("temperature", _double, "K", "mean temperature", nullable=True),
+        Column("mask_share", _double, "1", "share of its records that are masked"),
+    ),
+)
+TRACES = Table(
+    "traces",
+    1,
+    (
+        _LOG,
+        *_RECORDS,
+        Column("from_s", _double, "s", "time of the first record", nullable=True),
+        Column("to_s", _double, "s", "time of the last record", nullable=True),
+        *_channels("smallest", prefix="least_"),
+        *_channels("largest", prefix="most_"),
+    ),
+)
+
+# ---- noise and estimation
+
+NOISE = Table(
+    "noise",
+    1,
+    (
+        Column("manoeuvre", _text, "", "as in manoeuvres"),
+        Column("phase", _text, "", "rest or steady"),
+        Column("channel", _text, "", "one of the six channels"),
+        Column("white_noise", _double, "rad/√s, m/s/√s", "random walk: root of the power density"),
+        Column("sigma", _double, "rad/√s, m/s/√s", "standard deviation of white_noise"),
+        Column("per_sample", _double, "rad/s, m/s²", "standard deviation of the samples"),
+        Column("samples", _integer, "1", "number of samples"),
+        Column("data_sheet", _double, "rad/√s, m/s/√s", "the data sheet's figure", nullable=True),
+    ),
+)
+PARAMETERS = Table(
+    "parameters",
+    1,
+    (
+        Column("id", _text, "", "stable identifier: stage/method/parameter"),
+        Column("stage", _text, "", "stage that estimated it"),
+        Column("method", _text, "", "method of estimation"),
+        Column("parameter", _text, "", "name within the method"),
+        Column("value", _double, "as unit", "estimate; none where it is not determined", nullable=True),
+        Column("sigma", _double, "as unit", "its standard deviation", nullable=True),
+        Column("unit", _text, "", "unit of value and sigma"),
+        Column("frame", _text, "", "frame it is expressed in"),
+        Column("meaning", _text, "", "what it is, in words"),
+        Column("reason", _text, "", "why it is not determined, and the manoeuvre that would help"),
+    ),
+)
+COVARIANCE = Table(
+    "covariance",
+    1,
+    (
+        Column("first", _text, "", "id of a parameter"),
+        Column("second", _text, "", "id of a parameter"),
+        Column("covariance", _double, "product of the units", "of the two estimates"),
+    ),
+)
+FIT = Table(
+    "fit",
+    1,
+    (
+        Column("method", _text, "", "method of estimation"),
+        Column("chi_squared", _double, "1", "weighted sum of the squared residuals"),
+        Column("degrees", _integer, "1", "degrees of freedom"),
+        Column("p_value", _double, "1", "chance of a larger sum if model and noise are right"),
+        Column("used", _text, "", "the manoeuvres that were used"),
+        Column("left_out", _text, "", "the manoeuvres that were not, each with the reason"),
+    ),
+)
+AVERAGING = Table(
+    "averaging",
+    1,
+    (
+        Column("parameter", _text, "", "id of a parameter"),
+        Column("seconds", _double, "s", "length of each rest that was used, from its start"),
+        Column("value", _double, "as the parameter", "estimate from these"),
+        Column("sigma", _double, "as the parameter", "its standard deviation"),
+    ),
+)

@@ -1,0 +1,151 @@
+"""A YAML 1.2 file that people wrote: its content, and the line of every key for errors.
+
+Dates stay text, as YAML 1.2 has it.
+"""
+
+import difflib
+from collections.abc import Sequence
+from functools import cache
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.resolver import VersionedResolver
+from ruamel.yaml.scalarbool import ScalarBoolean
+from ruamel.yaml.scalarint import ScalarInt
+
+from stages.contracts.errors import Refusal
+
+Key = Sequence[str | int]
+LARGEST = 4_000_000  # bytes; a campaign file of a person is a thousand times smaller
+FOLDER = Path(__file__).parent
+
+
+class _DatesAreText(VersionedResolver):
+    """The YAML 1.2 core schema: without the timestamps that ruamel.yaml adds to it."""
+
+    def resolve(self, kind: Any, value: Any, implicit: Any) -> Any:
+        tag = super().resolve(kind, value, implicit)
+        return "tag:yaml.org,2002:str" if str(tag).endswith(":timestamp") else tag
+
+
+class YamlFile:
+    """The content of a YAML file as plain dicts, lists and scalars.
+
+    Raises
+    ------
+    Refusal
+        where it is no YAML, with the line; later, where it breaks a schema, with line and key
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._lines: dict[tuple[str | int, ...], int] = {}
+        self.content = self._plain(self._load(), ())
+
+    def place(self, key: Key) -> str:
+        """Line and key, as an error names them: `line 12, plan[3].up`."""
+        known = tuple(key)
+        while known and known not in self._lines:
+            known = known[:-1]
+        name = "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in key).lstrip(".")
+        line = f"line {self._lines[known]}" if known else ""
+        return ", ".join(part for part in (line, name) if part)
+
+    def refuse(self, key: Key, found: object, expected: str, cure: str) -> Refusal:
+        """The error that names this file and `key`."""
+        return Refusal(str(self.path), self.place(key), shown(found), expected, cure)
+
+    def check(self, schema: str) -> None:
+        """Hold the content against `contracts/<schema>.schema.yaml`."""
+        validator = jsonschema.Draft202012Validator(schema_of(schema))
+        errors = list(validator.iter_errors(self.content))
+        if errors:
+            raise self._refusal_of(jsonschema.exceptions.best_match(errors))
+
+    def _refusal_of(self, error: jsonschema.ValidationError) -> Refusal:
+        key = list(error.absolute_path)
+        rule: Any = error.schema
+        meaning = rule.get("description", "") if isinstance(rule, dict) else ""
+        if error.validator == "additionalProperties":
+            allowed = list(rule["properties"])
+            unknown = next(k for k in error.instance if k not in allowed)  # type: ignore[union-attr]
+            near = difflib.get_close_matches(str(unknown), allowed, n=1)
+            cure = f"write {near[0]}" if near else "remove it"
+            found = f"the key {shown(unknown)}"
+            return self.refuse_text([*key, unknown], found, f"one of {', '.join(allowed)}", cure)
+        if error.validator == "required":
+            missing = next(k for k in error.validator_value if k not in error.instance)  # type: ignore[union-attr]
+            said = rule.get("properties", {}).get(missing, {}).get("description", "")
+            return self.refuse_text(
+                key, f"no key {missing!r}", f"{missing}: {said}".rstrip(": "), f"add {missing}"
+            )
+        if key and key[-1] in ("serial", "date") and not isinstance(error.instance, str):
+            found = f"the number {shown(error.instance)}, in which leading zeros are lost"
+            return self.refuse_text(key, found, meaning, f'put it in quotes: {key[-1]}: "…"')
+        expected = f"{meaning} ({error.message})" if meaning else error.message
+        return self.refuse(key, error.instance, expected, "correct the value")
+
+    def refuse_text(self, key: Key, found: str, expected: str, cure: str) -> Refusal:
+        """The error that names this file and `key`, with `found` in words."""
+        return Refusal(str(self.path), self.place(key), found, expected, cure)
+
+    def _load(self) -> Any:
+        size = self.path.stat().st_size
+        if size > LARGEST:
+            raise Refusal(
+                str(self.path), "", f"{size} bytes", f"at most {LARGEST}", "is this a log?"
+            )
+        yaml = YAML(typ="rt", pure=True)
+        yaml.Resolver = _DatesAreText
+        try:
+            return yaml.load(self.path.read_text(encoding="utf-8"))
+        except UnicodeDecodeError as error:
+            raise Refusal(
+                str(self.path), f"byte {error.start}", "no UTF-8", "UTF-8 text", "save it as UTF-8"
+            ) from None
+        except MarkedYAMLError as error:
+            mark = error.problem_mark
+            line = f"line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+            found = str(error.problem)
+            raise Refusal(
+                str(self.path), line, found, "YAML 1.2", "correct this line or the one before"
+            ) from None
+        except (YAMLError, ValueError) as error:
+            raise Refusal(str(self.path), "", str(error), "YAML 1.2", "correct the file") from None
+
+    def _plain(self, node: Any, key: tuple[str | int, ...]) -> Any:
+        if isinstance(node, CommentedMap):
+            for name in node:
+                self._lines[(*key, name)] = node.lc.key(name)[0] + 1
+            return {name: self._plain(value, (*key, name)) for name, value in node.items()}
+        if isinstance(node, CommentedSeq):
+            for number in range(len(node)):
+                self._lines[(*key, number)] = node.lc.item(number)[0] + 1
+            return [self._plain(value, (*key, number)) for number, value in enumerate(node)]
+        if isinstance(node, ScalarBoolean):
+            return bool(node)
+        if isinstance(node, ScalarInt):
+            return int(node)
+        if isinstance(node, float):
+            if not isfinite(node):
+                raise self.refuse(key, float(node), "a finite number", "correct the value")
+            return float(node)
+        return str(node) if isinstance(node, str) else node
+
+
+@cache
+def schema_of(name: str) -> dict[str, Any]:
+    """The JSON schema `contracts/<name>.schema.yaml`."""
+    content = YAML(typ="safe", pure=True).load(FOLDER / f"{name}.schema.yaml")
+    return dict(content)
+
+
+def shown(value: object) -> str:
+    """A value as it is shown in an error, not longer than a line."""
+    text = repr(value)
+    return text if len(text) <= 100 else f"{text[:97]}…"

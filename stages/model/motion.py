@@ -1,0 +1,49 @@
+"""How a turntable moves, and what is up for the IMU on it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+Array = NDArray[np.float64]
+
+
+def turned(direction: Array, about: Array, angle: float) -> Array:
+    """A direction of the laboratory as the IMU sees it after it has turned by `angle`.
+
+    `direction` and `about` are body vectors before the turn. The IMU turns about
+    `about` by the right-hand rule, so what stands still in the laboratory turns the
+    other way in body axes.
+    """
+    return np.asarray(Rotation.from_rotvec(-angle * about).apply(direction), dtype=np.float64)
+
+
+def level_axes(up: Array) -> tuple[Array, Array]:
+    """Two level directions in body axes that make, with `up`, a right-handed triad."""
+    least = np.eye(3)[np.argmin(np.abs(up))]
+    first = np.cross(least, up)
+    first /= np.linalg.norm(first)
+    return first, np.cross(up, first)
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A turn with constant acceleration at its start and stop: a trapezoid of the rate.
+
+    `angle` (rad) and `rate` (rad/s) are magnitudes; `acceleration` in rad/s².
+    """
+
+    angle: float
+    rate: float
+    acceleration: float
+
+    @property
+    def ramp_seconds(self) -> float:
+        """Duration of the acceleration, and of the braking, s."""
+        return self.rate / self.acceleration
+
+    @property
+    def seconds(self) -> float:
+        """From start to stop, A/r + r/a, s."""
+        return self.angle / self.rate + self.ramp_seconds
