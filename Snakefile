@@ -1,0 +1,298 @@
+# The whole pipeline on one page, in the order of the data: each rule runs the stage of its name,
+# and each stage writes its tables into data/derived/<campaign>/<stage>/.
+
+import json
+import os
+import sys
+from pathlib import Path
+
+from snakemake.utils import min_version, validate
+
+min_version("9.0")
+
+HOME = Path(workflow.basedir)
+sys.path.insert(0, str(HOME))
+os.environ["PYTHONPATH"] = str(HOME)  # the data may lie elsewhere (--directory)
+
+from stages.contracts.code import code_of
+from stages.contracts.logs import campaigns, logs_of
+
+
+configfile: HOME / "config.yaml"
+
+
+validate(config, str(HOME / "stages/contracts/config.schema.yaml"))
+
+PYTHON = sys.executable
+DERIVED = "data/derived/{campaign}"
+RAW = "data/raw/{campaign}"
+SIMULATED = campaigns("data/simulated", "*.yaml")
+CAMPAIGNS = sorted({*campaigns("data/raw", "*/campaign.yaml"), *SIMULATED})
+LABORATORY = sorted(
+    str(p) for p in (HOME / "laboratory").rglob("*") if p.suffix in {".py", ".yaml"}
+)
+
+# Every stage is run alike: `--name=path` for each input, quoted for the shell.
+STAGE = (
+    "{PYTHON:q} -m stages.{rule} --settings {params.settings:q} {params.reads:q}"
+    " --output {params.output:q} 2> {log:q}"
+)
+
+
+def reads(wildcards, input):
+    """The arguments that name a stage's inputs; its code is an input for Snakemake alone."""
+    named = [(name, paths) for name, paths in input.items() if name != "code"]
+    return [
+        f"--{name}={path}"
+        for name, paths in named
+        for path in ([paths] if isinstance(paths, str) else paths)
+    ]
+
+
+def code(stage):
+    """Every file of the project that a stage rests on: when one changes, the stage runs again."""
+    return [str(path) for path in code_of(stage)]
+
+
+def settings(stage):
+    """The section of config.yaml that a stage gets, and no other, so that only it runs again."""
+    return json.dumps(config.get(stage, {}), sort_keys=True)
+
+
+def logs(wildcards):
+    """The logs of a campaign: of the simulated one by its description, for they may not be there yet."""
+    simulated = wildcards.campaign in SIMULATED
+    source = "data/simulated/{campaign}.yaml" if simulated else f"{RAW}/campaign.yaml"
+    files = [f"{RAW}/{log}" for log in logs_of(Path(source.format(**wildcards)))]
+    files = [file.format(**wildcards) for file in files]
+    return [file for file in files if simulated or Path(file).is_file()]
+
+
+wildcard_constraints:
+    campaign="[a-z0-9][a-z0-9-]*",
+
+
+rule all:
+    default_target: True
+    input:
+        expand("reports/{campaign}.{kind}", campaign=CAMPAIGNS, kind=["html", "pdf"]),
+
+
+for simulated in SIMULATED:
+
+    rule:
+        name:
+            f"laboratory_{simulated}"
+        input:
+            description=f"data/simulated/{simulated}.yaml",
+            code=LABORATORY,
+        output:
+            [
+                f"data/raw/{simulated}/{log}"
+                for log in logs_of(Path(f"data/simulated/{simulated}.yaml"))
+            ],
+            f"data/raw/{simulated}/campaign.yaml",
+        log:
+            f"data/derived/{simulated}/laboratory/stage.log",
+        params:
+            output=f"data/raw/{simulated}",
+        message:
+            f"{simulated}: the simulated laboratory records"
+        shell:
+            "{PYTHON:q} -m laboratory {input.description:q} {params.output:q} 2> {log:q}"
+
+
+rule plan:
+    input:
+        campaign=f"{RAW}/campaign.yaml",
+        raw=logs,
+        instruments=HOME / "data/instruments.yaml",
+        code=code("plan"),
+    output:
+        multiext(
+            f"{DERIVED}/plan/",
+            "campaign.parquet",
+            "known.parquet",
+            "sensors.parquet",
+            "logs.parquet",
+            "inputs.parquet",
+            "manoeuvres.parquet",
+        ),
+    log:
+        f"{DERIVED}/plan/stage.log",
+    benchmark:
+        f"{DERIVED}/plan/benchmark.tsv"
+    params:
+        settings=settings("plan"),
+        reads=reads,
+        output=f"{DERIVED}/plan",
+    message:
+        "{wildcards.campaign}: the campaign file, checked and made explicit"
+    shell:
+        STAGE
+
+
+rule decode:
+    input:
+        logs=f"{DERIVED}/plan/logs.parquet",
+        raw=logs,
+        code=code("decode"),
+    output:
+        multiext(
+            f"{DERIVED}/decode/",
+            "samples.parquet",
+            "refused.parquet",
+            "accounts.parquet",
+            "clocks.parquet",
+        ),
+    log:
+        f"{DERIVED}/decode/stage.log",
+    benchmark:
+        f"{DERIVED}/decode/benchmark.tsv"
+    params:
+        settings=settings("decode"),
+        reads=reads,
+        output=f"{DERIVED}/decode",
+    message:
+        "{wildcards.campaign}: logs to samples"
+    shell:
+        STAGE
+
+
+rule quality:
+    input:
+        samples=f"{DERIVED}/decode/samples.parquet",
+        clocks=f"{DERIVED}/decode/clocks.parquet",
+        campaign=f"{DERIVED}/plan/campaign.parquet",
+        known=f"{DERIVED}/plan/known.parquet",
+        code=code("quality"),
+    output:
+        multiext(f"{DERIVED}/quality/", "findings.parquet", "masks.parquet", "gaps.parquet"),
+    log:
+        f"{DERIVED}/quality/stage.log",
+    benchmark:
+        f"{DERIVED}/quality/benchmark.tsv"
+    params:
+        settings=settings("quality"),
+        reads=reads,
+        output=f"{DERIVED}/quality",
+    message:
+        "{wildcards.campaign}: what is wrong with the recording?"
+    shell:
+        STAGE
+
+
+rule segment:
+    input:
+        samples=f"{DERIVED}/decode/samples.parquet",
+        manoeuvres=f"{DERIVED}/plan/manoeuvres.parquet",
+        clocks=f"{DERIVED}/decode/clocks.parquet",
+        gaps=f"{DERIVED}/quality/gaps.parquet",
+        masks=f"{DERIVED}/quality/masks.parquet",
+        code=code("segment"),
+    output:
+        multiext(
+            f"{DERIVED}/segment/",
+            "segments.parquet",
+            "performed.parquet",
+            "blocks.parquet",
+            "traces.parquet",
+            "findings.parquet",
+        ),
+    log:
+        f"{DERIVED}/segment/stage.log",
+    benchmark:
+        f"{DERIVED}/segment/benchmark.tsv"
+    params:
+        settings=settings("segment"),
+        reads=reads,
+        output=f"{DERIVED}/segment",
+    message:
+        "{wildcards.campaign}: where are the manoeuvres of the plan?"
+    shell:
+        STAGE
+
+
+rule noise:
+    input:
+        samples=f"{DERIVED}/decode/samples.parquet",
+        segments=f"{DERIVED}/segment/segments.parquet",
+        clocks=f"{DERIVED}/decode/clocks.parquet",
+        gaps=f"{DERIVED}/quality/gaps.parquet",
+        masks=f"{DERIVED}/quality/masks.parquet",
+        sensors=f"{DERIVED}/plan/sensors.parquet",
+        code=code("noise"),
+    output:
+        f"{DERIVED}/noise/noise.parquet",
+    log:
+        f"{DERIVED}/noise/stage.log",
+    benchmark:
+        f"{DERIVED}/noise/benchmark.tsv"
+    params:
+        settings=settings("noise"),
+        reads=reads,
+        output=f"{DERIVED}/noise",
+    message:
+        "{wildcards.campaign}: how much white noise?"
+    shell:
+        STAGE
+
+
+rule accelerometer:
+    input:
+        blocks=f"{DERIVED}/segment/blocks.parquet",
+        manoeuvres=f"{DERIVED}/plan/manoeuvres.parquet",
+        performed=f"{DERIVED}/segment/performed.parquet",
+        noise=f"{DERIVED}/noise/noise.parquet",
+        known=f"{DERIVED}/plan/known.parquet",
+        code=code("accelerometer"),
+    output:
+        multiext(
+            f"{DERIVED}/accelerometer/",
+            "parameters.parquet",
+            "covariance.parquet",
+            "fit.parquet",
+            "averaging.parquet",
+        ),
+    log:
+        f"{DERIVED}/accelerometer/stage.log",
+    benchmark:
+        f"{DERIVED}/accelerometer/benchmark.tsv"
+    params:
+        settings=settings("accelerometer"),
+        reads=reads,
+        output=f"{DERIVED}/accelerometer",
+    message:
+        "{wildcards.campaign}: the accelerometers from rests"
+    shell:
+        STAGE
+
+
+rule gyroscope:
+    input:
+        blocks=f"{DERIVED}/segment/blocks.parquet",
+        manoeuvres=f"{DERIVED}/plan/manoeuvres.parquet",
+        performed=f"{DERIVED}/segment/performed.parquet",
+        noise=f"{DERIVED}/noise/noise.parquet",
+        known=f"{DERIVED}/plan/known.parquet",
+        code=code("gyroscope"),
+    output:
+        multiext(
+            f"{DERIVED}/gyroscope/",
+            "parameters.parquet",
+            "covariance.parquet",
+            "fit.parquet",
+            "averaging.parquet",
+        ),
+    log:
+        f"{DERIVED}/gyroscope/stage.log",
+    benchmark:
+        f"{DERIVED}/gyroscope/benchmark.tsv"
+    params:
+        settings=settings("gyroscope"),
+        reads=reads,
+        output=f"{DERIVED}/gyroscope",
+    message:
+        "{wildcards.campaign}: the gyros from turns and rests"
+    shell:
+        STAGE

@@ -1,0 +1,271 @@
+"""The logs become samples in SI units, body axes and one clock; no byte is left unaccounted for.
+
+Nothing is repaired here. A line that cannot be trusted is refused with the reason; what the samples
+themselves are worth is the business of `quality`.
+"""
+
+import json
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import NDArray
+
+from stages.contracts.errors import Refusal
+from stages.contracts.parquet import BATCH_ROWS
+from stages.contracts.stage import command_line
+from stages.contracts.tables import ACCOUNTS, AXES, CLOCKS, LOGS, REFUSED, SAMPLES
+from stages.formats import columns, novatel
+from stages.formats.account import Account, RefusedLine
+from stages.formats.arrow_arrays import (
+    array_of_numbers,
+    array_of_texts,
+    batch_of_rows,
+    repeated_text,
+)
+from stages.formats.column_layout import ticks_per_second
+from stages.formats.gps_time import NANOSECONDS, utc
+
+STANDARD_GRAVITY = 9.80665  # m/s², by convention the unit g; not the gravity of any place
+ICE_POINT = 273.15  # K
+CHANNEL_UNITS = {"m/s2": 1.0, "g": STANDARD_GRAVITY, "rad/s": 1.0, "deg/s": math.radians(1)}
+ANGLE_UNITS = {"deg": math.radians(1), "rad": 1.0}
+LOOK_AHEAD = (
+    1000  # samples, at least, of which the median interval is taken where there are as many
+)
+
+Reals = NDArray[np.float64]
+Pieces = Iterator[tuple[str, pa.RecordBatch]]
+
+
+def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
+    """The tables samples, refused, accounts and clocks in pieces, log after log.
+
+    Time is GPS time since the first sample of the campaign for the logs of a receiver; for a log of
+    columns it is the time since its own first sample. Increments become rates with the log's own
+    median sample interval; a log that has too few samples for one has no rates.
+
+    Raises
+    ------
+    Refusal
+        where a log is missing, or has not the columns that its layout names
+    """
+    opened = [_open(row, raw) for batch in logs for row in batch.to_pylist()]
+    stamps = [log.first for log in opened if isinstance(log, ReceiverLog) and log.first is not None]
+    origin = min(stamps, default=0)
+    for log in opened:
+        yield from _pieces_of(log, origin)
+
+
+@dataclass(frozen=True)
+class Decoded:
+    """What a piece of a log gives: n samples, the lines that were refused, and the account."""
+
+    samples: dict[str, Any]  # columns of the table samples by name, (n,) each, SI
+    refused: list[RefusedLine]
+    account: Account
+
+
+class ReceiverLog:
+    """A log of a NovAtel receiver: GPS time, and increments in counts."""
+
+    clock = "GPS"
+
+    def __init__(self, name: str, path: Path, layout: Mapping[str, Any]) -> None:
+        self.name = name
+        self._path = path
+        self._axes: list[str] = layout["axes"]  # such as z, -y, x: the order and sign of the fields
+        self._counts = {
+            "accel": float(layout["accelerometer_count"]),  # m/s
+            "gyro": float(layout["gyro_count"]),  # rad
+        }
+        first, step = _look_ahead(reading.records.stamp for reading in novatel.read(path))
+        self.first = None if first is None else int(first)  # ns since the start of GPS time
+        self.interval = None if step is None else step / NANOSECONDS  # s
+
+    def decoded(self, origin: int) -> Iterator[Decoded]:
+        """The log, piece by piece, with time since `origin`, ns of GPS time."""
+        for reading in novatel.read(self._path):
+            records = reading.records
+            samples = {
+                "record": records.record,
+                "offset": records.offset,
+                "line": records.line,
+                # Whole numbers up to the difference: nothing of a nanosecond is lost.
+                "time": (records.stamp - origin) / NANOSECONDS,
+                "status": records.status,
+                **self._rates(records.counts),
+            }
+            yield Decoded(samples, reading.refused, reading.account)
+
+    def _rates(self, counts: NDArray[np.int32]) -> dict[str, Reals]:
+        if self.interval is None:
+            return {}
+        rates: dict[str, Reals] = {}
+        fields = [(sensor, axis) for sensor in ("accel", "gyro") for axis in self._axes]
+        for field, (sensor, axis) in enumerate(fields):
+            sign = -1 if axis.startswith("-") else 1
+            increment = (sign * self._counts[sensor]) * counts[:, field].astype(np.float64)
+            rates[f"{sensor}_{axis[-1]}"] = increment / self.interval
+        return rates
+
+    def epoch(self, origin: int) -> dict[str, Any]:
+        """Where time 0 lies in GPS time, and the day of the first sample."""
+        if self.first is None:
+            return {"epoch_gps": None, "recorded_on": None}
+        return {
+            "epoch_gps": origin / NANOSECONDS,
+            "recorded_on": utc(self.first).date().isoformat(),
+        }
+
+
+class ColumnLog:
+    """A log of columns of text: its own time or none, and values in units or counts."""
+
+    def __init__(self, name: str, path: Path, layout: Mapping[str, Any]) -> None:
+        self.name = name
+        self._path = path
+        self._layout = layout
+        time = layout.get("time")
+        self.clock = "none" if time is None else "own"
+        self._ticks = 1.0 if time is None else ticks_per_second(layout)
+        first, step = _look_ahead(
+            reading.records.ticks
+            for reading in columns.read(path, layout)
+            if reading.records.ticks is not None
+        )
+        # Rows that are counted are counted from the first row, though it be refused.
+        counted = time is not None and time.get("column") is None
+        self._first = 0.0 if first is None or counted else first
+        self.interval = None if step is None else step / self._ticks
+
+    def decoded(self, origin: int) -> Iterator[Decoded]:
+        """The log, piece by piece; `origin` is none of its business."""
+        for reading in columns.read(self._path, self._layout):
+            rows = reading.records
+            samples = {
+                "record": rows.record,
+                "offset": rows.offset,
+                "line": rows.line,
+                "mean_of": rows.mean_of,
+                "label": rows.label,
+                **self._triad("accel", "accelerometer", rows.accelerometer),
+                **self._triad("gyro", "gyro", rows.gyro),
+            }
+            if rows.ticks is not None:
+                samples["time"] = (rows.ticks - self._first) / self._ticks
+            if rows.table_angle is not None:
+                unit = ANGLE_UNITS[self._layout["table_angle"]["unit"]]
+                samples["table_angle"] = rows.table_angle * unit
+            if rows.temperature is not None:
+                above = ICE_POINT if self._layout["temperature"]["unit"] == "degC" else 0.0
+                samples["temperature"] = rows.temperature + above
+            yield Decoded(samples, reading.refused, reading.account)
+
+    def _triad(self, sensor: str, key: str, values: Reals) -> dict[str, Reals]:
+        triad = self._layout.get(key)
+        if triad is None:
+            return {}
+        size = CHANNEL_UNITS[triad["unit"]] / (triad.get("counts_per_unit") or 1)
+        return {f"{sensor}_{axis}": values[:, place] * size for place, axis in enumerate(AXES)}
+
+    def epoch(self, origin: int) -> dict[str, Any]:
+        """Nothing: its clock is its own."""
+        return {"epoch_gps": None, "recorded_on": None}
+
+
+def _open(row: Mapping[str, str], raw: list[Path]) -> ReceiverLog | ColumnLog:
+    """The log of one row of the table logs."""
+    paths = {path.name: path for path in raw if path.is_file()}
+    if row["file"] not in paths:
+        raise Refusal(
+            row["file"],
+            "",
+            "no such file",
+            f"the log of the campaign beside {', '.join(sorted(paths)) or 'its campaign.yaml'}",
+            "put it into the campaign's folder, or correct its name in campaign.yaml",
+        )
+    layout = json.loads(row["layout"])
+    kind = ReceiverLog if layout["kind"] == "rawimus" else ColumnLog
+    return kind(row["log"], paths[row["file"]], layout)
+
+
+def _look_ahead(
+    times: Iterable[NDArray[np.int64] | Reals],
+) -> tuple[float | None, float | None]:
+    """The first time of a log and the median time from sample to sample, by its first pieces."""
+    seen: list[NDArray[Any]] = []
+    for some in times:
+        seen.append(some)
+        if sum(len(part) for part in seen) > LOOK_AHEAD:
+            break
+    together = np.concatenate(seen) if seen else np.array([])
+    steps = np.diff(together)
+    forward = steps[steps > 0]
+    return (
+        together[0].item() if len(together) else None,
+        float(np.median(forward)) if len(forward) else None,
+    )
+
+
+def _pieces_of(log: ReceiverLog | ColumnLog, origin: int) -> Pieces:
+    """All four tables of one log."""
+    account = Account()
+    records = 0
+    ends: list[float | None] = []
+    for decoded in log.decoded(origin):
+        account.add_account(decoded.account)
+        if decoded.refused:
+            lines = [{"log": log.name, **asdict(line)} for line in decoded.refused]
+            yield "refused", batch_of_rows(lines, REFUSED.schema)
+        samples = _sample_rows(log.name, decoded.samples)
+        for start in range(0, len(samples), BATCH_ROWS):
+            yield "samples", samples.slice(start, BATCH_ROWS)
+        if len(samples):
+            records += len(samples)
+            ends = [*ends[:1], samples["time"][0].as_py(), samples["time"][-1].as_py()]
+    sums = [
+        {"log": log.name, "kind": kind, "name": name, "lines": lines, "bytes": size}
+        for kind, name, lines, size in account
+    ]
+    yield "accounts", batch_of_rows(sums, ACCOUNTS.schema)
+    clock = {
+        "log": log.name,
+        "clock": log.clock,
+        **log.epoch(origin),
+        "from_s": ends[0] if ends else None,
+        "to_s": ends[-1] if ends else None,
+        "records": records,
+        "interval": log.interval,
+    }
+    yield "clocks", batch_of_rows([clock], CLOCKS.schema)
+
+
+def _sample_rows(log: str, samples: Mapping[str, Any]) -> pa.RecordBatch:
+    """The samples in the columns of the table; what the log does not record is null."""
+    rows = len(samples["record"])
+    filled: dict[str, pa.Array] = {"log": repeated_text(log, rows)}
+    for name, values in samples.items():
+        if isinstance(values, list):
+            filled[name] = array_of_texts(values).dictionary_encode()
+        elif values is not None:
+            filled[name] = array_of_numbers(values)
+    arrays = [
+        filled[column.name] if column.name in filled else pa.nulls(rows, column.type)
+        for column in SAMPLES.columns
+    ]
+    return pa.RecordBatch.from_arrays(arrays, schema=SAMPLES.schema)
+
+
+if __name__ == "__main__":
+    command_line(
+        decode,
+        reads={"logs": LOGS},
+        streams=("logs",),
+        files=("raw",),
+        writes={"samples": SAMPLES, "refused": REFUSED, "accounts": ACCOUNTS, "clocks": CLOCKS},
+    )

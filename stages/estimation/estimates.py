@@ -1,0 +1,160 @@
+"""Rows of the tables that every method of estimation writes: parameters, covariance, fit."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from stages.contracts import tables
+from stages.inference import triad
+from stages.inference.least_squares import Estimate
+
+Array = NDArray[np.float64]
+
+Booleans = NDArray[np.bool_]
+
+NAMES = triad.linear_names()
+SENSED = {"accelerometer": "specific force", "gyroscope": "angular rate"}
+UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
+
+
+@dataclass
+class Estimates:
+    """What the methods of one stage found, collected as rows of the common tables."""
+
+    stage: str
+    _parameters: list[dict[str, Any]] = field(default_factory=list)
+    _covariance: list[pd.DataFrame] = field(default_factory=list)
+    _fit: list[dict[str, Any]] = field(default_factory=list)
+    _averaging: list[dict[str, Any]] = field(default_factory=list)
+
+    def add(
+        self,
+        method: str,
+        names: tuple[str, ...],
+        values: Array,
+        covariance: Array,
+        reasons: dict[str, str],
+    ) -> None:
+        """The result of one method; a name in `reasons` is not determined, for that reason."""
+        ids = [f"{self.stage}/{method}/{name}" for name in names]
+        sigma = np.sqrt(np.diag(covariance))
+        for i, name in enumerate(names):
+            unit, frame, meaning = described(self.stage, name)
+            missing = name in reasons
+            self._parameters.append(
+                {
+                    "id": ids[i],
+                    "stage": self.stage,
+                    "method": method,
+                    "parameter": name,
+                    "value": None if missing else float(values[i]),
+                    "sigma": None if missing else float(sigma[i]),
+                    "unit": unit,
+                    "frame": frame,
+                    "meaning": meaning,
+                    "reason": reasons.get(name, ""),
+                }
+            )
+        there = [i for i, name in enumerate(names) if name not in reasons]
+        kept = [ids[i] for i in there]
+        self._covariance.append(
+            pd.DataFrame(
+                {
+                    "first": np.repeat(kept, len(kept)),
+                    "second": np.tile(kept, len(kept)),
+                    "covariance": covariance[np.ix_(there, there)].ravel(),
+                }
+            )
+        )
+
+    def add_triad(self, method: str, estimate: Estimate, reasons: dict[str, str]) -> None:
+        """The twelve unknowns of three sensors, and what M falls into by polar decomposition."""
+        unknowns, covariance = estimate.values[:12], estimate.covariance[:12, :12]
+        matrix = unknowns[:9].reshape(3, 3)
+        jacobian = np.zeros((21, 12))
+        jacobian[:12] = np.eye(12)
+        jacobian[12:, :9] = triad.jacobian_of_mounting(matrix)
+        values = np.append(triad.errors_of(unknowns), triad.mounting_and_rest(matrix))
+        derived = triad.MOUNTING + triad.SYMMETRIC
+        if any(name.startswith(("scale", "cross")) for name in reasons):
+            reasons = reasons | {name: "it needs all nine elements of M" for name in derived}
+        self.add(method, NAMES + derived, values, jacobian @ covariance @ jacobian.T, reasons)
+
+    def add_fit(self, method: str, estimate: Estimate, used: list[str], left: list[str]) -> None:
+        """How well the method's model describes the data."""
+        self._fit.append(
+            {
+                "method": method,
+                "chi_squared": estimate.chi_squared,
+                "degrees": estimate.degrees,
+                "p_value": estimate.p_value,
+                "used": ", ".join(used),
+                "left_out": "; ".join(left),
+            }
+        )
+
+    def add_averaging(self, method: str, seconds: float, estimate: Estimate) -> None:
+        """What the method finds from so many seconds of each rest."""
+        values = triad.errors_of(estimate.values[:12])
+        self._averaging += [
+            {
+                "parameter": f"{self.stage}/{method}/{name}",
+                "seconds": seconds,
+                "value": float(values[i]),
+                "sigma": float(estimate.sigma[i]),
+            }
+            for i, name in enumerate(NAMES)
+            if estimate.determined[i]
+        ]
+
+    def tables(self) -> dict[str, pd.DataFrame]:
+        """The four tables, with their columns even where there are no rows."""
+
+        def frame(rows: list[dict[str, Any]], empty: tables.Table) -> pd.DataFrame:
+            return pd.DataFrame(rows) if rows else empty.empty()
+
+        covariance = pd.concat(self._covariance) if self._covariance else tables.COVARIANCE.empty()
+        return {
+            "parameters": frame(self._parameters, tables.PARAMETERS),
+            "covariance": covariance,
+            "fit": frame(self._fit, tables.FIT),
+            "averaging": frame(self._averaging, tables.AVERAGING),
+        }
+
+
+def reasons(determined: Booleans, recorded: Booleans, sensor: str, cures: dict[str, str]) -> dict[str, str]:
+    """Why a parameter is not determined, and the manoeuvre that would determine it.
+
+    Parameters
+    ----------
+    determined : (12,); recorded : (3,), which sensors are in the logs
+    cures : what to do for `bias` and for `matrix`, where {axis} is the axis of the input
+    """
+    result = {}
+    for i, name in enumerate(NAMES):
+        row, column = name.partition("_")[2][0], name[-1]
+        if not recorded["xyz".index(row)]:
+            result[name] = f"the {row} {sensor} is not recorded"
+        elif not determined[i]:
+            kind = "bias" if name.startswith("bias") else "matrix"
+            result[name] = cures[kind].format(axis=column)
+    return result
+
+
+def described(stage: str, name: str) -> tuple[str, str, str]:
+    """Unit, frame and meaning of a parameter."""
+    kind, _, axes = name.partition("_")
+    sensed, unit = SENSED[stage], UNIT[stage]
+    sensor = "accelerometer" if stage == "accelerometer" else "gyro"
+    if kind == "bias":
+        return unit, "body", f"reading of the {axes} {sensor} without input"
+    if kind == "scale":
+        return "1", "body", f"scale factor error of the {axes} {sensor}: M_{axes}{axes} − 1"
+    if kind == "cross":
+        return "1", "body", f"the {axes[0]} {sensor}'s response to {sensed} along {axes[1]}"
+    if kind == "mounting":
+        return "rad", "body", f"rotation of the {sensor} triad against the case, about {axes}"
+    return "1", "sensor triad", f"symmetric rest of M without the mounting rotation, P_{axes} − I"

@@ -1,0 +1,64 @@
+"""Numbers and texts of a log as Arrow arrays and back, made of their buffers.
+
+`pyarrow.array` and `to_numpy` import pandas wherever it is installed. Decoding needs none of it,
+and starts faster and smaller without.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+from numpy.typing import NDArray
+
+
+def numbers_of(values: pa.ChunkedArray) -> NDArray[Any]:
+    """The numbers in an Arrow array without nulls, (n,)."""
+    return np.from_dlpack(values.combine_chunks())
+
+
+def array_of_numbers(values: NDArray[Any]) -> pa.Array:
+    """An Arrow array of `values`, of their type; null where one is NaN, (n,)."""
+    known = ~np.isnan(values) if values.dtype.kind == "f" else np.ones(len(values), bool)
+    return _array(values, known)
+
+
+def array_of_texts(texts: Sequence[str | None]) -> pa.Array:
+    """An Arrow array of `texts`, null where there is none, (n,)."""
+    encoded = [(text or "").encode() for text in texts]
+    offsets = np.zeros(len(encoded) + 1, np.int32)
+    np.cumsum([len(text) for text in encoded], out=offsets[1:])
+    validity = _validity(np.array([text is not None for text in texts], bool))
+    buffers = [validity, pa.py_buffer(offsets), pa.py_buffer(b"".join(encoded))]
+    return pa.Array.from_buffers(pa.string(), len(encoded), buffers)
+
+
+def repeated_text(text: str, times: int) -> pa.Array:
+    """`text` as often as told, as a dictionary of one word, (times,)."""
+    return pa.DictionaryArray.from_arrays(
+        array_of_numbers(np.zeros(times, np.int32)), array_of_texts([text])
+    )
+
+
+def batch_of_rows(rows: Sequence[Mapping[str, Any]], schema: pa.Schema) -> pa.RecordBatch:
+    """A few rows as a record batch; None becomes null. The schema has texts and numbers only."""
+    arrays = []
+    for field in schema:
+        values = [row[field.name] for row in rows]
+        if field.type == pa.string():
+            arrays.append(array_of_texts(values))
+        else:
+            known = np.array([value is not None for value in values], bool)
+            filled = [0 if value is None else value for value in values]
+            arrays.append(_array(np.array(filled, field.type.to_pandas_dtype()), known))
+    return pa.RecordBatch.from_arrays(arrays, schema=schema)
+
+
+def _array(values: NDArray[Any], known: NDArray[np.bool_]) -> pa.Array:
+    buffers = [_validity(known), pa.py_buffer(np.ascontiguousarray(values))]
+    return pa.Array.from_buffers(pa.from_numpy_dtype(values.dtype), len(values), buffers)
+
+
+def _validity(known: NDArray[np.bool_]) -> pa.Buffer | None:
+    """Arrow's bitmap of what is not null; None where nothing is."""
+    return None if known.all() else pa.py_buffer(np.packbits(known, bitorder="little"))

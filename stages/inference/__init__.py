@@ -1,0 +1,1 @@
+"""The inverse problem: from readings to parameters, each with its covariance."""

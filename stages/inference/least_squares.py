@@ -1,0 +1,86 @@
+"""Weighted least squares with what is known beforehand, and what the data then tell.
+
+    observed = design · x + noise,   noise ~ N(0, sigma²),   x ~ N(prior, prior_sigma²)
+
+A parameter that is sought has a prior so vague that it tells nothing; an error that
+cannot be avoided (the tilt of a position, the angle of a turn) is an unknown of
+its own whose prior is its known sigma. That is the same as a covariance of the
+observations that contains these errors.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
+from scipy.stats import chi2
+
+Array = NDArray[np.float64]
+Booleans = NDArray[np.bool_]
+
+NARROWED = 20.0  # a parameter is determined when the data narrow its vague prior so many times
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What least squares gives.
+
+    `values`: (p,); `covariance`: (p, p); `determined`: (p,); `chi_squared` of
+    `degrees` of freedom.
+    """
+
+    values: Array
+    covariance: Array
+    determined: Booleans
+    chi_squared: float
+    degrees: int
+
+    @property
+    def sigma(self) -> Array:
+        """Standard deviations of the values, (p,)."""
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def p_value(self) -> float:
+        """Chance of a larger sum of squares if the model and the noise are right."""
+        return float(chi2.sf(self.chi_squared, self.degrees)) if self.degrees else 1.0
+
+
+def solve(
+    design: Array,
+    observed: Array,
+    sigma: Array,
+    prior: Array,
+    prior_sigma: Array,
+    sought: int,
+) -> Estimate:
+    """The estimate of smallest variance, by orthogonal triangularisation.
+
+    Parameters
+    ----------
+    design : (n, p)
+    observed, sigma : (n,)
+    prior, prior_sigma : (p,)
+    sought : the first so many unknowns are parameters with vague priors; the others
+        are errors, each of which is an observation of zero as well
+    """
+    n, p = design.shape
+    # In units of the priors every column is of comparable size.
+    scaled = design / sigma[:, None] * prior_sigma
+    rest = (observed - design @ prior) / sigma
+    stacked = np.vstack([np.column_stack([scaled, rest]), np.eye(p, p + 1)])
+    triangle = np.linalg.qr(stacked, mode="r")
+    upper, right = triangle[:p, :p], triangle[:p, p]
+    inverse = solve_triangular(upper, np.eye(p))
+    covariance = inverse @ inverse.T
+    moved = inverse @ right
+    shrunk = np.diag(covariance)
+    remaining = float(np.sum((rest - scaled @ moved) ** 2) + np.sum(moved**2))
+    return Estimate(
+        values=prior + prior_sigma * moved,
+        covariance=covariance * np.outer(prior_sigma, prior_sigma),
+        determined=shrunk < NARROWED**-2,
+        chi_squared=remaining,
+        # A parameter that the data leave where it was takes no degree of freedom.
+        degrees=max(round(n - float(np.sum(1 - shrunk[:sought]))), 0),
+    )

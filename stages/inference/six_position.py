@@ -1,0 +1,105 @@
+"""The accelerometers from rests: weighted least squares, and the six-position formula of S0.
+
+    mean reading = M · (g u + δ × g u) + bias + noise
+
+u is the direction that points up, in body axes; δ the tilt of the position, two
+unknowns with the sigma of the table; g one unknown with the sigma of gravity.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stages.inference.least_squares import Estimate, solve
+from stages.inference.triad import UNKNOWNS, design_of
+from stages.model.motion import level_axes
+
+Array = NDArray[np.float64]
+
+# Vague priors: M within 1 of the unit matrix, the bias within 10 m/s².
+PRIOR = np.append(np.eye(3).ravel(), np.zeros(3))
+PRIOR_SIGMA = np.append(np.ones(9), np.full(3, 10.0))
+
+
+@dataclass(frozen=True)
+class Rest:
+    """One rest: mean readings (m/s², NaN where not recorded) and their sigma of white noise."""
+
+    position: str
+    up: Array  # (3,)
+    mean: Array  # (3,)
+    sigma: Array  # (3,)
+
+
+def weighted(
+    rests: Sequence[Rest], gravity: float, gravity_sigma: float, position_sigma: float
+) -> Estimate:
+    """The twelve parameters of smallest variance from any number of rests.
+
+    Unknowns: M by rows, bias, then gravity and the tilts, which only carry their sigmas.
+    """
+    positions = list(dict.fromkeys(rest.position for rest in rests))
+    count = UNKNOWNS + 1 + 2 * len(positions)
+    prior = np.concatenate([PRIOR, [gravity], np.zeros(count - UNKNOWNS - 1)])
+    sigmas = np.append(gravity_sigma, np.full(2 * len(positions), position_sigma))
+    prior_sigma = np.concatenate([PRIOR_SIGMA, sigmas])
+    matrix = np.eye(3)
+    for _ in range(3):  # M stands before the tilts and gravity, so their columns are made anew
+        design = np.zeros((3 * len(rests), count))
+        constant = np.zeros(3 * len(rests))
+        for i, rest in enumerate(rests):
+            rows = slice(3 * i, 3 * i + 3)
+            design[rows, :UNKNOWNS] = design_of(gravity * rest.up)
+            design[rows, UNKNOWNS] = matrix @ rest.up
+            constant[rows] = -matrix @ rest.up * gravity
+            column = UNKNOWNS + 1 + 2 * positions.index(rest.position)
+            for axis in level_axes(rest.up):
+                design[rows, column] = matrix @ np.cross(axis, gravity * rest.up)
+                column += 1
+        observed = np.concatenate([rest.mean for rest in rests]) - constant
+        sigma = np.concatenate([rest.sigma for rest in rests])
+        there = np.isfinite(observed) & np.isfinite(sigma)
+        estimate = solve(
+            design[there], observed[there], sigma[there], prior, prior_sigma, UNKNOWNS
+        )
+        matrix = estimate.values[:9].reshape(3, 3)
+    return estimate
+
+
+def formula(
+    rests: Sequence[Rest], gravity: float, gravity_sigma: float, position_sigma: float
+) -> tuple[Array, Array] | None:
+    """M̂ = L Aᵀ (A Aᵀ)⁻¹ as S0 (3-6) has it, all rests alike, with the covariance it has.
+
+    L holds the means, A = [g u; 1]. None where the rests do not span the four columns.
+
+    Returns
+    -------
+    the twelve unknowns (M by rows, bias) and their covariance
+    """
+    truth = np.vstack([np.column_stack([gravity * r.up for r in rests]), np.ones(len(rests))])
+    means = np.column_stack([rest.mean for rest in rests])
+    if np.linalg.matrix_rank(truth) < 4 or not np.isfinite(means).all():
+        return None
+    inverse = truth.T @ np.linalg.inv(truth @ truth.T)  # (n, 4)
+    solution = means @ inverse  # (3, 4)
+    # The solution is linear in the means, channel by channel; the tilts and gravity join them.
+    spread = np.zeros((3 * len(rests), 3 * len(rests)))
+    shared = np.zeros(3 * len(rests))
+    for i, rest in enumerate(rests):
+        rows = slice(3 * i, 3 * i + 3)
+        spread[rows, rows] += np.diag(rest.sigma**2)
+        shared[rows] = rest.up
+        for j, other in enumerate(rests):
+            if rest.position == other.position:
+                level = np.eye(3) - np.outer(rest.up, other.up)
+                spread[rows, 3 * j : 3 * j + 3] += (position_sigma * gravity) ** 2 * level
+    spread += gravity_sigma**2 * np.outer(shared, shared)
+    weights = np.vstack(
+        [np.kron(inverse[:, k], np.eye(3)[row]) for row in range(3) for k in range(3)]
+        + [np.kron(inverse[:, 3], np.eye(3)[row]) for row in range(3)]
+    )
+    unknowns = np.append(solution[:, :3].ravel(), solution[:, 3])
+    return unknowns, weights @ spread @ weights.T

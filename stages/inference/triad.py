@@ -1,0 +1,66 @@
+"""Three sensors in one case: reading = M · truth + bias, and what M is made of.
+
+M = I + S + N, with the scale factor errors S on the diagonal and the cross terms N
+beside it (sources: S0, eq. 3-1; S3, eq. 6). By polar decomposition M = P R: R
+takes the truth into axes that are square to each other and lie nearest to the
+sensors', so its inverse is the rotation of the sensor triad against the case;
+the symmetric P holds the scale factors and what is not square.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import polar
+from scipy.spatial.transform import Rotation
+
+Array = NDArray[np.float64]
+
+AXES = ("x", "y", "z")
+BIAS = tuple(f"bias_{a}" for a in AXES)
+SCALE = tuple(f"scale_{a}" for a in AXES)
+CROSS = tuple(f"cross_{row}{column}" for row in AXES for column in AXES if row != column)
+MOUNTING = tuple(f"mounting_{a}" for a in AXES)
+SYMMETRIC = tuple(f"symmetric_{pair}" for pair in ("xx", "yy", "zz", "xy", "xz", "yz"))
+
+# Order of the twelve unknowns: M by rows, then the bias.
+UNKNOWNS = 12
+
+
+def linear_names() -> tuple[str, ...]:
+    """Names of the twelve unknowns in their order: M by rows, then the bias."""
+    matrix = tuple(
+        f"scale_{row}" if row == column else f"cross_{row}{column}"
+        for row in AXES
+        for column in AXES
+    )
+    return matrix + BIAS
+
+
+def errors_of(unknowns: Array) -> Array:
+    """The unknowns with M − I for M: scale factor errors and cross terms, (12,)."""
+    return np.asarray(unknowns - np.append(np.eye(3).ravel(), np.zeros(3)))
+
+
+def mounting_and_rest(matrix: Array) -> Array:
+    """Mounting rotation (rad, rotation vector) and symmetric rest P − I of M, (9,).
+
+    The order is MOUNTING, SYMMETRIC.
+    """
+    rotation, symmetric = polar(matrix, side="left")
+    mounting = -Rotation.from_matrix(rotation).as_rotvec()
+    rest = symmetric - np.eye(3)
+    return np.concatenate([mounting, np.diag(rest), rest[[0, 0, 1], [1, 2, 2]]])
+
+
+def jacobian_of_mounting(matrix: Array, step: float = 1e-6) -> Array:
+    """Derivative of `mounting_and_rest` with respect to M by rows, (9, 9)."""
+    columns = []
+    for unit in np.eye(9):
+        change = step * unit.reshape(3, 3)
+        difference = mounting_and_rest(matrix + change) - mounting_and_rest(matrix - change)
+        columns.append(difference / (2 * step))
+    return np.column_stack(columns)
+
+
+def design_of(truth: Array, weight: float = 1.0) -> Array:
+    """Rows of the reading of three sensors, (3, 12), for a truth (3,) and `weight` of the bias."""
+    return np.hstack([np.kron(np.eye(3), truth), weight * np.eye(3)])

@@ -1,0 +1,350 @@
+"""The gyros from turns of a known angle and from rests, all three by all three.
+
+    sum over a block = M · (u Δθ + E) + bias · τ + noise
+
+u is the axis of the turn in body axes, tilted by δ; Δθ the angle that the table
+turns during the block; E the earth's rate in body axes, summed. The table keeps
+no exact rate, so Δθ of every block is an unknown that only its own three
+readings tell; what is known is the whole angle from rest to rest. So a block
+gives the two combinations of its channels that do not see Δθ, and the turn as a
+whole the third.
+
+The earth's rate has an upward part, known from the latitude, and a level part of
+known size whose direction is known only with `mark` and the table's heading. Else
+it is an unknown of each position, with the size as its sigma.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stages.inference.least_squares import Estimate, solve
+from stages.inference.triad import UNKNOWNS, design_of
+from stages.model.motion import level_axes, turned
+
+Array = NDArray[np.float64]
+
+# Vague priors: M within 1 of the unit matrix, the bias within 1 rad/s.
+PRIOR = np.append(np.eye(3).ravel(), np.zeros(3))
+PRIOR_SIGMA = np.append(np.ones(9), np.full(3, 1.0))
+
+
+@dataclass(frozen=True)
+class Earth:
+    """The earth's rate at the site, rad/s: the upward part, its sigma, the size of the level part."""
+
+    up: float
+    up_sigma: float
+    level: float
+
+
+@dataclass(frozen=True)
+class Position:
+    """A set position: where up is, and what is known of north, in body axes.
+
+    `north` where mark and heading are given; `mark` where only the mark is; else
+    the azimuth is an unknown of this position.
+    """
+
+    name: str
+    up: Array
+    mark: Array | None = None
+    north: Array | None = None
+
+
+@dataclass(frozen=True)
+class Still:
+    """A rest: mean rates (3,), rad/s, and their sigma; `angle` turned since the start, rad."""
+
+    position: Position
+    mean: Array
+    sigma: Array
+    about: Array
+    angle: float = 0.0
+
+
+@dataclass(frozen=True)
+class Turn:
+    """A whole turn from rest to rest, in blocks.
+
+    `sums`: (k, 3), rad; `seconds`: (k,); `angle`, `angle_sigma`: rad; `density` and
+    `quiet_density`: (3,), rad/√s, white noise while turning and at rest.
+    """
+
+    position: Position
+    about: Array
+    angle: float
+    angle_sigma: float
+    sums: Array
+    seconds: Array
+    density: Array
+    quiet_density: Array
+
+
+@dataclass(frozen=True)
+class Steady:
+    """A stretch of a turn at a known rate: mean rates (3,), rad/s, sigma, rate and its sigma."""
+
+    position: Position
+    about: Array
+    rate: float
+    rate_sigma: float
+    seconds: float
+    mean: Array
+    sigma: Array
+
+
+class _Unknowns:
+    """The columns of the design: twelve parameters, then every error with its sigma."""
+
+    def __init__(self, earth: Earth) -> None:
+        self.prior = [*PRIOR, earth.up]
+        self.sigma = [*PRIOR_SIGMA, earth.up_sigma]
+        self.names: dict[tuple[str, str], int] = {("earth", "up"): UNKNOWNS}
+
+    def column(self, kind: str, name: str, sigma: float) -> int:
+        """Where the error `kind` of `name` stands, made where it is new."""
+        if (kind, name) not in self.names:
+            self.names[(kind, name)] = len(self.prior)
+            self.prior.append(0.0)
+            self.sigma.append(sigma)
+        return self.names[(kind, name)]
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """Equations in the making: coefficients by column, observed values, sigmas."""
+
+    design: list[dict[int, Array]]
+    observed: list[Array]
+    sigma: list[Array]
+
+
+def joint(
+    stills: Sequence[Still],
+    turns: Sequence[Turn],
+    steadies: Sequence[Steady],
+    earth: Earth,
+    position_sigma: float,
+) -> Estimate:
+    """Bias and M of the gyros from all rests and turns at once.
+
+    The equations hold products of M with the errors, so they are solved three times,
+    each time about the last result.
+    """
+    matrix, bias = np.eye(3), _first_bias(stills)
+    levels: dict[int, float] = {}
+    for _ in range(4):
+        unknowns = _Unknowns(earth)
+        rows = _Rows([], [], [])
+        for still in stills:
+            _add_still(rows, unknowns, still, matrix, earth)
+        for number, turn in enumerate(turns):
+            _add_turn(rows, unknowns, turn, number, matrix, bias, earth, position_sigma, levels)
+        for number, steady in enumerate(steadies):
+            _add_steady(rows, unknowns, steady, number, matrix, earth, position_sigma)
+        design = np.zeros((sum(len(o) for o in rows.observed), len(unknowns.prior)))
+        start = 0
+        for coefficients, observed in zip(rows.design, rows.observed, strict=True):
+            for column, values in coefficients.items():
+                width = 1 if values.ndim == 1 else values.shape[1]
+                design[start : start + len(observed), column : column + width] = values.reshape(
+                    len(observed), width
+                )
+            start += len(observed)
+        observed_all, sigma_all = np.concatenate(rows.observed), np.concatenate(rows.sigma)
+        there = np.isfinite(observed_all) & np.isfinite(sigma_all)
+        estimate = solve(
+            design[there],
+            observed_all[there],
+            sigma_all[there],
+            np.array(unknowns.prior),
+            np.array(unknowns.sigma),
+            UNKNOWNS,
+        )
+        matrix, bias = estimate.values[:9].reshape(3, 3), estimate.values[9:12]
+        levels = {column: float(estimate.values[column]) for column in unknowns.names.values()}
+    return estimate
+
+
+def _first_bias(stills: Sequence[Still]) -> Array:
+    if not stills:
+        return np.zeros(3)
+    return np.asarray(np.nan_to_num(np.nanmedian([s.mean for s in stills], axis=0)))
+
+
+def _earth_columns(
+    unknowns: _Unknowns, position: Position, earth: Earth
+) -> tuple[Array, list[tuple[int, Array]]]:
+    """The level earth rate of a position: its known part, and its unknown directions."""
+    if position.north is not None:
+        return earth.level * position.north, []
+    sigma = earth.level / np.sqrt(2)
+    if position.mark is not None:
+        axes, name = (position.mark, np.cross(position.up, position.mark)), "the table"
+    else:
+        axes, name = level_axes(position.up), position.name
+    columns = [unknowns.column(f"level {i}", name, sigma) for i in (0, 1)]
+    return np.zeros(3), list(zip(columns, axes, strict=True))
+
+
+def _add_still(
+    rows: _Rows, unknowns: _Unknowns, still: Still, matrix: Array, earth: Earth
+) -> None:
+    known, level = _earth_columns(unknowns, still.position, earth)
+    known = turned(known, still.about, still.angle)
+    up = turned(still.position.up, still.about, still.angle)
+    # The product M · earth is linear about the present M; the earth is small, so is the error.
+    coefficients = {0: design_of(known + earth.up * up), UNKNOWNS: matrix @ up}
+    constant = -(matrix @ up) * earth.up
+    for column, axis in level:
+        coefficients[column] = matrix @ turned(axis, still.about, still.angle)
+    rows.design.append(coefficients)
+    rows.observed.append(still.mean - constant)
+    rows.sigma.append(still.sigma)
+
+
+def _add_turn(
+    rows: _Rows,
+    unknowns: _Unknowns,
+    turn: Turn,
+    number: int,
+    matrix: Array,
+    bias: Array,
+    earth: Earth,
+    position_sigma: float,
+    levels: dict[int, float],
+) -> None:
+    known, level = _earth_columns(unknowns, turn.position, earth)
+    recorded = np.isfinite(turn.sums).all(axis=0) & np.isfinite(turn.density)
+    weight = np.where(recorded, 1 / np.where(recorded, turn.density, 1.0), 0.0)
+    sums = np.where(recorded, turn.sums, 0.0)
+    k = len(sums)
+
+    # The angle of each block, from the channels along the axis.
+    along = weight * (matrix @ turn.about)
+    along_length = float(np.linalg.norm(along))
+    if along_length == 0:
+        return
+    along = along / along_length
+    present = known + sum((levels.get(c, 0.0) * axis for c, axis in level), np.zeros(3))
+    angle = np.zeros(k)
+    for _ in range(2):
+        middle = np.cumsum(angle) - angle / 2
+        around = earth.up * turn.position.up + _turned_all(present, turn.about, middle)
+        rest = sums - (around * turn.seconds[:, None]) @ matrix.T - np.outer(turn.seconds, bias)
+        angle = (rest * weight) @ along / along_length
+    middle = np.cumsum(angle) - angle / 2
+
+    # What a block sees of each unknown, all three channels: (k, 3, columns).
+    truth = (
+        angle[:, None] * turn.about
+        + (earth.up * turn.position.up + _turned_all(known, turn.about, middle))
+        * turn.seconds[:, None]
+    )
+    first = np.einsum("rc,kj->krcj", np.eye(3), truth).reshape(k, 3, 9)
+    own = np.concatenate([first, turn.seconds[:, None, None] * np.eye(3)], axis=2)
+    up = matrix @ turn.position.up
+    parts: dict[int, Array] = {0: own, UNKNOWNS: turn.seconds[:, None, None] * up[None, :, None]}
+    for column, axis in level:
+        parts[column] = (_turned_all(axis, turn.about, middle) @ matrix.T * turn.seconds[:, None])[
+            :, :, None
+        ]
+    for i, axis in enumerate(level_axes(turn.about)):
+        column = unknowns.column(f"tilt {i}", turn.position.name, position_sigma)
+        parts[column] = (np.outer(angle, matrix @ np.cross(axis, turn.about)))[:, :, None]
+    observed = sums + np.outer(turn.seconds, up) * earth.up
+
+    # Two combinations of every block that do not see its angle.
+    across = np.zeros((int(recorded.sum()) - 1, 3))
+    across[:, recorded] = np.linalg.svd(along[None, recorded])[2][1:]
+    noise = np.sqrt(turn.seconds)
+    whiten = weight[None, :, None] / noise[:, None, None]
+    for direction in across:
+        rows.design.append(
+            {c: np.einsum("r,krc->kc", direction, whiten * part) for c, part in parts.items()}
+        )
+        rows.observed.append((observed * weight / noise[:, None]) @ direction)
+        rows.sigma.append(np.ones(k))
+
+    # The turn as a whole, along its axis; what the table does on the way is no noise here.
+    quiet = np.where(recorded, 1 / np.where(recorded, turn.quiet_density, 1.0), 0.0)
+    along = quiet * (matrix @ turn.about)
+    along = quiet * along / float(np.linalg.norm(along)) / np.sqrt(turn.seconds.sum())
+    whole = {c: (along @ part.sum(axis=0))[None, :] for c, part in parts.items()}
+    shortfall = turn.angle - float(angle.sum())
+    whole[0] = whole[0] + (along @ np.hstack([np.kron(np.eye(3), shortfall * turn.about), np.zeros((3, 3))]))[None, :]
+    column = unknowns.column("angle", f"{turn.position.name} {number}", turn.angle_sigma)
+    whole[column] = np.array([[along @ (matrix @ turn.about)]])
+    rows.design.append(whole)
+    rows.observed.append(np.array([along @ observed.sum(axis=0)]))
+    rows.sigma.append(np.ones(1))
+
+
+def _turned_all(direction: Array, about: Array, angles: Array) -> Array:
+    """`turned` for many angles at once, (k, 3), by Rodrigues' formula."""
+    along = about * (about @ direction)
+    across = direction - along
+    return np.asarray(
+        along
+        + np.outer(np.cos(angles), across)
+        - np.outer(np.sin(angles), np.cross(about, direction))
+    )
+
+
+def _add_steady(
+    rows: _Rows,
+    unknowns: _Unknowns,
+    steady: Steady,
+    number: int,
+    matrix: Array,
+    earth: Earth,
+    position_sigma: float,
+) -> None:
+    known, level = _earth_columns(unknowns, steady.position, earth)
+    angles = steady.rate * np.linspace(0, steady.seconds, 200)
+    known = _turned_all(known, steady.about, angles).mean(axis=0)
+    up = matrix @ steady.position.up
+    truth = steady.rate * steady.about + known + earth.up * steady.position.up
+    coefficients = {0: design_of(truth), UNKNOWNS: up}
+    for column, axis in level:
+        coefficients[column] = matrix @ _turned_all(axis, steady.about, angles).mean(axis=0)
+    for i, axis in enumerate(level_axes(steady.about)):
+        column = unknowns.column(f"tilt {i}", steady.position.name, position_sigma)
+        coefficients[column] = steady.rate * (matrix @ np.cross(axis, steady.about))
+    column = unknowns.column("rate", f"{steady.position.name} {number}", steady.rate_sigma)
+    coefficients[column] = matrix @ steady.about
+    rows.design.append(coefficients)
+    rows.observed.append(steady.mean + up * earth.up)
+    rows.sigma.append(steady.sigma)
+
+
+@dataclass(frozen=True)
+class Angle:
+    """One whole turn as its own axis saw it: summed angle of that gyro, α, duration, up or down."""
+
+    summed: float  # rad
+    angle: float  # rad, along the axis
+    angle_sigma: float
+    seconds: float
+    up: float  # +1 where the axis points up, −1 where it points down
+    density: float  # rad/√s
+
+
+def known_angle(turns: Sequence[Angle], earth: Earth) -> Estimate:
+    """Bias and scale factor error of one gyro from turns about it, forward and backward.
+
+    α̃ = b t + (1 + s) α + ω_e sinφ t for each turn; for one forward and one backward turn over
+    equal times this is S0 (3-9), (3-10): b = (α̃₁+α̃₂)/(2t) − ω_e sinφ, s = (α̃₁−α̃₂)/(2α) − 1.
+    Unknowns: b, s, the upward earth rate.
+    """
+    seconds = np.array([turn.seconds for turn in turns])
+    angles = np.array([turn.angle for turn in turns])
+    up = np.array([turn.up for turn in turns])
+    summed = np.array([turn.summed for turn in turns])
+    sigma = np.sqrt([turn.density**2 * turn.seconds + turn.angle_sigma**2 for turn in turns])
+    design = np.column_stack([seconds, angles, up * seconds])
+    prior, prior_sigma = np.array([0.0, 0.0, earth.up]), np.array([1.0, 1.0, earth.up_sigma])
+    return solve(design, summed - angles, sigma, prior, prior_sigma, 2)

@@ -1,0 +1,56 @@
+"""The lab report for print: its HTML page as PDF, A4.
+
+    python -m stages.pdf --html reports/demo.html --output reports/demo.pdf
+
+The page brings its figures and fonts along; nothing else is fetched, neither
+from the network nor from the disk.
+"""
+
+import argparse
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from types import ModuleType
+
+PACKAGES = "libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
+
+
+def pdf(html: str) -> bytes:
+    """`html` as PDF; the same page gives the same bytes."""
+    weasyprint = _weasyprint()
+    nothing_outside = weasyprint.urls.URLFetcher(allowed_protocols=("data",))
+    document = weasyprint.HTML(string=html, url_fetcher=nothing_outside)
+    return bytes(document.write_pdf(pdf_tags=True))
+
+
+def _weasyprint() -> ModuleType:
+    """WeasyPrint, whose import fails where the system lacks the libraries that set text."""
+    try:
+        return importlib.import_module("weasyprint")
+    except OSError as error:
+        sys.exit(
+            f"pdf: WeasyPrint cannot load its libraries\n"
+            f"  found:    {str(error).splitlines()[0]}\n"
+            f"  expected: Pango and HarfBuzz, Debian packages {PACKAGES}\n"
+            f"  cure:     apt-get install {PACKAGES}\n"
+            f"The report itself is there as HTML."
+        )
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Read the page, write the PDF beside its place, then move it there."""
+    parser = argparse.ArgumentParser(description=pdf.__doc__)
+    parser.add_argument("--html", type=Path, required=True, help="the page that report wrote")
+    parser.add_argument("--output", type=Path, required=True, help="the PDF")
+    given = parser.parse_args(arguments)
+    written = pdf(given.html.read_text(encoding="utf-8"))
+    given.output.parent.mkdir(parents=True, exist_ok=True)
+    part = given.output.with_name(f"{given.output.name}.part")
+    part.write_bytes(written)
+    os.replace(part, given.output)
+
+
+if __name__ == "__main__":
+    main()

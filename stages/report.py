@@ -1,0 +1,153 @@
+"""The lab report: what was found, how sure it is, and where every number comes from.
+
+    python -m stages.report --campaign … --known … --output reports/demo.html --verdict reports/demo.txt
+
+It writes a page and the verdict as text instead of tables, so it has a command
+line of its own.
+"""
+
+import argparse
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pandas as pd
+
+from stages.contracts import tables
+from stages.contracts.code import code_of, hash_of
+from stages.contracts.errors import Refusal
+from stages.contracts.parquet import Table
+from stages.contracts.parquet import provenance as made_by
+from stages.reporting import (
+    account,
+    averaging,
+    findings,
+    known as taken_as_known,
+    noise as noise_of_channels,
+    numbers,
+    parameters,
+    provenance as origin,
+    raw_data,
+    recording,
+    undetermined,
+    verdict,
+)
+from stages.reporting.outline import Report
+from stages.reporting.page import page
+from stages.reporting.rows import only, records
+
+READS: Mapping[str, Table] = {
+    "campaign": tables.CAMPAIGN,
+    "known": tables.KNOWN,
+    "sensors": tables.SENSORS,
+    "inputs": tables.INPUTS,
+    "manoeuvres": tables.MANOEUVRES,
+    "accounts": tables.ACCOUNTS,
+    "refused": tables.REFUSED,
+    "clocks": tables.CLOCKS,
+    "quality_findings": tables.FINDINGS,
+    "segment_findings": tables.FINDINGS,
+    "segments": tables.SEGMENTS,
+    "performed": tables.PERFORMED,
+    "traces": tables.TRACES,
+    "noise": tables.NOISE,
+    "accelerometer_parameters": tables.PARAMETERS,
+    "accelerometer_fit": tables.FIT,
+    "accelerometer_averaging": tables.AVERAGING,
+    "gyroscope_parameters": tables.PARAMETERS,
+    "gyroscope_fit": tables.FIT,
+    "gyroscope_averaging": tables.AVERAGING,
+}
+
+
+class Documents(NamedTuple):
+    """The report as a page, and its verdict as plain text."""
+
+    html: str
+    verdict: str
+
+
+def report(
+    *,
+    campaign: pd.DataFrame,
+    known: pd.DataFrame,
+    sensors: pd.DataFrame,
+    inputs: pd.DataFrame,
+    manoeuvres: pd.DataFrame,
+    accounts: pd.DataFrame,
+    refused: pd.DataFrame,
+    clocks: pd.DataFrame,
+    quality_findings: pd.DataFrame,
+    segment_findings: pd.DataFrame,
+    segments: pd.DataFrame,
+    performed: pd.DataFrame,
+    traces: pd.DataFrame,
+    noise: pd.DataFrame,
+    accelerometer_parameters: pd.DataFrame,
+    accelerometer_fit: pd.DataFrame,
+    accelerometer_averaging: pd.DataFrame,
+    gyroscope_parameters: pd.DataFrame,
+    gyroscope_fit: pd.DataFrame,
+    gyroscope_averaging: pd.DataFrame,
+    provenance: Mapping[str, Mapping[str, Any]],
+) -> Documents:
+    """The lab report of one campaign, and its verdict as text."""
+    about = only(campaign)
+    found = parameters.estimates(
+        accelerometer_parameters, accelerometer_fit, gyroscope_parameters, gyroscope_fit
+    )
+    worst_first = findings.ranked((quality_findings, segment_findings), performed, found)
+    given = verdict.verdict(found, manoeuvres, performed, worst_first)
+    estimated = [*records(accelerometer_parameters), *records(gyroscope_parameters)]
+    name = numbers.shortened(about["campaign"], 80)
+    running = f"{name} · {about['instrument']} · serial {numbers.shortened(about['serial'], 80)}"
+    outline = Report(
+        title=f"Calibration report: {running}",
+        campaign=name,
+        running=running + (" · simulated" if about["simulated"] else ""),
+        simulated=bool(about["simulated"]),
+        sections=(
+            verdict.section(given, found, about, known, clocks),
+            parameters.section(found),
+            findings.section(worst_first),
+            undetermined.section(found),
+            recording.section(manoeuvres, performed),
+            raw_data.section(traces, segments, clocks, worst_first),
+            noise_of_channels.section(noise, sensors),
+            averaging.section(accelerometer_averaging, gyroscope_averaging, estimated),
+            taken_as_known.section(known),
+            account.section(accounts, refused, inputs),
+            origin.section(inputs, provenance),
+        ),
+    )
+    return Documents(page(outline), verdict.as_text(given, campaign, known, clocks))
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Read the tables, write the page and the verdict, both beside their place and then moved."""
+    parser = argparse.ArgumentParser(description=report.__doc__)
+    for name, table in READS.items():
+        parser.add_argument(
+            f"--{name}", type=Path, required=True, metavar="PATH", help=f"{table.name} table"
+        )
+    parser.add_argument("--output", type=Path, required=True, help="the page, .html")
+    parser.add_argument("--verdict", type=Path, required=True, help="the verdict, .txt")
+    given = parser.parse_args(arguments)
+    paths: dict[str, Path] = {name: getattr(given, name) for name in READS}
+    try:
+        read = {name: table.read(paths[name]) for name, table in READS.items()}
+        makers = {name: made_by(path) for name, path in paths.items()}
+        makers["report"] = {"stage": "report", "settings": {}, "code": hash_of(code_of("report"))}
+        documents = report(**read, provenance=makers)
+    except Refusal as refusal:
+        sys.exit(f"report: {refusal}")
+    for path, text in ((given.output, documents.html), (given.verdict, documents.verdict)):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part = path.with_name(f"{path.name}.part")
+        part.write_text(text, encoding="utf-8", newline="\n")
+        part.replace(path)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""The lab report: its outline as data, its figures, its templates."""

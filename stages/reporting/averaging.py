@@ -1,0 +1,105 @@
+"""Section 8: how the parameters settle as more of each rest is used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import pandas as pd
+
+from stages.reporting import numbers
+from stages.reporting.drawing import AXIS_COLOUR, INK, canvas, style, svg
+from stages.reporting.outline import Figure, Heading, Paragraph, Part, Section
+from stages.reporting.parameters import METHOD, SENSOR, kind_of
+from stages.reporting.rows import Record, records
+from stages.reporting.units import Quantity, quantity
+
+COLUMNS = 3
+MOST_PANELS = 24
+UNIT_OF = {"accelerometer": {"bias": "m/s²"}, "gyroscope": {"bias": "rad/s"}}
+
+
+def section(
+    accelerometer_averaging: pd.DataFrame,
+    gyroscope_averaging: pd.DataFrame,
+    parameters: Sequence[Record],
+) -> Section:
+    """One figure per sensor and method, one panel per parameter."""
+    unit_of = {row["id"]: row["unit"] for row in parameters}
+    parts: list[Part] = []
+    for frame, stage in (
+        (accelerometer_averaging, "accelerometer"),
+        (gyroscope_averaging, "gyroscope"),
+    ):
+        rows = records(frame)
+        groups = dict.fromkeys(row["parameter"].rpartition("/")[0] for row in rows)
+        parts.append(Heading(SENSOR[stage]))
+        for group in groups:
+            own = [row for row in rows if row["parameter"].rpartition("/")[0] == group]
+            parts += _figures(group, own, unit_of)
+        if not groups:
+            parts.append(Paragraph("None: the parameters were not followed over the averaging time."))
+    return Section(
+        "averaging",
+        "Parameters against averaging time",
+        "Each parameter as it would have come out, had only the first seconds of each rest been "
+        "used; relative to its final value.",
+        "The band is value ± σ. Where it narrows about zero, longer rests would still help; where "
+        "the line leaves the band and stays away, something drifts.",
+        parts,
+    )
+
+
+def _figures(group: str, rows: Sequence[Record], unit_of: dict[str, str]) -> Iterator[Figure]:
+    curves: dict[str, list[Record]] = {}
+    for row in rows:
+        curves.setdefault(row["parameter"], []).append(row)
+    stage, _, method = group.partition("/")
+    title = f"{SENSOR.get(stage, stage)}, {METHOD.get(method, method)}"
+    ids = list(curves)[:MOST_PANELS]
+    lines = -(-len(ids) // COLUMNS)
+    with style():
+        figure = canvas(0.35 + 1.25 * lines)
+        panels = figure.subplots(lines, COLUMNS, sharex=True, squeeze=False).ravel()
+        for panel, name in zip(panels, ids, strict=False):
+            _panel(panel, name, sorted(curves[name], key=lambda row: row["seconds"]), unit_of)
+        for panel in panels[len(ids) :]:
+            panel.set_visible(False)
+        for place in range(max(0, len(ids) - COLUMNS), len(ids)):
+            panels[place].tick_params(labelbottom=True)
+            panels[place].set_xlabel("Seconds of each rest")
+        drawn = svg(figure, f"averaging-{group}")
+    more = len(curves) - len(ids)
+    left = f" {numbers.whole(more)} more in the averaging table." if more else ""
+    yield Figure(
+        f"{title}: value ± σ against averaging time, relative to the final value.{left}",
+        drawn,
+        f"{numbers.counted(len(ids), 'curve')} of {title} against averaging time, each within its band of sigma.",
+    )
+
+
+def _panel(panel, name: str, rows: Sequence[Record], unit_of: dict[str, str]) -> None:  # type: ignore[no-untyped-def]
+    parameter = name.rpartition("/")[2]
+    unit = _quantity(name, parameter, unit_of).laboratory
+    seconds = [row["seconds"] for row in rows]
+    final = rows[-1]["value"]
+    value = [(row["value"] - final) / unit.size for row in rows]
+    sigma = [row["sigma"] / unit.size for row in rows]
+    axis = parameter.rpartition("_")[2][:1]
+    colour = AXIS_COLOUR.get(axis, INK)
+    panel.axhline(0, color=INK, linewidth=0.6)
+    panel.fill_between(
+        seconds,
+        [v - s for v, s in zip(value, sigma, strict=True)],
+        [v + s for v, s in zip(value, sigma, strict=True)],
+        color=colour, alpha=0.22, linewidth=0,
+    )
+    panel.plot(seconds, value, color=colour, marker="o", markersize=1.8)
+    panel.set_xscale("log")
+    panel.set_title(f"{parameter}, {unit.name}", fontsize=7, pad=3)
+    panel.locator_params(axis="y", nbins=5)
+
+
+def _quantity(name: str, parameter: str, unit_of: dict[str, str]) -> Quantity:
+    kind = kind_of(parameter)
+    stage = name.partition("/")[0]
+    return quantity(parameter, unit_of.get(name) or UNIT_OF.get(stage, {}).get(kind, "1"))

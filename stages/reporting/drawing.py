@@ -1,0 +1,137 @@
+"""How a figure is drawn: colours, type and lines, and the SVG that goes into the page.
+
+The same figure gives the same bytes on every machine: letters are drawn as
+outlines of matplotlib's own DejaVu fonts, and neither a date nor a random
+identifier enters.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as mpl
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+WIDTH = 7.1  # inches: the text width of the printed page
+
+INK = "#1f2933"
+QUIET = "#5f6c7b"
+RULE = "#d5dbe2"
+# Okabe and Ito, "Color Universal Design" (2008): told apart with every kind of colour vision.
+AXIS_COLOUR = {"x": "#d55e00", "y": "#009e73", "z": "#0072b2"}
+AXIS_MARK = {"x": "o", "y": "s", "z": "^"}
+PHASE_COLOUR = {
+    "rest": "#e6eaef",
+    "spin-up": "#fbe3b8",
+    "steady": "#dcecf8",
+    "spin-down": "#fbe3b8",
+}
+MISSING = "#8e2a5b"
+
+_STYLE: dict[str, Any] = {
+    "axes.axisbelow": True,
+    "axes.edgecolor": QUIET,
+    "axes.grid": True,
+    "axes.labelcolor": INK,
+    "axes.labelsize": 7.5,
+    "axes.linewidth": 0.6,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlelocation": "left",
+    "axes.titlepad": 4,
+    "axes.titlesize": 7.5,
+    "axes.unicode_minus": True,
+    "font.family": "DejaVu Sans",
+    "font.size": 7.5,
+    "grid.color": RULE,
+    "grid.linewidth": 0.4,
+    "legend.fontsize": 7,
+    "legend.frameon": False,
+    "lines.linewidth": 1.0,
+    "patch.linewidth": 0.0,
+    "svg.fonttype": "path",
+    "text.color": INK,
+    "text.parse_math": False,  # a name may hold a dollar sign
+    "xtick.color": QUIET,
+    "xtick.labelsize": 7,
+    "xtick.major.size": 2.5,
+    "xtick.major.width": 0.5,
+    "xtick.minor.size": 1.5,
+    "xtick.minor.width": 0.4,
+    "ytick.color": QUIET,
+    "ytick.labelsize": 7,
+    "ytick.major.size": 2.5,
+    "ytick.major.width": 0.5,
+    "ytick.minor.size": 1.5,
+    "ytick.minor.width": 0.4,
+}
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """Draw within this: the report's type, lines and colours, whatever matplotlibrc says."""
+    with mpl.rc_context(), warnings.catch_warnings():
+        # A name may hold letters that the font lacks; they are drawn as boxes.
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font")
+        mpl.rcdefaults()
+        mpl.rcParams.update(_STYLE)
+        yield
+
+
+def canvas(height: float, width: float = WIDTH) -> Figure:
+    """An empty figure, its size in inches."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasSVG(figure)
+    figure.get_layout_engine().set(w_pad=0.03, h_pad=0.03, wspace=0.02, hspace=0.02)  # type: ignore[union-attr]
+    return figure
+
+
+def svg(figure: Figure, key: str) -> str:
+    """`figure` as an element of the page; `key` keeps its identifiers apart from other figures'."""
+    text = io.StringIO()
+    with mpl.rc_context({"svg.hashsalt": key}):
+        nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+        figure.savefig(text, format="svg", metadata=nothing, transparent=True)
+    return _light(text.getvalue(), re.sub(r"[^A-Za-z0-9]+", "-", key))
+
+
+def _light(drawn: str, key: str) -> str:
+    """The svg element alone, without comments, with short numbers and identifiers of its own."""
+    element = drawn[drawn.index("<svg") :]
+    element = re.sub(r"<!--.*?-->\s*|<metadata>.*?</metadata>\s*|<style.*?</style>\s*", "", element, flags=re.S)
+    used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', element))
+    element = re.sub(
+        r' id="([^"]+)"', lambda m: f' id="{key}-{m[1]}"' if m[1] in used else "", element
+    )
+    element = re.sub(r'(href="#|url\(#)', rf"\1{key}-", element)
+    return re.sub(r"\n\s*", "\n", _rounded(element)).strip()
+
+
+def _rounded(element: str) -> str:
+    """Coordinates to a hundredth of a point, which is finer than any printer."""
+
+    def path(match: re.Match[str]) -> str:
+        return match[1] + re.sub(r"-?\d+\.\d{3,}", lambda n: f"{float(n[0]):.2f}", match[2]) + '"'
+
+    return re.sub(r'( (?:d|x|y)=")([^"]*)"', path, element)
+
+
+def shade(axes: Axes, phase: str, start: float, end: float) -> None:
+    """Mark a phase of the table behind the curves."""
+    axes.axvspan(start, end, color=PHASE_COLOUR.get(phase, RULE), zorder=0, linewidth=0)
+
+
+def hatch_missing(axes: Axes, start: float, end: float) -> None:
+    """Mark a stretch that was not recorded."""
+    axes.axvspan(
+        start, end, facecolor="none", edgecolor=MISSING, hatch="//////", linewidth=0.6, zorder=3
+    )

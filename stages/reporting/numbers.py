@@ -1,0 +1,103 @@
+"""How a number is written: as many digits as its sigma allows, digits under digits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from math import floor, isfinite, log10
+
+FIGURE_SPACE = "\u2007"  # as wide as a digit
+POINT_SPACE = "\u2008"  # as wide as a decimal point
+THIN_SPACE = "\u202f"
+DIGITS_OF_SIGMA = 2
+MOST_DECIMALS = 15
+
+
+def fixed(value: float | None, decimals: int) -> str:
+    """`value` with so many decimals and a true minus sign; — where there is none."""
+    if value is None or not isfinite(value):
+        return "—"
+    text = f"{value:.{max(decimals, 0)}f}"
+    return text.removeprefix("-") if float(text) == 0 else text.replace("-", "−")
+
+
+def significant(value: float | None, digits: int = 4) -> str:
+    """`value` to so many significant digits; with a power of ten where it is far from 1."""
+    if value is None or not isfinite(value):
+        return "—"
+    if value == 0:
+        return "0"
+    # Rounded first: 9.9996 to four digits is 10.00.
+    exponent = floor(log10(abs(float(f"{value:.{digits - 1}e}"))))
+    if -4 <= exponent < 6:
+        return fixed(value, digits - 1 - exponent)
+    return f"{fixed(value / 10.0**exponent, digits - 1)} × 10{raised(exponent)}"
+
+
+def raised(exponent: int) -> str:
+    """`exponent` as a superscript."""
+    return str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
+def decimals_of(sigma: float | None, digits: int = DIGITS_OF_SIGMA) -> int | None:
+    """Decimals that show `digits` significant digits of `sigma`; none without a sigma."""
+    if sigma is None or not isfinite(sigma) or sigma <= 0:
+        return None
+    exponent = floor(log10(float(f"{sigma:.{digits - 1}e}")))
+    return min(max(digits - 1 - exponent, 0), MOST_DECIMALS)
+
+
+def common_decimals(sigmas: Iterable[float | None]) -> int | None:
+    """Decimals for numbers that stand below each other: those of the smallest sigma.
+
+    They are at most two more than those of the largest, so that one very sure
+    number does not clothe the others in digits that mean nothing.
+    """
+    each = [decimals for sigma in sigmas if (decimals := decimals_of(sigma)) is not None]
+    return min(max(each), min(each) + 2) if each else None
+
+
+def aligned(texts: Sequence[str]) -> list[str]:
+    """`texts` padded on the right so that their decimal points stand below each other."""
+    fractions = ["" if "×" in text else text.partition(".")[2] for text in texts]
+    longest = max(map(len, fractions), default=0)
+    if not longest:
+        return list(texts)
+    return [
+        text
+        if "×" in text or not any(map(str.isdigit, text))
+        else text + ("" if fraction else POINT_SPACE) + FIGURE_SPACE * (longest - len(fraction))
+        for text, fraction in zip(texts, fractions, strict=True)
+    ]
+
+
+def whole(value: float | None) -> str:
+    """A count with its thousands apart."""
+    if value is None or not isfinite(value):
+        return "—"
+    return f"{round(value):,}".replace(",", THIN_SPACE).replace("-", "−")
+
+
+def probability(p_value: float | None) -> str:
+    """A p-value, with its order of magnitude where it is small."""
+    if p_value is None or not isfinite(p_value):
+        return "—"
+    if p_value < 1e-300:
+        return "< 10⁻³⁰⁰"
+    if p_value < 1e-3:
+        digit, _, exponent = f"{p_value:.0e}".partition("e")
+        return f"{digit} × 10{raised(int(exponent))}"
+    return fixed(p_value, 3 if p_value < 0.1 else 2)
+
+
+def counted(count: int, one: str, many: str = "") -> str:
+    """`count` with its noun: 1 finding, 3 findings, no findings."""
+    noun = one if count == 1 else many or f"{one}s"
+    return f"{whole(count) if count else 'no'} {noun}"
+
+
+def shortened(text: str, most: int) -> str:
+    """The beginning of a long text, control characters made visible."""
+    visible = "".join(
+        letter if letter.isprintable() or letter == "\n" else "�" for letter in text
+    ).strip()
+    return visible if len(visible) <= most else visible[: most - 1].rstrip() + "…"

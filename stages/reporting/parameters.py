@@ -1,0 +1,246 @@
+"""Section 2: the parameters, each with its sigma in the units of the laboratory and of the SI."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+import numpy as np
+import pandas as pd
+
+from stages.contracts.tables import AXES
+from stages.reporting import numbers, units
+from stages.reporting.outline import (
+    Column,
+    Equation,
+    Heading,
+    Matrices,
+    Matrix,
+    Paragraph,
+    Part,
+    Row,
+    Section,
+    Table,
+)
+from stages.reporting.rows import Record, records
+
+SENSOR = {"accelerometer": "Accelerometer", "gyroscope": "Gyroscope"}
+METHOD = {
+    "joint": "joint fit of all manoeuvres",
+    "six_position": "six positions",
+    "turns": "turns forward and back",
+}
+KIND = {
+    "bias": "Bias",
+    "scale": "Scale error",
+    "cross": "Cross-axis terms",
+    "mounting": "Mounting rotation of the sensor triad against the case",
+    "symmetric": "Axes out of square: the symmetric rest P of M = P R",
+}
+SYMBOL = {"bias": "b", "scale": "s", "cross": "m", "mounting": "ρ", "symmetric": "p"}
+SMALL_P = 0.01
+MISFIT = "the model does not describe the data within the noise; sigmas are of noise only"
+COLUMNS = (
+    Column("", "symbol"),
+    Column("Value", "number"),
+    Column("± σ", "sigma"),
+    Column("Unit", "unit"),
+    Column("Value", "number"),
+    Column("± σ", "sigma"),
+    Column("SI", "unit"),
+    Column("Meaning, frame, identifier", "note"),
+)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The parameters that one method estimated, with its fit."""
+
+    stage: str
+    method: str
+    parameters: tuple[Record, ...]
+    fit: Record | None
+
+    @property
+    def name(self) -> str:
+        """Sensor and method in words."""
+        return f"{SENSOR.get(self.stage, self.stage)}, {METHOD.get(self.method, self.method)}"
+
+    @property
+    def determined(self) -> list[Record]:
+        """The parameters that have a value."""
+        return [row for row in self.parameters if row["value"] is not None]
+
+    @property
+    def misfit(self) -> bool:
+        """Whether the residuals are larger than the noise allows."""
+        p_value = self.fit and self.fit["p_value"]
+        return p_value is not None and p_value < SMALL_P
+
+
+def estimates(
+    accelerometer_parameters: pd.DataFrame,
+    accelerometer_fit: pd.DataFrame,
+    gyroscope_parameters: pd.DataFrame,
+    gyroscope_fit: pd.DataFrame,
+) -> list[Estimate]:
+    """Every method of both sensors, in the order of the tables; a fit without parameters too."""
+    found = []
+    for stage, parameters, fit in (
+        ("accelerometer", accelerometer_parameters, accelerometer_fit),
+        ("gyroscope", gyroscope_parameters, gyroscope_fit),
+    ):
+        fits = {row["method"]: row for row in records(fit)}
+        rows = records(parameters)
+        for method in dict.fromkeys([*(row["method"] for row in rows), *fits]):
+            own = tuple(row for row in rows if row["method"] == method)
+            found.append(Estimate(stage, method, own, fits.get(method)))
+    return found
+
+
+def kind_of(parameter: str) -> str:
+    """What a parameter is one of: bias, scale, cross, mounting, symmetric."""
+    return parameter.partition("_")[0]
+
+
+def symbol(parameter: str) -> str:
+    """The parameter's sign with its axes: b_x, s_x, m_xy; its name where it has none."""
+    kind, _, axes = parameter.partition("_")
+    return f"{SYMBOL[kind]}_{axes}" if kind in SYMBOL and axes else parameter
+
+
+def section(found: Sequence[Estimate]) -> Section:
+    """Parameters by sensor and method."""
+    parts: list[Part] = [
+        Equation(
+            "reading = M · truth + bias",
+            "M = I + S + N: scale errors sₓ… on the diagonal; off it m with row first: the second "
+            "index names the axis of the input, the first the sensor that answers to it.",
+        ),
+        Equation("truth = M⁻¹ · (reading − bias)", "the compensation of a reading."),
+    ]
+    for estimate in found:
+        parts += _parts(estimate)
+    if not any(estimate.parameters for estimate in found):
+        parts.append(Paragraph("None: no method estimated a parameter.", "poor"))
+    return Section(
+        "parameters",
+        "Parameters",
+        "What calibrates this instrument: bias, scale error and cross-axis terms of both sensors, "
+        "by each method that the plan allows.",
+        "Each value stands with its standard deviation σ, first in the unit of the laboratory, "
+        "then in the SI. Specific force: the axis that points up reads +g. Rotations follow the "
+        "right hand. The joint fit is the result; the other methods are there to be compared.",
+        parts,
+    )
+
+
+def _parts(estimate: Estimate) -> Iterator[Part]:
+    yield Heading(estimate.name)
+    if estimate.fit is not None:
+        yield _fit(estimate)
+    yield Table(
+        caption=f"{estimate.name}: {numbers.counted(len(estimate.determined), 'parameter')} determined.",
+        columns=COLUMNS,
+        rows=tuple(_rows(estimate.determined)),
+        empty="None is determined; section 4 says why.",
+    )
+    if matrices := _matrices(estimate):
+        yield matrices
+
+
+def _fit(estimate: Estimate) -> Paragraph:
+    fit = estimate.fit or {}
+    sentence = (
+        f"χ² = {numbers.significant(fit['chi_squared'])} with "
+        f"{numbers.counted(fit['degrees'], 'degree')} of freedom, "
+        f"p = {numbers.probability(fit['p_value'])}"
+    )
+    if estimate.misfit:
+        return Paragraph(f"{sentence}: {MISFIT}.", "poor")
+    if not fit["degrees"]:
+        return Paragraph(f"{sentence}: nothing is left over to test the model with.", "fair")
+    return Paragraph(f"{sentence}: the model describes the data within the noise.", "good")
+
+
+def _rows(parameters: Sequence[Record]) -> Iterator[Row]:
+    written = []
+    for kind, group in groupby(parameters, lambda row: kind_of(row["parameter"])):
+        written.append((kind, list(group)))
+    columns = [values for _, group in written for values in _values(group)]
+    set_right = list(zip(*(numbers.aligned(column) for column in zip(*columns, strict=True)), strict=True))
+    place = 0
+    for kind, group in written:
+        yield Row((KIND.get(kind, kind.capitalize()),), heads=True)
+        for row in group:
+            value, sigma, si_value, si_sigma = set_right[place]
+            unit = units.quantity(row["parameter"], row["unit"])
+            place += 1
+            yield Row(
+                (
+                    symbol(row["parameter"]),
+                    value,
+                    sigma,
+                    unit.laboratory.name,
+                    si_value,
+                    si_sigma,
+                    unit.si.name,
+                    f"{row['meaning']} · {row['frame']} · {row['id']}",
+                ),
+                anchor=row["id"],
+            )
+
+
+def _values(group: Sequence[Record]) -> Iterator[tuple[str, str, str, str]]:
+    """Value and sigma in both units, with decimals common to the group."""
+    quantities = [units.quantity(row["parameter"], row["unit"]) for row in group]
+    pairs = [
+        [
+            (unit.of(row["value"]), unit.of(row["sigma"]))
+            for row, unit in zip(group, each, strict=True)
+        ]
+        for each in ([q.laboratory for q in quantities], [q.si for q in quantities])
+    ]
+    decimals = [numbers.common_decimals(sigma for _, sigma in pair) for pair in pairs]
+    for laboratory, si in zip(*pairs, strict=True):
+        (value, sigma), (si_value, si_sigma) = (
+            written_pair(*pair, places) for pair, places in zip((laboratory, si), decimals, strict=True)
+        )
+        yield value, sigma, si_value, si_sigma
+
+
+def written_pair(
+    value: float | None, sigma: float | None, decimals: int | None
+) -> tuple[str, str]:
+    """A value and its sigma with the same decimals; to five digits where no sigma is known."""
+    if decimals is None:
+        return numbers.significant(value, 5), "—"
+    return numbers.fixed(value, decimals), numbers.fixed(sigma, decimals)
+
+
+def _matrices(estimate: Estimate) -> Matrices | None:
+    """M, its inverse and the bias as numbers, where all twelve parameters are determined."""
+    known = {row["parameter"]: row["value"] for row in estimate.determined}
+    matrix, bias = np.eye(3), np.zeros(3)
+    try:
+        for i, row in enumerate(AXES):
+            bias[i] = known[f"bias_{row}"]
+            for j, column in enumerate(AXES):
+                matrix[i, j] += known[f"scale_{row}" if i == j else f"cross_{row}{column}"]
+        inverse = np.linalg.inv(matrix)
+    except (KeyError, np.linalg.LinAlgError):
+        return None
+    unit = next(row["unit"] for row in estimate.determined if row["parameter"] == "bias_x")
+    return Matrices(
+        f"{estimate.name}: ready for use.",
+        (
+            Matrix("M", _entries(matrix, 7)),
+            Matrix("M⁻¹", _entries(inverse, 7)),
+            Matrix("bias", _entries(bias[:, np.newaxis], 7 if unit == "m/s²" else 10), unit),
+        ),
+    )
+
+
+def _entries(matrix: np.ndarray[tuple[int, ...], np.dtype[np.float64]], decimals: int) -> tuple[tuple[str, ...], ...]:
+    return tuple(tuple(numbers.fixed(float(entry), decimals) for entry in row) for row in matrix)

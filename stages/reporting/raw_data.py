@@ -1,0 +1,321 @@
+"""Section 6: the raw data of every log, and each missing stretch close up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from stages.contracts.tables import AXES
+from stages.reporting import numbers
+from stages.reporting.drawing import AXIS_COLOUR, MISSING, QUIET, canvas, hatch_missing, shade, style, svg
+from stages.reporting.outline import Figure, Heading, Paragraph, Part, Section
+from stages.reporting.rows import Record, records
+from stages.reporting.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, Unit
+
+Array = npt.NDArray[np.float64]
+Stretch = tuple[float, float]
+
+MOST_POINTS = 60_000  # of all figures together: what a page may weigh
+POINTS_PER_CURVE = (60, 380)
+MOST_CLOSE_UPS = 12
+MANY_LOGS = 24  # from here on the figures are small
+SMALL_RATE = 0.2 * DEGREES_PER_SECOND.size
+METRES = Unit("m/s²", 1.0)
+MILLIMETRES = Unit("mm/s²", 1e-3)
+
+
+@dataclass(frozen=True)
+class Log:
+    """One log as it is drawn: envelope over time, phases, missing stretches."""
+
+    name: str
+    start: Array  # of each row of the envelope, s, or records where there is no time
+    end: Array
+    least: dict[str, Array]
+    most: dict[str, Array]
+    phases: tuple[Record, ...]
+    missing: tuple[Stretch, ...]
+    timed: bool
+    records: int
+
+    @property
+    def static(self) -> bool:
+        """Whether the plan has the table at rest all through."""
+        return bool(self.phases) and all(row["phase"] == "rest" for row in self.phases)
+
+    def within(self, start: float, end: float) -> Log:
+        """The stretch from `start` to `end` alone."""
+        inside = (self.end >= start) & (self.start <= end)
+        return Log(
+            self.name,
+            self.start[inside],
+            self.end[inside],
+            {name: values[inside] for name, values in self.least.items()},
+            {name: values[inside] for name, values in self.most.items()},
+            self.phases,
+            self.missing,
+            self.timed,
+            self.records,
+        )
+
+
+def section(
+    traces: pd.DataFrame,
+    segments: pd.DataFrame,
+    clocks: pd.DataFrame,
+    findings: Sequence[Record],
+) -> Section:
+    """One figure per log, one per missing stretch."""
+    logs = _logs(traces, segments, clocks, findings)
+    points = int(np.clip(MOST_POINTS / (6 * max(len(logs), 1)), *POINTS_PER_CURVE))
+    small = len(logs) > MANY_LOGS
+    parts: list[Part] = [_figure(log, points, small) for log in logs]
+    close_ups = [(log, stretch) for log in logs for stretch in log.missing]
+    if close_ups:
+        parts.append(Heading("Missing stretches, close up"))
+        parts += [_close_up(log, stretch) for log, stretch in close_ups[:MOST_CLOSE_UPS]]
+    if len(close_ups) > MOST_CLOSE_UPS:
+        more = numbers.counted(len(close_ups) - MOST_CLOSE_UPS, "further stretch", "further stretches")
+        parts.append(Paragraph(f"{more} missing; section 3 lists them."))
+    if not logs:
+        parts.append(Paragraph("None: no log gave samples that could be drawn.", "poor"))
+    elif not close_ups:
+        parts.append(Paragraph("Missing stretches: none.", "good"))
+    return Section(
+        "raw-data",
+        "Raw data",
+        "Gyroscope and accelerometer of every log, as recorded, in SI units or those of the laboratory.",
+        "Each band runs from the smallest to the largest sample of a short stretch, so no spike is "
+        "lost. Logs at rest are drawn about their middle, so that deviations show. Behind the "
+        "curves: rest grey, spin-up and spin-down yellow, steady turn blue; hatched: not recorded.",
+        parts,
+    )
+
+
+# ---- what is drawn
+
+
+def _logs(
+    traces: pd.DataFrame,
+    segments: pd.DataFrame,
+    clocks: pd.DataFrame,
+    findings: Sequence[Record],
+) -> list[Log]:
+    clock = {row["log"]: row for row in records(clocks)}
+    phases = records(segments)
+    logs = []
+    for name, rows in traces.groupby("log", sort=False, observed=True):
+        log = str(name)
+        timed = not bool(rows["from_s"].isna().any() or rows["to_s"].isna().any())
+        columns = ("from_s", "to_s") if timed else ("from_record", "to_record")
+        start, end = (rows[column].to_numpy(dtype=np.float64) for column in columns)
+        interval = clock.get(log, {}).get("interval")
+        missing = _missing(log, start, end, interval, findings) if timed else []
+        least, most = (
+            {
+                channel: rows[f"{prefix}_{channel}"].to_numpy(dtype=np.float64)
+                for channel in (f"{s}_{a}" for s in ("gyro", "accel") for a in AXES)
+            }
+            for prefix in ("least", "most")
+        )
+        own = tuple(
+            row | {"start": row[columns[0]], "end": row[columns[1]]}
+            for row in phases
+            if row["log"] == log and row[columns[0]] is not None and row[columns[1]] is not None
+        )
+        count = int(clock.get(log, {}).get("records") or rows["to_record"].max())
+        drawn = Log(log, start, end, least, most, own, tuple(missing), timed, count)
+        logs.append(_cut(drawn))
+    return logs
+
+
+def _missing(
+    log: str, start: Array, end: Array, interval: float | None, findings: Sequence[Record]
+) -> list[Stretch]:
+    """Stretches without samples: by the findings, and wherever the envelope breaks off."""
+    stated = [
+        (row["from_s"], row["to_s"])
+        for row in findings
+        if row["log"] == log
+        and row["count"] == 1
+        and any(word in row["cause"] for word in ("gap", "missing"))
+        and row["from_s"] is not None
+        and row["to_s"] is not None
+        and row["to_s"] > row["from_s"]
+    ]
+    step = interval or (float(np.median(start[1:] - end[:-1])) if len(start) > 1 else np.inf)
+    breaks = np.flatnonzero(start[1:] - end[:-1] > 2.5 * step)
+    seen = [(float(end[i]), float(start[i + 1])) for i in breaks]
+    unstated = [
+        (a, b) for a, b in seen if not any(c < b and d > a for c, d in stated)
+    ]
+    return sorted({*stated, *unstated})
+
+
+def _cut(log: Log) -> Log:
+    """The same log with rows of the envelope cut where a missing stretch lies inside them."""
+    if not log.missing:
+        return log
+    keep: list[int] = []
+    start: list[float] = []
+    end: list[float] = []
+    for i, (a, b) in enumerate(zip(log.start.tolist(), log.end.tolist(), strict=True)):
+        inside = [(c, d) for c, d in log.missing if c < b and d > a]
+        edges = [a, *(edge for stretch in inside for edge in stretch), b]
+        for left, right in zip(edges[::2], edges[1::2], strict=True):
+            if left <= right:
+                keep.append(i)
+                start.append(left)
+                end.append(right)
+    return Log(
+        log.name,
+        np.array(start),
+        np.array(end),
+        {name: values[keep] for name, values in log.least.items()},
+        {name: values[keep] for name, values in log.most.items()},
+        log.phases,
+        log.missing,
+        log.timed,
+        log.records,
+    )
+
+
+def envelope(log: Log, channel: str, points: int) -> tuple[Array, Array, Array]:
+    """Middle, smallest and largest of about `points` stretches; a nan where the log breaks off."""
+    count = len(log.start)
+    broken = np.zeros(count, dtype=np.int64)
+    for a, b in log.missing:
+        broken += log.start >= (a + b) / 2
+    groups = broken * (points + 1) + np.arange(count) * min(points, count) // max(count, 1)
+    first = np.flatnonzero(np.diff(groups, prepend=groups[0] - 1 if count else 0))
+    last = np.append(first[1:], count) - 1
+    middle = (log.start[first] + log.end[last]) / 2
+    low = np.fmin.reduceat(log.least[channel], first)
+    high = np.fmax.reduceat(log.most[channel], first)
+    between = np.flatnonzero(np.diff(broken[first])) + 1
+    return (
+        np.insert(middle, between, middle[between]),
+        np.insert(low, between, np.nan),
+        np.insert(high, between, np.nan),
+    )
+
+
+# ---- how it is drawn
+
+
+def _figure(log: Log, points: int, small: bool) -> Figure:
+    manoeuvres = list(dict.fromkeys(row["manoeuvre"] for row in log.phases))
+    named = ", ".join(manoeuvres[:6]) + (f" and {len(manoeuvres) - 6} more" if len(manoeuvres) > 6 else "")
+    length = float(log.end.max() - log.start.min()) if len(log.start) else 0.0
+    lasting = f", {numbers.fixed(length, 1)} s" if log.timed else ", without time stamps"
+    view = "each channel about its middle" if log.static else "as recorded"
+    caption = (
+        f"{numbers.shortened(log.name, 80)}: {numbers.shortened(named, 160) or 'no manoeuvre found'}; "
+        f"{numbers.counted(log.records, 'sample')}{lasting}; {view}."
+    )
+    if log.missing:
+        lost = sum(b - a for a, b in log.missing)
+        caption += f" {numbers.fixed(lost, 2)} s are missing."
+    drawn = _draw(log, f"raw-{log.name}", points, small, about_middle=log.static)
+    words = f"Six curves over time: rates and specific forces of x, y and z of the log {log.name}."
+    return Figure(caption, drawn, words, "fair" if log.missing else "")
+
+
+def _close_up(log: Log, stretch: Stretch) -> Figure:
+    start, end = stretch
+    room = max(2.0, 0.5 * (end - start))
+    near = log.within(start - room, end + room)
+    drawn = _draw(
+        near, f"missing-{log.name}-{start}", POINTS_PER_CURVE[1], False,
+        limits=(start - room, end + room),
+    )
+    caption = (
+        f"{numbers.shortened(log.name, 80)}: not recorded from {numbers.fixed(start, 3)} s to "
+        f"{numbers.fixed(end, 3)} s, {numbers.fixed(end - start, 3)} s."
+    )
+    return Figure(caption, drawn, f"The samples before and after a missing stretch of {log.name}.", "fair")
+
+
+def _draw(
+    log: Log,
+    key: str,
+    points: int,
+    small: bool,
+    *,
+    about_middle: bool = False,
+    limits: Stretch | None = None,
+) -> str:
+    with style():
+        figure = canvas(1.5 if small else 2.75)
+        axes = figure.subplots(3, 2, sharex=True)
+        for column, sensor in enumerate(("gyro", "accel")):
+            middles = {a: _middle(log, f"{sensor}_{a}") if about_middle else 0.0 for a in AXES}
+            unit = _unit(log, sensor, middles) if about_middle else _absolute(sensor)
+            name = "Angular rate" if sensor == "gyro" else "Specific force"
+            for row, axis in enumerate(AXES):
+                panel = axes[row, column]
+                _panel(panel, log, f"{sensor}_{axis}", points, unit, middles[axis])
+                text = axis
+                if about_middle and np.isfinite(middles[axis]):
+                    absolute = _absolute(sensor)
+                    middle = numbers.fixed(middles[axis] / absolute.size, 5)
+                    text = f"{axis}   about {middle} {absolute.name}"
+                if not small:
+                    panel.set_title(text, color=AXIS_COLOUR[axis], fontsize=7, pad=2)
+                panel.locator_params(axis="y", nbins=2 if small else 4)
+            axes[1, column].set_ylabel(f"{name}, {unit.name}")
+            axes[2, column].set_xlabel("Time, s" if log.timed else "Record")
+        if limits:
+            axes[0, 0].set_xlim(*limits)
+        elif len(log.start):
+            axes[0, 0].set_xlim(float(log.start.min()), float(log.end.max()))
+        return svg(figure, key)
+
+
+def _panel(panel, log: Log, channel: str, points: int, unit: Unit, middle: float) -> None:  # type: ignore[no-untyped-def]
+    for row in log.phases:
+        shade(panel, row["phase"], row["start"], row["end"])
+    for start, end in log.missing:
+        hatch_missing(panel, start, end)
+    if not len(log.start) or not np.isfinite(log.least[channel]).any():
+        panel.text(0.5, 0.5, "not recorded", transform=panel.transAxes, ha="center", va="center", color=QUIET)
+        panel.set_yticks([])
+        return
+    time, low, high = envelope(log, channel, points)
+    colour = AXIS_COLOUR[channel[-1]]
+    panel.fill_between(
+        time, (low - middle) / unit.size, (high - middle) / unit.size,
+        color=colour, linewidth=0.5, zorder=2,
+    )
+
+
+def _middle(log: Log, channel: str) -> float:
+    both = (log.least[channel] + log.most[channel]) / 2
+    return float(np.nanmedian(both)) if np.isfinite(both).any() else float("nan")
+
+
+def _absolute(sensor: str) -> Unit:
+    return DEGREES_PER_SECOND if sensor == "gyro" else METRES
+
+
+def _unit(log: Log, sensor: str, middles: dict[str, float]) -> Unit:
+    """The unit in which the largest deviation of a log at rest has few digits."""
+    largest = max(
+        (
+            float(np.nanmax(np.abs(values[f"{sensor}_{axis}"] - middles[axis])))
+            for values in (log.least, log.most)
+            for axis in AXES
+            if np.isfinite(middles[axis])
+        ),
+        default=0.0,
+    )
+    if sensor == "gyro":
+        return DEGREES_PER_HOUR if largest < SMALL_RATE else DEGREES_PER_SECOND
+    return MILLIMETRES if largest < 1.0 else METRES
+
+
+__all__ = ["MISSING", "envelope", "section"]

@@ -1,0 +1,265 @@
+"""Section 1: the verdict in a few plain sentences, on the first page and as a text of its own."""
+
+from __future__ import annotations
+
+import textwrap
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import degrees
+
+import pandas as pd
+
+from stages.contracts.tables import AXES
+from stages.reporting import numbers, units
+from stages.reporting.outline import (
+    Column,
+    Facts,
+    Level,
+    Paragraph,
+    Part,
+    Row,
+    Section,
+    Sentences,
+    Table,
+    Tone,
+)
+from stages.reporting.parameters import MISFIT, SENSOR, Estimate, kind_of
+from stages.reporting.rows import Record, only, records
+
+JOINT = "joint"
+WANTED = frozenset(
+    [f"{kind}_{axis}" for kind in ("bias", "scale") for axis in AXES]
+    + [f"cross_{row}{column}" for row in AXES for column in AXES if row != column]
+)
+SIMULATED = (
+    "SIMULATED: recorded by the simulated laboratory. No instrument of this serial was calibrated."
+)
+KINDS = {"bias": "bias", "scale": "scale error", "cross": "cross-axis term"}
+TONE: dict[str, Tone] = {
+    "calibrated": "good",
+    "calibrated in part": "fair",
+    "not calibrated": "poor",
+}
+MEANING = {
+    "calibrated": "All 24 parameters are determined and both models describe their data.",
+    "calibrated in part": "Some results can be used; the sentences below say which, and what is missing.",
+    "not calibrated": "This campaign gives no result that could be used.",
+}
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """How good the calibration is, in one of three levels, with the reasons in sentences."""
+
+    level: str
+    reasons: tuple[str, ...]
+
+
+def verdict(
+    found: Sequence[Estimate],
+    manoeuvres: pd.DataFrame,
+    performed: pd.DataFrame,
+    findings: Sequence[Record],
+) -> Verdict:
+    """The level and its reasons.
+
+    Calibrated: the joint fits determine all twelve parameters of both sensors and
+    describe their data (p ≥ 0.01). Not calibrated: they determine none. In part:
+    everything between.
+    """
+    joint = {estimate.stage: estimate for estimate in found if estimate.method == JOINT}
+    sets = {stage: _determined(joint.get(stage)) for stage in SENSOR}
+    whole = all(WANTED <= have.keys() for have in sets.values())
+    misfit = any(estimate.misfit for estimate in joint.values())
+    if not any(WANTED & have.keys() for have in sets.values()):
+        level = "not calibrated"
+    else:
+        level = "calibrated" if whole and not misfit else "calibrated in part"
+    reasons = [_sentence(stage, have) for stage, have in sets.items()]
+    reasons += [sentence for stage in SENSOR if (sentence := _fit(stage, joint.get(stage)))]
+    reasons += _left_out(found)
+    reasons.append(_performed(manoeuvres, performed))
+    reasons.append(_findings(findings))
+    return Verdict(level, tuple(reasons))
+
+
+def _determined(estimate: Estimate | None) -> dict[str, Record]:
+    return {row["parameter"]: row for row in estimate.determined} if estimate else {}
+
+
+def _sentence(stage: str, have: dict[str, Record]) -> str:
+    """What is determined of a sensor, and its worst sigma by kind."""
+    count = len(WANTED & have.keys())
+    if not count:
+        return f"{SENSOR[stage]}: nothing is determined."
+    worst = "; ".join(f"{KINDS[kind]} {text}" for kind, text in _worst(have).items())
+    amount = "all 12 parameters are determined" if count == 12 else f"{count} of 12 parameters are determined"
+    return f"{SENSOR[stage]}: {amount}. Largest σ: {worst}." if worst else f"{SENSOR[stage]}: {amount}."
+
+
+def _worst(have: dict[str, Record]) -> dict[str, str]:
+    worst: dict[str, str] = {}
+    for kind in KINDS:
+        rows = [r for r in have.values() if kind_of(r["parameter"]) == kind and r["sigma"] is not None]
+        if rows:
+            row = max(rows, key=lambda row: row["sigma"])
+            unit = units.quantity(row["parameter"], row["unit"]).laboratory
+            worst[kind] = f"{numbers.significant(unit.of(row['sigma']), 2)} {unit.name}"
+    return worst
+
+
+def _fit(stage: str, estimate: Estimate | None) -> str:
+    if estimate is None or estimate.fit is None:
+        return ""
+    p_value = numbers.probability(estimate.fit["p_value"])
+    if estimate.misfit:
+        return f"{SENSOR[stage]}: {MISFIT} (p = {p_value})."
+    if not estimate.fit["degrees"]:
+        return f"{SENSOR[stage]}: nothing is left over to test the model with."
+    return f"{SENSOR[stage]}: the model describes the data within the noise (p = {p_value})."
+
+
+def _left_out(found: Sequence[Estimate]) -> Iterator[str]:
+    for estimate in found:
+        if estimate.method == JOINT and estimate.fit and estimate.fit["left_out"]:
+            text = numbers.shortened(estimate.fit["left_out"], 400).rstrip(".")
+            yield f"{SENSOR.get(estimate.stage, estimate.stage)}, left out: {text}."
+
+
+def _performed(manoeuvres: pd.DataFrame, performed: pd.DataFrame) -> str:
+    planned = len(manoeuvres)
+    rows = records(performed)
+    complete = sum(bool(row["found"] and row["complete"]) for row in rows)
+    if planned == 0:
+        return "No manoeuvre was planned."
+    missing = [row["manoeuvre"] for row in rows if not row["found"]]
+    partly = [row["manoeuvre"] for row in rows if row["found"] and not row["complete"]]
+    text = f"{complete} of {numbers.counted(planned, 'manoeuvre')} recorded as planned"
+    if partly:
+        text += f"; not complete: {_listed(partly)}"
+    if missing:
+        text += f"; not found: {_listed(missing)}"
+    return f"{text}."
+
+
+def _listed(names: Sequence[str], most: int = 8) -> str:
+    shown = ", ".join(numbers.shortened(name, 60) for name in names[:most])
+    return f"{shown} and {len(names) - most} more" if len(names) > most else shown
+
+
+def _findings(findings: Sequence[Record]) -> str:
+    if not findings:
+        return "Findings: none."
+    causes = Counter(row["cause"] for row in findings)
+    listed = ", ".join(
+        f"{numbers.shortened(cause, 60)} ({count})" for cause, count in causes.most_common(8)
+    )
+    more = f" and {len(causes) - 8} further causes" if len(causes) > 8 else ""
+    return f"Findings: {numbers.whole(len(findings))}; {listed}{more}."
+
+
+def facts(campaign: Record, known: pd.DataFrame, clocks: pd.DataFrame) -> tuple[tuple[str, str], ...]:
+    """What stands on the plate of the report: instrument, serial, dates, site, table."""
+    recorded = sorted({row["recorded_on"] for row in records(clocks) if row["recorded_on"]})
+    by_name = {row["quantity"]: row for row in records(known)}
+    gravity = by_name.get("gravity", {}).get("value")
+    site = [
+        _with_unit(None if campaign["latitude"] is None else degrees(campaign["latitude"]), 4, "°"),
+        _with_unit(campaign["height"], 0, " m"),
+        _with_unit(gravity, 7, " m/s²"),
+    ]
+    latitude, height, force = site
+    pairs = {
+        "Campaign": campaign["campaign"],
+        "Instrument": campaign["instrument"],
+        "Serial": campaign["serial"],
+        "Date stated": campaign["date"],
+        "Date recorded": " … ".join(dict.fromkeys((recorded[0], recorded[-1])))
+        + " (UTC, by the clock of the logs)"
+        if recorded
+        else "not known: the logs have no absolute clock",
+        "Site": f"latitude {latitude}, height {height}, gravity {force}",
+        "Table": campaign["table"],
+        "Laboratory": campaign["laboratory"],
+        "Operator": campaign["operator"],
+        "Remarks": campaign["notes"],
+    }
+    return tuple(
+        (name, numbers.shortened(str(text), 900)) for name, text in pairs.items() if text is not None
+    )
+
+
+def _with_unit(value: float | None, decimals: int, unit: str) -> str:
+    return "unknown" if value is None else f"{numbers.fixed(value, decimals)}{unit}"
+
+
+def section(
+    given: Verdict,
+    found: Sequence[Estimate],
+    campaign: Record,
+    known: pd.DataFrame,
+    clocks: pd.DataFrame,
+) -> Section:
+    """The level, its reasons, and the result at a glance."""
+    parts: list[Part] = []
+    if campaign["simulated"]:
+        parts.append(Paragraph(SIMULATED, "poor"))
+    parts += [
+        Level(given.level, TONE[given.level], MEANING[given.level]),
+        Sentences(given.reasons),
+        Table(
+            "The joint fits at a glance: how many of twelve parameters, and the largest σ of each kind.",
+            (
+                Column("Sensor"),
+                Column("Determined", "number"),
+                Column("Bias σ", "number"),
+                Column("Scale σ", "number"),
+                Column("Cross-axis σ", "number"),
+                Column("Fit, p", "number"),
+            ),
+            tuple(_glance(stage, found) for stage in SENSOR),
+        ),
+        Facts(facts(campaign, known, clocks)),
+    ]
+    return Section(
+        "verdict",
+        "Verdict",
+        "Whether this calibration can be used, and why.",
+        "Calibrated: the joint fits determine all 24 parameters and describe their data (p ≥ 0.01). "
+        "In part: some are not determined, or a model does not describe its data. Not calibrated: "
+        "none is determined.",
+        parts,
+    )
+
+
+def _glance(stage: str, found: Sequence[Estimate]) -> Row:
+    estimate = next((e for e in found if e.stage == stage and e.method == JOINT), None)
+    have = _determined(estimate)
+    worst = _worst(have)
+    fit = estimate.fit if estimate else None
+    return Row(
+        (
+            SENSOR[stage],
+            f"{len(WANTED & have.keys())} of 12",
+            *(worst.get(kind, "—") for kind in KINDS),
+            numbers.probability(fit["p_value"]) if fit else "—",
+        )
+    )
+
+
+def as_text(given: Verdict, campaign: pd.DataFrame, known: pd.DataFrame, clocks: pd.DataFrame) -> str:
+    """The verdict as plain text, 80 letters wide."""
+    about = only(campaign)
+    lines = []
+    if about["simulated"]:
+        lines += [*textwrap.wrap(SIMULATED, 80), ""]
+    lines += [f"Verdict: {given.level}", *textwrap.wrap(MEANING[given.level], 80), ""]
+    for reason in given.reasons:
+        lines += textwrap.wrap(reason, 80, initial_indent="- ", subsequent_indent="  ")
+    lines.append("")
+    for name, text in facts(about, known, clocks):
+        lines += textwrap.wrap(
+            f"{name + ':':<15}{text}", 80, subsequent_indent=" " * 15, break_on_hyphens=False
+        )
+    return "\n".join(lines) + "\n"

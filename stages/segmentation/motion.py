@@ -1,0 +1,98 @@
+"""Where a log moves and where it rests, told from short means of its channels."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Booleans = NDArray[np.bool_]
+
+BLIP = 0.3  # s, a motion or a rest shorter than this is none, or a tenth of the stretch
+LEVEL_CHANGE = 0.1  # m/s², change of the specific force that tells motion where no gyro is recorded
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Consecutive bins, [first, after), that all move or all rest."""
+
+    moves: bool
+    first: int
+    after: int
+
+
+def rest_level(rates: Array) -> tuple[Array, float]:
+    """What the gyros read at rest, and the scatter of a bin about it, rad/s.
+
+    The bins that hardly differ from their neighbours are steady; of these the third
+    with the lowest rate is at rest.
+
+    Parameters
+    ----------
+    rates : (k, 3), rad/s, means of short bins
+    """
+    change = np.linalg.norm(np.diff(rates, axis=0, append=rates[-1:]), axis=1)
+    steady = rates[change <= 3 * np.median(change)]
+    magnitude = np.linalg.norm(steady, axis=1)
+    resting = steady[magnitude <= np.quantile(magnitude, 1 / 3)]
+    level = np.median(resting, axis=0)
+    scatter = 1.4826 * np.median(np.abs(resting - level), axis=0)
+    return level, float(np.linalg.norm(scatter))
+
+
+def moving(rates: Array, forces: Array, level: Array, threshold: float) -> Booleans:
+    """Which bins move: by the gyros, or by the accelerometers where no gyro is recorded.
+
+    Parameters
+    ----------
+    rates, forces : (k, 3), rad/s and m/s², NaN where not recorded
+    level : (3,), rad/s, the gyros at rest
+    threshold : rad/s
+    """
+    recorded = ~np.isnan(rates).all(axis=0)
+    if recorded.any():
+        away = np.nan_to_num(rates[:, recorded]) - level[recorded]
+        return np.asarray(np.linalg.norm(away, axis=1) > threshold)
+    forces = np.nan_to_num(forces)
+    k = len(forces)
+    windows = [forces[np.clip(np.arange(k) + shift, 0, k - 1)] for shift in (-2, -1, 0, 1, 2)]
+    spread = np.ptp(np.stack(windows), axis=0)
+    usual = 6 * np.quantile(np.linalg.norm(spread, axis=1), 0.25)
+    return np.asarray(np.linalg.norm(spread, axis=1) > max(usual, LEVEL_CHANGE))
+
+
+def stretches(moves: Booleans, bin_seconds: float) -> list[Stretch]:
+    """The bins as stretches that move or rest, those shorter than a blip joined to their like."""
+    shortest = min(BLIP / bin_seconds, 0.1 * len(moves))
+    moves = moves.copy()
+    for kind in (False, True):  # a pause within a motion first, then a knock within a rest
+        for stretch in _runs(moves):
+            inner = stretch.first > 0 and stretch.after < len(moves)
+            if stretch.moves is kind and inner and stretch.after - stretch.first < shortest:
+                moves[stretch.first : stretch.after] = not kind
+    return _runs(moves)
+
+
+def _runs(moves: Booleans) -> list[Stretch]:
+    edges = [0, *(np.flatnonzero(np.diff(moves)) + 1).tolist(), len(moves)]
+    return [
+        Stretch(bool(moves[first]), first, after)
+        for first, after in zip(edges[:-1], edges[1:], strict=True)
+        if after > first
+    ]
+
+
+def steady_part(rate: Array) -> tuple[int, int]:
+    """The bins [first, after) of one turn in which the table keeps its rate.
+
+    Parameters
+    ----------
+    rate : (k,), rad/s about the axis of the turn, from start to stop
+    """
+    k = len(rate)
+    plateau = float(np.median(rate[k // 4 : max(k - k // 4, k // 4 + 1)]))
+    reached = np.flatnonzero(np.abs(rate / plateau) > 0.97) if plateau else np.array([], int)
+    if len(reached) < 3:
+        return 0, k
+    # One bin at each end may hold a part of the ramp.
+    return int(reached[0]) + 1, int(reached[-1])

@@ -1,0 +1,429 @@
+"""The tables of a made-up campaign as S0 ran it: six rests, six turns, one of them not whole."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+
+from stages.contracts import tables
+
+GRAVITY = 9.7936174
+DEGREE = np.pi / 180
+INTERVAL = 0.01
+REST_S, TURN_S = 300.0, 58.0
+GAP = (21.89, 33.87)
+AXES = "xyz"
+PAIRS = [(i, j) for i in range(3) for j in range(3) if i != j]
+SCALE = {"accel": (3.2852e-4, 3.2826e-4, 2.3567e-4), "gyro": (6.151e-4, -1.62e-5, 6.442e-4)}
+CROSS = (0.0021831, 0.0076080, -0.0027442, -0.0007839, -0.0075585, 0.0007016)
+BIAS = {"accel": (-0.0052949, 0.0050641, -0.0018790), "gyro": (1.30e-6, -2.10e-6, 0.90e-6)}
+Rows = list[dict[str, Any]]
+
+
+def campaign() -> dict[str, Any]:
+    """What the report takes, by name."""
+    generator = np.random.default_rng(20231018)
+    manoeuvres = _manoeuvres()
+    made = {
+        "campaign": _frame(tables.CAMPAIGN, [_about()]),
+        "known": _frame(tables.KNOWN, _known()),
+        "sensors": _frame(tables.SENSORS, _sensors()),
+        "inputs": _frame(tables.INPUTS, _inputs(manoeuvres)),
+        "manoeuvres": _frame(tables.MANOEUVRES, manoeuvres),
+        "accounts": _frame(tables.ACCOUNTS, _accounts(manoeuvres)),
+        "refused": _frame(tables.REFUSED, _refused()),
+        "clocks": _frame(tables.CLOCKS, _clocks(manoeuvres)),
+        "quality_findings": _frame(tables.FINDINGS, _quality_findings()),
+        "segment_findings": _frame(tables.FINDINGS, _segment_findings()),
+        "segments": _frame(tables.SEGMENTS, _segments(manoeuvres)),
+        "performed": _frame(tables.PERFORMED, _performed(manoeuvres)),
+        "traces": pd.concat([_trace(row, generator) for row in manoeuvres], ignore_index=True),
+        "noise": _frame(tables.NOISE, _noise(manoeuvres, generator)),
+    }
+    for stage, other in (("accelerometer", "six_position"), ("gyroscope", "turns")):
+        parameters = _parameters(stage, "joint") + _parameters(stage, other)
+        made[f"{stage}_parameters"] = _frame(tables.PARAMETERS, parameters)
+        made[f"{stage}_fit"] = _frame(tables.FIT, _fit(stage, other))
+        made[f"{stage}_averaging"] = _frame(
+            tables.AVERAGING, _averaging(parameters, generator)
+        )
+    maker = {"settings": {"rest_block": 5.0}, "code": "c0de" * 16, "inputs": {"demo/a": "0" * 64}}
+    stages = {"quality_findings": "quality", "noise": "noise"}
+    made["provenance"] = {
+        name: {"stage": stages.get(name, name.partition("_")[0]), **maker} for name in made
+    }
+    return made
+
+
+def poor() -> dict[str, Any]:
+    """The same with every table empty but the campaign's own."""
+    made = campaign()
+    provenance = made.pop("provenance")
+    empty = {name: frame.iloc[:0] for name, frame in made.items()}
+    return {**empty, "campaign": made["campaign"], "provenance": provenance}
+
+
+def _frame(table: Any, rows: Rows) -> pd.DataFrame:
+    """Rows with the columns of the contract; what a row leaves out is a gap."""
+    names = [column.name for column in table.columns]
+    unknown = {name for row in rows for name in row} - set(names)
+    assert not unknown, unknown
+    frame = pd.DataFrame([{name: row.get(name) for name in names} for row in rows], columns=names)
+    return table.arrow(frame).to_pandas()
+
+
+def _about() -> dict[str, Any]:
+    return {
+        "campaign": "made-up",
+        "simulated": True,
+        "instrument": "NovAtel SPAN-CPT",
+        "serial": "SIM-001",
+        "date": "2026-11-02",
+        "notes": "Table watched all the time; the computer crashed during z-backward.",
+        "table": "three-axis",
+        "rate": 100.0,
+        "latitude": 30.5278 * DEGREE,
+        "height": 24.0,
+        "must_be_set": 0x77,
+        "must_be_clear": 0,
+    }
+
+
+def _known() -> Rows:
+    arc_second = DEGREE / 3600
+    return [
+        {"quantity": q, "value": value, "sigma": sigma, "unit": unit, "origin": origin}
+        for q, value, sigma, unit, origin in (
+            ("gravity", GRAVITY, 5e-5, "m/s²", "stated: site.gravity_m_s2"),
+            ("earth_rate_up", 3.7039e-5, 1.1e-8, "rad/s", "computed from the latitude, whose sigma is assumed as 0.01°"),
+            ("earth_rate_level", 6.2813e-5, None, "rad/s", "computed from the latitude, whose sigma is assumed as 0.01°"),
+            ("heading", None, None, "rad", "not known"),
+            ("position", 0.0, 2 * arc_second, "rad", "stated: table.position_sigma_arcsec"),
+            ("turn_angle", 0.0, 2 * arc_second, "rad", "stated: table.angle_sigma_arcsec"),
+            ("turn_rate", 0.0, 1e-3, "1", "assumed, for table.rate_sigma_ppm is not stated"),
+        )
+    ]
+
+
+def _sensors() -> Rows:
+    source = "count: NovAtel, RAWIMU scale factors; noise: NovAtel SPAN-CPT data sheet"
+    white = {"accel": 0.0324 / 60, "gyro": 0.0667 * DEGREE / 60}
+    return [
+        {
+            "channel": channel,
+            "white_noise": white[channel[:-2]],
+            "source": source,
+        }
+        for channel in tables.CHANNELS
+    ]
+
+
+def _manoeuvres() -> Rows:
+    rows: Rows = []
+    common = {"mount": "as mounted", "recorded": "whole"}
+    for i, axis in enumerate(AXES):
+        for name, sign in (("up", 1.0), ("down", -1.0)):
+            identifier = f"{axis}-{name}"
+            rows.append(
+                common
+                | {"manoeuvre": identifier, "position": identifier, "log": f"{identifier}.asc"}
+                | {"do": "rest", "seconds": REST_S}
+                | {f"up_{a}": sign * (i == j) for j, a in enumerate(AXES)}
+            )
+    for i, axis in enumerate(AXES):
+        for name, sign in (("forward", 1.0), ("backward", -1.0)):
+            identifier = f"{axis}-{name}"
+            rows.append(
+                common
+                | {"manoeuvre": identifier, "position": identifier, "log": f"{identifier}.asc"}
+                | {"do": "turn", "seconds": 38.0, "angle": sign * 2 * np.pi}
+                | {"angle_sigma": 1e-5, "rate": sign * 10 * DEGREE, "acceleration": 5 * DEGREE}
+                | {f"up_{a}": 1.0 * (i == j) for j, a in enumerate(AXES)}
+                | {f"about_{a}": 1.0 * (i == j) for j, a in enumerate(AXES)}
+            )
+    return rows
+
+
+def _seconds(row: dict[str, Any]) -> float:
+    return REST_S if row["do"] == "rest" else TURN_S
+
+
+def _inputs(manoeuvres: Rows) -> Rows:
+    rows: Rows = [{"file": "campaign.yaml", "size": 1326, "sha256": "ab" * 32}]
+    for number, row in enumerate(manoeuvres):
+        sha256 = f"{number:02x}" * 32
+        rows.append({"file": row["log"], "size": round(_seconds(row) * 8700) + 900, "sha256": sha256})
+    return rows
+
+
+def _accounts(manoeuvres: Rows) -> Rows:
+    rows: Rows = []
+    for row in manoeuvres:
+        lines = round(_seconds(row) / INTERVAL)
+        size = round(_seconds(row) * 8700)
+        rows += [
+            {"log": row["log"], "kind": "decoded", "name": "RAWIMUSA", "lines": lines, "bytes": size},
+            {"log": row["log"], "kind": "other message", "name": "BESTPOSA", "lines": 5, "bytes": 900},
+        ]
+    rows[-1]["bytes"] = 813
+    rows.append({"log": "z-backward.asc", "kind": "refused", "name": "", "lines": 1, "bytes": 87})
+    return rows
+
+
+def _refused() -> Rows:
+    return [
+        {
+            "log": "z-backward.asc",
+            "line": 2194,
+            "offset": 190813,
+            "bytes": 87,
+            "reason": "checksum 3928684b, expected b6a6925a",
+            "text": "%RAWIMUSA,2283,42699.880;2283,42699.879998762,00000077,64188,-64,465",
+        }
+    ]
+
+
+def _clocks(manoeuvres: Rows) -> Rows:
+    return [
+        {
+            "log": row["log"],
+            "clock": "GPS",
+            "epoch_gps": 1.4e9,
+            "recorded_on": "2026-11-02",
+            "from_s": 0.0,
+            "to_s": _seconds(row),
+            "records": round(_seconds(row) / INTERVAL),
+            "interval": INTERVAL,
+        }
+        for row in manoeuvres
+    ]
+
+
+def _quality_findings() -> Rows:
+    return [
+        {
+            "id": "quality/gap/z-backward.asc/2192",
+            "cause": "gap",
+            "log": "z-backward.asc",
+            "from_s": GAP[0],
+            "to_s": GAP[1],
+            "count": 1,
+            "size": GAP[1] - GAP[0],
+            "unit": "s",
+            "consequence": "The turn is not whole: a sum over it lacks 119.8°.",
+            "action": "The manoeuvre is left out where its whole angle is used. Record it again.",
+            "sentence": "Between lines 2192 and 2193 of z-backward.asc 11.98 s are missing.",
+        },
+        {
+            "id": "quality/oscillation/gyro_x",
+            "cause": "oscillation",
+            "sensor": "gyro",
+            "axis": "x",
+            "log": "x-forward.asc",
+            "count": 2,
+            "size": 0.01,
+            "unit": "rad/s",
+            "p_value": 3.2e-45,
+            "consequence": "None on whole turns: it averages out in the integral.",
+            "action": "Kept. Check the table's drive about x.",
+            "sentence": "The x gyro oscillates at 20.0 Hz with 0.010 rad/s while the table turns.",
+        },
+    ]
+
+
+def _segment_findings() -> Rows:
+    return [
+        {
+            "id": "segment/incomplete/z-backward",
+            "cause": "incomplete turn",
+            "manoeuvre": "z-backward",
+            "log": "z-backward.asc",
+            "count": 1,
+            "size": 119.8 * DEGREE,
+            "unit": "rad",
+            "consequence": "z-backward does not fix the scale of the z gyro.",
+            "action": "Left out. Record z-backward again.",
+            "sentence": "Of z-backward 240.2° of 360° were recorded.",
+        }
+    ]
+
+
+def _phases(row: dict[str, Any]) -> list[tuple[str, float, float]]:
+    if row["do"] == "rest":
+        return [("rest", 0.0, REST_S)]
+    return [
+        ("rest", 0.0, 9.9),
+        ("spin-up", 10.0, 12.0),
+        ("steady", 12.0, 46.0),
+        ("spin-down", 46.0, 48.0),
+        ("rest", 48.1, TURN_S),
+    ]
+
+
+def _segments(manoeuvres: Rows) -> Rows:
+    return [
+        {
+            "manoeuvre": row["manoeuvre"],
+            "phase": phase,
+            "log": row["log"],
+            "from_record": round(start / INTERVAL),
+            "to_record": round(end / INTERVAL),
+            "from_s": start,
+            "to_s": end,
+        }
+        for row in manoeuvres
+        for phase, start, end in _phases(row)
+    ]
+
+
+def _performed(manoeuvres: Rows) -> Rows:
+    rows: Rows = []
+    for row in manoeuvres:
+        turn = row["do"] == "turn"
+        whole = row["manoeuvre"] != "z-backward"
+        missing = 0.0 if whole else -119.81 * DEGREE
+        angle = row["angle"] * 1.0000031 - missing if turn else None
+        rows.append(
+            {
+                "manoeuvre": row["manoeuvre"],
+                "found": True,
+                "complete": whole,
+                "angle": angle,
+                "missing_angle": missing if turn else None,
+                "missing_s": 0.0 if whole else GAP[1] - GAP[0],
+                "rate": row["rate"] * 1.00003 if turn else None,
+                "seconds": 299.98 if not turn else 38.02,
+                "sentence": "recorded as planned"
+                if whole
+                else "11.98 s and 119.8° of the turn are missing",
+            }
+        )
+    return rows
+
+
+def _rate(row: dict[str, Any], time: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    if row["do"] == "rest":
+        return np.zeros_like(time)
+    ramp = np.clip((time - 10) / 2, 0, 1) - np.clip((time - 46) / 2, 0, 1)
+    return np.asarray(ramp * row["rate"])
+
+
+def _trace(row: dict[str, Any], generator: np.random.Generator) -> pd.DataFrame:
+    """The envelope of a log: a hundred and some samples a row."""
+    per_row = 50 if row["do"] == "rest" else 12
+    time = np.arange(0, _seconds(row), INTERVAL)
+    if row["manoeuvre"] == "z-backward":
+        time = time[(time <= GAP[0]) | (time >= GAP[1])]
+    time = time[: len(time) // per_row * per_row].reshape(-1, per_row)
+    columns: dict[str, Any] = {
+        "log": row["log"],
+        "from_record": np.arange(len(time)) * per_row,
+        "to_record": (np.arange(len(time)) + 1) * per_row,
+        "from_s": time[:, 0],
+        "to_s": time[:, -1],
+    }
+    for i, axis in enumerate(AXES):
+        force = GRAVITY * row[f"up_{axis}"] + BIAS["accel"][i]
+        turn = _rate(row, time) * (row.get(f"about_{axis}") or 0.0) + BIAS["gyro"][i]
+        turning = row["do"] == "turn" and axis == "x" and row["about_x"] == 1.0
+        turn = turn + 0.01 * turning * np.sin(2 * np.pi * 20 * time) * (_rate(row, time) != 0)
+        for name, value, noise in (("accel", force, 1.07e-3), ("gyro", turn, 3.5e-5)):
+            samples = value + noise * generator.standard_normal(time.shape)
+            columns[f"least_{name}_{axis}"] = samples.min(axis=1)
+            columns[f"most_{name}_{axis}"] = samples.max(axis=1)
+    return pd.DataFrame(columns)
+
+
+def _noise(manoeuvres: Rows, generator: np.random.Generator) -> Rows:
+    white = {"accel": 1.07e-4, "gyro": 3.49e-6}
+    sheet = {row["channel"]: row["white_noise"] for row in _sensors()}
+    rows: Rows = []
+    for row in manoeuvres:
+        for channel in tables.CHANNELS:
+            value = white[channel[:-2]] * (1 + 0.03 * generator.standard_normal())
+            if channel == "accel_y" and row.get("up_x"):
+                value *= 5.5
+            rows.append(
+                {
+                    "manoeuvre": row["manoeuvre"],
+                    "phase": "rest" if row["do"] == "rest" else "steady",
+                    "channel": channel,
+                    "white_noise": value,
+                    "sigma": value * 0.03,
+                    "per_sample": value * 10,
+                    "samples": 30000,
+                    "data_sheet": sheet[channel],
+                }
+            )
+    return rows
+
+
+def _parameters(stage: str, method: str) -> Rows:
+    sensor = {"accelerometer": "accel", "gyroscope": "gyro"}[stage]
+    unit = tables.UNITS[sensor]
+    sigma = {"bias": {"accel": 1.1e-5, "gyro": 2.1e-8}[sensor], "scale": 2.2e-6, "cross": 4.1e-6}
+    joint = method == "joint"
+    entries: list[tuple[str, float | None, str, str]] = []
+    for i, axis in enumerate(AXES):
+        entries.append((f"bias_{axis}", BIAS[sensor][i], unit, f"reading at no input, {axis} sensor"))
+    for i, axis in enumerate(AXES):
+        entries.append((f"scale_{axis}", SCALE[sensor][i], "1", f"scale error of the {axis} sensor"))
+    for (i, j), value in zip(PAIRS, CROSS, strict=True):
+        given = value if joint or sensor == "accel" else None
+        name = f"cross_{AXES[i]}{AXES[j]}"
+        entries.append((name, given, "1", f"the {AXES[i]} sensor's response to {AXES[j]} input"))
+    if joint:
+        for axis, value in zip(AXES, (0.00074, 0.00758, -0.00246), strict=True):
+            entries.append((f"mounting_{axis}", value, "rad", f"rotation of the triad about {axis}"))
+        for pair, value in zip(("xy", "xz", "yz"), (-280.6e-6, 24.8e-6, -41.2e-6), strict=True):
+            entries.append((f"symmetric_{pair}", value, "rad", f"{pair} out of square"))
+    return [
+        {
+            "id": f"{stage}/{method}/{name}",
+            "stage": stage,
+            "method": method,
+            "parameter": name,
+            "value": value,
+            "sigma": None if value is None else sigma.get(name.partition("_")[0], 5e-6),
+            "unit": unit_of,
+            "frame": "body",
+            "meaning": meaning,
+            "reason": ""
+            if value is not None
+            else "the turns fix only the axis that turns; rests in six positions would help",
+        }
+        for name, value, unit_of, meaning in entries
+    ]
+
+
+def _fit(stage: str, other: str) -> Rows:
+    left_out = "z-backward: 119.8° of 360° are missing" if stage == "gyroscope" else ""
+    p_value = 2.4e-9 if stage == "gyroscope" else 0.41
+    chi_squared = 812.4 if stage == "gyroscope" else 603.1
+    used = "x-up, x-down, y-up, y-down, z-up, z-down, x-forward, x-backward, y-forward"
+    row = {"chi_squared": chi_squared, "degrees": 594, "p_value": p_value, "used": used}
+    plain = {"chi_squared": 5.1, "degrees": 6, "p_value": 0.53, "used": "x-up, x-down, y-up"}
+    return [
+        {"method": "joint", "left_out": left_out, **row},
+        {"method": other, "left_out": left_out, **plain},
+    ]
+
+
+def _averaging(parameters: Rows, generator: np.random.Generator) -> Rows:
+    rows: Rows = []
+    for parameter in parameters:
+        if parameter["method"] != "joint" or parameter["value"] is None:
+            continue
+        if parameter["parameter"].partition("_")[0] not in ("bias", "scale", "cross"):
+            continue
+        for seconds in np.geomspace(5, REST_S, 20):
+            sigma = parameter["sigma"] * float(np.sqrt(REST_S / seconds))
+            spread = np.sqrt(max(sigma**2 - parameter["sigma"] ** 2, 0.0))
+            value = parameter["value"] + spread * generator.standard_normal() * 0.8
+            rows.append(
+                {"parameter": parameter["id"], "seconds": seconds, "value": value, "sigma": sigma}
+            )
+    return rows
