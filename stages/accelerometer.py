@@ -4,8 +4,9 @@ import numpy as np
 import pandas as pd
 
 from stages.contracts import tables
-from stages.contracts.stage import Tables, command_line
+from stages.contracts.stage import Stage, Tables
 from stages.estimation.estimates import NAMES, Estimates, reasons
+from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import Still, averaging_times, stills
 from stages.inference import triad
 from stages.inference.six_position import Rest, formula, weighted
@@ -33,20 +34,21 @@ def accelerometer(
     given = known.set_index("quantity")
     gravity, gravity_sigma = (float(given.loc["gravity", c]) for c in ("value", "sigma"))
     known_values = (gravity, gravity_sigma, float(given.loc["position", "sigma"]))
-    estimates = Estimates("accelerometer")
+    levels = NoiseLevels(noise)
+    estimates = Estimates("accelerometer", levels.degrees)
     for mount, plan in manoeuvres.groupby("mount", sort=False):
         suffix = "" if manoeuvres["mount"].nunique() == 1 else f"@{mount}"
-        found, left = stills(blocks, plan, performed, noise, "accel")
+        found, left = stills(blocks, plan, performed, levels, "accel")
         if not found:
             continue
-        estimate = weighted([_rest(still) for still in found], *known_values)
-        recorded = np.isfinite([still.mean for still in found]).any(axis=0)
+        rests = [_rest(still) for still in found]
+        estimate = weighted(rests, *known_values)
+        recorded = np.isfinite([rest.mean for rest in rests]).any(axis=0)
         why = reasons(estimate.determined, recorded, "accelerometer", CURES)
         estimates.add_triad(f"joint{suffix}", estimate, why)
         estimates.add_fit(f"joint{suffix}", estimate, [still.label for still in found], left)
-        for seconds in averaging_times(blocks, averaging_steps):
-            part, _ = stills(blocks, plan, performed, noise, "accel", seconds)
-            shorter = weighted([_rest(still) for still in part], *known_values)
+        for seconds in averaging_times(found, averaging_steps):
+            shorter = weighted([_rest(still, seconds) for still in found], *known_values)
             estimates.add_averaging(f"joint{suffix}", seconds, shorter)
         planned = [_rest(still) for still in found if still.row["do"] == "rest"]
         if planned and (solved := formula(planned, *known_values)) is not None:
@@ -56,24 +58,26 @@ def accelerometer(
     return estimates.tables()
 
 
-def _rest(still: Still) -> Rest:
-    return Rest(still.row["position"], still.up_now, still.mean, still.sigma)
+def _rest(still: Still, seconds: float = np.inf) -> Rest:
+    return Rest(still.row["position"], still.up_now, *still.over(seconds))
 
+
+STAGE = Stage(
+    accelerometer,
+    reads={
+        "blocks": tables.BLOCKS,
+        "manoeuvres": tables.MANOEUVRES,
+        "performed": tables.PERFORMED,
+        "noise": tables.NOISE,
+        "known": tables.KNOWN,
+    },
+    writes={
+        "parameters": tables.PARAMETERS,
+        "covariance": tables.COVARIANCE,
+        "fit": tables.FIT,
+        "averaging": tables.AVERAGING,
+    },
+)
 
 if __name__ == "__main__":
-    command_line(
-        accelerometer,
-        reads={
-            "blocks": tables.BLOCKS,
-            "manoeuvres": tables.MANOEUVRES,
-            "performed": tables.PERFORMED,
-            "noise": tables.NOISE,
-            "known": tables.KNOWN,
-        },
-        writes={
-            "parameters": tables.PARAMETERS,
-            "covariance": tables.COVARIANCE,
-            "fit": tables.FIT,
-            "averaging": tables.AVERAGING,
-        },
-    )
+    STAGE.command_line()

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from stages.contracts.errors import Refusal
 from stages.contracts.parquet import BATCH_ROWS
-from stages.contracts.stage import command_line
+from stages.contracts.stage import Stage
 from stages.contracts.tables import ACCOUNTS, AXES, CLOCKS, LOGS, REFUSED, SAMPLES
 from stages.formats import columns, novatel
 from stages.formats.account import Account, RefusedLine
@@ -34,9 +34,7 @@ STANDARD_GRAVITY = 9.80665  # m/s², by convention the unit g; not the gravity o
 ICE_POINT = 273.15  # K
 CHANNEL_UNITS = {"m/s2": 1.0, "g": STANDARD_GRAVITY, "rad/s": 1.0, "deg/s": math.radians(1)}
 ANGLE_UNITS = {"deg": math.radians(1), "rad": 1.0}
-LOOK_AHEAD = (
-    1000  # samples, at least, of which the median interval is taken where there are as many
-)
+LOOK_AHEAD = 1000  # samples, where there are as many, of which the interval is the median
 
 Reals = NDArray[np.float64]
 Pieces = Iterator[tuple[str, pa.RecordBatch]]
@@ -84,7 +82,8 @@ class ReceiverLog:
             "gyro": float(layout["gyro_count"]),  # rad
         }
         first, step = _look_ahead(reading.records.stamp for reading in novatel.read(path))
-        self.first = None if first is None else int(first)  # ns since the start of GPS time
+        # ns since the start of GPS time
+        self.first = None if first is None else int(first)
         self.interval = None if step is None else step / NANOSECONDS  # s
 
     def decoded(self, origin: int) -> Iterator[Decoded]:
@@ -133,15 +132,20 @@ class ColumnLog:
         time = layout.get("time")
         self.clock = "none" if time is None else "own"
         self._ticks = 1.0 if time is None else ticks_per_second(layout)
+        self._first, self.interval = self._beginning()
+
+    def _beginning(self) -> tuple[float, float | None]:
+        """The time of the first sample in ticks, and the median sample interval, s."""
+        time = self._layout.get("time")
+        if time is None:
+            return 0.0, None
+        if time.get("column") is None:  # rows are counted from the first, though it be refused
+            return 0.0, 1 / self._ticks
+        readings = columns.read(self._path, self._layout)
         first, step = _look_ahead(
-            reading.records.ticks
-            for reading in columns.read(path, layout)
-            if reading.records.ticks is not None
+            reading.records.ticks for reading in readings if reading.records.ticks is not None
         )
-        # Rows that are counted are counted from the first row, though it be refused.
-        counted = time is not None and time.get("column") is None
-        self._first = 0.0 if first is None or counted else first
-        self.interval = None if step is None else step / self._ticks
+        return first or 0.0, None if step is None else step / self._ticks
 
     def decoded(self, origin: int) -> Iterator[Decoded]:
         """The log, piece by piece; `origin` is none of its business."""
@@ -261,11 +265,13 @@ def _sample_rows(log: str, samples: Mapping[str, Any]) -> pa.RecordBatch:
     return pa.RecordBatch.from_arrays(arrays, schema=SAMPLES.schema)
 
 
+STAGE = Stage(
+    decode,
+    reads={"logs": LOGS},
+    streams=("logs",),
+    files=("raw",),
+    writes={"samples": SAMPLES, "refused": REFUSED, "accounts": ACCOUNTS, "clocks": CLOCKS},
+)
+
 if __name__ == "__main__":
-    command_line(
-        decode,
-        reads={"logs": LOGS},
-        streams=("logs",),
-        files=("raw",),
-        writes={"samples": SAMPLES, "refused": REFUSED, "accounts": ACCOUNTS, "clocks": CLOCKS},
-    )
+    STAGE.command_line()

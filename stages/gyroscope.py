@@ -9,12 +9,12 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from stages.contracts import tables
-from stages.contracts.stage import Tables, command_line
+from stages.contracts.stage import Stage, Tables
 from stages.estimation.estimates import Estimates, reasons
-from stages.estimation.stills import Still, averaging_times, density, stills, vector
+from stages.estimation.noise_levels import NoiseLevels
+from stages.estimation.stills import Still, averaging_times, stills, vector
 from stages.inference import whole_turns
-from stages.inference.least_squares import Estimate
-from stages.inference.whole_turns import Angle, Earth, Position, Steady, Turn
+from stages.inference.whole_turns import Angle, Earth, Position, Steady, Turn, joint
 
 Array = NDArray[np.float64]
 
@@ -45,38 +45,31 @@ def gyroscope(
     heading = given.loc["heading", "value"]
     tilt = float(given.loc["position", "sigma"])
     rate_sigma = float(given.loc["turn_rate", "sigma"])
-    estimates = Estimates("gyroscope")
+    levels = NoiseLevels(noise)
+    estimates = Estimates("gyroscope", levels.degrees)
     for mount, plan in manoeuvres.groupby("mount", sort=False):
         suffix = "" if manoeuvres["mount"].nunique() == 1 else f"@{mount}"
-        found, left = stills(blocks, plan, performed, noise, "gyro")
+        found, left = stills(blocks, plan, performed, levels, "gyro")
         rows = list(_recorded_turns(blocks, plan, performed))
-        turns, steadies, refused = _turns(rows, noise, heading, rate_sigma)
+        turns, steadies, refused = _turns(rows, levels, heading, rate_sigma)
         if not (found or turns or steadies):
             continue
-
-        def solved(
-            rests: list[Still],
-            turns: list[Turn] = turns,
-            steadies: list[Steady] = steadies,
-        ) -> Estimate:
-            resting = [_still(still, heading) for still in rests]
-            return whole_turns.joint(resting, turns, steadies, earth, tilt)
-
-        estimate = solved(found)
-        readings = [s.mean for s in found] + [t.sums.sum(axis=0) for t in turns]
+        moving = (turns, steadies, earth, tilt)
+        estimate = joint([_still(still, heading) for still in found], *moving)
+        readings = [s.over()[0] for s in found] + [t.sums.sum(axis=0) for t in turns]
         readings += [steady.mean for steady in steadies]
         recorded = np.isfinite(readings).any(axis=0)
-        method = f"joint{suffix}"
         why = reasons(estimate.determined, recorded, "gyro", CURES)
-        estimates.add_triad(method, estimate, why)
+        estimates.add_triad(f"joint{suffix}", estimate, why)
         used = [still.label for still in found]
         used += [row["manoeuvre"] for row, _ in rows if row["manoeuvre"] not in refused]
         left += [f"{name}: {reason}" for name, reason in refused.items()]
-        estimates.add_fit(method, estimate, used, left)
-        for seconds in averaging_times(blocks, averaging_steps):
-            part, _ = stills(blocks, plan, performed, noise, "gyro", seconds)
-            estimates.add_averaging(method, seconds, solved(part))
-        _add_known_angle(estimates, f"turns{suffix}", rows, refused, noise, earth)
+        estimates.add_fit(f"joint{suffix}", estimate, used, left)
+        for seconds in averaging_times(found, averaging_steps):
+            part = [_still(still, heading, seconds) for still in found]
+            shorter = joint(part, *moving, start=estimate)
+            estimates.add_averaging(f"joint{suffix}", seconds, shorter)
+        _add_known_angle(estimates, f"turns{suffix}", rows, refused, levels, earth)
     return estimates.tables()
 
 
@@ -94,9 +87,9 @@ def _position(row: dict[str, Any], up: Array, heading: float | None) -> Position
     return Position(row["position"], up, north=north)
 
 
-def _still(still: Still, heading: float | None) -> whole_turns.Still:
+def _still(still: Still, heading: float | None, seconds: float = np.inf) -> whole_turns.Still:
     position = _position(still.row, still.up, heading)
-    return whole_turns.Still(position, still.mean, still.sigma, still.about, still.angle)
+    return whole_turns.Still(position, *still.over(seconds), still.about, still.angle)
 
 
 def _recorded_turns(
@@ -111,7 +104,7 @@ def _recorded_turns(
 
 def _turns(
     rows: list[tuple[dict[str, Any], pd.DataFrame]],
-    noise: pd.DataFrame,
+    noise: NoiseLevels,
     heading: float | None,
     rate_sigma: float,
 ) -> tuple[list[Turn], list[Steady], dict[str, str]]:
@@ -129,8 +122,8 @@ def _turns(
             continue
         assert up is not None  # else refused
         position = _position(row, up, heading)
-        resting = density(noise, name, "rest", GYRO)
-        turning = density(noise, name, "steady", GYRO)
+        resting = noise.of(name, "rest", GYRO)
+        turning = noise.of(name, "steady", GYRO)
         if steady_only:
             part = part[part["phase"] == "steady"]
             seconds = float(part["seconds"].sum())
@@ -172,7 +165,7 @@ def _add_known_angle(
     method: str,
     rows: list[tuple[dict[str, Any], pd.DataFrame]],
     refused: dict[str, str],
-    noise: pd.DataFrame,
+    noise: NoiseLevels,
     earth: Earth,
 ) -> None:
     """S0's formulas, axis by axis: they need whole turns both ways about the axis that is up."""
@@ -181,7 +174,12 @@ def _add_known_angle(
         for row, part in rows:
             about, up = vector(row, "about"), vector(row, "up")
             whole = row["manoeuvre"] not in refused and row["recorded"] == "whole"
-            if not whole or about is None or up is None or min(abs(about[i]), abs(up[i])) < 1 - 1e-9:
+            if (
+                not whole
+                or about is None
+                or up is None
+                or min(abs(about[i]), abs(up[i])) < 1 - 1e-9
+            ):
                 continue
             seconds = float(part["seconds"].sum())
             turns.append(
@@ -191,7 +189,7 @@ def _add_known_angle(
                     angle_sigma=float(row["angle_sigma"]),
                     seconds=seconds,
                     up=float(up[i]),
-                    density=float(density(noise, row["manoeuvre"], "rest", GYRO)[i]),
+                    density=float(noise.of(row["manoeuvre"], "rest", GYRO)[i]),
                 )
             )
         turns = [turn for turn in turns if np.isfinite(turn.summed)]
@@ -213,27 +211,27 @@ def about_axis(row: dict[str, Any], i: int) -> bool:
     return about is not None and abs(about[i]) > 1 - 1e-9
 
 
-def about_axis_named(
-    rows: list[tuple[dict[str, Any], pd.DataFrame]], name: str, i: int
-) -> bool:
+def about_axis_named(rows: list[tuple[dict[str, Any], pd.DataFrame]], name: str, i: int) -> bool:
     """Whether the turn `name` is about body axis i."""
     return any(row["manoeuvre"] == name and about_axis(row, i) for row, _ in rows)
 
 
+STAGE = Stage(
+    gyroscope,
+    reads={
+        "blocks": tables.BLOCKS,
+        "manoeuvres": tables.MANOEUVRES,
+        "performed": tables.PERFORMED,
+        "noise": tables.NOISE,
+        "known": tables.KNOWN,
+    },
+    writes={
+        "parameters": tables.PARAMETERS,
+        "covariance": tables.COVARIANCE,
+        "fit": tables.FIT,
+        "averaging": tables.AVERAGING,
+    },
+)
+
 if __name__ == "__main__":
-    command_line(
-        gyroscope,
-        reads={
-            "blocks": tables.BLOCKS,
-            "manoeuvres": tables.MANOEUVRES,
-            "performed": tables.PERFORMED,
-            "noise": tables.NOISE,
-            "known": tables.KNOWN,
-        },
-        writes={
-            "parameters": tables.PARAMETERS,
-            "covariance": tables.COVARIANCE,
-            "fit": tables.FIT,
-            "averaging": tables.AVERAGING,
-        },
-    )
+    STAGE.command_line()

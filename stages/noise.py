@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from stages.contracts import tables
 from stages.contracts.parquet import Stream
 from stages.contracts.samples import inside, pieces
-from stages.contracts.stage import Tables, command_line
+from stages.contracts.stage import Stage, Tables
 from stages.inference.spectrum import band_levels, white_level
 
 Array = NDArray[np.float64]
@@ -93,9 +93,11 @@ def _unbroken(samples: Stream, gaps: pd.DataFrame, masks: pd.DataFrame) -> Any:
         starts = gaps.loc[gaps["log"] == log, "record"].to_numpy()
         cuts |= set(np.flatnonzero(np.isin(record, starts)))
         masked = masks[masks["log"] == log]
-        bad = inside(
-            record, masked["from_record"].to_numpy(), masked["to_record"].to_numpy()
-        ) if len(masked) else np.zeros(len(record), bool)
+        bad = (
+            inside(record, masked["from_record"].to_numpy(), masked["to_record"].to_numpy())
+            if len(masked)
+            else np.zeros(len(record), bool)
+        )
         cuts |= set(np.flatnonzero(np.diff(bad)) + 1)
         edges = [0, *sorted(cuts), len(record)]
         for first, after in zip(edges[:-1], edges[1:], strict=True):
@@ -103,17 +105,19 @@ def _unbroken(samples: Stream, gaps: pd.DataFrame, masks: pd.DataFrame) -> Any:
                 yield log, record[first:after], values[first:after]
 
 
+STAGE = Stage(
+    noise,
+    reads={
+        "samples": tables.SAMPLES,
+        "segments": tables.SEGMENTS,
+        "clocks": tables.CLOCKS,
+        "gaps": tables.GAPS,
+        "masks": tables.MASKS,
+        "sensors": tables.SENSORS,
+    },
+    streams=("samples",),
+    writes={"noise": tables.NOISE},
+)
+
 if __name__ == "__main__":
-    command_line(
-        noise,
-        reads={
-            "samples": tables.SAMPLES,
-            "segments": tables.SEGMENTS,
-            "clocks": tables.CLOCKS,
-            "gaps": tables.GAPS,
-            "masks": tables.MASKS,
-            "sensors": tables.SENSORS,
-        },
-        streams=("samples",),
-        writes={"noise": tables.NOISE},
-    )
+    STAGE.command_line()

@@ -8,7 +8,6 @@ from the network nor from the disk.
 
 import argparse
 import importlib
-import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -49,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     given.output.parent.mkdir(parents=True, exist_ok=True)
     part = given.output.with_name(f"{given.output.name}.part")
     part.write_bytes(written)
-    os.replace(part, given.output)
+    part.replace(given.output)
 
 
 if __name__ == "__main__":

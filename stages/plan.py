@@ -15,7 +15,7 @@ import pandas as pd
 from stages.contracts import tables
 from stages.contracts.code import hash_of_file
 from stages.contracts.errors import Refusal
-from stages.contracts.stage import Tables, command_line
+from stages.contracts.stage import Stage, Tables
 from stages.contracts.yaml_file import Key, YamlFile
 from stages.model.motion import Array, Profile, turned
 from stages.model.site import EARTH_RATE, STANDARD_GRAVITY, earth_rate, normal_gravity
@@ -63,7 +63,10 @@ def plan(campaign: list[Path], raw: list[Path], instruments: list[Path]) -> Tabl
         "logs": pd.DataFrame(_logs(manoeuvres, instrument, entry)),
         "inputs": pd.DataFrame(
             {"file": path.name, "size": path.stat().st_size, "sha256": hash_of_file(path)}
-            for path in [campaign[0], *sorted(present[row["file"]] for row in _one_per_file(manoeuvres))]
+            for path in [
+                campaign[0],
+                *sorted(present[row["file"]] for row in _one_per_file(manoeuvres)),
+            ]
         ),
         "manoeuvres": pd.DataFrame(manoeuvres),
     }
@@ -115,7 +118,13 @@ def _known(file: YamlFile) -> Iterator[Row]:
     site, table = file.content["site"], file.content.get("table", {})
 
     def row(quantity: str, value: float | None, sigma: float | None, unit: str, origin: str) -> Row:
-        return {"quantity": quantity, "value": value, "sigma": sigma, "unit": unit, "origin": origin}
+        return {
+            "quantity": quantity,
+            "value": value,
+            "sigma": sigma,
+            "unit": unit,
+            "origin": origin,
+        }
 
     def table_row(quantity: str, key: str, unit_size: float, assumed: float, unit: str) -> Row:
         if key in table:
@@ -349,7 +358,9 @@ def _turn(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:
             "leave the sign to degrees",
         )
     if angle == 0:
-        raise file.refuse([*key, "degrees"], item["degrees"], "an angle that is not 0", "correct it")
+        raise file.refuse(
+            [*key, "degrees"], item["degrees"], "an angle that is not 0", "correct it"
+        )
     if rate == 0:
         raise file.refuse([*key, "rate_deg_s"], 0, "a rate that is not 0", "correct the rate")
     if angle is not None and rate is not None:
@@ -498,17 +509,18 @@ def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[
             )
 
 
+STAGE = Stage(
+    plan,
+    files=("campaign", "raw", "instruments"),
+    writes={
+        "campaign": tables.CAMPAIGN,
+        "known": tables.KNOWN,
+        "sensors": tables.SENSORS,
+        "logs": tables.LOGS,
+        "inputs": tables.INPUTS,
+        "manoeuvres": tables.MANOEUVRES,
+    },
+)
+
 if __name__ == "__main__":
-    command_line(
-        plan,
-        reads={},
-        files=("campaign", "raw", "instruments"),
-        writes={
-            "campaign": tables.CAMPAIGN,
-            "known": tables.KNOWN,
-            "sensors": tables.SENSORS,
-            "logs": tables.LOGS,
-            "inputs": tables.INPUTS,
-            "manoeuvres": tables.MANOEUVRES,
-        },
-    )
+    STAGE.command_line()

@@ -12,7 +12,7 @@ from stages.contracts import tables
 from stages.contracts.findings import Finding, table_of
 from stages.contracts.parquet import Stream
 from stages.contracts.samples import Columns, extents, pieces, regular, sums_over
-from stages.contracts.stage import Tables, command_line
+from stages.contracts.stage import Stage, Tables
 from stages.model.site import STANDARD_GRAVITY
 
 STORM = 8  # more equal findings in one log are one with a count
@@ -256,7 +256,9 @@ def _gravity(
         )
     }
     ends = extents(samples)
-    windows = {log: regular(ends[log], length) for log, (_, length) in lengths.items() if log in ends}
+    windows = {
+        log: regular(ends[log], length) for log, (_, length) in lengths.items() if log in ends
+    }
     for log, sums in sums_over(samples, windows).items():
         force = np.linalg.norm(sums.mean[:, :3], axis=1)
         there = np.isfinite(force)
@@ -290,15 +292,17 @@ def _named(ratio: float, tolerance: float) -> str:
     return "no known unit explains it; the bias may be large, or the IMU was not at rest"
 
 
+STAGE = Stage(
+    quality,
+    reads={
+        "samples": tables.SAMPLES,
+        "clocks": tables.CLOCKS,
+        "campaign": tables.CAMPAIGN,
+        "known": tables.KNOWN,
+    },
+    streams=("samples",),
+    writes={"findings": tables.FINDINGS, "masks": tables.MASKS, "gaps": tables.GAPS},
+)
+
 if __name__ == "__main__":
-    command_line(
-        quality,
-        reads={
-            "samples": tables.SAMPLES,
-            "clocks": tables.CLOCKS,
-            "campaign": tables.CAMPAIGN,
-            "known": tables.KNOWN,
-        },
-        streams=("samples",),
-        writes={"findings": tables.FINDINGS, "masks": tables.MASKS, "gaps": tables.GAPS},
-    )
+    STAGE.command_line()

@@ -1,6 +1,7 @@
 """The lab report: what was found, how sure it is, and where every number comes from.
 
-    python -m stages.report --campaign … --known … --output reports/demo.html --verdict reports/demo.txt
+    python -m stages.report --campaign … --known … \
+        --output reports/demo.html --verdict reports/demo.txt
 
 It writes a page and the verdict as text instead of tables, so it has a command
 line of its own.
@@ -23,15 +24,21 @@ from stages.reporting import (
     account,
     averaging,
     findings,
-    known as taken_as_known,
-    noise as noise_of_channels,
     numbers,
     parameters,
-    provenance as origin,
     raw_data,
     recording,
     undetermined,
     verdict,
+)
+from stages.reporting import (
+    known as taken_as_known,
+)
+from stages.reporting import (
+    noise as noise_of_channels,
+)
+from stages.reporting import (
+    provenance as origin,
 )
 from stages.reporting.outline import Report
 from stages.reporting.page import page
@@ -97,7 +104,7 @@ def report(
     found = parameters.estimates(
         accelerometer_parameters, accelerometer_fit, gyroscope_parameters, gyroscope_fit
     )
-    worst_first = findings.ranked((quality_findings, segment_findings), performed, found)
+    worst_first = findings.ranked((quality_findings, segment_findings), performed, segments, found)
     given = verdict.verdict(found, manoeuvres, performed, worst_first)
     estimated = [*records(accelerometer_parameters), *records(gyroscope_parameters)]
     name = numbers.shortened(about["campaign"], 80)

@@ -13,7 +13,7 @@ from stages.contracts import tables
 from stages.contracts.findings import Finding, table_of
 from stages.contracts.parquet import Stream
 from stages.contracts.samples import Integers, Sums, extents, pieces, regular, sums_over
-from stages.contracts.stage import Tables, command_line
+from stages.contracts.stage import Stage, Tables
 from stages.segmentation.alignment import align, rest_score, turn_score
 from stages.segmentation.motion import Stretch, moving, rest_level, steady_part, stretches
 
@@ -112,7 +112,7 @@ def segment(
     blocks = _blocks(samples, parts, gaps, masks, intervals, rest_block, turn_block)
     return {
         "segments": _segments(samples, parts),
-        "performed": pd.DataFrame(performed)[[c.name for c in tables.PERFORMED.columns]],
+        "performed": _in_order(performed, manoeuvres),
         "blocks": blocks,
         "traces": _traces(samples, ends),
         "findings": table_of(findings),
@@ -122,9 +122,7 @@ def segment(
 # ---- windows and bins
 
 
-def _windows(
-    samples: Stream, manoeuvres: pd.DataFrame, ends: dict[str, int]
-) -> Iterator[Window]:
+def _windows(samples: Stream, manoeuvres: pd.DataFrame, ends: dict[str, int]) -> Iterator[Window]:
     """A window for each manoeuvre that the plan selects, and one for all others of a log."""
     selected = manoeuvres[["from_s", "from_row", "label"]].notna().any(axis=1)
     for log, rows in manoeuvres[~selected].groupby("log", sort=False):
@@ -158,9 +156,7 @@ def _selected_records(samples: Stream, chosen: pd.DataFrame) -> dict[str, tuple[
     return found
 
 
-def _binned(
-    samples: Stream, windows: list[Window], intervals: dict[str, float]
-) -> list[Binned]:
+def _binned(samples: Stream, windows: list[Window], intervals: dict[str, float]) -> list[Binned]:
     windows = sorted((w for w in windows), key=lambda w: (w.log, w.first))
     edges = []
     for window in windows:
@@ -238,7 +234,9 @@ def _score(one: Binned, stretch: Stretch, row: dict[str, Any], level: Array) -> 
     if row["recorded"] == "steady":
         rate = float(np.mean(_about(one, row, level)[inside]))
         return turn_score(rate, _some(row["rate"]))
-    return turn_score(float(np.sum(_about(one, row, level)[inside]) * one.seconds), _some(row["angle"]))
+    return turn_score(
+        float(np.sum(_about(one, row, level)[inside]) * one.seconds), _some(row["angle"])
+    )
 
 
 def _mean(values: Array) -> Array:
@@ -327,8 +325,20 @@ def _motion(one: Binned, found: list[Stretch], index: int) -> tuple[int, int]:
 # ---- what was performed
 
 
+def _in_order(performed: list[dict[str, Any]], manoeuvres: pd.DataFrame) -> pd.DataFrame:
+    """What was performed, in the order of the plan."""
+    order = {name: number for number, name in enumerate(manoeuvres["manoeuvre"])}
+    return pd.DataFrame(sorted(performed, key=lambda row: order[row["manoeuvre"]]))
+
+
 def _row(row: dict[str, Any], **values: Any) -> dict[str, Any]:
-    empty = {"found": True, "complete": True, "angle": None, "missing_angle": None, "missing_s": 0.0}
+    empty = {
+        "found": True,
+        "complete": True,
+        "angle": None,
+        "missing_angle": None,
+        "missing_s": 0.0,
+    }
     return {"manoeuvre": row["manoeuvre"], **empty, "rate": None, "seconds": 0.0, **values}
 
 
@@ -399,7 +409,9 @@ def _performed_turn(
     if row["recorded"] == "steady":
         said = f"steady at {degrees(rate or 0):.4f} °/s" if rate is not None else "no steady rate"
         return _row(row, **values, complete=missing_s == 0, sentence=f"{said}.")
-    of = f"{degrees(angle):.2f}° of {degrees(planned):.0f}°" if planned else f"{degrees(angle):.2f}°"
+    of = (
+        f"{degrees(angle):.2f}° of {degrees(planned):.0f}°" if planned else f"{degrees(angle):.2f}°"
+    )
     reasons = []
     if missing_s:
         reasons.append(f"{missing_s:.2f} s are missing while it turns")
@@ -607,22 +619,24 @@ def _traces(samples: Stream, ends: dict[str, int]) -> pd.DataFrame:
     return pd.concat(frames) if frames else tables.TRACES.empty()
 
 
+STAGE = Stage(
+    segment,
+    reads={
+        "samples": tables.SAMPLES,
+        "manoeuvres": tables.MANOEUVRES,
+        "clocks": tables.CLOCKS,
+        "gaps": tables.GAPS,
+        "masks": tables.MASKS,
+    },
+    streams=("samples",),
+    writes={
+        "segments": tables.SEGMENTS,
+        "performed": tables.PERFORMED,
+        "blocks": tables.BLOCKS,
+        "traces": tables.TRACES,
+        "findings": tables.FINDINGS,
+    },
+)
+
 if __name__ == "__main__":
-    command_line(
-        segment,
-        reads={
-            "samples": tables.SAMPLES,
-            "manoeuvres": tables.MANOEUVRES,
-            "clocks": tables.CLOCKS,
-            "gaps": tables.GAPS,
-            "masks": tables.MASKS,
-        },
-        streams=("samples",),
-        writes={
-            "segments": tables.SEGMENTS,
-            "performed": tables.PERFORMED,
-            "blocks": tables.BLOCKS,
-            "traces": tables.TRACES,
-            "findings": tables.FINDINGS,
-        },
-    )
+    STAGE.command_line()

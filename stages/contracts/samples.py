@@ -134,7 +134,10 @@ class _Totals:
         self.square[k] += np.add.reduceat(share * away**2, starts)
         least = np.minimum.reduceat(np.where(there, values, np.inf), starts)
         most = np.maximum.reduceat(np.where(there, values, -np.inf), starts)
-        self.least[k], self.most[k] = np.minimum(self.least[k], least), np.maximum(self.most[k], most)
+        self.least[k], self.most[k] = (
+            np.minimum(self.least[k], least),
+            np.maximum(self.most[k], most),
+        )
         others = np.column_stack([piece[name][kept] for name in _OTHERS])
         known = ~np.isnan(others)
         self.others[k] += np.add.reduceat(known.astype(np.float64), starts)

@@ -7,6 +7,8 @@ import inspect
 import json
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,55 +27,74 @@ Tables = Mapping[str, "pd.DataFrame"]
 Pieces = Iterator[tuple[str, "pd.DataFrame | pa.RecordBatch"]]
 
 
-def command_line(
-    stage: Callable[..., Tables | Pieces],
-    *,
-    reads: Mapping[str, Table],
-    writes: Mapping[str, Table],
-    streams: Sequence[str] = (),
-    files: Sequence[str] = (),
-    arguments: Sequence[str] | None = None,
-) -> None:
-    """Run `stage` on files: `--NAME PATH` for each table it reads, `--output FOLDER`, `--settings`.
+@dataclass(frozen=True)
+class Stage:
+    """A stage: its function, the tables it reads and writes.
 
     A table listed in `streams` is handed over unread, to be looped over batch by
-    batch; an input listed in `files` as the list of its paths. A stage whose
-    function takes `provenance` gets what made each of its tables.
+    batch; an input listed in `files` as the list of its paths. A function that takes
+    `provenance` gets what made each of its tables.
     """
-    parser = argparse.ArgumentParser(description=stage.__doc__)
-    for name, table in reads.items():
-        parser.add_argument(f"--{name}", type=Path, required=True, help=f"{table.name} table")
-    for name in files:
-        parser.add_argument(f"--{name}", type=Path, action="append", default=[], help="input file")
-    parser.add_argument("--output", type=Path, required=True, help="folder for the tables")
-    parser.add_argument("--settings", type=json.loads, default={}, help="section of config.yaml")
-    given = parser.parse_args(arguments)
 
-    name_of_stage = stage.__module__.rpartition(".")[2]
-    if name_of_stage == "__main__":
-        name_of_stage = stage.__name__
-    paths: dict[str, Path] = {name: getattr(given, name) for name in reads}
-    others: dict[str, list[Path]] = {name: getattr(given, name) for name in files}
-    try:
+    function: Callable[..., Tables | Pieces]
+    writes: Mapping[str, Table]
+    reads: Mapping[str, Table] = field(default_factory=dict)
+    streams: Sequence[str] = ()
+    files: Sequence[str] = ()
+
+    @property
+    def name(self) -> str:
+        """The name of its function, which is that of its file."""
+        return self.function.__name__
+
+    def run(
+        self,
+        paths: Mapping[str, Path],
+        files: Mapping[str, list[Path]],
+        output: Path,
+        settings: Mapping[str, Any],
+    ) -> None:
+        """Read the tables at `paths`, work, and write into the folder `output`, all or nothing.
+
+        Raises
+        ------
+        Refusal
+            where an input cannot be used
+        """
         inputs: dict[str, Any] = {
-            name: table.stream(paths[name]) if name in streams else table.read(paths[name])
-            for name, table in reads.items()
+            name: table.stream(paths[name]) if name in self.streams else table.read(paths[name])
+            for name, table in self.reads.items()
         }
-        if "provenance" in inspect.signature(stage).parameters:
-            inputs["provenance"] = {name: provenance(path) for name, path in paths.items()}
+        if "provenance" in inspect.signature(self.function).parameters:
+            inputs["provenance"] = {name: provenance(paths[name]) for name in self.reads}
+        made_from = [*(paths[name] for name in self.reads), *chain.from_iterable(files.values())]
         made_by = {
-            "stage": name_of_stage,
-            "settings": given.settings,
-            "code": hash_of(code_of(name_of_stage)),
+            "stage": self.name,
+            "settings": dict(settings),
+            "code": hash_of(code_of(self.name)),
             "inputs": {
                 f"{path.parent.name}/{path.name}": hash_of_file(path)
-                for path in [*paths.values(), *(p for many in others.values() for p in many)]
+                for path in made_from
                 if path.is_file()
             },
         }
-        with Writer(given.output, writes, made_by) as writer:
-            result = stage(**inputs, **others, **given.settings)
+        with Writer(output, self.writes, made_by) as writer:
+            result = self.function(**inputs, **files, **settings)
             for name, rows in result.items() if isinstance(result, Mapping) else result:
                 writer.write(name, rows)
-    except Refusal as refusal:
-        sys.exit(f"{name_of_stage}: {refusal}")
+
+    def command_line(self, arguments: Sequence[str] | None = None) -> None:
+        """`--NAME PATH` for each input, `--output FOLDER`, `--settings JSON`."""
+        parser = argparse.ArgumentParser(description=self.function.__doc__)
+        for name, table in self.reads.items():
+            parser.add_argument(f"--{name}", type=Path, required=True, help=f"{table.name} table")
+        for name in self.files:
+            parser.add_argument(f"--{name}", type=Path, action="append", default=[], help="file")
+        parser.add_argument("--output", type=Path, required=True, help="folder for the tables")
+        parser.add_argument("--settings", type=json.loads, default={}, help="its settings")
+        given = vars(parser.parse_args(arguments))
+        files = {name: given[name] for name in self.files}
+        try:
+            self.run(given, files, given["output"], given["settings"])
+        except Refusal as refusal:
+            sys.exit(f"{self.name}: {refusal}")

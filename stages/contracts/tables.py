@@ -57,7 +57,9 @@ CAMPAIGN = Table(
         Column("latitude", _double, "rad", "geodetic latitude", "earth", True),
         Column("height", _double, "m", "height above the ellipsoid", "earth", True),
         Column("must_be_set", _integer, "", "bits that are set in the status of a valid record"),
-        Column("must_be_clear", _integer, "", "bits that are clear in the status of a valid record"),
+        Column(
+            "must_be_clear", _integer, "", "bits that are clear in the status of a valid record"
+        ),
     ),
 )
 KNOWN = Table(
@@ -114,13 +116,17 @@ MANOEUVRES = Table(
         *_vector("up", "1", "unit vector that points up at the start"),
         *_vector("mark", "1", "unit vector to the table's zero mark at the start"),
         *_vector("about", "1", "unit vector of the axis of the turn"),
-        Column("angle", _double, "rad", "angle of the turn about `about`, right-hand rule", BODY, True),
+        Column(
+            "angle", _double, "rad", "angle of the turn about `about`, right-hand rule", BODY, True
+        ),
         Column("angle_sigma", _double, "rad", "standard deviation of the angle", nullable=True),
         Column("rate", _double, "rad/s", "signed rate of the turn about `about`", BODY, True),
         Column("acceleration", _double, "rad/s²", "of the table at start and stop", nullable=True),
         Column("seconds", _double, "s", "planned duration", nullable=True),
         Column("recorded", _text, "", "whole: rest on both sides is in the log; steady: it is not"),
-        Column("from_s", _double, "s", "start of the stated span, in the log's own time", nullable=True),
+        Column(
+            "from_s", _double, "s", "start of the stated span, in the log's own time", nullable=True
+        ),
         Column("to_s", _double, "s", "end of the stated span", nullable=True),
         Column("from_row", _integer, "1", "first data row of the stated rows", nullable=True),
         Column("to_row", _integer, "1", "data row after the last", nullable=True),
@@ -140,7 +146,13 @@ SAMPLES = Table(
         Column("line", _integer, "1", "number of its line, from 1"),
         Column("time", _double, "s", "since the start of its clock", "", True),
         Column("status", pa.uint32(), "", "status word of the instrument", nullable=True),
-        Column("mean_of", _double, "1", "number of samples that this record is the mean of", nullable=True),
+        Column(
+            "mean_of",
+            _double,
+            "1",
+            "number of samples that this record is the mean of",
+            nullable=True,
+        ),
         *_channels("specific force, angular rate"),
         Column("table_angle", _double, "rad", "as the table's encoder gives it", nullable=True),
         Column("temperature", _double, "K", "of the instrument", nullable=True),
@@ -175,7 +187,9 @@ CLOCKS = Table(
     1,
     (
         _LOG,
-        Column("clock", _text, "", "GPS: shared by the logs; own: each log from its first sample; none"),
+        Column(
+            "clock", _text, "", "GPS: shared by the logs; own: each log from its first sample; none"
+        ),
         Column("epoch_gps", _double, "s", "GPS time at time 0", nullable=True),
         Column("recorded_on", _text, "", "UTC date of the first sample", nullable=True),
         Column("from_s", _double, "s", "time of the first sample", nullable=True),
@@ -248,7 +262,9 @@ PERFORMED = Table(
         Column("found", _truth, "", "found in its log"),
         Column("complete", _truth, "", "recorded from rest to rest without a gap, as planned"),
         Column("angle", _double, "rad", "angle that was recorded, about `about`", BODY, True),
-        Column("missing_angle", _double, "rad", "angle that was planned but not recorded", BODY, True),
+        Column(
+            "missing_angle", _double, "rad", "angle that was planned but not recorded", BODY, True
+        ),
         Column("missing_s", _double, "s", "time that is missing while it turns"),
         Column("rate", _double, "rad/s", "mean rate of the steady part, about `about`", BODY, True),
         Column("seconds", _double, "s", "duration of the rest, or from start to stop of the turn"),
@@ -264,9 +280,7 @@ BLOCKS = Table(
         _LOG,
         *_RECORDS,
         Column("time", _double, "s", "middle of the block", nullable=True),
-        Column(
-            "seconds", _double, "s", "count × interval: mean × seconds is a sum", nullable=True
-        ),
+        Column("seconds", _double, "s", "count × interval: mean × seconds is a sum", nullable=True),
         Column("count", _double, "1", "number of samples in the means"),
         *_channels("mean"),
         Column("table_angle", _double, "rad", "mean angle of the table", nullable=True),
@@ -311,7 +325,9 @@ PARAMETERS = Table(
         Column("stage", _text, "", "stage that estimated it"),
         Column("method", _text, "", "method of estimation"),
         Column("parameter", _text, "", "name within the method"),
-        Column("value", _double, "as unit", "estimate; none where it is not determined", nullable=True),
+        Column(
+            "value", _double, "as unit", "estimate; none where it is not determined", nullable=True
+        ),
         Column("sigma", _double, "as unit", "its standard deviation", nullable=True),
         Column("unit", _text, "", "unit of value and sigma"),
         Column("frame", _text, "", "frame it is expressed in"),

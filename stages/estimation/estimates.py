@@ -25,6 +25,7 @@ class Estimates:
     """What the methods of one stage found, collected as rows of the common tables."""
 
     stage: str
+    noise_degrees: float = np.inf  # how well the noise is known, see NoiseLevels
     _parameters: list[dict[str, Any]] = field(default_factory=list)
     _covariance: list[pd.DataFrame] = field(default_factory=list)
     _fit: list[dict[str, Any]] = field(default_factory=list)
@@ -90,7 +91,7 @@ class Estimates:
                 "method": method,
                 "chi_squared": estimate.chi_squared,
                 "degrees": estimate.degrees,
-                "p_value": estimate.p_value,
+                "p_value": estimate.p_value(self.noise_degrees),
                 "used": ", ".join(used),
                 "left_out": "; ".join(left),
             }
@@ -125,7 +126,9 @@ class Estimates:
         }
 
 
-def reasons(determined: Booleans, recorded: Booleans, sensor: str, cures: dict[str, str]) -> dict[str, str]:
+def reasons(
+    determined: Booleans, recorded: Booleans, sensor: str, cures: dict[str, str]
+) -> dict[str, str]:
     """Why a parameter is not determined, and the manoeuvre that would determine it.
 
     Parameters

@@ -1,6 +1,5 @@
 """The stretches of a campaign in which the IMU stands still, each with its attitude."""
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,6 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from stages.contracts.tables import AXES
+from stages.estimation.noise_levels import NoiseLevels
 from stages.model.motion import turned
 
 Array = NDArray[np.float64]
@@ -16,11 +16,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Still:
-    """Means of one stretch at rest.
+    """One stretch at rest in k blocks.
 
     `up`, `about`: (3,), body axes at the start of its manoeuvre; `angle`: rad, by which
-    it has turned about `about` since; `mean`: (3,), rad/s or m/s², NaN where not recorded;
-    `sigma`: (3,), what white noise leaves in it.
+    it has turned about `about` since; `means`: (k, 3), rad/s or m/s², NaN where not
+    recorded; `counts`, `seconds`: (k,); `density`: (3,), white noise per √s.
     """
 
     label: str
@@ -28,13 +28,22 @@ class Still:
     up: Array
     about: Array
     angle: float
-    mean: Array
-    sigma: Array
+    means: Array
+    counts: Array
+    seconds: Array
+    density: Array
 
     @property
     def up_now(self) -> Array:
         """The direction that points up in this stretch, (3,)."""
         return turned(self.up, self.about, self.angle)
+
+    def over(self, seconds: float = np.inf) -> tuple[Array, Array]:
+        """Mean reading over the first so many seconds, and the sigma that white noise leaves."""
+        used = np.cumsum(self.seconds) - self.seconds < seconds
+        used |= np.isnan(self.seconds)
+        mean = np.average(self.means[used], weights=self.counts[used], axis=0)
+        return mean, self.density / np.sqrt(np.sum(self.seconds[used]))
 
 
 def vector(row: dict[str, Any], stem: str) -> Array | None:
@@ -47,19 +56,13 @@ def stills(
     blocks: pd.DataFrame,
     plan: pd.DataFrame,
     performed: pd.DataFrame,
-    noise: pd.DataFrame,
+    noise: NoiseLevels,
     sensor: str,
-    seconds: float = np.inf,
 ) -> tuple[list[Still], list[str]]:
     """The stretches at rest with a known attitude, and what is left out with the reason.
 
     After a turn the IMU stands where the turn has brought it, so that stretch counts
-    where the turn was recorded whole.
-
-    Parameters
-    ----------
-    sensor : accel or gyro
-    seconds : only so much of each rest, from its start
+    where the turn was recorded whole. `sensor` is accel or gyro.
     """
     found: list[Still] = []
     left: list[str] = []
@@ -82,43 +85,28 @@ def stills(
             elif after and (not done.loc[name, "complete"] or pd.isna(row["angle"])):
                 left.append(f"{label}: its attitude is not known, for the turn is not whole")
             else:
-                angle = float(row["angle"]) if after else 0.0
-                mean, sigma = _mean(part, channels, name, noise, seconds)
-                axis = up if about is None else about
-                found.append(Still(label, row, up, axis, angle, mean, sigma))
+                found.append(
+                    Still(
+                        label,
+                        row,
+                        up,
+                        up if about is None else about,
+                        float(row["angle"]) if after else 0.0,
+                        part[channels].to_numpy(),
+                        part["count"].to_numpy(),
+                        part["seconds"].to_numpy(),
+                        noise.of(name, "rest", channels),
+                    )
+                )
     return found, left
 
 
-def _mean(
-    part: pd.DataFrame, channels: list[str], name: str, noise: pd.DataFrame, seconds: float
-) -> tuple[Array, Array]:
-    if part["seconds"].notna().all():
-        begins = part["seconds"].cumsum() - part["seconds"]
-        part = part[begins < seconds]
-    weights = part["count"].to_numpy()
-    mean = np.array([np.average(part[channel], weights=weights) for channel in channels])
-    return mean, density(noise, name, "rest", channels) / np.sqrt(part["seconds"].sum())
-
-
-def density(noise: pd.DataFrame, name: str, phase: str, channels: Sequence[str]) -> Array:
-    """White noise of the channels, per √s: in this manoeuvre and phase, else in all rests."""
-    own = noise[(noise["manoeuvre"] == name) & (noise["phase"] == phase)]
-    resting = noise[noise["phase"] == "rest"]
-
-    def one(channel: str) -> float:
-        for rows in (own, resting):
-            values = rows.loc[rows["channel"] == channel, "white_noise"]
-            if len(values):
-                return float(np.sqrt(np.mean(values**2)))
-        return float("nan")
-
-    return np.array([one(channel) for channel in channels])
-
-
-def averaging_times(blocks: pd.DataFrame, steps: int) -> Iterator[float]:
+def averaging_times(found: list[Still], steps: int) -> list[float]:
     """Lengths of rest from one block to the longest, in equal ratios, s."""
-    rests = blocks[(blocks["phase"] == "rest") & blocks["seconds"].notna()]
-    if len(rests):
-        longest = float(rests.groupby("manoeuvre")["seconds"].sum().max())
-        shortest = float(rests["seconds"].max())
-        yield from np.unique(np.geomspace(shortest, longest, steps).round(6)).tolist()
+    lengths = [still.seconds for still in found if still.row["do"] == "rest"]
+    lengths = [seconds for seconds in lengths if np.isfinite(seconds).all()]
+    if not lengths:
+        return []
+    shortest = max(float(seconds.max()) for seconds in lengths)
+    longest = max(float(seconds.sum()) for seconds in lengths)
+    return [float(t) for t in np.unique(np.geomspace(shortest, longest, steps).round(6))]

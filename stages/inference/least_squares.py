@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
-from scipy.stats import chi2
+from scipy.stats import f as f_distribution
 
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
@@ -40,10 +40,16 @@ class Estimate:
         """Standard deviations of the values, (p,)."""
         return np.sqrt(np.diag(self.covariance))
 
-    @property
-    def p_value(self) -> float:
-        """Chance of a larger sum of squares if the model and the noise are right."""
-        return float(chi2.sf(self.chi_squared, self.degrees)) if self.degrees else 1.0
+    def p_value(self, noise_degrees: float = np.inf) -> float:
+        """Chance of a larger sum of squares if the model is right.
+
+        The noise is estimated too: a variance from so many degrees of freedom, so that
+        the sum of squares per degree follows the F distribution.
+        """
+        if not self.degrees:
+            return 1.0
+        ratio = self.chi_squared / self.degrees
+        return float(f_distribution.sf(ratio, self.degrees, noise_degrees))
 
 
 def solve(

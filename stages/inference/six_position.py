@@ -61,9 +61,7 @@ def weighted(
         observed = np.concatenate([rest.mean for rest in rests]) - constant
         sigma = np.concatenate([rest.sigma for rest in rests])
         there = np.isfinite(observed) & np.isfinite(sigma)
-        estimate = solve(
-            design[there], observed[there], sigma[there], prior, prior_sigma, UNKNOWNS
-        )
+        estimate = solve(design[there], observed[there], sigma[there], prior, prior_sigma, UNKNOWNS)
         matrix = estimate.values[:9].reshape(3, 3)
     return estimate
 

@@ -128,15 +128,20 @@ def joint(
     steadies: Sequence[Steady],
     earth: Earth,
     position_sigma: float,
+    start: Estimate | None = None,
 ) -> Estimate:
     """Bias and M of the gyros from all rests and turns at once.
 
-    The equations hold products of M with the errors, so they are solved three times,
-    each time about the last result.
+    The equations hold products of M with the errors, so they are solved four times,
+    each time about the last result; or once about `start`, the estimate from rests at the
+    same positions and the same turns.
     """
     matrix, bias = np.eye(3), _first_bias(stills)
     levels: dict[int, float] = {}
-    for _ in range(4):
+    if start is not None:
+        matrix, bias = start.values[:9].reshape(3, 3), start.values[9:12]
+        levels = dict(enumerate(start.values.tolist()))
+    for _ in range(1 if start is not None else 4):
         unknowns = _Unknowns(earth)
         rows = _Rows([], [], [])
         for still in stills:
@@ -190,9 +195,7 @@ def _earth_columns(
     return np.zeros(3), list(zip(columns, axes, strict=True))
 
 
-def _add_still(
-    rows: _Rows, unknowns: _Unknowns, still: Still, matrix: Array, earth: Earth
-) -> None:
+def _add_still(rows: _Rows, unknowns: _Unknowns, still: Still, matrix: Array, earth: Earth) -> None:
     known, level = _earth_columns(unknowns, still.position, earth)
     known = turned(known, still.about, still.angle)
     up = turned(still.position.up, still.about, still.angle)
@@ -275,7 +278,12 @@ def _add_turn(
     along = quiet * along / float(np.linalg.norm(along)) / np.sqrt(turn.seconds.sum())
     whole = {c: (along @ part.sum(axis=0))[None, :] for c, part in parts.items()}
     shortfall = turn.angle - float(angle.sum())
-    whole[0] = whole[0] + (along @ np.hstack([np.kron(np.eye(3), shortfall * turn.about), np.zeros((3, 3))]))[None, :]
+    whole[0] = (
+        whole[0]
+        + (along @ np.hstack([np.kron(np.eye(3), shortfall * turn.about), np.zeros((3, 3))]))[
+            None, :
+        ]
+    )
     column = unknowns.column("angle", f"{turn.position.name} {number}", turn.angle_sigma)
     whole[column] = np.array([[along @ (matrix @ turn.about)]])
     rows.design.append(whole)

@@ -20,7 +20,9 @@ def normal_gravity(latitude: float, height: float) -> float:
     squared = sin(latitude) ** 2
     surface = equator * (1 + k * squared) / sqrt(1 - e2 * squared)
     ratio = height / semi_major
-    return surface * (1 - 2 * ratio * (1 + flattening + m - 2 * flattening * squared) + 3 * ratio**2)
+    return surface * (
+        1 - 2 * ratio * (1 + flattening + m - 2 * flattening * squared) + 3 * ratio**2
+    )
 
 
 def earth_rate(latitude: float) -> tuple[float, float]:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
 from stages.reporting import numbers
-from stages.reporting.drawing import AXIS_COLOUR, INK, canvas, style, svg
+from stages.reporting.drawing import AXIS_COLOUR, INK, Margins, panels, plain_numbers, style, svg
 from stages.reporting.outline import Figure, Heading, Paragraph, Part, Section
 from stages.reporting.parameters import METHOD, SENSOR, kind_of
 from stages.reporting.rows import Record, records
@@ -37,7 +39,9 @@ def section(
             own = [row for row in rows if row["parameter"].rpartition("/")[0] == group]
             parts += _figures(group, own, unit_of)
         if not groups:
-            parts.append(Paragraph("None: the parameters were not followed over the averaging time."))
+            parts.append(
+                Paragraph("None: the parameters were not followed over the averaging time.")
+            )
     return Section(
         "averaging",
         "Parameters against averaging time",
@@ -58,26 +62,26 @@ def _figures(group: str, rows: Sequence[Record], unit_of: dict[str, str]) -> Ite
     ids = list(curves)[:MOST_PANELS]
     lines = -(-len(ids) // COLUMNS)
     with style():
-        figure = canvas(0.35 + 1.25 * lines)
-        panels = figure.subplots(lines, COLUMNS, sharex=True, squeeze=False).ravel()
-        for panel, name in zip(panels, ids, strict=False):
+        figure, axes = panels(lines, COLUMNS, 0.95, Margins(left=0.45, across=0.5, down=0.3))
+        each = [panel for row in axes for panel in row]
+        for panel, name in zip(each, ids, strict=False):
             _panel(panel, name, sorted(curves[name], key=lambda row: row["seconds"]), unit_of)
-        for panel in panels[len(ids) :]:
+        for panel in each[len(ids) :]:
             panel.set_visible(False)
-        for place in range(max(0, len(ids) - COLUMNS), len(ids)):
-            panels[place].tick_params(labelbottom=True)
-            panels[place].set_xlabel("Seconds of each rest")
+        for panel in each[max(0, len(ids) - COLUMNS) : len(ids)]:
+            panel.tick_params(labelbottom=True)
+            panel.set_xlabel("Seconds of each rest")
         drawn = svg(figure, f"averaging-{group}")
     more = len(curves) - len(ids)
     left = f" {numbers.whole(more)} more in the averaging table." if more else ""
     yield Figure(
         f"{title}: value ± σ against averaging time, relative to the final value.{left}",
         drawn,
-        f"{numbers.counted(len(ids), 'curve')} of {title} against averaging time, each within its band of sigma.",
+        f"{numbers.counted(len(ids), 'curve')} of {title}, each within its band of sigma.",
     )
 
 
-def _panel(panel, name: str, rows: Sequence[Record], unit_of: dict[str, str]) -> None:  # type: ignore[no-untyped-def]
+def _panel(panel: Axes, name: str, rows: Sequence[Record], unit_of: dict[str, str]) -> None:
     parameter = name.rpartition("/")[2]
     unit = _quantity(name, parameter, unit_of).laboratory
     seconds = [row["seconds"] for row in rows]
@@ -91,12 +95,15 @@ def _panel(panel, name: str, rows: Sequence[Record], unit_of: dict[str, str]) ->
         seconds,
         [v - s for v, s in zip(value, sigma, strict=True)],
         [v + s for v, s in zip(value, sigma, strict=True)],
-        color=colour, alpha=0.22, linewidth=0,
+        color=colour,
+        alpha=0.22,
+        linewidth=0,
     )
     panel.plot(seconds, value, color=colour, marker="o", markersize=1.8)
     panel.set_xscale("log")
-    panel.set_title(f"{parameter}, {unit.name}", fontsize=7, pad=3)
-    panel.locator_params(axis="y", nbins=5)
+    plain_numbers(panel.xaxis)
+    panel.set_title(f"{parameter.replace('_', ' ')}, {unit.name}", pad=3)
+    panel.yaxis.set_major_locator(MaxNLocator(4))
 
 
 def _quantity(name: str, parameter: str, unit_of: dict[str, str]) -> Quantity:

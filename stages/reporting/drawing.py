@@ -1,8 +1,8 @@
 """How a figure is drawn: colours, type and lines, and the SVG that goes into the page.
 
-The same figure gives the same bytes on every machine: letters are drawn as
-outlines of matplotlib's own DejaVu fonts, and neither a date nor a random
-identifier enters.
+The same figure gives the same bytes on every machine: letters are set in
+matplotlib's own DejaVu Sans, which the page brings along, and neither a date nor
+a random identifier enters.
 """
 
 from __future__ import annotations
@@ -12,14 +12,17 @@ import re
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
 
 WIDTH = 7.1  # inches: the text width of the printed page
 
@@ -37,7 +40,7 @@ PHASE_COLOUR = {
 }
 MISSING = "#8e2a5b"
 
-_STYLE: dict[str, Any] = {
+_STYLE: Any = {
     "axes.axisbelow": True,
     "axes.edgecolor": QUIET,
     "axes.grid": True,
@@ -58,7 +61,7 @@ _STYLE: dict[str, Any] = {
     "legend.frameon": False,
     "lines.linewidth": 1.0,
     "patch.linewidth": 0.0,
-    "svg.fonttype": "path",
+    "svg.fonttype": "none",  # letters stay letters: searchable, and light
     "text.color": INK,
     "text.parse_math": False,  # a name may hold a dollar sign
     "xtick.color": QUIET,
@@ -87,12 +90,43 @@ def style() -> Iterator[None]:
         yield
 
 
-def canvas(height: float, width: float = WIDTH) -> Figure:
-    """An empty figure, its size in inches."""
-    figure = Figure(figsize=(width, height), layout="constrained")
+@dataclass(frozen=True)
+class Margins:
+    """Space around and between panels, inches."""
+
+    left: float = 0.5
+    right: float = 0.1
+    top: float = 0.22
+    bottom: float = 0.4
+    across: float = 0.62
+    down: float = 0.24
+
+
+def panels(
+    rows: int, columns: int, height: float, margins: Margins, *, sharex: bool = True
+) -> tuple[Figure, list[list[Axes]]]:
+    """An empty figure of panels, row by row; `height` of one panel in inches."""
+    total = margins.top + rows * height + (rows - 1) * margins.down + margins.bottom
+    figure = Figure(figsize=(WIDTH, total))
     FigureCanvasSVG(figure)
-    figure.get_layout_engine().set(w_pad=0.03, h_pad=0.03, wspace=0.02, hspace=0.02)  # type: ignore[union-attr]
-    return figure
+    width = (WIDTH - margins.left - margins.right - (columns - 1) * margins.across) / columns
+    figure.subplots_adjust(
+        left=margins.left / WIDTH,
+        right=1 - margins.right / WIDTH,
+        top=1 - margins.top / total,
+        bottom=margins.bottom / total,
+        wspace=margins.across / width,
+        hspace=margins.down / height,
+    )
+    axes = figure.subplots(rows, columns, sharex=sharex, squeeze=False)
+    return figure, [list(row) for row in axes]
+
+
+def plain_numbers(axis: Axis) -> None:
+    """Tick labels of a logarithmic axis as plain numbers, at 1, 2 and 5 of a decade."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=12))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
 def svg(figure: Figure, key: str) -> str:
@@ -107,13 +141,29 @@ def svg(figure: Figure, key: str) -> str:
 def _light(drawn: str, key: str) -> str:
     """The svg element alone, without comments, with short numbers and identifiers of its own."""
     element = drawn[drawn.index("<svg") :]
-    element = re.sub(r"<!--.*?-->\s*|<metadata>.*?</metadata>\s*|<style.*?</style>\s*", "", element, flags=re.S)
+    for left_out in (r"<!--.*?-->", r"<metadata>.*?</metadata>", r"<style.*?</style>"):
+        element = re.sub(left_out, "", element, flags=re.DOTALL)
+    element = element.replace("'DejaVu Sans'", "Report").replace("rotate(-0 ", "rotate(0 ")
+    element = _without_idle_groups(re.sub(r' transform="rotate\(0 [^"]*"', "", element))
     used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', element))
     element = re.sub(
         r' id="([^"]+)"', lambda m: f' id="{key}-{m[1]}"' if m[1] in used else "", element
     )
     element = re.sub(r'(href="#|url\(#)', rf"\1{key}-", element)
     return re.sub(r"\n\s*", "\n", _rounded(element)).strip()
+
+
+def _without_idle_groups(element: str) -> str:
+    """Groups that say nothing about what is in them left out; they are most of the elements."""
+    open_groups: list[bool] = []
+
+    def tag(match: re.Match[str]) -> str:
+        if match[0].startswith("</"):
+            return match[0] if open_groups.pop() else ""
+        open_groups.append(match[0] != "<g>")
+        return match[0] if open_groups[-1] else ""
+
+    return re.sub(r"<g( [^>]*)?>|</g>", tag, element)
 
 
 def _rounded(element: str) -> str:

@@ -13,27 +13,34 @@ from stages.reporting.parameters import Estimate
 from stages.reporting.rows import Record, records
 
 MOST_IN_FULL = 40
+SPOILING = ("wrong_unit",)  # findings that make every result wrong
 
 
 def ranked(
-    findings: Iterable[pd.DataFrame], performed: pd.DataFrame, found: Sequence[Estimate]
+    findings: Iterable[pd.DataFrame],
+    performed: pd.DataFrame,
+    segments: pd.DataFrame,
+    found: Sequence[Estimate],
 ) -> list[Record]:
     """All findings, worst first, each with its `rank`.
 
-    First those that cost a manoeuvre (0: a fit left it out; 1: it is not
-    complete), then the rest (2); within, the least likely by chance first, then
-    the most frequent.
+    First a wrong unit and those that cost a manoeuvre (0: a fit left it out; 1: it
+    is not complete), then the rest (2); within, the least likely by chance first,
+    then the most frequent. A finding that names no manoeuvre concerns those that
+    are recorded at its place.
     """
     left_out = " ".join(estimate.fit["left_out"] or "" for estimate in found if estimate.fit)
     incomplete = {
         row["manoeuvre"] for row in records(performed) if not (row["found"] and row["complete"])
     }
 
+    spans = records(segments)
+
     def rank(row: Record) -> int:
-        manoeuvre = row["manoeuvre"]
-        if manoeuvre and names(left_out, manoeuvre):
+        concerned = {row["manoeuvre"]} if row["manoeuvre"] else _recorded_at(row, spans)
+        if row["cause"] in SPOILING or any(names(left_out, each) for each in concerned):
             return 0
-        return 1 if manoeuvre in incomplete else 2
+        return 1 if concerned & incomplete else 2
 
     rows = [row | {"rank": rank(row)} for frame in findings for row in records(frame)]
     return sorted(
@@ -45,6 +52,20 @@ def ranked(
             row["id"],
         ),
     )
+
+
+def _recorded_at(finding: Record, spans: Sequence[Record]) -> set[str]:
+    """The manoeuvres whose segments a finding of a log touches; all of the log without times."""
+
+    def touches(span: Record) -> bool:
+        if span["log"] != finding["log"]:
+            return False
+        times = (finding["from_s"], finding["to_s"], span["from_s"], span["to_s"])
+        if any(time is None for time in times):
+            return True
+        return bool(span["from_s"] <= finding["to_s"] and span["to_s"] >= finding["from_s"])
+
+    return {span["manoeuvre"] for span in spans if touches(span)}
 
 
 def names(text: str, manoeuvre: str) -> bool:
@@ -70,7 +91,10 @@ def section(rows: Sequence[Record]) -> Section:
             Table(
                 "The others, by cause; in full in the findings tables of the campaign.",
                 (Column("Cause"), Column("Findings", "number")),
-                tuple(Row((cause, numbers.whole(count))) for cause, count in rest.most_common()),
+                tuple(
+                    Row((in_words(cause), numbers.whole(count)))
+                    for cause, count in rest.most_common()
+                ),
             )
         )
     return Section(
@@ -82,6 +106,11 @@ def section(rows: Sequence[Record]) -> Section:
         "know. p is the chance of such a size if nothing is wrong.",
         parts,
     )
+
+
+def in_words(cause: str) -> str:
+    """The name of a cause as it is read."""
+    return numbers.shortened(cause.replace("_", " "), 60)
 
 
 def _finding(row: Record) -> Finding:
@@ -111,6 +140,8 @@ def _finding(row: Record) -> Finding:
         sentence=numbers.shortened(row["sentence"], 600),
         consequence=numbers.shortened(row["consequence"], 400),
         action=numbers.shortened(row["action"], 400),
-        facts=tuple((name, numbers.shortened(str(value), 120)) for name, value in facts.items() if value),
+        facts=tuple(
+            (name, numbers.shortened(str(value), 120)) for name, value in facts.items() if value
+        ),
         tone="poor" if row["rank"] == 0 else "fair" if row["rank"] == 1 else "",
     )

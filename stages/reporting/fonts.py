@@ -50,6 +50,7 @@ def _cut(letters: str) -> tuple[Face, ...]:
             options = Options(flavor="woff2", layout_features=["kern", "mark", "mkmk", "ccmp"])
             options.name_IDs = [1, 2]
             options.notdef_outline = True
+            options.drop_tables += ["FFTM"]  # a time stamp of FontForge
             with TTFont(folder / file, recalcTimestamp=False) as font:
                 subsetter = Subsetter(options)
                 subsetter.populate(text=letters)

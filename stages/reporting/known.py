@@ -66,7 +66,7 @@ def _rows(known: list[Record]) -> Iterator[Row]:
         assumed = row["origin"].startswith("assumed")
         yield Row(
             (
-                NAME.get(row["quantity"], row["quantity"]),
+                NAME.get(row["quantity"]) or numbers.shortened(row["quantity"], 60),
                 value,
                 sigma,
                 _unit(row).name,

@@ -9,7 +9,16 @@ import pandas as pd
 
 from stages.contracts.tables import AXES, CHANNELS
 from stages.reporting import numbers
-from stages.reporting.drawing import AXIS_COLOUR, AXIS_MARK, INK, canvas, style, svg
+from stages.reporting.drawing import (
+    AXIS_COLOUR,
+    AXIS_MARK,
+    INK,
+    Margins,
+    panels,
+    plain_numbers,
+    style,
+    svg,
+)
 from stages.reporting.outline import Column, Figure, Part, Row, Section, Table
 from stages.reporting.rows import Record, records
 from stages.reporting.units import RANDOM_WALK
@@ -47,8 +56,9 @@ def _places(rows: Sequence[Record]) -> list[Place]:
 def _figure(rows: Sequence[Record], sheet: dict[str, float | None]) -> Figure:
     places = {place: number for number, place in enumerate(_places(rows))}
     with style():
-        figure = canvas(4.2)
-        for panel, sensor in zip(figure.subplots(2, 1, sharex=True), SENSOR, strict=True):
+        margins = Margins(left=0.62, right=0.95, top=0.1, bottom=1.05, down=0.15)
+        figure, axes = panels(2, 1, 1.45, margins)
+        for (panel,), sensor in zip(axes, SENSOR, strict=True):
             unit = RANDOM_WALK[sensor]
             for offset, axis in zip((-0.2, 0.0, 0.2), AXES, strict=True):
                 own = [row for row in rows if row["channel"] == f"{sensor}_{axis}"]
@@ -56,13 +66,19 @@ def _figure(rows: Sequence[Record], sheet: dict[str, float | None]) -> Figure:
                     [places[row["manoeuvre"], row["phase"]] + offset for row in own],
                     [row["white_noise"] / unit.size for row in own],
                     [row["sigma"] / unit.size for row in own],
-                    fmt=AXIS_MARK[axis], color=AXIS_COLOUR[axis], markersize=3.5,
-                    elinewidth=0.8, label=axis,
+                    fmt=AXIS_MARK[axis],
+                    color=AXIS_COLOUR[axis],
+                    markersize=3.5,
+                    elinewidth=0.8,
+                    label=axis,
                 )
             stated = {sheet.get(f"{sensor}_{axis}") for axis in AXES} - {None}
             for value in sorted(v for v in stated if v is not None):
-                panel.axhline(value / unit.size, color=INK, linewidth=0.8, dashes=(5, 3), label="data sheet")
+                panel.axhline(
+                    value / unit.size, color=INK, linewidth=0.8, dashes=(5, 3), label="data sheet"
+                )
             panel.set_yscale("log")
+            plain_numbers(panel.yaxis)
             panel.set_ylabel(f"{SENSOR[sensor]}, {unit.name}")
             panel.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
         ticks = list(places.items())[:: max(1, -(-len(places) // MOST_NAMES))]
@@ -77,7 +93,7 @@ def _figure(rows: Sequence[Record], sheet: dict[str, float | None]) -> Figure:
     return Figure(
         "White noise by manoeuvre, with its σ; dashed: the data sheet.",
         drawn,
-        "White noise of the six channels in every manoeuvre, above the gyroscope, below the accelerometer.",
+        "White noise of the six channels by manoeuvre; gyroscope above, accelerometer below.",
     )
 
 
@@ -86,7 +102,9 @@ def _named(place: Place, most: int) -> str:
     return numbers.shortened(manoeuvre if phase == "rest" else f"{manoeuvre}, {phase}", most)
 
 
-def _summary(rows: Sequence[Record], sheet: dict[str, float | None], sources: Sequence[str]) -> Table:
+def _summary(
+    rows: Sequence[Record], sheet: dict[str, float | None], sources: Sequence[str]
+) -> Table:
     def line(channel: str, own: Sequence[Record]) -> tuple[str, ...]:
         unit = RANDOM_WALK[channel.partition("_")[0]]
         values = [row["white_noise"] / unit.size for row in own]
@@ -156,7 +174,7 @@ def _by_manoeuvre(rows: Sequence[Record], sensor: str) -> Table:
             *(
                 column
                 for axis in AXES
-                for column in (Column(axis, "number"), Column("± σ", "sigma"))
+                for column in (Column("value", "number", axis), Column("± σ", "sigma", axis))
             ),
         ),
         tuple(Row((_named(place, 60), *cells(place))) for place in places[:MOST_ROWS]),

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import groupby
 from typing import ClassVar, Literal
 
 # What a column holds, hence how it is set: text; number (digits under digits); sigma (the number
@@ -18,10 +19,11 @@ Tone = Literal["", "good", "fair", "poor"]
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table: its heading and what it holds."""
+    """A column of a table: its heading and what it holds; neighbours may share a `group`."""
 
     heading: str
     kind: Kind = "text"
+    group: str = ""
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,14 @@ class Table:
     rows: tuple[Row, ...]
     empty: str = "None."
     note: str = ""
+
+    @property
+    def groups(self) -> tuple[tuple[str, int], ...]:
+        """The headings above the headings, each with how many columns it spans; or nothing."""
+        if not any(column.group for column in self.columns):
+            return ()
+        spans = groupby(column.group for column in self.columns)
+        return tuple((group, len(list(columns))) for group, columns in spans)
 
 
 @dataclass(frozen=True)
@@ -142,16 +152,7 @@ class Finding:
 
 
 Part = (
-    Table
-    | Figure
-    | Paragraph
-    | Heading
-    | Sentences
-    | Facts
-    | Equation
-    | Matrices
-    | Level
-    | Finding
+    Table | Figure | Paragraph | Heading | Sentences | Facts | Equation | Matrices | Level | Finding
 )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+from html import unescape
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -31,5 +31,4 @@ def page(report: Report) -> str:
     style = Markup((FOLDER / "report.css").read_text(encoding="utf-8"))
     template = environment.get_template("report.html")
     plain = template.render(report=report, style=style, faces=[])
-    text = re.sub(r"<svg.*?</svg>|<style>.*?</style>", "", plain, flags=re.DOTALL)
-    return template.render(report=report, style=style, faces=faces(text))
+    return template.render(report=report, style=style, faces=faces(unescape(plain)))

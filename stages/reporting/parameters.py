@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from stages.contracts.tables import AXES
 from stages.reporting import numbers, units
@@ -43,13 +45,14 @@ SMALL_P = 0.01
 MISFIT = "the model does not describe the data within the noise; sigmas are of noise only"
 COLUMNS = (
     Column("", "symbol"),
-    Column("Value", "number"),
-    Column("± σ", "sigma"),
-    Column("Unit", "unit"),
-    Column("Value", "number"),
-    Column("± σ", "sigma"),
-    Column("SI", "unit"),
-    Column("Meaning, frame, identifier", "note"),
+    Column("value", "number", "Laboratory"),
+    Column("± σ", "sigma", "Laboratory"),
+    Column("unit", "unit", "Laboratory"),
+    Column("value", "number", "SI"),
+    Column("± σ", "sigma", "SI"),
+    Column("unit", "unit", "SI"),
+    Column("Meaning, frame", "note"),
+    Column("Identifier", "code"),
 )
 
 
@@ -75,8 +78,8 @@ class Estimate:
     @property
     def misfit(self) -> bool:
         """Whether the residuals are larger than the noise allows."""
-        p_value = self.fit and self.fit["p_value"]
-        return p_value is not None and p_value < SMALL_P
+        p_value = self.fit["p_value"] if self.fit else None
+        return p_value is not None and bool(p_value < SMALL_P)
 
 
 def estimates(
@@ -141,7 +144,7 @@ def _parts(estimate: Estimate) -> Iterator[Part]:
     if estimate.fit is not None:
         yield _fit(estimate)
     yield Table(
-        caption=f"{estimate.name}: {numbers.counted(len(estimate.determined), 'parameter')} determined.",
+        caption=f"Determined: {numbers.counted(len(estimate.determined), 'parameter')}.",
         columns=COLUMNS,
         rows=tuple(_rows(estimate.determined)),
         empty="None is determined; section 4 says why.",
@@ -165,58 +168,42 @@ def _fit(estimate: Estimate) -> Paragraph:
 
 
 def _rows(parameters: Sequence[Record]) -> Iterator[Row]:
-    written = []
-    for kind, group in groupby(parameters, lambda row: kind_of(row["parameter"])):
-        written.append((kind, list(group)))
-    columns = [values for _, group in written for values in _values(group)]
-    set_right = list(zip(*(numbers.aligned(column) for column in zip(*columns, strict=True)), strict=True))
-    place = 0
-    for kind, group in written:
-        yield Row((KIND.get(kind, kind.capitalize()),), heads=True)
+    """One row per parameter below the name of its kind, digits under digits."""
+    groups = [list(rows) for _, rows in groupby(parameters, lambda r: kind_of(r["parameter"]))]
+    cells = [written for group in groups for written in _written(group)]
+    columns = [numbers.aligned(column) for column in zip(*cells, strict=True)]
+    lines = iter(zip(*columns, strict=True))
+    for group in groups:
+        kind = kind_of(group[0]["parameter"])
+        yield Row((KIND.get(kind, numbers.shortened(kind, 60).capitalize()),), heads=True)
         for row in group:
-            value, sigma, si_value, si_sigma = set_right[place]
+            value, sigma, si_value, si_sigma = next(lines)
             unit = units.quantity(row["parameter"], row["unit"])
-            place += 1
-            yield Row(
-                (
-                    symbol(row["parameter"]),
-                    value,
-                    sigma,
-                    unit.laboratory.name,
-                    si_value,
-                    si_sigma,
-                    unit.si.name,
-                    f"{row['meaning']} · {row['frame']} · {row['id']}",
-                ),
-                anchor=row["id"],
-            )
+            meaning = f"{numbers.shortened(row['meaning'], 160)}; {row['frame']}"
+            laboratory = (value, sigma, unit.laboratory.name)
+            si = (si_value, si_sigma, unit.si.name)
+            yield Row((symbol(row["parameter"]), *laboratory, *si, meaning, row["id"]), row["id"])
 
 
-def _values(group: Sequence[Record]) -> Iterator[tuple[str, str, str, str]]:
-    """Value and sigma in both units, with decimals common to the group."""
+def _written(group: Sequence[Record]) -> list[tuple[str, ...]]:
+    """Value and sigma of parameters of one kind, in the laboratory's unit and in the SI's."""
     quantities = [units.quantity(row["parameter"], row["unit"]) for row in group]
-    pairs = [
-        [
-            (unit.of(row["value"]), unit.of(row["sigma"]))
-            for row, unit in zip(group, each, strict=True)
-        ]
-        for each in ([q.laboratory for q in quantities], [q.si for q in quantities])
-    ]
-    decimals = [numbers.common_decimals(sigma for _, sigma in pair) for pair in pairs]
-    for laboratory, si in zip(*pairs, strict=True):
-        (value, sigma), (si_value, si_sigma) = (
-            written_pair(*pair, places) for pair, places in zip((laboratory, si), decimals, strict=True)
-        )
-        yield value, sigma, si_value, si_sigma
+    laboratory = _in_units(group, [quantity.laboratory for quantity in quantities])
+    si = _in_units(group, [quantity.si for quantity in quantities])
+    return [(*pair, *si_pair) for pair, si_pair in zip(laboratory, si, strict=True)]
 
 
-def written_pair(
-    value: float | None, sigma: float | None, decimals: int | None
-) -> tuple[str, str]:
-    """A value and its sigma with the same decimals; to five digits where no sigma is known."""
+def _in_units(group: Sequence[Record], each: Sequence[units.Unit]) -> list[tuple[str, str]]:
+    """Values and sigmas with common decimals; values to five digits where no sigma is known."""
+    values = [unit.of(row["value"]) for row, unit in zip(group, each, strict=True)]
+    sigmas = [unit.of(row["sigma"]) for row, unit in zip(group, each, strict=True)]
+    decimals = numbers.common_decimals(sigmas)
     if decimals is None:
-        return numbers.significant(value, 5), "—"
-    return numbers.fixed(value, decimals), numbers.fixed(sigma, decimals)
+        return [(numbers.significant(value, 5), "—") for value in values]
+    return [
+        (numbers.fixed(value, decimals), numbers.fixed(sigma, decimals))
+        for value, sigma in zip(values, sigmas, strict=True)
+    ]
 
 
 def _matrices(estimate: Estimate) -> Matrices | None:
@@ -242,5 +229,5 @@ def _matrices(estimate: Estimate) -> Matrices | None:
     )
 
 
-def _entries(matrix: np.ndarray[tuple[int, ...], np.dtype[np.float64]], decimals: int) -> tuple[tuple[str, ...], ...]:
+def _entries(matrix: NDArray[np.floating[Any]], decimals: int) -> tuple[tuple[str, ...], ...]:
     return tuple(tuple(numbers.fixed(float(entry), decimals) for entry in row) for row in matrix)

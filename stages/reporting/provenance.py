@@ -29,13 +29,24 @@ def section(inputs: pd.DataFrame, made_by: Mapping[str, Mapping[str, Any]]) -> S
                 "Inputs.",
                 (Column("File"), Column("Bytes", "number"), Column("SHA-256", "code")),
                 tuple(
-                    Row((numbers.shortened(row["file"], 60), numbers.whole(row["size"]), row["sha256"]))
+                    Row(
+                        (
+                            numbers.shortened(row["file"], 60),
+                            numbers.whole(row["size"]),
+                            row["sha256"],
+                        )
+                    )
                     for row in records(inputs)
                 ),
             ),
             Table(
                 "Stages.",
-                (Column("Stage"), Column("Tables in this report"), Column("Settings"), Column("SHA-256 of its code", "code")),
+                (
+                    Column("Stage"),
+                    Column("Tables in this report"),
+                    Column("Settings"),
+                    Column("SHA-256 of its code", "code"),
+                ),
                 tuple(
                     Row(
                         (

@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
 from stages.contracts.tables import AXES
 from stages.reporting import numbers
-from stages.reporting.drawing import AXIS_COLOUR, MISSING, QUIET, canvas, hatch_missing, shade, style, svg
+from stages.reporting.drawing import (
+    AXIS_COLOUR,
+    QUIET,
+    Margins,
+    hatch_missing,
+    panels,
+    shade,
+    style,
+    svg,
+)
 from stages.reporting.outline import Figure, Heading, Paragraph, Part, Section
 from stages.reporting.rows import Record, records
 from stages.reporting.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, Unit
@@ -26,6 +37,7 @@ MANY_LOGS = 24  # from here on the figures are small
 SMALL_RATE = 0.2 * DEGREES_PER_SECOND.size
 METRES = Unit("m/s²", 1.0)
 MILLIMETRES = Unit("mm/s²", 1e-3)
+ABSOLUTE = {"gyro": DEGREES_PER_SECOND, "accel": METRES}
 
 
 @dataclass(frozen=True)
@@ -79,7 +91,9 @@ def section(
         parts.append(Heading("Missing stretches, close up"))
         parts += [_close_up(log, stretch) for log, stretch in close_ups[:MOST_CLOSE_UPS]]
     if len(close_ups) > MOST_CLOSE_UPS:
-        more = numbers.counted(len(close_ups) - MOST_CLOSE_UPS, "further stretch", "further stretches")
+        more = numbers.counted(
+            len(close_ups) - MOST_CLOSE_UPS, "further stretch", "further stretches"
+        )
         parts.append(Paragraph(f"{more} missing; section 3 lists them."))
     if not logs:
         parts.append(Paragraph("None: no log gave samples that could be drawn.", "poor"))
@@ -88,7 +102,7 @@ def section(
     return Section(
         "raw-data",
         "Raw data",
-        "Gyroscope and accelerometer of every log, as recorded, in SI units or those of the laboratory.",
+        "Gyroscope and accelerometer of every log, as recorded.",
         "Each band runs from the smallest to the largest sample of a short stretch, so no spike is "
         "lost. Logs at rest are drawn about their middle, so that deviations show. Behind the "
         "curves: rest grey, spin-up and spin-down yellow, steady turn blue; hatched: not recorded.",
@@ -150,9 +164,7 @@ def _missing(
     step = interval or (float(np.median(start[1:] - end[:-1])) if len(start) > 1 else np.inf)
     breaks = np.flatnonzero(start[1:] - end[:-1] > 2.5 * step)
     seen = [(float(end[i]), float(start[i + 1])) for i in breaks]
-    unstated = [
-        (a, b) for a, b in seen if not any(c < b and d > a for c, d in stated)
-    ]
+    unstated = [(a, b) for a, b in seen if not any(c < b and d > a for c, d in stated)]
     return sorted({*stated, *unstated})
 
 
@@ -209,18 +221,21 @@ def envelope(log: Log, channel: str, points: int) -> tuple[Array, Array, Array]:
 
 def _figure(log: Log, points: int, small: bool) -> Figure:
     manoeuvres = list(dict.fromkeys(row["manoeuvre"] for row in log.phases))
-    named = ", ".join(manoeuvres[:6]) + (f" and {len(manoeuvres) - 6} more" if len(manoeuvres) > 6 else "")
+    named = ", ".join(manoeuvres[:6]) + (
+        f" and {len(manoeuvres) - 6} more" if len(manoeuvres) > 6 else ""
+    )
     length = float(log.end.max() - log.start.min()) if len(log.start) else 0.0
     lasting = f", {numbers.fixed(length, 1)} s" if log.timed else ", without time stamps"
     view = "each channel about its middle" if log.static else "as recorded"
+    found = numbers.shortened(named, 160) or "no manoeuvre found"
     caption = (
-        f"{numbers.shortened(log.name, 80)}: {numbers.shortened(named, 160) or 'no manoeuvre found'}; "
+        f"{numbers.shortened(log.name, 80)}: {found}; "
         f"{numbers.counted(log.records, 'sample')}{lasting}; {view}."
     )
     if log.missing:
         lost = sum(b - a for a, b in log.missing)
         caption += f" {numbers.fixed(lost, 2)} s are missing."
-    drawn = _draw(log, f"raw-{log.name}", points, small, about_middle=log.static)
+    drawn = _draw(log, f"raw-{log.name}", points, about_middle=log.static, small=small)
     words = f"Six curves over time: rates and specific forces of x, y and z of the log {log.name}."
     return Figure(caption, drawn, words, "fair" if log.missing else "")
 
@@ -229,77 +244,82 @@ def _close_up(log: Log, stretch: Stretch) -> Figure:
     start, end = stretch
     room = max(2.0, 0.5 * (end - start))
     near = log.within(start - room, end + room)
-    drawn = _draw(
-        near, f"missing-{log.name}-{start}", POINTS_PER_CURVE[1], False,
-        limits=(start - room, end + room),
-    )
+    limits = (start - room, end + room)
+    drawn = _draw(near, f"missing-{log.name}-{start}", POINTS_PER_CURVE[1], limits=limits)
     caption = (
         f"{numbers.shortened(log.name, 80)}: not recorded from {numbers.fixed(start, 3)} s to "
         f"{numbers.fixed(end, 3)} s, {numbers.fixed(end - start, 3)} s."
     )
-    return Figure(caption, drawn, f"The samples before and after a missing stretch of {log.name}.", "fair")
+    return Figure(
+        caption, drawn, f"The samples before and after a missing stretch of {log.name}.", "fair"
+    )
 
 
 def _draw(
     log: Log,
     key: str,
     points: int,
-    small: bool,
     *,
     about_middle: bool = False,
+    small: bool = False,
     limits: Stretch | None = None,
 ) -> str:
+    """Gyroscope on the left, accelerometer on the right, one panel per axis."""
     with style():
-        figure = canvas(1.5 if small else 2.75)
-        axes = figure.subplots(3, 2, sharex=True)
+        figure, axes = panels(3, 2, 0.3 if small else 0.62, Margins())
         for column, sensor in enumerate(("gyro", "accel")):
             middles = {a: _middle(log, f"{sensor}_{a}") if about_middle else 0.0 for a in AXES}
-            unit = _unit(log, sensor, middles) if about_middle else _absolute(sensor)
-            name = "Angular rate" if sensor == "gyro" else "Specific force"
+            unit = _unit(log, sensor, middles) if about_middle else ABSOLUTE[sensor]
             for row, axis in enumerate(AXES):
-                panel = axes[row, column]
-                _panel(panel, log, f"{sensor}_{axis}", points, unit, middles[axis])
-                text = axis
+                panel = axes[row][column]
+                _curve(panel, log, f"{sensor}_{axis}", points, unit, middles[axis])
+                label = axis
                 if about_middle and np.isfinite(middles[axis]):
-                    absolute = _absolute(sensor)
-                    middle = numbers.fixed(middles[axis] / absolute.size, 5)
-                    text = f"{axis}   about {middle} {absolute.name}"
-                if not small:
-                    panel.set_title(text, color=AXIS_COLOUR[axis], fontsize=7, pad=2)
-                panel.locator_params(axis="y", nbins=2 if small else 4)
-            axes[1, column].set_ylabel(f"{name}, {unit.name}")
-            axes[2, column].set_xlabel("Time, s" if log.timed else "Record")
-        if limits:
-            axes[0, 0].set_xlim(*limits)
-        elif len(log.start):
-            axes[0, 0].set_xlim(float(log.start.min()), float(log.end.max()))
+                    middle = numbers.fixed(ABSOLUTE[sensor].of(middles[axis]), 5)
+                    label = f"{axis}, about {middle} {ABSOLUTE[sensor].name}"
+                panel.set_title(label, loc="right", color=AXIS_COLOUR[axis], fontsize=6.5, pad=2)
+                panel.yaxis.set_major_locator(MaxNLocator(2 if small else 4))
+                panel.ticklabel_format(axis="y", useOffset=False)
+            name = "Angular rate" if sensor == "gyro" else "Specific force"
+            axes[0][column].set_title(f"{name}, {unit.name}", loc="left", pad=2)
+            axes[2][column].set_xlabel("Time, s" if log.timed else "Record")
+        if limits or len(log.start):
+            left, right = limits or (float(log.start.min()), float(log.end.max()))
+            axes[0][0].set_xlim(left, right if right > left else left + 1.0)
         return svg(figure, key)
 
 
-def _panel(panel, log: Log, channel: str, points: int, unit: Unit, middle: float) -> None:  # type: ignore[no-untyped-def]
+def _curve(panel: Axes, log: Log, channel: str, points: int, unit: Unit, middle: float) -> None:
+    """One channel with the phases behind it and the missing stretches marked."""
     for row in log.phases:
         shade(panel, row["phase"], row["start"], row["end"])
     for start, end in log.missing:
         hatch_missing(panel, start, end)
     if not len(log.start) or not np.isfinite(log.least[channel]).any():
-        panel.text(0.5, 0.5, "not recorded", transform=panel.transAxes, ha="center", va="center", color=QUIET)
+        panel.annotate(
+            "not recorded",
+            (0.5, 0.5),
+            xycoords="axes fraction",
+            ha="center",
+            va="center",
+            color=QUIET,
+        )
         panel.set_yticks([])
         return
     time, low, high = envelope(log, channel, points)
-    colour = AXIS_COLOUR[channel[-1]]
     panel.fill_between(
-        time, (low - middle) / unit.size, (high - middle) / unit.size,
-        color=colour, linewidth=0.5, zorder=2,
+        time,
+        (low - middle) / unit.size,
+        (high - middle) / unit.size,
+        color=AXIS_COLOUR[channel[-1]],
+        linewidth=0.5,
+        zorder=2,
     )
 
 
 def _middle(log: Log, channel: str) -> float:
     both = (log.least[channel] + log.most[channel]) / 2
     return float(np.nanmedian(both)) if np.isfinite(both).any() else float("nan")
-
-
-def _absolute(sensor: str) -> Unit:
-    return DEGREES_PER_SECOND if sensor == "gyro" else METRES
 
 
 def _unit(log: Log, sensor: str, middles: dict[str, float]) -> Unit:
@@ -316,6 +336,3 @@ def _unit(log: Log, sensor: str, middles: dict[str, float]) -> Unit:
     if sensor == "gyro":
         return DEGREES_PER_HOUR if largest < SMALL_RATE else DEGREES_PER_SECOND
     return MILLIMETRES if largest < 1.0 else METRES
-
-
-__all__ = ["MISSING", "envelope", "section"]

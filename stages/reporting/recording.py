@@ -16,13 +16,13 @@ COLUMNS = (
     Column("", "mark"),
     Column("Manoeuvre"),
     Column("Set"),
-    Column("Angle planned, °", "number"),
-    Column("recorded, °", "number"),
-    Column("missing, °", "number"),
-    Column("Rate planned, °/s", "number"),
-    Column("recorded, °/s", "number"),
-    Column("Time planned, s", "number"),
-    Column("recorded, s", "number"),
+    Column("plan", "number", "Angle, °"),
+    Column("recorded", "number", "Angle, °"),
+    Column("missing", "number", "Angle, °"),
+    Column("plan", "number", "Rate, °/s"),
+    Column("recorded", "number", "Rate, °/s"),
+    Column("plan", "number", "Time, s"),
+    Column("recorded", "number", "Time, s"),
     Column("In words", "note"),
 )
 NUMBERS = slice(3, 10)
@@ -51,9 +51,7 @@ def section(manoeuvres: pd.DataFrame, performed: pd.DataFrame) -> Section:
 
 def _row(plan: Record, done: Record | None) -> Row:
     mark, tone = _mark(done)
-    done = done or dict.fromkeys(
-        ("angle", "missing_angle", "rate", "seconds", "sentence"), None
-    )
+    done = done or dict.fromkeys(("angle", "missing_angle", "rate", "seconds", "sentence"), None)
     turns = plan["do"] == "turn"
     return Row(
         (
@@ -67,7 +65,7 @@ def _row(plan: Record, done: Record | None) -> Row:
             _number(DEGREES_PER_SECOND.of(done["rate"]) if turns else None, 4),
             _number(plan["seconds"], 1),
             _number(done["seconds"], 1),
-            numbers.shortened(done["sentence"] or "nothing is said of it", 300),
+            numbers.shortened(done["sentence"] or "not found", 300),
         ),
         tone=tone,
     )
@@ -75,8 +73,8 @@ def _row(plan: Record, done: Record | None) -> Row:
 
 def _mark(done: Record | None) -> tuple[str, Tone]:
     if done is None or not done["found"]:
-        return "✗ not found", "poor"
-    return ("✓", "") if done["complete"] else ("◐ not complete", "fair")
+        return "✗", "poor"
+    return ("✓", "") if done["complete"] else ("◐", "fair")
 
 
 def _number(value: float | None, decimals: int) -> str:
@@ -85,7 +83,10 @@ def _number(value: float | None, decimals: int) -> str:
 
 def _set_right(rows: list[Row]) -> Iterator[Row]:
     """Digits under digits in every column of numbers."""
-    columns = [numbers.aligned(column) for column in zip(*(row.cells[NUMBERS] for row in rows), strict=True)]
+    columns = [
+        numbers.aligned(column)
+        for column in zip(*(row.cells[NUMBERS] for row in rows), strict=True)
+    ]
     for row, cells in zip(rows, zip(*columns, strict=True), strict=True):
         yield Row((*row.cells[:3], *cells, *row.cells[10:]), tone=row.tone)
 

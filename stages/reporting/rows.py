@@ -12,7 +12,10 @@ Record = dict[str, Any]
 def records(frame: pd.DataFrame) -> list[Record]:
     """One dict per row; whatever stands for a gap in a column becomes None."""
     columns = {
-        str(name): [None if gap else value for value, gap in zip(column.tolist(), column.isna(), strict=True)]
+        str(name): [
+            None if gap else value
+            for value, gap in zip(column.tolist(), column.isna(), strict=True)
+        ]
         for name, column in frame.items()
     }
     return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]

@@ -7,7 +7,7 @@ from itertools import groupby
 
 from stages.reporting import numbers
 from stages.reporting.outline import Column, Paragraph, Part, Row, Section, Table
-from stages.reporting.parameters import METHOD, SENSOR, Estimate, symbol
+from stages.reporting.parameters import Estimate, symbol
 
 MOST_SYMBOLS = 18
 
@@ -18,7 +18,11 @@ def section(found: Sequence[Estimate]) -> Section:
     parts: list[Part] = [
         Table(
             "Parameters that are not determined.",
-            (Column("Sensor, method"), Column("Parameters", "symbol"), Column("Reason, and what would help")),
+            (
+                Column("Sensor, method"),
+                Column("Parameters", "symbol"),
+                Column("Reason, and what would help"),
+            ),
             rows,
             empty="Not determined: none. Every parameter of every method has a value.",
         ),
@@ -28,7 +32,7 @@ def section(found: Sequence[Estimate]) -> Section:
             tuple(
                 Row(
                     (
-                        _name(estimate),
+                        estimate.name,
                         numbers.shortened(estimate.fit["used"] or "none", 1500),
                         numbers.shortened(estimate.fit["left_out"] or "none", 1500),
                     ),
@@ -41,7 +45,9 @@ def section(found: Sequence[Estimate]) -> Section:
         ),
     ]
     if not found:
-        parts = [Paragraph("Nothing was determined: no method found the manoeuvres it needs.", "poor")]
+        parts = [
+            Paragraph("Nothing was determined: no method found the manoeuvres it needs.", "poor")
+        ]
     return Section(
         "undetermined",
         "Not determined, and left out",
@@ -52,10 +58,6 @@ def section(found: Sequence[Estimate]) -> Section:
     )
 
 
-def _name(estimate: Estimate) -> str:
-    return f"{SENSOR.get(estimate.stage, estimate.stage)}, {METHOD.get(estimate.method, estimate.method)}"
-
-
 def _undetermined(estimate: Estimate) -> Iterator[Row]:
     """One row per reason, its parameters together."""
     gaps = [row for row in estimate.parameters if row["value"] is None]
@@ -64,7 +66,7 @@ def _undetermined(estimate: Estimate) -> Iterator[Row]:
         more = f" and {len(each) - MOST_SYMBOLS} more" if len(each) > MOST_SYMBOLS else ""
         yield Row(
             (
-                _name(estimate),
+                estimate.name,
                 ", ".join(each[:MOST_SYMBOLS]) + more,
                 numbers.shortened(reason or "no reason is stated", 600),
             ),

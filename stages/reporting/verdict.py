@@ -12,6 +12,7 @@ import pandas as pd
 
 from stages.contracts.tables import AXES
 from stages.reporting import numbers, units
+from stages.reporting.findings import in_words
 from stages.reporting.outline import (
     Column,
     Facts,
@@ -43,7 +44,7 @@ TONE: dict[str, Tone] = {
 }
 MEANING = {
     "calibrated": "All 24 parameters are determined and both models describe their data.",
-    "calibrated in part": "Some results can be used; the sentences below say which, and what is missing.",
+    "calibrated in part": "Some results can be used; the reasons below say which.",
     "not calibrated": "This campaign gives no result that could be used.",
 }
 
@@ -70,7 +71,7 @@ def verdict(
     """
     joint = {estimate.stage: estimate for estimate in found if estimate.method == JOINT}
     sets = {stage: _determined(joint.get(stage)) for stage in SENSOR}
-    whole = all(WANTED <= have.keys() for have in sets.values())
+    whole = all(have.keys() >= WANTED for have in sets.values())
     misfit = any(estimate.misfit for estimate in joint.values())
     if not any(WANTED & have.keys() for have in sets.values()):
         level = "not calibrated"
@@ -94,14 +95,24 @@ def _sentence(stage: str, have: dict[str, Record]) -> str:
     if not count:
         return f"{SENSOR[stage]}: nothing is determined."
     worst = "; ".join(f"{KINDS[kind]} {text}" for kind, text in _worst(have).items())
-    amount = "all 12 parameters are determined" if count == 12 else f"{count} of 12 parameters are determined"
-    return f"{SENSOR[stage]}: {amount}. Largest σ: {worst}." if worst else f"{SENSOR[stage]}: {amount}."
+    amount = (
+        "all 12 parameters are determined"
+        if count == 12
+        else f"{count} of 12 parameters are determined"
+    )
+    return (
+        f"{SENSOR[stage]}: {amount}. Largest σ: {worst}."
+        if worst
+        else f"{SENSOR[stage]}: {amount}."
+    )
 
 
 def _worst(have: dict[str, Record]) -> dict[str, str]:
     worst: dict[str, str] = {}
     for kind in KINDS:
-        rows = [r for r in have.values() if kind_of(r["parameter"]) == kind and r["sigma"] is not None]
+        rows = [
+            r for r in have.values() if kind_of(r["parameter"]) == kind and r["sigma"] is not None
+        ]
         if rows:
             row = max(rows, key=lambda row: row["sigma"])
             unit = units.quantity(row["parameter"], row["unit"]).laboratory
@@ -152,14 +163,14 @@ def _findings(findings: Sequence[Record]) -> str:
     if not findings:
         return "Findings: none."
     causes = Counter(row["cause"] for row in findings)
-    listed = ", ".join(
-        f"{numbers.shortened(cause, 60)} ({count})" for cause, count in causes.most_common(8)
-    )
+    listed = ", ".join(f"{in_words(cause)} ({count})" for cause, count in causes.most_common(8))
     more = f" and {len(causes) - 8} further causes" if len(causes) > 8 else ""
     return f"Findings: {numbers.whole(len(findings))}; {listed}{more}."
 
 
-def facts(campaign: Record, known: pd.DataFrame, clocks: pd.DataFrame) -> tuple[tuple[str, str], ...]:
+def facts(
+    campaign: Record, known: pd.DataFrame, clocks: pd.DataFrame
+) -> tuple[tuple[str, str], ...]:
     """What stands on the plate of the report: instrument, serial, dates, site, table."""
     recorded = sorted({row["recorded_on"] for row in records(clocks) if row["recorded_on"]})
     by_name = {row["quantity"]: row for row in records(known)}
@@ -186,7 +197,9 @@ def facts(campaign: Record, known: pd.DataFrame, clocks: pd.DataFrame) -> tuple[
         "Remarks": campaign["notes"],
     }
     return tuple(
-        (name, numbers.shortened(str(text), 900)) for name, text in pairs.items() if text is not None
+        (name, numbers.shortened(str(text), 900))
+        for name, text in pairs.items()
+        if text is not None
     )
 
 
@@ -209,7 +222,7 @@ def section(
         Level(given.level, TONE[given.level], MEANING[given.level]),
         Sentences(given.reasons),
         Table(
-            "The joint fits at a glance: how many of twelve parameters, and the largest σ of each kind.",
+            "The joint fits at a glance: parameters determined, and the largest σ of each kind.",
             (
                 Column("Sensor"),
                 Column("Determined", "number"),
@@ -226,8 +239,8 @@ def section(
         "verdict",
         "Verdict",
         "Whether this calibration can be used, and why.",
-        "Calibrated: the joint fits determine all 24 parameters and describe their data (p ≥ 0.01). "
-        "In part: some are not determined, or a model does not describe its data. Not calibrated: "
+        "Calibrated: the joint fits determine all 24 parameters and describe their data "
+        "(p ≥ 0.01). In part: some are not determined, or a model does not describe its data. Not calibrated: "
         "none is determined.",
         parts,
     )
@@ -248,7 +261,9 @@ def _glance(stage: str, found: Sequence[Estimate]) -> Row:
     )
 
 
-def as_text(given: Verdict, campaign: pd.DataFrame, known: pd.DataFrame, clocks: pd.DataFrame) -> str:
+def as_text(
+    given: Verdict, campaign: pd.DataFrame, known: pd.DataFrame, clocks: pd.DataFrame
+) -> str:
     """The verdict as plain text, 80 letters wide."""
     about = only(campaign)
     lines = []

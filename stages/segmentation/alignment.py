@@ -22,7 +22,9 @@ def align(scores: Array) -> list[int | None]:
     best = np.zeros((m + 1, n + 1))
     for i in range(1, m + 1):
         for j in range(1, n + 1):
-            together = best[i - 1, j - 1] + scores[i - 1, j - 1] if scores[i - 1, j - 1] > 0 else -1.0
+            together = (
+                best[i - 1, j - 1] + scores[i - 1, j - 1] if scores[i - 1, j - 1] > 0 else -1.0
+            )
             best[i, j] = max(best[i - 1, j], best[i, j - 1], together)
     found: list[int | None] = [None] * m
     i, j = m, n

@@ -47,9 +47,7 @@ def campaign() -> dict[str, Any]:
         parameters = _parameters(stage, "joint") + _parameters(stage, other)
         made[f"{stage}_parameters"] = _frame(tables.PARAMETERS, parameters)
         made[f"{stage}_fit"] = _frame(tables.FIT, _fit(stage, other))
-        made[f"{stage}_averaging"] = _frame(
-            tables.AVERAGING, _averaging(parameters, generator)
-        )
+        made[f"{stage}_averaging"] = _frame(tables.AVERAGING, _averaging(parameters, generator))
     maker = {"settings": {"rest_block": 5.0}, "code": "c0de" * 16, "inputs": {"demo/a": "0" * 64}}
     stages = {"quality_findings": "quality", "noise": "noise"}
     made["provenance"] = {
@@ -98,8 +96,20 @@ def _known() -> Rows:
         {"quantity": q, "value": value, "sigma": sigma, "unit": unit, "origin": origin}
         for q, value, sigma, unit, origin in (
             ("gravity", GRAVITY, 5e-5, "m/s²", "stated: site.gravity_m_s2"),
-            ("earth_rate_up", 3.7039e-5, 1.1e-8, "rad/s", "computed from the latitude, whose sigma is assumed as 0.01°"),
-            ("earth_rate_level", 6.2813e-5, None, "rad/s", "computed from the latitude, whose sigma is assumed as 0.01°"),
+            (
+                "earth_rate_up",
+                3.7039e-5,
+                1.1e-8,
+                "rad/s",
+                "computed from the latitude, whose sigma is assumed as 0.01°",
+            ),
+            (
+                "earth_rate_level",
+                6.2813e-5,
+                None,
+                "rad/s",
+                "computed from the latitude, whose sigma is assumed as 0.01°",
+            ),
             ("heading", None, None, "rad", "not known"),
             ("position", 0.0, 2 * arc_second, "rad", "stated: table.position_sigma_arcsec"),
             ("turn_angle", 0.0, 2 * arc_second, "rad", "stated: table.angle_sigma_arcsec"),
@@ -155,7 +165,9 @@ def _inputs(manoeuvres: Rows) -> Rows:
     rows: Rows = [{"file": "campaign.yaml", "size": 1326, "sha256": "ab" * 32}]
     for number, row in enumerate(manoeuvres):
         sha256 = f"{number:02x}" * 32
-        rows.append({"file": row["log"], "size": round(_seconds(row) * 8700) + 900, "sha256": sha256})
+        rows.append(
+            {"file": row["log"], "size": round(_seconds(row) * 8700) + 900, "sha256": sha256}
+        )
     return rows
 
 
@@ -165,8 +177,20 @@ def _accounts(manoeuvres: Rows) -> Rows:
         lines = round(_seconds(row) / INTERVAL)
         size = round(_seconds(row) * 8700)
         rows += [
-            {"log": row["log"], "kind": "decoded", "name": "RAWIMUSA", "lines": lines, "bytes": size},
-            {"log": row["log"], "kind": "other message", "name": "BESTPOSA", "lines": 5, "bytes": 900},
+            {
+                "log": row["log"],
+                "kind": "decoded",
+                "name": "RAWIMUSA",
+                "lines": lines,
+                "bytes": size,
+            },
+            {
+                "log": row["log"],
+                "kind": "other message",
+                "name": "BESTPOSA",
+                "lines": 5,
+                "bytes": 900,
+            },
         ]
     rows[-1]["bytes"] = 813
     rows.append({"log": "z-backward.asc", "kind": "refused", "name": "", "lines": 1, "bytes": 87})
@@ -368,16 +392,22 @@ def _parameters(stage: str, method: str) -> Rows:
     joint = method == "joint"
     entries: list[tuple[str, float | None, str, str]] = []
     for i, axis in enumerate(AXES):
-        entries.append((f"bias_{axis}", BIAS[sensor][i], unit, f"reading at no input, {axis} sensor"))
+        entries.append(
+            (f"bias_{axis}", BIAS[sensor][i], unit, f"reading at no input, {axis} sensor")
+        )
     for i, axis in enumerate(AXES):
-        entries.append((f"scale_{axis}", SCALE[sensor][i], "1", f"scale error of the {axis} sensor"))
+        entries.append(
+            (f"scale_{axis}", SCALE[sensor][i], "1", f"scale error of the {axis} sensor")
+        )
     for (i, j), value in zip(PAIRS, CROSS, strict=True):
         given = value if joint or sensor == "accel" else None
         name = f"cross_{AXES[i]}{AXES[j]}"
         entries.append((name, given, "1", f"the {AXES[i]} sensor's response to {AXES[j]} input"))
     if joint:
         for axis, value in zip(AXES, (0.00074, 0.00758, -0.00246), strict=True):
-            entries.append((f"mounting_{axis}", value, "rad", f"rotation of the triad about {axis}"))
+            entries.append(
+                (f"mounting_{axis}", value, "rad", f"rotation of the triad about {axis}")
+            )
         for pair, value in zip(("xy", "xz", "yz"), (-280.6e-6, 24.8e-6, -41.2e-6), strict=True):
             entries.append((f"symmetric_{pair}", value, "rad", f"{pair} out of square"))
     return [

@@ -1,0 +1,52 @@
+"""Which white noise each mean and each sum carries."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+UNLIKE = 3.0  # sigmas by which a manoeuvre's noise must differ from the others' to count as its own
+
+
+class NoiseLevels:
+    """White noise by manoeuvre, phase and channel, per √s.
+
+    A level is known to some per cent only, and a sensor alone has the same in every
+    manoeuvre. So the level that is common to the campaign is taken, but for a manoeuvre
+    and phase whose own level differs from it by more than three of its sigmas: there the
+    table, or the air, adds to the noise.
+    """
+
+    def __init__(self, noise: pd.DataFrame) -> None:
+        self._own = {
+            (row.manoeuvre, row.phase, row.channel): (row.white_noise, row.sigma)
+            for row in noise.itertuples()
+        }
+        self._common: dict[str, float] = {}
+        relative = []
+        for channel, rows in noise.groupby("channel"):
+            level = float(rows["white_noise"].median())
+            alike = (rows["white_noise"] - level).abs() <= UNLIKE * rows["sigma"]
+            used = rows[alike] if alike.any() else rows
+            # Weights by relative sigma: else a level that came out low would weigh more for it.
+            weight = (used["white_noise"] / used["sigma"]) ** 2
+            self._common[str(channel)] = float(np.average(used["white_noise"], weights=weight))
+            relative.append(float(weight.sum() ** -0.5))
+        self._relative = max(relative, default=0.0)
+
+    @property
+    def degrees(self) -> float:
+        """Degrees of freedom of the noise level itself: a variance known to √(2/ν)."""
+        return 0.5 / self._relative**2 if self._relative > 0 else np.inf
+
+    def of(self, manoeuvre: str, phase: str, channels: Sequence[str]) -> Array:
+        """The levels of some channels, rest or steady; NaN where nothing is known."""
+        return np.array([self._one(manoeuvre, phase, channel) for channel in channels])
+
+    def _one(self, manoeuvre: str, phase: str, channel: str) -> float:
+        common = self._common.get(channel, np.nan)
+        level, sigma = self._own.get((manoeuvre, phase, channel), (common, np.inf))
+        return level if abs(level - common) > UNLIKE * sigma else common
