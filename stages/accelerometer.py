@@ -9,6 +9,7 @@ from stages.estimation.estimates import NAMES, Estimates, reasons
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import Still, averaging_times, stills
 from stages.inference import triad
+from stages.inference.least_squares import with_scatter
 from stages.inference.six_position import Rest, formula, weighted
 
 CURES = {
@@ -16,6 +17,7 @@ CURES = {
     " points up once and down once",
     "matrix": "no rests differ enough along {axis}: add one with +{axis} up and one with -{axis} up",
 }
+SCATTER = (1e-7, 1.0)  # m/s²: how much rests may differ beyond the noise
 
 
 def accelerometer(
@@ -35,23 +37,28 @@ def accelerometer(
     gravity, gravity_sigma = (float(given.loc["gravity", c]) for c in ("value", "sigma"))
     known_values = (gravity, gravity_sigma, float(given.loc["position", "sigma"]))
     levels = NoiseLevels(noise)
-    estimates = Estimates("accelerometer", levels.degrees)
+    estimates = Estimates("accelerometer")
     for mount, plan in manoeuvres.groupby("mount", sort=False):
         suffix = "" if manoeuvres["mount"].nunique() == 1 else f"@{mount}"
         found, left = stills(blocks, plan, performed, levels, "accel")
         if not found:
             continue
         rests = [_rest(still) for still in found]
-        estimate = weighted(rests, *known_values)
+        fitted = with_scatter(
+            lambda scatter, rests=rests: weighted(rests, *known_values, scatter),
+            SCATTER,
+            levels.degrees,
+        )
+        estimate, scatter, _ = fitted
         recorded = np.isfinite([rest.mean for rest in rests]).any(axis=0)
         why = reasons(estimate.determined, recorded, "accelerometer", CURES)
         estimates.add_triad(f"joint{suffix}", estimate, why)
-        estimates.add_fit(f"joint{suffix}", estimate, [still.label for still in found], left)
+        estimates.add_fit(f"joint{suffix}", fitted, [still.label for still in found], left)
         for seconds in averaging_times(found, averaging_steps):
-            shorter = weighted([_rest(still, seconds) for still in found], *known_values)
+            shorter = weighted([_rest(still, seconds) for still in found], *known_values, scatter)
             estimates.add_averaging(f"joint{suffix}", seconds, shorter)
         planned = [_rest(still) for still in found if still.row["do"] == "rest"]
-        if planned and (solved := formula(planned, *known_values)) is not None:
+        if planned and (solved := formula(planned, *known_values, scatter)) is not None:
             unknowns, covariance = solved
             values = triad.errors_of(unknowns)
             estimates.add(f"six_position{suffix}", NAMES, values, covariance, {})

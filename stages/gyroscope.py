@@ -14,6 +14,7 @@ from stages.estimation.estimates import Estimates, reasons
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import Still, averaging_times, stills, vector
 from stages.inference import whole_turns
+from stages.inference.least_squares import with_scatter
 from stages.inference.whole_turns import Angle, Earth, Position, Steady, Turn, joint
 
 Array = NDArray[np.float64]
@@ -23,6 +24,7 @@ CURES = {
     "bias": "neither a rest nor a turn there and back shows it: add a rest",
     "matrix": "no whole turn about {axis} was recorded: add one of 360° about {axis}",
 }
+SCATTER = (1e-11, 0.1)  # rad/s: how much manoeuvres may differ beyond the noise
 TURNING = ("spin-up", "steady", "spin-down", "turning")
 
 
@@ -46,7 +48,7 @@ def gyroscope(
     tilt = float(given.loc["position", "sigma"])
     rate_sigma = float(given.loc["turn_rate", "sigma"])
     levels = NoiseLevels(noise)
-    estimates = Estimates("gyroscope", levels.degrees)
+    estimates = Estimates("gyroscope")
     for mount, plan in manoeuvres.groupby("mount", sort=False):
         suffix = "" if manoeuvres["mount"].nunique() == 1 else f"@{mount}"
         found, left = stills(blocks, plan, performed, levels, "gyro")
@@ -55,7 +57,13 @@ def gyroscope(
         if not (found or turns or steadies):
             continue
         moving = (turns, steadies, earth, tilt)
-        estimate = joint([_still(still, heading) for still in found], *moving)
+        resting = [_still(still, heading) for still in found]
+        fitted = with_scatter(
+            lambda scatter, resting=resting, moving=moving: joint(resting, *moving, scatter),
+            SCATTER,
+            levels.degrees,
+        )
+        estimate, scatter, _ = fitted
         readings = [s.over()[0] for s in found] + [t.sums.sum(axis=0) for t in turns]
         readings += [steady.mean for steady in steadies]
         recorded = np.isfinite(readings).any(axis=0)
@@ -64,12 +72,12 @@ def gyroscope(
         used = [still.label for still in found]
         used += [row["manoeuvre"] for row, _ in rows if row["manoeuvre"] not in refused]
         left += [f"{name}: {reason}" for name, reason in refused.items()]
-        estimates.add_fit(f"joint{suffix}", estimate, used, left)
+        estimates.add_fit(f"joint{suffix}", fitted, used, left)
         for seconds in averaging_times(found, averaging_steps):
             part = [_still(still, heading, seconds) for still in found]
-            shorter = joint(part, *moving, start=estimate)
+            shorter = joint(part, *moving, scatter, start=estimate)
             estimates.add_averaging(f"joint{suffix}", seconds, shorter)
-        _add_known_angle(estimates, f"turns{suffix}", rows, refused, levels, earth)
+        _add_known_angle(estimates, f"turns{suffix}", rows, refused, levels, earth, scatter)
     return estimates.tables()
 
 
@@ -167,6 +175,7 @@ def _add_known_angle(
     refused: dict[str, str],
     noise: NoiseLevels,
     earth: Earth,
+    scatter: float,
 ) -> None:
     """S0's formulas, axis by axis: they need whole turns both ways about the axis that is up."""
     for i, axis in enumerate(tables.AXES):
@@ -195,12 +204,12 @@ def _add_known_angle(
         turns = [turn for turn in turns if np.isfinite(turn.summed)]
         names = (f"bias_{axis}", f"scale_{axis}")
         if len({np.sign(turn.angle) for turn in turns}) == 2:
-            estimate = whole_turns.known_angle(turns, earth)
+            estimate = whole_turns.known_angle(turns, earth, scatter)
             estimates.add(method, names, estimate.values[:2], estimate.covariance[:2, :2], {})
         elif any(about_axis(row, i) for row, _ in rows):
+            missing = [n for n in refused if about_axis_named(rows, n, i)]
             reason = f"the formula needs whole turns about {axis} forward and backward"
-            missing = [f"{n}: {why}" for n, why in refused.items() if about_axis_named(rows, n, i)]
-            reason += f" ({'; '.join(missing)})" if missing else ""
+            reason += f"; not whole: {', '.join(missing)}" if missing else ""
             nothing = (np.zeros(2), np.zeros((2, 2)))
             estimates.add(method, names, *nothing, dict.fromkeys(names, reason))
 

@@ -349,9 +349,18 @@ FIT = Table(
     1,
     (
         Column("method", _text, "", "method of estimation"),
-        Column("chi_squared", _double, "1", "weighted sum of the squared residuals"),
+        Column(
+            "chi_squared",
+            _double,
+            "1",
+            "weighted sum of squared residuals, the scatter allowed for",
+        ),
         Column("degrees", _integer, "1", "degrees of freedom"),
-        Column("p_value", _double, "1", "chance of a larger sum if model and noise are right"),
+        Column("p_value", _double, "1", "chance of residuals this large by noise alone"),
+        Column(
+            "scatter", _double, "as unit", "what manoeuvres differ by beyond noise; 0 where p ≥ 1 %"
+        ),
+        Column("unit", _text, "", "unit of the scatter"),
         Column("used", _text, "", "the manoeuvres that were used"),
         Column("left_out", _text, "", "the manoeuvres that were not, each with the reason"),
     ),

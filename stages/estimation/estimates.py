@@ -25,7 +25,6 @@ class Estimates:
     """What the methods of one stage found, collected as rows of the common tables."""
 
     stage: str
-    noise_degrees: float = np.inf  # how well the noise is known, see NoiseLevels
     _parameters: list[dict[str, Any]] = field(default_factory=list)
     _covariance: list[pd.DataFrame] = field(default_factory=list)
     _fit: list[dict[str, Any]] = field(default_factory=list)
@@ -84,14 +83,23 @@ class Estimates:
             reasons = reasons | {name: "it needs all nine elements of M" for name in derived}
         self.add(method, NAMES + derived, values, jacobian @ covariance @ jacobian.T, reasons)
 
-    def add_fit(self, method: str, estimate: Estimate, used: list[str], left: list[str]) -> None:
-        """How well the method's model describes the data."""
+    def add_fit(
+        self,
+        method: str,
+        fitted: tuple[Estimate, float, float],
+        used: list[str],
+        left: list[str],
+    ) -> None:
+        """How well the method's model describes the data: the fit, its scatter, its p-value."""
+        estimate, scatter, p_value = fitted
         self._fit.append(
             {
                 "method": method,
                 "chi_squared": estimate.chi_squared,
                 "degrees": estimate.degrees,
-                "p_value": estimate.p_value(self.noise_degrees),
+                "p_value": p_value,
+                "scatter": scatter,
+                "unit": UNIT[self.stage],
                 "used": ", ".join(used),
                 "left_out": "; ".join(left),
             }

@@ -8,17 +8,19 @@ its own whose prior is its known sigma. That is the same as a covariance of the
 observations that contains these errors.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
+from scipy.optimize import minimize_scalar
 from scipy.stats import f as f_distribution
 
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
-NARROWED = 20.0  # a parameter is determined when the data narrow its vague prior so many times
+NARROWED = 4.0  # a parameter is determined when the data narrow its vague prior so many times
 
 
 @dataclass(frozen=True)
@@ -26,7 +28,7 @@ class Estimate:
     """What least squares gives.
 
     `values`: (p,); `covariance`: (p, p); `determined`: (p,); `chi_squared` of
-    `degrees` of freedom.
+    `degrees` of freedom; `deviance`: −2 log of the restricted likelihood, up to a constant.
     """
 
     values: Array
@@ -34,6 +36,7 @@ class Estimate:
     determined: Booleans
     chi_squared: float
     degrees: int
+    deviance: float
 
     @property
     def sigma(self) -> Array:
@@ -89,4 +92,48 @@ def solve(
         chi_squared=remaining,
         # A parameter that the data leave where it was takes no degree of freedom.
         degrees=max(round(n - float(np.sum(1 - shrunk[:sought]))), 0),
+        deviance=remaining
+        + 2 * float(np.sum(np.log(sigma)))
+        + 2 * float(np.sum(np.log(np.abs(np.diag(upper))))),
     )
+
+
+LIKELIER = 6.6  # drop of the deviance that a scatter must bring: 1 % of chi-squared of 1 degree
+INCONSISTENT = 0.01  # p-value below which the residuals are larger than the noise
+
+
+def with_scatter(
+    estimate: Callable[[float], Estimate], limits: tuple[float, float], noise_degrees: float
+) -> tuple[Estimate, float, float]:
+    """Fit again with a scatter between manoeuvres where noise alone cannot explain the residuals.
+
+    What the model lacks makes every manoeuvre differ from the others by more than the
+    noise, and sigmas of noise alone would promise too much. So the readings of each
+    manoeuvre get an offset of their own, N(0, scatter²), whose size is the one of largest
+    restricted likelihood (Patterson & Thompson 1971).
+
+    Parameters
+    ----------
+    estimate : the fit as a function of the scatter
+    limits : smallest and largest scatter, in the unit of the readings
+    noise_degrees : see `Estimate.p_value`
+
+    Returns
+    -------
+    the fit, its scatter, and the p-value of the fit without scatter
+    """
+    alone = estimate(0.0)
+    p_value = alone.p_value(noise_degrees)
+    if p_value >= INCONSISTENT:
+        return alone, 0.0, p_value
+    best = minimize_scalar(
+        lambda log: estimate(float(np.exp(log))).deviance,
+        bounds=np.log(limits),
+        method="bounded",
+        options={"xatol": 0.05},
+    )
+    scatter = float(np.exp(best.x))
+    scattered = estimate(scatter)
+    if alone.deviance - scattered.deviance < LIKELIER:
+        return alone, 0.0, p_value
+    return scattered, scatter, p_value

@@ -34,11 +34,16 @@ class Rest:
 
 
 def weighted(
-    rests: Sequence[Rest], gravity: float, gravity_sigma: float, position_sigma: float
+    rests: Sequence[Rest],
+    gravity: float,
+    gravity_sigma: float,
+    position_sigma: float,
+    scatter: float = 0.0,
 ) -> Estimate:
     """The twelve parameters of smallest variance from any number of rests.
 
     Unknowns: M by rows, bias, then gravity and the tilts, which only carry their sigmas.
+    `scatter`, m/s², is by what the readings differ from rest to rest beyond noise and tilt.
     """
     positions = list(dict.fromkeys(rest.position for rest in rests))
     count = UNKNOWNS + 1 + 2 * len(positions)
@@ -59,7 +64,7 @@ def weighted(
                 design[rows, column] = matrix @ np.cross(axis, gravity * rest.up)
                 column += 1
         observed = np.concatenate([rest.mean for rest in rests]) - constant
-        sigma = np.concatenate([rest.sigma for rest in rests])
+        sigma = np.hypot(np.concatenate([rest.sigma for rest in rests]), scatter)
         there = np.isfinite(observed) & np.isfinite(sigma)
         estimate = solve(design[there], observed[there], sigma[there], prior, prior_sigma, UNKNOWNS)
         matrix = estimate.values[:9].reshape(3, 3)
@@ -67,7 +72,11 @@ def weighted(
 
 
 def formula(
-    rests: Sequence[Rest], gravity: float, gravity_sigma: float, position_sigma: float
+    rests: Sequence[Rest],
+    gravity: float,
+    gravity_sigma: float,
+    position_sigma: float,
+    scatter: float = 0.0,
 ) -> tuple[Array, Array] | None:
     """M̂ = L Aᵀ (A Aᵀ)⁻¹ as S0 (3-6) has it, all rests alike, with the covariance it has.
 
@@ -88,7 +97,7 @@ def formula(
     shared = np.zeros(3 * len(rests))
     for i, rest in enumerate(rests):
         rows = slice(3 * i, 3 * i + 3)
-        spread[rows, rows] += np.diag(rest.sigma**2)
+        spread[rows, rows] += np.diag(rest.sigma**2 + scatter**2)
         shared[rows] = rest.up
         for j, other in enumerate(rests):
             if rest.position == other.position:

@@ -26,9 +26,10 @@ from stages.model.motion import level_axes, turned
 
 Array = NDArray[np.float64]
 
-# Vague priors: M within 1 of the unit matrix, the bias within 1 rad/s.
+# Vague priors: M within 0.1 of the unit matrix, the bias within 1 rad/s. Without turns only the
+# earth's rate shows M, and a wider prior would let an absurd M explain an unknown azimuth.
 PRIOR = np.append(np.eye(3).ravel(), np.zeros(3))
-PRIOR_SIGMA = np.append(np.ones(9), np.full(3, 1.0))
+PRIOR_SIGMA = np.append(np.full(9, 0.1), np.full(3, 1.0))
 
 
 @dataclass(frozen=True)
@@ -128,9 +129,12 @@ def joint(
     steadies: Sequence[Steady],
     earth: Earth,
     position_sigma: float,
+    scatter: float = 0.0,
     start: Estimate | None = None,
 ) -> Estimate:
     """Bias and M of the gyros from all rests and turns at once.
+
+    `scatter`, rad/s, is by what the readings differ from manoeuvre to manoeuvre beyond noise.
 
     The equations hold products of M with the errors, so they are solved four times,
     each time about the last result; or once about `start`, the estimate from rests at the
@@ -145,11 +149,13 @@ def joint(
         unknowns = _Unknowns(earth)
         rows = _Rows([], [], [])
         for still in stills:
-            _add_still(rows, unknowns, still, matrix, earth)
+            _add_still(rows, unknowns, still, matrix, earth, scatter)
         for number, turn in enumerate(turns):
-            _add_turn(rows, unknowns, turn, number, matrix, bias, earth, position_sigma, levels)
+            _add_turn(
+                rows, unknowns, turn, number, matrix, bias, earth, (position_sigma, scatter), levels
+            )
         for number, steady in enumerate(steadies):
-            _add_steady(rows, unknowns, steady, number, matrix, earth, position_sigma)
+            _add_steady(rows, unknowns, steady, number, matrix, earth, (position_sigma, scatter))
         design = np.zeros((sum(len(o) for o in rows.observed), len(unknowns.prior)))
         start = 0
         for coefficients, observed in zip(rows.design, rows.observed, strict=True):
@@ -170,7 +176,7 @@ def joint(
             UNKNOWNS,
         )
         matrix, bias = estimate.values[:9].reshape(3, 3), estimate.values[9:12]
-        levels = {column: float(estimate.values[column]) for column in unknowns.names.values()}
+        levels = dict(enumerate(estimate.values.tolist()))
     return estimate
 
 
@@ -195,7 +201,14 @@ def _earth_columns(
     return np.zeros(3), list(zip(columns, axes, strict=True))
 
 
-def _add_still(rows: _Rows, unknowns: _Unknowns, still: Still, matrix: Array, earth: Earth) -> None:
+def _add_still(
+    rows: _Rows,
+    unknowns: _Unknowns,
+    still: Still,
+    matrix: Array,
+    earth: Earth,
+    scatter: float,
+) -> None:
     known, level = _earth_columns(unknowns, still.position, earth)
     known = turned(known, still.about, still.angle)
     up = turned(still.position.up, still.about, still.angle)
@@ -206,7 +219,7 @@ def _add_still(rows: _Rows, unknowns: _Unknowns, still: Still, matrix: Array, ea
         coefficients[column] = matrix @ turned(axis, still.about, still.angle)
     rows.design.append(coefficients)
     rows.observed.append(still.mean - constant)
-    rows.sigma.append(still.sigma)
+    rows.sigma.append(np.hypot(still.sigma, scatter))
 
 
 def _add_turn(
@@ -217,7 +230,7 @@ def _add_turn(
     matrix: Array,
     bias: Array,
     earth: Earth,
-    position_sigma: float,
+    sigmas: tuple[float, float],  # of the position and between manoeuvres
     levels: dict[int, float],
 ) -> None:
     known, level = _earth_columns(unknowns, turn.position, earth)
@@ -256,8 +269,12 @@ def _add_turn(
             :, :, None
         ]
     for i, axis in enumerate(level_axes(turn.about)):
-        column = unknowns.column(f"tilt {i}", turn.position.name, position_sigma)
+        column = unknowns.column(f"tilt {i}", turn.position.name, sigmas[0])
         parts[column] = (np.outer(angle, matrix @ np.cross(axis, turn.about)))[:, :, None]
+    if sigmas[1]:
+        for i in range(3):
+            column = unknowns.column(f"offset {i}", f"{turn.position.name} {number}", sigmas[1])
+            parts[column] = turn.seconds[:, None, None] * np.eye(3)[None, :, [i]]
     observed = sums + np.outer(turn.seconds, up) * earth.up
 
     # Two combinations of every block that do not see its angle.
@@ -309,7 +326,7 @@ def _add_steady(
     number: int,
     matrix: Array,
     earth: Earth,
-    position_sigma: float,
+    sigmas: tuple[float, float],  # of the position and between manoeuvres
 ) -> None:
     known, level = _earth_columns(unknowns, steady.position, earth)
     angles = steady.rate * np.linspace(0, steady.seconds, 200)
@@ -320,13 +337,13 @@ def _add_steady(
     for column, axis in level:
         coefficients[column] = matrix @ _turned_all(axis, steady.about, angles).mean(axis=0)
     for i, axis in enumerate(level_axes(steady.about)):
-        column = unknowns.column(f"tilt {i}", steady.position.name, position_sigma)
+        column = unknowns.column(f"tilt {i}", steady.position.name, sigmas[0])
         coefficients[column] = steady.rate * (matrix @ np.cross(axis, steady.about))
     column = unknowns.column("rate", f"{steady.position.name} {number}", steady.rate_sigma)
     coefficients[column] = matrix @ steady.about
     rows.design.append(coefficients)
     rows.observed.append(steady.mean + up * earth.up)
-    rows.sigma.append(steady.sigma)
+    rows.sigma.append(np.hypot(steady.sigma, sigmas[1]))
 
 
 @dataclass(frozen=True)
@@ -341,18 +358,19 @@ class Angle:
     density: float  # rad/√s
 
 
-def known_angle(turns: Sequence[Angle], earth: Earth) -> Estimate:
+def known_angle(turns: Sequence[Angle], earth: Earth, scatter: float = 0.0) -> Estimate:
     """Bias and scale factor error of one gyro from turns about it, forward and backward.
 
     α̃ = b t + (1 + s) α + ω_e sinφ t for each turn; for one forward and one backward turn over
     equal times this is S0 (3-9), (3-10): b = (α̃₁+α̃₂)/(2t) − ω_e sinφ, s = (α̃₁−α̃₂)/(2α) − 1.
-    Unknowns: b, s, the upward earth rate.
+    Unknowns: b, s, the upward earth rate. `scatter` as in `joint`.
     """
     seconds = np.array([turn.seconds for turn in turns])
     angles = np.array([turn.angle for turn in turns])
     up = np.array([turn.up for turn in turns])
     summed = np.array([turn.summed for turn in turns])
-    sigma = np.sqrt([turn.density**2 * turn.seconds + turn.angle_sigma**2 for turn in turns])
+    variance = [turn.density**2 * turn.seconds + turn.angle_sigma**2 for turn in turns]
+    sigma = np.sqrt(variance + (scatter * seconds) ** 2)
     design = np.column_stack([seconds, angles, up * seconds])
     prior, prior_sigma = np.array([0.0, 0.0, earth.up]), np.array([1.0, 1.0, earth.up_sigma])
     return solve(design, summed - angles, sigma, prior, prior_sigma, 2)

@@ -57,6 +57,7 @@ _STYLE: Any = {
     "font.size": 7.5,
     "grid.color": RULE,
     "grid.linewidth": 0.4,
+    "hatch.linewidth": 0.4,
     "legend.fontsize": 7,
     "legend.frameon": False,
     "lines.linewidth": 1.0,
@@ -94,7 +95,7 @@ def style() -> Iterator[None]:
 class Margins:
     """Space around and between panels, inches."""
 
-    left: float = 0.5
+    left: float = 0.46
     right: float = 0.1
     top: float = 0.22
     bottom: float = 0.4
@@ -183,5 +184,5 @@ def shade(axes: Axes, phase: str, start: float, end: float) -> None:
 def hatch_missing(axes: Axes, start: float, end: float) -> None:
     """Mark a stretch that was not recorded."""
     axes.axvspan(
-        start, end, facecolor="none", edgecolor=MISSING, hatch="//////", linewidth=0.6, zorder=3
+        start, end, facecolor="#f6ebf1", edgecolor=MISSING, hatch="///", linewidth=0.6, zorder=3
     )

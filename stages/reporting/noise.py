@@ -56,7 +56,7 @@ def _places(rows: Sequence[Record]) -> list[Place]:
 def _figure(rows: Sequence[Record], sheet: dict[str, float | None]) -> Figure:
     places = {place: number for number, place in enumerate(_places(rows))}
     with style():
-        margins = Margins(left=0.62, right=0.95, top=0.1, bottom=1.05, down=0.15)
+        margins = Margins(left=0.46, right=0.95, bottom=1.05)
         figure, axes = panels(2, 1, 1.45, margins)
         for (panel,), sensor in zip(axes, SENSOR, strict=True):
             unit = RANDOM_WALK[sensor]
@@ -79,8 +79,8 @@ def _figure(rows: Sequence[Record], sheet: dict[str, float | None]) -> Figure:
                 )
             panel.set_yscale("log")
             plain_numbers(panel.yaxis)
-            panel.set_ylabel(f"{SENSOR[sensor]}, {unit.name}")
-            panel.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+            panel.set_title(f"{SENSOR[sensor]}, {unit.name}", pad=3)
+        axes[0][0].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
         ticks = list(places.items())[:: max(1, -(-len(places) // MOST_NAMES))]
         panel.set_xticks(
             [number for _, number in ticks],
@@ -161,22 +161,19 @@ def _by_manoeuvre(rows: Sequence[Record], sensor: str) -> Table:
             row = by_place.get((*place, f"{sensor}_{axis}"))
             value = row["white_noise"] / unit.size if row else None
             sigma = row["sigma"] / unit.size if row else None
-            if decimals is None:
-                yield from (numbers.significant(value, 3), "—")
-            else:
-                yield from (numbers.fixed(value, decimals), numbers.fixed(sigma, decimals))
+            yield from numbers.with_sigma(value, sigma, decimals)
 
     more = len(places) - MOST_ROWS
     return Table(
         f"{SENSOR[sensor]} by manoeuvre, {unit.name}.",
         (
-            Column("Manoeuvre"),
+            Column("Manoeuvre", "name"),
             *(
                 column
                 for axis in AXES
                 for column in (Column("value", "number", axis), Column("± σ", "sigma", axis))
             ),
         ),
-        tuple(Row((_named(place, 60), *cells(place))) for place in places[:MOST_ROWS]),
+        tuple(Row((_named(place, 40), *cells(place))) for place in places[:MOST_ROWS]),
         note=f"{numbers.whole(more)} more in the noise table of the campaign." if more > 0 else "",
     )

@@ -56,6 +56,13 @@ def common_decimals(sigmas: Iterable[float | None]) -> int | None:
     return min(max(each), min(each) + 2) if each else None
 
 
+def with_sigma(value: float | None, sigma: float | None, decimals: int | None) -> tuple[str, str]:
+    """A value and its sigma with the same decimals; to five digits where no sigma is known."""
+    if decimals is None:
+        return significant(value, 5), "—"
+    return fixed(value, decimals), fixed(sigma, decimals)
+
+
 def aligned(texts: Sequence[str]) -> list[str]:
     """`texts` padded on the right so that their decimal points stand below each other."""
     fractions = ["" if "×" in text else text.partition(".")[2] for text in texts]
@@ -87,6 +94,12 @@ def probability(p_value: float | None) -> str:
         digit, _, exponent = f"{p_value:.0e}".partition("e")
         return f"{digit} × 10{raised(int(exponent))}"
     return fixed(p_value, 3 if p_value < 0.1 else 2)
+
+
+def p_is(p_value: float | None) -> str:
+    """A p-value as part of a sentence: p = 0.41, p < 10⁻³⁰⁰."""
+    text = probability(p_value)
+    return f"p {text}" if text.startswith("<") else f"p = {text}"
 
 
 def counted(count: int, one: str, many: str = "") -> str:

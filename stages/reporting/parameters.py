@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
@@ -51,7 +51,7 @@ COLUMNS = (
     Column("value", "number", "SI"),
     Column("± σ", "sigma", "SI"),
     Column("unit", "unit", "SI"),
-    Column("Meaning, frame", "note"),
+    Column("Meaning", "note"),
     Column("Identifier", "code"),
 )
 
@@ -97,7 +97,7 @@ def estimates(
         fits = {row["method"]: row for row in records(fit)}
         rows = records(parameters)
         for method in dict.fromkeys([*(row["method"] for row in rows), *fits]):
-            own = tuple(row for row in rows if row["method"] == method)
+            own = tuple(by_kind(row for row in rows if row["method"] == method))
             found.append(Estimate(stage, method, own, fits.get(method)))
     return found
 
@@ -105,6 +105,12 @@ def estimates(
 def kind_of(parameter: str) -> str:
     """What a parameter is one of: bias, scale, cross, mounting, symmetric."""
     return parameter.partition("_")[0]
+
+
+def by_kind(rows: Iterable[Record]) -> list[Record]:
+    """Bias first, then scale, cross-axis terms and the rest; within, as they come."""
+    order = {kind: place for place, kind in enumerate(KIND)}
+    return sorted(rows, key=lambda row: order.get(kind_of(row["parameter"]), len(order)))
 
 
 def symbol(parameter: str) -> str:
@@ -144,7 +150,8 @@ def _parts(estimate: Estimate) -> Iterator[Part]:
     if estimate.fit is not None:
         yield _fit(estimate)
     yield Table(
-        caption=f"Determined: {numbers.counted(len(estimate.determined), 'parameter')}.",
+        caption=f"Determined: {numbers.counted(len(estimate.determined), 'parameter')}; "
+        f"frame: {', '.join(dict.fromkeys(row['frame'] for row in estimate.determined)) or 'none'}.",
         columns=COLUMNS,
         rows=tuple(_rows(estimate.determined)),
         empty="None is determined; section 4 says why.",
@@ -158,7 +165,7 @@ def _fit(estimate: Estimate) -> Paragraph:
     sentence = (
         f"χ² = {numbers.significant(fit['chi_squared'])} with "
         f"{numbers.counted(fit['degrees'], 'degree')} of freedom, "
-        f"p = {numbers.probability(fit['p_value'])}"
+        f"{numbers.p_is(fit['p_value'])}"
     )
     if estimate.misfit:
         return Paragraph(f"{sentence}: {MISFIT}.", "poor")
@@ -169,7 +176,8 @@ def _fit(estimate: Estimate) -> Paragraph:
 
 def _rows(parameters: Sequence[Record]) -> Iterator[Row]:
     """One row per parameter below the name of its kind, digits under digits."""
-    groups = [list(rows) for _, rows in groupby(parameters, lambda r: kind_of(r["parameter"]))]
+    kinds = groupby(parameters, lambda row: kind_of(row["parameter"]))
+    groups = [list(rows) for _, rows in kinds]
     cells = [written for group in groups for written in _written(group)]
     columns = [numbers.aligned(column) for column in zip(*cells, strict=True)]
     lines = iter(zip(*columns, strict=True))
@@ -179,7 +187,7 @@ def _rows(parameters: Sequence[Record]) -> Iterator[Row]:
         for row in group:
             value, sigma, si_value, si_sigma = next(lines)
             unit = units.quantity(row["parameter"], row["unit"])
-            meaning = f"{numbers.shortened(row['meaning'], 160)}; {row['frame']}"
+            meaning = numbers.shortened(row["meaning"], 160)
             laboratory = (value, sigma, unit.laboratory.name)
             si = (si_value, si_sigma, unit.si.name)
             yield Row((symbol(row["parameter"]), *laboratory, *si, meaning, row["id"]), row["id"])
@@ -194,15 +202,18 @@ def _written(group: Sequence[Record]) -> list[tuple[str, ...]]:
 
 
 def _in_units(group: Sequence[Record], each: Sequence[units.Unit]) -> list[tuple[str, str]]:
-    """Values and sigmas with common decimals; values to five digits where no sigma is known."""
+    """Values and sigmas, with common decimals where the unit is the same."""
     values = [unit.of(row["value"]) for row, unit in zip(group, each, strict=True)]
     sigmas = [unit.of(row["sigma"]) for row, unit in zip(group, each, strict=True)]
-    decimals = numbers.common_decimals(sigmas)
-    if decimals is None:
-        return [(numbers.significant(value, 5), "—") for value in values]
+    decimals = {
+        name: numbers.common_decimals(
+            s for s, unit in zip(sigmas, each, strict=True) if unit.name == name
+        )
+        for name in {unit.name for unit in each}
+    }
     return [
-        (numbers.fixed(value, decimals), numbers.fixed(sigma, decimals))
-        for value, sigma in zip(values, sigmas, strict=True)
+        numbers.with_sigma(value, sigma, decimals[unit.name])
+        for value, sigma, unit in zip(values, sigmas, each, strict=True)
     ]
 
 

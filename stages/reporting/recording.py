@@ -14,8 +14,8 @@ from stages.reporting.units import DEGREES, DEGREES_PER_SECOND
 
 COLUMNS = (
     Column("", "mark"),
-    Column("Manoeuvre"),
-    Column("Set"),
+    Column("Manoeuvre", "name"),
+    Column("Set", "name"),
     Column("plan", "number", "Angle, °"),
     Column("recorded", "number", "Angle, °"),
     Column("missing", "number", "Angle, °"),
@@ -56,7 +56,7 @@ def _row(plan: Record, done: Record | None) -> Row:
     return Row(
         (
             mark,
-            numbers.shortened(plan["manoeuvre"], 40),
+            numbers.shortened(plan["manoeuvre"], 28),
             attitude(plan),
             _number(DEGREES.of(plan["angle"]), 1),
             _number(DEGREES.of(done["angle"]) if turns else None, 2),

@@ -46,12 +46,13 @@ RANDOM_WALK = {
 
 _ANGLE = Quantity(SECONDS_OF_ARC, Unit("µrad", 1e-6))
 _BY_UNIT = {
-    "m/s²": Quantity(MICRO_G, Unit("m/s²", 1.0)),
+    "m/s²": Quantity(MICRO_G, Unit("10⁻³ m/s²", 1e-3)),
     "rad/s": Quantity(DEGREES_PER_HOUR, Unit("10⁻⁶ rad/s", 1e-6)),
     "rad": _ANGLE,
 }
+_RATIO = Quantity(PPM, Unit("10⁻⁶", 1e-6))
 _DIMENSIONLESS = {
-    "scale": Quantity(PPM, Unit("10⁻⁶", 1e-6)),
+    "scale": _RATIO,
     "cross": _ANGLE,
     "symmetric": _ANGLE,
     "mounting": _ANGLE,
@@ -61,10 +62,12 @@ _DIMENSIONLESS = {
 def quantity(parameter: str, unit: str) -> Quantity:
     """How `parameter`, which is tabled in `unit`, is written.
 
-    A cross-axis term is a small angle, whether its unit is stated as 1 or as rad.
-    A unit that is not known here stays as it is.
+    A cross-axis term is a small angle, whether its unit is stated as 1 or as rad;
+    a term on the diagonal is a ratio. A unit that is not known here stays as it is.
     """
-    kind = parameter.partition("_")[0]
+    kind, _, axes = parameter.partition("_")
+    if axes in ("xx", "yy", "zz") and unit in ("1", ""):
+        return _RATIO
     if kind in _DIMENSIONLESS and unit in ("1", "rad", ""):
         return _DIMENSIONLESS[kind]
     return _BY_UNIT.get(unit) or Quantity(Unit(unit, 1.0), Unit(unit, 1.0))

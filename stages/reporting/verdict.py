@@ -123,12 +123,12 @@ def _worst(have: dict[str, Record]) -> dict[str, str]:
 def _fit(stage: str, estimate: Estimate | None) -> str:
     if estimate is None or estimate.fit is None:
         return ""
-    p_value = numbers.probability(estimate.fit["p_value"])
+    p_is = numbers.p_is(estimate.fit["p_value"])
     if estimate.misfit:
-        return f"{SENSOR[stage]}: {MISFIT} (p = {p_value})."
+        return f"{SENSOR[stage]}: {MISFIT} ({p_is})."
     if not estimate.fit["degrees"]:
         return f"{SENSOR[stage]}: nothing is left over to test the model with."
-    return f"{SENSOR[stage]}: the model describes the data within the noise (p = {p_value})."
+    return f"{SENSOR[stage]}: the model describes the data within the noise ({p_is})."
 
 
 def _left_out(found: Sequence[Estimate]) -> Iterator[str]:
@@ -240,8 +240,8 @@ def section(
         "Verdict",
         "Whether this calibration can be used, and why.",
         "Calibrated: the joint fits determine all 24 parameters and describe their data "
-        "(p ≥ 0.01). In part: some are not determined, or a model does not describe its data. Not calibrated: "
-        "none is determined.",
+        "(p ≥ 0.01). In part: some are not determined, or a model does not describe its data. "
+        "Not calibrated: none is determined.",
         parts,
     )
 
