@@ -296,3 +296,58 @@ rule gyroscope:
         "{wildcards.campaign}: the gyros from turns and rests"
     shell:
         STAGE
+
+
+rule report:
+    input:
+        campaign=f"{DERIVED}/plan/campaign.parquet",
+        known=f"{DERIVED}/plan/known.parquet",
+        sensors=f"{DERIVED}/plan/sensors.parquet",
+        inputs=f"{DERIVED}/plan/inputs.parquet",
+        manoeuvres=f"{DERIVED}/plan/manoeuvres.parquet",
+        accounts=f"{DERIVED}/decode/accounts.parquet",
+        refused=f"{DERIVED}/decode/refused.parquet",
+        clocks=f"{DERIVED}/decode/clocks.parquet",
+        quality_findings=f"{DERIVED}/quality/findings.parquet",
+        segment_findings=f"{DERIVED}/segment/findings.parquet",
+        segments=f"{DERIVED}/segment/segments.parquet",
+        performed=f"{DERIVED}/segment/performed.parquet",
+        traces=f"{DERIVED}/segment/traces.parquet",
+        noise=f"{DERIVED}/noise/noise.parquet",
+        accelerometer_parameters=f"{DERIVED}/accelerometer/parameters.parquet",
+        accelerometer_fit=f"{DERIVED}/accelerometer/fit.parquet",
+        accelerometer_averaging=f"{DERIVED}/accelerometer/averaging.parquet",
+        gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
+        gyroscope_fit=f"{DERIVED}/gyroscope/fit.parquet",
+        gyroscope_averaging=f"{DERIVED}/gyroscope/averaging.parquet",
+        code=code("report"),
+    output:
+        page="reports/{campaign}.html",
+        verdict="reports/{campaign}.txt",
+    log:
+        f"{DERIVED}/report/stage.log",
+    benchmark:
+        f"{DERIVED}/report/benchmark.tsv"
+    params:
+        reads=reads,
+    message:
+        "{wildcards.campaign}: the report"
+    shell:
+        "{PYTHON:q} -m stages.report {params.reads:q}"
+        " --output {output.page:q} --verdict {output.verdict:q} 2> {log:q}"
+
+
+rule pdf:
+    input:
+        html="reports/{campaign}.html",
+        code=code("pdf"),
+    output:
+        "reports/{campaign}.pdf",
+    log:
+        f"{DERIVED}/pdf/stage.log",
+    benchmark:
+        f"{DERIVED}/pdf/benchmark.tsv"
+    message:
+        "{wildcards.campaign}: the report as PDF"
+    shell:
+        "{PYTHON:q} -m stages.pdf --html {input.html:q} --output {output:q} 2> {log:q}"

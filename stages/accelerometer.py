@@ -42,6 +42,7 @@ def accelerometer(
         suffix = "" if manoeuvres["mount"].nunique() == 1 else f"@{mount}"
         found, left = stills(blocks, plan, performed, levels, "accel")
         if not found:
+            estimates.add_nothing(f"joint{suffix}", "; ".join(left))
             continue
         rests = [_rest(still) for still in found]
         fitted = with_scatter(

@@ -55,6 +55,7 @@ def gyroscope(
         rows = list(_recorded_turns(blocks, plan, performed))
         turns, steadies, refused = _turns(rows, levels, heading, rate_sigma)
         if not (found or turns or steadies):
+            estimates.add_nothing(f"joint{suffix}", "; ".join([*left, *refused.values()]))
             continue
         moving = (turns, steadies, earth, tilt)
         resting = [_still(still, heading) for still in found]
@@ -145,7 +146,8 @@ def _turns(
             seconds_of = part["seconds"].to_numpy()
             sums = part[GYRO].to_numpy() * seconds_of[:, None]
             angle = (float(row["angle"]), float(row["angle_sigma"]))
-            turns.append(Turn(position, about, *angle, sums, seconds_of, turning, resting))
+            by_hand = bool((part["phase"] == "turning").any())
+            turns.append(Turn(position, about, *angle, sums, seconds_of, turning, resting, by_hand))
     return turns, steadies, refused
 
 

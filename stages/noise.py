@@ -1,5 +1,6 @@
 """White noise of every channel in every manoeuvre, from the data, beside the data sheet's."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from stages.inference.spectrum import band_levels, white_level
 Array = NDArray[np.float64]
 
 LONGEST = 32768  # samples in one periodogram; bounds the memory of a long log
+_SENSORS = {"accel": slice(0, 3), "gyro": slice(3, 6)}
 SHORTEST = 16  # samples below which nothing is said about noise
 
 
@@ -45,8 +47,7 @@ def noise(
             key = (str(row.manoeuvre), phase)
             for start in range(0, len(chosen), LONGEST):
                 part = chosen[start : start + LONGEST]
-                if len(part) >= SHORTEST:
-                    spectra.setdefault(key, _Spectra()).add(part, 1 / interval, (from_hz, to_hz))
+                spectra.setdefault(key, _Spectra()).add(part, 1 / interval, (from_hz, to_hz))
     rows_out = [
         row | {"data_sheet": sheet[row["channel"]]}
         for (manoeuvre, phase), collected in spectra.items()
@@ -56,35 +57,47 @@ def noise(
 
 
 class _Spectra:
-    """The band levels of one manoeuvre, piece by piece."""
+    """The band levels of one manoeuvre, piece by piece, for each sensor by itself.
+
+    Accelerometers and gyros may come in records of their own.
+    """
 
     def __init__(self) -> None:
-        self.levels: list[Array] = []
-        self.squares, self.samples = np.zeros(6), 0
+        self.levels: dict[str, list[Array]] = {}
+        self.squares = np.zeros(6)
+        self.samples: dict[str, int] = {}
 
     def add(self, values: Array, rate: float, band: tuple[float, float]) -> None:
-        self.levels.append(band_levels(values, rate, band))
-        self.squares += np.var(values, axis=0) * len(values)
-        self.samples += len(values)
+        for sensor, columns in _SENSORS.items():
+            part = values[:, columns]
+            part = part[np.isfinite(part).any(axis=1)]
+            if len(part) >= SHORTEST:
+                whole = np.isfinite(part).all(axis=0)
+                levels = band_levels(np.where(whole, part, 0.0), rate, band)
+                self.levels.setdefault(sensor, []).append(np.where(whole, levels, np.nan))
+                self.squares[columns] += np.var(part, axis=0) * len(part)
+                self.samples[sensor] = self.samples.get(sensor, 0) + len(part)
 
-    def rows(self, manoeuvre: str, phase: str) -> list[dict[str, Any]]:
-        white, sigma = white_level(np.concatenate(self.levels))
-        return [
-            {
-                "manoeuvre": manoeuvre,
-                "phase": phase,
-                "channel": channel,
-                "white_noise": float(white[i]),
-                "sigma": float(sigma[i]),
-                "per_sample": float(np.sqrt(self.squares[i] / self.samples)),
-                "samples": self.samples,
-            }
-            for i, channel in enumerate(tables.CHANNELS)
-            if np.isfinite(white[i])
-        ]
+    def rows(self, manoeuvre: str, phase: str) -> Iterator[dict[str, Any]]:
+        for sensor, levels in self.levels.items():
+            white, sigma = white_level(np.concatenate(levels))
+            for i, axis in enumerate(tables.AXES):
+                if white[i] > 0:
+                    square = self.squares[_SENSORS[sensor]][i]
+                    yield {
+                        "manoeuvre": manoeuvre,
+                        "phase": phase,
+                        "channel": f"{sensor}_{axis}",
+                        "white_noise": float(white[i]),
+                        "sigma": float(sigma[i]),
+                        "per_sample": float(np.sqrt(square / self.samples[sensor])),
+                        "samples": self.samples[sensor],
+                    }
 
 
-def _unbroken(samples: Stream, gaps: pd.DataFrame, masks: pd.DataFrame) -> Any:
+def _unbroken(
+    samples: Stream, gaps: pd.DataFrame, masks: pd.DataFrame
+) -> Iterator[tuple[str, NDArray[np.int64], Array]]:
     """Records of one log without a gap or a masked record between them: log, numbers, values."""
     for log, piece in pieces(samples, ["record", *tables.CHANNELS]):
         record = piece["record"]

@@ -13,11 +13,19 @@ from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 
+from stages.contracts.errors import Refusal
+
 PACKAGES = "libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
 
 
 def pdf(html: str) -> bytes:
-    """`html` as PDF; the same page gives the same bytes."""
+    """`html` as PDF; the same page gives the same bytes.
+
+    Raises
+    ------
+    Refusal
+        where the system lacks the libraries that set text
+    """
     weasyprint = _weasyprint()
     nothing_outside = weasyprint.urls.URLFetcher(allowed_protocols=("data",))
     document = weasyprint.HTML(string=html, url_fetcher=nothing_outside)
@@ -29,13 +37,13 @@ def _weasyprint() -> ModuleType:
     try:
         return importlib.import_module("weasyprint")
     except OSError as error:
-        sys.exit(
-            f"pdf: WeasyPrint cannot load its libraries\n"
-            f"  found:    {str(error).splitlines()[0]}\n"
-            f"  expected: Pango and HarfBuzz, Debian packages {PACKAGES}\n"
-            f"  cure:     apt-get install {PACKAGES}\n"
-            f"The report itself is there as HTML."
-        )
+        raise Refusal(
+            "WeasyPrint",
+            "its libraries",
+            str(error).partition("\n")[0],
+            "Pango and HarfBuzz",
+            f"apt-get install {PACKAGES}",
+        ) from error
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -44,7 +52,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--html", type=Path, required=True, help="the page that report wrote")
     parser.add_argument("--output", type=Path, required=True, help="the PDF")
     given = parser.parse_args(arguments)
-    written = pdf(given.html.read_text(encoding="utf-8"))
+    try:
+        written = pdf(given.html.read_text(encoding="utf-8"))
+    except Refusal as refusal:
+        sys.exit(f"pdf: {refusal}\nThe report is there as a page: {given.html}")
     given.output.parent.mkdir(parents=True, exist_ok=True)
     part = given.output.with_name(f"{given.output.name}.part")
     part.write_bytes(written)

@@ -232,10 +232,10 @@ def _score(one: Binned, stretch: Stretch, row: dict[str, Any], level: Array) -> 
     if not stretch.moves:
         return 0.0
     if row["recorded"] == "steady":
-        rate = float(np.mean(_about(one, row, level)[inside]))
+        rate = float(np.nanmean(_about(one, row, level)[inside]))
         return turn_score(rate, _some(row["rate"]))
     return turn_score(
-        float(np.sum(_about(one, row, level)[inside]) * one.seconds), _some(row["angle"])
+        float(np.nansum(_about(one, row, level)[inside]) * one.seconds), _some(row["angle"])
     )
 
 
@@ -252,7 +252,9 @@ def _about(one: Binned, row: dict[str, Any], level: Array) -> Array:
     """Rate about the axis of the turn in each bin, rad/s."""
     about = _vector(row, "about")
     assert about is not None  # the plan refuses a turn without an axis
-    return np.asarray(np.nan_to_num(one.rates - level) @ about)
+    rates = one.rates - level
+    recorded = np.isfinite(rates).any(axis=1)
+    return np.where(recorded, np.nan_to_num(rates) @ about, np.nan)
 
 
 # ---- the parts of each manoeuvre
@@ -362,9 +364,10 @@ def _performed_positions(row: dict[str, Any], number: int) -> dict[str, Any]:
 
 
 def _performed_rest(one: Binned, row: dict[str, Any], stretch: Stretch) -> dict[str, Any]:
-    seconds = (one.edges[stretch.after] - one.edges[stretch.first]) * one.seconds
     seconds = float(one.last_s[stretch.after - 1] - one.first_s[stretch.first])
-    seconds = seconds if np.isfinite(seconds) else 0.0
+    if not np.isfinite(seconds):
+        records = int(one.edges[stretch.after] - one.edges[stretch.first])
+        return _row(row, sentence=f"{records} records at rest, without time.")
     planned = _some(row["seconds"])
     of = f" of the {planned:g} s planned" if planned else ""
     return _row(row, seconds=seconds, sentence=f"{seconds:.2f} s at rest{of}.")
@@ -382,7 +385,7 @@ def _performed_turn(
 ) -> dict[str, Any]:
     first, after = _motion(one, found, index)
     about = _about(one, row, level)
-    angle = float(np.sum(about[first:after] * _bin_seconds(one)[first:after]))
+    angle = float(np.nansum(about[first:after] * _bin_seconds(one)[first:after]))
     moves = [p for p in parts if p.phase not in ("rest-before", "rest-after")]
     lost = gaps[
         (gaps["log"] == one.window.log)
@@ -395,7 +398,7 @@ def _performed_turn(
     rate = None
     if steady:
         inside = (one.edges[:-1] >= steady[0].first) & (one.edges[1:] <= steady[0].after)
-        rate = float(np.mean(about[inside])) if inside.any() else float(np.mean(about[first:after]))
+        rate = float(np.nanmean(about[inside] if inside.any() else about[first:after]))
     bins = len(one.edges) - 1
     rest_before, rest_after = first > 0, after < bins
     planned = _some(row["angle"])
@@ -412,18 +415,23 @@ def _performed_turn(
     of = (
         f"{degrees(angle):.2f}° of {degrees(planned):.0f}°" if planned else f"{degrees(angle):.2f}°"
     )
-    reasons = []
+    reasons, remark = [], ""
     if missing_s:
         reasons.append(f"{missing_s:.2f} s are missing while it turns")
-    if not rest_before:
-        reasons.append("the log begins while it turns")
-    if not rest_after:
-        reasons.append("the log ends while it turns")
+    # A hand stops within a bin: what is cut off then is less than the sigma of the angle.
+    edges = [] if rest_before else [("begins", about[0])]
+    edges += [] if rest_after else [("ends", about[-1])]
+    for what, edge in edges:
+        if not abs(edge) * BIN / 2 < (_some(row["angle_sigma"]) or 0.0):
+            reasons.append(f"the log {what} while it turns")
+        else:
+            at = degrees(abs(edge))
+            remark += f"; it {what} at {at:.0f} °/s, which its sigma covers"
     off = planned is not None and abs(angle / planned - 1) > tolerance
     if off and not reasons:
         reasons.append("the angle is not the planned one")
     if not reasons:
-        return _row(row, **values, missing_angle=0.0, sentence=f"{of} from rest to rest.")
+        return _row(row, **values, missing_angle=0.0, sentence=f"{of} from rest to rest{remark}.")
     missing = None
     if missing_s and rate is not None:
         missing = rate * missing_s

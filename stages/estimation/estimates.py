@@ -83,6 +83,12 @@ class Estimates:
             reasons = reasons | {name: "it needs all nine elements of M" for name in derived}
         self.add(method, NAMES + derived, values, jacobian @ covariance @ jacobian.T, reasons)
 
+    def add_nothing(self, method: str, reason: str) -> None:
+        """None of the twelve parameters is determined, for one reason."""
+        reason = reason or "there is no rest whose upward direction is known, and no turn"
+        nothing = (np.zeros(len(NAMES)), np.zeros((len(NAMES), len(NAMES))))
+        self.add(method, NAMES, *nothing, dict.fromkeys(NAMES, reason))
+
     def add_fit(
         self,
         method: str,

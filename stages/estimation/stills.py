@@ -41,7 +41,6 @@ class Still:
     def over(self, seconds: float = np.inf) -> tuple[Array, Array]:
         """Mean reading over the first so many seconds, and the sigma that white noise leaves."""
         used = np.cumsum(self.seconds) - self.seconds < seconds
-        used |= np.isnan(self.seconds)
         mean = np.average(self.means[used], weights=self.counts[used], axis=0)
         return mean, self.density / np.sqrt(np.sum(self.seconds[used]))
 
@@ -72,18 +71,23 @@ def stills(
     groups = dict(list(at_rest.groupby(["manoeuvre", "phase"])))
     for row in plan.to_dict("records"):
         name, up, about = row["manoeuvre"], vector(row, "up"), vector(row, "about")
+        if row["do"] == "positions":
+            left.append(f"{name}: the attitudes of its rests are not known")
         if row["do"] == "rest" and not done.loc[name, "found"]:
             left.append(f"{name}: not found in its log")
         for phase in ("rest", "rest-before", "rest-after"):
             part = groups.get((name, phase))
             if part is None or part[channels].isna().all(axis=None):
                 continue
+            density = noise.of(name, "rest", channels)
             label = name if phase == "rest" else f"{name} ({phase})"
             after = phase == "rest-after"
             if up is None:
                 left.append(f"{label}: which way is up is not known")
             elif after and (not done.loc[name, "complete"] or pd.isna(row["angle"])):
                 left.append(f"{label}: its attitude is not known, for the turn is not whole")
+            elif part["seconds"].isna().any() or np.isnan(density).all():
+                left.append(f"{label}: its noise is not known, for it has no time or is too short")
             else:
                 found.append(
                     Still(
@@ -95,7 +99,7 @@ def stills(
                         part[channels].to_numpy(),
                         part["count"].to_numpy(),
                         part["seconds"].to_numpy(),
-                        noise.of(name, "rest", channels),
+                        density,
                     )
                 )
     return found, left
@@ -104,7 +108,6 @@ def stills(
 def averaging_times(found: list[Still], steps: int) -> list[float]:
     """Lengths of rest from one block to the longest, in equal ratios, s."""
     lengths = [still.seconds for still in found if still.row["do"] == "rest"]
-    lengths = [seconds for seconds in lengths if np.isfinite(seconds).all()]
     if not lengths:
         return []
     shortest = max(float(seconds.max()) for seconds in lengths)

@@ -71,7 +71,8 @@ class Turn:
     """A whole turn from rest to rest, in blocks.
 
     `sums`: (k, 3), rad; `seconds`: (k,); `angle`, `angle_sigma`: rad; `density` and
-    `quiet_density`: (3,), rad/√s, white noise while turning and at rest.
+    `quiet_density`: (3,), rad/√s, white noise while turning and at rest. `by_hand`: the
+    axis sways on the way, so only the sums over the whole turn are used.
     """
 
     position: Position
@@ -82,6 +83,7 @@ class Turn:
     seconds: Array
     density: Array
     quiet_density: Array
+    by_hand: bool = False
 
 
 @dataclass(frozen=True)
@@ -280,14 +282,18 @@ def _add_turn(
     # Two combinations of every block that do not see its angle.
     across = np.zeros((int(recorded.sum()) - 1, 3))
     across[:, recorded] = np.linalg.svd(along[None, recorded])[2][1:]
-    noise = np.sqrt(turn.seconds)
-    whiten = weight[None, :, None] / noise[:, None, None]
+    blocks = [slice(0, k)] if turn.by_hand else [slice(i, i + 1) for i in range(k)]
+    noise = np.sqrt([turn.seconds[block].sum() for block in blocks])
+    starts = [block.start for block in blocks]
     for direction in across:
-        rows.design.append(
-            {c: np.einsum("r,krc->kc", direction, whiten * part) for c, part in parts.items()}
-        )
-        rows.observed.append((observed * weight / noise[:, None]) @ direction)
-        rows.sigma.append(np.ones(k))
+        whitened = {
+            c: np.add.reduceat(np.einsum("r,krc->kc", direction * weight, part), starts, axis=0)
+            / noise[:, None]
+            for c, part in parts.items()
+        }
+        rows.design.append(whitened)
+        rows.observed.append(np.add.reduceat(observed @ (direction * weight), starts) / noise)
+        rows.sigma.append(np.ones(len(blocks)))
 
     # The turn as a whole, along its axis; what the table does on the way is no noise here.
     quiet = np.where(recorded, 1 / np.where(recorded, turn.quiet_density, 1.0), 0.0)

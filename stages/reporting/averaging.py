@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from stages.reporting import numbers
 from stages.reporting.drawing import AXIS_COLOUR, INK, Margins, panels, plain_numbers, style, svg
 from stages.reporting.outline import Figure, Heading, Paragraph, Part, Section
-from stages.reporting.parameters import METHOD, SENSOR, by_kind, kind_of
+from stages.reporting.parameters import SENSOR, Estimate, by_kind, kind_of
 from stages.reporting.rows import Record, records
 from stages.reporting.units import Quantity, quantity
 
@@ -58,7 +58,7 @@ def _figures(group: str, rows: Sequence[Record], unit_of: dict[str, str]) -> Ite
     for row in by_kind({**row, "parameter": row["parameter"].rpartition("/")[2]} for row in rows):
         curves.setdefault(f"{group}/{row['parameter']}", []).append(row)
     stage, _, method = group.partition("/")
-    title = f"{SENSOR.get(stage, stage)}, {METHOD.get(method, method)}"
+    title = Estimate(stage, method, (), None).name
     ids = list(curves)[:MOST_PANELS]
     lines = -(-len(ids) // COLUMNS)
     with style():

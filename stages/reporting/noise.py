@@ -24,6 +24,7 @@ from stages.reporting.rows import Record, records
 from stages.reporting.units import RANDOM_WALK
 
 SENSOR = {"gyro": "Angle random walk", "accel": "Velocity random walk"}
+DATA_SHEET = "data sheet"
 MOST_ROWS = 48
 MOST_NAMES = 30
 Place = tuple[str, str]
@@ -75,12 +76,16 @@ def _figure(rows: Sequence[Record], sheet: dict[str, float | None]) -> Figure:
             stated = {sheet.get(f"{sensor}_{axis}") for axis in AXES} - {None}
             for value in sorted(v for v in stated if v is not None):
                 panel.axhline(
-                    value / unit.size, color=INK, linewidth=0.8, dashes=(5, 3), label="data sheet"
+                    value / unit.size, color=INK, linewidth=0.8, dashes=(5, 3), label=DATA_SHEET
                 )
             panel.set_yscale("log")
             plain_numbers(panel.yaxis)
             panel.set_title(f"{SENSOR[sensor]}, {unit.name}", pad=3)
-        axes[0][0].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        handles = dict(zip(*reversed(axes[0][0].get_legend_handles_labels()), strict=True))
+        shown = [name for name in (*AXES, DATA_SHEET) if name in handles]
+        axes[0][0].legend(
+            [handles[name] for name in shown], shown, loc="upper left", bbox_to_anchor=(1.0, 1.0)
+        )
         ticks = list(places.items())[:: max(1, -(-len(places) // MOST_NAMES))]
         panel.set_xticks(
             [number for _, number in ticks],

@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 from itertools import groupby
 from typing import ClassVar, Literal
 
-# What a column holds, hence how it is set: text; name (in one line); number (digits under digits); sigma (the number
-# after ±); unit; symbol (`b_x` with its index below); code; note (small); mark (✓ or ✗).
+# What a column holds, hence how it is set: text; name (in one line); number (digits under
+# digits); sigma (the number after ±); unit; symbol (`b_x` with its index below); code; note
+# (small); mark (✓ or ✗).
 Kind = Literal["text", "name", "number", "sigma", "unit", "symbol", "code", "note", "mark"]
 # How grave a row, a paragraph or a figure is. Never by colour alone: a word says it too.
 Tone = Literal["", "good", "fair", "poor"]

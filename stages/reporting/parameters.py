@@ -24,6 +24,7 @@ from stages.reporting.outline import (
     Row,
     Section,
     Table,
+    Tone,
 )
 from stages.reporting.rows import Record, records
 
@@ -66,9 +67,21 @@ class Estimate:
     fit: Record | None
 
     @property
+    def kind(self) -> str:
+        """The method without the mount that a parameter set may be of: joint of joint@upright."""
+        return self.method.partition("@")[0]
+
+    @property
+    def sensor(self) -> str:
+        """The sensor in words, with the mount where there are several."""
+        mount = numbers.shortened(self.method.partition("@")[2], 60)
+        sensor = SENSOR.get(self.stage, self.stage)
+        return f"{sensor} (mount {mount})" if mount else sensor
+
+    @property
     def name(self) -> str:
         """Sensor and method in words."""
-        return f"{SENSOR.get(self.stage, self.stage)}, {METHOD.get(self.method, self.method)}"
+        return f"{self.sensor}, {METHOD.get(self.kind, self.kind)}"
 
     @property
     def determined(self) -> list[Record]:
@@ -150,8 +163,7 @@ def _parts(estimate: Estimate) -> Iterator[Part]:
     if estimate.fit is not None:
         yield _fit(estimate)
     yield Table(
-        caption=f"Determined: {numbers.counted(len(estimate.determined), 'parameter')}; "
-        f"frame: {', '.join(dict.fromkeys(row['frame'] for row in estimate.determined)) or 'none'}.",
+        caption=f"Determined: {numbers.counted(len(estimate.determined), 'parameter')}.",
         columns=COLUMNS,
         rows=tuple(_rows(estimate.determined)),
         empty="None is determined; section 4 says why.",
@@ -160,18 +172,35 @@ def _parts(estimate: Estimate) -> Iterator[Part]:
         yield matrices
 
 
+def fit_in_words(estimate: Estimate) -> tuple[str, Tone]:
+    """Whether the model describes the data, plainly; nothing where no fit was made."""
+    fit = estimate.fit
+    if fit is None:
+        return "", ""
+    p_is = numbers.p_is(fit["p_value"])
+    if not estimate.misfit:
+        if not fit["degrees"]:
+            return "nothing is left over to test the model with", "fair"
+        return f"the model describes the data within the noise ({p_is})", "good"
+    if not fit["scatter"]:
+        return f"{MISFIT} ({p_is})", "poor"
+    unit = units.quantity("bias", fit["unit"]).laboratory
+    scatter = f"{numbers.significant(unit.of(fit['scatter']), 2)} {unit.name}"
+    return (
+        f"the model does not describe the data within the noise ({p_is}); manoeuvres differ by "
+        f"{scatter} beyond it, which the sigmas allow for"
+    ), "poor"
+
+
 def _fit(estimate: Estimate) -> Paragraph:
     fit = estimate.fit or {}
-    sentence = (
+    words, tone = fit_in_words(estimate)
+    allowed = ", the scatter between manoeuvres allowed for" if fit["scatter"] else ""
+    return Paragraph(
         f"χ² = {numbers.significant(fit['chi_squared'])} with "
-        f"{numbers.counted(fit['degrees'], 'degree')} of freedom, "
-        f"{numbers.p_is(fit['p_value'])}"
+        f"{numbers.counted(fit['degrees'], 'degree')} of freedom{allowed}: {words}.",
+        tone,
     )
-    if estimate.misfit:
-        return Paragraph(f"{sentence}: {MISFIT}.", "poor")
-    if not fit["degrees"]:
-        return Paragraph(f"{sentence}: nothing is left over to test the model with.", "fair")
-    return Paragraph(f"{sentence}: the model describes the data within the noise.", "good")
 
 
 def _rows(parameters: Sequence[Record]) -> Iterator[Row]:
@@ -183,7 +212,9 @@ def _rows(parameters: Sequence[Record]) -> Iterator[Row]:
     lines = iter(zip(*columns, strict=True))
     for group in groups:
         kind = kind_of(group[0]["parameter"])
-        yield Row((KIND.get(kind, numbers.shortened(kind, 60).capitalize()),), heads=True)
+        name = KIND.get(kind, numbers.shortened(kind, 60).capitalize())
+        frames = " and ".join(dict.fromkeys(row["frame"] for row in group))
+        yield Row((f"{name}; frame: {numbers.shortened(frames, 60)}",), heads=True)
         for row in group:
             value, sigma, si_value, si_sigma = next(lines)
             unit = units.quantity(row["parameter"], row["unit"])
@@ -205,12 +236,10 @@ def _in_units(group: Sequence[Record], each: Sequence[units.Unit]) -> list[tuple
     """Values and sigmas, with common decimals where the unit is the same."""
     values = [unit.of(row["value"]) for row, unit in zip(group, each, strict=True)]
     sigmas = [unit.of(row["sigma"]) for row, unit in zip(group, each, strict=True)]
-    decimals = {
-        name: numbers.common_decimals(
-            s for s, unit in zip(sigmas, each, strict=True) if unit.name == name
-        )
-        for name in {unit.name for unit in each}
-    }
+    by_unit: dict[str, list[float | None]] = {}
+    for sigma, unit in zip(sigmas, each, strict=True):
+        by_unit.setdefault(unit.name, []).append(sigma)
+    decimals = {name: numbers.common_decimals(those) for name, those in by_unit.items()}
     return [
         numbers.with_sigma(value, sigma, decimals[unit.name])
         for value, sigma, unit in zip(values, sigmas, each, strict=True)

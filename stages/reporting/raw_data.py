@@ -82,11 +82,11 @@ def section(
     findings: Sequence[Record],
 ) -> Section:
     """One figure per log, one per missing stretch."""
-    logs = _logs(traces, segments, clocks, findings)
-    points = int(np.clip(MOST_POINTS / (6 * max(len(logs), 1)), *POINTS_PER_CURVE))
-    small = len(logs) > MANY_LOGS
-    parts: list[Part] = [_figure(log, points, small) for log in logs]
-    close_ups = [(log, stretch) for log in logs for stretch in log.missing]
+    found = logs(traces, segments, clocks, findings)
+    points = int(np.clip(MOST_POINTS / (6 * max(len(found), 1)), *POINTS_PER_CURVE))
+    small = len(found) > MANY_LOGS
+    parts: list[Part] = [_figure(log, points, small) for log in found]
+    close_ups = [(log, stretch) for log in found for stretch in log.missing]
     if close_ups:
         parts.append(Heading("Missing stretches, close up"))
         parts += [_close_up(log, stretch) for log, stretch in close_ups[:MOST_CLOSE_UPS]]
@@ -95,7 +95,7 @@ def section(
             len(close_ups) - MOST_CLOSE_UPS, "further stretch", "further stretches"
         )
         parts.append(Paragraph(f"{more} missing; section 3 lists them."))
-    if not logs:
+    if not found:
         parts.append(Paragraph("None: no log gave samples that could be drawn.", "poor"))
     elif not close_ups:
         parts.append(Paragraph("Missing stretches: none.", "good"))
@@ -113,15 +113,16 @@ def section(
 # ---- what is drawn
 
 
-def _logs(
+def logs(
     traces: pd.DataFrame,
     segments: pd.DataFrame,
     clocks: pd.DataFrame,
     findings: Sequence[Record],
 ) -> list[Log]:
+    """Every log with its envelope, the phases of its manoeuvres and what is missing."""
     clock = {row["log"]: row for row in records(clocks)}
     phases = records(segments)
-    logs = []
+    found = []
     for name, rows in traces.groupby("log", sort=False, observed=True):
         log = str(name)
         timed = not bool(rows["from_s"].isna().any() or rows["to_s"].isna().any())
@@ -143,8 +144,8 @@ def _logs(
         )
         count = int(clock.get(log, {}).get("records") or rows["to_record"].max())
         drawn = Log(log, start, end, least, most, own, tuple(missing), timed, count)
-        logs.append(_cut(drawn))
-    return logs
+        found.append(_cut(drawn))
+    return found
 
 
 def _missing(

@@ -25,7 +25,7 @@ from stages.reporting.outline import (
     Table,
     Tone,
 )
-from stages.reporting.parameters import MISFIT, SENSOR, Estimate, kind_of
+from stages.reporting.parameters import SENSOR, Estimate, fit_in_words, kind_of
 from stages.reporting.rows import Record, only, records
 
 JOINT = "joint"
@@ -69,42 +69,45 @@ def verdict(
     describe their data (p ≥ 0.01). Not calibrated: they determine none. In part:
     everything between.
     """
-    joint = {estimate.stage: estimate for estimate in found if estimate.method == JOINT}
-    sets = {stage: _determined(joint.get(stage)) for stage in SENSOR}
-    whole = all(have.keys() >= WANTED for have in sets.values())
-    misfit = any(estimate.misfit for estimate in joint.values())
-    if not any(WANTED & have.keys() for have in sets.values()):
+    joint = joint_fits(found)
+    whole = all(_determined(estimate).keys() >= WANTED for estimate in joint)
+    misfit = any(estimate.misfit for estimate in joint)
+    if not any(WANTED & _determined(estimate).keys() for estimate in joint):
         level = "not calibrated"
     else:
         level = "calibrated" if whole and not misfit else "calibrated in part"
-    reasons = [_sentence(stage, have) for stage, have in sets.items()]
-    reasons += [sentence for stage in SENSOR if (sentence := _fit(stage, joint.get(stage)))]
-    reasons += _left_out(found)
+    reasons = [_sentence(estimate) for estimate in joint]
+    for estimate in joint:
+        words, _ = fit_in_words(estimate)
+        reasons += [f"{estimate.sensor}: {words}."] if words else []
+    reasons += _left_out(joint)
     reasons.append(_performed(manoeuvres, performed))
     reasons.append(_findings(findings))
     return Verdict(level, tuple(reasons))
 
 
-def _determined(estimate: Estimate | None) -> dict[str, Record]:
-    return {row["parameter"]: row for row in estimate.determined} if estimate else {}
+def joint_fits(found: Sequence[Estimate]) -> list[Estimate]:
+    """The joint fits of both sensors, one per mount; an empty one where there is none."""
+    joint = [estimate for estimate in found if estimate.kind == JOINT]
+    missing = [stage for stage in SENSOR if all(estimate.stage != stage for estimate in joint)]
+    joint += [Estimate(stage, JOINT, (), None) for stage in missing]
+    return sorted(joint, key=lambda estimate: list(SENSOR).index(estimate.stage))
 
 
-def _sentence(stage: str, have: dict[str, Record]) -> str:
+def _determined(estimate: Estimate) -> dict[str, Record]:
+    return {row["parameter"]: row for row in estimate.determined}
+
+
+def _sentence(estimate: Estimate) -> str:
     """What is determined of a sensor, and its worst sigma by kind."""
+    have = _determined(estimate)
     count = len(WANTED & have.keys())
     if not count:
-        return f"{SENSOR[stage]}: nothing is determined."
+        return f"{estimate.sensor}: nothing is determined."
+    whole = "all 12 parameters are determined"
+    amount = whole if count == len(WANTED) else f"{count} of 12 parameters are determined"
     worst = "; ".join(f"{KINDS[kind]} {text}" for kind, text in _worst(have).items())
-    amount = (
-        "all 12 parameters are determined"
-        if count == 12
-        else f"{count} of 12 parameters are determined"
-    )
-    return (
-        f"{SENSOR[stage]}: {amount}. Largest σ: {worst}."
-        if worst
-        else f"{SENSOR[stage]}: {amount}."
-    )
+    return f"{estimate.sensor}: {amount}." + (f" Largest σ: {worst}." if worst else "")
 
 
 def _worst(have: dict[str, Record]) -> dict[str, str]:
@@ -120,22 +123,11 @@ def _worst(have: dict[str, Record]) -> dict[str, str]:
     return worst
 
 
-def _fit(stage: str, estimate: Estimate | None) -> str:
-    if estimate is None or estimate.fit is None:
-        return ""
-    p_is = numbers.p_is(estimate.fit["p_value"])
-    if estimate.misfit:
-        return f"{SENSOR[stage]}: {MISFIT} ({p_is})."
-    if not estimate.fit["degrees"]:
-        return f"{SENSOR[stage]}: nothing is left over to test the model with."
-    return f"{SENSOR[stage]}: the model describes the data within the noise ({p_is})."
-
-
-def _left_out(found: Sequence[Estimate]) -> Iterator[str]:
-    for estimate in found:
-        if estimate.method == JOINT and estimate.fit and estimate.fit["left_out"]:
+def _left_out(joint: Sequence[Estimate]) -> Iterator[str]:
+    for estimate in joint:
+        if estimate.fit and estimate.fit["left_out"]:
             text = numbers.shortened(estimate.fit["left_out"], 400).rstrip(".")
-            yield f"{SENSOR.get(estimate.stage, estimate.stage)}, left out: {text}."
+            yield f"{estimate.sensor}, left out: {text}."
 
 
 def _performed(manoeuvres: pd.DataFrame, performed: pd.DataFrame) -> str:
@@ -231,7 +223,7 @@ def section(
                 Column("Cross-axis σ", "number"),
                 Column("Fit, p", "number"),
             ),
-            tuple(_glance(stage, found) for stage in SENSOR),
+            tuple(_glance(estimate) for estimate in joint_fits(found)),
         ),
         Facts(facts(campaign, known, clocks)),
     ]
@@ -246,14 +238,13 @@ def section(
     )
 
 
-def _glance(stage: str, found: Sequence[Estimate]) -> Row:
-    estimate = next((e for e in found if e.stage == stage and e.method == JOINT), None)
+def _glance(estimate: Estimate) -> Row:
     have = _determined(estimate)
     worst = _worst(have)
-    fit = estimate.fit if estimate else None
+    fit = estimate.fit
     return Row(
         (
-            SENSOR[stage],
+            estimate.sensor,
             f"{len(WANTED & have.keys())} of 12",
             *(worst.get(kind, "—") for kind in KINDS),
             numbers.probability(fit["p_value"]) if fit else "—",

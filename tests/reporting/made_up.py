@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -9,6 +11,7 @@ import numpy.typing as npt
 import pandas as pd
 
 from stages.contracts import tables
+from stages.report import Documents, report
 
 GRAVITY = 9.7936174
 DEGREE = np.pi / 180
@@ -23,11 +26,18 @@ BIAS = {"accel": (-0.0052949, 0.0050641, -0.0018790), "gyro": (1.30e-6, -2.10e-6
 Rows = list[dict[str, Any]]
 
 
-def campaign() -> dict[str, Any]:
-    """What the report takes, by name."""
+@cache
+def documents() -> Documents:
+    """The report on all of it."""
+    return report(**campaign())
+
+
+def campaign(logs: Collection[str] | None = None) -> dict[str, Any]:
+    """What the report takes, by name; where `logs` are given, raw data of these alone."""
     generator = np.random.default_rng(20231018)
     manoeuvres = _manoeuvres()
-    made = {
+    traces = [_trace(row, generator) for row in manoeuvres if logs is None or row["log"] in logs]
+    made: dict[str, Any] = {
         "campaign": _frame(tables.CAMPAIGN, [_about()]),
         "known": _frame(tables.KNOWN, _known()),
         "sensors": _frame(tables.SENSORS, _sensors()),
@@ -40,7 +50,7 @@ def campaign() -> dict[str, Any]:
         "segment_findings": _frame(tables.FINDINGS, _segment_findings()),
         "segments": _frame(tables.SEGMENTS, _segments(manoeuvres)),
         "performed": _frame(tables.PERFORMED, _performed(manoeuvres)),
-        "traces": pd.concat([_trace(row, generator) for row in manoeuvres], ignore_index=True),
+        "traces": pd.concat(traces, ignore_index=True) if traces else tables.TRACES.empty(),
         "noise": _frame(tables.NOISE, _noise(manoeuvres, generator)),
     }
     for stage, other in (("accelerometer", "six_position"), ("gyroscope", "turns")):
@@ -48,7 +58,11 @@ def campaign() -> dict[str, Any]:
         made[f"{stage}_parameters"] = _frame(tables.PARAMETERS, parameters)
         made[f"{stage}_fit"] = _frame(tables.FIT, _fit(stage, other))
         made[f"{stage}_averaging"] = _frame(tables.AVERAGING, _averaging(parameters, generator))
-    maker = {"settings": {"rest_block": 5.0}, "code": "c0de" * 16, "inputs": {"demo/a": "0" * 64}}
+    maker: dict[str, Any] = {
+        "settings": {"rest_block": 5.0},
+        "code": "c0de" * 16,
+        "inputs": {"demo/a": "0" * 64},
+    }
     stages = {"quality_findings": "quality", "noise": "noise"}
     made["provenance"] = {
         name: {"stage": stages.get(name, name.partition("_")[0]), **maker} for name in made
@@ -70,7 +84,7 @@ def _frame(table: Any, rows: Rows) -> pd.DataFrame:
     unknown = {name for row in rows for name in row} - set(names)
     assert not unknown, unknown
     frame = pd.DataFrame([{name: row.get(name) for name in names} for row in rows], columns=names)
-    return table.arrow(frame).to_pandas()
+    return pd.DataFrame(table.arrow(frame).to_pandas())
 
 
 def _about() -> dict[str, Any]:
@@ -341,21 +355,21 @@ def _trace(row: dict[str, Any], generator: np.random.Generator) -> pd.DataFrame:
     time = np.arange(0, _seconds(row), INTERVAL)
     if row["manoeuvre"] == "z-backward":
         time = time[(time <= GAP[0]) | (time >= GAP[1])]
-    time = time[: len(time) // per_row * per_row].reshape(-1, per_row)
+    pieces = time[: len(time) // per_row * per_row].reshape(-1, per_row)
     columns: dict[str, Any] = {
         "log": row["log"],
-        "from_record": np.arange(len(time)) * per_row,
-        "to_record": (np.arange(len(time)) + 1) * per_row,
-        "from_s": time[:, 0],
-        "to_s": time[:, -1],
+        "from_record": np.arange(len(pieces)) * per_row,
+        "to_record": (np.arange(len(pieces)) + 1) * per_row,
+        "from_s": pieces[:, 0],
+        "to_s": pieces[:, -1],
     }
     for i, axis in enumerate(AXES):
         force = GRAVITY * row[f"up_{axis}"] + BIAS["accel"][i]
-        turn = _rate(row, time) * (row.get(f"about_{axis}") or 0.0) + BIAS["gyro"][i]
+        turn = _rate(row, pieces) * (row.get(f"about_{axis}") or 0.0) + BIAS["gyro"][i]
         turning = row["do"] == "turn" and axis == "x" and row["about_x"] == 1.0
-        turn = turn + 0.01 * turning * np.sin(2 * np.pi * 20 * time) * (_rate(row, time) != 0)
+        turn = turn + 0.01 * turning * np.sin(2 * np.pi * 20 * pieces) * (_rate(row, pieces) != 0)
         for name, value, noise in (("accel", force, 1.07e-3), ("gyro", turn, 3.5e-5)):
-            samples = value + noise * generator.standard_normal(time.shape)
+            samples = value + noise * generator.standard_normal(pieces.shape)
             columns[f"least_{name}_{axis}"] = samples.min(axis=1)
             columns[f"most_{name}_{axis}"] = samples.max(axis=1)
     return pd.DataFrame(columns)
@@ -434,11 +448,12 @@ def _fit(stage: str, other: str) -> Rows:
     p_value = 2.4e-9 if stage == "gyroscope" else 0.41
     chi_squared = 812.4 if stage == "gyroscope" else 603.1
     used = "x-up, x-down, y-up, y-down, z-up, z-down, x-forward, x-backward, y-forward"
+    noise = {"scatter": 0.0, "unit": tables.UNITS["accel" if stage == "accelerometer" else "gyro"]}
     row = {"chi_squared": chi_squared, "degrees": 594, "p_value": p_value, "used": used}
     plain = {"chi_squared": 5.1, "degrees": 6, "p_value": 0.53, "used": "x-up, x-down, y-up"}
     return [
-        {"method": "joint", "left_out": left_out, **row},
-        {"method": other, "left_out": left_out, **plain},
+        {"method": "joint", "left_out": left_out, **row, **noise},
+        {"method": other, "left_out": left_out, **plain, **noise},
     ]
 
 

@@ -1,0 +1,84 @@
+"""How numbers are written, against what a metrologist would write by hand."""
+
+import pytest
+
+from stages.reporting import numbers
+from stages.reporting.numbers import FIGURE_SPACE, POINT_SPACE
+from stages.reporting.units import quantity
+
+
+@pytest.mark.parametrize(
+    ("sigma", "decimals"),
+    [
+        (0.43, 2),
+        (1.0, 1),
+        (12.4, 0),
+        (250.0, 0),
+        (0.0996, 2),
+        (4.2e-7, 8),
+        (None, None),
+        (0.0, None),
+    ],
+)
+def test_a_sigma_is_shown_to_two_digits(sigma: float | None, decimals: int | None) -> None:
+    assert numbers.decimals_of(sigma) == decimals
+
+
+def test_one_very_sure_number_does_not_lengthen_the_others() -> None:
+    assert numbers.common_decimals([1.2, 0.9]) == 2
+    assert numbers.common_decimals([1.2, 0.00012]) == 3
+    assert numbers.common_decimals([None, None]) is None
+
+
+def test_decimal_points_stand_below_each_other() -> None:
+    assert numbers.aligned(["−539.25", "5.1", "12", "—"]) == [
+        "−539.25",
+        f"5.1{FIGURE_SPACE}",
+        f"12{POINT_SPACE}{FIGURE_SPACE * 2}",
+        "—",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(9.79361744, "9.794"), (-1.3e-6, "−1.300 × 10⁻⁶"), (0.0, "0"), (9999.6, "10000"), (None, "—")],
+)
+def test_significant_digits(value: float | None, text: str) -> None:
+    assert numbers.significant(value) == text
+
+
+def test_no_negative_zero() -> None:
+    assert numbers.fixed(-0.004, 2) == "0.00"
+
+
+@pytest.mark.parametrize(
+    ("p_value", "text"),
+    [(0.41, "p = 0.41"), (9.6e-5, "p = 1 × 10⁻⁴"), (2.4e-9, "p = 2 × 10⁻⁹"), (0.0, "p < 10⁻³⁰⁰")],
+)
+def test_p_values(p_value: float, text: str) -> None:
+    assert numbers.p_is(p_value) == text
+
+
+def test_control_characters_become_visible_and_long_texts_end() -> None:
+    assert numbers.shortened("a\x00b\u202ec", 10) == "a�b�c"
+    assert numbers.shortened("x" * 50, 10) == "x" * 9 + "…"
+
+
+@pytest.mark.parametrize(
+    ("parameter", "unit", "value", "written", "name"),
+    [
+        ("bias_x", "m/s²", 9.80665e-3, 1000.0, "µg"),  # a µg by the standard g of 1901
+        ("bias_x", "rad/s", 7.292115e-5, 15.04107, "°/h"),  # the earth's rate, 15.041 °/h
+        ("scale_x", "1", 1e-6, 1.0, "ppm"),
+        ("cross_xy", "1", 1e-3, 206.26481, "arcsec"),
+        ("mounting_z", "rad", 1e-3, 206.26481, "arcsec"),
+        ("symmetric_xx", "1", 1e-6, 1.0, "ppm"),
+        ("lever_arm_x", "m", 0.05, 0.05, "m"),
+    ],
+)
+def test_units_of_the_laboratory(
+    parameter: str, unit: str, value: float, written: float, name: str
+) -> None:
+    laboratory = quantity(parameter, unit).laboratory
+    assert laboratory.of(value) == pytest.approx(written, rel=1e-6)
+    assert laboratory.name == name

@@ -1,0 +1,113 @@
+"""The report for print: pages, text, the same bytes, and nothing from outside."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import zlib
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from stages import pdf as stage
+from stages.pdf import pdf
+from stages.report import report
+from tests.reporting import made_up
+
+try:
+    import weasyprint
+except OSError:
+    weasyprint = None
+needs_pango = pytest.mark.skipif(weasyprint is None, reason="Pango is not installed")
+
+
+@cache
+def printed() -> bytes:
+    """A report with two logs, one of them not whole."""
+    return pdf(report(**made_up.campaign(logs=("x-up.asc", "z-backward.asc"))).html)
+
+
+def unpacked(document: bytes) -> bytes:
+    """The PDF with its compressed streams in the open."""
+    streams = re.findall(rb"stream\r?\n(.*?)\r?\nendstream", document, flags=re.DOTALL)
+    opened = []
+    for stream in streams:
+        try:
+            opened.append(zlib.decompress(stream))
+        except zlib.error:
+            opened.append(stream)
+    return document + b"\n".join(opened)
+
+
+@needs_pango
+def test_it_is_a_pdf_of_several_pages() -> None:
+    assert printed().startswith(b"%PDF-")
+    assert len(re.findall(rb"/Type /Page\b", unpacked(printed()))) > 3
+
+
+@needs_pango
+def test_it_holds_text(tmp_path: Path) -> None:
+    if shutil.which("pdftotext") is None:
+        pytest.skip("pdftotext is not installed (Debian package poppler-utils)")
+    file = tmp_path / "report.pdf"
+    file.write_bytes(printed())
+    done = subprocess.run(["pdftotext", "-layout", file, "-"], capture_output=True, check=True)
+    text = done.stdout.decode()
+    assert "Calibrated in part" in text
+    assert "accelerometer/joint/bias_x" in text
+    assert "z-backward.asc" in text
+    assert "made-up · NovAtel SPAN-CPT · serial SIM-001 · simulated" in text  # on every page
+    assert re.search(r"\b2 / \d+", text)
+
+
+@needs_pango
+def test_the_same_page_gives_the_same_bytes() -> None:
+    page = report(**made_up.poor()).html
+    assert pdf(page) == pdf(page)
+
+
+@needs_pango
+def test_it_tells_neither_the_time_nor_the_machine() -> None:
+    content = unpacked(printed())
+    for word in (b"CreationDate", b"ModDate", str(Path.cwd()).encode(), b"file://"):
+        assert word not in content
+
+
+@needs_pango
+def test_nothing_is_fetched_from_network_or_disk(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    secret = tmp_path / "secret.svg"
+    secret.write_text('<svg xmlns="http://www.w3.org/2000/svg"><text>secret</text></svg>')
+    page = f'<img src="{secret.as_uri()}" alt="a"><img src="http://127.0.0.1:9/b.png" alt="b">'
+    assert pdf(page).startswith(b"%PDF-")
+    assert caplog.text.count("URI uses disallowed protocol") == 2
+
+
+def test_missing_pango_is_named_with_its_packages(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def fail(name: str) -> ModuleType:
+        raise OSError("cannot load library 'libpango-1.0-0': no such file\nfurther lines")
+
+    monkeypatch.setattr("stages.pdf.importlib.import_module", fail)
+    page = tmp_path / "a.html"
+    page.write_text("<p>a</p>")
+    with pytest.raises(SystemExit) as refused:
+        stage.main(["--html", str(page), "--output", str(tmp_path / "a.pdf")])
+    message = str(refused.value)
+    assert "cannot load library 'libpango-1.0-0'" in message
+    assert "apt-get install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0" in message
+    assert str(page) in message
+    assert not (tmp_path / "a.pdf").exists()
+
+
+@needs_pango
+def test_the_command_writes_beside_and_moves(tmp_path: Path) -> None:
+    page = tmp_path / "a.html"
+    page.write_text("<p>a</p>")
+    stage.main(["--html", str(page), "--output", str(tmp_path / "new" / "a.pdf")])
+    assert [path.name for path in (tmp_path / "new").iterdir()] == ["a.pdf"]

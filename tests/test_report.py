@@ -1,0 +1,287 @@
+"""The report as a reader of the page sees it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from stages import report as stage
+from stages.report import report
+from tests.reporting import made_up
+
+SECTIONS = [
+    "Verdict",
+    "Parameters",
+    "Findings",
+    "Not determined, and left out",
+    "What was recorded",
+    "Raw data",
+    "Noise",
+    "Parameters against averaging time",
+    "What was taken as known",
+    "The account of every byte",
+    "Provenance",
+]
+HOSTILE = '<script>alert("1")</script>&$x_1$</style><img src=x onerror=alert(1)>'
+
+
+class Page(HTMLParser):
+    """The elements of a page, the cells of rows by identifier, and its text."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.attributes: list[tuple[str, str | None]] = []
+        self.rows: dict[str, list[str]] = {}
+        self.text = ""
+        self.headings: list[str] = []
+        self._row: list[str] | None = None
+        self._heading = False
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attrs: Sequence[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.attributes += attrs
+        if tag == "tr":
+            identifier = dict(attrs).get("id")
+            self._row = self.rows.setdefault(identifier, []) if identifier else None
+        if tag == "td" and self._row is not None:
+            self._row.append("")
+        if tag == "h2":
+            self.headings.append("")
+            self._heading = True
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag == "tr":
+            self._row = None
+        if tag == "h2":
+            self._heading = False
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+        if self._row:
+            self._row[-1] += data
+        if self._heading:
+            self.headings[-1] += data
+
+
+def number(cell: str) -> float:
+    """What a cell says, its padding and signs of typography taken off."""
+    for letter in "\u2007\u2008\u202f±":
+        cell = cell.replace(letter, "")
+    return float(cell.replace("−", "-"))
+
+
+def test_sections_stand_in_their_order() -> None:
+    page = Page(made_up.documents().html)
+    assert [heading.lstrip("0123456789 ") for heading in page.headings] == SECTIONS
+
+
+def test_every_determined_parameter_stands_with_its_sigma_and_unit() -> None:
+    page = Page(made_up.documents().html)
+    # laboratory's unit: its size in SI, by the definitions of µg, °/h, ppm and arcsec
+    size = {
+        "µg": 9.80665e-6,
+        "°/h": np.pi / 180 / 3600,
+        "ppm": 1e-6,
+        "arcsec": np.pi / 180 / 3600,
+        "10⁻³ m/s²": 1e-3,
+        "10⁻⁶ rad/s": 1e-6,
+        "10⁻⁶": 1e-6,
+        "µrad": 1e-6,
+    }
+    tables = made_up.campaign()
+    both = pd.concat([tables["accelerometer_parameters"], tables["gyroscope_parameters"]])
+    for row in both.dropna(subset=["value"]).itertuples():
+        _, value, sigma, unit, si_value, si_sigma, si_unit, _, identifier = page.rows[row.id]
+        assert identifier == row.id
+        for shown, shown_sigma, name in ((value, sigma, unit), (si_value, si_sigma, si_unit)):
+            assert number(shown) * size[name] == pytest.approx(row.value, abs=0.06 * row.sigma)
+            assert number(shown_sigma) * size[name] == pytest.approx(row.sigma, rel=0.06)
+
+
+def test_what_is_not_determined_has_its_reason_and_no_value() -> None:
+    page = Page(made_up.documents().html)
+    assert "gyroscope/turns/cross_xy" not in page.rows
+    assert "rests in six positions would help" in page.text
+
+
+def test_the_verdict_says_plainly_that_the_model_does_not_fit() -> None:
+    text = " ".join(made_up.documents().verdict.split())
+    assert "Verdict: calibrated in part" in text
+    assert (
+        "Gyroscope: the model does not describe the data within the noise; sigmas are of noise only"
+        in text
+    )
+    assert "SIMULATED" in text
+    assert "not complete: z-backward" in text
+    assert "Findings: 3;" in text
+
+
+def test_a_scatter_that_the_sigmas_allow_for_is_said() -> None:
+    tables = made_up.campaign(logs=())
+    tables["gyroscope_fit"]["scatter"] = 0.5 * np.pi / 180 / 3600
+    words = "manoeuvres differ by 0.50 °/h beyond it, which the sigmas allow for"
+    assert words in " ".join(report(**tables).verdict.split())
+
+
+def test_mounts_stand_apart() -> None:
+    tables = made_up.campaign(logs=())
+    for name in ("parameters", "fit"):
+        upright = tables[f"accelerometer_{name}"].query("method == 'joint'")
+        lying = upright.assign(method="joint@lying")
+        if name == "parameters":
+            lying = lying.assign(id=lying["id"].str.replace("joint", "joint@lying"), value=np.nan)
+        tables[f"accelerometer_{name}"] = pd.concat([upright, lying], ignore_index=True)
+    verdict = report(**tables).verdict
+    assert "Accelerometer: all 12 parameters are determined." in verdict
+    assert "Accelerometer (mount lying): nothing is determined." in verdict
+
+
+def test_all_determined_and_a_good_fit_is_calibrated() -> None:
+    tables = made_up.campaign(logs=())
+    tables["gyroscope_fit"]["p_value"] = 0.2
+    tables["campaign"]["simulated"] = False
+    verdict = report(**tables).verdict
+    assert "Verdict: calibrated\n" in verdict
+    assert "SIMULATED" not in verdict
+
+
+def test_findings_come_worst_first() -> None:
+    text = Page(made_up.documents().html).text
+    places = [
+        text.index(sentence)
+        for sentence in (
+            "Of z-backward 240.2° of 360° were recorded.",
+            "Between lines 2192 and 2193 of z-backward.asc",
+            "The x gyro oscillates at 20.0 Hz",
+        )
+    ]
+    assert places[2] > max(places[:2])
+
+
+def test_texts_from_outside_are_harmless() -> None:
+    tables = made_up.campaign(logs=("x-up.asc",))
+    for table in ("campaign", "known", "inputs", "manoeuvres", "accounts", "refused", "performed"):
+        for column in tables[table].columns:
+            if isinstance(tables[table][column].dtype, pd.StringDtype):
+                tables[table][column] = HOSTILE
+    for table in ("traces", "segments", "clocks", "quality_findings"):
+        tables[table]["log"] = HOSTILE
+        if "manoeuvre" in tables[table]:
+            tables[table]["manoeuvre"] = HOSTILE
+    tables["noise"]["manoeuvre"] = HOSTILE
+    page = Page(report(**tables).html)
+    assert "script" not in page.tags
+    assert "img" not in page.tags
+    assert not [name for name, _ in page.attributes if name.startswith("on")]
+    assert HOSTILE in page.text
+
+
+def test_nothing_is_loaded_from_elsewhere() -> None:
+    html = made_up.documents().html
+    page = Page(html)
+    assert not {"script", "link", "img", "iframe", "object"} & set(page.tags)
+    targets = [value or "" for name, value in page.attributes if name.endswith(("href", "src"))]
+    assert all(target.startswith("#") for target in targets)
+    assert html.count("url(") == html.count("url(#") + html.count('url("data:font/woff2;base64,')
+    assert str(Path.cwd()) not in html
+    assert len(html.encode()) < 4_000_000
+
+
+def test_identifiers_are_unique() -> None:
+    identifiers = [v for name, v in Page(made_up.documents().html).attributes if name == "id"]
+    assert len(identifiers) == len(set(identifiers))
+
+
+def test_the_same_tables_give_the_same_bytes() -> None:
+    first, second = (report(**made_up.campaign(logs=("z-backward.asc",))) for _ in range(2))
+    assert first == second
+
+
+def test_a_campaign_that_gave_nothing_says_so_in_words() -> None:
+    documents = report(**made_up.poor())
+    page = Page(documents.html)
+    assert [heading.lstrip("0123456789 ") for heading in page.headings] == SECTIONS
+    assert "Verdict: not calibrated" in documents.verdict
+    assert "None: no method estimated a parameter." in page.text
+    assert "None: no log gave samples that could be drawn." in page.text
+
+
+def test_one_sensor_without_time_stamps_or_turns() -> None:
+    tables = made_up.campaign(logs=("x-up.asc", "y-up.asc"))
+    for axis in "xyz":
+        tables["traces"][[f"least_gyro_{axis}", f"most_gyro_{axis}"]] = np.nan
+    for table in ("traces", "segments", "clocks", "quality_findings", "segment_findings"):
+        tables[table][["from_s", "to_s"]] = np.nan
+    tables["noise"] = tables["noise"].query("channel.str.startswith('accel')")
+    tables["manoeuvres"] = tables["manoeuvres"].query("do == 'rest'")
+    for table in ("parameters", "fit", "averaging"):
+        tables[f"gyroscope_{table}"] = tables[f"gyroscope_{table}"].iloc[:0]
+    tables["campaign"]["serial"] = "unknown"
+    documents = report(**tables)
+    assert "Gyroscope: nothing is determined." in documents.verdict
+    assert "without time stamps" in documents.html
+    assert "not recorded" in documents.html
+
+
+def test_a_hundred_manoeuvres_in_one_log() -> None:
+    tables = made_up.campaign(logs=("x-up.asc",))
+    names = [f"tumble-{number:03d}" for number in range(102)]
+    for table in ("manoeuvres", "performed"):
+        rows = tables[table].iloc[[0] * len(names)].reset_index(drop=True)
+        tables[table] = rows.assign(manoeuvre=names)
+    segments = tables["segments"].iloc[[0] * len(names)].reset_index(drop=True)
+    start = np.arange(len(names)) * 2.9
+    tables["segments"] = segments.assign(manoeuvre=names, from_s=start, to_s=start + 2)
+    noise = [tables["noise"].query("manoeuvre == 'x-up'").assign(manoeuvre=name) for name in names]
+    tables["noise"] = pd.concat(noise, ignore_index=True)
+    page = Page(report(**tables).html)
+    assert "tumble-101" in page.text
+    assert "and 96 more" in page.text
+
+
+def test_the_command_writes_page_and_verdict(tmp_path: Path) -> None:
+    tables = made_up.campaign(logs=("x-up.asc",))
+    arguments = write(tables, tmp_path)
+    page, verdict = tmp_path / "reports" / "a.html", tmp_path / "reports" / "a.txt"
+    stage.main([*arguments, "--output", str(page), "--verdict", str(verdict)])
+    assert page.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+    assert "Verdict: calibrated in part" in verdict.read_text(encoding="utf-8")
+    assert sorted(path.name for path in page.parent.iterdir()) == ["a.html", "a.txt"]
+
+
+def test_a_table_of_another_version_is_refused(tmp_path: Path) -> None:
+    arguments = write(made_up.campaign(logs=("x-up.asc",)), tmp_path)
+    path = tmp_path / "noise.parquet"
+    table = pq.read_table(path)
+    pq.write_table(table.replace_schema_metadata({"table": "noise", "version": "0"}), path)
+    with pytest.raises(SystemExit) as refused:
+        stage.main([*arguments, "--output", "a.html", "--verdict", "a.txt"])
+    assert str(refused.value) == (
+        f"report: {path}\n"
+        "  found:    noise table of version 0\n"
+        "  expected: noise table of version 1\n"
+        "  cure:     delete the file and run the campaign again"
+    )
+
+
+def write(tables: dict[str, Any], folder: Path) -> list[str]:
+    """The tables as stages leave them, and the arguments that name them."""
+    arguments = []
+    for name, table in stage.READS.items():
+        path = folder / f"{name}.parquet"
+        arrow: pa.Table = table.arrow(tables[name])
+        made_by = {"made_by": json.dumps(tables["provenance"][name])}
+        pq.write_table(arrow.replace_schema_metadata({**arrow.schema.metadata, **made_by}), path)
+        arguments += [f"--{name}", str(path)]
+    return arguments
