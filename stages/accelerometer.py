@@ -1,11 +1,14 @@
 """The accelerometers from rests: bias, scale factors, cross terms, mounting, with covariance."""
 
+from functools import partial
+
 import numpy as np
 import pandas as pd
 
 from stages.contracts import tables
+from stages.contracts.records import known_of, manoeuvres_of, performed_of
 from stages.contracts.stage import Stage, Tables
-from stages.estimation.estimates import NAMES, Estimates, reasons
+from stages.estimation.estimates import NAMES, Estimates, by_mount, reasons
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import Still, averaging_times, stills
 from stages.inference import triad
@@ -33,33 +36,31 @@ def accelerometer(
 
     Each mount has parameters of its own, for its mounting rotation is one of them.
     """
-    given = known.set_index("quantity")
-    gravity, gravity_sigma = (float(given.loc["gravity", c]) for c in ("value", "sigma"))
-    known_values = (gravity, gravity_sigma, float(given.loc["position", "sigma"]))
-    levels = NoiseLevels(noise)
+    given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
+    gravity = given["gravity"]
+    about = (gravity.number, gravity.scatter, given["position"].scatter)
     estimates = Estimates("accelerometer")
-    for mount, plan in manoeuvres.groupby("mount", sort=False):
-        suffix = "" if manoeuvres["mount"].nunique() == 1 else f"@{mount}"
-        found, left = stills(blocks, plan, performed, levels, "accel")
+    for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
+        found, left = stills(blocks, plan, done, levels, "accel")
         if not found:
             estimates.add_nothing(f"joint{suffix}", "; ".join(left))
             continue
         rests = [_rest(still) for still in found]
         fitted = with_scatter(
-            lambda scatter, rests=rests: weighted(rests, *known_values, scatter),
-            SCATTER,
-            levels.degrees,
+            partial(weighted, rests, *about), between=SCATTER, noise_degrees=levels.degrees
         )
-        estimate, scatter, _ = fitted
-        recorded = np.isfinite([rest.mean for rest in rests]).any(axis=0)
-        why = reasons(estimate.determined, recorded, "accelerometer", CURES)
-        estimates.add_triad(f"joint{suffix}", estimate, why)
+        recorded = np.isfinite(np.array([rest.mean for rest in rests])).any(axis=0)
+        why = reasons(fitted.estimate.determined, recorded, "accelerometer", CURES)
+        estimates.add_triad(f"joint{suffix}", fitted.estimate, why)
         estimates.add_fit(f"joint{suffix}", fitted, [still.label for still in found], left)
         for seconds in averaging_times(found, averaging_steps):
-            shorter = weighted([_rest(still, seconds) for still in found], *known_values, scatter)
-            estimates.add_averaging(f"joint{suffix}", seconds, shorter)
-        planned = [_rest(still) for still in found if still.row["do"] == "rest"]
-        if planned and (solved := formula(planned, *known_values, scatter)) is not None:
+            part = [_rest(still, seconds) for still in found]
+            estimates.add_averaging(
+                f"joint{suffix}", seconds, weighted(part, *about, fitted.scatter)
+            )
+        planned = [_rest(still) for still in found if still.manoeuvre.do == "rest"]
+        solved = formula(planned, *about, fitted.scatter) if planned else None
+        if solved is not None:
             unknowns, covariance = solved
             values = triad.errors_of(unknowns)
             estimates.add(f"six_position{suffix}", NAMES, values, covariance, {})
@@ -67,7 +68,7 @@ def accelerometer(
 
 
 def _rest(still: Still, seconds: float = np.inf) -> Rest:
-    return Rest(still.row["position"], still.up_now, *still.over(seconds))
+    return Rest(still.manoeuvre.position, still.up_now, *still.over(seconds))
 
 
 STAGE = Stage(

@@ -81,10 +81,13 @@ class ReceiverLog:
             "accel": float(layout["accelerometer_count"]),  # m/s
             "gyro": float(layout["gyro_count"]),  # rad
         }
-        first, step = _look_ahead(reading.records.stamp for reading in novatel.read(path))
+        stamps = (reading.records.stamp for reading in novatel.read(path))
+        first, median, _ = _look_ahead(stamps)
         # ns since the start of GPS time
         self.first = None if first is None else int(first)
-        self.interval = None if step is None else step / NANOSECONDS  # s
+        self.interval = None if median is None else median / NANOSECONDS  # s
+        # Increments become rates with this interval, so it turns them back into increments.
+        self.step = self.interval
 
     def decoded(self, origin: int) -> Iterator[Decoded]:
         """The log, piece by piece, with time since `origin`, ns of GPS time."""
@@ -132,20 +135,28 @@ class ColumnLog:
         time = layout.get("time")
         self.clock = "none" if time is None else "own"
         self._ticks = 1.0 if time is None else ticks_per_second(layout)
-        self._first, self.interval = self._beginning()
+        self._first, self.interval, self.step = self._beginning()
 
-    def _beginning(self) -> tuple[float, float | None]:
-        """The time of the first sample in ticks, and the median sample interval, s."""
+    def _beginning(self) -> tuple[float, float | None, float | None]:
+        """The time of the first sample in ticks; median and mean sample interval, s."""
         time = self._layout.get("time")
         if time is None:
-            return 0.0, None
+            return 0.0, None, None
         if time.get("column") is None:  # rows are counted from the first, though it be refused
-            return 0.0, 1 / self._ticks
+            return 0.0, 1 / self._ticks, 1 / self._ticks
         readings = columns.read(self._path, self._layout)
-        first, step = _look_ahead(
-            reading.records.ticks for reading in readings if reading.records.ticks is not None
-        )
-        return first or 0.0, None if step is None else step / self._ticks
+        first, median, mean = _look_ahead(self._ticks_of_one_sensor(readings))
+        if median is None or mean is None:
+            return first or 0.0, None, None
+        return first or 0.0, median / self._ticks, mean / self._ticks
+
+    def _ticks_of_one_sensor(self, readings: Iterable[columns.Reading]) -> Iterator[Reals]:
+        """The times of one sensor, for two may come in rows of their own."""
+        for reading in readings:
+            rows = reading.records
+            sensor = rows.accelerometer if "accelerometer" in self._layout else rows.gyro
+            if rows.ticks is not None:
+                yield rows.ticks[np.isfinite(sensor).any(axis=1)]
 
     def decoded(self, origin: int) -> Iterator[Decoded]:
         """The log, piece by piece; `origin` is none of its business."""
@@ -200,8 +211,12 @@ def _open(row: Mapping[str, str], raw: list[Path]) -> ReceiverLog | ColumnLog:
 
 def _look_ahead(
     times: Iterable[NDArray[np.int64] | Reals],
-) -> tuple[float | None, float | None]:
-    """The first time of a log and the median time from sample to sample, by its first pieces."""
+) -> tuple[float | None, float | None, float | None]:
+    """The first time of a log, and the time from sample to sample, by its first pieces.
+
+    That is the median, and the mean of those steps that are no gaps: stamps of a
+    millisecond make the median jump, not the mean.
+    """
     seen: list[NDArray[Any]] = []
     for some in times:
         seen.append(some)
@@ -210,10 +225,10 @@ def _look_ahead(
     together = np.concatenate(seen) if seen else np.array([])
     steps = np.diff(together)
     forward = steps[steps > 0]
-    return (
-        together[0].item() if len(together) else None,
-        float(np.median(forward)) if len(forward) else None,
-    )
+    if not len(forward):
+        return (together[0].item() if len(together) else None, None, None)
+    median = float(np.median(forward))
+    return together[0].item(), median, float(np.mean(forward[forward < 1.5 * median]))
 
 
 def _pieces_of(log: ReceiverLog | ColumnLog, origin: int) -> Pieces:
@@ -245,6 +260,7 @@ def _pieces_of(log: ReceiverLog | ColumnLog, origin: int) -> Pieces:
         "to_s": ends[-1] if ends else None,
         "records": records,
         "interval": log.interval,
+        "step": log.step,
     }
     yield "clocks", batch_of_rows([clock], CLOCKS.schema)
 

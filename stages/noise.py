@@ -32,7 +32,7 @@ def noise(
     to_hz: float,
 ) -> Tables:
     """One row for each manoeuvre, phase (rest or steady) and channel that is recorded."""
-    intervals = dict(zip(clocks["log"], clocks["interval"], strict=True))
+    intervals = dict(zip(clocks["log"], clocks["step"], strict=True))
     sheet = sensors.set_index("channel")["white_noise"]
     spectra: dict[tuple[str, str], _Spectra] = {}
     quiet = segments[segments["phase"].isin(["rest", "rest-before", "rest-after", "steady"])]

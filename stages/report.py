@@ -108,11 +108,13 @@ def report(
     given = verdict.verdict(found, manoeuvres, performed, worst_first)
     estimated = [*records(accelerometer_parameters), *records(gyroscope_parameters)]
     name = numbers.shortened(about["campaign"], 80)
-    running = f"{name} · {about['instrument']} · serial {numbers.shortened(about['serial'], 80)}"
+    serial = numbers.shortened(about["serial"], 80)
+    instrument = f"{numbers.shortened(about['instrument'], 80)} · serial {serial}"
     outline = Report(
-        title=f"Calibration report: {running}",
+        title=f"Calibration report: {name} · {instrument}",
         campaign=name,
-        running=running + (" · simulated" if about["simulated"] else ""),
+        instrument=instrument,
+        running=f"{name} · {instrument}" + (" · simulated" if about["simulated"] else ""),
         simulated=bool(about["simulated"]),
         sections=(
             verdict.section(given, found, about, known, clocks),

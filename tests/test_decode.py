@@ -101,6 +101,7 @@ def test_the_printed_lines_in_metres_degrees_and_seconds(tmp_path):  # T2
         "to_s": [11.979999994],
         "records": [7],
         "interval": [pytest.approx(0.01, abs=1e-9)],
+        "step": [pytest.approx(0.01, abs=1e-9)],
     }
 
 
@@ -232,6 +233,7 @@ def test_without_time_there_is_no_clock(tmp_path):
         "to_s": None,
         "records": 2,
         "interval": None,
+        "step": None,
     }
 
 

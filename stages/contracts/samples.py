@@ -40,8 +40,8 @@ class Sums:
     """Sums over k stretches of records of one log.
 
     `mean`, `variance`, `least`, `most`: (k, 6) in the order of CHANNELS, NaN where
-    no sample is; `count`: (k,) samples of the fullest channel, without masked records, a
-    mean counted as the number of samples that it stands for; `records`: (k,) all records; `time`,
+    no sample is; `count`: (k,) samples, without masked records, a mean counted as the number
+    of samples that it stands for; `records`: (k,) all records; `time`,
     `masked`: (k,) those that do not count; `table_angle`, `temperature`: (k,) means;
     `first`, `last`: (k,) times.
     """
@@ -150,7 +150,7 @@ class _Totals:
             other = self.other / self.others
         empty = self.number == 0
         return Sums(
-            count=self.number.max(axis=1),
+            count=_samples(self.number),
             records=self.records,
             masked=self.masked,
             mean=np.nan_to_num(self.shift) + away,
@@ -163,6 +163,16 @@ class _Totals:
             table_angle=other[:, 1],
             temperature=other[:, 2],
         )
+
+
+def _samples(number: Array) -> Array:
+    """The samples of each stretch from those of its channels, (k, 6).
+
+    Where the sensors come in rows of their own, a stretch may hold one row more of the
+    one than of the other; then it is half a sample more.
+    """
+    by_sensor = np.column_stack([number[:, :3].max(axis=1), number[:, 3:].max(axis=1)])
+    return by_sensor.sum(axis=1) / np.maximum((by_sensor > 0).sum(axis=1), 1)
 
 
 def regular(records: int, length: int) -> tuple[Integers, Integers]:

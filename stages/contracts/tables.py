@@ -196,6 +196,7 @@ CLOCKS = Table(
         Column("to_s", _double, "s", "time of the last sample", nullable=True),
         Column("records", _integer, "1", "number of decoded records"),
         Column("interval", _double, "s", "median sample interval", nullable=True),
+        Column("step", _double, "s", "what a sample counts for in a sum over time", nullable=True),
     ),
 )
 
@@ -280,7 +281,7 @@ BLOCKS = Table(
         _LOG,
         *_RECORDS,
         Column("time", _double, "s", "middle of the block", nullable=True),
-        Column("seconds", _double, "s", "count × interval: mean × seconds is a sum", nullable=True),
+        Column("seconds", _double, "s", "count × step: mean × seconds is a sum", nullable=True),
         Column("count", _double, "1", "number of samples in the means"),
         *_channels("mean"),
         Column("table_angle", _double, "rad", "mean angle of the table", nullable=True),

@@ -8,8 +8,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from stages.contracts import tables
+from stages.contracts.records import Manoeuvre
 from stages.inference import triad
-from stages.inference.least_squares import Estimate
+from stages.inference.least_squares import Estimate, Fitted
 
 Array = NDArray[np.float64]
 
@@ -92,19 +93,18 @@ class Estimates:
     def add_fit(
         self,
         method: str,
-        fitted: tuple[Estimate, float, float],
+        fitted: Fitted,
         used: list[str],
         left: list[str],
     ) -> None:
-        """How well the method's model describes the data: the fit, its scatter, its p-value."""
-        estimate, scatter, p_value = fitted
+        """How well the method's model describes the data, from which manoeuvres."""
         self._fit.append(
             {
                 "method": method,
-                "chi_squared": estimate.chi_squared,
-                "degrees": estimate.degrees,
-                "p_value": p_value,
-                "scatter": scatter,
+                "chi_squared": fitted.estimate.chi_squared,
+                "degrees": fitted.estimate.degrees,
+                "p_value": fitted.p_value,
+                "scatter": fitted.scatter,
                 "unit": UNIT[self.stage],
                 "used": ", ".join(used),
                 "left_out": "; ".join(left),
@@ -138,6 +138,18 @@ class Estimates:
             "fit": frame(self._fit, tables.FIT),
             "averaging": frame(self._averaging, tables.AVERAGING),
         }
+
+
+def by_mount(plan: list[Manoeuvre]) -> list[tuple[str, list[Manoeuvre]]]:
+    """The manoeuvres of each mount, and what its methods' names end with where there are several.
+
+    Each mount has parameters of its own, for its mounting rotation is one of them.
+    """
+    mounts = list(dict.fromkeys(m.mount for m in plan))
+    return [
+        ("" if len(mounts) == 1 else f"@{mount}", [m for m in plan if m.mount == mount])
+        for mount in mounts
+    ]
 
 
 def reasons(

@@ -6,6 +6,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from stages.contracts.records import rows_of
+
 Array = NDArray[np.float64]
 
 UNLIKE = 3.0  # sigmas by which a manoeuvre's noise must differ from the others' to count as its own
@@ -21,21 +23,22 @@ class NoiseLevels:
     """
 
     def __init__(self, noise: pd.DataFrame) -> None:
-        self._own = {
-            (row.manoeuvre, row.phase, row.channel): (row.white_noise, row.sigma)
-            for row in noise.itertuples()
-        }
+        self._own: dict[tuple[str, str, str], tuple[float, float]] = {}
+        by_channel: dict[str, list[tuple[float, float]]] = {}
+        for row in rows_of(noise):
+            level = (row["white_noise"], row["sigma"])
+            self._own[row["manoeuvre"], row["phase"], row["channel"]] = level
+            by_channel.setdefault(row["channel"], []).append(level)
         self._common: dict[str, float] = {}
-        relative = []
-        for channel, rows in noise.groupby("channel"):
-            level = float(rows["white_noise"].median())
-            alike = (rows["white_noise"] - level).abs() <= UNLIKE * rows["sigma"]
-            used = rows[alike] if alike.any() else rows
+        self._relative = 0.0
+        for channel, levels in by_channel.items():
+            white, sigma = np.array(levels).T
+            alike = np.abs(white - np.median(white)) <= UNLIKE * sigma
+            alike = alike if alike.any() else np.ones(len(white), bool)
             # Weights by relative sigma: else a level that came out low would weigh more for it.
-            weight = (used["white_noise"] / used["sigma"]) ** 2
-            self._common[str(channel)] = float(np.average(used["white_noise"], weights=weight))
-            relative.append(float(weight.sum() ** -0.5))
-        self._relative = max(relative, default=0.0)
+            weight = (white[alike] / sigma[alike]) ** 2
+            self._common[channel] = float(np.average(white[alike], weights=weight))
+            self._relative = max(self._relative, float(weight.sum() ** -0.5))
 
     @property
     def degrees(self) -> float:

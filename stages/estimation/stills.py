@@ -1,12 +1,12 @@
 """The stretches of a campaign in which the IMU stands still, each with its attitude."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
-
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from stages.contracts.records import Manoeuvre, Performed
 from stages.contracts.tables import AXES
 from stages.estimation.noise_levels import NoiseLevels
 from stages.model.motion import turned
@@ -24,7 +24,7 @@ class Still:
     """
 
     label: str
-    row: dict[str, Any]  # its manoeuvre
+    manoeuvre: Manoeuvre
     up: Array
     about: Array
     angle: float
@@ -45,16 +45,10 @@ class Still:
         return mean, self.density / np.sqrt(np.sum(self.seconds[used]))
 
 
-def vector(row: dict[str, Any], stem: str) -> Array | None:
-    """The body vector `stem` of a manoeuvre; None where it is not known."""
-    components = np.array([row[f"{stem}_{axis}"] for axis in AXES], dtype=np.float64)
-    return None if np.isnan(components).any() else components
-
-
 def stills(
     blocks: pd.DataFrame,
-    plan: pd.DataFrame,
-    performed: pd.DataFrame,
+    plan: Sequence[Manoeuvre],
+    performed: Mapping[str, Performed],
     noise: NoiseLevels,
     sensor: str,
 ) -> tuple[list[Still], list[str]]:
@@ -66,25 +60,23 @@ def stills(
     found: list[Still] = []
     left: list[str] = []
     channels = [f"{sensor}_{axis}" for axis in AXES]
-    done = performed.set_index("manoeuvre")
     at_rest = blocks[blocks["phase"].str.startswith("rest") & (blocks["count"] > 0)]
     groups = dict(list(at_rest.groupby(["manoeuvre", "phase"])))
-    for row in plan.to_dict("records"):
-        name, up, about = row["manoeuvre"], vector(row, "up"), vector(row, "about")
-        if row["do"] == "positions":
-            left.append(f"{name}: the attitudes of its rests are not known")
-        if row["do"] == "rest" and not done.loc[name, "found"]:
-            left.append(f"{name}: not found in its log")
+    for m in plan:
+        if m.do == "positions":
+            left.append(f"{m.name}: the attitudes of its rests are not known")
+        if m.do == "rest" and not performed[m.name].found:
+            left.append(f"{m.name}: not found in its log")
         for phase in ("rest", "rest-before", "rest-after"):
-            part = groups.get((name, phase))
+            part = groups.get((m.name, phase))
             if part is None or part[channels].isna().all(axis=None):
                 continue
-            density = noise.of(name, "rest", channels)
-            label = name if phase == "rest" else f"{name} ({phase})"
+            density = noise.of(m.name, "rest", channels)
+            label = m.name if phase == "rest" else f"{m.name} ({phase})"
             after = phase == "rest-after"
-            if up is None:
+            if m.up is None:
                 left.append(f"{label}: which way is up is not known")
-            elif after and (not done.loc[name, "complete"] or pd.isna(row["angle"])):
+            elif after and (not performed[m.name].complete or m.angle is None):
                 left.append(f"{label}: its attitude is not known, for the turn is not whole")
             elif part["seconds"].isna().any() or np.isnan(density).all():
                 left.append(f"{label}: its noise is not known, for it has no time or is too short")
@@ -92,13 +84,13 @@ def stills(
                 found.append(
                     Still(
                         label,
-                        row,
-                        up,
-                        up if about is None else about,
-                        float(row["angle"]) if after else 0.0,
-                        part[channels].to_numpy(),
-                        part["count"].to_numpy(),
-                        part["seconds"].to_numpy(),
+                        m,
+                        m.up,
+                        m.up if m.about is None else m.about,
+                        (m.angle or 0.0) if after else 0.0,
+                        part[channels].to_numpy(np.float64),
+                        part["count"].to_numpy(np.float64),
+                        part["seconds"].to_numpy(np.float64),
                         density,
                     )
                 )
@@ -107,7 +99,7 @@ def stills(
 
 def averaging_times(found: list[Still], steps: int) -> list[float]:
     """Lengths of rest from one block to the longest, in equal ratios, s."""
-    lengths = [still.seconds for still in found if still.row["do"] == "rest"]
+    lengths = [still.seconds for still in found if still.manoeuvre.do == "rest"]
     if not lengths:
         return []
     shortest = max(float(seconds.max()) for seconds in lengths)

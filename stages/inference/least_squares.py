@@ -102,9 +102,18 @@ LIKELIER = 6.6  # drop of the deviance that a scatter must bring: 1 % of chi-squ
 INCONSISTENT = 0.01  # p-value below which the residuals are larger than the noise
 
 
+@dataclass(frozen=True)
+class Fitted:
+    """A fit, the scatter that it allows for, and the p-value of the fit without scatter."""
+
+    estimate: Estimate
+    scatter: float
+    p_value: float
+
+
 def with_scatter(
-    estimate: Callable[[float], Estimate], limits: tuple[float, float], noise_degrees: float
-) -> tuple[Estimate, float, float]:
+    fit: Callable[[float], Estimate], between: tuple[float, float], noise_degrees: float
+) -> Fitted:
     """Fit again with a scatter between manoeuvres where noise alone cannot explain the residuals.
 
     What the model lacks makes every manoeuvre differ from the others by more than the
@@ -114,26 +123,23 @@ def with_scatter(
 
     Parameters
     ----------
-    estimate : the fit as a function of the scatter
-    limits : smallest and largest scatter, in the unit of the readings
+    fit : the estimate as a function of the scatter
+    between : smallest and largest scatter, in the unit of the readings
     noise_degrees : see `Estimate.p_value`
-
-    Returns
-    -------
-    the fit, its scatter, and the p-value of the fit without scatter
     """
-    alone = estimate(0.0)
+    alone = fit(0.0)
     p_value = alone.p_value(noise_degrees)
     if p_value >= INCONSISTENT:
-        return alone, 0.0, p_value
+        return Fitted(alone, 0.0, p_value)
+    low, high = np.log(between)
     best = minimize_scalar(
-        lambda log: estimate(float(np.exp(log))).deviance,
-        bounds=np.log(limits),
+        lambda logarithm: fit(float(np.exp(logarithm))).deviance,
+        bounds=(low, high),
         method="bounded",
         options={"xatol": 0.05},
     )
     scatter = float(np.exp(best.x))
-    scattered = estimate(scatter)
+    scattered = fit(scatter)
     if alone.deviance - scattered.deviance < LIKELIER:
-        return alone, 0.0, p_value
-    return scattered, scatter, p_value
+        return Fitted(alone, 0.0, p_value)
+    return Fitted(scattered, scatter, p_value)

@@ -37,9 +37,17 @@ FACES = (
 )
 
 
+# In every report, whether its words happen to need them or not.
+ALWAYS = frozenset(
+    string.printable
+    + "".join(map(chr, range(0xA0, 0x100)))  # Latin-1: ° ± × µ ² ³
+    + "αβγδεωρσφχΔΩ₀₁₂₃₄₅₆₇₈₉ₓ⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺√−–—…’“”≥≤≈→✓✗●◐○�\u2007\u2008\u202f"
+)
+
+
 def faces(text: str) -> list[Face]:
-    """The fonts of the report with the letters of `text`."""
-    return list(_cut("".join(sorted(set(text) | set(string.printable)))))
+    """The fonts of the report with the letters of `text`, and those that are always there."""
+    return list(_cut("".join(sorted(ALWAYS.union(text)))))
 
 
 @lru_cache(maxsize=4)
@@ -47,7 +55,7 @@ def _cut(letters: str) -> tuple[Face, ...]:
     def each() -> Iterator[Face]:
         folder = Path(mpl.get_data_path()) / "fonts" / "ttf"
         for family, weight, style, file in FACES:
-            options = Options(flavor="woff2", layout_features=["kern", "mark", "mkmk", "ccmp"])
+            options = Options(flavor="woff2", layout_features=["kern"])
             options.name_IDs = [1, 2]
             options.notdef_outline = True
             options.drop_tables += ["FFTM"]  # a time stamp of FontForge

@@ -11,9 +11,11 @@ from itertools import groupby
 from typing import ClassVar, Literal
 
 # What a column holds, hence how it is set: text; name (in one line); number (digits under
-# digits); sigma (the number after ±); unit; symbol (`b_x` with its index below); code; note
-# (small); mark (✓ or ✗).
-Kind = Literal["text", "name", "number", "sigma", "unit", "symbol", "code", "note", "mark"]
+# digits); sigma (the number after ±); unit; symbol (`b_x` with its index below); code;
+# identifier (breaks after a slash); note (small); mark (✓ or ✗).
+Kind = Literal[
+    "text", "name", "number", "sigma", "unit", "symbol", "code", "identifier", "note", "mark"
+]
 # How grave a row, a paragraph or a figure is. Never by colour alone: a word says it too.
 Tone = Literal["", "good", "fair", "poor"]
 
@@ -174,6 +176,7 @@ class Report:
 
     title: str
     campaign: str
-    running: str
+    instrument: str  # with its serial
+    running: str  # what stands on top of every printed page
     simulated: bool
     sections: Sequence[Section]

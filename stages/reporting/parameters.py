@@ -53,7 +53,7 @@ COLUMNS = (
     Column("± σ", "sigma", "SI"),
     Column("unit", "unit", "SI"),
     Column("Meaning", "note"),
-    Column("Identifier", "code"),
+    Column("Identifier", "identifier"),
 )
 
 

@@ -33,7 +33,8 @@ Stretch = tuple[float, float]
 MOST_POINTS = 60_000  # of all figures together: what a page may weigh
 POINTS_PER_CURVE = (60, 380)
 MOST_CLOSE_UPS = 12
-MANY_LOGS = 24  # from here on the figures are small
+MANY_LOGS = 24  # from here on the figures are small, x, y and z in one panel
+MOST_LOGS = 150
 SMALL_RATE = 0.2 * DEGREES_PER_SECOND.size
 METRES = Unit("m/s²", 1.0)
 MILLIMETRES = Unit("mm/s²", 1e-3)
@@ -85,7 +86,10 @@ def section(
     found = logs(traces, segments, clocks, findings)
     points = int(np.clip(MOST_POINTS / (6 * max(len(found), 1)), *POINTS_PER_CURVE))
     small = len(found) > MANY_LOGS
-    parts: list[Part] = [_figure(log, points, small) for log in found]
+    parts: list[Part] = [_figure(log, points, small) for log in found[:MOST_LOGS]]
+    if len(found) > MOST_LOGS:
+        more = numbers.counted(len(found) - MOST_LOGS, "further log")
+        parts.append(Paragraph(f"{more} not drawn, to keep the page light."))
     close_ups = [(log, stretch) for log in found for stretch in log.missing]
     if close_ups:
         parts.append(Heading("Missing stretches, close up"))
@@ -105,7 +109,7 @@ def section(
         "Gyroscope and accelerometer of every log, as recorded.",
         "Each band runs from the smallest to the largest sample of a short stretch, so no spike is "
         "lost. Logs at rest are drawn about their middle, so that deviations show. Behind the "
-        "curves: rest grey, spin-up and spin-down yellow, steady turn blue; hatched: not recorded.",
+        "curves, x orange, y green, z blue: rest grey, spin-up and spin-down yellow, steady turn blue; hatched: not recorded.",
         parts,
     )
 
@@ -267,35 +271,41 @@ def _draw(
 ) -> str:
     """Gyroscope on the left, accelerometer on the right, one panel per axis."""
     with style():
-        figure, axes = panels(3, 2, 0.3 if small else 0.62, Margins())
+        figure, axes = panels(1, 2, 0.75, Margins()) if small else panels(3, 2, 0.62, Margins())
         for column, sensor in enumerate(("gyro", "accel")):
             middles = {a: _middle(log, f"{sensor}_{a}") if about_middle else 0.0 for a in AXES}
             unit = _unit(log, sensor, middles) if about_middle else ABSOLUTE[sensor]
-            for row, axis in enumerate(AXES):
-                panel = axes[row][column]
+            own = [row[column] for row in axes]
+            for panel in own:
+                _background(panel, log)
+            for panel, axis in zip(own * 3 if small else own, AXES, strict=True):
                 _curve(panel, log, f"{sensor}_{axis}", points, unit, middles[axis])
-                label = axis
-                if about_middle and np.isfinite(middles[axis]):
-                    middle = numbers.fixed(ABSOLUTE[sensor].of(middles[axis]), 5)
-                    label = f"{axis}, about {middle} {ABSOLUTE[sensor].name}"
-                panel.set_title(label, loc="right", color=AXIS_COLOUR[axis], fontsize=6.5, pad=2)
-                panel.yaxis.set_major_locator(MaxNLocator(2 if small else 4))
-                panel.ticklabel_format(axis="y", useOffset=False)
+                if not small:
+                    label = _label(axis, middles[axis], sensor) if about_middle else axis
+                    panel.set_title(
+                        label, loc="right", color=AXIS_COLOUR[axis], fontsize=6.5, pad=2
+                    )
             name = "Angular rate" if sensor == "gyro" else "Specific force"
-            axes[0][column].set_title(f"{name}, {unit.name}", loc="left", pad=2)
-            axes[2][column].set_xlabel("Time, s" if log.timed else "Record")
+            own[0].set_title(f"{name}, {unit.name}", loc="left", pad=2)
+            own[-1].set_xlabel("Time, s" if log.timed else "Record")
         if limits or len(log.start):
             left, right = limits or (float(log.start.min()), float(log.end.max()))
             axes[0][0].set_xlim(left, right if right > left else left + 1.0)
         return svg(figure, key)
 
 
-def _curve(panel: Axes, log: Log, channel: str, points: int, unit: Unit, middle: float) -> None:
-    """One channel with the phases behind it and the missing stretches marked."""
+def _background(panel: Axes, log: Log) -> None:
+    """The phases behind the curves, and what is missing."""
     for row in log.phases:
         shade(panel, row["phase"], row["start"], row["end"])
     for start, end in log.missing:
         hatch_missing(panel, start, end)
+    panel.yaxis.set_major_locator(MaxNLocator(4))
+    panel.ticklabel_format(axis="y", useOffset=False)
+
+
+def _curve(panel: Axes, log: Log, channel: str, points: int, unit: Unit, middle: float) -> None:
+    """One channel as the band from its smallest to its largest samples."""
     if not len(log.start) or not np.isfinite(log.least[channel]).any():
         panel.annotate(
             "not recorded",
@@ -305,7 +315,6 @@ def _curve(panel: Axes, log: Log, channel: str, points: int, unit: Unit, middle:
             va="center",
             color=QUIET,
         )
-        panel.set_yticks([])
         return
     time, low, high = envelope(log, channel, points)
     panel.fill_between(
@@ -316,6 +325,13 @@ def _curve(panel: Axes, log: Log, channel: str, points: int, unit: Unit, middle:
         linewidth=0.5,
         zorder=2,
     )
+
+
+def _label(axis: str, middle: float, sensor: str) -> str:
+    if not np.isfinite(middle):
+        return axis
+    unit = ABSOLUTE[sensor]
+    return f"{axis}, about {numbers.fixed(unit.of(middle), 5)} {unit.name}"
 
 
 def _middle(log: Log, channel: str) -> float:

@@ -1,1 +1,1 @@
-"""Finding the manoeuvres of the plan in a log: what moves, what rests, what belongs to which."""
+"""Finding the manoeuvres of the plan in the logs: what moves, what rests, what belongs to which."""

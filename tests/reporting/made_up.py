@@ -28,8 +28,15 @@ Rows = list[dict[str, Any]]
 
 @cache
 def documents() -> Documents:
-    """The report on all of it."""
-    return report(**campaign())
+    """The report on it, with the raw data of a rest and of the turn that is not whole."""
+    return report(**campaign(logs=("x-up.asc", "z-backward.asc")))
+
+
+def brief(*logs: str) -> dict[str, Any]:
+    """The same with few figures, for drawing takes its time: the raw data of `logs` alone."""
+    made = campaign(logs)
+    figures = ("noise", "accelerometer_averaging", "gyroscope_averaging")
+    return made | {name: made[name].iloc[:0] for name in figures}
 
 
 def campaign(logs: Collection[str] | None = None) -> dict[str, Any]:
