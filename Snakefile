@@ -13,6 +13,7 @@ min_version("9.0")
 HOME = Path(workflow.basedir)
 sys.path.insert(0, str(HOME))
 os.environ["PYTHONPATH"] = str(HOME)  # the data may lie elsewhere (--directory)
+os.environ["OPENBLAS_NUM_THREADS"] = "1"  # two stages run at a time, on small matrices
 
 from stages.contracts.code import code_of
 from stages.contracts.logs import campaigns, logs_of

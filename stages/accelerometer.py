@@ -18,7 +18,7 @@ from stages.inference.six_position import Rest, formula, weighted
 CURES = {
     "bias": "the rests do not part it from the scale factors: turn the IMU over, so that an axis"
     " points up once and down once",
-    "matrix": "no rests differ enough along {axis}: add one with +{axis} up and one with -{axis} up",
+    "matrix": "no rests differ enough along {axis}: add one with +{axis} up, one with -{axis} up",
 }
 SCATTER = (1e-7, 1.0)  # m/s²: how much rests may differ beyond the noise
 

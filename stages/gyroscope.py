@@ -98,7 +98,8 @@ def _channels(
 ) -> NDArray[np.bool_]:
     """Which gyros are in the logs, (3,)."""
     turns, steadies, _, _ = moving
-    readings = [one.mean for one in (*rests, *steadies)] + [t.sums.sum(axis=0) for t in turns]
+    readings = [rest.mean for rest in rests] + [steady.mean for steady in steadies]
+    readings += [turn.sums.sum(axis=0) for turn in turns]
     return np.asarray(np.isfinite(np.array(readings)).any(axis=0))
 
 

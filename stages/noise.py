@@ -1,6 +1,7 @@
 """White noise of every channel in every manoeuvre, from the data, beside the data sheet's."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from stages.contracts import tables
 from stages.contracts.parquet import Stream
+from stages.contracts.records import clocks_of, rows_of
 from stages.contracts.samples import inside, pieces
 from stages.contracts.stage import Stage, Tables
 from stages.inference.spectrum import band_levels, white_level
@@ -16,6 +18,7 @@ from stages.inference.spectrum import band_levels, white_level
 Array = NDArray[np.float64]
 
 LONGEST = 32768  # samples in one periodogram; bounds the memory of a long log
+PHASES = {"rest": "rest", "rest-before": "rest", "rest-after": "rest", "steady": "steady"}
 _SENSORS = {"accel": slice(0, 3), "gyro": slice(3, 6)}
 SHORTEST = 16  # samples below which nothing is said about noise
 
@@ -32,28 +35,26 @@ def noise(
     to_hz: float,
 ) -> Tables:
     """One row for each manoeuvre, phase (rest or steady) and channel that is recorded."""
-    intervals = dict(zip(clocks["log"], clocks["step"], strict=True))
-    sheet = sensors.set_index("channel")["white_noise"]
+    clock = clocks_of(clocks)
+    sheet = {row["channel"]: row["white_noise"] for row in rows_of(sensors)}
+    quiet = [row for row in rows_of(segments) if row["phase"] in PHASES]
     spectra: dict[tuple[str, str], _Spectra] = {}
-    quiet = segments[segments["phase"].isin(["rest", "rest-before", "rest-after", "steady"])]
     for log, record, values in _unbroken(samples, gaps, masks):
-        rows = quiet[quiet["log"] == log]
-        interval = intervals[log]
-        if not interval > 0:
-            continue
-        for row in rows.itertuples():
-            chosen = values[(record >= row.from_record) & (record < row.to_record)]
-            phase = "steady" if row.phase == "steady" else "rest"
-            key = (str(row.manoeuvre), phase)
+        step = clock[log].duration
+        for row in quiet:
+            if row["log"] != log or step is None:
+                continue
+            inside_it = (record >= row["from_record"]) & (record < row["to_record"])
+            chosen = values[inside_it]
+            collected = spectra.setdefault((row["manoeuvre"], PHASES[row["phase"]]), _Spectra())
             for start in range(0, len(chosen), LONGEST):
-                part = chosen[start : start + LONGEST]
-                spectra.setdefault(key, _Spectra()).add(part, 1 / interval, (from_hz, to_hz))
-    rows_out = [
+                collected.add(chosen[start : start + LONGEST], 1 / step, (from_hz, to_hz))
+    rows = [
         row | {"data_sheet": sheet[row["channel"]]}
         for (manoeuvre, phase), collected in spectra.items()
         for row in collected.rows(manoeuvre, phase)
     ]
-    return {"noise": pd.DataFrame(rows_out) if rows_out else tables.NOISE.empty()}
+    return {"noise": pd.DataFrame(rows) if rows else tables.NOISE.empty()}
 
 
 class _Spectra:
@@ -102,19 +103,14 @@ def _unbroken(
     for log, piece in pieces(samples, ["record", *tables.CHANNELS]):
         record = piece["record"]
         values = np.column_stack([piece[channel] for channel in tables.CHANNELS])
-        cuts = set(np.flatnonzero(np.diff(record) != 1) + 1)
-        starts = gaps.loc[gaps["log"] == log, "record"].to_numpy()
-        cuts |= set(np.flatnonzero(np.isin(record, starts)))
+        starts = gaps.loc[gaps["log"] == log, "record"].to_numpy(np.int64)
         masked = masks[masks["log"] == log]
-        bad = (
-            inside(record, masked["from_record"].to_numpy(), masked["to_record"].to_numpy())
-            if len(masked)
-            else np.zeros(len(record), bool)
-        )
-        cuts |= set(np.flatnonzero(np.diff(bad)) + 1)
-        edges = [0, *sorted(cuts), len(record)]
-        for first, after in zip(edges[:-1], edges[1:], strict=True):
-            if after > first and not bad[first]:
+        edges_of_masks = [masked[name].to_numpy(np.int64) for name in ("from_record", "to_record")]
+        bad = inside(record, edges_of_masks[0], edges_of_masks[1])
+        breaks = (np.diff(record) != 1) | np.isin(record[1:], starts) | np.diff(bad)
+        edges = [0, *(np.flatnonzero(breaks) + 1).tolist(), len(record)]
+        for first, after in pairwise(edges):
+            if not bad[first]:
                 yield log, record[first:after], values[first:after]
 
 

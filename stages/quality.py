@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from stages.contracts import tables
 from stages.contracts.findings import Finding, table_of
 from stages.contracts.parquet import Stream
+from stages.contracts.records import Clock, clocks_of, known_of, rows_of
 from stages.contracts.samples import Columns, extents, pieces, regular, sums_over
 from stages.contracts.stage import Stage, Tables
 from stages.model.site import STANDARD_GRAVITY
@@ -29,6 +30,7 @@ WRONG_UNITS = {
         for factor in (2, 4, 8, 16)
     },
 }
+WINDOW = 1.0  # s, of the means in which |f| is looked at
 COUNTS = 50.0  # times gravity: what no accelerometer at rest reads in any unit
 
 
@@ -43,10 +45,9 @@ def quality(
     gravity_tolerance: float,
 ) -> Tables:
     """Findings about time, status and |f| at rest, and the records that they mask."""
-    stated = campaign.iloc[0]
-    gravity = float(known.set_index("quantity").loc["gravity", "value"])
-    intervals = dict(zip(clocks["log"], clocks["interval"], strict=True))
-    scans = _scan(samples, intervals, gap, int(stated["must_be_set"]), int(stated["must_be_clear"]))
+    stated, clock = rows_of(campaign)[0], clocks_of(clocks)
+    bits = (stated["must_be_set"], stated["must_be_clear"])
+    scans = _scan(samples, clock, gap, *bits)
     findings: list[Finding] = []
     masks: list[dict[str, Any]] = []
     gaps: list[dict[str, Any]] = []
@@ -76,8 +77,8 @@ def quality(
                     }
                     for number, event in enumerate(events)
                 ]
-    findings += _rates(clocks, stated["rate"], rate_tolerance)
-    findings += _gravity(samples, clocks, gravity, gravity_tolerance)
+    findings += _rates(clock, stated["rate"], rate_tolerance)
+    findings += _gravity(samples, clock, known_of(known)["gravity"].number, gravity_tolerance)
     return {
         "findings": table_of(findings),
         "masks": pd.DataFrame(masks) if masks else tables.MASKS.empty(),
@@ -112,7 +113,7 @@ class _Scan:
 
 
 def _scan(
-    samples: Stream, intervals: dict[str, float], gap: float, must_be_set: int, must_be_clear: int
+    samples: Stream, clocks: dict[str, Clock], gap: float, must_be_set: int, must_be_clear: int
 ) -> dict[str, _Scan]:
     scans: dict[str, _Scan] = {}
     columns = ["record", "line", "time", "status", "label", *tables.CHANNELS]
@@ -122,7 +123,7 @@ def _scan(
         if scan.last is not None:
             joined = {name: np.append(scan.last[name], piece[name]) for name in columns}
         scan.last = {name: values[-1:] for name, values in piece.items()}
-        _scan_time(scan, joined, intervals[log], gap)
+        _scan_time(scan, joined, clocks[log].interval or np.nan, gap)
         _scan_status(scan, piece, must_be_set, must_be_clear)
     return scans
 
@@ -168,7 +169,8 @@ _TOLD = {
     # cause: (unit of size, sentence for one, consequence, action)
     "gap": (
         "samples",
-        "{log}: {size:.0f} samples are missing between {from_s:.3f} s and {to_s:.3f} s, before line {line}.",
+        "{log}: {size:.0f} samples are missing between {from_s:.3f} s and {to_s:.3f} s, before line"
+        " {line}.",
         "A sum over this stretch lacks what was not recorded; means of a rest hardly change.",
         "A turn with this gap is not used for the angle method; record it again.",
     ),
@@ -186,13 +188,15 @@ _TOLD = {
     ),
     "time_stands_still": (
         "s",
-        "{log}: the record of line {line} has the time of the one before, {to_s:.3f} s, but other values.",
+        "{log}: the record of line {line} has the time of the one before, {to_s:.3f} s, but other"
+        " values.",
         "It is not known when this record was taken.",
         "The record is masked; look at the clock of the logger.",
     ),
     "status_invalid": (
         "records",
-        "{log}: the instrument marks {size:.0f} records from line {line}, {from_s:.3f} s, as invalid.",
+        "{log}: the instrument marks {size:.0f} records from line {line}, {from_s:.3f} s, as"
+        " invalid.",
         "Their values are not to be trusted.",
         "They are masked; see the status word in the instrument's manual.",
     ),
@@ -224,20 +228,18 @@ def _tell(log: str, cause: str, events: list[Event]) -> Iterator[Finding]:
 # ---- rate and unit
 
 
-def _rates(clocks: pd.DataFrame, stated: float | None, tolerance: float) -> Iterator[Finding]:
-    if stated is None or pd.isna(stated):
-        return
-    for clock in clocks.itertuples():
-        if not clock.interval > 0:
+def _rates(clocks: dict[str, Clock], stated: float | None, tolerance: float) -> Iterator[Finding]:
+    for log, clock in clocks.items():
+        if stated is None or not clock.interval:
             continue
         rate = 1 / clock.interval
         if abs(rate / stated - 1) > tolerance:
             yield Finding(
-                id=f"quality/rate_off/{clock.log}",
+                id=f"quality/rate_off/{log}",
                 cause="rate_off",
-                log=str(clock.log),
+                log=log,
                 size=rate / stated,
-                sentence=f"{clock.log}: {rate:.4g} samples per second, but {stated:.4g} are stated"
+                sentence=f"{log}: {rate:.4g} samples per second, but {stated:.4g} are stated"
                 f" (factor {rate / stated:.4g}).",
                 consequence="None: rates are made with the log's own sample interval.",
                 action="Correct rate_hz of the instrument, or look whether samples are lost.",
@@ -245,19 +247,11 @@ def _rates(clocks: pd.DataFrame, stated: float | None, tolerance: float) -> Iter
 
 
 def _gravity(
-    samples: Stream, clocks: pd.DataFrame, gravity: float, tolerance: float
+    samples: Stream, clocks: dict[str, Clock], gravity: float, tolerance: float
 ) -> Iterator[Finding]:
     """Compare |f|, where it is quiet, with gravity, and name a unit that explains a difference."""
-    seconds = 1.0
-    lengths = {
-        log: (int(records), round(seconds / interval) if interval > 0 else 1)
-        for log, records, interval in zip(
-            clocks["log"], clocks["records"], clocks["interval"], strict=True
-        )
-    }
-    ends = extents(samples)
     windows = {
-        log: regular(ends[log], length) for log, (_, length) in lengths.items() if log in ends
+        log: regular(end, round(WINDOW / clocks[log].step)) for log, end in extents(samples).items()
     }
     for log, sums in sums_over(samples, windows).items():
         force = np.linalg.norm(sums.mean[:, :3], axis=1)
@@ -276,8 +270,8 @@ def _gravity(
             sensor="accel",
             log=log,
             size=ratio,
-            sentence=f"{log}: at rest the specific force is {ratio * gravity:.4g} m/s², {ratio:.4g} times"
-            f" gravity: {cause}.",
+            sentence=f"{log}: at rest the specific force is {ratio * gravity:.4g} m/s²,"
+            f" {ratio:.4g} times gravity: {cause}.",
             consequence="Every parameter of the accelerometers is wrong by this factor.",
             action="Correct the unit, counts_per_unit or count size in the campaign.",
         )

@@ -106,7 +106,7 @@ def test_the_printed_lines_in_metres_degrees_and_seconds(tmp_path):  # T2
 
 
 def test_a_count_of_the_fsas_is_smaller_by_a_radian_in_degrees(tmp_path):  # T3
-    # The report takes its IMU for an iMAR-FSAS, of 0.1/256 arcsec a count: its counts cannot be that.
+    # S0 takes its IMU for an iMAR-FSAS, of 0.1/256 arcsec a count: its counts cannot be that.
     path = tmp_path / "log.asc"
     path.write_bytes(signed(S0_FIRST) + at(2283, 42699.889998762))
     fsas = SPAN_CPT | {"gyro_count": 0.1 / 256 / 3600 * DEGREE}

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(eq=False)  # an exception must stay hashable and take its traceback
-class Refusal(Exception):
+class Refusal(Exception):  # noqa: N818 (a refusal is what it is, not what went wrong)
     """An input that cannot be used: where it is, what it says, what is allowed, what to do."""
 
     file: str
@@ -15,4 +15,5 @@ class Refusal(Exception):
 
     def __str__(self) -> str:
         where = f"{self.file}, {self.place}" if self.place else self.file
-        return f"{where}\n  found:    {self.found}\n  expected: {self.expected}\n  cure:     {self.cure}"
+        told = {"found": self.found, "expected": self.expected, "cure": self.cure}
+        return "\n".join([where, *(f"  {name + ':':<9} {text}" for name, text in told.items())])

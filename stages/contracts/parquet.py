@@ -64,7 +64,8 @@ class Table:
     def read(self, path: Path) -> pd.DataFrame:
         """The whole table; for tables that are small."""
         self._check(path, pq.read_schema(path))
-        return pq.read_table(path).to_pandas()
+        frame: pd.DataFrame = pq.read_table(path).to_pandas()
+        return frame
 
     def stream(self, path: Path) -> Stream:
         """The table batch by batch, as often as wanted; for tables that may be large."""
@@ -93,7 +94,8 @@ class Table:
 
     def empty(self) -> pd.DataFrame:
         """A table without rows."""
-        return self.schema.empty_table().to_pandas()
+        frame: pd.DataFrame = self.schema.empty_table().to_pandas()
+        return frame
 
     def _check(self, path: Path, schema: pa.Schema) -> None:
         told = {key.decode(): value.decode() for key, value in (schema.metadata or {}).items()}

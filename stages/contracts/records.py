@@ -62,11 +62,11 @@ def manoeuvres_of(table: pd.DataFrame) -> list[Manoeuvre]:
     """The manoeuvres of the plan in their order."""
     return [
         Manoeuvre(
-            name=row["manoeuvre"],
-            **{stem: _vector(row, stem) for stem in ("up", "mark", "about")},
-            **{key: row[key] for key in ("do", "log", "position", "mount", "recorded", "label")},
-            **{key: row[key] for key in ("angle", "angle_sigma", "rate", "seconds")},
-            **{key: row[key] for key in ("from_s", "to_s", "from_row", "to_row")},
+            row["manoeuvre"],
+            *(row[key] for key in ("do", "log", "position", "mount")),
+            *(_vector(row, stem) for stem in ("up", "mark", "about")),
+            *(row[key] for key in ("angle", "angle_sigma", "rate", "seconds", "recorded")),
+            *(row[key] for key in ("from_s", "to_s", "from_row", "to_row", "label")),
         )
         for row in rows_of(table)
     ]

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ def pieces(samples: Stream, columns: list[str]) -> Iterator[tuple[str, Columns]]
         names, index = logs.dictionary.to_pylist(), logs.indices.to_numpy()
         starts = [0, *(np.flatnonzero(np.diff(index)) + 1), len(index)]
         arrays = {name: _array(batch.column(name)) for name in columns}
-        for start, end in zip(starts[:-1], starts[1:], strict=True):
+        for start, end in pairwise(starts):
             if end > start:
                 name = names[index[start]]
                 yield name, {column: array[start:end] for column, array in arrays.items()}
@@ -86,6 +87,8 @@ def sums_over(
 
 def inside(records: Integers, first: Integers, after: Integers) -> NDArray[np.bool_]:
     """Which records lie in one of the stretches [first, after)."""
+    if not len(first):
+        return np.zeros(len(records), bool)
     order = np.argsort(first)
     first, after = first[order], np.maximum.accumulate(after[order])
     stretch = np.searchsorted(first, records, side="right") - 1
@@ -172,7 +175,8 @@ def _samples(number: Array) -> Array:
     one than of the other; then it is half a sample more.
     """
     by_sensor = np.column_stack([number[:, :3].max(axis=1), number[:, 3:].max(axis=1)])
-    return by_sensor.sum(axis=1) / np.maximum((by_sensor > 0).sum(axis=1), 1)
+    recorded = np.maximum((by_sensor > 0).sum(axis=1), 1)
+    return np.asarray(by_sensor.sum(axis=1) / recorded)
 
 
 def regular(records: int, length: int) -> tuple[Integers, Integers]:

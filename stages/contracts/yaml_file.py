@@ -60,9 +60,16 @@ class YamlFile:
         """The error that names this file and `key`."""
         return Refusal(str(self.path), self.place(key), shown(found), expected, cure)
 
-    def check(self, schema: str) -> None:
-        """Hold the content against `contracts/<schema>.schema.yaml`."""
-        validator = jsonschema.Draft202012Validator(schema_of(schema))
+    def check(self, schema: str, entries: str | None = None) -> None:
+        """Hold the content, or each of its entries, against `contracts/<schema>.schema.yaml`.
+
+        `entries` is the definition of that schema that every entry must follow.
+        """
+        rules = schema_of(schema)
+        if entries:
+            of_each = {"$ref": f"#/$defs/{entries}"}
+            rules = {"type": "object", "additionalProperties": of_each, "$defs": rules["$defs"]}
+        validator = jsonschema.Draft202012Validator(rules)
         errors = list(validator.iter_errors(self.content))
         if errors:
             raise self._refusal_of(jsonschema.exceptions.best_match(errors))
@@ -73,13 +80,16 @@ class YamlFile:
         meaning = rule.get("description", "") if isinstance(rule, dict) else ""
         if error.validator == "additionalProperties":
             allowed = list(rule["properties"])
-            unknown = next(k for k in error.instance if k not in allowed)  # type: ignore[union-attr]
+            given: Any = error.instance
+            unknown = next(k for k in given if k not in allowed)
             near = difflib.get_close_matches(str(unknown), allowed, n=1)
             cure = f"write {near[0]}" if near else "remove it"
             found = f"the key {shown(unknown)}"
             return self.refuse_text([*key, unknown], found, f"one of {', '.join(allowed)}", cure)
         if error.validator == "required":
-            missing = next(k for k in error.validator_value if k not in error.instance)  # type: ignore[union-attr]
+            wanted: Any = error.validator_value
+            instance: Any = error.instance
+            missing = next(k for k in wanted if k not in instance)
             said = rule.get("properties", {}).get(missing, {}).get("description", "")
             return self.refuse_text(
                 key, f"no key {missing!r}", f"{missing}: {said}".rstrip(": "), f"add {missing}"

@@ -8,6 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from stages.contracts import tables
+from stages.contracts.parquet import Table
 from stages.contracts.records import Manoeuvre
 from stages.inference import triad
 from stages.inference.least_squares import Estimate, Fitted
@@ -128,7 +129,7 @@ class Estimates:
     def tables(self) -> dict[str, pd.DataFrame]:
         """The four tables, with their columns even where there are no rows."""
 
-        def frame(rows: list[dict[str, Any]], empty: tables.Table) -> pd.DataFrame:
+        def frame(rows: list[dict[str, Any]], empty: Table) -> pd.DataFrame:
             return pd.DataFrame(rows) if rows else empty.empty()
 
         covariance = pd.concat(self._covariance) if self._covariance else tables.COVARIANCE.empty()

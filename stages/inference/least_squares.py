@@ -78,7 +78,7 @@ def solve(
     scaled = design / sigma[:, None] * prior_sigma
     rest = (observed - design @ prior) / sigma
     stacked = np.vstack([np.column_stack([scaled, rest]), np.eye(p, p + 1)])
-    triangle = np.linalg.qr(stacked, mode="r")
+    triangle: Array = np.linalg.qr(stacked, mode="r")  # type: ignore[assignment]
     upper, right = triangle[:p, :p], triangle[:p, p]
     inverse = solve_triangular(upper, np.eye(p))
     covariance = inverse @ inverse.T

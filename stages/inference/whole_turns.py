@@ -34,7 +34,7 @@ PRIOR_SIGMA = np.append(np.full(9, 0.1), np.full(3, 1.0))
 
 @dataclass(frozen=True)
 class Earth:
-    """The earth's rate at the site, rad/s: the upward part, its sigma, the size of the level part."""
+    """The earth's rate at the site, rad/s: upward part, its sigma, size of the level part."""
 
     up: float
     up_sigma: float
@@ -159,14 +159,14 @@ def joint(
         for number, steady in enumerate(steadies):
             _add_steady(rows, unknowns, steady, number, matrix, earth, (position_sigma, scatter))
         design = np.zeros((sum(len(o) for o in rows.observed), len(unknowns.prior)))
-        start = 0
+        row = 0
         for coefficients, observed in zip(rows.design, rows.observed, strict=True):
             for column, values in coefficients.items():
                 width = 1 if values.ndim == 1 else values.shape[1]
-                design[start : start + len(observed), column : column + width] = values.reshape(
+                design[row : row + len(observed), column : column + width] = values.reshape(
                     len(observed), width
                 )
-            start += len(observed)
+            row += len(observed)
         observed_all, sigma_all = np.concatenate(rows.observed), np.concatenate(rows.sigma)
         there = np.isfinite(observed_all) & np.isfinite(sigma_all)
         estimate = solve(

@@ -35,9 +35,9 @@ def section(
         rows = records(frame)
         groups = dict.fromkeys(row["parameter"].rpartition("/")[0] for row in rows)
         parts.append(Heading(SENSOR[stage]))
-        for group in groups:
+        for number, group in enumerate(groups, 1):
             own = [row for row in rows if row["parameter"].rpartition("/")[0] == group]
-            parts += _figures(group, own, unit_of)
+            parts += _figures(group, f"{stage}-{number}", own, unit_of)
         if not groups:
             parts.append(
                 Paragraph("None: the parameters were not followed over the averaging time.")
@@ -53,7 +53,9 @@ def section(
     )
 
 
-def _figures(group: str, rows: Sequence[Record], unit_of: dict[str, str]) -> Iterator[Figure]:
+def _figures(
+    group: str, key: str, rows: Sequence[Record], unit_of: dict[str, str]
+) -> Iterator[Figure]:
     curves: dict[str, list[Record]] = {}
     for row in by_kind({**row, "parameter": row["parameter"].rpartition("/")[2]} for row in rows):
         curves.setdefault(f"{group}/{row['parameter']}", []).append(row)
@@ -71,7 +73,7 @@ def _figures(group: str, rows: Sequence[Record], unit_of: dict[str, str]) -> Ite
         for panel in each[max(0, len(ids) - COLUMNS) : len(ids)]:
             panel.tick_params(labelbottom=True)
             panel.set_xlabel("Seconds of each rest")
-        drawn = svg(figure, f"averaging-{group}")
+        drawn = svg(figure, f"averaging-{key}")
     more = len(curves) - len(ids)
     left = f" {numbers.whole(more)} more in the averaging table." if more else ""
     yield Figure(

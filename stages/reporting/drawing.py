@@ -131,12 +131,12 @@ def plain_numbers(axis: Axis) -> None:
 
 
 def svg(figure: Figure, key: str) -> str:
-    """`figure` as an element of the page; `key` keeps its identifiers apart from other figures'."""
+    """`figure` as an element of the page; `key`, a plain word, keeps its identifiers apart."""
     text = io.StringIO()
     with mpl.rc_context({"svg.hashsalt": key}):
         nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
         figure.savefig(text, format="svg", metadata=nothing, transparent=True)
-    return _light(text.getvalue(), re.sub(r"[^A-Za-z0-9]+", "-", key))
+    return _light(text.getvalue(), key)
 
 
 def _light(drawn: str, key: str) -> str:
@@ -178,7 +178,8 @@ def _rounded(element: str) -> str:
 
 def shade(axes: Axes, phase: str, start: float, end: float) -> None:
     """Mark a phase of the table behind the curves."""
-    axes.axvspan(start, end, color=PHASE_COLOUR.get(phase, RULE), zorder=0, linewidth=0)
+    colour = PHASE_COLOUR.get("rest" if phase.startswith("rest") else phase, RULE)
+    axes.axvspan(start, end, color=colour, zorder=0, linewidth=0)
 
 
 def hatch_missing(axes: Axes, start: float, end: float) -> None:

@@ -12,7 +12,7 @@ from typing import ClassVar, Literal
 
 # What a column holds, hence how it is set: text; name (in one line); number (digits under
 # digits); sigma (the number after ±); unit; symbol (`b_x` with its index below); code;
-# identifier (breaks after a slash); note (small); mark (✓ or ✗).
+# identifier (code in one line); note (small); mark (✓ or ✗).
 Kind = Literal[
     "text", "name", "number", "sigma", "unit", "symbol", "code", "identifier", "note", "mark"
 ]

@@ -53,8 +53,8 @@ COLUMNS = (
     Column("± σ", "sigma", "SI"),
     Column("unit", "unit", "SI"),
     Column("Meaning", "note"),
-    Column("Identifier", "identifier"),
 )
+LONG_IDENTIFIER = 40  # which then takes several lines
 
 
 @dataclass(frozen=True)
@@ -162,9 +162,10 @@ def _parts(estimate: Estimate) -> Iterator[Part]:
     yield Heading(estimate.name)
     if estimate.fit is not None:
         yield _fit(estimate)
+    long = any(len(row["id"]) > LONG_IDENTIFIER for row in estimate.determined)
     yield Table(
         caption=f"Determined: {numbers.counted(len(estimate.determined), 'parameter')}.",
-        columns=COLUMNS,
+        columns=(*COLUMNS, Column("Identifier", "code" if long else "identifier")),
         rows=tuple(_rows(estimate.determined)),
         empty="None is determined; section 4 says why.",
     )

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
 
 from stages.contracts.tables import AXES
 from stages.reporting import numbers
@@ -27,14 +28,15 @@ from stages.reporting.outline import Figure, Heading, Paragraph, Part, Section
 from stages.reporting.rows import Record, records
 from stages.reporting.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, Unit
 
-Array = npt.NDArray[np.float64]
+Array = NDArray[np.float64]
 Stretch = tuple[float, float]
 
-MOST_POINTS = 60_000  # of all figures together: what a page may weigh
+MOST_POINTS = 45_000  # of all figures together: what a page may weigh
 POINTS_PER_CURVE = (60, 380)
 MOST_CLOSE_UPS = 12
+MOST_MISSING = 50  # stretches that are marked in one log
 MANY_LOGS = 24  # from here on the figures are small, x, y and z in one panel
-MOST_LOGS = 150
+MOST_LOGS = 110
 SMALL_RATE = 0.2 * DEGREES_PER_SECOND.size
 METRES = Unit("m/s²", 1.0)
 MILLIMETRES = Unit("mm/s²", 1e-3)
@@ -51,29 +53,29 @@ class Log:
     least: dict[str, Array]
     most: dict[str, Array]
     phases: tuple[Record, ...]
-    missing: tuple[Stretch, ...]
+    missing: tuple[Stretch, ...]  # the longest of them
+    lost: float  # s that are missing in all
     timed: bool
     records: int
 
     @property
     def static(self) -> bool:
         """Whether the plan has the table at rest all through."""
-        return bool(self.phases) and all(row["phase"] == "rest" for row in self.phases)
+        return bool(self.phases) and all(row["phase"].startswith("rest") for row in self.phases)
+
+    def rows(self, index: NDArray[np.integer[Any]]) -> Log:
+        """The rows of the envelope that `index` lists, as often as it does."""
+        return replace(
+            self,
+            start=self.start[index],
+            end=self.end[index],
+            least={name: values[index] for name, values in self.least.items()},
+            most={name: values[index] for name, values in self.most.items()},
+        )
 
     def within(self, start: float, end: float) -> Log:
         """The stretch from `start` to `end` alone."""
-        inside = (self.end >= start) & (self.start <= end)
-        return Log(
-            self.name,
-            self.start[inside],
-            self.end[inside],
-            {name: values[inside] for name, values in self.least.items()},
-            {name: values[inside] for name, values in self.most.items()},
-            self.phases,
-            self.missing,
-            self.timed,
-            self.records,
-        )
+        return self.rows(np.flatnonzero((self.end >= start) & (self.start <= end)))
 
 
 def section(
@@ -86,14 +88,20 @@ def section(
     found = logs(traces, segments, clocks, findings)
     points = int(np.clip(MOST_POINTS / (6 * max(len(found), 1)), *POINTS_PER_CURVE))
     small = len(found) > MANY_LOGS
-    parts: list[Part] = [_figure(log, points, small) for log in found[:MOST_LOGS]]
+    parts: list[Part] = [
+        _figure(log, f"log-{number}", points, small)
+        for number, log in enumerate(found[:MOST_LOGS], 1)
+    ]
     if len(found) > MOST_LOGS:
         more = numbers.counted(len(found) - MOST_LOGS, "further log")
         parts.append(Paragraph(f"{more} not drawn, to keep the page light."))
     close_ups = [(log, stretch) for log in found for stretch in log.missing]
     if close_ups:
         parts.append(Heading("Missing stretches, close up"))
-        parts += [_close_up(log, stretch) for log, stretch in close_ups[:MOST_CLOSE_UPS]]
+        parts += [
+            _close_up(log, f"missing-{number}", stretch)
+            for number, (log, stretch) in enumerate(close_ups[:MOST_CLOSE_UPS], 1)
+        ]
     if len(close_ups) > MOST_CLOSE_UPS:
         more = numbers.counted(
             len(close_ups) - MOST_CLOSE_UPS, "further stretch", "further stretches"
@@ -109,7 +117,8 @@ def section(
         "Gyroscope and accelerometer of every log, as recorded.",
         "Each band runs from the smallest to the largest sample of a short stretch, so no spike is "
         "lost. Logs at rest are drawn about their middle, so that deviations show. Behind the "
-        "curves, x orange, y green, z blue: rest grey, spin-up and spin-down yellow, steady turn blue; hatched: not recorded.",
+        "curves, x orange, y green, z blue: rest grey, spin-up and spin-down yellow, steady turn "
+        "blue; hatched: not recorded.",
         parts,
     )
 
@@ -134,6 +143,8 @@ def logs(
         start, end = (rows[column].to_numpy(dtype=np.float64) for column in columns)
         interval = clock.get(log, {}).get("interval")
         missing = _missing(log, start, end, interval, findings) if timed else []
+        longest = tuple(sorted(_longest(missing, MOST_MISSING)))
+        lost = sum(b - a for a, b in missing)
         least, most = (
             {
                 channel: rows[f"{prefix}_{channel}"].to_numpy(dtype=np.float64)
@@ -147,7 +158,7 @@ def logs(
             if row["log"] == log and row[columns[0]] is not None and row[columns[1]] is not None
         )
         count = int(clock.get(log, {}).get("records") or rows["to_record"].max())
-        drawn = Log(log, start, end, least, most, own, tuple(missing), timed, count)
+        drawn = Log(log, start, end, least, most, own, longest, lost, timed, count)
         found.append(_cut(drawn))
     return found
 
@@ -170,7 +181,11 @@ def _missing(
     breaks = np.flatnonzero(start[1:] - end[:-1] > 2.5 * step)
     seen = [(float(end[i]), float(start[i + 1])) for i in breaks]
     unstated = [(a, b) for a, b in seen if not any(c < b and d > a for c, d in stated)]
-    return sorted({*stated, *unstated})
+    return list({*stated, *unstated})
+
+
+def _longest(stretches: Sequence[Stretch], most: int) -> list[Stretch]:
+    return sorted(stretches, key=lambda stretch: (stretch[0] - stretch[1], stretch[0]))[:most]
 
 
 def _cut(log: Log) -> Log:
@@ -188,17 +203,7 @@ def _cut(log: Log) -> Log:
                 keep.append(i)
                 start.append(left)
                 end.append(right)
-    return Log(
-        log.name,
-        np.array(start),
-        np.array(end),
-        {name: values[keep] for name, values in log.least.items()},
-        {name: values[keep] for name, values in log.most.items()},
-        log.phases,
-        log.missing,
-        log.timed,
-        log.records,
-    )
+    return replace(log.rows(np.array(keep)), start=np.array(start), end=np.array(end))
 
 
 def envelope(log: Log, channel: str, points: int) -> tuple[Array, Array, Array]:
@@ -224,7 +229,7 @@ def envelope(log: Log, channel: str, points: int) -> tuple[Array, Array, Array]:
 # ---- how it is drawn
 
 
-def _figure(log: Log, points: int, small: bool) -> Figure:
+def _figure(log: Log, key: str, points: int, small: bool) -> Figure:
     manoeuvres = list(dict.fromkeys(row["manoeuvre"] for row in log.phases))
     named = ", ".join(manoeuvres[:6]) + (
         f" and {len(manoeuvres) - 6} more" if len(manoeuvres) > 6 else ""
@@ -238,19 +243,18 @@ def _figure(log: Log, points: int, small: bool) -> Figure:
         f"{numbers.counted(log.records, 'sample')}{lasting}; {view}."
     )
     if log.missing:
-        lost = sum(b - a for a, b in log.missing)
-        caption += f" {numbers.fixed(lost, 2)} s are missing."
-    drawn = _draw(log, f"raw-{log.name}", points, about_middle=log.static, small=small)
+        caption += f" {numbers.fixed(log.lost, 2)} s are missing."
+    drawn = _draw(log, key, points, about_middle=log.static, small=small)
     words = f"Six curves over time: rates and specific forces of x, y and z of the log {log.name}."
     return Figure(caption, drawn, words, "fair" if log.missing else "")
 
 
-def _close_up(log: Log, stretch: Stretch) -> Figure:
+def _close_up(log: Log, key: str, stretch: Stretch) -> Figure:
     start, end = stretch
     room = max(2.0, 0.5 * (end - start))
     near = log.within(start - room, end + room)
     limits = (start - room, end + room)
-    drawn = _draw(near, f"missing-{log.name}-{start}", POINTS_PER_CURVE[1], limits=limits)
+    drawn = _draw(near, key, POINTS_PER_CURVE[1], limits=limits)
     caption = (
         f"{numbers.shortened(log.name, 80)}: not recorded from {numbers.fixed(start, 3)} s to "
         f"{numbers.fixed(end, 3)} s, {numbers.fixed(end - start, 3)} s."

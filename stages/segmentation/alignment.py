@@ -47,9 +47,9 @@ def rest_score(seconds: float, planned: float | None, force: Array, up: Array | 
     force : (3,), m/s², mean specific force, NaN where not recorded
     up : (3,), the planned direction, None where unknown
     """
-    if up is not None and np.isfinite(force).all():
-        if force @ up < np.cos(np.radians(25)) * np.linalg.norm(force):
-            return 0.0
+    along = np.nan if up is None else float(force @ up)
+    if along < np.cos(np.radians(25)) * np.linalg.norm(force):
+        return 0.0
     return min(seconds / planned, 1.0) if planned else seconds / (seconds + 1.0)
 
 

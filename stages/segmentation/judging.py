@@ -107,7 +107,6 @@ def _steady_rate(
 
 def findings(m: Manoeuvre, done: Performed, tolerance: float) -> Iterator[Finding]:
     """What the plan has and the recording has not."""
-    place = {"manoeuvre": m.name, "log": m.log}
     if not done.found:
         yield Finding(
             id=f"segment/manoeuvre_missing/{m.name}",
@@ -115,7 +114,8 @@ def findings(m: Manoeuvre, done: Performed, tolerance: float) -> Iterator[Findin
             sentence=done.sentence,
             consequence="It is left out; the others are used.",
             action="Correct the plan, or record it.",
-            **place,
+            manoeuvre=m.name,
+            log=m.log,
         )
         return
     if m.do != "turn":
@@ -131,7 +131,8 @@ def findings(m: Manoeuvre, done: Performed, tolerance: float) -> Iterator[Findin
             sentence=f"{m.name}: {done.sentence}",
             consequence="Its angle is not known, so it gives no scale factor.",
             action="It is left out of the angle method. Record it again.",
-            **place,
+            manoeuvre=m.name,
+            log=m.log,
         )
     turned, wanted = (done.rate, m.rate) if m.rate is not None else (done.angle, m.angle)
     if turned is None or wanted is None:
@@ -146,7 +147,8 @@ def findings(m: Manoeuvre, done: Performed, tolerance: float) -> Iterator[Findin
             sentence=f"{m.name} turns against the planned direction.",
             consequence="The sign of its scale factor would be wrong; it is left out.",
             action="Correct the sign of degrees, or the axes of the gyros.",
-            **place,
+            manoeuvre=m.name,
+            log=m.log,
         )
     elif m.rate is not None and abs(ratio - 1) > tolerance:
         swapped = min(abs(ratio * pi / 180 - 1), abs(ratio * 180 / pi - 1)) < tolerance
@@ -160,5 +162,6 @@ def findings(m: Manoeuvre, done: Performed, tolerance: float) -> Iterator[Findin
             f" {degrees(wanted):.4g} °/s{cause}.",
             consequence="Its angle does not agree with the plan either.",
             action="Correct the rate of the plan, or the unit or count size of the gyros.",
-            **place,
+            manoeuvre=m.name,
+            log=m.log,
         )

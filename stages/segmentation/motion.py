@@ -1,6 +1,7 @@
 """Where a log moves and where it rests, told from short means of its channels."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,7 +78,7 @@ def _runs(moves: Booleans) -> list[Stretch]:
     edges = [0, *(np.flatnonzero(np.diff(moves)) + 1).tolist(), len(moves)]
     return [
         Stretch(bool(moves[first]), first, after)
-        for first, after in zip(edges[:-1], edges[1:], strict=True)
+        for first, after in pairwise(edges)
         if after > first
     ]
 

@@ -65,3 +65,11 @@ def test_identifiers_of_figures_do_not_collide() -> None:
     identifiers = re.findall(r' id="([^"]+)"', figures)
     assert identifiers
     assert len(identifiers) == len(set(identifiers))
+
+
+def test_thousands_of_gaps_are_told_but_not_all_drawn() -> None:
+    tables = made_up.campaign(logs=("x-up.asc",))
+    tables["traces"] = tables["traces"].iloc[::2].reset_index(drop=True)
+    [log] = drawn(tables)
+    assert len(log.missing) == raw_data.MOST_MISSING
+    assert log.lost > 140
