@@ -36,6 +36,7 @@ def plan(campaign: list[Path], raw: list[Path], instruments: list[Path]) -> Tabl
         )
     file.check("campaign")
     entry = instrument(file, instruments[0])
+    taken_as_known = list(known(file))
     manoeuvres = _manoeuvres(file, entry)
     present = {path.name: path for path in raw}
     for row in manoeuvres:
@@ -49,14 +50,14 @@ def plan(campaign: list[Path], raw: list[Path], instruments: list[Path]) -> Tabl
     used = sorted({present[row["file"]] for row in manoeuvres})
     return {
         "campaign": pd.DataFrame([_campaign(file, campaign[0].parent.name, entry)]),
-        "known": pd.DataFrame(known(file)),
+        "known": pd.DataFrame(taken_as_known),
         "sensors": pd.DataFrame(sensors(entry)),
         "logs": pd.DataFrame(logs(manoeuvres, entry)),
         "inputs": pd.DataFrame(
             {"file": path.name, "size": path.stat().st_size, "sha256": hash_of_file(path)}
             for path in [campaign[0], *used]
         ),
-        "manoeuvres": pd.DataFrame(manoeuvres),
+        "manoeuvres": pd.DataFrame(manoeuvres)[[c.name for c in tables.MANOEUVRES.columns]],
     }
 
 

@@ -166,27 +166,31 @@ def _scan_status(scan: _Scan, piece: Columns, must_be_set: int, must_be_clear: i
 
 
 _TOLD = {
-    # cause: (unit of size, sentence for one, consequence, action)
+    # cause: (severity, unit of size, sentence for one, consequence, action)
     "gap": (
+        1,
         "samples",
-        "{log}: {size:.0f} samples are missing between {from_s:.3f} s and {to_s:.3f} s, before line"
-        " {line}.",
+        "{log}: {size:.0f} samples are missing between {from_s:.3f} s and {to_s:.3f} s; line"
+        " {line} is the first after them.",
         "A sum over this stretch lacks what was not recorded; means of a rest hardly change.",
         "A turn with this gap is not used for the angle method; record it again.",
     ),
     "time_backwards": (
+        2,
         "s",
         "{log}: time goes back by {back:.6f} s at line {line}, {to_s:.3f} s.",
         "It is not known when this record was taken.",
         "The record is masked; look for two logs that were joined.",
     ),
     "duplicate": (
+        1,
         "s",
         "{log}: the record of line {line} repeats the one before, at {to_s:.3f} s.",
         "A sum would count it twice.",
         "The repetition is masked.",
     ),
     "time_stands_still": (
+        2,
         "s",
         "{log}: the record of line {line} has the time of the one before, {to_s:.3f} s, but other"
         " values.",
@@ -194,6 +198,7 @@ _TOLD = {
         "The record is masked; look at the clock of the logger.",
     ),
     "status_invalid": (
+        2,
         "records",
         "{log}: the instrument marks {size:.0f} records from line {line}, {from_s:.3f} s, as"
         " invalid.",
@@ -204,7 +209,7 @@ _TOLD = {
 
 
 def _tell(log: str, cause: str, events: list[Event]) -> Iterator[Finding]:
-    unit, sentence, consequence, action = _TOLD[cause]
+    severity, unit, sentence, consequence, action = _TOLD[cause]
     storm = len(events) > STORM
     for number, event in enumerate(events[:1] if storm else events):
         told = sentence.format(log=log, back=-event.size, **vars(event))
@@ -222,6 +227,7 @@ def _tell(log: str, cause: str, events: list[Event]) -> Iterator[Finding]:
             sentence=told,
             consequence=consequence,
             action=action,
+            severity=severity,
         )
 
 
@@ -243,6 +249,7 @@ def _rates(clocks: dict[str, Clock], stated: float | None, tolerance: float) -> 
                 f" (factor {rate / stated:.4g}).",
                 consequence="None: rates are made with the log's own sample interval.",
                 action="Correct rate_hz of the instrument, or look whether samples are lost.",
+                severity=1,
             )
 
 
@@ -274,6 +281,7 @@ def _gravity(
             f" {ratio:.4g} times gravity: {cause}.",
             consequence="Every parameter of the accelerometers is wrong by this factor.",
             action="Correct the unit, counts_per_unit or count size in the campaign.",
+            severity=3,
         )
 
 

@@ -104,7 +104,7 @@ def report(
     found = parameters.estimates(
         accelerometer_parameters, accelerometer_fit, gyroscope_parameters, gyroscope_fit
     )
-    worst_first = findings.ranked((quality_findings, segment_findings), performed, segments, found)
+    worst_first = findings.ranked((quality_findings, segment_findings))
     given = verdict.verdict(found, manoeuvres, performed, worst_first)
     estimated = [*records(accelerometer_parameters), *records(gyroscope_parameters)]
     name = numbers.shortened(about["campaign"], 80)

@@ -19,6 +19,7 @@ from stages.segmentation.motion import moving, rest_level, stretches
 from stages.segmentation.windows import Binned, binned, windows
 
 SLOWEST = 0.05  # of the slowest planned rate: what counts as motion
+UNLIKE_NOISE = 6.0  # times the scatter of the gyros at rest: what is no noise
 BY_HAND = np.radians(2.0)  # rad/s: what counts as motion where no rate is planned
 
 Array = NDArray[np.float64]
@@ -41,13 +42,20 @@ def segment(
     every = list(binned(samples, windows(samples, plan, ends), clock))
     level, scatter = _rest_level(every)
     rates = [abs(m.rate) for m in plan if m.rate]
-    threshold = max(SLOWEST * min(rates) if rates else BY_HAND, 6 * scatter)
+    noise = UNLIKE_NOISE * scatter
+    threshold = max(SLOWEST * min(rates) if rates else BY_HAND, noise)
 
     parts: list[Part] = []
     performed: dict[str, Performed] = {}
     for one in every:
         found = stretches(moving(one.rates, one.forces, level, threshold), one.bin_seconds)
         matched = match(one, found, level)
+        if any(matched.get(m.name, 0) is None for m in one.window.manoeuvres if m.do == "turn"):
+            # A wrong unit makes a turn too slow to count as motion; then all above the noise does.
+            slower = stretches(moving(one.rates, one.forces, level, noise), one.bin_seconds)
+            again = match(one, slower, level)
+            if sum(place is None for place in again.values()) < list(matched.values()).count(None):
+                found, matched = slower, again
         for m in one.window.manoeuvres:
             place = matched.get(m.name)
             if m.do == "positions":

@@ -38,9 +38,7 @@ def sensors(entry: dict[str, Any]) -> Iterator[Row]:
         "accel": {
             "count_size": accelerometer.get("count_m_s"),
             "full_scale": in_si(accelerometer.get("full_scale_g"), STANDARD_GRAVITY),
-            "white_noise": in_si(
-                accelerometer.get("velocity_random_walk_m_s_sqrt_h"), PER_ROOT_HOUR
-            ),
+            "white_noise": in_si(velocity_random_walk, PER_ROOT_HOUR),
             "source": accelerometer.get("source"),
         },
         "gyro": {

@@ -218,6 +218,7 @@ FINDINGS = Table(
         Column("size", _double, "as unit", "how large", nullable=True),
         Column("unit", _text, "", "unit of size"),
         Column("p_value", _double, "1", "chance of such a size if nothing is wrong", nullable=True),
+        Column("severity", _integer, "", "3 spoils a result, 2 weakens it, 1 is good to know"),
         Column("consequence", _text, "", "what it does to the result"),
         Column("action", _text, "", "what the pipeline did, or what the laboratory should do"),
         Column("sentence", _text, "", "the finding in words"),

@@ -66,8 +66,8 @@ def verdict(
     """The level and its reasons.
 
     Calibrated: the joint fits determine all twelve parameters of both sensors and
-    describe their data (p ≥ 0.01). Not calibrated: they determine none. In part:
-    everything between.
+    describe their data (p ≥ 0.01), and no finding spoils a result. Not calibrated: they
+    determine none. In part: everything between.
     """
     joint = joint_fits(found)
     whole = all(_determined(estimate).keys() >= WANTED for estimate in joint)
@@ -75,7 +75,9 @@ def verdict(
     if not any(WANTED & _determined(estimate).keys() for estimate in joint):
         level = "not calibrated"
     else:
-        level = "calibrated" if whole and not misfit else "calibrated in part"
+        spoiled = any(finding["severity"] == 3 for finding in findings)
+        good = whole and not misfit and not spoiled
+        level = "calibrated" if good else "calibrated in part"
     reasons = [_sentence(estimate) for estimate in joint]
     for estimate in joint:
         words, _ = fit_in_words(estimate)

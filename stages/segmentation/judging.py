@@ -65,13 +65,16 @@ def turn(
     timed = bool(np.isfinite(one.first_s[first]))
     angle = float(np.nansum(about[first:after] * one.seconds[first:after])) if timed else None
     if m.recorded == "steady":
-        said = f"steady at {degrees(rate):.4f} °/s." if rate is not None else "no steady rate."
+        said = (
+            f"steady at {_signed(degrees(rate), 4)} °/s." if rate is not None else "no steady rate."
+        )
         whole = missing_s == 0
         return Performed(m.name, said, True, whole, angle, None, missing_s, rate, seconds)
 
     if angle is None:
         return Performed(m.name, "it turns, but has no time.", True, False, rate=rate)
-    of = f"{degrees(angle):.2f}°" + (f" of {degrees(m.angle):.0f}°" if m.angle else "")
+    of = f"{_signed(degrees(angle), 2)}°"
+    of += f" of {_signed(degrees(m.angle), 0)}°" if m.angle else ""
     reasons = [f"{missing_s:.2f} s are missing while it turns"] if missing_s else []
     remark = ""
     # A hand stops within a bin: what is cut off then is less than the sigma of the angle.
@@ -95,6 +98,11 @@ def turn(
     return Performed(m.name, told, True, False, angle, missing, missing_s, rate, seconds)
 
 
+def _signed(value: float, digits: int) -> str:
+    """A number with a minus sign, not a hyphen."""
+    return f"{value:.{digits}f}".replace("-", "−")
+
+
 def _steady_rate(
     one: Binned, about: Array, parts: Sequence[Part], first: int, after: int
 ) -> float | None:
@@ -114,6 +122,7 @@ def findings(m: Manoeuvre, done: Performed, tolerance: float) -> Iterator[Findin
             sentence=done.sentence,
             consequence="It is left out; the others are used.",
             action="Correct the plan, or record it.",
+            severity=2,
             manoeuvre=m.name,
             log=m.log,
         )
@@ -131,6 +140,7 @@ def findings(m: Manoeuvre, done: Performed, tolerance: float) -> Iterator[Findin
             sentence=f"{m.name}: {done.sentence}",
             consequence="Its angle is not known, so it gives no scale factor.",
             action="It is left out of the angle method. Record it again.",
+            severity=2,
             manoeuvre=m.name,
             log=m.log,
         )
@@ -147,6 +157,7 @@ def findings(m: Manoeuvre, done: Performed, tolerance: float) -> Iterator[Findin
             sentence=f"{m.name} turns against the planned direction.",
             consequence="The sign of its scale factor would be wrong; it is left out.",
             action="Correct the sign of degrees, or the axes of the gyros.",
+            severity=3,
             manoeuvre=m.name,
             log=m.log,
         )
@@ -162,6 +173,7 @@ def findings(m: Manoeuvre, done: Performed, tolerance: float) -> Iterator[Findin
             f" {degrees(wanted):.4g} °/s{cause}.",
             consequence="Its angle does not agree with the plan either.",
             action="Correct the rate of the plan, or the unit or count size of the gyros.",
+            severity=3,
             manoeuvre=m.name,
             log=m.log,
         )

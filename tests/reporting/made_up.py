@@ -252,6 +252,7 @@ def _quality_findings() -> Rows:
         {
             "id": "quality/gap/z-backward.asc/2192",
             "cause": "gap",
+            "severity": 1,
             "log": "z-backward.asc",
             "from_s": GAP[0],
             "to_s": GAP[1],
@@ -265,6 +266,7 @@ def _quality_findings() -> Rows:
         {
             "id": "quality/oscillation/gyro_x",
             "cause": "oscillation",
+            "severity": 1,
             "sensor": "gyro",
             "axis": "x",
             "log": "x-forward.asc",
@@ -284,6 +286,7 @@ def _segment_findings() -> Rows:
         {
             "id": "segment/incomplete/z-backward",
             "cause": "incomplete turn",
+            "severity": 2,
             "manoeuvre": "z-backward",
             "log": "z-backward.asc",
             "count": 1,

@@ -12,12 +12,7 @@ from tests.reporting import made_up
 
 
 def drawn(tables: dict[str, Any]) -> list[Any]:
-    ranked = findings.ranked(
-        (tables["quality_findings"], tables["segment_findings"]),
-        tables["performed"],
-        tables["segments"],
-        [],
-    )
+    ranked = findings.ranked((tables["quality_findings"], tables["segment_findings"]))
     return raw_data.logs(tables["traces"], tables["segments"], tables["clocks"], ranked)
 
 

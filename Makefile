@@ -1,0 +1,90 @@
+# From a checkout to a lab report:
+#
+#   make report                   the demo, recorded by the simulated laboratory
+#   make report CAMPAIGN=<name>   the campaign in data/raw/<name>/
+#   make test                     every test; the same as CI with `make style`
+#   make style                    linters, types, and who may import whom
+#   make clean                    what can be made again from the raw logs; reports stay
+#   make setup                    only the environment, .venv; everything above sees to it itself
+
+SHELL := bash
+.SHELLFLAGS := -euo pipefail -c
+.ONESHELL:
+.SILENT:
+.PHONY: report test style clean setup pango campaign
+
+# Taken word for word and given to the shell through the environment, so that neither make nor the
+# shell runs what may stand in it.
+CAMPAIGN ?= demo
+override CAMPAIGN := $(value CAMPAIGN)
+export CAMPAIGN
+
+PYTHON ?= python3
+BIN := .venv/bin
+PANGO := libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0
+# The kernel frees the lock of flock when a run is killed; Snakemake's own would stay and stop the
+# next run.
+SNAKEMAKE := flock Snakefile $(BIN)/snakemake --nolock --cores 2 --quiet host reason --
+
+report: campaign setup
+	kinds=(html)
+	if $(BIN)/python -c "import weasyprint" 2> /dev/null; then kinds+=(pdf); fi
+	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
+	$(SNAKEMAKE) "$${kinds[@]/#/reports/$$CAMPAIGN.}"
+	echo
+	head -n 8 "reports/$$CAMPAIGN.txt"
+	echo
+	echo "The report:" "$${kinds[@]/#/reports/$$CAMPAIGN.}"
+
+campaign:
+	if [[ ! $$CAMPAIGN =~ ^[[:lower:][:digit:]][[:lower:][:digit:]-]*$$ ]]; then
+		printf 'make: CAMPAIGN=%q is no name of a campaign: ' "$$CAMPAIGN"
+		echo "small letters a-z, digits and hyphens, a letter or digit first"
+		exit 2
+	fi >&2
+	if [[ ! -e data/raw/$$CAMPAIGN/campaign.yaml && ! -e data/simulated/$$CAMPAIGN.yaml ]]; then
+		echo "make: there is no campaign $$CAMPAIGN: data/raw/$$CAMPAIGN/campaign.yaml is missing"
+		exit 2
+	fi >&2
+
+test: setup
+	$(BIN)/python -m pytest
+
+style: setup
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy stages laboratory
+	$(BIN)/snakefmt --check -l 100 Snakefile
+	$(BIN)/lint-imports
+
+clean:
+	rm -rf data/derived .snakemake
+
+setup: .venv/complete pango
+
+# Written last, so that an environment that was cut short is made anew.
+.venv/complete: requirements.lock
+	if ! $(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11))"; then
+		echo "make: $(PYTHON) must be Python 3.11 or newer; name another: make setup PYTHON=python3.12"
+		exit 2
+	fi >&2
+	if ! $(PYTHON) -c "import ensurepip, venv" 2> /dev/null; then
+		echo "make: $(PYTHON) lacks venv; on Debian: apt-get install python3-venv"
+		exit 2
+	fi >&2
+	echo "Making .venv from requirements.lock, once; it takes a minute or two."
+	$(PYTHON) -m venv --clear .venv
+	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
+	touch $@
+
+# WeasyPrint sets the PDF with Pango, which pip cannot install. Where this may not either, only the
+# PDF is missing.
+pango: .venv/complete
+	if $(BIN)/python -c "import weasyprint" 2> /dev/null; then exit; fi
+	if [[ $$(id -u) == 0 ]]; then may=(env); else may=(sudo -n); fi
+	install=("$${may[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq)
+	("$${install[@]}" update && "$${install[@]}" install --no-install-recommends $(PANGO)) > /dev/null 2>&1 || true
+	if ! $(BIN)/python -c "import weasyprint" 2> /dev/null; then
+		echo "Pango is missing, so reports are made as HTML and not as PDF. On Debian:"
+		echo "    sudo apt-get install $(PANGO)"
+	fi

@@ -1,0 +1,190 @@
+"""The campaign file: every grammar example is understood, every mistake is refused by name."""
+
+import shutil
+from math import radians
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.contracts import tables
+from stages.contracts.errors import Refusal
+from stages.contracts.logs import logs_of
+from stages.contracts.records import known_of, manoeuvres_of
+from stages.model.site import normal_gravity
+from stages.plan import plan
+
+ROOT = Path(__file__).parent.parent
+EXAMPLES = sorted((Path(__file__).parent / "campaigns").glob("*.yaml"))
+
+BY_TABLE = """\
+campaign: 1
+instrument: span-cpt
+serial: "A-017"
+date: "2026-11-02"
+site: {latitude_deg: 30.5278, height_m: 24, gravity_m_s2: 9.7936174, gravity_sigma_m_s2: 5.0e-5}
+table: {name: three-axis, position_sigma_arcsec: 2, angle_sigma_arcsec: 2}
+log: session.asc
+plan:
+  - {id: x-up, do: rest, up: +x, seconds: 300}
+  - {id: x-forward, do: turn, up: +x, degrees: 360, rate_deg_s: 10, accel_deg_s2: 5}
+"""
+
+
+def planned(folder: Path, text: str, *, logs: bool = True) -> dict[str, pd.DataFrame]:
+    """The tables of a campaign file whose logs are there, though empty."""
+    folder.mkdir(exist_ok=True)
+    file = folder / "campaign.yaml"
+    file.write_text(text, encoding="utf-8")
+    raw = [folder / log for log in logs_of(file)] if logs else []
+    for log in raw:
+        log.write_bytes(b"")
+    return dict(plan([file], raw, [ROOT / "data/instruments.yaml"]))
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=[path.stem for path in EXAMPLES])
+def test_every_example_of_the_grammar_is_understood(example, tmp_path):
+    made = planned(tmp_path / example.stem, example.read_text(encoding="utf-8"))
+    for name, table in made.items():
+        getattr(tables, name.upper()).arrow(table)
+    assert len(made["manoeuvres"]) >= 2
+
+
+def test_there_are_ten_examples():
+    assert len(EXAMPLES) == 10
+
+
+def test_a_turn_is_made_explicit(tmp_path):
+    turn = manoeuvres_of(planned(tmp_path, BY_TABLE)["manoeuvres"])[1]
+    assert turn.angle == pytest.approx(2 * np.pi)
+    assert turn.rate == pytest.approx(radians(10))
+    assert turn.seconds == pytest.approx(38)  # 36 s at the rate and 2 s for the ramps, S0
+    assert turn.angle_sigma == pytest.approx(radians(2 / 3600))
+    np.testing.assert_array_equal(turn.axis, [1, 0, 0])
+
+
+def test_about_takes_the_sign_of_up(tmp_path):
+    text = BY_TABLE.replace("do: turn, up: +x", "do: turn, up: -z")
+    turn = manoeuvres_of(planned(tmp_path, text)["manoeuvres"])[1]
+    np.testing.assert_array_equal(turn.axis, [0, 0, -1])
+
+
+def test_a_tumble_turns_the_body_under_the_plumb_line(tmp_path):
+    tumble = "do: tumble, about: +x, up: +z, step_degrees: 20, steps: 18, and_back: true"
+    text = BY_TABLE.split("plan:")[0] + f"plan:\n  - {{id: t, {tumble}, seconds: 20}}\n"
+    rests = manoeuvres_of(planned(tmp_path, text)["manoeuvres"])
+    assert [r.name for r in rests[:2]] == ["t-00", "t-01"]
+    assert len(rests) == 36 and rests[18].name == "t-back-17"
+    # After +90° about x the y axis, which lay level, has come up: it reads +g.
+    quarter = 20 * np.arange(18)
+    ups = np.array([r.up for r in rests[:18]])
+    np.testing.assert_allclose(ups[:, 1], np.sin(np.radians(quarter)), atol=1e-12)
+    np.testing.assert_allclose(ups[:, 2], np.cos(np.radians(quarter)), atol=1e-12)
+
+
+def test_normal_gravity_is_taken_where_none_is_stated_and_said_so(tmp_path):
+    text = BY_TABLE.replace(", gravity_m_s2: 9.7936174, gravity_sigma_m_s2: 5.0e-5", "")
+    known = planned(tmp_path, text)["known"]
+    gravity = known_of(known)["gravity"]
+    assert gravity.number == pytest.approx(normal_gravity(radians(30.5278), 24))
+    assert gravity.scatter > 1e-4
+    assert "normal gravity" in known.set_index("quantity").loc["gravity", "origin"]
+
+
+def test_normal_gravity_meets_the_published_values():
+    # WGS 84, equator and pole; NGA.STND.0036, table 4.2.
+    assert normal_gravity(0, 0) == pytest.approx(9.7803253359, abs=1e-10)
+    assert normal_gravity(np.pi / 2, 0) == pytest.approx(9.8321849379, abs=1e-9)
+    # Height and latitude of Wuhan: within 5 mGal of the stated 9.7936174 m/s² at 15 m.
+    assert normal_gravity(radians(30.5278), 15) == pytest.approx(9.7936174, abs=5e-5)
+
+
+def test_two_formats_of_one_file_are_two_logs(tmp_path):
+    text = (Path(__file__).parent / "campaigns/hipnuc.yaml").read_text(encoding="utf-8")
+    assert list(planned(tmp_path, text)["logs"]["log"]) == ["test.log:still", "test.log:turning"]
+
+
+MISTAKES = {
+    # what is wrong: (what to write instead of what, what the error must say)
+    "mistyped key": ("serial:", "seriall:", ["line 3", "'seriall'", "write serial"]),
+    "number as serial": ('"A-017"', "0017", ["line 3, serial", "put it in quotes"]),
+    "unknown instrument": ("span-cpt", "span-cqt", ["line 2, instrument", "imar-fsas, span-cpt"]),
+    "another version": ("campaign: 1", "campaign: 2", ["line 1, campaign", "2", "version 1"]),
+    "unknown axis": ("up: +x, seconds", "up: +w, seconds", ["line 9, plan[0].up", "'+w'"]),
+    "key of another manoeuvre": ("seconds: 300", "degrees: 3", ["plan[0].degrees", "for do: rest"]),
+    "same id twice": ("id: x-forward", "id: x-up", ["line 10, plan[1].id", "rename one"]),
+    "a path as log": ("session.asc", "../session.asc", ["log", "plain file name"]),
+    "no gravity at all": (
+        "latitude_deg: 30.5278, height_m: 24, gravity_m_s2: 9.7936174, gravity_sigma_m_s2: 5.0e-5",
+        "latitude_deg: null",
+        ["line 5, site", "gravity_m_s2"],
+    ),
+    "by hand without a sigma": (
+        "{name: three-axis, position_sigma_arcsec: 2, angle_sigma_arcsec: 2}",
+        "{name: by hand}",
+        ["line 6, table", "position_sigma_arcsec: 3600"],
+    ),
+    "hand turn without a sigma": (
+        "{name: three-axis, position_sigma_arcsec: 2, angle_sigma_arcsec: 2}",
+        "{name: by hand, position_sigma_arcsec: 3600}",
+        ["plan[1]", "degrees_sigma"],
+    ),
+    "rate with a sign": ("rate_deg_s: 10", "rate_deg_s: -10", ["plan[1].rate_deg_s", "magnitude"]),
+    "a turn that cannot last so long": (
+        "accel_deg_s2: 5",
+        "accel_deg_s2: 5, seconds: 60",
+        ["plan[1].seconds", "about 38 s"],
+    ),
+    "a turn of nothing": (", degrees: 360, rate_deg_s: 10", "", ["plan[1]", "two of them"]),
+    "mark along up": ("up: +x, seconds", "up: +x, mark: -x, seconds", ["plan[0].mark"]),
+    "a vector of zeros": ("up: +x, seconds", "up: [0, 0, 0], seconds", ["plan[0].up"]),
+    "not a number": ("seconds: 300", "seconds: .nan", ["plan[0].seconds", "finite"]),
+    "unknown format": ("seconds: 300", "seconds: 300, format: f", ["plan[0].format"]),
+    "two selections": (
+        "seconds: 300",
+        "seconds: 300, rows: [0, 9], span: [0, 9]",
+        ["plan[0]", "span and rows"],
+    ),
+    "broken YAML": ("serial: ", "serial: [", ["line", "YAML 1.2"]),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES.values(), ids=MISTAKES)
+def test_a_mistake_is_refused_with_file_place_and_cure(mistake, tmp_path):
+    right, wrong, said = mistake
+    assert right in BY_TABLE
+    with pytest.raises(Refusal) as refused:
+        planned(tmp_path, BY_TABLE.replace(right, wrong, 1))
+    for part in [str(tmp_path / "campaign.yaml"), "found:", "expected:", "cure:", *said]:
+        assert part in str(refused.value)
+
+
+def test_a_missing_log_is_refused_with_the_place_that_names_it(tmp_path):
+    with pytest.raises(Refusal, match=r"plan\[0\][\s\S]*'session.asc'[\s\S]*put the log there"):
+        planned(tmp_path, BY_TABLE, logs=False)
+
+
+def test_a_mistake_in_the_list_of_instruments_is_refused(tmp_path):
+    listed = tmp_path / "instruments.yaml"
+    shutil.copy(ROOT / "data/instruments.yaml", listed)
+    listed.write_text(listed.read_text().replace("count_rad", "count_radd", 1))
+    campaign = tmp_path / "campaign.yaml"
+    campaign.write_text(BY_TABLE)
+    with pytest.raises(Refusal, match=r"instruments.yaml, line \d+[\s\S]*write count_rad"):
+        plan([campaign], [], [listed])
+
+
+def test_the_schemas_give_a_description_with_every_number():
+    from stages.contracts.yaml_file import schema_of
+
+    def numbers(rule: object, path: str):
+        if isinstance(rule, dict):
+            if rule.get("type") in ("number", "integer") and "items" not in path.split("/")[-1:]:
+                yield path, rule
+            for key, value in rule.items():
+                yield from numbers(value, f"{path}/{key}")
+
+    for name in ("campaign", "config"):
+        missing = [path for path, rule in numbers(schema_of(name), "") if "description" not in rule]
+        assert missing == []

@@ -1,0 +1,161 @@
+"""Real recordings through the chain: against what others published, and what the data allow."""
+
+import json
+
+import chain
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.inference.triad import linear_names
+
+ARC_HOUR = np.radians(1 / 3600)  # rad/s in °/h
+
+
+def matrix_of(results: chain.Results, stage: str, column: str) -> tuple[np.ndarray, np.ndarray]:
+    """M − I and the bias of the joint estimate, or their sigmas."""
+    values = results.parameters(stage)[column].reindex(linear_names()).to_numpy(float)
+    return values[:9].reshape(3, 3), values[9:]
+
+
+# ---- imucal_ferraris, by hand
+
+
+def test_imucal_labelled_accelerometer_agrees_with_its_published_calibration(recorded, recordings):
+    results = recorded("imucal-labelled", "imucal_ferraris")
+    published = json.loads((recordings / "imucal_ferraris/example_cal.json").read_text())
+    # Theirs: truth = R⁻¹ K⁻¹ (counts − b); ours: reading = counts / 208.9 = M · truth + bias.
+    theirs = np.array(published["K_a"]) @ np.array(published["R_a"]) / 208.9 - np.eye(3)
+    ours, bias = matrix_of(results, "accelerometer", "value")
+    sigma, _ = matrix_of(results, "accelerometer", "sigma")
+    assert np.abs((ours - theirs) / sigma).max() < 2.5
+    # Their bias comes of one tilted position each, ours of all; by 1° of tilt it may differ so much.
+    assert np.abs(bias - np.array(published["b_a"]) / 208.9).max() < 9.81 * np.radians(1) / np.sqrt(
+        6
+    )
+
+
+def test_imucal_labelled_gyro_agrees_up_to_the_sign_of_the_turn(recorded, recordings):
+    results = recorded("imucal-labelled", "imucal_ferraris")
+    published = json.loads((recordings / "imucal_ferraris/example_cal.json").read_text())
+    theirs = -np.array(published["K_g"]) @ np.array(published["R_g"]) / 16.4 - np.eye(3)
+    ours, bias = matrix_of(results, "gyroscope", "value")
+    sigma, bias_sigma = matrix_of(results, "gyroscope", "sigma")
+    assert np.abs((ours - theirs) / sigma).max() < 2
+    rates = np.radians(np.array(published["b_g"]) / 16.4)
+    assert np.abs((bias - rates) / bias_sigma).max() < 3
+    assert results.parameters("gyroscope")["value"].notna().all()  # one direction was enough
+
+
+def test_imucal_turns_of_one_direction_are_no_pair_for_the_formula(recorded):
+    turns = recorded("imucal-labelled", "imucal_ferraris").parameters("gyroscope", "turns")
+    assert turns["value"].isna().all()
+    assert turns["reason"].str.contains("forward and backward").all()
+
+
+def test_imucal_continuous_finds_every_part(recorded):
+    results = recorded("imucal-continuous", "imucal_ferraris")
+    performed = results["segment/performed"].set_index("manoeuvre")
+    assert performed["complete"].all()
+    # What its SOURCE.md found by adding up the selected rows.
+    angles = np.degrees(performed.loc[["x-turn", "y-turn", "z-turn"], "angle"])
+    np.testing.assert_allclose(angles, [-371.9, -354.8, -359.2], atol=2)
+    assert results.parameters("accelerometer")["value"].notna().all()
+
+
+# ---- whu_xwgi7681_excerpt, a third of a second of each manoeuvre on a three-axis table
+
+
+def test_whu_every_checksum_is_right(recorded):
+    accounts = recorded("whu", "whu_xwgi7681_excerpt")["decode/accounts"]
+    assert accounts.set_index("kind").loc["decoded", "lines"].sum() == 412
+    assert set(accounts["kind"]) == {"decoded"}
+
+
+def test_whu_accelerometer_agrees_with_the_published_result(recorded):
+    results = recorded("whu", "whu_xwgi7681_excerpt")
+    # lidongyang2004, from three minutes of each position; SOURCE.md of the recording.
+    scale = np.diag([264.83e-6, 383.55e-6, 445.63e-6])
+    cross = np.array(
+        [[0, 0.0039051, -0.00799005], [-0.00409682, 0, 0.0004882], [0.0083232, -0.00042507, 0]]
+    )
+    ours, bias = matrix_of(results, "accelerometer", "value")
+    sigma, bias_sigma = matrix_of(results, "accelerometer", "sigma")
+    assert np.abs((ours - scale - cross) / sigma).max() < 2
+    assert np.abs((bias - [-0.00943451, 0.00142041, -0.01676003]) / bias_sigma).max() < 2
+
+
+def test_whu_sigmas_are_honest_for_a_third_of_a_second(recorded):
+    results = recorded("whu", "whu_xwgi7681_excerpt")
+    fit = results["accelerometer/fit"].iloc[0]
+    # The x axis reads 1.7 mm/s² more when it is vertical than the twelve parameters allow.
+    assert fit["p_value"] < 1e-10
+    assert 0.5e-3 < fit["scatter"] < 3e-3  # m/s²
+
+
+def test_whu_every_turn_is_refused_for_the_angle_method(recorded):
+    results = recorded("whu", "whu_xwgi7681_excerpt")
+    performed = results["segment/performed"].set_index("manoeuvre")
+    turns = performed[performed.index.str.contains("360")]
+    assert len(turns) == 6 and not turns["complete"].any()
+    np.testing.assert_allclose(np.degrees(turns["angle"].abs()), 3.3, atol=0.2)
+    np.testing.assert_allclose(np.degrees(turns["missing_angle"].abs()), 356.7, atol=0.2)
+    left = results["gyroscope/fit"].iloc[0]["left_out"]
+    for name in turns.index:
+        assert f"{name}: the angle method needs the whole turn" in left
+    table = results["gyroscope/parameters"]
+    scales = table[table["parameter"].str.startswith("scale")]
+    assert scales["value"].isna().all() and (scales["reason"] != "").all()
+
+
+def test_whu_gyro_bias_agrees_with_the_published_result(recorded):
+    results = recorded("whu", "whu_xwgi7681_excerpt")
+    bias = results.parameters("gyroscope").loc[["bias_x", "bias_y", "bias_z"]]
+    published = np.array([-0.5097616, 0.05342534, 0.02657215]) * ARC_HOUR
+    assert np.abs((bias["value"] - published) / bias["sigma"]).max() < 3
+
+
+# ---- recordings whose positions or plans are for later
+
+
+def test_softdream_is_read_to_the_end(recorded):
+    results = recorded("softdream", "softdream_sixpos")
+    accounts = results["decode/accounts"]
+    assert set(accounts["kind"]) == {"decoded"}
+    assert set(results["quality/findings"]["cause"]) <= {"rate_off"}
+    performed = results["segment/performed"].set_index("manoeuvre")
+    quarters = ["x-quarter", "z-quarter", "x-quarter-back"]
+    np.testing.assert_allclose(
+        np.degrees(performed.loc[quarters, "angle"].astype(float)), [-89.6, -90.0, 90.6], atol=1
+    )
+    clocks = results["decode/clocks"].set_index("log")
+    assert clocks.loc["up.txt", "interval"] == pytest.approx(0.012)  # stamps of a millisecond
+    assert clocks.loc["up.txt", "step"] == pytest.approx(11.888 / 1000)
+    # No turn about y: its scale factor is not determined, and said so.
+    gyro = results.parameters("gyroscope")
+    assert np.isnan(gyro.loc["scale_y", "value"])
+    assert "about y" in gyro.loc["scale_y", "reason"]
+
+
+def test_cuyo_finds_its_rests_but_no_attitude(recorded):
+    results = recorded("cuyo", "mpu6050_cuyo")
+    performed = results["segment/performed"].set_index("manoeuvre")
+    assert performed.loc["settle", "seconds"] == pytest.approx(36.5, abs=2)
+    segments = results["segment/segments"]
+    assert segments["manoeuvre"].str.startswith("by-hand-").sum() >= 8
+    table = results["accelerometer/parameters"]
+    assert table["value"].isna().all()
+    assert table["reason"].str.contains("attitude").all()
+
+
+def test_hipnuc_bins_are_means_without_time(recorded):
+    results = recorded("hipnuc", "hipnuc_temp")
+    samples = results["decode/samples"]
+    still = samples[samples["log"] == "test.log:still"]
+    assert len(still) == 30 and still["time"].isna().all()
+    assert still["mean_of"].iloc[0] == 19674
+    assert still["temperature"].iloc[0] == pytest.approx(273.15 + 1.38)
+    turning = samples[samples["log"] == "test.log:turning"]
+    assert turning["gyro_z"].isna().sum() == (pd.Series(turning["mean_of"]) == 0).sum()
+    performed = results["segment/performed"].set_index("manoeuvre")
+    assert np.degrees(performed.loc["turning", "rate"]) == pytest.approx(-49.73, abs=0.05)

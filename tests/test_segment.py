@@ -1,0 +1,151 @@
+"""Where the manoeuvres are: in the demo, in one long log, and where plan and log disagree."""
+
+from math import degrees
+
+import chain
+import numpy as np
+import pytest
+
+
+def performed(results: chain.Results):
+    return results["segment/performed"].set_index("manoeuvre")
+
+
+def recorded(document, folder, until="segment") -> chain.Results:
+    return chain.run(chain.simulate(document, folder / "campaign"), folder / "derived", until)
+
+
+def test_the_gap_of_the_demo_is_the_one_that_was_found_by_hand(demo):  # T4
+    gap = demo["quality/gaps"].iloc[0]
+    assert len(demo["quality/gaps"]) == 1
+    assert gap["log"] == "z-backward.asc"
+    assert gap["missing"] == 1197
+    assert gap["to_s"] - gap["from_s"] == pytest.approx(11.98, abs=1e-6)
+    # At the -10.00935 °/s that S0's lines have, 1197 samples are 119.81°.
+    assert pytest.approx(119.81, abs=5e-3) == 1197 * 0.01 * 10.00935
+    turn = performed(demo).loc["z-backward"]
+    assert turn["missing_s"] == pytest.approx(11.97)
+    assert degrees(turn["missing_angle"]) == pytest.approx(-119.7, abs=0.1)
+    assert degrees(turn["angle"]) == pytest.approx(-240.3, abs=0.1)
+
+
+def test_the_incomplete_turn_is_named_and_left_out(demo):
+    finding = demo["segment/findings"]
+    assert list(finding["cause"]) == ["incomplete_turn"]
+    assert list(finding["manoeuvre"]) == ["z-backward"]
+    assert "z-backward" in demo["gyroscope/fit"]["left_out"].iloc[0]
+    others = performed(demo).drop("z-backward")
+    assert others["complete"].all()
+
+
+def test_the_phases_of_a_turn_follow_its_profile(clean):
+    segments = clean[0]["segment/segments"]
+    turn = segments[segments["manoeuvre"] == "x-forward"]
+    assert list(turn["phase"]) == ["rest-before", "spin-up", "steady", "spin-down", "rest-after"]
+    steady = turn.set_index("phase").loc["steady"]
+    # 34 s at the rate between two ramps of 2 s; a bin of 0.1 s at each end is left to the ramps.
+    assert steady["to_s"] - steady["from_s"] == pytest.approx(34, abs=0.4)
+    # No record belongs to two phases, and none between them is lost.
+    assert (turn["from_record"].iloc[1:].to_numpy() == turn["to_record"].iloc[:-1].to_numpy()).all()
+
+
+def test_blocks_keep_every_increment(clean):
+    """The sum of a turn's blocks is the sum of its samples: angles never pass through a rate."""
+    blocks = clean[0]["segment/blocks"]
+    samples = clean[0]["decode/samples"]
+    turn = blocks[(blocks["manoeuvre"] == "y-forward")]
+    inside = samples[
+        (samples["log"] == "y-forward.asc")
+        & (samples["record"] >= turn["from_record"].min())
+        & (samples["record"] < turn["to_record"].max())
+    ]
+    interval = clean[0]["decode/clocks"]["interval"].iloc[0]
+    by_blocks = (turn["gyro_y"] * turn["seconds"]).sum()
+    assert by_blocks == pytest.approx(inside["gyro_y"].sum() * interval, abs=1e-12)
+    count = 0.1 / (3600 * 256)
+    assert inside["gyro_y"].sum() * interval / count == pytest.approx(
+        round(inside["gyro_y"].sum() * interval / count), abs=1e-4
+    )
+
+
+def test_a_turn_the_wrong_way_is_found_and_refused(tmp_path):
+    document = chain.demo()
+    document["campaign"]["plan"] = [
+        {"id": "still", "do": "rest", "up": "+z", "seconds": 20, "log": "still.asc"},
+        {"id": "turn", "do": "turn", "up": "+z", "degrees": 360, "rate_deg_s": 10,
+         "accel_deg_s2": 5, "log": "turn.asc"},
+    ]  # fmt: skip
+    folder = chain.simulate(document, tmp_path / "campaign")
+    campaign = folder / "campaign.yaml"
+    campaign.write_text(campaign.read_text().replace("degrees: 360", "degrees: -360"))
+    results = chain.run(folder, tmp_path / "derived")
+    assert "wrong_direction" in set(results["segment/findings"]["cause"])
+    scale = results.parameters("gyroscope").loc["scale_z"]
+    assert np.isnan(scale["value"])
+
+
+def test_a_count_of_the_wrong_unit_is_named(tmp_path):  # T3, what S0's own log says of its IMU
+    document = chain.demo()
+    document["campaign"]["plan"] = [
+        {"id": "still", "do": "rest", "up": "+z", "seconds": 20, "log": "still.asc"},
+        {"id": "turn", "do": "turn", "up": "+z", "degrees": 360, "rate_deg_s": 10,
+         "accel_deg_s2": 5, "log": "turn.asc"},
+    ]  # fmt: skip
+    folder = chain.simulate(document, tmp_path / "campaign")
+    campaign = folder / "campaign.yaml"
+    campaign.write_text(campaign.read_text().replace("span-cpt", "imar-fsas"))
+    results = chain.run(folder, tmp_path / "derived", "segment")
+    wrong = results["segment/findings"].set_index("cause").loc["wrong_rate"]
+    assert 1 / wrong["size"] == pytest.approx(57.29578, rel=2e-3)
+    assert "degrees are taken for radians" in wrong["sentence"]
+    assert "rate_off" in set(results["quality/findings"]["cause"])  # 100 Hz, stated 200 Hz
+
+
+def session() -> dict:
+    """Rests and turns one after another in one log, as S3 records them."""
+    document = chain.demo()
+    plan = []
+    for up in ("+z", "-z", "+x"):
+        name = up.translate({ord("+"): "up-", ord("-"): "down-"})
+        place = {"up": up, "position": name}
+        turn = {"rate_deg_s": 12, "accel_deg_s2": 12}
+        plan += [
+            {"id": f"{name}-before", "do": "rest", **place, "seconds": 20},
+            {"id": f"{name}-forward", "do": "turn", **place, "degrees": 360, **turn},
+            {"id": f"{name}-back", "do": "turn", **place, "degrees": -360, **turn},
+            {"id": f"{name}-after", "do": "rest", **place, "seconds": 20},
+        ]
+    document["campaign"] |= {"plan": plan, "log": "session.asc"}
+    document["handling"] = {"still_s": 10, "change_s": 15}
+    return document
+
+
+def test_one_long_log_is_aligned_with_the_plan(tmp_path):
+    results = recorded(session(), tmp_path)
+    done = performed(results)
+    assert done["found"].all() and done["complete"].all()
+    turns = done[done.index.str.contains("forward|back")]
+    np.testing.assert_allclose(np.degrees(turns["angle"].abs()), 360, atol=1)
+    rests = done[done.index.str.contains("before|after")]
+    assert (rests["seconds"] > 18).all()
+    assert results["segment/findings"].empty
+
+
+def test_a_manoeuvre_that_was_not_done_is_a_finding_and_the_rest_are_still_aligned(tmp_path):
+    document = session()
+    folder = chain.simulate(document, tmp_path / "campaign")
+    campaign = folder / "campaign.yaml"
+    text = campaign.read_text()
+    # The plan claims a rest with y up that never was, between two that were.
+    extra = "- {id: extra, do: rest, up: +y, seconds: 20}"
+    lines = text.splitlines()
+    at = next(i for i, line in enumerate(lines) if "down-z-before" in line)
+    while not lines[at].lstrip().startswith("-"):
+        at -= 1
+    indent = lines[at][: len(lines[at]) - len(lines[at].lstrip())]
+    campaign.write_text("\n".join([*lines[:at], indent + extra, *lines[at:]]) + "\n")
+    results = chain.run(folder, tmp_path / "derived", "segment")
+    done = performed(results)
+    assert not done.loc["extra", "found"]
+    assert done.drop("extra")["complete"].all()
+    assert list(results["segment/findings"]["cause"]) == ["manoeuvre_missing"]
