@@ -32,12 +32,12 @@ report: campaign setup
 	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
 	$(SNAKEMAKE) "$${kinds[@]/#/reports/$$CAMPAIGN.}"
 	echo
-	head -n 8 "reports/$$CAMPAIGN.txt"
-	echo
+	sed '/^Campaign:/,$$d' "reports/$$CAMPAIGN.txt"
 	echo "The report:" "$${kinds[@]/#/reports/$$CAMPAIGN.}"
 
 campaign:
-	if [[ ! $$CAMPAIGN =~ ^[[:lower:][:digit:]][[:lower:][:digit:]-]*$$ ]]; then
+	LC_ALL=C # a-z without ä
+	if [[ ! $$CAMPAIGN =~ ^[a-z0-9][a-z0-9-]*$$ ]]; then
 		printf 'make: CAMPAIGN=%q is no name of a campaign: ' "$$CAMPAIGN"
 		echo "small letters a-z, digits and hyphens, a letter or digit first"
 		exit 2

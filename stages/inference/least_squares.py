@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.optimize import minimize_scalar
+from scipy.stats import chi2
 from scipy.stats import f as f_distribution
 
 Array = NDArray[np.float64]
@@ -51,6 +52,8 @@ class Estimate:
         """
         if not self.degrees:
             return 1.0
+        if np.isinf(noise_degrees):
+            return float(chi2.sf(self.chi_squared, self.degrees))
         ratio = self.chi_squared / self.degrees
         return float(f_distribution.sf(ratio, self.degrees, noise_degrees))
 

@@ -1,0 +1,120 @@
+"""What is wrong with a recording, told without its plan."""
+
+import chain
+import pytest
+
+RESTS = [
+    {"id": "up", "do": "rest", "up": "+z", "seconds": 20, "log": "up.asc"},
+    {"id": "down", "do": "rest", "up": "-z", "seconds": 20, "log": "down.asc"},
+]
+
+
+def two_rests(folder, change=lambda lines: lines, **replaced: str) -> chain.Results:
+    """Two rests of 20 s; `change` alters the first log's lines, `replaced` the campaign file."""
+    document = chain.demo()
+    document["campaign"]["plan"] = RESTS
+    campaign = chain.simulate(document, folder / "campaign")
+    log = campaign / "up.asc"
+    log.write_bytes(b"".join(change(log.read_bytes().splitlines(keepends=True))))
+    file = campaign / "campaign.yaml"
+    text = file.read_text()
+    for right, wrong in replaced.items():
+        assert right in text
+        text = text.replace(right, wrong)
+    file.write_text(text)
+    return chain.run(campaign, folder / "derived", "segment")
+
+
+def test_a_gap_is_counted_to_the_sample(tmp_path):
+    results = two_rests(tmp_path, lambda lines: lines[:500] + lines[537:])
+    finding = results["quality/findings"].iloc[0]
+    assert (finding["cause"], finding["size"], finding["unit"]) == ("gap", 37, "samples")
+    assert finding["to_s"] - finding["from_s"] == pytest.approx(0.38)
+    assert "line 501" in finding["sentence"]
+
+
+def test_a_repeated_record_is_named_and_masked(tmp_path):
+    results = two_rests(tmp_path, lambda lines: lines[:700] + lines[699:])
+    assert list(results["quality/findings"]["cause"]) == ["duplicate"]
+    mask = results["quality/masks"].iloc[0]
+    assert (mask["from_record"], mask["to_record"]) == (700, 701)
+    blocks = results["segment/blocks"]
+    assert blocks[blocks["manoeuvre"] == "up"]["mask_share"].sum() > 0
+    counts = blocks.groupby("manoeuvre")["count"].sum()
+    assert counts["up"] == counts["down"]  # 2001 records, one of them masked
+
+
+def test_time_that_goes_back_is_named(tmp_path):
+    results = two_rests(tmp_path, lambda lines: lines[:900] + lines[600:])
+    causes = list(results["quality/findings"]["cause"])
+    assert causes == ["time_backwards"]
+    assert "goes back by 2.990" in results["quality/findings"]["sentence"].iloc[0]
+
+
+def test_a_storm_of_gaps_is_one_finding_with_a_count(tmp_path):
+    def every_tenth_lost(lines):
+        return [line for number, line in enumerate(lines) if number % 10]
+
+    findings = two_rests(tmp_path, every_tenth_lost)["quality/findings"]
+    assert list(findings["cause"]) == ["gap"]
+    assert findings["count"].iloc[0] == pytest.approx(199, abs=1)
+
+
+def test_records_that_the_instrument_calls_invalid_are_masked(tmp_path):
+    import zlib
+
+    def spoiled(lines):
+        body = lines[300].rstrip(b"\r\n")[1:].rpartition(b"*")[0].replace(b"00000077", b"00000076")
+        checksum = zlib.crc32(body, 0xFFFFFFFF) ^ 0xFFFFFFFF
+        return [*lines[:300], b"%%%s*%08x\r\n" % (body, checksum), *lines[301:]]
+
+    results = two_rests(tmp_path, spoiled)
+    assert list(results["quality/findings"]["cause"]) == ["status_invalid"]
+    assert results["quality/masks"].iloc[0]["from_record"] == 300
+
+
+def test_a_rate_that_is_not_the_stated_one_is_named(tmp_path):
+    findings = two_rests(tmp_path, **{"span-cpt": "imar-fsas"})["quality/findings"]
+    assert set(findings["cause"]) == {"rate_off"}
+    assert findings["size"].iloc[0] == pytest.approx(0.5)
+
+
+CAMPAIGN = """\
+campaign: 1
+instrument:
+  name: own
+  rate_hz: 100
+  format:
+    kind: columns
+    delimiter: ","
+    time: {{rate_hz: 100}}
+    accelerometer: {{columns: [1, 2, 3], unit: {unit}{counts}}}
+serial: unknown
+date: unknown
+site: {{latitude_deg: 45, height_m: 0}}
+table: {{name: by hand, position_sigma_arcsec: 3600}}
+log: log.csv
+plan:
+  - {{id: up, do: rest, up: +z, seconds: 10}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("unit", "counts", "reading", "named"),
+    [
+        ("g", "", 9.81, "the values are in m/s² but are read as g"),
+        ("m/s2", "", 1.0, "the values are in g but are read as m/s²"),
+        ("g", "", 16384, "the values are counts, and counts_per_unit is missing"),
+        ("g", ", counts_per_unit: 16384", 8192, "counts_per_unit is 2 times too large"),
+        ("g", ", counts_per_unit: 4096", 16384, "counts_per_unit is 4 times too small"),
+    ],
+)
+def test_a_wrong_unit_or_count_size_is_named(unit, counts, reading, named, tmp_path):
+    folder = tmp_path / "campaign"
+    folder.mkdir()
+    (folder / "campaign.yaml").write_text(CAMPAIGN.format(unit=unit, counts=counts))
+    (folder / "log.csv").write_text(f"0,0,{reading}\n" * 1000)
+    findings = chain.run(folder, tmp_path / "derived", "quality")["quality/findings"]
+    assert list(findings["cause"]) == ["wrong_unit"]
+    assert named in findings["sentence"].iloc[0]
+    assert findings["severity"].iloc[0] == 3

@@ -1,0 +1,315 @@
+"""The workflow: it tells what the stages tell, reruns what changed, and survives what goes wrong.
+
+It runs in a copy of the project, so that lines of it can be changed, on a short simulated campaign.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import pyarrow.parquet as pq
+import pytest
+from ruamel.yaml import YAML
+
+from tests.chain import ROOT, demo
+
+pytestmark = pytest.mark.workflow
+
+COPIED = ("Snakefile", "config.yaml", "requirements.lock", "profiles", "stages", "laboratory")
+PAGE = "reports/short.html"
+ESTIMATION = {"accelerometer", "gyroscope", "report"}
+AFTER_DECODE = {"quality", "segment", "noise", *ESTIMATION}
+PATIENCE = 60  # s, until a stage must have begun
+
+
+@dataclass(frozen=True)
+class Workflow:
+    """A Snakefile with its stages, and the folder that holds the data it is run on."""
+
+    home: Path
+    data: Path
+
+    def command(self, *arguments: str) -> list[str]:
+        """Snakemake as `make report` calls it."""
+        where = ["--snakefile", str(self.home / "Snakefile"), "--directory", str(self.data)]
+        return [sys.executable, "-m", "snakemake", "--cores", "2", "--nolock", *where, *arguments]
+
+    def run(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(self.command(*arguments), capture_output=True, text=True)
+
+    def planned(self, *arguments: str) -> set[str]:
+        """The rules that a run would run."""
+        dry = self.run("--dry-run", *arguments, "--", PAGE)
+        assert dry.returncode == 0, dry.stderr
+        return set(re.findall(r"^(\w+) +\d+$", dry.stdout + dry.stderr, re.MULTILINE)) - {"total"}
+
+    def beside(self, data: Path, *campaigns: str) -> Workflow:
+        """The same workflow on fresh data: the raw logs of the short campaign under other names."""
+        for campaign in campaigns:
+            shutil.copytree(self.data / "data/raw/short", data / "data/raw" / campaign)
+        return Workflow(self.home, data)
+
+
+def short() -> dict[str, Any]:
+    """The demo, cut short: rests of 20 s, quick turns."""
+    document = demo(handling={"still_s": 5})
+    document["start"] = {**document["start"], "pause_s": 10}
+    plan = [
+        {**item, "seconds": 20}
+        if item["do"] == "rest"
+        else {**item, "rate_deg_s": 30, "accel_deg_s2": 30}
+        for item in document["campaign"]["plan"]
+    ]
+    return {**document, "campaign": {**document["campaign"], "plan": plan}}
+
+
+@pytest.fixture(scope="module")
+def workflow(tmp_path_factory: pytest.TempPathFactory) -> Workflow:
+    """A copy of the project in which the short campaign was run once, up to its page."""
+    made = Workflow(tmp_path_factory.mktemp("home"), tmp_path_factory.mktemp("data"))
+    for name in COPIED:
+        copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy2
+        copy(ROOT / name, made.home / name)
+    (made.home / "data").mkdir()
+    shutil.copy2(ROOT / "data/instruments.yaml", made.home / "data")
+    (made.data / "data/simulated").mkdir(parents=True)
+    YAML(typ="safe").dump(short(), made.data / "data/simulated/short.yaml")
+    first = made.run(PAGE)
+    assert first.returncode == 0, first.stdout + first.stderr
+    return made
+
+
+# ---- one story
+
+
+def test_snakefile_and_stages_tell_the_same_story(workflow: Workflow) -> None:
+    summary = workflow.run("--detailed-summary").stdout.splitlines()
+    names = summary[0].split("\t")
+    outputs: dict[str, set[str]] = {}
+    arguments: dict[str, dict[str, str]] = {}
+    for line in summary[1:]:
+        row = dict(zip(names, line.split("\t"), strict=True))
+        outputs.setdefault(row["rule"], set()).add(row["output_file"])
+        given = [word for word in shlex.split(row["shellcmd"]) if re.match(r"--\w+=", word)]
+        arguments[row["rule"]] = dict(word[2:].split("=", 1) for word in given)
+
+    stages = {path.stem for path in (ROOT / "stages").glob("*.py")} - {"__init__"}
+    assert set(outputs) == stages | {"laboratory_short"}
+
+    modules = {stage: import_module(f"stages.{stage}") for stage in stages - {"pdf"}}
+    writes = {name: module.STAGE.writes for name, module in modules.items() if name != "report"}
+    for stage, tables in writes.items():
+        assert outputs[stage] == {f"data/derived/short/{stage}/{table}.parquet" for table in tables}
+    for stage, module in modules.items():
+        reads = module.READS if stage == "report" else module.STAGE.reads
+        files = () if stage == "report" else module.STAGE.files
+        assert set(arguments[stage]) == {*reads, *files}
+        for name, table in reads.items():
+            path = Path(arguments[stage][name])
+            assert writes[path.parent.name][path.stem] is table, f"{stage} reads {path} as {name}"
+
+
+# ---- what changed is run again, and only that
+
+
+def test_a_second_run_does_nothing(workflow: Workflow) -> None:
+    second = workflow.run(PAGE)
+    assert "Nothing to be done" in second.stdout + second.stderr
+
+
+def test_a_file_that_is_only_newer_changes_nothing(workflow: Workflow) -> None:
+    """As after a fresh checkout of the same state."""
+    for file in (workflow.home / "stages").rglob("*.py"):
+        file.touch()
+    assert workflow.planned() == set()
+
+
+@pytest.mark.parametrize(
+    ("setting", "rerun"),
+    [
+        ("quality: {gap: 1.6}", AFTER_DECODE),
+        ("noise: {from_hz: 0.6}", {"noise", *ESTIMATION}),
+        ("accelerometer: {averaging_steps: 5}", {"accelerometer", "report"}),
+    ],
+)
+def test_a_changed_setting_reruns_its_stage_and_what_follows(
+    workflow: Workflow, tmp_path: Path, setting: str, rerun: set[str]
+) -> None:
+    changes = tmp_path / "changes.yaml"
+    changes.write_text(setting)
+    assert workflow.planned("--configfile", str(changes)) == rerun
+
+
+@pytest.mark.parametrize(
+    ("file", "rerun"),
+    [
+        ("stages/formats/pieces.py", {"decode", *AFTER_DECODE}),
+        ("stages/inference/spectrum.py", {"noise", *ESTIMATION}),
+        ("stages/inference/whole_turns.py", {"gyroscope", "report"}),
+        ("stages/reporting/numbers.py", {"report"}),
+        ("stages/reporting/report.css", {"report"}),
+        ("laboratory/counts.py", {"laboratory_short", "plan", "decode", *AFTER_DECODE}),
+    ],
+)
+def test_a_changed_line_of_code_reruns_what_rests_on_it(
+    workflow: Workflow, file: str, rerun: set[str]
+) -> None:
+    with one_more_line(workflow.home / file):
+        assert workflow.planned() == rerun
+
+
+@contextmanager
+def one_more_line(file: Path) -> Iterator[None]:
+    before = file.read_bytes()
+    file.write_bytes(before + b"\n")
+    yield
+    file.write_bytes(before)
+
+
+# ---- what goes wrong
+
+
+def test_a_killed_run_leaves_no_half_table_and_the_next_run_completes(
+    workflow: Workflow, tmp_path: Path
+) -> None:
+    killed = workflow.beside(tmp_path, "killed")
+    derived = tmp_path / "data/derived/killed"
+    goal = "data/derived/killed/gyroscope/parameters.parquet"
+    for stage in ("decode", "noise", "gyroscope"):
+        kill_within(stage, killed, derived, goal)
+        assert list((derived / stage).glob("*.part"))
+        assert not list((derived / stage).glob("*.parquet"))
+        for table in derived.rglob("*.parquet"):
+            pq.read_table(table)
+
+    last = killed.run(goal)
+    assert last.returncode == 0, last.stderr
+    assert (tmp_path / goal).is_file()
+    assert not list(tmp_path.rglob("*.part"))
+
+
+def kill_within(stage: str, workflow: Workflow, derived: Path, goal: str) -> None:
+    """Start a run and kill it with all it started (-9) while `stage` is at work.
+
+    A stage opens the parts of its tables before it works, and moves them at its end.
+    """
+    run = subprocess.Popen(
+        workflow.command(goal),
+        start_new_session=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    until = time.monotonic() + PATIENCE
+    while not list((derived / stage).glob("*.part")):
+        assert run.poll() is None, f"the run ended before {stage} was seen at work"
+        assert time.monotonic() < until, f"{stage} did not begin"
+        time.sleep(0.001)
+    os.killpg(run.pid, signal.SIGKILL)
+    run.wait()
+
+
+def test_a_bad_campaign_is_refused_by_name_and_a_good_one_beside_it_is_finished(
+    workflow: Workflow, tmp_path: Path
+) -> None:
+    both = workflow.beside(tmp_path, "bad", "good")
+    file = tmp_path / "data/raw/bad/campaign.yaml"
+    file.write_text(file.read_text().replace("serial:", "sreial:"))
+    line = 1 + [text.startswith("sreial:") for text in file.read_text().splitlines()].index(True)
+
+    goals = [f"data/derived/{name}/gyroscope/parameters.parquet" for name in ("bad", "good")]
+    done = both.run(*goals)
+
+    assert done.returncode != 0
+    assert [(tmp_path / goal).is_file() for goal in goals] == [False, True]
+    said = done.stdout + done.stderr
+    assert f"data/raw/bad/campaign.yaml, line {line}" in said
+    assert "sreial" in said
+    assert re.search(r"cure: .*serial", said)
+
+
+def test_an_unknown_setting_is_refused_by_name(workflow: Workflow, tmp_path: Path) -> None:
+    changes = tmp_path / "changes.yaml"
+    changes.write_text("noise: {from_herz: 0.6}")
+    done = workflow.run("--dry-run", "--configfile", str(changes), "--", PAGE)
+    assert done.returncode != 0
+    assert "'from_herz' was unexpected" in done.stdout + done.stderr
+
+
+# ---- make
+
+
+def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """`make` as from a fresh shell: what an outer `make test` hands down is left out."""
+    passed_on = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "MAKEOVERRIDES", "CAMPAIGN")
+    env = {name: value for name, value in os.environ.items() if name not in passed_on}
+    return subprocess.run(["make", *arguments], cwd=folder, env=env, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "",
+        "Demo",
+        "dömo",
+        "-n",
+        "../demo",
+        "a b",
+        "x;touch run",
+        "$(touch run)",
+        "`touch run`",
+        "$(shell touch run)",
+        "x\ntouch run",
+        "'\"; touch run",
+    ],
+)
+def test_an_odd_name_of_a_campaign_is_refused_and_not_run(tmp_path: Path, name: str) -> None:
+    shutil.copy(ROOT / "Makefile", tmp_path)
+    done = make(tmp_path, "report", f"CAMPAIGN={name}")
+    assert done.returncode == 2
+    assert "is no name of a campaign" in done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["Makefile"]
+
+
+def test_make_report_in_a_clean_clone(tmp_path: Path) -> None:
+    if not (ROOT / ".git").exists() or shutil.which("git") is None:
+        pytest.skip("needs a git checkout, which it clones")
+    clone = tmp_path / "clone"
+    subprocess.run(["git", "clone", "--quiet", ROOT, clone], check=True)
+
+    first = make(clone, "report")
+    assert first.returncode == 0, first.stdout + first.stderr
+    assert "(100%) done" in first.stderr
+    pages = ["reports/demo.html", *(["reports/demo.pdf"] if has_pango() else [])]
+    for page in pages:
+        assert (clone / page).stat().st_size > 100_000
+    *_, path = first.stdout.splitlines()
+    assert path == f"The report: {' '.join(pages)}"
+    verdict, _, _ = (clone / "reports/demo.txt").read_text().partition("\nCampaign:")
+    assert verdict.startswith("SIMULATED")
+    assert f"{verdict}\n{path}\n" in first.stdout
+
+    second = make(clone, "report")
+    assert "Nothing to be done" in second.stderr
+    assert f"{verdict}\n{path}\n" in second.stdout
+    assert ".venv" not in second.stdout  # it was not made again
+
+
+def has_pango() -> bool:
+    try:
+        import_module("weasyprint")
+    except OSError:
+        return False
+    return True
