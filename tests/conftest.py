@@ -1,7 +1,8 @@
 """What the tests share: the real recordings, and runs of the chain that several tests look at."""
 
 import os
-from collections.abc import Callable
+import subprocess
+import sys
 from pathlib import Path
 
 import chain
@@ -22,23 +23,37 @@ def recordings() -> Path:
     return folder
 
 
+RECORDED = {
+    "imucal-labelled": "imucal_ferraris",
+    "imucal-continuous": "imucal_ferraris",
+    "whu": "whu_xwgi7681_excerpt",
+    "softdream": "softdream_sixpos",
+    "cuyo": "mpu6050_cuyo",
+    "hipnuc": "hipnuc_temp",
+}
+
+
 @pytest.fixture(scope="session")
-def recorded(recordings, tmp_path_factory) -> Callable[..., chain.Results]:
-    """Run the chain on a real recording: a campaign of tests/campaigns, its logs from `folder`."""
-    done: dict[str, chain.Results] = {}
+def recorded(recordings, tmp_path_factory) -> dict[str, chain.Results]:
+    """The real recordings in a data folder elsewhere, run to their reports as a user would.
 
-    def run(campaign: str, folder: str) -> chain.Results:
-        if campaign not in done:
-            place = tmp_path_factory.mktemp("recorded") / campaign
-            place.mkdir()
-            text = (CAMPAIGNS / f"{campaign}.yaml").read_text(encoding="utf-8")
-            (place / "campaign.yaml").write_text(text, encoding="utf-8")
-            for log in logs_of(place / "campaign.yaml"):
-                (place / log).write_bytes((recordings / folder / log).read_bytes())
-            done[campaign] = chain.run(place, place.with_name("derived"))
-        return done[campaign]
-
-    return run
+    The campaign files are those of tests/campaigns; the logs are linked, not copied.
+    """
+    place = tmp_path_factory.mktemp("recorded")
+    for campaign, folder in RECORDED.items():
+        raw = place / "data/raw" / campaign
+        raw.mkdir(parents=True)
+        text = (CAMPAIGNS / f"{campaign}.yaml").read_text(encoding="utf-8")
+        (raw / "campaign.yaml").write_text(text, encoding="utf-8")
+        for log in logs_of(raw / "campaign.yaml"):
+            (raw / log).symlink_to(recordings / folder / log)
+    reports = [f"reports/{campaign}.html" for campaign in RECORDED]
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--directory", str(place)]
+    command += ["--snakefile", str(chain.ROOT / "Snakefile"), *reports]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert all((place / report).stat().st_size > 10_000 for report in reports)
+    return {name: chain.Results(place / "data/derived" / name) for name in RECORDED}
 
 
 @pytest.fixture(scope="session")
