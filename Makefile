@@ -82,8 +82,8 @@ setup: .venv/complete pango
 pango: .venv/complete
 	if $(BIN)/python -c "import weasyprint" 2> /dev/null; then exit; fi
 	if [[ $$(id -u) == 0 ]]; then may=(env); else may=(sudo -n); fi
-	install=("$${may[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq)
-	("$${install[@]}" update && "$${install[@]}" install --no-install-recommends $(PANGO)) > /dev/null 2>&1 || true
+	apt=("$${may[@]}" DEBIAN_FRONTEND=noninteractive apt-get -qq)
+	{ "$${apt[@]}" update && "$${apt[@]}" install --no-install-recommends $(PANGO); } &> /dev/null || true
 	if ! $(BIN)/python -c "import weasyprint" 2> /dev/null; then
 		echo "Pango is missing, so reports are made as HTML and not as PDF. On Debian:"
 		echo "    sudo apt-get install $(PANGO)"

@@ -15,7 +15,7 @@ def code_of(stage: str) -> list[Path]:
     schemas and templates that lie in its folder.
     """
     reached: set[Path] = set()
-    waiting = [f"stages.{stage}"]
+    waiting = ["stages", f"stages.{stage}"]
     while waiting:
         module = ROOT.joinpath(*waiting.pop().split("."))
         for file in (module.with_suffix(".py"), module / "__init__.py"):
@@ -52,5 +52,6 @@ def _imports(file: Path) -> list[str]:
             names += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module:
             names += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
-    packages = [name.rpartition(".")[0] for name in names]
-    return [name for name in {*names, *packages} if name.partition(".")[0] == "stages"]
+    parts = [name.split(".") for name in names if name.partition(".")[0] == "stages"]
+    # With a module come the packages that it lies in.
+    return sorted({".".join(part[:end]) for part in parts for end in range(1, len(part) + 1)})

@@ -8,7 +8,7 @@ its own whose prior is its known sigma. That is the same as a covariance of the
 observations that contains these errors.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +21,7 @@ from scipy.stats import f as f_distribution
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
+SEEN = 1e-8  # of the information of a column on its own: what is less is rounding
 NARROWED = 4.0  # a parameter is determined when the data narrow its vague prior so many times
 
 
@@ -99,6 +100,95 @@ def solve(
         + 2 * float(np.sum(np.log(sigma)))
         + 2 * float(np.sum(np.log(np.abs(np.diag(upper))))),
     )
+
+
+@dataclass(frozen=True)
+class System:
+    """Equations, and the names of their unknowns: the arguments of `solve` as one thing.
+
+    `names`: (p,), kind and name of each unknown; kinds are parameter, effect, and those of
+    the errors.
+    """
+
+    design: Array
+    observed: Array
+    sigma: Array
+    prior: Array
+    prior_sigma: Array
+    sought: int
+    names: tuple[tuple[str, str], ...]
+
+    def solve(self) -> Estimate:
+        """The estimate of smallest variance."""
+        return solve(
+            self.design, self.observed, self.sigma, self.prior, self.prior_sigma, self.sought
+        )
+
+    def column(self, kind: str, name: str) -> int | None:
+        """Where an unknown stands."""
+        return self.names.index((kind, name)) if (kind, name) in self.names else None
+
+    def reduced(self) -> "Reduced":
+        """What the data say of the effects, all other unknowns fitted."""
+        effects = [i for i, (kind, _) in enumerate(self.names) if kind == "effect"]
+        others = [i for i, (kind, _) in enumerate(self.names) if kind != "effect"]
+        scaled = self.design / self.sigma[:, None]
+        rest = (self.observed - self.design @ self.prior) / self.sigma
+        base = scaled[:, others] * self.prior_sigma[others]
+        stacked = np.zeros((len(rest) + len(others), len(others) + len(effects) + 1))
+        stacked[: len(rest)] = np.column_stack([base, scaled[:, effects], rest])
+        stacked[len(rest) :, : len(others)] = np.eye(len(others))
+        triangle: Array = np.linalg.qr(stacked, mode="r")  # type: ignore[assignment]
+        corner = triangle[len(others) :, len(others) :]
+        columns, right = corner[:, :-1], corner[:, -1]
+        return Reduced(
+            tuple(self.names[i][1] for i in effects), columns.T @ columns, columns.T @ right
+        )
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """What equations say of the effects alone, in the form β ~ (F⁻¹ b, F⁻¹).
+
+    `names`: (k,); `information`: F, (k, k); `right`: b, (k,). Independent equations add up.
+    """
+
+    names: tuple[str, ...]
+    information: Array
+    right: Array
+
+    def __add__(self, other: "Reduced") -> "Reduced":
+        if self.names != other.names:
+            raise ValueError("the equations are not about the same effects")
+        return Reduced(self.names, self.information + other.information, self.right + other.right)
+
+    def drop(self, chosen: Sequence[int]) -> tuple[float, int]:
+        """By how much chi-squared drops with the chosen columns, and on how many degrees."""
+        values, directions, _ = self._modes(chosen)
+        along = directions.T @ self.right[list(chosen)]
+        return float(np.sum(along**2 / values)), len(values)
+
+    def estimate(self, chosen: Sequence[int]) -> tuple[Array, Array]:
+        """Values and covariance of the chosen columns; NaN where the data do not show one."""
+        values, directions, blind = self._modes(chosen)
+        covariance = (directions / values) @ directions.T
+        beta = covariance @ self.right[list(chosen)]
+        hidden = blind[:, None] | blind[None, :]
+        return np.where(blind, np.nan, beta), np.where(hidden, np.nan, covariance)
+
+    def _modes(self, chosen: Sequence[int]) -> tuple[Array, Array, Booleans]:
+        """The combinations of the chosen columns that the data show.
+
+        Returns
+        -------
+        their information (m,), the combinations (k, m), and which columns they do not span (k,)
+        """
+        block = self.information[np.ix_(chosen, chosen)]
+        size = np.sqrt(np.maximum(np.diag(block), np.finfo(float).tiny))
+        values, vectors = np.linalg.eigh(block / np.outer(size, size))
+        seen = values > SEEN
+        spanned = np.sum(vectors[:, seen] ** 2, axis=1)
+        return values[seen], vectors[:, seen] / size[:, None], spanned < 1 - 1e-6
 
 
 LIKELIER = 6.6  # drop of the deviance that a scatter must bring: 1 % of chi-squared of 1 degree

@@ -6,14 +6,14 @@ u is the direction that points up, in body axes; δ the tilt of the position, tw
 unknowns with the sigma of the table; g one unknown with the sigma of gravity.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.inference.least_squares import Estimate, solve
-from stages.inference.triad import UNKNOWNS, design_of
+from stages.inference.least_squares import Estimate, System
+from stages.inference.triad import UNKNOWNS
 from stages.model.motion import level_axes
 
 Array = NDArray[np.float64]
@@ -25,12 +25,16 @@ PRIOR_SIGMA = np.append(np.ones(9), np.full(3, 10.0))
 
 @dataclass(frozen=True)
 class Rest:
-    """One rest: mean readings (m/s², NaN where not recorded) and their sigma of white noise."""
+    """One stretch at an attitude: mean readings, m/s², NaN where not recorded, and their sigma.
+
+    `traces`: how the means change per unit of the parameters of effects.
+    """
 
     position: str
     up: Array  # (3,)
     mean: Array  # (3,)
     sigma: Array  # (3,)
+    traces: Mapping[str, Array] = field(default_factory=dict)  # effect parameter → (3,) per unit
 
 
 def weighted(
@@ -42,33 +46,60 @@ def weighted(
 ) -> Estimate:
     """The twelve parameters of smallest variance from any number of rests.
 
-    Unknowns: M by rows, bias, then gravity and the tilts, which only carry their sigmas.
     `scatter`, m/s², is by what the readings differ from rest to rest beyond noise and tilt.
     """
-    positions = list(dict.fromkeys(rest.position for rest in rests))
-    count = UNKNOWNS + 1 + 2 * len(positions)
-    prior = np.concatenate([PRIOR, [gravity], np.zeros(count - UNKNOWNS - 1)])
-    sigmas = np.append(gravity_sigma, np.full(2 * len(positions), position_sigma))
-    prior_sigma = np.concatenate([PRIOR_SIGMA, sigmas])
     matrix = np.eye(3)
     for _ in range(3):  # M stands before the tilts and gravity, so their columns are made anew
-        design = np.zeros((3 * len(rests), count))
-        constant = np.zeros(3 * len(rests))
-        for i, rest in enumerate(rests):
-            rows = slice(3 * i, 3 * i + 3)
-            design[rows, :UNKNOWNS] = design_of(gravity * rest.up)
-            design[rows, UNKNOWNS] = matrix @ rest.up
-            constant[rows] = -matrix @ rest.up * gravity
-            column = UNKNOWNS + 1 + 2 * positions.index(rest.position)
-            for axis in level_axes(rest.up):
-                design[rows, column] = matrix @ np.cross(axis, gravity * rest.up)
-                column += 1
-        observed = np.concatenate([rest.mean for rest in rests]) - constant
-        sigma = np.hypot(np.concatenate([rest.sigma for rest in rests]), scatter)
-        there = np.isfinite(observed) & np.isfinite(sigma)
-        estimate = solve(design[there], observed[there], sigma[there], prior, prior_sigma, UNKNOWNS)
+        system = equations(rests, gravity, gravity_sigma, position_sigma, scatter, matrix)
+        estimate = system.solve()
         matrix = estimate.values[:9].reshape(3, 3)
     return estimate
+
+
+def equations(
+    rests: Sequence[Rest],
+    gravity: float,
+    gravity_sigma: float,
+    position_sigma: float,
+    scatter: float,
+    matrix: Array,
+    wide: Mapping[str, float] | None = None,
+) -> System:
+    """The equations of all rests, linear about M = `matrix`.
+
+    Unknowns: M by rows, bias, gravity, the tilts, and the effects in `wide` with their sigmas.
+    """
+    positions = list(dict.fromkeys(rest.position for rest in rests))
+    effects = list(wide or {})
+    names = [("parameter", str(i)) for i in range(UNKNOWNS)] + [("gravity", "")]
+    names += [(f"tilt {i}", position) for position in positions for i in (0, 1)]
+    names += [("effect", name) for name in effects]
+    tilts = np.full(2 * len(positions), position_sigma)
+    prior = np.concatenate([PRIOR, [gravity], np.zeros(len(names) - UNKNOWNS - 1)])
+    widths = np.array(list((wide or {}).values()))
+    prior_sigma = np.concatenate([PRIOR_SIGMA, [gravity_sigma], tilts, widths])
+
+    ups = np.array([rest.up for rest in rests])
+    means = np.array([rest.mean for rest in rests])
+    design = np.zeros((len(rests), 3, len(names)))
+    along = ups @ matrix.T
+    for row in range(3):
+        design[:, row, 3 * row : 3 * row + 3] = gravity * ups
+        design[:, row, 9 + row] = 1.0
+    design[:, :, UNKNOWNS] = along
+    level = np.array([level_axes(up) for up in ups])  # (n, 2, 3)
+    place = UNKNOWNS + 1 + 2 * np.array([positions.index(rest.position) for rest in rests])
+    for axis in (0, 1):
+        lean = np.cross(level[:, axis], gravity * ups) @ matrix.T
+        design[np.arange(len(rests)), :, place + axis] = lean
+    for column, name in enumerate(effects, len(names) - len(effects)):
+        traces = [rest.traces.get(name, np.zeros(3)) for rest in rests]
+        design[:, :, column] = np.array(traces)
+    observed = (means + gravity * along).ravel()
+    sigma = np.hypot(np.array([rest.sigma for rest in rests]).ravel(), scatter)
+    there = np.isfinite(observed) & np.isfinite(sigma)
+    rows = design.reshape(-1, len(names))[there]
+    return System(rows, observed[there], sigma[there], prior, prior_sigma, UNKNOWNS, tuple(names))
 
 
 def formula(

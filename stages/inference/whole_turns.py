@@ -14,17 +14,19 @@ known size whose direction is known only with `mark` and the table's heading. El
 it is an unknown of each position, with the size as its sigma.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.inference.least_squares import Estimate, solve
+from stages.inference.least_squares import Estimate, System, solve
 from stages.inference.triad import UNKNOWNS, design_of
-from stages.model.motion import level_axes, turned
+from stages.model.motion import level_axes, turned, turned_all
 
 Array = NDArray[np.float64]
+# How the rates change per unit of the parameters of effects, by name: (3,), or (k, 3) for blocks.
+Traces = Mapping[str, Array]
 
 # Vague priors: M within 0.1 of the unit matrix, the bias within 1 rad/s. Without turns only the
 # earth's rate shows M, and a wider prior would let an absurd M explain an unknown azimuth.
@@ -64,6 +66,7 @@ class Still:
     sigma: Array
     about: Array
     angle: float = 0.0
+    traces: Traces = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -84,6 +87,7 @@ class Turn:
     density: Array
     quiet_density: Array
     by_hand: bool = False
+    traces: Traces = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -97,18 +101,21 @@ class Steady:
     seconds: float
     mean: Array
     sigma: Array
+    traces: Traces = field(default_factory=dict)
 
 
 class _Unknowns:
-    """The columns of the design: twelve parameters, then every error with its sigma."""
+    """The columns of the design: twelve parameters, then every error and effect with its sigma."""
 
-    def __init__(self, earth: Earth) -> None:
+    def __init__(self, earth: Earth, wide: Mapping[str, float]) -> None:
         self.prior = [*PRIOR, earth.up]
         self.sigma = [*PRIOR_SIGMA, earth.up_sigma]
-        self.names: dict[tuple[str, str], int] = {("earth", "up"): UNKNOWNS}
+        self.names = {("parameter", str(i)): i for i in range(UNKNOWNS)}
+        self.names["earth", "up"] = UNKNOWNS
+        self.effects = {name: self.column("effect", name, width) for name, width in wide.items()}
 
     def column(self, kind: str, name: str, sigma: float) -> int:
-        """Where the error `kind` of `name` stands, made where it is new."""
+        """Where the unknown `kind` of `name` stands, made where it is new."""
         if (kind, name) not in self.names:
             self.names[(kind, name)] = len(self.prior)
             self.prior.append(0.0)
@@ -123,6 +130,15 @@ class _Rows:
     design: list[dict[int, Array]]
     observed: list[Array]
     sigma: list[Array]
+
+
+@dataclass(frozen=True)
+class Around:
+    """What the equations are linear about: M, bias, and the level earth rates by column."""
+
+    matrix: Array
+    bias: Array
+    levels: Mapping[int, float]
 
 
 def joint(
@@ -142,44 +158,62 @@ def joint(
     each time about the last result; or once about `start`, the estimate from rests at the
     same positions and the same turns.
     """
-    matrix, bias = np.eye(3), _first_bias(stills)
-    levels: dict[int, float] = {}
+    around = Around(np.eye(3), _first_bias(stills), {})
     if start is not None:
-        matrix, bias = start.values[:9].reshape(3, 3), start.values[9:12]
-        levels = dict(enumerate(start.values.tolist()))
+        around = _around(start)
     for _ in range(1 if start is not None else 4):
-        unknowns = _Unknowns(earth)
-        rows = _Rows([], [], [])
-        for still in stills:
-            _add_still(rows, unknowns, still, matrix, earth, scatter)
-        for number, turn in enumerate(turns):
-            _add_turn(
-                rows, unknowns, turn, number, matrix, bias, earth, (position_sigma, scatter), levels
-            )
-        for number, steady in enumerate(steadies):
-            _add_steady(rows, unknowns, steady, number, matrix, earth, (position_sigma, scatter))
-        design = np.zeros((sum(len(o) for o in rows.observed), len(unknowns.prior)))
-        row = 0
-        for coefficients, observed in zip(rows.design, rows.observed, strict=True):
-            for column, values in coefficients.items():
-                width = 1 if values.ndim == 1 else values.shape[1]
-                design[row : row + len(observed), column : column + width] = values.reshape(
-                    len(observed), width
-                )
-            row += len(observed)
-        observed_all, sigma_all = np.concatenate(rows.observed), np.concatenate(rows.sigma)
-        there = np.isfinite(observed_all) & np.isfinite(sigma_all)
-        estimate = solve(
-            design[there],
-            observed_all[there],
-            sigma_all[there],
-            np.array(unknowns.prior),
-            np.array(unknowns.sigma),
-            UNKNOWNS,
-        )
-        matrix, bias = estimate.values[:9].reshape(3, 3), estimate.values[9:12]
-        levels = dict(enumerate(estimate.values.tolist()))
+        parts = (stills, turns, steadies)
+        estimate = equations(*parts, earth, (position_sigma, scatter), around).solve()
+        around = _around(estimate)
     return estimate
+
+
+def _around(estimate: Estimate) -> Around:
+    values = estimate.values
+    return Around(values[:9].reshape(3, 3), values[9:12], dict(enumerate(values.tolist())))
+
+
+def equations(
+    stills: Sequence[Still],
+    turns: Sequence[Turn],
+    steadies: Sequence[Steady],
+    earth: Earth,
+    sigmas: tuple[float, float],
+    around: Around,
+    wide: Mapping[str, float] | None = None,
+) -> System:
+    """The equations of all rests and turns, linear about `around`.
+
+    `sigmas`: of the positions, rad, and the scatter between manoeuvres, rad/s. Unknowns: M by
+    rows, bias, the earth's upward rate, the effects in `wide` with their sigmas, the errors.
+    """
+    unknowns = _Unknowns(earth, wide or {})
+    rows = _Rows([], [], [])
+    for still in stills:
+        _add_still(rows, unknowns, still, around.matrix, earth, sigmas[1])
+    for number, turn in enumerate(turns):
+        _add_turn(rows, unknowns, turn, number, around, earth, sigmas)
+    for number, steady in enumerate(steadies):
+        _add_steady(rows, unknowns, steady, number, around.matrix, earth, sigmas)
+    design = np.zeros((sum(len(o) for o in rows.observed), len(unknowns.prior)))
+    row = 0
+    for coefficients, observed in zip(rows.design, rows.observed, strict=True):
+        for column, values in coefficients.items():
+            width = 1 if values.ndim == 1 else values.shape[1]
+            block = values.reshape(len(observed), width)
+            design[row : row + len(observed), column : column + width] = block
+        row += len(observed)
+    observed_all, sigma_all = np.concatenate(rows.observed), np.concatenate(rows.sigma)
+    there = np.isfinite(observed_all) & np.isfinite(sigma_all)
+    return System(
+        design[there],
+        observed_all[there],
+        sigma_all[there],
+        np.array(unknowns.prior),
+        np.array(unknowns.sigma),
+        UNKNOWNS,
+        tuple(unknowns.names),
+    )
 
 
 def _first_bias(stills: Sequence[Still]) -> Array:
@@ -219,6 +253,8 @@ def _add_still(
     constant = -(matrix @ up) * earth.up
     for column, axis in level:
         coefficients[column] = matrix @ turned(axis, still.about, still.angle)
+    for name, column in unknowns.effects.items():
+        coefficients[column] = still.traces.get(name, np.zeros(3))
     rows.design.append(coefficients)
     rows.observed.append(still.mean - constant)
     rows.sigma.append(np.hypot(still.sigma, scatter))
@@ -229,12 +265,11 @@ def _add_turn(
     unknowns: _Unknowns,
     turn: Turn,
     number: int,
-    matrix: Array,
-    bias: Array,
+    around: Around,
     earth: Earth,
     sigmas: tuple[float, float],  # of the position and between manoeuvres
-    levels: dict[int, float],
 ) -> None:
+    matrix, bias, levels = around.matrix, around.bias, around.levels
     known, level = _earth_columns(unknowns, turn.position, earth)
     recorded = np.isfinite(turn.sums).all(axis=0) & np.isfinite(turn.density)
     weight = np.where(recorded, 1 / np.where(recorded, turn.density, 1.0), 0.0)
@@ -251,15 +286,15 @@ def _add_turn(
     angle = np.zeros(k)
     for _ in range(2):
         middle = np.cumsum(angle) - angle / 2
-        around = earth.up * turn.position.up + _turned_all(present, turn.about, middle)
-        rest = sums - (around * turn.seconds[:, None]) @ matrix.T - np.outer(turn.seconds, bias)
+        earthly = earth.up * turn.position.up + turned_all(present, turn.about, middle)
+        rest = sums - (earthly * turn.seconds[:, None]) @ matrix.T - np.outer(turn.seconds, bias)
         angle = (rest * weight) @ along / along_length
     middle = np.cumsum(angle) - angle / 2
 
     # What a block sees of each unknown, all three channels: (k, 3, columns).
     truth = (
         angle[:, None] * turn.about
-        + (earth.up * turn.position.up + _turned_all(known, turn.about, middle))
+        + (earth.up * turn.position.up + turned_all(known, turn.about, middle))
         * turn.seconds[:, None]
     )
     first = np.einsum("rc,kj->krcj", np.eye(3), truth).reshape(k, 3, 9)
@@ -267,7 +302,7 @@ def _add_turn(
     up = matrix @ turn.position.up
     parts: dict[int, Array] = {0: own, UNKNOWNS: turn.seconds[:, None, None] * up[None, :, None]}
     for column, axis in level:
-        parts[column] = (_turned_all(axis, turn.about, middle) @ matrix.T * turn.seconds[:, None])[
+        parts[column] = (turned_all(axis, turn.about, middle) @ matrix.T * turn.seconds[:, None])[
             :, :, None
         ]
     for i, axis in enumerate(level_axes(turn.about)):
@@ -277,6 +312,9 @@ def _add_turn(
         for i in range(3):
             column = unknowns.column(f"offset {i}", f"{turn.position.name} {number}", sigmas[1])
             parts[column] = turn.seconds[:, None, None] * np.eye(3)[None, :, [i]]
+    for name, column in unknowns.effects.items():
+        trace = turn.traces.get(name, np.zeros((k, 3)))
+        parts[column] = (trace * turn.seconds[:, None])[:, :, None]
     observed = sums + np.outer(turn.seconds, up) * earth.up
 
     # Two combinations of every block that do not see its angle.
@@ -314,17 +352,6 @@ def _add_turn(
     rows.sigma.append(np.ones(1))
 
 
-def _turned_all(direction: Array, about: Array, angles: Array) -> Array:
-    """`turned` for many angles at once, (k, 3), by Rodrigues' formula."""
-    along = about * (about @ direction)
-    across = direction - along
-    return np.asarray(
-        along
-        + np.outer(np.cos(angles), across)
-        - np.outer(np.sin(angles), np.cross(about, direction))
-    )
-
-
 def _add_steady(
     rows: _Rows,
     unknowns: _Unknowns,
@@ -336,17 +363,19 @@ def _add_steady(
 ) -> None:
     known, level = _earth_columns(unknowns, steady.position, earth)
     angles = steady.rate * np.linspace(0, steady.seconds, 200)
-    known = _turned_all(known, steady.about, angles).mean(axis=0)
+    known = turned_all(known, steady.about, angles).mean(axis=0)
     up = matrix @ steady.position.up
     truth = steady.rate * steady.about + known + earth.up * steady.position.up
     coefficients = {0: design_of(truth), UNKNOWNS: up}
     for column, axis in level:
-        coefficients[column] = matrix @ _turned_all(axis, steady.about, angles).mean(axis=0)
+        coefficients[column] = matrix @ turned_all(axis, steady.about, angles).mean(axis=0)
     for i, axis in enumerate(level_axes(steady.about)):
         column = unknowns.column(f"tilt {i}", steady.position.name, sigmas[0])
         coefficients[column] = steady.rate * (matrix @ np.cross(axis, steady.about))
     column = unknowns.column("rate", f"{steady.position.name} {number}", steady.rate_sigma)
     coefficients[column] = matrix @ steady.about
+    for name, column in unknowns.effects.items():
+        coefficients[column] = steady.traces.get(name, np.zeros(3))
     rows.design.append(coefficients)
     rows.observed.append(steady.mean + up * earth.up)
     rows.sigma.append(np.hypot(steady.sigma, sigmas[1]))

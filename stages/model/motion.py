@@ -47,3 +47,39 @@ class Profile:
     def seconds(self) -> float:
         """From start to stop, A/r + r/a, s."""
         return self.angle / self.rate + self.ramp_seconds
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What the table does to the IMU in n stretches of time, samples or blocks; body axes.
+
+    `time`: (n,), s since the campaign's start, NaN where the logs have no common clock;
+    `about`: (3,), axis of the turn; `angle`, `rate`, `acceleration`: (n,), rad, rad/s, rad/s²,
+    turned about it since the start, at the middle of each stretch; `up`: (n, 3), the table's
+    vertical; `north`: (n, 3), NaN where the azimuth is not known.
+    """
+
+    time: Array
+    about: Array
+    angle: Array
+    rate: Array
+    acceleration: Array
+    up: Array
+    north: Array
+
+    @property
+    def omega(self) -> Array:
+        """Rate of the table as a vector, (n, 3), rad/s."""
+        return np.outer(self.rate, self.about)
+
+    @property
+    def alpha(self) -> Array:
+        """Angular acceleration of the table as a vector, (n, 3), rad/s²."""
+        return np.outer(self.acceleration, self.about)
+
+
+def turned_all(direction: Array, about: Array, angles: Array) -> Array:
+    """`turned` for many angles at once, (n, 3), by Rodrigues' formula."""
+    along = about * (about @ direction)
+    across = np.outer(np.cos(angles), direction - along)
+    return np.asarray(along + across - np.outer(np.sin(angles), np.cross(about, direction)))

@@ -1,0 +1,27 @@
+"""A gyro that feels acceleration."""
+
+from dataclasses import replace
+
+from stages.model.effect import Array, Effect, Parameter, Reading, Truth
+from stages.model.motion import Motion
+
+
+class GyroGSensitivity(Effect):
+    """ω̃_i += Σ_j G_ij f_j.
+
+    Told from a constant bias by positions: it changes sign when the table turns the
+    axis over.
+    """
+
+    name = "gyro_g_sensitivity"
+    cause = "mass unbalance, or stress of the package, pulls the gyro off null under load"
+    source = "IEEE Std 528-2019, 'drift rate, acceleration-sensitive'"
+    parameters = tuple(
+        # 1 °/h per g
+        Parameter(f"g_{i}{j}", "(rad/s)/(m/s²)", 4.94e-7, f"{i} gyro per force along {j}")
+        for i in "xyz"
+        for j in "xyz"
+    )
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        return replace(reading, gyro=reading.gyro + truth.force @ values.reshape(3, 3).T)

@@ -1,0 +1,29 @@
+"""An IMU that does not stand on the axis of the table."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from stages.model.effect import Array, Effect, Parameter, Truth
+from stages.model.motion import Motion
+
+
+class LeverArm(Effect):
+    """f += α × r + ω × (ω × r), with r from the table's axis to the case's origin.
+
+    Told from a bias by motion: it is there only while the table turns. Of r only the part
+    across the axis of the turn is seen.
+    """
+
+    name = "lever_arm"
+    cause = "the accelerometers stand beside the axis of the table and feel its rotation"
+    source = "IEEE Std 1293-2018, centrifuge and rate table tests"
+    parameters = tuple(
+        Parameter(f"r_{axis}", "m", 0.01, f"from the table's axis to the case, along {axis}")
+        for axis in "xyz"
+    )
+
+    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+        swing = np.cross(motion.alpha, values)
+        pull = np.cross(motion.omega, np.cross(motion.omega, values))
+        return replace(truth, force=truth.force + swing + pull)

@@ -1,0 +1,20 @@
+"""A case that rings while the table turns."""
+
+from stages.model.effect import Effect, Parameter
+
+
+class Oscillation(Effect):
+    """ω_i += A sin(2πf t), on one axis; the others see it through M.
+
+    Faster than a block: it is sought in the spectrum of the full-rate residuals. Over a whole
+    turn it adds no angle.
+    """
+
+    name = "oscillation"
+    cause = "the case, the table's drive or a loose screw vibrates about one axis"
+    source = "the Wuhan University laboratory report of 2023, figures 5-14 to 5-16"
+    parameters = (
+        Parameter("frequency", "Hz", 1.0, "frequency, or an alias of it"),
+        Parameter("amplitude", "rad/s", 1e-4, "amplitude of the rate"),
+    )
+    rings = True

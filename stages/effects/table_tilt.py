@@ -1,0 +1,33 @@
+"""A table that is not level."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from stages.model.effect import Array, Effect, Parameter, Truth
+from stages.model.motion import Motion
+from stages.model.site import STANDARD_GRAVITY
+
+
+class TableTilt(Effect):
+    """f −= g (n north + e east): the table's vertical leans by n towards north and e towards east.
+
+    Told from the tilt of a position by the turn: it stays fixed to the laboratory and so goes
+    round in body axes. Without the azimuth of the positions there is no telling.
+    """
+
+    name = "table_tilt"
+    cause = "the base of the table is not level, so all its axes lean the same way"
+    source = "IEEE Std 517-1974, table errors"
+    parameters = (
+        Parameter("north", "rad", 2e-5, "lean of the table's vertical towards north"),
+        Parameter("east", "rad", 2e-5, "lean of the table's vertical towards east"),
+    )
+
+    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+        north = np.nan_to_num(motion.north)
+        east = np.cross(north, motion.up)
+        return replace(
+            truth,
+            force=truth.force - STANDARD_GRAVITY * (values[0] * north + values[1] * east),
+        )
