@@ -2,6 +2,8 @@
 #
 #   make report                   the demo, recorded by the simulated laboratory
 #   make report CAMPAIGN=<name>   the campaign in data/raw/<name>/
+#   make trace ID=<number>        from a number of the report, such as gyroscope/joint/bias_x, down to
+#                                 the lines of the logs; also with CAMPAIGN=<name>
 #   make test                     every test; the same as CI with `make style`
 #   make style                    linters, types, and who may import whom
 #   make clean                    what can be made again from the raw logs; reports stay
@@ -11,13 +13,15 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report test style clean setup pango campaign
+.PHONY: report trace test style clean setup pango campaign
 
 # Taken word for word and given to the shell through the environment, so that neither make nor the
-# shell runs what may stand in it.
+# shell runs what may stand in them.
 CAMPAIGN ?= demo
+ID ?=
 override CAMPAIGN := $(value CAMPAIGN)
-export CAMPAIGN
+override ID := $(value ID)
+export CAMPAIGN ID
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -34,6 +38,9 @@ report: campaign setup
 	echo
 	sed '/^Campaign:/,$$d' "reports/$$CAMPAIGN.txt"
 	echo "The report:" "$${kinds[@]/#/reports/$$CAMPAIGN.}"
+
+trace: campaign setup
+	$(BIN)/python -m stages.tracing "--campaign=$$CAMPAIGN" "--id=$$ID"
 
 campaign:
 	LC_ALL=C # a-z without ä

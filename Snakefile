@@ -77,6 +77,7 @@ rule all:
     default_target: True
     input:
         expand("reports/{campaign}.{kind}", campaign=CAMPAIGNS, kind=["html", "pdf"]),
+        expand(f"{DERIVED}/history/archived.parquet", campaign=CAMPAIGNS),
 
 
 for simulated in SIMULATED:
@@ -254,6 +255,7 @@ rule accelerometer:
             "covariance.parquet",
             "fit.parquet",
             "averaging.parquet",
+            "positions.parquet",
         ),
     log:
         f"{DERIVED}/accelerometer/stage.log",
@@ -284,6 +286,7 @@ rule gyroscope:
             "covariance.parquet",
             "fit.parquet",
             "averaging.parquet",
+            "positions.parquet",
         ),
     log:
         f"{DERIVED}/gyroscope/stage.log",
@@ -295,6 +298,32 @@ rule gyroscope:
         output=f"{DERIVED}/gyroscope",
     message:
         "{wildcards.campaign}: the gyros from turns and rests"
+    shell:
+        STAGE
+
+
+rule history:
+    input:
+        campaign=f"{DERIVED}/plan/campaign.parquet",
+        inputs=f"{DERIVED}/plan/inputs.parquet",
+        accelerometer_parameters=f"{DERIVED}/accelerometer/parameters.parquet",
+        accelerometer_covariance=f"{DERIVED}/accelerometer/covariance.parquet",
+        gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
+        gyroscope_covariance=f"{DERIVED}/gyroscope/covariance.parquet",
+        code=code("history"),
+    output:
+        multiext(f"{DERIVED}/history/", "archived.parquet", "earlier.parquet"),
+    log:
+        f"{DERIVED}/history/stage.log",
+    benchmark:
+        f"{DERIVED}/history/benchmark.tsv"
+    params:
+        settings=settings("history"),
+        # The archive is no input: what other campaigns add to it must not make this one run again.
+        reads=lambda wildcards, input: [*reads(wildcards, input), "--archive=data/history"],
+        output=f"{DERIVED}/history",
+    message:
+        "{wildcards.campaign}: into the archive of its IMU"
     shell:
         STAGE
 

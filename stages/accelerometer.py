@@ -85,6 +85,7 @@ STAGE = Stage(
         "covariance": tables.COVARIANCE,
         "fit": tables.FIT,
         "averaging": tables.AVERAGING,
+        "positions": tables.POSITIONS,
     },
 )
 

@@ -11,7 +11,7 @@ from ruamel.yaml import YAML
 import laboratory
 
 ROOT = Path(__file__).parent.parent
-ORDER = ("plan", "decode", "quality", "segment", "noise", "accelerometer", "gyroscope")
+ORDER = ("plan", "decode", "quality", "segment", "noise", "accelerometer", "gyroscope", "history")
 SETTINGS: dict[str, dict[str, Any]] = YAML(typ="safe").load(ROOT / "config.yaml")
 
 
@@ -38,12 +38,14 @@ def run(campaign: Path, derived: Path, until: str = "gyroscope") -> Results:
         "campaign": [campaign / "campaign.yaml"],
         "raw": raw,
         "instruments": [ROOT / "data/instruments.yaml"],
+        "archive": [derived.parent / "history"],
     }
     for name in ORDER[: ORDER.index(until) + 1]:
         stage = import_module(f"stages.{name}").STAGE
         files = {file: sources[file] for file in stage.files}
         stage.run(made, files, derived / name, SETTINGS.get(name, {}))
-        made |= {table: derived / name / f"{table}.parquet" for table in stage.writes}
+        for table in stage.writes:  # by its own name, and by that of its stage where two write one
+            made[table] = made[f"{name}_{table}"] = derived / name / f"{table}.parquet"
     return Results(derived)
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
+import secrets
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -20,6 +22,7 @@ if TYPE_CHECKING:  # decode streams record batches and starts faster without pan
     import pandas as pd
 
 BATCH_ROWS = 65536  # rows that a stream holds in memory at a time
+AGAIN = "delete the file and run the campaign again"
 
 
 @dataclass(frozen=True)
@@ -63,14 +66,34 @@ class Table:
 
     def read(self, path: Path) -> pd.DataFrame:
         """The whole table; for tables that are small."""
-        self._check(path, pq.read_schema(path))
-        frame: pd.DataFrame = pq.read_table(path).to_pandas()
+        with _readable(path):
+            self._check(path, pq.read_schema(path))
+            frame: pd.DataFrame = pq.read_table(path).to_pandas()
         return frame
 
     def stream(self, path: Path) -> Stream:
         """The table batch by batch, as often as wanted; for tables that may be large."""
-        self._check(path, pq.read_schema(path))
+        with _readable(path):
+            self._check(path, pq.read_schema(path))
         return Stream(path)
+
+    def write_once(self, path: Path, rows: pd.DataFrame) -> None:
+        """Write a file that never changes again; where there is one already, that one stays.
+
+        It is written beside its place and then linked there whole. The link fails where
+        another process was first, so nobody waits and no lock is left after a kill.
+        """
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part = path.with_name(f"{path.name}.{secrets.token_hex(4)}.part")
+        try:
+            with part.open("xb") as file:
+                pq.write_table(self.arrow(rows), file, compression="zstd")
+                file.flush()
+                os.fsync(file.fileno())
+            with suppress(FileExistsError):
+                path.hardlink_to(part)
+        finally:
+            part.unlink(missing_ok=True)
 
     def arrow(self, rows: pd.DataFrame | pa.RecordBatch) -> pa.Table:
         """`rows` in the columns of the contract.
@@ -102,9 +125,7 @@ class Table:
         found = f"{told.get('table')} table of version {told.get('version')}"
         expected = f"{self.name} table of version {self.version}"
         if found != expected:
-            raise Refusal(
-                str(path), "", found, expected, "delete the file and run the campaign again"
-            )
+            raise Refusal(str(path), "", found, expected, AGAIN)
 
 
 @dataclass(frozen=True)
@@ -114,19 +135,36 @@ class Stream:
     path: Path
 
     def __iter__(self) -> Iterator[pa.RecordBatch]:
-        with pq.ParquetFile(self.path) as file:
+        with _readable(self.path), pq.ParquetFile(self.path) as file:
             yield from file.iter_batches(batch_size=BATCH_ROWS)
 
     def columns(self, names: list[str]) -> Iterator[pa.RecordBatch]:
         """The same, of some columns only."""
-        with pq.ParquetFile(self.path) as file:
+        with _readable(self.path), pq.ParquetFile(self.path) as file:
             yield from file.iter_batches(batch_size=BATCH_ROWS, columns=names)
 
 
 def provenance(path: Path) -> dict[str, Any]:
     """What made the table at `path`: stage, settings, hash of its code, hashes of its inputs."""
-    metadata = pq.read_schema(path).metadata
+    with _readable(path):
+        metadata = pq.read_schema(path).metadata or {}
+    if b"made_by" not in metadata:
+        raise Refusal(str(path), "", "no word of what made it", "a table of a stage", AGAIN)
     return dict(json.loads(metadata[b"made_by"]))
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    """Refuse by name what is missing or damaged."""
+    try:
+        yield
+    except FileNotFoundError:
+        raise Refusal(
+            str(path), "", "no such file", "a Parquet table", "run the campaign again"
+        ) from None
+    except (pa.ArrowException, OSError) as error:
+        damage, *_ = str(error).splitlines() or [""]
+        raise Refusal(str(path), "", f"damage: {damage}", "a Parquet table", AGAIN) from None
 
 
 class Writer:

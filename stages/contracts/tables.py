@@ -367,6 +367,18 @@ FIT = Table(
         Column("left_out", _text, "", "the manoeuvres that were not, each with the reason"),
     ),
 )
+POSITIONS = Table(
+    "positions",
+    1,
+    (
+        Column("method", _text, "", "method of estimation"),
+        Column("position", _text, "", "set position"),
+        Column("quantity", _text, "", "tilt 0, tilt 1; level 0, level 1: part of the earth's rate"),
+        Column("value", _double, "as unit", "estimate, about or along the level axis 0 or 1", BODY),
+        Column("sigma", _double, "as unit", "its standard deviation"),
+        Column("unit", _text, "", "unit of value and sigma"),
+    ),
+)
 AVERAGING = Table(
     "averaging",
     1,
@@ -375,5 +387,71 @@ AVERAGING = Table(
         Column("seconds", _double, "s", "length of each rest that was used, from its start"),
         Column("value", _double, "as the parameter", "estimate from these"),
         Column("sigma", _double, "as the parameter", "its standard deviation"),
+    ),
+)
+
+# ---- history
+
+
+def _rows_of(table: Table) -> pa.DataType:
+    """A column that holds rows of `table`."""
+    return pa.list_(pa.struct(list(table.schema)))
+
+
+# An archive outlives the versions: whoever counts this one up, also because a table inside it has
+# changed, writes how the older files are read.
+CALIBRATION = Table(
+    "calibration",
+    1,
+    (
+        *CAMPAIGN.columns,
+        Column("parameters", _rows_of(PARAMETERS), "", "the parameters of every method"),
+        Column("covariance", _rows_of(COVARIANCE), "", "the covariance of the joint methods"),
+        Column("inputs", _rows_of(INPUTS), "", "campaign file and logs"),
+        Column(
+            "made_by",
+            pa.list_(
+                pa.struct(
+                    [
+                        pa.field("stage", _text, False),
+                        pa.field("settings", _text, False, {"meaning": "as JSON"}),
+                        pa.field("code", _text, False, {"meaning": "SHA-256 of its code"}),
+                        pa.field(
+                            "inputs",
+                            _text,
+                            False,
+                            {"meaning": "SHA-256 of each file that it read, as JSON"},
+                        ),
+                    ]
+                )
+            ),
+            "",
+            "the stages that made these tables",
+        ),
+        Column("content", _text, "", "SHA-256 of what makes it another calibration"),
+        Column("supersedes", pa.list_(_text), "", "files of the archive that it replaces"),
+    ),
+)
+ARCHIVED = Table(
+    "archived",
+    1,
+    (
+        Column("file", _text, "", "the archive's file that holds this calibration"),
+        Column("sha256", _text, "", "SHA-256 of that file"),
+        Column("content", _text, "", "SHA-256 of what makes it another calibration"),
+        Column("supersedes", _text, "", "files that it replaces, with spaces between; or none"),
+    ),
+)
+EARLIER = Table(
+    "earlier",
+    1,
+    (
+        Column("campaign", _text, "", "campaign of another calibration of the same IMU"),
+        Column("date", _text, "", "its date, not later than this campaign's, or unknown"),
+        Column("file", _text, "", "the archive's file that holds it"),
+        Column("id", _text, "", "identifier of the parameter, as in parameters"),
+        Column("value", _double, "as unit", "its estimate then"),
+        Column("sigma", _double, "as unit", "standard deviation of the estimate"),
+        Column("unit", _text, "", "unit of value and sigma"),
     ),
 )

@@ -19,6 +19,7 @@ Booleans = NDArray[np.bool_]
 
 NAMES = triad.linear_names()
 SENSED = {"accelerometer": "specific force", "gyroscope": "angular rate"}
+SET = {"tilt": "rad", "level": "rad/s"}  # what is estimated of a position, and its unit
 UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 
 
@@ -31,6 +32,7 @@ class Estimates:
     _covariance: list[pd.DataFrame] = field(default_factory=list)
     _fit: list[dict[str, Any]] = field(default_factory=list)
     _averaging: list[dict[str, Any]] = field(default_factory=list)
+    _positions: list[dict[str, Any]] = field(default_factory=list)
 
     def add(
         self,
@@ -98,7 +100,19 @@ class Estimates:
         used: list[str],
         left: list[str],
     ) -> None:
-        """How well the method's model describes the data, from which manoeuvres."""
+        """How well the method's model describes the data, from which manoeuvres, set how."""
+        for column, (kind, position) in enumerate(fitted.estimate.names):
+            if kind.partition(" ")[0] in SET:
+                self._positions.append(
+                    {
+                        "method": method,
+                        "position": position,
+                        "quantity": kind,
+                        "value": float(fitted.estimate.values[column]),
+                        "sigma": float(fitted.estimate.sigma[column]),
+                        "unit": SET[kind.partition(" ")[0]],
+                    }
+                )
         self._fit.append(
             {
                 "method": method,
@@ -127,7 +141,7 @@ class Estimates:
         ]
 
     def tables(self) -> dict[str, pd.DataFrame]:
-        """The four tables, with their columns even where there are no rows."""
+        """The five tables, with their columns even where there are no rows."""
 
         def frame(rows: list[dict[str, Any]], empty: Table) -> pd.DataFrame:
             return pd.DataFrame(rows) if rows else empty.empty()
@@ -138,6 +152,7 @@ class Estimates:
             "covariance": covariance,
             "fit": frame(self._fit, tables.FIT),
             "averaging": frame(self._averaging, tables.AVERAGING),
+            "positions": frame(self._positions, tables.POSITIONS),
         }
 
 

@@ -9,7 +9,7 @@ observations that contains these errors.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +39,7 @@ class Estimate:
     chi_squared: float
     degrees: int
     deviance: float
+    names: tuple[tuple[str, str], ...] = ()  # kind and name of each unknown, see System
 
     @property
     def sigma(self) -> Array:
@@ -120,9 +121,9 @@ class System:
 
     def solve(self) -> Estimate:
         """The estimate of smallest variance."""
-        return solve(
-            self.design, self.observed, self.sigma, self.prior, self.prior_sigma, self.sought
-        )
+        rows = (self.design, self.observed, self.sigma)
+        estimate = solve(*rows, self.prior, self.prior_sigma, self.sought)
+        return replace(estimate, names=self.names)
 
     def column(self, kind: str, name: str) -> int | None:
         """Where an unknown stands."""

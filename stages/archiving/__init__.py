@@ -1,0 +1,1 @@
+"""The archive of calibrations: one file for each, which never changes."""

@@ -1,0 +1,177 @@
+"""Rests and turns as the equations of the gyros take them, and which turns are refused."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import cos, degrees, sin
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from stages.contracts import tables
+from stages.contracts.records import Known, Manoeuvre, Performed
+from stages.estimation.noise_levels import NoiseLevels
+from stages.estimation.stills import Still, stills
+from stages.inference import whole_turns
+from stages.inference.whole_turns import Earth, Position, Steady, Turn
+
+Array = NDArray[np.float64]
+
+GYRO = [f"gyro_{axis}" for axis in tables.AXES]
+TURNING = ("spin-up", "steady", "spin-down", "turning")
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A turn of the plan, what was recorded of it, its blocks in motion, and why it is refused."""
+
+    plan: Manoeuvre
+    done: Performed
+    blocks: pd.DataFrame
+    refusal: str  # empty where it can be used
+
+
+@dataclass(frozen=True)
+class GyroInputs:
+    """All that a campaign gives the equations of the gyros, of one mount."""
+
+    stills: list[Still]
+    recorded: list[Recorded]
+    turns: list[Turn]  # whole, with their angle known
+    steadies: list[Steady]  # at a known rate
+    earth: Earth
+    position_sigma: float
+    heading: float | None
+    left_out: list[str]  # manoeuvres, each with the reason
+
+    @property
+    def usable(self) -> list[Recorded]:
+        """The turns that are not refused."""
+        return [one for one in self.recorded if not one.refusal]
+
+    @property
+    def used(self) -> list[str]:
+        """Names of all that is used."""
+        return [s.label for s in self.stills] + [one.plan.name for one in self.usable]
+
+    @property
+    def nothing(self) -> bool:
+        """Whether there is neither a rest nor a turn."""
+        return not (self.stills or self.turns or self.steadies)
+
+    def rests(self, seconds: float = np.inf) -> list[whole_turns.Still]:
+        """The rests, or the first seconds of each."""
+        return [still_of(still, self.heading, seconds) for still in self.stills]
+
+
+def gyro_inputs(
+    blocks: pd.DataFrame,
+    plan: Sequence[Manoeuvre],
+    done: Mapping[str, Performed],
+    levels: NoiseLevels,
+    known: Mapping[str, Known],
+) -> GyroInputs:
+    """Gather the rests and turns of one mount."""
+    found, left = stills(blocks, plan, done, levels, "gyro")
+    recorded = recorded_turns(blocks, plan, done)
+    left += [f"{one.plan.name}: {one.refusal}" for one in recorded if one.refusal]
+    heading, rate_sigma = known["heading"].value, known["turn_rate"].scatter
+    usable = [one for one in recorded if not one.refusal]
+    up, level = known["earth_rate_up"], known["earth_rate_level"]
+    return GyroInputs(
+        found,
+        recorded,
+        [turn_of(r, levels, heading) for r in usable if r.plan.recorded == "whole"],
+        [steady_of(r, levels, heading, rate_sigma) for r in usable if r.plan.recorded == "steady"],
+        Earth(up.number, up.scatter, level.number),
+        known["position"].scatter,
+        heading,
+        left,
+    )
+
+
+def recorded_turns(
+    blocks: pd.DataFrame, plan: Sequence[Manoeuvre], done: Mapping[str, Performed]
+) -> list[Recorded]:
+    """Every turn of the plan."""
+    moving = dict(list(blocks[blocks["phase"].isin(TURNING)].groupby("manoeuvre")))
+    result = []
+    for m in plan:
+        if m.do == "turn":
+            part = moving.get(m.name, blocks.iloc[:0])
+            result.append(Recorded(m, done[m.name], part, refusal_of(m, done[m.name], part)))
+    return result
+
+
+def refusal_of(m: Manoeuvre, done: Performed, part: pd.DataFrame) -> str:
+    """Why a turn cannot be used; empty where it can."""
+    if not done.found:
+        return "not found in its log"
+    if m.up is None:
+        return "which way is up is not known"
+    if part.empty or part["seconds"].isna().any() or bool((part["count"] == 0).any()):
+        return "it has no time, so no angle can be summed"
+    if m.recorded == "steady":
+        return "" if bool((part["phase"] == "steady").any()) else "no steady rate was found"
+    if not done.complete:
+        return f"the angle method needs the whole turn, and {done.sentence}"
+    if m.angle is None or m.angle_sigma is None:
+        return "its angle is not stated"
+    if done.angle is None or done.angle * m.angle < 0:
+        return f"it turned by {degrees(done.angle or 0.0):.1f}°, against the plan"
+    return ""
+
+
+def position_of(m: Manoeuvre, heading: float | None) -> Position:
+    """The set position of a manoeuvre; north is known where mark and heading are."""
+    up = m.up
+    assert up is not None  # else it is refused
+    if m.mark is None:
+        return Position(m.position, up)
+    mark = m.mark - up * (up @ m.mark)
+    mark = mark / np.linalg.norm(mark)
+    if heading is None:
+        return Position(m.position, up, mark=mark)
+    # The azimuth counts clockwise, so north lies counter-clockwise of the mark, seen from above.
+    return Position(m.position, up, north=cos(heading) * mark + sin(heading) * np.cross(up, mark))
+
+
+def still_of(still: Still, heading: float | None, seconds: float = np.inf) -> whole_turns.Still:
+    """A rest, or its first seconds."""
+    position = position_of(still.manoeuvre, heading)
+    return whole_turns.Still(position, *still.over(seconds), still.about, still.angle)
+
+
+def turn_of(one: Recorded, noise: NoiseLevels, heading: float | None) -> Turn:
+    """A whole turn with its blocks in motion."""
+    m, part = one.plan, one.blocks
+    assert m.angle is not None and m.angle_sigma is not None  # else it is refused
+    seconds = part["seconds"].to_numpy(np.float64)
+    return Turn(
+        position=position_of(m, heading),
+        about=m.axis,
+        angle=m.angle,
+        angle_sigma=m.angle_sigma,
+        sums=part[GYRO].to_numpy(np.float64) * seconds[:, None],
+        seconds=seconds,
+        density=noise.of(m.name, "steady", GYRO),
+        quiet_density=noise.of(m.name, "rest", GYRO),
+        by_hand=bool((part["phase"] == "turning").any()),
+    )
+
+
+def steady_of(
+    one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float
+) -> Steady:
+    m, part = one.plan, one.blocks[one.blocks["phase"] == "steady"]
+    assert m.rate is not None  # the plan wants a rate of such a turn
+    seconds = float(part["seconds"].sum())
+    return Steady(
+        position=position_of(m, heading),
+        about=m.axis,
+        rate=m.rate,
+        rate_sigma=abs(m.rate) * rate_sigma,
+        seconds=seconds,
+        mean=np.average(part[GYRO].to_numpy(np.float64), weights=part["count"], axis=0),
+        sigma=noise.of(m.name, "steady", GYRO) / np.sqrt(seconds),
+    )

@@ -1,0 +1,101 @@
+"""This calibration into the archive of its IMU, and the earlier ones of the same IMU out of it."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from stages.archiving.archive import Archive, Entry
+from stages.contracts import tables
+from stages.contracts.code import hash_of_file
+from stages.contracts.records import Row, rows_of
+from stages.contracts.stage import Stage, Tables
+
+
+def history(
+    campaign: pd.DataFrame,
+    inputs: pd.DataFrame,
+    accelerometer_parameters: pd.DataFrame,
+    accelerometer_covariance: pd.DataFrame,
+    gyroscope_parameters: pd.DataFrame,
+    gyroscope_covariance: pd.DataFrame,
+    archive: list[Path],
+    provenance: Mapping[str, Mapping[str, Any]],
+) -> Tables:
+    """Which file of the archive holds this calibration, and what was found earlier.
+
+    The archive grows with every campaign. What others add to it is read when this stage runs,
+    but never makes it run again.
+    """
+    (facts,) = rows_of(campaign)
+    parameters = [*rows_of(accelerometer_parameters), *rows_of(gyroscope_parameters)]
+    covariance = [*rows_of(accelerometer_covariance), *rows_of(gyroscope_covariance)]
+    joint = {row["id"] for row in parameters if _is_joint(row)}
+    calibration = facts | {
+        "parameters": parameters,
+        "covariance": [row for row in covariance if row["first"] in joint],
+        "inputs": rows_of(inputs),
+        "made_by": _makers(provenance),
+    }
+    kept = Archive(archive[0], simulated=facts["simulated"])
+    entry = kept.add(calibration)
+    archived = {
+        "file": entry.file,
+        "sha256": hash_of_file(kept.root / entry.file),
+        "content": entry.row["content"],
+        "supersedes": " ".join(entry.row["supersedes"]),
+    }
+    earlier = [row for other in kept.earlier(calibration) for row in _numbers(other)]
+    return {
+        "archived": pd.DataFrame([archived]),
+        "earlier": pd.DataFrame(earlier) if earlier else tables.EARLIER.empty(),
+    }
+
+
+def _makers(provenance: Mapping[str, Mapping[str, Any]]) -> list[Row]:
+    """The stages that made the tables, each once."""
+    by_stage = {maker["stage"]: maker for maker in provenance.values()}
+    return [
+        {
+            "stage": stage,
+            "settings": json.dumps(maker["settings"], sort_keys=True),
+            "code": maker["code"],
+            "inputs": json.dumps(maker["inputs"], sort_keys=True),
+        }
+        for stage, maker in sorted(by_stage.items())
+    ]
+
+
+def _numbers(entry: Entry) -> list[Row]:
+    """What the joint methods of an archived calibration have determined."""
+    where = {"campaign": entry.row["campaign"], "date": entry.row["date"], "file": entry.file}
+    return [
+        where | {key: row[key] for key in ("id", "value", "sigma", "unit")}
+        for row in entry.row["parameters"]
+        if _is_joint(row) and row["value"] is not None
+    ]
+
+
+def _is_joint(row: Row) -> bool:
+    """Whether a parameter is of a joint method: `joint`, or `joint@<mount>` for each mount."""
+    return str(row["method"]).partition("@")[0] == "joint"
+
+
+STAGE = Stage(
+    history,
+    reads={
+        "campaign": tables.CAMPAIGN,
+        "inputs": tables.INPUTS,
+        "accelerometer_parameters": tables.PARAMETERS,
+        "accelerometer_covariance": tables.COVARIANCE,
+        "gyroscope_parameters": tables.PARAMETERS,
+        "gyroscope_covariance": tables.COVARIANCE,
+    },
+    files=("archive",),
+    writes={"archived": tables.ARCHIVED, "earlier": tables.EARLIER},
+)
+
+if __name__ == "__main__":
+    STAGE.command_line()
