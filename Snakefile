@@ -69,6 +69,12 @@ def logs(wildcards):
     return [file for file in files if simulated or Path(file).is_file()]
 
 
+def published(wildcards):
+    """What others published of the IMU, where the laboratory has put it beside its campaign."""
+    file = f"{RAW}/published.yaml".format(**wildcards)
+    return [file] if Path(file).is_file() else []
+
+
 wildcard_constraints:
     campaign="[a-z0-9][a-z0-9-]*",
 
@@ -77,6 +83,8 @@ rule all:
     default_target: True
     input:
         expand("reports/{campaign}.{kind}", campaign=CAMPAIGNS, kind=["html", "pdf"]),
+        expand(f"{DERIVED}/comparison/differences.parquet", campaign=CAMPAIGNS),
+        expand(f"{DERIVED}/compensation/checks.parquet", campaign=CAMPAIGNS),
         expand(f"{DERIVED}/history/archived.parquet", campaign=CAMPAIGNS),
 
 
@@ -109,6 +117,7 @@ rule plan:
         campaign=f"{RAW}/campaign.yaml",
         raw=logs,
         instruments=HOME / "data/instruments.yaml",
+        published=published,
         code=code("plan"),
     output:
         multiext(
@@ -118,6 +127,7 @@ rule plan:
             "sensors.parquet",
             "logs.parquet",
             "inputs.parquet",
+            "published.parquet",
             "manoeuvres.parquet",
         ),
     log:
@@ -302,6 +312,178 @@ rule gyroscope:
         STAGE
 
 
+rule comparison:
+    input:
+        blocks=f"{DERIVED}/segment/blocks.parquet",
+        manoeuvres=f"{DERIVED}/plan/manoeuvres.parquet",
+        performed=f"{DERIVED}/segment/performed.parquet",
+        noise=f"{DERIVED}/noise/noise.parquet",
+        known=f"{DERIVED}/plan/known.parquet",
+        accelerometer_parameters=f"{DERIVED}/accelerometer/parameters.parquet",
+        gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
+        gyroscope_fit=f"{DERIVED}/gyroscope/fit.parquet",
+        published=f"{DERIVED}/plan/published.parquet",
+        code=code("comparison"),
+    output:
+        f"{DERIVED}/comparison/differences.parquet",
+    log:
+        f"{DERIVED}/comparison/stage.log",
+    benchmark:
+        f"{DERIVED}/comparison/benchmark.tsv"
+    params:
+        settings=settings("comparison"),
+        reads=reads,
+        output=f"{DERIVED}/comparison",
+    message:
+        "{wildcards.campaign}: rests against turns, method against method, others against ours"
+    shell:
+        STAGE
+
+
+rule compensation:
+    input:
+        samples=f"{DERIVED}/decode/samples.parquet",
+        traces=f"{DERIVED}/segment/traces.parquet",
+        segments=f"{DERIVED}/segment/segments.parquet",
+        blocks=f"{DERIVED}/segment/blocks.parquet",
+        campaign=f"{DERIVED}/plan/campaign.parquet",
+        manoeuvres=f"{DERIVED}/plan/manoeuvres.parquet",
+        performed=f"{DERIVED}/segment/performed.parquet",
+        noise=f"{DERIVED}/noise/noise.parquet",
+        known=f"{DERIVED}/plan/known.parquet",
+        accelerometer_parameters=f"{DERIVED}/accelerometer/parameters.parquet",
+        gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
+        code=code("compensation"),
+    output:
+        multiext(
+            f"{DERIVED}/compensation/",
+            "compensated.parquet",
+            "checks.parquet",
+            "compensated_traces.parquet",
+            "findings.parquet",
+        ),
+    log:
+        f"{DERIVED}/compensation/stage.log",
+    benchmark:
+        f"{DERIVED}/compensation/benchmark.tsv"
+    params:
+        settings=settings("compensation"),
+        reads=reads,
+        output=f"{DERIVED}/compensation",
+    message:
+        "{wildcards.campaign}: the samples with the errors taken out"
+    shell:
+        STAGE
+
+
+rule simulation:
+    input:
+        samples=f"{DERIVED}/decode/samples.parquet",
+        segments=f"{DERIVED}/segment/segments.parquet",
+        blocks=f"{DERIVED}/segment/blocks.parquet",
+        manoeuvres=f"{DERIVED}/plan/manoeuvres.parquet",
+        performed=f"{DERIVED}/segment/performed.parquet",
+        noise=f"{DERIVED}/noise/noise.parquet",
+        known=f"{DERIVED}/plan/known.parquet",
+        clocks=f"{DERIVED}/decode/clocks.parquet",
+        accelerometer_parameters=f"{DERIVED}/accelerometer/parameters.parquet",
+        accelerometer_positions=f"{DERIVED}/accelerometer/positions.parquet",
+        gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
+        gyroscope_positions=f"{DERIVED}/gyroscope/positions.parquet",
+        code=code("simulation"),
+    output:
+        multiext(
+            f"{DERIVED}/simulation/",
+            "simulated.parquet",
+            "fidelity.parquet",
+        ),
+    log:
+        f"{DERIVED}/simulation/stage.log",
+    benchmark:
+        f"{DERIVED}/simulation/benchmark.tsv"
+    params:
+        settings=settings("simulation"),
+        reads=reads,
+        output=f"{DERIVED}/simulation",
+    message:
+        "{wildcards.campaign}: what should the IMU have read?"
+    shell:
+        STAGE
+
+
+rule criticism:
+    input:
+        simulated=f"{DERIVED}/simulation/simulated.parquet",
+        blocks=f"{DERIVED}/segment/blocks.parquet",
+        manoeuvres=f"{DERIVED}/plan/manoeuvres.parquet",
+        performed=f"{DERIVED}/segment/performed.parquet",
+        noise=f"{DERIVED}/noise/noise.parquet",
+        known=f"{DERIVED}/plan/known.parquet",
+        clocks=f"{DERIVED}/decode/clocks.parquet",
+        accelerometer_parameters=f"{DERIVED}/accelerometer/parameters.parquet",
+        accelerometer_positions=f"{DERIVED}/accelerometer/positions.parquet",
+        gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
+        gyroscope_positions=f"{DERIVED}/gyroscope/positions.parquet",
+        code=code("criticism"),
+    output:
+        multiext(
+            f"{DERIVED}/criticism/",
+            "scores.parquet",
+            "effects.parquet",
+            "lines.parquet",
+            "findings.parquet",
+        ),
+    log:
+        f"{DERIVED}/criticism/stage.log",
+    benchmark:
+        f"{DERIVED}/criticism/benchmark.tsv"
+    params:
+        settings=settings("criticism"),
+        reads=reads,
+        output=f"{DERIVED}/criticism",
+    message:
+        "{wildcards.campaign}: what does the simulation lack?"
+    shell:
+        STAGE
+
+
+rule extension:
+    input:
+        simulated=f"{DERIVED}/simulation/simulated.parquet",
+        scores=f"{DERIVED}/criticism/scores.parquet",
+        effects=f"{DERIVED}/criticism/effects.parquet",
+        blocks=f"{DERIVED}/segment/blocks.parquet",
+        manoeuvres=f"{DERIVED}/plan/manoeuvres.parquet",
+        performed=f"{DERIVED}/segment/performed.parquet",
+        noise=f"{DERIVED}/noise/noise.parquet",
+        known=f"{DERIVED}/plan/known.parquet",
+        clocks=f"{DERIVED}/decode/clocks.parquet",
+        accelerometer_parameters=f"{DERIVED}/accelerometer/parameters.parquet",
+        accelerometer_positions=f"{DERIVED}/accelerometer/positions.parquet",
+        gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
+        gyroscope_positions=f"{DERIVED}/gyroscope/positions.parquet",
+        code=code("extension"),
+    output:
+        multiext(
+            f"{DERIVED}/extension/",
+            "parameters.parquet",
+            "covariance.parquet",
+            "gain.parquet",
+        ),
+    log:
+        f"{DERIVED}/extension/stage.log",
+    benchmark:
+        f"{DERIVED}/extension/benchmark.tsv"
+    params:
+        settings=settings("extension"),
+        reads=reads,
+        output=f"{DERIVED}/extension",
+    message:
+        "{wildcards.campaign}: the model with what it lacked"
+    shell:
+        STAGE
+
+
 rule history:
     input:
         campaign=f"{DERIVED}/plan/campaign.parquet",
@@ -350,6 +532,20 @@ rule report:
         gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
         gyroscope_fit=f"{DERIVED}/gyroscope/fit.parquet",
         gyroscope_averaging=f"{DERIVED}/gyroscope/averaging.parquet",
+        simulated=f"{DERIVED}/simulation/simulated.parquet",
+        fidelity=f"{DERIVED}/simulation/fidelity.parquet",
+        scores=f"{DERIVED}/criticism/scores.parquet",
+        effects=f"{DERIVED}/criticism/effects.parquet",
+        lines=f"{DERIVED}/criticism/lines.parquet",
+        criticism_findings=f"{DERIVED}/criticism/findings.parquet",
+        extended_parameters=f"{DERIVED}/extension/parameters.parquet",
+        gain=f"{DERIVED}/extension/gain.parquet",
+        differences=f"{DERIVED}/comparison/differences.parquet",
+        checks=f"{DERIVED}/compensation/checks.parquet",
+        compensated_traces=f"{DERIVED}/compensation/compensated_traces.parquet",
+        compensation_findings=f"{DERIVED}/compensation/findings.parquet",
+        archived=f"{DERIVED}/history/archived.parquet",
+        earlier=f"{DERIVED}/history/earlier.parquet",
         code=code("report"),
     output:
         page="reports/{campaign}.html",

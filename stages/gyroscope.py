@@ -7,15 +7,15 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from stages.contracts import tables
-from stages.contracts.records import Manoeuvre, known_of, manoeuvres_of, performed_of
+from stages.contracts.records import known_of, manoeuvres_of, performed_of
 from stages.contracts.stage import Stage, Tables
 from stages.estimation.estimates import Estimates, by_mount, reasons
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import averaging_times
-from stages.estimation.turns import GYRO, GyroInputs, Recorded, gyro_inputs
+from stages.estimation.turns import GyroInputs, angles_about, gyro_inputs
 from stages.inference import whole_turns
 from stages.inference.least_squares import with_scatter
-from stages.inference.whole_turns import Angle, joint
+from stages.inference.whole_turns import joint
 
 CURES = {
     "bias": "neither a rest nor a turn there and back shows it: add a rest",
@@ -77,8 +77,7 @@ def _add_known_angle(
     for i, axis in enumerate(tables.AXES):
         whole = [r for r in inputs.recorded if r.plan.recorded == "whole"]
         own = [r for r in whole if abs(r.plan.axis[i]) > 1 - 1e-9]
-        angles = [_angle(r, i, noise) for r in own if not r.refusal and _upright(r.plan, i)]
-        turns = [turn for turn in angles if np.isfinite(turn.summed)]
+        turns = [angle for _, angle in angles_about(inputs, i, noise)]
         names = (f"bias_{axis}", f"scale_{axis}")
         if len({np.sign(turn.angle) for turn in turns}) == 2:
             estimate = whole_turns.known_angle(turns, inputs.earth, scatter)
@@ -89,24 +88,6 @@ def _add_known_angle(
             reason += f"; not whole: {', '.join(refused)}" if refused else ""
             nothing = (np.zeros(2), np.zeros((2, 2)))
             estimates.add(method, names, *nothing, dict.fromkeys(names, reason))
-
-
-def _upright(m: Manoeuvre, i: int) -> bool:
-    """Whether body axis i points up or down."""
-    return m.up is not None and abs(float(m.up[i])) > 1 - 1e-9
-
-
-def _angle(one: Recorded, i: int, noise: NoiseLevels) -> Angle:
-    m, part = one.plan, one.blocks
-    assert m.up is not None and m.angle is not None and m.angle_sigma is not None  # else refused
-    return Angle(
-        summed=float((part[GYRO[i]] * part["seconds"]).sum()),
-        angle=m.angle * float(m.axis[i]),
-        angle_sigma=m.angle_sigma,
-        seconds=float(part["seconds"].sum()),
-        up=float(m.up[i]),
-        density=float(noise.of(m.name, "rest", GYRO)[i]),
-    )
 
 
 STAGE = Stage(

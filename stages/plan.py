@@ -3,6 +3,7 @@
 This is the only stage that reads YAML, so a bad campaign fails here, by name.
 """
 
+from collections.abc import Sequence
 from math import radians
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import pandas as pd
 
 from stages.campaign.known import known
 from stages.campaign.manoeuvres import expanded
+from stages.campaign.published import published_values
 from stages.campaign.recording import by_log, instrument, logs, recording, sensors
 from stages.contracts import tables
 from stages.contracts.code import hash_of_file
@@ -20,13 +22,18 @@ from stages.contracts.yaml_file import YamlFile
 Row = dict[str, Any]
 
 
-def plan(campaign: list[Path], raw: list[Path], instruments: list[Path]) -> Tables:
-    """The campaign, its instrument, its logs and its manoeuvres.
+def plan(
+    campaign: list[Path],
+    raw: list[Path],
+    instruments: list[Path],
+    published: Sequence[Path] = (),
+) -> Tables:
+    """The campaign, its instrument, its logs and its manoeuvres, and what others published of it.
 
     Raises
     ------
     Refusal
-        for the first thing in the campaign file that cannot be used
+        for the first thing in these files that cannot be used
     """
     file = YamlFile(campaign[0])
     version = file.content.get("campaign") if isinstance(file.content, dict) else None
@@ -47,6 +54,7 @@ def plan(campaign: list[Path], raw: list[Path], instruments: list[Path]) -> Tabl
                 f"a log in {campaign[0].parent}",
                 "put the log there, or correct its name",
             )
+    others = [row for path in published for row in published_values(YamlFile(path))]
     used = sorted({present[row["file"]] for row in manoeuvres})
     return {
         "campaign": pd.DataFrame([_campaign(file, campaign[0].parent.name, entry)]),
@@ -57,6 +65,7 @@ def plan(campaign: list[Path], raw: list[Path], instruments: list[Path]) -> Tabl
             {"file": path.name, "size": path.stat().st_size, "sha256": hash_of_file(path)}
             for path in [campaign[0], *used]
         ),
+        "published": pd.DataFrame(others) if others else tables.PUBLISHED.empty(),
         "manoeuvres": pd.DataFrame(manoeuvres)[[c.name for c in tables.MANOEUVRES.columns]],
     }
 
@@ -66,6 +75,7 @@ def _campaign(file: YamlFile, folder: str, entry: dict[str, Any]) -> Row:
     return {
         "campaign": folder,
         "simulated": content.get("simulated", False),
+        "compensated": content.get("compensated", False),
         "instrument": entry["name"],
         "serial": content["serial"],
         "date": content["date"],
@@ -98,13 +108,14 @@ def _manoeuvres(file: YamlFile, entry: dict[str, Any]) -> list[Row]:
 
 STAGE = Stage(
     plan,
-    files=("campaign", "raw", "instruments"),
+    files=("campaign", "raw", "instruments", "published"),
     writes={
         "campaign": tables.CAMPAIGN,
         "known": tables.KNOWN,
         "sensors": tables.SENSORS,
         "logs": tables.LOGS,
         "inputs": tables.INPUTS,
+        "published": tables.PUBLISHED,
         "manoeuvres": tables.MANOEUVRES,
     },
 )

@@ -18,12 +18,16 @@ import pandas as pd
 from stages.contracts import tables
 from stages.contracts.code import code_of, hash_of
 from stages.contracts.errors import Refusal
-from stages.contracts.parquet import Table
+from stages.contracts.parquet import Stream, Table
 from stages.contracts.parquet import provenance as made_by
 from stages.reporting import (
     account,
     averaging,
+    comparisons,
+    compensation,
     findings,
+    history,
+    lacks,
     numbers,
     parameters,
     raw_data,
@@ -39,6 +43,9 @@ from stages.reporting import (
 )
 from stages.reporting import (
     provenance as origin,
+)
+from stages.reporting import (
+    simulated as over_simulated,
 )
 from stages.reporting.outline import Report
 from stages.reporting.page import page
@@ -65,7 +72,22 @@ READS: Mapping[str, Table] = {
     "gyroscope_parameters": tables.PARAMETERS,
     "gyroscope_fit": tables.FIT,
     "gyroscope_averaging": tables.AVERAGING,
+    "simulated": tables.SIMULATED,
+    "fidelity": tables.FIDELITY,
+    "scores": tables.SCORES,
+    "effects": tables.EFFECTS,
+    "lines": tables.LINES,
+    "criticism_findings": tables.FINDINGS,
+    "extended_parameters": tables.PARAMETERS,
+    "gain": tables.GAIN,
+    "differences": tables.DIFFERENCES,
+    "checks": tables.CHECKS,
+    "compensated_traces": tables.TRACES,
+    "compensation_findings": tables.FINDINGS,
+    "archived": tables.ARCHIVED,
+    "earlier": tables.EARLIER,
 }
+STREAMS = ("simulated",)  # too long for memory
 
 
 class Documents(NamedTuple):
@@ -97,6 +119,20 @@ def report(
     gyroscope_parameters: pd.DataFrame,
     gyroscope_fit: pd.DataFrame,
     gyroscope_averaging: pd.DataFrame,
+    simulated: Stream,
+    fidelity: pd.DataFrame,
+    scores: pd.DataFrame,
+    effects: pd.DataFrame,
+    lines: pd.DataFrame,
+    criticism_findings: pd.DataFrame,
+    extended_parameters: pd.DataFrame,
+    gain: pd.DataFrame,
+    differences: pd.DataFrame,
+    checks: pd.DataFrame,
+    compensated_traces: pd.DataFrame,
+    compensation_findings: pd.DataFrame,
+    archived: pd.DataFrame,
+    earlier: pd.DataFrame,
     provenance: Mapping[str, Mapping[str, Any]],
 ) -> Documents:
     """The lab report of one campaign, and its verdict as text."""
@@ -104,8 +140,11 @@ def report(
     found = parameters.estimates(
         accelerometer_parameters, accelerometer_fit, gyroscope_parameters, gyroscope_fit
     )
-    worst_first = findings.ranked((quality_findings, segment_findings))
-    given = verdict.verdict(found, manoeuvres, performed, worst_first)
+    worst_first = findings.ranked(
+        (quality_findings, segment_findings, criticism_findings, compensation_findings)
+    )
+    sought = lacks.sought(scores, effects)
+    given = verdict.verdict(found, manoeuvres, performed, worst_first, lacks.named(sought))
     estimated = [*records(accelerometer_parameters), *records(gyroscope_parameters)]
     name = numbers.shortened(about["campaign"], 80)
     serial = numbers.shortened(about["serial"], 80)
@@ -119,8 +158,13 @@ def report(
         sections=(
             verdict.section(given, found, about, known, clocks),
             parameters.section(found),
+            lacks.section(sought, lines, gain, extended_parameters, found),
             findings.section(worst_first),
             undetermined.section(found),
+            over_simulated.section(simulated, fidelity, manoeuvres, segments),
+            comparisons.section(differences),
+            compensation.section(checks, traces, compensated_traces, segments, manoeuvres),
+            history.section(earlier, archived, estimated, about["date"]),
             recording.section(manoeuvres, performed),
             raw_data.section(traces, segments, clocks, worst_first),
             noise_of_channels.section(noise, sensors),
@@ -145,7 +189,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     given = parser.parse_args(arguments)
     paths: dict[str, Path] = {name: getattr(given, name) for name in READS}
     try:
-        read = {name: table.read(paths[name]) for name, table in READS.items()}
+        read: dict[str, Any] = {
+            name: table.stream(paths[name]) if name in STREAMS else table.read(paths[name])
+            for name, table in READS.items()
+        }
         makers = {name: made_by(path) for name, path in paths.items()}
         makers["report"] = {"stage": "report", "settings": {}, "code": hash_of(code_of("report"))}
         documents = report(**read, provenance=makers)

@@ -1,5 +1,6 @@
 """The stages one after another in this process, as the workflow runs them."""
 
+import inspect
 from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
@@ -9,9 +10,24 @@ import pandas as pd
 from ruamel.yaml import YAML
 
 import laboratory
+from stages.contracts.parquet import provenance
 
 ROOT = Path(__file__).parent.parent
-ORDER = ("plan", "decode", "quality", "segment", "noise", "accelerometer", "gyroscope", "history")
+ORDER = (
+    "plan",
+    "decode",
+    "quality",
+    "segment",
+    "noise",
+    "accelerometer",
+    "gyroscope",
+    "comparison",
+    "compensation",
+    "simulation",
+    "criticism",
+    "extension",
+    "history",
+)
 SETTINGS: dict[str, dict[str, Any]] = YAML(typ="safe").load(ROOT / "config.yaml")
 
 
@@ -33,20 +49,48 @@ class Results:
 def run(campaign: Path, derived: Path, until: str = "gyroscope") -> Results:
     """Run the chain on the folder of a campaign, up to and with the stage `until`."""
     made: dict[str, Path] = {}
-    raw = [path for path in campaign.iterdir() if path.name != "campaign.yaml"]
+    told = {"campaign.yaml", "published.yaml"}
+    raw = [path for path in campaign.iterdir() if path.name not in told]
     sources: Mapping[str, list[Path]] = {
         "campaign": [campaign / "campaign.yaml"],
         "raw": raw,
         "instruments": [ROOT / "data/instruments.yaml"],
+        "published": list(campaign.glob("published.yaml")),
         "archive": [derived.parent / "history"],
     }
     for name in ORDER[: ORDER.index(until) + 1]:
         stage = import_module(f"stages.{name}").STAGE
-        files = {file: sources[file] for file in stage.files}
+        files = {file: sources.get(file, []) for file in stage.files}
         stage.run(made, files, derived / name, SETTINGS.get(name, {}))
         for table in stage.writes:  # by its own name, and by that of its stage where two write one
             made[table] = made[f"{name}_{table}"] = derived / name / f"{table}.parquet"
     return Results(derived)
+
+
+def again(results: Results, name: str, **changes: Any) -> dict[str, pd.DataFrame]:
+    """The tables of a stage, run once more on those of an earlier run, some of them changed."""
+    made: dict[str, Path] = {}
+    for earlier in ORDER[: ORDER.index(name)]:
+        for table in import_module(f"stages.{earlier}").STAGE.writes:
+            path = results.folder / earlier / f"{table}.parquet"
+            made[table] = made[f"{earlier}_{table}"] = path
+    stage = import_module(f"stages.{name}").STAGE
+    inputs: dict[str, Any] = {
+        table: contract.stream(made[table])
+        if table in stage.streams
+        else contract.read(made[table])
+        for table, contract in stage.reads.items()
+    }
+    if "provenance" in inspect.signature(stage.function).parameters:
+        inputs["provenance"] = {table: provenance(made[table]) for table in stage.reads}
+    pieces = stage.function(**{**inputs, **SETTINGS.get(name, {}), **changes})
+    collected: dict[str, list[pd.DataFrame]] = {table: [] for table in stage.writes}
+    for table, rows in pieces.items() if isinstance(pieces, Mapping) else pieces:
+        collected[table].append(stage.writes[table].arrow(rows).to_pandas())
+    return {
+        table: pd.concat(rows, ignore_index=True) if rows else stage.writes[table].empty()
+        for table, rows in collected.items()
+    }
 
 
 def demo(**changes: Any) -> dict[str, Any]:

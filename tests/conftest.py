@@ -57,11 +57,18 @@ def recorded(recordings, tmp_path_factory) -> dict[str, chain.Results]:
 
 
 @pytest.fixture(scope="session")
-def demo(tmp_path_factory) -> chain.Results:
-    """The demo campaign with all that it hides, through the chain."""
+def demo_criticised(tmp_path_factory) -> chain.Results:
+    """The demo campaign with all that it hides, through the chain up to the extension."""
     folder = tmp_path_factory.mktemp("demo")
     document = chain.laboratory.read(chain.ROOT / "data/simulated/demo.yaml").document
-    return chain.run(chain.simulate(document, folder / "demo"), folder / "derived")
+    campaign = chain.simulate(document, folder / "demo")
+    return chain.run(campaign, folder / "derived", "extension")
+
+
+@pytest.fixture(scope="session")
+def demo(demo_criticised) -> chain.Results:
+    """The same; what the first stages make of it."""
+    return demo_criticised
 
 
 @pytest.fixture(scope="session")
@@ -71,5 +78,5 @@ def clean(tmp_path_factory) -> list[chain.Results]:
     for seed in (11, 12, 13):
         folder = tmp_path_factory.mktemp("clean")
         campaign = chain.simulate(chain.demo(seed=seed), folder / "clean")
-        results.append(chain.run(campaign, folder / "derived"))
+        results.append(chain.run(campaign, folder / "derived", until="compensation"))
     return results

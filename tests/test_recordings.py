@@ -52,6 +52,23 @@ def test_imucal_turns_of_one_direction_are_no_pair_for_the_formula(recorded):
     assert turns["reason"].str.contains("forward and backward").all()
 
 
+def test_imucal_runs_through_all_of_it_and_nothing_is_named_that_the_data_do_not_hold(recorded):
+    """Its gyro rests differ by 0.1 °/s, for it is held by hand; no effect does that."""
+    for name in ("imucal-labelled", "imucal-continuous"):
+        results = recorded[name]
+        assert not results["criticism/scores"]["named"].any()
+        assert results["extension/parameters"].empty
+        checks = results["compensation/checks"]
+        gravity = checks[checks["quantity"].str.contains("gravity")]
+        assert (gravity["after"] - gravity["expected"]).abs().max() < 0.1  # m/s²
+        assert (gravity["before"] - gravity["expected"]).abs().max() > 0.1
+        assert len(results["history/archived"]) == 1
+    labelled = recorded["imucal-labelled"]["criticism/findings"]
+    assert list(labelled["cause"]) == ["unexplained"]
+    assert labelled["sensor"].iloc[0] == "gyro"
+    assert recorded["imucal-continuous"]["criticism/findings"].empty
+
+
 def test_imucal_continuous_finds_every_part(recorded):
     results = recorded["imucal-continuous"]
     performed = results["segment/performed"].set_index("manoeuvre")

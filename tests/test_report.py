@@ -21,8 +21,13 @@ from tests.reporting import made_up
 SECTIONS = [
     "Verdict",
     "Parameters",
+    "What the model lacks",
     "Findings",
     "Not determined, and left out",
+    "Measured over simulated",
+    "Comparisons",
+    "Compensation",
+    "Earlier calibrations",
     "What was recorded",
     "Raw data",
     "Noise",
@@ -124,7 +129,7 @@ def test_the_verdict_says_plainly_that_the_model_does_not_fit() -> None:
     )
     assert "SIMULATED" in text
     assert "not complete: z-backward" in text
-    assert "Findings: 3;" in text
+    assert "Findings: 4;" in text
 
 
 def test_a_scatter_that_the_sigmas_allow_for_is_said() -> None:
@@ -169,6 +174,84 @@ def test_findings_come_worst_first() -> None:
     assert places[0] < min(places[1:])  # the turn that is lost before what is good to know
 
 
+def test_what_the_model_lacks_is_named_with_its_numbers() -> None:
+    documents = made_up.documents()
+    page = Page(documents.html)
+    assert "The data ask for gyro g-sensitivity and oscillation." in page.text
+    assert "The data ask for gyro g-sensitivity, oscillation:" in " ".join(
+        documents.verdict.split()
+    )
+    # 6.92e-7 (rad/s)/(m/s²) is 6.92e-7 · 9.80665 m/s² · 3600 s · 180°/π = 1.3998 °/h/g
+    cells = page.rows["criticism/gyro_g_sensitivity/g_xx"]
+    assert number(cells[1]) == pytest.approx(1.3998, abs=0.002)
+    assert cells[3] == "°/h/g"
+    assert number(cells[7]) == pytest.approx(6.92e-7 / 1.38e-8, abs=0.1)
+    assert "criticism/gyro_g_sensitivity/g_xy" not in page.rows  # within 3 σ
+    assert "6 parameters within 3 σ of zero not listed." in page.text
+
+
+def test_blind_spots_say_what_would_have_been_seen() -> None:
+    page = Page(made_up.documents().html)
+    assert page.rows["criticism/lever_arm/r_x"][1:3] == ["1.6", "mm"]  # 5 · 0.33 mm
+    assert "Table tilt: not visible by this plan." in page.text
+    assert "criticism/table_tilt/north" not in page.rows
+
+
+def test_a_shift_of_the_extended_model_is_in_sigmas_of_the_joint_fit() -> None:
+    page = Page(made_up.documents().html)
+    assert number(page.rows["extension/gyroscope/bias_x"][6]) == 4.0
+    assert number(page.rows["extension/gyroscope/bias_y"][6]) == 0.0
+
+
+def test_nothing_is_missing() -> None:
+    tables = made_up.brief()
+    tables["scores"][["named", "degrees"]] = False, 3
+    for name in ("gain", "extended_parameters", "criticism_findings"):
+        tables[name] = tables[name].iloc[:0]
+    documents = report(**tables)
+    assert "Nothing is missing: none of the five effects is needed." in Page(documents.html).text
+    assert "The data ask" not in documents.verdict
+
+
+def test_an_effect_of_two_mounts_stands_twice() -> None:
+    tables = made_up.brief()
+    for name in ("scores", "effects"):
+        both = [tables[name], tables[name].copy()]
+        if name == "effects":
+            both[1]["id"] = both[1]["id"].str.replace(r"/(\w+)/", r"/\1@lying/", regex=True)
+        tables[name] = pd.concat(both, ignore_index=True)
+    page = Page(report(**tables).html)
+    assert "Oscillation (mount lying)" in page.text
+    assert page.rows["criticism/lever_arm@lying/r_x"] == page.rows["criticism/lever_arm/r_x"]
+
+
+def test_comparisons_come_worst_first() -> None:
+    page = Page(made_up.documents().html)
+    places = [row for row in page.rows if row.startswith("comparison/")]
+    assert places == [
+        "comparison/static_against_turns/gyroscope/bias_x",
+        "comparison/method_against_method/gyroscope/bias_y",
+        "comparison/method_against_method/gyroscope/scale_x",
+    ]
+    assert "1 value of 2 comparisons differs by more than chance." in page.text
+
+
+def test_checks_stand_before_and_after() -> None:
+    page = Page(made_up.documents().html)
+    cells = page.rows["compensation/gravity/x-up"]
+    # 5e-3 m/s² before, 0.4 · 6e-6 m/s² after, in µg of 9.80665e-6 m/s²
+    assert number(cells[2]) == pytest.approx(509.86, abs=0.01)
+    assert number(cells[3]) == pytest.approx(0.245, abs=0.01)
+    assert number(page.rows["compensation/angle/x-forward"][5]) == 7.0
+
+
+def test_earlier_calibrations_and_the_archive_are_named() -> None:
+    text = Page(made_up.documents().html).text
+    assert "2 earlier calibrations, the latest last." in text
+    assert "campaign of 2025-06-30" in text
+    assert "data/history/simulated/NovAtel+SPAN-CPT/SIM-001/2026-11-02-made-up.parquet" in text
+
+
 def test_texts_from_outside_are_harmless() -> None:
     tables = made_up.brief("x-up.asc")
     for table in ("campaign", "known", "inputs", "manoeuvres", "accounts", "refused", "performed"):
@@ -179,7 +262,19 @@ def test_texts_from_outside_are_harmless() -> None:
         tables[table]["log"] = HOSTILE
         if "manoeuvre" in tables[table]:
             tables[table]["manoeuvre"] = HOSTILE
-    tables["noise"] = made_up.campaign(logs=())["noise"].assign(manoeuvre=HOSTILE)
+    whole = made_up.campaign(logs=("x-up.asc",))
+    tables["noise"] = whole["noise"].assign(manoeuvre=HOSTILE)
+    tables["fidelity"] = whole["fidelity"].assign(manoeuvre=HOSTILE, profile=HOSTILE)
+    tables["simulated"] = made_up.Held(whole["simulated"].frame.assign(manoeuvre=HOSTILE))
+    tables["compensated_traces"] = whole["compensated_traces"].assign(log=HOSTILE)
+    tables["scores"][["cause", "sentence"]] = HOSTILE
+    tables["effects"]["meaning"] = HOSTILE
+    tables["lines"]["manoeuvre"] = HOSTILE
+    tables["gain"]["effects"] = HOSTILE
+    tables["differences"][["kind", "sentence"]] = HOSTILE
+    tables["checks"]["manoeuvre"] = HOSTILE
+    tables["archived"]["file"] = HOSTILE
+    tables["earlier"] = whole["earlier"].assign(campaign=HOSTILE, file=HOSTILE, date=HOSTILE)
     page = Page(report(**tables).html)
     assert "script" not in page.tags
     assert "img" not in page.tags
@@ -215,6 +310,11 @@ def test_a_campaign_that_gave_nothing_says_so_in_words() -> None:
     assert "Verdict: not calibrated" in documents.verdict
     assert "None: no method estimated a parameter." in page.text
     assert "None: no log gave samples that could be drawn." in page.text
+    assert "None was looked for" in page.text
+    assert "No whole turn was simulated." in page.text
+    assert "None: no parameter was found in two ways" in page.text
+    assert "None: there is nothing compensated that could be checked." in page.text
+    assert "None: the archive holds no earlier calibration" in page.text
 
 
 def test_one_sensor_without_time_stamps_or_turns() -> None:
@@ -281,7 +381,8 @@ def write(tables: dict[str, Any], folder: Path) -> list[str]:
     arguments = []
     for name, table in stage.READS.items():
         path = folder / f"{name}.parquet"
-        arrow: pa.Table = table.arrow(tables[name])
+        given = tables[name]
+        arrow: pa.Table = table.arrow(given.frame if name in stage.STREAMS else given)
         made_by = {"made_by": json.dumps(tables["provenance"][name])}
         pq.write_table(arrow.replace_schema_metadata({**arrow.schema.metadata, **made_by}), path)
         arguments += [f"--{name}", str(path)]

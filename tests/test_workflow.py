@@ -30,7 +30,9 @@ pytestmark = pytest.mark.workflow
 
 COPIED = ("Snakefile", "config.yaml", "requirements.lock", "profiles", "stages", "laboratory")
 PAGE = "reports/short.html"
-ESTIMATION = {"accelerometer", "gyroscope", "report"}
+PUBLISHED = "data/raw/short/published.yaml"
+USING = {"comparison", "compensation", "simulation", "criticism", "extension", "history", "report"}
+ESTIMATION = {"accelerometer", "gyroscope", *USING}
 AFTER_DECODE = {"quality", "segment", "noise", *ESTIMATION}
 PATIENCE = 60  # s, until a stage must have begun
 
@@ -87,6 +89,10 @@ def workflow(tmp_path_factory: pytest.TempPathFactory) -> Workflow:
     shutil.copy2(ROOT / "data/instruments.yaml", made.home / "data")
     (made.data / "data/simulated").mkdir(parents=True)
     YAML(typ="safe").dump(short(), made.data / "data/simulated/short.yaml")
+    (made.data / "data/raw/short").mkdir(parents=True)
+    (made.data / PUBLISHED).write_text(
+        "source: data sheet\ngyro: {bias_x: {value: 0.5, unit: deg/h}}\n"
+    )
     first = made.run(PAGE)
     assert first.returncode == 0, first.stdout + first.stderr
     return made
@@ -142,7 +148,7 @@ def test_a_file_that_is_only_newer_changes_nothing(workflow: Workflow) -> None:
     [
         ("quality: {gap: 1.6}", AFTER_DECODE),
         ("noise: {from_hz: 0.6}", {"noise", *ESTIMATION}),
-        ("accelerometer: {averaging_steps: 5}", {"accelerometer", "report"}),
+        ("accelerometer: {averaging_steps: 5}", {"accelerometer", *USING}),
     ],
 )
 def test_a_changed_setting_reruns_its_stage_and_what_follows(
@@ -158,9 +164,9 @@ def test_a_changed_setting_reruns_its_stage_and_what_follows(
     [
         ("stages/formats/pieces.py", {"decode", *AFTER_DECODE}),
         ("stages/inference/spectrum.py", {"noise", *ESTIMATION}),
-        ("stages/inference/whole_turns.py", {"gyroscope", "report"}),
-        ("stages/reporting/numbers.py", {"report"}),
-        ("stages/reporting/report.css", {"report"}),
+        ("stages/inference/whole_turns.py", {"gyroscope", *USING}),
+        ("stages/reporting/numbers.py", {"comparison", "compensation", "report"}),
+        ("stages/reporting/report.css", {"comparison", "compensation", "report"}),
         ("laboratory/counts.py", {"laboratory_short", "plan", "decode", *AFTER_DECODE}),
     ],
 )
@@ -171,12 +177,20 @@ def test_a_changed_line_of_code_reruns_what_rests_on_it(
         assert workflow.planned() == rerun
 
 
+def test_changed_published_values_rerun_the_plan_that_reads_them(workflow: Workflow) -> None:
+    with one_more_line(workflow.data / PUBLISHED):
+        assert "plan" in workflow.planned()
+    assert workflow.planned() == set()
+
+
 @contextmanager
 def one_more_line(file: Path) -> Iterator[None]:
     before = file.read_bytes()
     file.write_bytes(before + b"\n")
-    yield
-    file.write_bytes(before)
+    try:
+        yield
+    finally:
+        file.write_bytes(before)
 
 
 # ---- what goes wrong

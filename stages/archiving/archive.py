@@ -23,6 +23,7 @@ from stages.contracts.records import Row
 from stages.contracts.tables import CALIBRATION
 
 HEX = 12  # digits of the hash in the name of a file
+ALIKE = ("instrument", "serial", "compensated")  # what calibrations that can be compared share
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class Archive:
         self._place = root / SIMULATED if simulated else root
 
     def add(self, calibration: Row) -> Entry:
-        """Bring a calibration into the archive; where its content holds good already, nothing is done.
+        """Bring a calibration into the archive; what holds good already stays as it is.
 
         Two that come at once with the same content are one file, for its name follows from
         the content. Two with different content of one campaign both hold good, until a third
@@ -68,6 +69,9 @@ class Archive:
     def earlier(self, calibration: Row) -> list[Entry]:
         """What holds good of the other campaigns of the same IMU that are not dated later.
 
+        Where the errors were taken out of the logs, what is left of them is another matter than
+        the errors, so these and the others are not compared.
+
         The order of campaigns without a date is not known, so they count. IMUs whose serial
         number is not known may be different ones, so they have no earlier calibrations.
         """
@@ -79,7 +83,7 @@ class Archive:
             entry
             for campaign in campaigns
             for entry in self.current(campaign)
-            if all(entry.row[key] == calibration[key] for key in ("instrument", "serial"))
+            if all(entry.row[key] == calibration[key] for key in ALIKE)
             and _not_later(entry.row["date"], calibration["date"])
         ]
         return sorted(found, key=lambda entry: (entry.row["date"], entry.file))
@@ -93,9 +97,10 @@ class Archive:
 
     def _entry(self, path: Path) -> Entry:
         try:
-            (row,) = CALIBRATION.read(path).to_dict("records")
+            table = CALIBRATION.read(path)
         except Refusal as refusal:
             raise replace(refusal, cure="move this file out of the archive") from None
+        row = {str(name): value for name, value in table.iloc[0].items()}
         return Entry(path.relative_to(self.root).as_posix(), row)
 
 

@@ -38,6 +38,7 @@ class Manoeuvre:
     angle: float | None
     angle_sigma: float | None
     rate: float | None
+    acceleration: float | None
     seconds: float | None
     recorded: str
     from_s: float | None
@@ -65,7 +66,8 @@ def manoeuvres_of(table: pd.DataFrame) -> list[Manoeuvre]:
             row["manoeuvre"],
             *(row[key] for key in ("do", "log", "position", "mount")),
             *(_vector(row, stem) for stem in ("up", "mark", "about")),
-            *(row[key] for key in ("angle", "angle_sigma", "rate", "seconds", "recorded")),
+            *(row[key] for key in ("angle", "angle_sigma", "rate")),
+            *(row[key] for key in ("acceleration", "seconds", "recorded")),
             *(row[key] for key in ("from_s", "to_s", "from_row", "to_row", "label")),
         )
         for row in rows_of(table)
@@ -138,3 +140,9 @@ class Clock:
 def clocks_of(table: pd.DataFrame) -> dict[str, Clock]:
     """The clocks by the name of the log."""
     return {row["log"]: Clock(row["interval"], row["step"]) for row in rows_of(table)}
+
+
+def share_a_clock(table: pd.DataFrame) -> bool:
+    """Whether times of all logs count from one start: GPS time, or a single log of its own."""
+    clocks = [row["clock"] for row in rows_of(table)]
+    return set(clocks) == {"GPS"} or clocks == ["own"]

@@ -42,10 +42,11 @@ _RECORDS = (
 
 CAMPAIGN = Table(
     "campaign",
-    1,
+    2,
     (
         Column("campaign", _text, "", "name of the campaign's folder"),
         Column("simulated", _truth, "", "recorded by the simulated laboratory"),
+        Column("compensated", _truth, "", "the errors were taken out of its logs already"),
         Column("instrument", _text, "", "name of the IMU's type"),
         Column("serial", _text, "", "serial number, or unknown"),
         Column("date", _text, "", "date as the campaign states it, or unknown"),
@@ -131,6 +132,17 @@ MANOEUVRES = Table(
         Column("from_row", _integer, "1", "first data row of the stated rows", nullable=True),
         Column("to_row", _integer, "1", "data row after the last", nullable=True),
         Column("label", _text, "", "the records with this label", nullable=True),
+    ),
+)
+PUBLISHED = Table(
+    "published",
+    1,
+    (
+        Column("parameter", _text, "", "stage and parameter, such as gyroscope/bias_x"),
+        Column("value", _double, "as unit", "what others found for it"),
+        Column("sigma", _double, "as unit", "its standard deviation, if told", nullable=True),
+        Column("unit", _text, "", "unit of value and sigma, SI"),
+        Column("source", _text, "", "where it is published"),
     ),
 )
 
@@ -393,37 +405,71 @@ AVERAGING = Table(
 # ---- history
 
 
-def _rows_of(table: Table) -> pa.DataType:
-    """A column that holds rows of `table`."""
-    return pa.list_(pa.struct(list(table.schema)))
+def _rows(*fields: tuple[str, pa.DataType, str]) -> pa.DataType:
+    """A column that holds rows of its own, of columns with name, type and meaning."""
+    return pa.list_(
+        pa.struct([pa.field(name, kind, True, {"meaning": told}) for name, kind, told in fields])
+    )
 
 
-# An archive outlives the versions: whoever counts this one up, also because a table inside it has
-# changed, writes how the older files are read.
+# An archive outlives the other tables, so it borrows no columns of theirs. Whoever counts its
+# version up writes how the older files are read.
 CALIBRATION = Table(
     "calibration",
     1,
     (
-        *CAMPAIGN.columns,
-        Column("parameters", _rows_of(PARAMETERS), "", "the parameters of every method"),
-        Column("covariance", _rows_of(COVARIANCE), "", "the covariance of the joint methods"),
-        Column("inputs", _rows_of(INPUTS), "", "campaign file and logs"),
+        Column("campaign", _text, "", "name of the campaign's folder"),
+        Column("simulated", _truth, "", "recorded by the simulated laboratory"),
+        Column("compensated", _truth, "", "the errors were taken out of its logs already"),
+        Column("instrument", _text, "", "name of the IMU's type"),
+        Column("serial", _text, "", "serial number, or unknown"),
+        Column("date", _text, "", "date as the campaign states it, or unknown"),
+        Column("laboratory", _text, "", "where", nullable=True),
+        Column("operator", _text, "", "by whom", nullable=True),
+        Column("notes", _text, "", "remarks of the laboratory", nullable=True),
+        Column("table", _text, "", "name of the table"),
+        Column(
+            "parameters",
+            _rows(
+                ("id", _text, "stable identifier: stage/method/parameter"),
+                ("method", _text, "method of estimation"),
+                ("value", _double, "estimate in this unit; none where it is not determined"),
+                ("sigma", _double, "its standard deviation"),
+                ("unit", _text, "unit of value and sigma"),
+                ("frame", _text, "frame it is expressed in"),
+                ("meaning", _text, "what it is, in words"),
+                ("reason", _text, "why it is not determined"),
+            ),
+            "as unit",
+            "the parameters of every method",
+        ),
+        Column(
+            "covariance",
+            _rows(
+                ("first", _text, "id of a parameter"),
+                ("second", _text, "id of a parameter"),
+                ("covariance", _double, "of the two estimates"),
+            ),
+            "product of the units",
+            "the covariance of the joint methods",
+        ),
+        Column(
+            "inputs",
+            _rows(
+                ("file", _text, "file name"),
+                ("size", _integer, "size of the file, byte"),
+                ("sha256", _text, "SHA-256 of the file"),
+            ),
+            "",
+            "campaign file and logs",
+        ),
         Column(
             "made_by",
-            pa.list_(
-                pa.struct(
-                    [
-                        pa.field("stage", _text, False),
-                        pa.field("settings", _text, False, {"meaning": "as JSON"}),
-                        pa.field("code", _text, False, {"meaning": "SHA-256 of its code"}),
-                        pa.field(
-                            "inputs",
-                            _text,
-                            False,
-                            {"meaning": "SHA-256 of each file that it read, as JSON"},
-                        ),
-                    ]
-                )
+            _rows(
+                ("stage", _text, "name of the stage"),
+                ("settings", _text, "its settings, as JSON"),
+                ("code", _text, "SHA-256 of its code"),
+                ("inputs", _text, "SHA-256 of each file that it read, as JSON"),
             ),
             "",
             "the stages that made these tables",
@@ -453,5 +499,170 @@ EARLIER = Table(
         Column("value", _double, "as unit", "its estimate then"),
         Column("sigma", _double, "as unit", "standard deviation of the estimate"),
         Column("unit", _text, "", "unit of value and sigma"),
+    ),
+)
+
+# ---- simulation
+
+SIMULATED = Table(
+    "simulated",
+    1,
+    (
+        Column("manoeuvre", _text, "", "a whole turn, or a rest in blocks"),
+        Column("phase", _text, "", PHASES),
+        _LOG,
+        Column("record", _integer, "1", "record of the log; of a block the first"),
+        Column("time", _double, "s", "time of the record, or middle of the block", nullable=True),
+        *_channels("what the IMU should have read"),
+        *_channels("read less simulated", prefix="residual_"),
+    ),
+)
+FIDELITY = Table(
+    "fidelity",
+    1,
+    (
+        Column("manoeuvre", _text, "", "as in manoeuvres"),
+        Column("channel", _text, "", "one of the six channels"),
+        Column("profile", _text, "", "trapezoid; as the gyros have it; or at rest"),
+        Column("residual_rms", _double, "rad/s, m/s²", "root mean square of the residuals"),
+        Column("noise_rms", _double, "rad/s, m/s²", "what white noise alone would give"),
+        Column("samples", _integer, "1", "number of samples, or of blocks of a rest"),
+    ),
+)
+
+# ---- comparison
+
+DIFFERENCES = Table(
+    "differences",
+    1,
+    (
+        Column("id", _text, "", "stable identifier: comparison/kind/parameter, and which turns"),
+        Column(
+            "kind",
+            _text,
+            "",
+            "static_against_turns, forward_against_backward, method_against_method, published;"
+            " with @ and the mount where there are several",
+        ),
+        Column("parameter", _text, "", "stage and parameter, such as gyroscope/bias_x"),
+        Column("unit", _text, "", "unit of the values, SI"),
+        Column("first", _text, "", "what is compared: id of a parameter, or in words"),
+        Column("second", _text, "", "with what: id of a parameter, or in words"),
+        Column("first_value", _double, "as unit", "none where not determined", nullable=True),
+        Column("second_value", _double, "as unit", "none where not determined", nullable=True),
+        Column("difference", _double, "as unit", "first less second", nullable=True),
+        Column("sigma", _double, "as unit", "its sigma; none where not known", nullable=True),
+        Column("in_sigmas", _double, "1", "difference in units of its sigma", nullable=True),
+        Column("p_value", _double, "1", "chance of one so large, either way", nullable=True),
+        Column("sentence", _text, "", "the difference and the verdict in words"),
+    ),
+)
+
+# ---- compensation
+
+COMPENSATED = Table(
+    "compensated",
+    1,
+    (
+        Column("log", _label, "", "as in logs"),
+        Column("record", _integer, "1", "as in samples"),
+        Column("time", _double, "s", "as in samples", nullable=True),
+        *_channels("specific force, angular rate, with the errors taken out"),
+    ),
+)
+CHECKS = Table(
+    "checks",
+    1,
+    (
+        Column("id", _text, "", "stable identifier: compensation/quantity/manoeuvre"),
+        Column(
+            "manoeuvre",
+            _text,
+            "",
+            "as in manoeuvres, with the rest of a turn in brackets",
+            nullable=True,
+        ),
+        Column(
+            "quantity",
+            _text,
+            "",
+            "gravity: |f|; force_up: f along up; rate_up: rate along up; angle: of a turn about its"
+            " axis, the earth's rate taken out; accelerometer, gyro: why one is not compensated",
+        ),
+        Column("unit", _text, "", "unit of the values, SI"),
+        Column("expected", _double, "as unit", "what is known of it", nullable=True),
+        Column("expected_sigma", _double, "as unit", "its standard deviation", nullable=True),
+        Column("before", _double, "as unit", "by the readings", nullable=True),
+        Column("after", _double, "as unit", "by the compensated readings", nullable=True),
+        Column(
+            "after_sigma",
+            _double,
+            "as unit",
+            "of after less expected, by noise, angle, position and earth rate; without what all"
+            " manoeuvres share and the parameters have taken up, as the sigma of gravity",
+            nullable=True,
+        ),
+        Column("in_sigmas_after", _double, "1", "after less expected, in sigmas", nullable=True),
+        Column("sentence", _text, "", "the check in words"),
+    ),
+)
+
+# ---- criticism, extension
+
+SCORES = Table(
+    "scores",
+    1,
+    (
+        Column("effect", _text, "", "name in the catalogue"),
+        Column("cause", _text, "", "its physical cause"),
+        Column("sought_in", _text, "", "blocks, or the spectrum of the full-rate residuals"),
+        Column("statistic", _double, "1", "drop of chi-squared beyond what was named before it"),
+        Column("degrees", _integer, "1", "of freedom: what the plan excites of the effect"),
+        Column("p_value", _double, "1", "chance of such a statistic, or peak, by noise alone"),
+        Column("named", _truth, "", "below the family-wise level"),
+        Column("sentence", _text, "", "what is said of it"),
+    ),
+)
+EFFECTS = Table(
+    "effects",
+    1,
+    (
+        Column("id", _text, "", "stable identifier: criticism/effect/parameter"),
+        Column("effect", _text, "", "name in the catalogue"),
+        Column("parameter", _text, "", "name within the effect"),
+        Column("value", _double, "as unit", "estimate beside all named effects", nullable=True),
+        Column("sigma", _double, "as unit", "its standard deviation", nullable=True),
+        Column("visible", _double, "as unit", "5 sigma: what can be seen", nullable=True),
+        Column("unit", _text, "", "unit of these"),
+        Column("meaning", _text, "", "what it is"),
+    ),
+)
+LINES = Table(
+    "lines",
+    1,
+    (
+        Column("manoeuvre", _text, "", "as in manoeuvres"),
+        Column("axis", _text, "", "gyro axis, of the case", BODY),
+        Column("frequency", _double, "Hz", "of the strongest line, or an alias of it"),
+        Column("frequency_sigma", _double, "Hz", "its standard deviation"),
+        Column("amplitude", _double, "rad/s", "of the rate, the averaging of a sample undone"),
+        Column("amplitude_sigma", _double, "rad/s", "its standard deviation"),
+        Column("p_value", _double, "1", "chance of such a peak by noise, the search paid for"),
+    ),
+)
+GAIN = Table(
+    "gain",
+    1,
+    (
+        Column("sensor", _text, "", "gyro or accel"),
+        Column("effects", _text, "", "the effects that were added"),
+        Column("scope", _text, "", "fitted: all manoeuvres; held-out: each by the fit to others"),
+        Column("rows", _integer, "1", "number of equations"),
+        Column("before", _double, "1", "chi-squared without the effects; or −2 log predictive"),
+        Column("after", _double, "1", "the same with them"),
+        Column("drop", _double, "1", "before less after"),
+        Column("rms_before", _double, "as unit", "root mean square of the residuals without"),
+        Column("rms_after", _double, "as unit", "and with the effects"),
+        Column("unit", _text, "", "sigma, or the unit of the channel"),
     ),
 )

@@ -13,7 +13,7 @@ from stages.contracts.records import Known, Manoeuvre, Performed
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import Still, stills
 from stages.inference import whole_turns
-from stages.inference.whole_turns import Earth, Position, Steady, Turn
+from stages.inference.whole_turns import Angle, Earth, Position, Steady, Turn
 
 Array = NDArray[np.float64]
 
@@ -174,4 +174,33 @@ def steady_of(
         seconds=seconds,
         mean=np.average(part[GYRO].to_numpy(np.float64), weights=part["count"], axis=0),
         sigma=noise.of(m.name, "steady", GYRO) / np.sqrt(seconds),
+    )
+
+
+def angles_about(inputs: GyroInputs, i: int, noise: NoiseLevels) -> list[tuple[str, Angle]]:
+    """The whole turns about body axis i while it points up or down, as their own gyro saw them.
+
+    Each with the name of its manoeuvre.
+    """
+    whole = [r for r in inputs.usable if r.plan.recorded == "whole" and _upright(r.plan, i)]
+    angles = [(r.plan.name, _angle(r, i, noise)) for r in whole]
+    return [(name, angle) for name, angle in angles if np.isfinite(angle.summed)]
+
+
+def _upright(m: Manoeuvre, i: int) -> bool:
+    """Whether a turn is about body axis i, and that axis points up or down."""
+    up = m.up is not None and abs(float(m.up[i])) > 1 - 1e-9
+    return up and abs(float(m.axis[i])) > 1 - 1e-9
+
+
+def _angle(one: Recorded, i: int, noise: NoiseLevels) -> Angle:
+    m, part = one.plan, one.blocks
+    assert m.up is not None and m.angle is not None and m.angle_sigma is not None  # else refused
+    return Angle(
+        summed=float((part[GYRO[i]] * part["seconds"]).sum()),
+        angle=m.angle * float(m.axis[i]),
+        angle_sigma=m.angle_sigma,
+        seconds=float(part["seconds"].sum()),
+        up=float(m.up[i]),
+        density=float(noise.of(m.name, "rest", GYRO)[i]),
     )

@@ -39,6 +39,7 @@ class Estimate:
     chi_squared: float
     degrees: int
     deviance: float
+    rows: int
     names: tuple[tuple[str, str], ...] = ()  # kind and name of each unknown, see System
 
     @property
@@ -100,6 +101,7 @@ def solve(
         deviance=remaining
         + 2 * float(np.sum(np.log(sigma)))
         + 2 * float(np.sum(np.log(np.abs(np.diag(upper))))),
+        rows=n,
     )
 
 
@@ -143,7 +145,11 @@ class System:
         corner = triangle[len(others) :, len(others) :]
         columns, right = corner[:, :-1], corner[:, -1]
         return Reduced(
-            tuple(self.names[i][1] for i in effects), columns.T @ columns, columns.T @ right
+            tuple(self.names[i][1] for i in effects),
+            columns.T @ columns,
+            columns.T @ right,
+            float(right @ right),
+            len(rest) - self.sought,
         )
 
 
@@ -151,17 +157,26 @@ class System:
 class Reduced:
     """What equations say of the effects alone, in the form β ~ (F⁻¹ b, F⁻¹).
 
-    `names`: (k,); `information`: F, (k, k); `right`: b, (k,). Independent equations add up.
+    `names`: (k,); `information`: F, (k, k); `right`: b, (k,); `chi_squared` on `degrees`: what
+    is left without the effects. Independent equations add up.
     """
 
     names: tuple[str, ...]
     information: Array
     right: Array
+    chi_squared: float
+    degrees: int
 
     def __add__(self, other: "Reduced") -> "Reduced":
         if self.names != other.names:
             raise ValueError("the equations are not about the same effects")
-        return Reduced(self.names, self.information + other.information, self.right + other.right)
+        return Reduced(
+            self.names,
+            self.information + other.information,
+            self.right + other.right,
+            self.chi_squared + other.chi_squared,
+            self.degrees + other.degrees,
+        )
 
     def drop(self, chosen: Sequence[int]) -> tuple[float, int]:
         """By how much chi-squared drops with the chosen columns, and on how many degrees."""

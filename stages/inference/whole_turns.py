@@ -134,11 +134,11 @@ class _Rows:
 
 @dataclass(frozen=True)
 class Around:
-    """What the equations are linear about: M, bias, and the level earth rates by column."""
+    """What the equations are linear about: M, bias, and the level earth rates of positions."""
 
     matrix: Array
     bias: Array
-    levels: Mapping[int, float]
+    levels: Mapping[tuple[str, str], float]  # kind and name, as the unknowns have them
 
 
 def joint(
@@ -170,7 +170,8 @@ def joint(
 
 def _around(estimate: Estimate) -> Around:
     values = estimate.values
-    return Around(values[:9].reshape(3, 3), values[9:12], dict(enumerate(values.tolist())))
+    levels = dict(zip(estimate.names, values.tolist(), strict=True))
+    return Around(values[:9].reshape(3, 3), values[9:12], levels)
 
 
 def equations(
@@ -269,8 +270,9 @@ def _add_turn(
     earth: Earth,
     sigmas: tuple[float, float],  # of the position and between manoeuvres
 ) -> None:
-    matrix, bias, levels = around.matrix, around.bias, around.levels
+    matrix, bias = around.matrix, around.bias
     known, level = _earth_columns(unknowns, turn.position, earth)
+    levels = {c: around.levels.get(key, 0.0) for key, c in unknowns.names.items()}
     recorded = np.isfinite(turn.sums).all(axis=0) & np.isfinite(turn.density)
     weight = np.where(recorded, 1 / np.where(recorded, turn.density, 1.0), 0.0)
     sums = np.where(recorded, turn.sums, 0.0)
@@ -282,7 +284,7 @@ def _add_turn(
     if along_length == 0:
         return
     along = along / along_length
-    present = known + sum((levels.get(c, 0.0) * axis for c, axis in level), np.zeros(3))
+    present = known + sum((levels[c] * axis for c, axis in level), np.zeros(3))
     angle = np.zeros(k)
     for _ in range(2):
         middle = np.cumsum(angle) - angle / 2

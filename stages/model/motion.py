@@ -48,6 +48,17 @@ class Profile:
         """From start to stop, A/r + r/a, s."""
         return self.angle / self.rate + self.ramp_seconds
 
+    def at(self, time: Array) -> tuple[Array, Array]:
+        """Angle, rad, and rate, rad/s, at times since the start, (n,) each; still outside."""
+        t = np.clip(time, 0.0, self.seconds)
+        ramp, left = self.ramp_seconds, self.seconds - t
+        up = self.acceleration * t**2 / 2
+        steady = self.rate * (t - ramp / 2)
+        down = self.angle - self.acceleration * left**2 / 2
+        angle = np.where(t < ramp, up, np.where(left < ramp, down, steady))
+        rate = np.minimum(self.rate, self.acceleration * np.minimum(t, left))
+        return angle, rate
+
 
 @dataclass(frozen=True)
 class Motion:

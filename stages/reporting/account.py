@@ -1,4 +1,4 @@
-"""Section 10: the account of every byte of the logs, and the lines that were refused."""
+"""The account of every byte of the logs, and the lines that were refused."""
 
 from __future__ import annotations
 

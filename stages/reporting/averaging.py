@@ -1,4 +1,4 @@
-"""Section 8: how the parameters settle as more of each rest is used."""
+"""How the parameters settle as more of each rest is used."""
 
 from __future__ import annotations
 

@@ -145,12 +145,13 @@ def _light(drawn: str, key: str) -> str:
     for left_out in (r"<!--.*?-->", r"<metadata>.*?</metadata>", r"<style.*?</style>"):
         element = re.sub(left_out, "", element, flags=re.DOTALL)
     element = element.replace("'DejaVu Sans'", "Report").replace("rotate(-0 ", "rotate(0 ")
-    element = _without_idle_groups(re.sub(r' transform="rotate\(0 [^"]*"', "", element))
+    element = re.sub(r' transform="rotate\(0 [^"]*"', "", element)
     used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', element))
     element = re.sub(
         r' id="([^"]+)"', lambda m: f' id="{key}-{m[1]}"' if m[1] in used else "", element
     )
     element = re.sub(r'(href="#|url\(#)', rf"\1{key}-", element)
+    element = _without_idle_groups(element).replace("<defs>\n</defs>", "")
     return re.sub(r"\n\s*", "\n", _rounded(element)).strip()
 
 

@@ -1,4 +1,4 @@
-"""Section 3: what is wrong with the recording or the model, worst first."""
+"""What is wrong with the recording or the model, worst first."""
 
 from __future__ import annotations
 
@@ -33,7 +33,11 @@ def section(rows: Sequence[Record]) -> Section:
     """Each finding with its sentence, its consequence and the action."""
     parts: list[Part] = [_finding(row) for row in rows[:MOST_IN_FULL]]
     if not rows:
-        parts.append(Paragraph("None: neither the recording nor its segments gave cause.", "good"))
+        parts.append(
+            Paragraph(
+                "None: neither the recording, nor its segments, nor the model gave cause.", "good"
+            )
+        )
     if len(rows) > MOST_IN_FULL:
         rest = Counter(row["cause"] for row in rows[MOST_IN_FULL:])
         parts.append(
@@ -49,8 +53,8 @@ def section(rows: Sequence[Record]) -> Section:
     return Section(
         "findings",
         "Findings",
-        "What was found wrong with the recording, with what it does to the result and what was or "
-        "should be done.",
+        "What was found wrong with the recording or the model, with what it does to the result "
+        "and what was or should be done.",
         "Worst first: above, what spoils a result; then what weakens one; then what is good to "
         "know. p is the chance of such a size if nothing is wrong.",
         parts,
@@ -58,8 +62,11 @@ def section(rows: Sequence[Record]) -> Section:
 
 
 def in_words(cause: str) -> str:
-    """The name of a cause as it is read."""
-    return numbers.shortened(cause.replace("_", " "), 60)
+    """The name of a cause or an effect as it is read."""
+    words = cause.replace("_", " ").replace("g sensitivity", "g-sensitivity")
+    if words.startswith("accel "):
+        words = words.replace("accel", "accelerometer", 1)
+    return numbers.shortened(words, 60)
 
 
 def _finding(row: Record) -> Finding:

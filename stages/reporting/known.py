@@ -1,4 +1,4 @@
-"""Section 9: what the estimation took as known, how sure, and on whose word."""
+"""What the estimation took as known, how sure, and on whose word."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Section 7: the white noise of every channel in every manoeuvre, beside the data sheet."""
+"""The white noise of every channel in every manoeuvre, beside the data sheet."""
 
 from __future__ import annotations
 

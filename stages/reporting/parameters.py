@@ -1,4 +1,4 @@
-"""Section 2: the parameters, each with its sigma in the units of the laboratory and of the SI."""
+"""The parameters, each with its sigma in the units of the laboratory and of the SI."""
 
 from __future__ import annotations
 
@@ -115,6 +115,12 @@ def estimates(
     return found
 
 
+def in_words_of(method: str) -> str:
+    """The sensor of a method of the extension, with the mount where there are several."""
+    stage, _, mount = method.partition("@")
+    return Estimate(stage, f"extended@{mount}" if mount else "extended", (), None).sensor
+
+
 def kind_of(parameter: str) -> str:
     """What a parameter is one of: bias, scale, cross, mounting, symmetric."""
     return parameter.partition("_")[0]
@@ -167,7 +173,7 @@ def _parts(estimate: Estimate) -> Iterator[Part]:
         caption=f"Determined: {numbers.counted(len(estimate.determined), 'parameter')}.",
         columns=(*COLUMNS, Column("Identifier", "code" if long else "identifier")),
         rows=tuple(_rows(estimate.determined)),
-        empty="None is determined; section 4 says why.",
+        empty="None is determined; “Not determined, and left out” says why.",
     )
     if matrices := _matrices(estimate):
         yield matrices
@@ -208,7 +214,7 @@ def _rows(parameters: Sequence[Record]) -> Iterator[Row]:
     """One row per parameter below the name of its kind, digits under digits."""
     kinds = groupby(parameters, lambda row: kind_of(row["parameter"]))
     groups = [list(rows) for _, rows in kinds]
-    cells = [written for group in groups for written in _written(group)]
+    cells = [line for group in groups for line in written(group)]
     columns = [numbers.aligned(column) for column in zip(*cells, strict=True)]
     lines = iter(zip(*columns, strict=True))
     for group in groups:
@@ -225,15 +231,15 @@ def _rows(parameters: Sequence[Record]) -> Iterator[Row]:
             yield Row((symbol(row["parameter"]), *laboratory, *si, meaning, row["id"]), row["id"])
 
 
-def _written(group: Sequence[Record]) -> list[tuple[str, ...]]:
+def written(group: Sequence[Record]) -> list[tuple[str, ...]]:
     """Value and sigma of parameters of one kind, in the laboratory's unit and in the SI's."""
     quantities = [units.quantity(row["parameter"], row["unit"]) for row in group]
-    laboratory = _in_units(group, [quantity.laboratory for quantity in quantities])
-    si = _in_units(group, [quantity.si for quantity in quantities])
+    laboratory = in_units(group, [quantity.laboratory for quantity in quantities])
+    si = in_units(group, [quantity.si for quantity in quantities])
     return [(*pair, *si_pair) for pair, si_pair in zip(laboratory, si, strict=True)]
 
 
-def _in_units(group: Sequence[Record], each: Sequence[units.Unit]) -> list[tuple[str, str]]:
+def in_units(group: Sequence[Record], each: Sequence[units.Unit]) -> list[tuple[str, str]]:
     """Values and sigmas, with common decimals where the unit is the same."""
     values = [unit.of(row["value"]) for row, unit in zip(group, each, strict=True)]
     sigmas = [unit.of(row["sigma"]) for row, unit in zip(group, each, strict=True)]

@@ -1,4 +1,4 @@
-"""Section 11: what made this report, down to the hash of every input."""
+"""What made this report, down to the hash of every input."""
 
 from __future__ import annotations
 

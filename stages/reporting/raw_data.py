@@ -1,4 +1,4 @@
-"""Section 6: the raw data of every log, and each missing stretch close up."""
+"""The raw data of every log, and each missing stretch close up."""
 
 from __future__ import annotations
 
@@ -26,7 +26,13 @@ from stages.reporting.drawing import (
 )
 from stages.reporting.outline import Figure, Heading, Paragraph, Part, Section
 from stages.reporting.rows import Record, records
-from stages.reporting.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, Unit
+from stages.reporting.units import (
+    DEGREES_PER_HOUR,
+    DEGREES_PER_SECOND,
+    METRES,
+    MILLIMETRES,
+    Unit,
+)
 
 Array = NDArray[np.float64]
 Stretch = tuple[float, float]
@@ -38,8 +44,6 @@ MOST_MISSING = 50  # stretches that are marked in one log
 MANY_LOGS = 24  # from here on the figures are small, x, y and z in one panel
 MOST_LOGS = 110
 SMALL_RATE = 0.2 * DEGREES_PER_SECOND.size
-METRES = Unit("m/s²", 1.0)
-MILLIMETRES = Unit("mm/s²", 1e-3)
 ABSOLUTE = {"gyro": DEGREES_PER_SECOND, "accel": METRES}
 
 
@@ -106,7 +110,7 @@ def section(
         more = numbers.counted(
             len(close_ups) - MOST_CLOSE_UPS, "further stretch", "further stretches"
         )
-        parts.append(Paragraph(f"{more} missing; section 3 lists them."))
+        parts.append(Paragraph(f"{more} missing; the findings list them."))
     if not found:
         parts.append(Paragraph("None: no log gave samples that could be drawn.", "poor"))
     elif not close_ups:

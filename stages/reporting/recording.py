@@ -1,4 +1,4 @@
-"""Section 5: what the plan wanted and what was recorded of it."""
+"""What the plan wanted and what was recorded of it."""
 
 from __future__ import annotations
 

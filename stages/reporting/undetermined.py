@@ -1,4 +1,4 @@
-"""Section 4: what this campaign could not determine, and what was left out of the fits."""
+"""What this campaign could not determine, and what was left out of the fits."""
 
 from __future__ import annotations
 

@@ -7,8 +7,9 @@ from math import pi
 
 STANDARD_GRAVITY = 9.80665  # m/s², by definition: what a g in µg is
 DEGREE = pi / 180
+HOUR = 3600.0  # s
 ARC_SECOND = DEGREE / 3600
-DEGREE_PER_HOUR = DEGREE / 3600
+DEGREE_PER_HOUR = DEGREE / HOUR
 DEGREE_PER_SQRT_HOUR = DEGREE / 60  # rad/√s
 METRE_PER_SECOND_PER_SQRT_HOUR = 1 / 60  # m/s/√s
 
@@ -38,6 +39,8 @@ PPM = Unit("ppm", 1e-6)
 SECONDS_OF_ARC = Unit("arcsec", ARC_SECOND)
 DEGREES = Unit("°", DEGREE)
 DEGREES_PER_SECOND = Unit("°/s", DEGREE)
+METRES = Unit("m/s²", 1.0)
+MILLIMETRES = Unit("mm/s²", 1e-3)
 DEGREES_PER_HOUR = Unit("°/h", DEGREE_PER_HOUR)
 RANDOM_WALK = {
     "gyro": Unit("°/√h", DEGREE_PER_SQRT_HOUR),
@@ -49,7 +52,17 @@ _BY_UNIT = {
     "m/s²": Quantity(MICRO_G, Unit("10⁻³ m/s²", 1e-3)),
     "rad/s": Quantity(DEGREES_PER_HOUR, Unit("10⁻⁶ rad/s", 1e-6)),
     "rad": _ANGLE,
+    "(rad/s)/(m/s²)": Quantity(
+        Unit("°/h/g", DEGREE_PER_HOUR / STANDARD_GRAVITY), Unit("10⁻⁶ (rad/s)/(m/s²)", 1e-6)
+    ),
+    "rad/s²": Quantity(Unit("°/h/h", DEGREE_PER_HOUR / HOUR), Unit("10⁻⁹ rad/s²", 1e-9)),
+    "(m/s²)/(m/s²)²": Quantity(
+        Unit("µg/g²", 1e-6 / STANDARD_GRAVITY), Unit("10⁻⁶ (m/s²)/(m/s²)²", 1e-6)
+    ),
+    "m/s³": Quantity(Unit("µg/h", STANDARD_GRAVITY * 1e-6 / HOUR), Unit("10⁻⁹ m/s³", 1e-9)),
+    "m": Quantity(Unit("mm", 1e-3), Unit("m", 1.0)),
 }
+_OF_OSCILLATION = Quantity(Unit("rad/s", 1.0), Unit("rad/s", 1.0))
 _RATIO = Quantity(PPM, Unit("10⁻⁶", 1e-6))
 _DIMENSIONLESS = {
     "scale": _RATIO,
@@ -65,6 +78,8 @@ def quantity(parameter: str, unit: str) -> Quantity:
     A cross-axis term is a small angle, whether its unit is stated as 1 or as rad;
     a term on the diagonal is a ratio. A unit that is not known here stays as it is.
     """
+    if parameter == "amplitude":
+        return _OF_OSCILLATION
     kind, _, axes = parameter.partition("_")
     if axes in ("xx", "yy", "zz") and unit in ("1", ""):
         return _RATIO

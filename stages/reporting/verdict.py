@@ -1,4 +1,4 @@
-"""Section 1: the verdict in a few plain sentences, on the first page and as a text of its own."""
+"""The verdict in a few plain sentences, on the first page and as a text of its own."""
 
 from __future__ import annotations
 
@@ -62,8 +62,9 @@ def verdict(
     manoeuvres: pd.DataFrame,
     performed: pd.DataFrame,
     findings: Sequence[Record],
+    lacking: Sequence[str] = (),
 ) -> Verdict:
-    """The level and its reasons.
+    """The level and its reasons; `lacking` are the effects that the data ask for.
 
     Calibrated: the joint fits determine all twelve parameters of both sensors and
     describe their data (p ≥ 0.01), and no finding spoils a result. Not calibrated: they
@@ -82,6 +83,9 @@ def verdict(
     for estimate in joint:
         words, _ = fit_in_words(estimate)
         reasons += [f"{estimate.sensor}: {words}."] if words else []
+    if lacking:
+        names = ", ".join(lacking)
+        reasons.append(f"The data ask for {names}: “What the model lacks” says how much.")
     reasons += _left_out(joint)
     reasons.append(_performed(manoeuvres, performed))
     reasons.append(_findings(findings))

@@ -94,7 +94,7 @@ def turn(
     if missing_s and rate is not None and not edges:
         missing = rate * missing_s
     told = f"{of} recorded: {', and '.join(reasons)}"
-    told += f"; {degrees(missing):.2f}° are missing." if missing is not None else "."
+    told += f"; {_signed(degrees(missing), 2)}° are missing." if missing is not None else "."
     return Performed(m.name, told, True, False, angle, missing, missing_s, rate, seconds)
 
 

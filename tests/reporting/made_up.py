@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
+import pyarrow as pa
 
 from stages.contracts import tables
 from stages.report import Documents, report
@@ -23,7 +25,19 @@ PAIRS = [(i, j) for i in range(3) for j in range(3) if i != j]
 SCALE = {"accel": (3.2852e-4, 3.2826e-4, 2.3567e-4), "gyro": (6.151e-4, -1.62e-5, 6.442e-4)}
 CROSS = (0.0021831, 0.0076080, -0.0027442, -0.0007839, -0.0075585, 0.0007016)
 BIAS = {"accel": (-0.0052949, 0.0050641, -0.0018790), "gyro": (1.30e-6, -2.10e-6, 0.90e-6)}
+NOISE = {"accel": 1.07e-3, "gyro": 3.5e-5}
+BATCH = 700  # rows, so that a turn comes in several batches
 Rows = list[dict[str, Any]]
+
+
+@dataclass(frozen=True)
+class Held:
+    """A table that is handed over as a stream."""
+
+    frame: pd.DataFrame
+
+    def columns(self, names: list[str]) -> Iterator[pa.RecordBatch]:
+        yield from pa.Table.from_pandas(self.frame[names]).to_batches(max_chunksize=BATCH)
 
 
 @cache
@@ -35,8 +49,9 @@ def documents() -> Documents:
 def brief(*logs: str) -> dict[str, Any]:
     """The same with few figures, for drawing takes its time: the raw data of `logs` alone."""
     made = campaign(logs)
-    figures = ("noise", "accelerometer_averaging", "gyroscope_averaging")
-    return made | {name: made[name].iloc[:0] for name in figures}
+    figures = ("noise", "accelerometer_averaging", "gyroscope_averaging", "fidelity", "earlier")
+    less = {name: made[name].iloc[:0] for name in (*figures, "compensated_traces")}
+    return made | less
 
 
 def campaign(logs: Collection[str] | None = None) -> dict[str, Any]:
@@ -65,12 +80,18 @@ def campaign(logs: Collection[str] | None = None) -> dict[str, Any]:
         made[f"{stage}_parameters"] = _frame(tables.PARAMETERS, parameters)
         made[f"{stage}_fit"] = _frame(tables.FIT, _fit(stage, other))
         made[f"{stage}_averaging"] = _frame(tables.AVERAGING, _averaging(parameters, generator))
+    made |= _of_the_model(manoeuvres, made["gyroscope_parameters"], generator)
+    made["checks"] = _frame(tables.CHECKS, _checks(manoeuvres))
+    made["compensated_traces"] = _compensated(made["traces"])
+    made["differences"] = _frame(tables.DIFFERENCES, _differences())
+    made["archived"] = _frame(tables.ARCHIVED, [_archived()])
+    made["earlier"] = _frame(tables.EARLIER, _earlier(made, generator))
     maker: dict[str, Any] = {
         "settings": {"rest_block": 5.0},
         "code": "c0de" * 16,
         "inputs": {"demo/a": "0" * 64},
     }
-    stages = {"quality_findings": "quality", "noise": "noise"}
+    stages = {"quality_findings": "quality", "noise": "noise", "extended_parameters": "extension"}
     made["provenance"] = {
         name: {"stage": stages.get(name, name.partition("_")[0]), **maker} for name in made
     }
@@ -81,7 +102,8 @@ def poor() -> dict[str, Any]:
     """The same with every table empty but the campaign's own."""
     made = campaign()
     provenance = made.pop("provenance")
-    empty = {name: frame.iloc[:0] for name, frame in made.items()}
+    simulated = Held(made.pop("simulated").frame.iloc[:0])
+    empty = {name: frame.iloc[:0] for name, frame in made.items()} | {"simulated": simulated}
     return {**empty, "campaign": made["campaign"], "provenance": provenance}
 
 
@@ -107,6 +129,7 @@ def _about() -> dict[str, Any]:
         "latitude": 30.5278 * DEGREE,
         "height": 24.0,
         "must_be_set": 0x77,
+        "compensated": False,
         "must_be_clear": 0,
     }
 
@@ -481,4 +504,297 @@ def _averaging(parameters: Rows, generator: np.random.Generator) -> Rows:
             rows.append(
                 {"parameter": parameter["id"], "seconds": seconds, "value": value, "sigma": sigma}
             )
+    return rows
+
+
+# ---- simulation, criticism, extension
+
+
+def _of_the_model(
+    manoeuvres: Rows, parameters: pd.DataFrame, generator: np.random.Generator
+) -> dict[str, Any]:
+    """What the simulation gave, what it lacks, and what the extension gained."""
+    turns = [row for row in manoeuvres if row["do"] == "turn" and row["manoeuvre"] != "z-backward"]
+    simulated = pd.concat([_simulated(row, generator) for row in turns], ignore_index=True)
+    return {
+        "simulated": Held(simulated),
+        "fidelity": _frame(tables.FIDELITY, _fidelity(manoeuvres, turns)),
+        "scores": _frame(tables.SCORES, _scores()),
+        "effects": _frame(tables.EFFECTS, _effects()),
+        "lines": _frame(tables.LINES, _lines(turns)),
+        "gain": _frame(tables.GAIN, _gain()),
+        "extended_parameters": _frame(tables.PARAMETERS, _extended(parameters)),
+        "criticism_findings": _frame(tables.FINDINGS, _criticism_findings()),
+        "compensation_findings": tables.FINDINGS.empty(),
+    }
+
+
+def _simulated(row: dict[str, Any], generator: np.random.Generator) -> pd.DataFrame:
+    time = np.arange(0, TURN_S, INTERVAL)
+    columns: dict[str, Any] = {
+        "manoeuvre": row["manoeuvre"],
+        "phase": "steady",
+        "log": row["log"],
+        "record": np.arange(len(time)),
+        "time": time,
+    }
+    for i, axis in enumerate(AXES):
+        columns[f"accel_{axis}"] = np.full(len(time), GRAVITY * row[f"up_{axis}"])
+        columns[f"gyro_{axis}"] = _rate(row, time) * row[f"about_{axis}"] + BIAS["gyro"][i]
+    ringing = 0.01 * np.sin(2 * np.pi * 20 * time + 0.3) * (_rate(row, time) != 0)
+    for channel in tables.CHANNELS:
+        noise = NOISE[channel[:-2]] * generator.standard_normal(len(time))
+        columns[f"residual_{channel}"] = noise + ringing * (channel == "gyro_x")
+    frame = pd.DataFrame(columns)[[column.name for column in tables.SIMULATED.columns]]
+    return pd.DataFrame(tables.SIMULATED.arrow(frame).to_pandas())
+
+
+def _fidelity(manoeuvres: Rows, turns: Rows) -> Rows:
+    rows: Rows = []
+    for row in [*turns, *(row for row in manoeuvres if row["do"] == "rest")]:
+        for channel in tables.CHANNELS:
+            noise = NOISE[channel[:-2]]
+            loud = channel == "gyro_x" and row["do"] == "turn"
+            rows.append(
+                {
+                    "manoeuvre": row["manoeuvre"],
+                    "channel": channel,
+                    "profile": "trapezoid" if row["do"] == "turn" else "at rest",
+                    "residual_rms": noise * (147.0 if loud else 1.03),
+                    "noise_rms": noise,
+                    "samples": 5800,
+                }
+            )
+    return rows
+
+
+def _scores() -> Rows:
+    def score(effect: str, cause: str, **more: Any) -> dict[str, Any]:
+        needless: dict[str, Any] = {"sought_in": "blocks", "statistic": 3.1, "named": False}
+        needless |= {"degrees": 3, "p_value": 0.38}
+        said = f"No {effect} is needed (p = 0.38)."
+        return {
+            "effect": effect,
+            "cause": cause,
+            **needless,
+            "named": False,
+            "sentence": said,
+        } | more
+
+    return [
+        score(
+            "gyro_g_sensitivity",
+            "mass unbalance pulls the gyro off null under load",
+            statistic=5860.7,
+            degrees=9,
+            p_value=0.0,
+            named=True,
+            sentence="The data ask for gyro g sensitivity.",
+        ),
+        score("lever_arm", "the accelerometers stand beside the axis of the table"),
+        score("accel_quadratic", "the suspension of the proof mass is not symmetric"),
+        score("table_tilt", "the base of the table is not level", degrees=0, p_value=1.0),
+        score(
+            "oscillation",
+            "the case or the table's drive vibrates about one axis",
+            sought_in="spectrum",
+            p_value=0.0,
+            named=True,
+            sentence="The case oscillates about x while the table turns: 20.000 Hz.",
+        ),
+    ]
+
+
+def _effects() -> Rows:
+    def effect(
+        name: str, parameter: str, unit: str, value: float | None, sigma: float | None
+    ) -> dict[str, Any]:
+        return {
+            "id": f"criticism/{name}/{parameter}",
+            "effect": name,
+            "parameter": parameter,
+            "value": value,
+            "sigma": sigma,
+            "visible": None if sigma is None else 5 * sigma,
+            "unit": unit,
+            "meaning": f"{parameter} of {name}",
+        }
+
+    g = "gyro_g_sensitivity"
+    rows = [
+        effect(g, f"g_{i}{j}", "(rad/s)/(m/s²)", 6.92e-7 if i == j else 2.9e-8, 1.38e-8)
+        for i in AXES
+        for j in AXES
+    ]
+    rows += [effect("lever_arm", f"r_{axis}", "m", 1e-4, 3.3e-4) for axis in AXES]
+    rows += [
+        effect("accel_quadratic", f"k2_{axis}", "(m/s²)/(m/s²)²", 2.8e-7, 4.1e-7) for axis in AXES
+    ]
+    rows += [effect("table_tilt", way, "rad", None, None) for way in ("north", "east")]
+    rows.append(effect("oscillation", "frequency", "Hz", 20.0, 6.6e-7) | {"visible": None})
+    rows.append(effect("oscillation", "amplitude", "rad/s", 0.01, 4.1e-7))
+    return rows
+
+
+def _lines(turns: Rows) -> Rows:
+    return [
+        {
+            "manoeuvre": row["manoeuvre"],
+            "axis": axis,
+            "frequency": 20.0 if axis == "x" else 31.7,
+            "frequency_sigma": 1e-6 if axis == "x" else 3e-3,
+            "amplitude": 0.01 if axis == "x" else 4e-6,
+            "amplitude_sigma": 9e-7,
+            "p_value": 0.0 if axis == "x" else 0.4,
+        }
+        for row in turns
+        for axis in AXES
+    ]
+
+
+def _gain() -> Rows:
+    g = {"sensor": "gyro", "effects": "gyro_g_sensitivity", "rows": 1996, "unit": "sigma"}
+    line = {"sensor": "gyro x", "effects": "oscillation", "rows": 17000, "unit": "rad/s"}
+    after = {"before": 4.4e-5, "after": 1.2e-9, "drop": 4.4e-5 - 1.2e-9}
+    return [
+        g
+        | {"scope": "fitted", "before": 7740.0, "after": 1879.4, "drop": 5860.6}
+        | {"rms_before": 1.969, "rms_after": 0.9703},
+        g
+        | {"scope": "held-out", "before": 12897.4, "after": 827.6, "drop": 12069.8}
+        | {"rms_before": 2.652, "rms_after": 0.9766},
+        line | after | {"scope": "fitted", "rms_before": 0.006615, "rms_after": 3.5e-5},
+    ]
+
+
+def _extended(parameters: pd.DataFrame) -> Rows:
+    """The gyro's twelve, the first bias moved by four sigma."""
+    rows: Rows = []
+    for row in parameters.query("method == 'joint'").to_dict("records"):
+        if row["parameter"].partition("_")[0] in ("bias", "scale", "cross"):
+            moved = 4 * row["sigma"] * (row["parameter"] == "bias_x")
+            identifier = f"extension/gyroscope/{row['parameter']}"
+            own = {"id": identifier, "stage": "extension", "method": "gyroscope"}
+            rows.append({str(k): v for k, v in row.items()} | own | {"value": row["value"] + moved})
+    return rows
+
+
+def _criticism_findings() -> Rows:
+    return [
+        {
+            "id": "criticism/gyro_g_sensitivity",
+            "cause": "gyro_g_sensitivity",
+            "sensor": "gyro",
+            "count": 1,
+            "unit": "1",
+            "p_value": 0.0,
+            "severity": 2,
+            "consequence": "The model without it is not the whole truth.",
+            "action": "It is added to the model by the extension.",
+            "sentence": "The data ask for gyro g sensitivity.",
+        }
+    ]
+
+
+# ---- comparison, compensation, history
+
+
+def _differences() -> Rows:
+    def row(
+        kind: str, parameter: str, unit: str, sigmas: float | None, said: str
+    ) -> dict[str, Any]:
+        one = {
+            "id": f"comparison/{kind}/{parameter}",
+            "kind": kind,
+            "parameter": parameter,
+            "unit": unit,
+            "first": "this",
+            "second": "that",
+            "first_value": 2e-6,
+            "second_value": 1e-6,
+            "sentence": said,
+        }
+        if sigmas is None:
+            return one
+        sigma = abs(1e-6 / sigmas)
+        p_value = 1e-9 if abs(sigmas) > 5 else 0.4
+        difference = {"difference": np.sign(sigmas) * 1e-6, "sigma": sigma}
+        return one | difference | {"in_sigmas": sigmas, "p_value": p_value}
+
+    return [
+        row("method_against_method", "gyroscope/bias_y", "rad/s", 0.9, "bias: they agree."),
+        row("method_against_method", "gyroscope/scale_x", "1", None, "nothing to compare."),
+        row(
+            "static_against_turns",
+            "gyroscope/bias_x",
+            "rad/s",
+            -13.2,
+            "bias of the x gyro: rests and turns differ by 0.2 °/h: more than chance.",
+        ),
+    ]
+
+
+def _checks(manoeuvres: Rows) -> Rows:
+    rows: Rows = []
+    for row in manoeuvres:
+        quantities = (
+            (("gravity", "m/s²", GRAVITY, 5e-3, 6e-6), ("rate_up", "rad/s", 3.7e-5, 1e-5, 2e-7))
+            if row["do"] == "rest"
+            else (("angle", "rad", row["angle"], 4e-3, 2.4e-5),)
+        )
+        for quantity, unit, expected, before, sigma in quantities:
+            off = 7.0 if quantity == "angle" and row["about_x"] else 0.4
+            rows.append(
+                {
+                    "id": f"compensation/{quantity}/{row['manoeuvre']}",
+                    "manoeuvre": row["manoeuvre"],
+                    "quantity": quantity,
+                    "unit": unit,
+                    "expected": expected,
+                    "expected_sigma": sigma / 10,
+                    "before": expected + before,
+                    "after": expected + off * sigma,
+                    "after_sigma": sigma,
+                    "in_sigmas_after": off,
+                    "sentence": f"{row['manoeuvre']}: {quantity}.",
+                }
+            )
+    return rows
+
+
+def _compensated(traces: pd.DataFrame) -> pd.DataFrame:
+    """The same envelopes with the biases taken out."""
+    after = traces.copy()
+    for sensor, biases in BIAS.items():
+        for axis, bias in zip(AXES, biases, strict=True):
+            columns = [f"least_{sensor}_{axis}", f"most_{sensor}_{axis}"]
+            after[columns] = after[columns] - bias
+    return after
+
+
+def _archived() -> dict[str, Any]:
+    return {
+        "file": "simulated/NovAtel+SPAN-CPT/SIM-001/2026-11-02-made-up.parquet",
+        "sha256": "5a" * 32,
+        "content": "c3" * 32,
+        "supersedes": "",
+    }
+
+
+def _earlier(made: dict[str, Any], generator: np.random.Generator) -> Rows:
+    rows: Rows = []
+    for date in ("2025-06-30", "unknown"):
+        for stage in ("accelerometer", "gyroscope"):
+            for row in made[f"{stage}_parameters"].query("method == 'joint'").itertuples():
+                rows.append(
+                    {
+                        "campaign": f"campaign of {date}",
+                        "date": date,
+                        "file": f"simulated/NovAtel+SPAN-CPT/SIM-001/{date}.parquet",
+                        "id": row.id,
+                        "value": row.value + row.sigma * generator.standard_normal(),
+                        "sigma": row.sigma,
+                        "unit": row.unit,
+                    }
+                )
     return rows

@@ -73,7 +73,16 @@ def test_control_characters_become_visible_and_long_texts_end() -> None:
         ("cross_xy", "1", 1e-3, 206.26481, "arcsec"),
         ("mounting_z", "rad", 1e-3, 206.26481, "arcsec"),
         ("symmetric_xx", "1", 1e-6, 1.0, "ppm"),
-        ("lever_arm_x", "m", 0.05, 0.05, "m"),
+        ("r_x", "m", 0.05, 50.0, "mm"),
+        # by the definitions of °/h, µg and g
+        ("g_xy", "(rad/s)/(m/s²)", 4.94372371e-07, 1.0, "°/h/g"),
+        ("c_x", "rad/s²", 1.34670467e-09, 1.0, "°/h/h"),
+        ("k2_x", "(m/s²)/(m/s²)²", 1.0197162e-6, 10.0, "µg/g²"),
+        ("c_x", "m/s³", 2.72406944e-09, 1.0, "µg/h"),
+        ("north", "rad", 4.8481368e-6, 1.0, "arcsec"),
+        ("amplitude", "rad/s", 0.01, 0.01, "rad/s"),
+        ("frequency", "Hz", 20.0, 20.0, "Hz"),
+        ("unheard_of", "furlong", 0.05, 0.05, "furlong"),
     ],
 )
 def test_units_of_the_laboratory(

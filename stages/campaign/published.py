@@ -1,0 +1,53 @@
+"""What others published of the same IMU: the file published.yaml beside campaign.yaml."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from stages.campaign.units import ARC_SECOND, DEGREE
+from stages.contracts.yaml_file import YamlFile
+from stages.model.site import STANDARD_GRAVITY
+
+Row = dict[str, Any]
+
+STAGES = {"accelerometer": "accelerometer", "gyro": "gyroscope"}
+SI = {("accelerometer", "bias"): "m/s²", ("gyro", "bias"): "rad/s"}  # all others are ratios
+SIZES = {
+    "m/s2": 1.0,
+    "mGal": 1e-5,
+    "g": STANDARD_GRAVITY,
+    "mg": STANDARD_GRAVITY * 1e-3,
+    "ug": STANDARD_GRAVITY * 1e-6,
+    "rad/s": 1.0,
+    "deg/s": DEGREE,
+    "deg/h": DEGREE / 3600,
+    "1": 1.0,
+    "%": 1e-2,
+    "ppm": 1e-6,
+    "rad": 1.0,
+    "mrad": 1e-3,
+    "urad": 1e-6,
+    "deg": DEGREE,
+    "arcmin": ARC_SECOND * 60,
+    "arcsec": ARC_SECOND,
+}
+
+
+def published_values(file: YamlFile) -> Iterator[Row]:
+    """The values in SI, one row each.
+
+    Raises
+    ------
+    Refusal
+        for the first thing in the file that cannot be used
+    """
+    file.check("published")
+    for sensor, stage in STAGES.items():
+        for name, told in file.content.get(sensor, {}).items():
+            size = SIZES[told["unit"]] if "unit" in told else 1.0
+            yield {
+                "parameter": f"{stage}/{name}",
+                "value": told["value"] * size,
+                "sigma": told["sigma"] * size if "sigma" in told else None,
+                "unit": SI.get((sensor, name.partition("_")[0]), "1"),
+                "source": file.content["source"],
+            }

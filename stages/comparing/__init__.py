@@ -1,0 +1,1 @@
+"""What is compared with what: rests, turns, directions, methods, and what others published."""

@@ -1,0 +1,42 @@
+"""The joint estimate against the formulas of S0, which use the same data."""
+
+from collections.abc import Iterator
+
+from stages.comparing.difference import Difference
+from stages.comparing.results import Results
+
+KIND = "method_against_method"
+ALIKE = 0.01  # relative difference of two sigmas below which two methods are one
+WORDS = {"six_position": "the six-position formula", "turns": "the formula for turns"}
+
+
+def method_against_method(results: Results, method: str) -> Iterator[Difference]:
+    """Every parameter that both `method` and the joint estimate have determined.
+
+    The two use the same data, so their errors are correlated. Of all unbiased estimates the joint
+    one has the smallest variance; then the variance of the difference is the difference of the
+    variances, σ² = |σ₁² − σ₂²| (Hausman 1978).
+    """
+    for name in results.names(method):
+        other, joint = results.of(method, name), results.determined("joint", name)
+        if other is None or joint is None:
+            continue
+        alike = abs(other["sigma"] / joint["sigma"] - 1) < ALIKE
+        sigma = abs(other["sigma"] ** 2 - joint["sigma"] ** 2) ** 0.5
+        yield Difference(
+            kind=f"{KIND}{results.suffix}",
+            parameter=f"{results.stage}/{name}",
+            unit=joint["unit"],
+            first=other["id"],
+            second=joint["id"],
+            first_value=other["value"],
+            second_value=joint["value"],
+            sigma=None if alike else sigma,
+            between=(WORDS[method], "the joint estimate"),
+            remark=(
+                f"{WORDS[method]} and the joint estimate use the same data with the same sigma:"
+                " there is nothing to compare"
+                if alike
+                else "Both are from the same data, so their variances are subtracted"
+            ),
+        )

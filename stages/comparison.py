@@ -1,0 +1,77 @@
+"""Rests against turns, forward against backward, method against method, published against ours."""
+
+from collections.abc import Iterator
+
+import pandas as pd
+
+from stages.comparing.difference import Difference, table_of
+from stages.comparing.forward_against_backward import forward_against_backward
+from stages.comparing.method_against_method import method_against_method
+from stages.comparing.published import against_published
+from stages.comparing.results import Results
+from stages.comparing.static_against_turns import static_against_turns
+from stages.contracts import tables
+from stages.contracts.records import known_of, manoeuvres_of, performed_of, rows_of
+from stages.contracts.stage import Stage, Tables
+from stages.estimation.estimates import by_mount
+from stages.estimation.noise_levels import NoiseLevels
+from stages.estimation.turns import gyro_inputs
+
+
+def comparison(
+    blocks: pd.DataFrame,
+    manoeuvres: pd.DataFrame,
+    performed: pd.DataFrame,
+    noise: pd.DataFrame,
+    known: pd.DataFrame,
+    accelerometer_parameters: pd.DataFrame,
+    gyroscope_parameters: pd.DataFrame,
+    gyroscope_fit: pd.DataFrame,
+    published: pd.DataFrame,
+    *,
+    level: float,
+) -> Tables:
+    """Every difference in units of its sigma, with the verdict in a sentence."""
+    given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
+    scatter = {row["method"]: row["scatter"] for row in rows_of(gyroscope_fit)}
+
+    def of_mount(suffix: str, gyro: Results, accelerometer: Results) -> Iterator[Difference]:
+        inputs = gyro_inputs(blocks, plans[suffix], done, levels, given)
+        yield from static_against_turns(inputs, levels, gyro)
+        between = scatter.get(f"joint{suffix}", 0.0)
+        yield from forward_against_backward(inputs, levels, gyro, between)
+        yield from method_against_method(accelerometer, "six_position")
+        yield from method_against_method(gyro, "turns")
+        yield from against_published(published, {r.stage: r for r in (accelerometer, gyro)})
+
+    plans = dict(by_mount(manoeuvres_of(manoeuvres)))
+    found = [
+        difference
+        for suffix in plans
+        for difference in of_mount(
+            suffix,
+            Results("gyroscope", gyroscope_parameters, suffix),
+            Results("accelerometer", accelerometer_parameters, suffix),
+        )
+    ]
+    return {"differences": table_of(found, level)}
+
+
+STAGE = Stage(
+    comparison,
+    reads={
+        "blocks": tables.BLOCKS,
+        "manoeuvres": tables.MANOEUVRES,
+        "performed": tables.PERFORMED,
+        "noise": tables.NOISE,
+        "known": tables.KNOWN,
+        "accelerometer_parameters": tables.PARAMETERS,
+        "gyroscope_parameters": tables.PARAMETERS,
+        "gyroscope_fit": tables.FIT,
+        "published": tables.PUBLISHED,
+    },
+    writes={"differences": tables.DIFFERENCES},
+)
+
+if __name__ == "__main__":
+    STAGE.command_line()

@@ -1,0 +1,117 @@
+"""Oscillations in residuals: lines that stand out of the noise of a spectrum."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+from scipy.signal import periodogram
+
+Array = NDArray[np.float64]
+
+FEWEST = 64  # samples in which a line can be told from noise
+OVERSAMPLED = 2  # the search steps by half a bin, so that no line falls between two
+
+
+@dataclass(frozen=True)
+class Line:
+    """One oscillation A sin(2πf t + φ) of one channel.
+
+    `frequency` and `sigma_frequency`: Hz; `amplitude` and `sigma_amplitude`: unit of the
+    record; `p_value`: chance of so high a peak anywhere in the spectrum, by noise alone.
+    """
+
+    frequency: float
+    sigma_frequency: float
+    amplitude: float
+    sigma_amplitude: float
+    p_value: float
+
+
+def strongest(record: Array, rate: float, lowest: float) -> Line | None:
+    """The line of a record that stands out most.
+
+    The periodogram of white noise is exponentially distributed about its level, which is
+    had from its median; the search over all bins is paid for.
+
+    Parameters
+    ----------
+    record : (n,), samples without gaps
+    rate : Hz, samples per second
+    lowest : Hz, below which nothing is looked for
+    """
+    n = len(record)
+    if n < FEWEST:
+        return None
+    frequency, density = _spectrum(record, rate)
+    inside = (frequency >= lowest) & (frequency < rate / 2)
+    level = float(np.median(density[inside]) / np.log(2)) if inside.any() else 0.0
+    if level <= 0:
+        return None
+    peak = int(np.argmax(np.where(inside, density, 0.0)))
+    trials = float(inside.sum())
+    p_value = float(-np.expm1(trials * np.log1p(-np.exp(-density[peak] / level))))
+    found = _refined(record, rate, float(frequency[peak]))
+    # The line itself leaks into all bins, so the noise is read again without it.
+    split = without_line(record, rate, found)
+    _, left = _spectrum(split.less(split.amplitude), rate)
+    per_sample = float(np.sqrt(np.median(left[inside]) / np.log(2) * rate / 2))
+    # Rife & Boorstyn, IEEE Trans. Inform. Theory 20 (1974) 591: bounds of both.
+    sigma_frequency = np.sqrt(6) * per_sample * rate / (np.pi * split.amplitude * n**1.5)
+    sigma_amplitude = per_sample * np.sqrt(2 / n)
+    return Line(found, float(sigma_frequency), split.amplitude, float(sigma_amplitude), p_value)
+
+
+def _spectrum(record: Array, rate: float) -> tuple[Array, Array]:
+    """Frequencies, Hz, and power density of one side."""
+    # The stubs do not know that the trend may be a line.
+    frequency, density = periodogram(  # type: ignore[call-overload]
+        record, rate, "boxcar", nfft=OVERSAMPLED * len(record), detrend="linear"
+    )
+    return frequency, density
+
+
+def _refined(record: Array, rate: float, near: float) -> float:
+    """The frequency within a bin of `near` that leaves the least of the record, Hz."""
+    width = rate / len(record)
+
+    def left(frequency: float) -> float:
+        columns, parts = _fitted(record, rate, frequency)
+        return float(np.sum((record - columns @ parts) ** 2))
+
+    bounds = (max(near - width, 0.0), near + width)
+    return float(
+        minimize_scalar(left, bounds=bounds, method="bounded", options={"xatol": 1e-6 * width}).x
+    )
+
+
+@dataclass(frozen=True)
+class Split:
+    """A record without mean and slope, (n,), and the line of one frequency in it."""
+
+    record: Array
+    amplitude: float
+    shape: Array  # (n,), the line at amplitude 1
+
+    def less(self, amplitude: float) -> Array:
+        """The record less the line at another amplitude, its phase kept."""
+        return np.asarray(self.record - amplitude * self.shape)
+
+
+def without_line(record: Array, rate: float, frequency: float) -> Split:
+    """Part a record, sampled at `rate` Hz, from its line at `frequency` Hz."""
+    columns, parts = _fitted(record, rate, frequency)
+    level = np.asarray(record - columns[:, 2:] @ parts[2:])
+    line = columns[:, :2] @ parts[:2]
+    amplitude = float(np.linalg.norm(parts[:2]))
+    return Split(level, amplitude, line / amplitude if amplitude else line)
+
+
+def _fitted(record: Array, rate: float, frequency: float) -> tuple[Array, Array]:
+    """Sine, cosine, mean and slope by least squares: columns (n, 4) and their parts (4,)."""
+    time = np.arange(len(record)) / rate
+    phase = 2 * np.pi * frequency * time
+    columns = np.column_stack(
+        [np.sin(phase), np.cos(phase), np.ones_like(time), time - time.mean()]
+    )
+    return columns, np.asarray(np.linalg.lstsq(columns, record, rcond=None)[0])

@@ -1,0 +1,35 @@
+"""An oscillation in noise: its numbers within their sigmas, and silence where there is none."""
+
+import numpy as np
+
+from stages.inference.lines import strongest, without_line
+
+
+def test_frequency_and_amplitude_come_back_within_their_sigmas():
+    rng = np.random.default_rng(2)
+    time = np.arange(3390) / 100
+    pulls = []
+    for phase in np.linspace(0, 3, 40):
+        record = 0.01 * np.sin(2 * np.pi * 20.013 * time + phase) + 1e-3 * time
+        line = strongest(record + 3.5e-5 * rng.standard_normal(len(time)), 100.0, 2.0)
+        assert line is not None
+        pulls.append((line.frequency - 20.013) / line.sigma_frequency)
+        pulls.append((line.amplitude - 0.01) / line.sigma_amplitude)
+    assert 0.75 < np.std(pulls) < 1.25
+    assert abs(np.mean(pulls)) < 0.5
+
+
+def test_in_noise_the_p_values_are_those_of_chance():
+    rng = np.random.default_rng(4)
+    lines = [strongest(rng.standard_normal(2000), 100.0, 2.0) for _ in range(300)]
+    p_values = np.array([line.p_value for line in lines if line is not None])
+    assert len(p_values) == 300
+    assert 4 <= (p_values < 0.05).sum() <= 28  # 15 are expected
+    assert (p_values < 0.001).sum() <= 2
+
+
+def test_a_record_without_its_line_is_the_rest():
+    time = np.arange(1000) / 100
+    split = without_line(3 + 0.2 * np.cos(2 * np.pi * 7 * time), 100.0, 7.0)
+    assert abs(split.amplitude - 0.2) < 1e-3
+    assert np.abs(split.less(split.amplitude)).max() < 1e-3

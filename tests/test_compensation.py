@@ -1,0 +1,194 @@
+"""Compensated samples: they hold what is known, in the order of the log, and are made once."""
+
+from pathlib import Path
+
+import chain
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.compensating.correction import ALL, Correction, mounted, truth_of
+from stages.contracts import parquet
+from stages.contracts.errors import Refusal
+from stages.contracts.records import manoeuvres_of
+from stages.contracts.tables import CHANNELS
+from stages.model.forward import Triad
+
+QUANTITIES = ["gravity", "force_up", "rate_up", "angle"]
+ACCEL, GYRO = list(CHANNELS[:3]), list(CHANNELS[3:])
+
+
+def checks_of(results: chain.Results, quantity: str) -> pd.DataFrame:
+    table = results["compensation/checks"]
+    return table[table["quantity"] == quantity].set_index("manoeuvre")
+
+
+def test_the_formula_undoes_reading_of_truth():
+    triad = Triad(np.array([[1.1, 0.02, 0], [-0.01, 0.9, 0.03], [0, 0, 1]]), np.array([1, 2, 3.0]))
+    truth = np.random.default_rng(1).normal(size=(5, 3))
+    np.testing.assert_allclose(truth_of(truth @ triad.matrix.T + triad.bias, triad), truth)
+    sums = 7 * (truth @ triad.matrix.T + triad.bias)
+    np.testing.assert_allclose(truth_of(sums, triad, 7.0), 7 * truth)
+
+
+# ---- physics, on clean campaigns
+
+
+def test_after_compensation_everything_is_what_it_should_be(clean):
+    for results in clean:
+        table = results["compensation/checks"]
+        assert set(table["quantity"]) == set(QUANTITIES)
+        assert table["id"].is_unique
+        assert table["in_sigmas_after"].abs().max() < 4
+        assert len(checks_of(results, "angle")) == 6
+        assert len(checks_of(results, "gravity")) == 18  # six rests, and two around each turn
+    for quantity in QUANTITIES:
+        pulls = pd.concat([checks_of(r, quantity)["in_sigmas_after"] for r in clean])
+        # The parameters are from these data, so that what is left is less than the noise.
+        assert 0.3 < np.sqrt(np.mean(pulls**2)) < 1.3
+
+
+def test_before_compensation_it_is_not(clean):
+    truth = chain.demo()["truth"]["gyro"]
+    for results in clean:
+        gravity = checks_of(results, "gravity").loc[["x-up", "x-down", "y-up", "y-down", "z-down"]]
+        off = (gravity["before"] - gravity["expected"]).abs()
+        assert (off > 100 * gravity["after_sigma"]).all()
+        angle = checks_of(results, "angle")
+        for i, axis in enumerate("xyz"):
+            ratio = angle.loc[f"{axis}-forward", "before"] / (2 * np.pi) - 1
+            # The scale factor, and the bias over 38.9 s.
+            expected = truth["matrix"][i][i] - 1 + truth["bias_rad_s"][i] * 38.9 / (2 * np.pi)
+            assert ratio == pytest.approx(expected, abs=2e-5)
+
+
+def test_the_earths_rate_is_taken_out_of_the_angle(clean):
+    # 15 °/h · sin φ for 38.9 s is 297″, sixty sigma: without it no turn would agree.
+    angle = checks_of(clean[0], "angle")
+    known = clean[0]["plan/known"].set_index("quantity")["value"]
+    assert (known["earth_rate_up"] * 38 > 50 * angle["after_sigma"]).all()
+    assert (angle["in_sigmas_after"].abs() < 4).all()
+
+
+def test_what_is_hidden_in_the_demo_stays_visible(demo):
+    """Twelve parameters cannot take out a g-sensitivity: rates at rest stay off by parts of it."""
+    assert (checks_of(demo, "gravity")["in_sigmas_after"].abs() < 4).all()
+    rates = checks_of(demo, "rate_up")
+    assert rates.loc["x-up", "in_sigmas_after"] > 10
+    assert "not all there is" in rates.loc["x-up", "sentence"]
+    assert "z-backward" not in checks_of(demo, "angle").index  # it has a gap
+    assert demo["compensation/findings"].empty
+
+
+# ---- the stream
+
+
+def test_records_keep_their_order_and_count_and_the_checks_are_about_them(clean):
+    results = clean[0]
+    samples, compensated = results["decode/samples"], results["compensation/compensated"]
+    for name in ("log", "record", "time"):
+        assert (compensated[name].astype(object) == samples[name].astype(object)).all()
+    segments = results["segment/segments"].set_index(["manoeuvre", "phase"])
+    rest = segments.loc[("x-down", "rest")]
+    own = compensated[compensated["log"] == rest["log"]]
+    own = own[(own["record"] >= rest["from_record"]) & (own["record"] < rest["to_record"])]
+    size = np.linalg.norm(own[ACCEL].mean())
+    assert size == pytest.approx(checks_of(results, "gravity").loc["x-down", "after"], abs=1e-8)
+
+
+def test_the_same_in_small_batches(clean, monkeypatch):
+    whole = chain.again(clean[0], "compensation")
+    monkeypatch.setattr(parquet, "BATCH_ROWS", 777)
+    small = chain.again(clean[0], "compensation")
+    for table in ("compensated", "compensated_traces", "checks"):
+        pd.testing.assert_frame_equal(whole[table], small[table], check_categorical=False)
+
+
+def test_traces_stand_between_the_edges_of_segment_and_hold_the_samples(clean):
+    results = clean[0]
+    before, after = results["segment/traces"], results["compensation/compensated_traces"]
+    edges = ["log", "from_record", "to_record", "from_s", "to_s"]
+    pd.testing.assert_frame_equal(before[edges], after[edges])
+    compensated = results["compensation/compensated"]
+    last = after[after["log"] == "z-up.asc"].iloc[-1]
+    own = compensated[compensated["log"] == "z-up.asc"]
+    own = own[(own["record"] >= last["from_record"]) & (own["record"] < last["to_record"])]
+    for channel in CHANNELS:
+        assert own[channel].min() == last[f"least_{channel}"]
+        assert own[channel].max() == last[f"most_{channel}"]
+
+
+# ---- what is not determined, and what was compensated before
+
+
+def test_a_sensor_that_is_not_wholly_determined_stays_empty_and_says_why(clean):
+    parameters = clean[0]["gyroscope/parameters"]
+    lost = parameters["id"] == "gyroscope/joint/scale_y"
+    parameters.loc[lost, "value"] = np.nan
+    parameters.loc[lost, "reason"] = "no whole turn about y was recorded"
+    made = chain.again(clean[0], "compensation", gyroscope_parameters=parameters)
+    assert made["compensated"][GYRO].isna().all(axis=None)
+    assert made["compensated"][ACCEL].notna().all(axis=None)
+    checks = made["checks"].set_index("quantity")
+    assert checks.loc["gyro", "sentence"].startswith("The gyros are not compensated")
+    assert "scale_y: no whole turn about y was recorded" in checks.loc["gyro", "sentence"]
+    assert not {"rate_up", "angle"} & set(checks.index)
+
+
+def test_each_mount_has_its_own_parameters_and_between_them_nothing_is_known(clean):
+    plan = clean[0]["plan/manoeuvres"].iloc[:4].assign(log="one.asc")
+    plan["mount"] = ["flat", "flat", "on edge", "on edge"]
+    segments = pd.DataFrame(
+        {
+            "manoeuvre": list(plan["manoeuvre"]),
+            "log": "one.asc",
+            "from_record": [10, 200, 500, 700],
+            "to_record": [100, 300, 600, 800],
+        }
+    )
+    corrections = {mount: Correction(None, None) for mount in ("flat", "on edge")}
+    parts = mounted(manoeuvres_of(plan), segments, corrections)["one.asc"]
+    assert [(part.first, part.after) for part in parts] == [(10, 300), (500, 800)]
+    assert parts[1].correction is corrections["on edge"]
+    alone = mounted(manoeuvres_of(plan.assign(mount="flat")), segments, corrections)["one.asc"]
+    assert [(part.first, part.after) for part in alone] == [(0, ALL)]
+
+
+@pytest.fixture(scope="module")
+def compensated_before(tmp_path_factory) -> chain.Results:
+    folder = tmp_path_factory.mktemp("before")
+    campaign = chain.simulate(chain.demo(seed=3), folder / "before")
+    file = campaign / "campaign.yaml"
+    file.write_text(f"compensated: true\n{file.read_text(encoding='utf-8')}", encoding="utf-8")
+    return chain.run(campaign, folder / "derived", until="compensation")
+
+
+def test_a_second_compensation_is_refused_with_a_finding_and_all_else_runs(compensated_before):
+    results = compensated_before
+    for table in ("compensated", "checks", "compensated_traces"):
+        assert results[f"compensation/{table}"].empty
+    finding = results["compensation/findings"].iloc[0]
+    assert finding["cause"] == "already_compensated" and finding["severity"] == 3
+    assert "not compensated again" in finding["sentence"]
+    assert results["plan/campaign"]["compensated"].all()
+    for stage in ("accelerometer", "gyroscope"):
+        assert results.parameters(stage)["value"].notna().all()
+    assert not results["comparison/differences"].empty
+
+
+def test_samples_that_a_compensation_made_are_refused(clean):
+    made_by = {"samples": {"stage": "compensation"}}
+    with pytest.raises(Refusal, match="made by compensation") as refused:
+        chain.again(clean[0], "compensation", provenance=made_by)
+    assert "samples of decode" in refused.value.cure
+    assert Path(refused.value.file).name == "samples.parquet"
+
+
+def test_compensated_must_be_true_or_false(tmp_path):
+    text = (Path(__file__).parent / "campaigns/s0.yaml").read_text(encoding="utf-8")
+    from stages.contracts.yaml_file import YamlFile
+
+    file = tmp_path / "campaign.yaml"
+    file.write_text(f"compensated: yes\n{text}", encoding="utf-8")
+    with pytest.raises(Refusal, match=r"line 1, compensated"):
+        YamlFile(file).check("campaign")
