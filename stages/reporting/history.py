@@ -11,9 +11,9 @@ from matplotlib.ticker import MaxNLocator
 
 from stages.contracts.tables import AXES
 from stages.reporting import numbers
-from stages.reporting.drawing import AXIS_COLOUR, AXIS_MARK, Margins, panels, style, svg
+from stages.reporting.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg
 from stages.reporting.outline import Column, Figure, Paragraph, Part, Row, Section, Table
-from stages.reporting.parameters import SENSOR, symbol
+from stages.reporting.parameters import KIND, SENSOR
 from stages.reporting.rows import Record, records
 from stages.reporting.units import quantity
 
@@ -48,8 +48,8 @@ def section(
         "Earlier calibrations",
         "What the same instrument, by its serial, was found to be before; and where this "
         "calibration is kept.",
-        "Each point is value ± σ of the joint fit. A bias may change from one time that the "
-        "instrument is switched on to the next; a scale error should not.",
+        "Each point is value ± σ of the joint fit, drawn from the last value. A bias may change "
+        "from one time that the instrument is switched on to the next; a scale error should not.",
         parts,
     )
 
@@ -123,7 +123,8 @@ def _figure(
                 panel.tick_params(axis="x", labelrotation=0 if len(labels) < 5 else 60)
         drawn = svg(figure, "history")
     return Figure(
-        "Bias and scale error of the joint fits over the calibrations, each with its σ: x orange "
+        "Bias and scale error of the joint fits over the calibrations, each with its σ, less their "
+        "last value: x orange "
         "circles, y green squares, z blue triangles.",
         drawn,
         "Bias and scale error of both sensors against the dates of the calibrations.",
@@ -140,9 +141,11 @@ def _panel(panel: Axes, stage: str, kind: str, each: Sequence[dict[str, Record]]
             for number, rows in enumerate(each)
             if f"{stage}/joint/{kind}_{axis}" in rows
         ]
+        # A change is small beside the value itself, so it is drawn from the last value.
+        last = found[-1][1]["value"] if found else 0.0
         panel.errorbar(
             [x for x, _ in found],
-            [row["value"] / unit.laboratory.size for _, row in found],
+            [(row["value"] - last) / unit.laboratory.size for _, row in found],
             [(row["sigma"] or 0.0) / unit.laboratory.size for _, row in found],
             color=AXIS_COLOUR[axis],
             marker=AXIS_MARK[axis],
@@ -151,7 +154,8 @@ def _panel(panel: Axes, stage: str, kind: str, each: Sequence[dict[str, Record]]
             elinewidth=0.8,
             capsize=2,
         )
-    name = f"{SENSOR[stage]} {symbol(kind + '_i')[0]}"
+    name = f"{SENSOR[stage]}, {KIND[kind].lower()} less its last value"
     panel.set_title(f"{name}, {unit.laboratory.name}", loc="left", pad=2)
+    panel.axhline(0, color=INK, linewidth=0.4)
     panel.set_xlim(-0.5, len(each) - 0.5)
     panel.yaxis.set_major_locator(MaxNLocator(4))

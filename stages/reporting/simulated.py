@@ -213,7 +213,7 @@ def _draw(envelope: Envelope, key: str) -> str:
         whole.set_title(f"{turn.axis} gyro, {unit.name}", pad=2)
         label = "Time, s" if envelope.timed else "Record"
         whole.set_xlabel(label)
-        for column, sensor, title in ((1, "gyro", "Gyros, "), (2, "accel", "Accelerometers, ")):
+        for column, sensor, title in ((1, "gyro", "Gyro"), (2, "accel", "Accel.")):
             unit = _unit(envelope, sensor)
             own = [row[column] for row in axes]
             for panel, axis in zip(own, AXES, strict=True):
@@ -224,7 +224,7 @@ def _draw(envelope: Envelope, key: str) -> str:
                 )
                 panel.axhline(0, color=INK, linewidth=0.4)
                 panel.set_title(axis, loc="right", color=AXIS_COLOUR[axis], fontsize=6.5, pad=2)
-            own[0].set_title(f"{title}residual, {unit.name}", loc="left", pad=2)
+            own[0].set_title(f"{title} residual, {unit.name}", loc="left", pad=2)
             own[-1].set_xlabel(label)
         there = x[np.isfinite(x)]
         if len(there) > 1:
