@@ -9,7 +9,7 @@ It shares no code with stages/, so what hides effects cannot agree with what fin
 from laboratory.errors import Complaint, SpecificationError
 from laboratory.folder import write
 from laboratory.performance import perform
-from laboratory.recording import LogTruth, Recording
+from laboratory.recording import LogTruth, Recording, Spoiled
 from laboratory.specification import Specification, read, specify
 
 __all__ = [
@@ -18,6 +18,7 @@ __all__ = [
     "Recording",
     "Specification",
     "SpecificationError",
+    "Spoiled",
     "perform",
     "read",
     "specify",

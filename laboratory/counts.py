@@ -8,8 +8,8 @@ from laboratory.arrays import Array, Counts
 def count(running: Array, size: float) -> Counts:
     """counts_k = round(S_k / q) − round(S_{k−1} / q),  S₀ = 0.
 
-    running: the running integral S₁ … S_n of the reading, (n, 3), rad or m/s; size: one count q,
+    running: the running integral S₁ … S_n of the reading, (n, …), rad or m/s; size: one count q,
     same unit. The sum of any stretch of counts is off by one count at most, however long it is.
     """
     whole = np.rint(running / size).astype(np.int64)
-    return np.diff(whole, axis=0, prepend=np.zeros((1, 3), dtype=np.int64))
+    return np.diff(whole, axis=0, prepend=np.zeros((1, *whole.shape[1:]), dtype=np.int64))

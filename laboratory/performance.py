@@ -1,6 +1,7 @@
 """A campaign is performed: the table turns, the IMU senses, the receiver writes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import reduce
 
 import numpy as np
@@ -15,7 +16,8 @@ from laboratory.motion import Turning, move
 from laboratory.placement import place
 from laboratory.profiles import Standing
 from laboratory.rawimusa import Samples, log_bytes
-from laboratory.recording import LogTruth, Recording
+from laboratory.recording import LogTruth, Recording, Spoiled
+from laboratory.records import Records
 from laboratory.sensor import Reading, nothing, read
 from laboratory.site import Site
 from laboratory.specification import Specification
@@ -35,16 +37,23 @@ def perform(specification: Specification) -> Recording:
         base=reduce(np.matmul, [effect.tilts() for effect in effects.values()]),
         chance=specification.chance,
     )
-    logs: dict[str, bytes] = {}
+    logs: dict[str, Records] = {}
     truths: dict[str, LogTruth] = {}
     first = 0  # ns from the campaign's first sample to the first of this log
     for log, manoeuvres in logs_of(specification.manoeuvres).items():
         stretches = lay_out(manoeuvres, placements, receiver.interval, specification.change_seconds)
         stamps = first + receiver.step * np.arange(sum(s.samples for s in stretches))
         truths[log] = happen(log, stretches, stamps, effects, specification)
-        logs[log] = record(log, truths[log], specification.start + stamps, specification)
+        samples = Samples(specification.start + stamps, truths[log].accelerometer, truths[log].gyro)
+        logs[log] = receiver.records(samples)
         first = int(stamps[-1]) + specification.pause
-    return Recording(specification.campaign, logs, truths, placements)
+    logs = spoil(logs, specification)
+    written = {
+        log: log_bytes(records.samples, receiver.status, receiver.line_end)
+        for log, records in logs.items()
+    }
+    spoiled = [one for log, records in logs.items() for one in spoiled_of(log, records)]
+    return Recording(specification.campaign, written, truths, placements, spoiled)
 
 
 def happen(
@@ -96,19 +105,29 @@ def true_of(stretch: Stretch, instants: Instants, site: Site, effects: Effects) 
         turnings = [Turning(stretch.axis, *course, stretch.profile.steady_rate)]
     for effect in effects.values():
         turnings = effect.moves(turnings, instants)
-    motion = move(instants, stretch.attitude, turnings)
+    carried = [turning for effect in effects.values() for turning in effect.carries(instants)]
+    # What turns the whole table comes first: seen from the case as it stands, its axis leans.
+    below = [replace(turning, axis=stretch.attitude.T @ turning.axis) for turning in carried]
+    motion = move(instants, stretch.attitude, [*below, *turnings])
     pulls = [effect.pulls(motion) for effect in effects.values()]
     return sense(motion, site, [pull for pull in pulls if pull is not None])
 
 
-def record(log: str, truth: LogTruth, stamps: Counts, specification: Specification) -> bytes:
-    """The log as it is on the disk, after its faults; stamps: ns of GPS time, (n,)."""
-    samples = Samples(stamps, truth.accelerometer, truth.gyro)
+def spoil(logs: dict[str, Records], specification: Specification) -> dict[str, Records]:
+    """The logs of a campaign after its faults, one after another."""
+    generators = {log: specification.chance.stream("faults", log) for log in logs}
     for fault in specification.faults:
-        if fault.log == log:
-            samples = fault.spoils(samples)
-    receiver = specification.receiver
-    return log_bytes(samples, receiver.status, receiver.line_end)
+        logs = fault.strikes(logs, generators)
+    return logs
+
+
+def spoiled_of(log: str, records: Records) -> Iterator[Spoiled]:
+    """What faults have touched in a log as it is written now."""
+    stamps = records.stamps
+    for fault, first, after in dict.fromkeys(records.touches):
+        if first < len(records):  # else the stamps jump behind the last record: nothing to see
+            last = max(first, after - 1)
+            yield Spoiled(fault, log, first, last + 1, int(stamps[first]), int(stamps[last]))
 
 
 def total(readings: Sequence[Reading | None], rows: int) -> Reading:

@@ -1,6 +1,6 @@
 """What a performance leaves: the logs and the campaign's file, and the truth, for tests only."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +11,7 @@ from laboratory.sensor import Reading
 
 @dataclass(frozen=True)
 class LogTruth:
-    """What truly happened during one log; n samples, those too that a fault took from it."""
+    """What truly happened during one log, before any fault; n samples."""
 
     time: Array  # s since the campaign's first sample, (n,): the end of every sample
     rate: Array  # rad/s, (n, 3), body axes: true mean rate over every sample
@@ -24,10 +24,28 @@ class LogTruth:
 
 
 @dataclass(frozen=True)
+class Spoiled:
+    """Consecutive records of a log, as it was written, that one fault has touched.
+
+    Records are numbered from 0, so that record k is in line k + 1. Where records are missing, or
+    time goes back, it is the one record behind the jump of the stamps. What a later fault takes
+    away is not told; what it writes over is.
+    """
+
+    fault: str  # its name in the specification
+    log: str  # under the name under which it was handed over
+    first: int
+    after: int  # the record after the last
+    first_stamp: int  # ns since the start of GPS time, as written
+    last_stamp: int
+
+
+@dataclass(frozen=True)
 class Recording:
     """A campaign as recorded."""
 
     campaign: Mapping[str, Any]  # what campaign.yaml says
     logs: Mapping[str, bytes]  # name → bytes, in the order in which they were written
-    truth: Mapping[str, LogTruth]  # by log
+    truth: Mapping[str, LogTruth]  # by log, before any fault: also before an exchange of names
     placements: Mapping[str, Placement]  # by position ("of <id>" where the plan names none)
+    spoiled: Sequence[Spoiled]  # by log, then by fault as they struck, then by record

@@ -13,7 +13,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from laboratory.chance import Chance
-from laboratory.checking import check, joined
+from laboratory.checking import check
 from laboratory.effects import EFFECTS, NOISE
 from laboratory.effects.effect import Effect
 from laboratory.errors import Complaint, SpecificationError
@@ -22,6 +22,9 @@ from laboratory.faults.fault import Fault
 from laboratory.gps_time import NANOSECONDS, gps_nanoseconds
 from laboratory.layout import changes_between, length, logs_of
 from laboratory.plan import Manoeuvre, PlanError, written_out
+from laboratory.rawimusa import Samples
+from laboratory.records import Records
+from laboratory.rehearsal import rehearse
 from laboratory.sensor import Sensors, Triad
 from laboratory.site import Site, normal_gravity
 from laboratory.units import ARCSECOND, DEGREE
@@ -41,6 +44,16 @@ class Receiver:
     def interval(self) -> float:
         """Time from sample to sample, s."""
         return self.step / NANOSECONDS
+
+    def records(self, samples: Samples) -> Records:
+        """A log before any fault."""
+        return Records(
+            stamps=samples.stamps,
+            counts=np.hstack([samples.accelerometer, samples.gyro]),
+            ends=samples.stamps,
+            units=np.repeat([self.accelerometer_count, self.gyro_count], 3) / self.interval,
+            interval=self.interval,
+        )
 
 
 @dataclass(frozen=True)
@@ -142,10 +155,21 @@ class Specification:
     def faults(self) -> list[Fault]:
         """Faults in the order in which they strike."""
         return [
-            FAULTS[name](parameters)
+            FAULTS[name].specified(parameters)
             for fault in self._document.get("faults", [])
             for name, parameters in fault.items()
         ]
+
+    @property
+    def empty_logs(self) -> dict[str, Records]:
+        """The logs in their full length, before any fault, with nothing but zeros in them."""
+        interval, change_seconds = self.receiver.interval, self.change_seconds
+        logs = {}
+        for log, manoeuvres in logs_of(self.manoeuvres).items():
+            samples = length(manoeuvres, interval, change_seconds)
+            counts = np.zeros((samples, 3), dtype=np.int64)
+            logs[log] = self.receiver.records(Samples(counts[:, 0], counts, counts))
+        return logs
 
 
 def read(path: Path | str) -> Specification:
@@ -187,19 +211,8 @@ def impossible(specification: Specification) -> list[Complaint]:
     if "change_s" not in document["handling"] and any(changes_between(*pair) for pair in pairs):
         expected = "the time from one position to the next, s, since a log has several"
         complaints.append(Complaint("handling.change_s", "nothing", expected))
-    for index, fault in enumerate(document.get("faults", [])):
-        for name, parameters in fault.items():
-            place = f"faults[{index}].{name}"
-            log = parameters["log"]
-            if log not in logs:
-                expected = "a log of the plan: " + ", ".join(logs)
-                complaints.append(Complaint(joined(place, "log"), log, expected))
-                continue
-            samples = length(
-                logs[log], specification.receiver.interval, specification.change_seconds
-            )
-            last = parameters["line"] + parameters["samples"] - 1
-            if last > samples:
-                found = f"the loss of lines up to {last}"
-                complaints.append(Complaint(place, found, f"lines of {log}, which has {samples}"))
-    return complaints
+    creep = document.get("effects", {}).get("table_creep")
+    if creep is not None and creep["to_s"] <= creep["from_s"]:
+        expected = f"later than from_s, {creep['from_s']} s"
+        complaints.append(Complaint("effects.table_creep.to_s", f"{creep['to_s']}", expected))
+    return [*complaints, *rehearse(specification.faults, specification.empty_logs)]

@@ -15,6 +15,8 @@ from laboratory.effects.gyro_bias_ramp import GyroBiasRamp
 from laboratory.effects.gyro_g_sensitivity import GyroGSensitivity
 from laboratory.effects.lever_arm import LeverArm
 from laboratory.effects.oscillation import Oscillation
+from laboratory.effects.table_creep import TableCreep
+from laboratory.effects.table_sway import TableSway
 from laboratory.effects.table_tilt import TableTilt
 from laboratory.effects.white_noise import WhiteNoise
 
@@ -22,6 +24,7 @@ from laboratory.effects.white_noise import WhiteNoise
 EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     # the table and the mount
     "table_tilt": TableTilt.specified,
+    "table_creep": TableCreep.specified,
     "oscillation": Oscillation.specified,
     "lever_arm": LeverArm.specified,
     # the gyros
@@ -36,4 +39,5 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
 NOISE: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "white_noise": WhiteNoise.specified,
     "bias_random_walk": BiasRandomWalk.specified,
+    "table_sway": TableSway.specified,
 }

@@ -35,7 +35,9 @@ class BiasRandomWalk(Effect):
             noise["accelerometer_random_walk_m_s2_sqrt_h"] / ROOT_HOUR,
         )
 
-    def scatters(self, truth: Truth, generator: np.random.Generator) -> Reading:
+    def scatters(self, truth: Truth, generator: np.random.Generator) -> Reading | None:
+        if self.rate == 0 and self.force == 0:
+            return None
         instants = truth.motion.instants
         start, interval = instants.start, instants.interval
         pause = max(0.0, start - self._reached)

@@ -22,6 +22,10 @@ class Effect:
         """How the base of the table stands in the level frame: a rotation, (3, 3)."""
         return np.eye(3)
 
+    def carries(self, instants: Instants) -> Sequence[Turning]:
+        """Rotations of the whole table, what stands on it included; axes in the level frame."""
+        return []
+
     def moves(self, turnings: Sequence[Turning], instants: Instants) -> Sequence[Turning]:
         """The rotations of the case, given those that the plan and the effects before it ask for.
 

@@ -4,10 +4,44 @@ To add a fault, write its file beside this one, list it here, and describe its p
 `faults` in simulated.schema.yaml.
 """
 
-from collections.abc import Callable, Mapping
-from typing import Any, Final
+from typing import Final
 
+from laboratory.faults.clip import Clip
+from laboratory.faults.drift import Drift
+from laboratory.faults.drop import Drop
+from laboratory.faults.exchange import Exchange
 from laboratory.faults.fault import Fault
+from laboratory.faults.flip import Flip
+from laboratory.faults.jitter import Jitter
+from laboratory.faults.kill import Kill
 from laboratory.faults.lose import Lose
+from laboratory.faults.oscillate import Oscillate
+from laboratory.faults.repeat import Repeat
+from laboratory.faults.spikes import Spikes
+from laboratory.faults.step import Step
+from laboratory.faults.swap import Swap
+from laboratory.faults.turn_back import TurnBack
 
-FAULTS: Final[dict[str, Callable[[Mapping[str, Any]], Fault]]] = {"lose": Lose.specified}
+FAULTS: Final[dict[str, type[Fault]]] = {
+    fault.name: fault
+    for fault in (
+        # records
+        Lose,
+        Drop,
+        Repeat,
+        # readings
+        Spikes,
+        Clip,
+        Kill,
+        Step,
+        Oscillate,
+        Swap,
+        Flip,
+        # stamps
+        TurnBack,
+        Drift,
+        Jitter,
+        # names
+        Exchange,
+    )
+}

@@ -1,31 +1,20 @@
 """A stretch of samples that was never written."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import ClassVar
 
-import numpy as np
-
-from laboratory.rawimusa import Samples
+from laboratory.faults.fault import Fault
+from laboratory.records import Records
 
 
 @dataclass(frozen=True)
-class Lose:
+class Lose(Fault):
     """The lines `line` … `line + samples − 1` are missing; time goes on without them.
 
-    line: counted from 1 in the log as it would be without this fault.
+    Touched: the record after the gap, which no one is at the end of a log.
     """
 
-    log: str
-    line: int
-    samples: int
+    name: ClassVar[str] = "lose"
 
-    @classmethod
-    def specified(cls, parameters: Mapping[str, Any]) -> Self:
-        return cls(parameters["log"], parameters["line"], parameters["samples"])
-
-    def spoils(self, samples: Samples) -> Samples:
-        lost = slice(self.line - 1, self.line - 1 + self.samples)
-        kept = np.ones(len(samples.stamps), dtype=bool)
-        kept[lost] = False
-        return Samples(samples.stamps[kept], samples.accelerometer[kept], samples.gyro[kept])
+    def spoils(self, records: Records) -> Records:
+        return records.without(self.name, self.lines.rows(len(records)))

@@ -1,7 +1,7 @@
 """Every effect by the physics that it stands for, and every one absent when zero."""
 
 from collections.abc import Callable
-from math import pi, radians
+from math import pi, radians, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,10 @@ AT_ZERO_AND_NOT: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "table_tilt": (
         {"north_arcsec": 0, "east_arcsec": 0},
         {"north_arcsec": 60, "east_arcsec": 0},
+    ),
+    "table_creep": (
+        {"about": "east", "rate_deg_h": 0, "from_s": 5, "to_s": 15},
+        {"about": "east", "rate_deg_h": 10, "from_s": 5, "to_s": 15},
     ),
     "oscillation": (
         {"frequency_hz": 20, "amplitude_rad_s": 0, "axis": "+y"},
@@ -134,3 +138,68 @@ def test_an_oscillation_rings_only_while_turning_and_adds_no_angle(performed: Pe
     swing = with_it.truth["turn.asc"].force[1150:1650, 1]
     amplitude = np.sqrt(2 * np.mean(swing**2)) / np.sinc(20 * 0.01)
     assert amplitude == pytest.approx(GRAVITY * 0.01 / (2 * pi * 20), rel=1e-4)
+
+
+def test_a_table_that_creeps_is_felt_by_gyros_and_accelerometers(performed: Performed) -> None:
+    """100 deg/h about east for 10 s, 1000″: x, which points north, rises and sees g sin of it."""
+    creep = {"about": "east", "rate_deg_h": 100, "from_s": 5, "to_s": 15}
+    recording = performed(REST, TURN, effects={"table_creep": creep})
+    truth, without = recording.truth["rest.asc"], performed(REST, TURN).truth["rest.asc"]
+    felt = truth.rate - without.rate
+    assert felt[501:1500, 1] == pytest.approx(-radians(100 / 3600), abs=1e-6)  # y points west
+    assert felt.sum(axis=0)[1] * 0.01 == pytest.approx(-1000 * ARCSECOND, rel=2e-4)
+    assert np.abs(felt[:500]).max() == 0
+    lean = np.clip(truth.time - 0.005 - 5, 0, 10) * radians(100 / 3600)
+    assert truth.force[:, 0] == pytest.approx(GRAVITY * np.sin(lean), abs=1e-8)
+    assert truth.force[:, 1] == pytest.approx(0, abs=1e-12)
+    assert truth.force[-1, 0] == pytest.approx(GRAVITY * sin(1000 * ARCSECOND), abs=1e-12)
+
+
+def test_a_table_that_has_crept_leans_from_then_on(performed: Performed) -> None:
+    """The turn after it is that on a table whose vertical leans by as much towards south."""
+    creep = {"about": "east", "rate_deg_h": 60, "from_s": 1, "to_s": 2}
+    crept = performed(REST, TURN, effects={"table_creep": creep}).truth["turn.asc"]
+    tilt = {"north_arcsec": -60, "east_arcsec": 0}
+    leaning = performed(REST, TURN, effects={"table_tilt": tilt}).truth["turn.asc"]
+    assert crept.force == pytest.approx(leaning.force, abs=1e-12)
+    assert crept.rate == pytest.approx(leaning.rate, abs=1e-15)
+
+
+def test_a_creep_during_a_turn_adds_to_it(performed: Performed) -> None:
+    """About the axis of the turn for all its 30 s, which begin 60 s after the rest of 20 s."""
+    creep = {"about": "up", "rate_deg_h": 100, "from_s": 79, "to_s": 200}
+    ringing = {"frequency_hz": 20, "amplitude_rad_s": 0.01, "axis": "+x"}
+    effects = {"oscillation": ringing}
+    crept = performed(REST, TURN, effects={**effects, "table_creep": creep}).truth["turn.asc"]
+    without = performed(REST, TURN, effects=effects).truth["turn.asc"]
+    added = (crept.rate - without.rate).sum(axis=0)[2] * 0.01
+    assert added == pytest.approx(30 * radians(100 / 3600), rel=1e-6)
+    assert crept.force == pytest.approx(without.force, abs=1e-12)
+
+
+def test_a_creep_shakes_a_lever_arm_where_it_begins_and_ends(performed: Performed) -> None:
+    """1 deg/s at 5 cm: the velocity along the path comes at once, and goes at once."""
+    creep = {"about": "up", "rate_deg_h": 3600, "from_s": 5, "to_s": 15}
+    effects = {"table_creep": creep, "lever_arm": {"arm_m": [0.05, 0, 0]}}
+    force = performed(REST, effects=effects).truth["rest.asc"].force[:, 1]
+    velocity = radians(1) * 0.05
+    assert force[498:503].sum() * 0.01 == pytest.approx(velocity, rel=1e-6)
+    assert force[1498:1503].sum() * 0.01 == pytest.approx(-velocity, rel=1e-6)
+    assert force[503:1498] == pytest.approx(0, abs=1e-12)
+
+
+@pytest.mark.parametrize(("up", "north", "east"), [("+z", 0, 1), ("+y", 0, 2)])
+def test_a_table_that_sways_is_seen_by_the_level_axes_alone(
+    performed: Performed, up: str, north: int, east: int
+) -> None:
+    """N √dt over every 10 ms, as much as S0's y axis and a third of it; 5 sigma of 2000 each."""
+    rest = REST | {"up": up, "mark": "+x"}
+    truth = performed(rest, table_sway_m_s_sqrt_h=[0.05, 0.015]).truth["rest.asc"]
+    noise = np.diff(truth.noisy.accelerometer - truth.noiseless.accelerometer, axis=0) / 0.01
+    bar = 5 / sqrt(2 * 2000)
+    assert np.std(noise[:, east]) == pytest.approx(0.05 / 60 / sqrt(0.01), rel=bar)  # 8 mm/s²
+    assert np.std(noise[:, north]) == pytest.approx(0.015 / 60 / sqrt(0.01), rel=bar)
+    assert np.abs(noise[:, 3 - north - east]).max() < 1e-12
+    follow = np.corrcoef(noise[1:, east], noise[:-1, east])[0, 1]
+    assert abs(follow) < 5 / sqrt(2000)
+    assert np.array_equal(truth.noisy.gyro, truth.noiseless.gyro)

@@ -17,8 +17,8 @@ WRONG: list[tuple[Change, str]] = [
         lambda d: d["noise"].update(angel_random_walk_deg_sqrt_h=1),
         "noise.angel_random_walk_deg_sqrt_h: found a key that is not known; expected one of "
         "angle_random_walk_deg_sqrt_h, velocity_random_walk_m_s_sqrt_h, "
-        "gyro_rate_random_walk_deg_h_sqrt_h, accelerometer_random_walk_m_s2_sqrt_h "
-        "(did you mean angle_random_walk_deg_sqrt_h?)",
+        "gyro_rate_random_walk_deg_h_sqrt_h, accelerometer_random_walk_m_s2_sqrt_h, "
+        "table_sway_m_s_sqrt_h (did you mean angle_random_walk_deg_sqrt_h?)",
     ),
     (
         lambda d: d["receiver"].pop("rate_hz"),
@@ -59,8 +59,13 @@ WRONG: list[tuple[Change, str]] = [
     ),
     (
         lambda d: d["faults"][0]["lose"].update(line=5000),
-        "faults[0].lose: found the loss of lines up to 6196; "
-        "expected lines of z-backward.asc, which has 5800",
+        "faults[0].lose: found lines up to 6196; expected lines of z-backward.asc, which has 5800",
+    ),
+    (
+        lambda d: d["effects"].update(
+            table_creep={"about": "up", "rate_deg_h": 1, "from_s": 9, "to_s": 9}
+        ),
+        "effects.table_creep.to_s: found 9; expected later than from_s, 9 s",
     ),
     (
         lambda d: d["campaign"]["site"].update(latitude_deg=None),

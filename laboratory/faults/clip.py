@@ -1,0 +1,41 @@
+"""A channel that cannot read beyond a limit."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from laboratory.channels import column, in_its_unit
+from laboratory.faults.fault import Fault
+from laboratory.faults.lines import Lines
+from laboratory.records import Records
+
+
+@dataclass(frozen=True)
+class Clip(Fault):
+    """What is beyond ± `limit`, m/s² or rad/s, reads the limit, to the next count.
+
+    Touched: the records that read something else before.
+    """
+
+    name: ClassVar[str] = "clip"
+    channel: int
+    limit: float
+
+    @classmethod
+    def specified(cls, parameters: Mapping[str, Any]) -> Self:
+        return cls(
+            parameters["log"],
+            Lines.specified(parameters),
+            column(parameters["channel"]),
+            in_its_unit(parameters, "limit"),
+        )
+
+    def spoils(self, records: Records) -> Records:
+        rows = self.lines.rows(len(records))
+        counts = records.counts.copy()
+        limit = int(np.rint(self.limit / records.units[self.channel]))
+        counts[rows, self.channel] = np.clip(counts[rows, self.channel], -limit, limit)
+        clipped = np.flatnonzero(counts[:, self.channel] != records.counts[:, self.channel])
+        return replace(records, counts=counts).touched(self.name, clipped)
