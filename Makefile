@@ -2,6 +2,8 @@
 #
 #   make report                   the demo, recorded by the simulated laboratory
 #   make report CAMPAIGN=<name>   the campaign in data/raw/<name>/
+#   make check                    in seconds what is wrong with the recording, before the set-up is
+#                                 taken apart; also with CAMPAIGN=<name>
 #   make trace ID=<number>        from a number of the report, such as gyroscope/joint/bias_x, down to
 #                                 the lines of the logs; also with CAMPAIGN=<name>
 #   make test                     every test; the same as CI with `make style`
@@ -13,7 +15,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report trace test style clean setup pango campaign
+.PHONY: report check trace test style clean setup pango campaign
 
 # Taken word for word and given to the shell through the environment, so that neither make nor the
 # shell runs what may stand in them.
@@ -38,6 +40,14 @@ report: campaign setup
 	echo
 	sed '/^Campaign:/,$$d' "reports/$$CAMPAIGN.txt"
 	echo "The report:" "$${kinds[@]/#/reports/$$CAMPAIGN.}"
+
+# By hand `python -m stages.checking --campaign=<name>` ends with 1 where something spoils a result;
+# make turns that into its own 2.
+check: campaign .venv/complete
+	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
+	$(SNAKEMAKE) data/derived/$$CAMPAIGN/{quality,segment}/findings.parquet
+	echo
+	$(BIN)/python -m stages.checking "--campaign=$$CAMPAIGN"
 
 trace: campaign setup
 	$(BIN)/python -m stages.tracing "--campaign=$$CAMPAIGN" "--id=$$ID"

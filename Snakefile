@@ -86,6 +86,7 @@ rule all:
         expand(f"{DERIVED}/comparison/differences.parquet", campaign=CAMPAIGNS),
         expand(f"{DERIVED}/compensation/checks.parquet", campaign=CAMPAIGNS),
         expand(f"{DERIVED}/history/archived.parquet", campaign=CAMPAIGNS),
+        expand("reports/{campaign}.calibration.json", campaign=CAMPAIGNS),
 
 
 for simulated in SIMULATED:
@@ -126,6 +127,8 @@ rule plan:
             "known.parquet",
             "sensors.parquet",
             "logs.parquet",
+            "ranges.parquet",
+            "count_sizes.parquet",
             "inputs.parquet",
             "published.parquet",
             "manoeuvres.parquet",
@@ -177,9 +180,17 @@ rule quality:
         clocks=f"{DERIVED}/decode/clocks.parquet",
         campaign=f"{DERIVED}/plan/campaign.parquet",
         known=f"{DERIVED}/plan/known.parquet",
+        ranges=f"{DERIVED}/plan/ranges.parquet",
+        count_sizes=f"{DERIVED}/plan/count_sizes.parquet",
         code=code("quality"),
     output:
-        multiext(f"{DERIVED}/quality/", "findings.parquet", "masks.parquet", "gaps.parquet"),
+        multiext(
+            f"{DERIVED}/quality/",
+            "findings.parquet",
+            "masks.parquet",
+            "gaps.parquet",
+            "close_ups.parquet",
+        ),
     log:
         f"{DERIVED}/quality/stage.log",
     benchmark:
@@ -197,6 +208,10 @@ rule quality:
 rule segment:
     input:
         samples=f"{DERIVED}/decode/samples.parquet",
+        campaign=f"{DERIVED}/plan/campaign.parquet",
+        known=f"{DERIVED}/plan/known.parquet",
+        ranges=f"{DERIVED}/plan/ranges.parquet",
+        count_sizes=f"{DERIVED}/plan/count_sizes.parquet",
         manoeuvres=f"{DERIVED}/plan/manoeuvres.parquet",
         clocks=f"{DERIVED}/decode/clocks.parquet",
         gaps=f"{DERIVED}/quality/gaps.parquet",
@@ -210,6 +225,7 @@ rule segment:
             "blocks.parquet",
             "traces.parquet",
             "findings.parquet",
+            "close_ups.parquet",
         ),
     log:
         f"{DERIVED}/segment/stage.log",
@@ -344,6 +360,7 @@ rule compensation:
     input:
         samples=f"{DERIVED}/decode/samples.parquet",
         traces=f"{DERIVED}/segment/traces.parquet",
+        masks=f"{DERIVED}/quality/masks.parquet",
         segments=f"{DERIVED}/segment/segments.parquet",
         blocks=f"{DERIVED}/segment/blocks.parquet",
         campaign=f"{DERIVED}/plan/campaign.parquet",
@@ -510,6 +527,46 @@ rule history:
         STAGE
 
 
+rule export:
+    input:
+        campaign=f"{DERIVED}/plan/campaign.parquet",
+        known=f"{DERIVED}/plan/known.parquet",
+        inputs=f"{DERIVED}/plan/inputs.parquet",
+        manoeuvres=f"{DERIVED}/plan/manoeuvres.parquet",
+        clocks=f"{DERIVED}/decode/clocks.parquet",
+        samples=f"{DERIVED}/decode/samples.parquet",
+        masks=f"{DERIVED}/quality/masks.parquet",
+        blocks=f"{DERIVED}/segment/blocks.parquet",
+        noise=f"{DERIVED}/noise/noise.parquet",
+        accelerometer_parameters=f"{DERIVED}/accelerometer/parameters.parquet",
+        accelerometer_covariance=f"{DERIVED}/accelerometer/covariance.parquet",
+        accelerometer_fit=f"{DERIVED}/accelerometer/fit.parquet",
+        gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
+        gyroscope_covariance=f"{DERIVED}/gyroscope/covariance.parquet",
+        gyroscope_fit=f"{DERIVED}/gyroscope/fit.parquet",
+        code=code("export"),
+    output:
+        multiext(
+            "reports/{campaign}.",
+            "calibration.json",
+            "calibration.yaml",
+            "kalibr.yaml",
+            "px4.params",
+            "ardupilot.param",
+        ),
+    log:
+        f"{DERIVED}/export/stage.log",
+    benchmark:
+        f"{DERIVED}/export/benchmark.tsv"
+    params:
+        reads=reads,
+        output="reports/{campaign}",
+    message:
+        "{wildcards.campaign}: the calibration for other programs"
+    shell:
+        "{PYTHON:q} -m stages.export {params.reads:q} --output {params.output:q} 2> {log:q}"
+
+
 rule report:
     input:
         campaign=f"{DERIVED}/plan/campaign.parquet",
@@ -521,7 +578,11 @@ rule report:
         refused=f"{DERIVED}/decode/refused.parquet",
         clocks=f"{DERIVED}/decode/clocks.parquet",
         quality_findings=f"{DERIVED}/quality/findings.parquet",
+        masks=f"{DERIVED}/quality/masks.parquet",
+        gaps=f"{DERIVED}/quality/gaps.parquet",
+        quality_close_ups=f"{DERIVED}/quality/close_ups.parquet",
         segment_findings=f"{DERIVED}/segment/findings.parquet",
+        segment_close_ups=f"{DERIVED}/segment/close_ups.parquet",
         segments=f"{DERIVED}/segment/segments.parquet",
         performed=f"{DERIVED}/segment/performed.parquet",
         traces=f"{DERIVED}/segment/traces.parquet",

@@ -13,6 +13,7 @@ from stages.contracts import findings as found
 from stages.contracts import tables
 from stages.contracts.errors import Refusal
 from stages.contracts.findings import Finding
+from stages.contracts.masks import Masks
 from stages.contracts.parquet import Stream
 from stages.contracts.records import Row, known_of, manoeuvres_of, performed_of, rows_of
 from stages.contracts.stage import Pieces, Stage
@@ -35,6 +36,7 @@ ALREADY = Finding(
 def compensation(
     samples: Stream,
     traces: pd.DataFrame,
+    masks: pd.DataFrame,
     segments: pd.DataFrame,
     blocks: pd.DataFrame,
     campaign: pd.DataFrame,
@@ -85,7 +87,9 @@ def compensation(
         if correction.gyro is None:
             rows.append(missing(gyroscope_parameters, f"joint{suffix}", "gyro", suffix))
     yield "checks", table_of(rows)
-    compensated = CompensatedStream(samples.path, mounted(plan, segments, corrections))
+    compensated = CompensatedStream(
+        samples.path, mounted(plan, segments, corrections), Masks(masks)
+    )
     for batch in compensated.columns([column.name for column in tables.COMPENSATED.columns]):
         yield "compensated", batch
     yield "compensated_traces", envelope(compensated, traces)
@@ -96,6 +100,7 @@ STAGE = Stage(
     reads={
         "samples": tables.SAMPLES,
         "traces": tables.TRACES,
+        "masks": tables.MASKS,
         "segments": tables.SEGMENTS,
         "blocks": tables.BLOCKS,
         "campaign": tables.CAMPAIGN,

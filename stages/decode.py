@@ -15,6 +15,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from stages.campaign.units import CHANNEL_UNITS
 from stages.contracts.errors import Refusal
 from stages.contracts.parquet import BATCH_ROWS
 from stages.contracts.stage import Stage
@@ -30,9 +31,7 @@ from stages.formats.arrow_arrays import (
 from stages.formats.column_layout import ticks_per_second
 from stages.formats.gps_time import NANOSECONDS, utc
 
-STANDARD_GRAVITY = 9.80665  # m/s², by convention the unit g; not the gravity of any place
 ICE_POINT = 273.15  # K
-CHANNEL_UNITS = {"m/s2": 1.0, "g": STANDARD_GRAVITY, "rad/s": 1.0, "deg/s": math.radians(1)}
 ANGLE_UNITS = {"deg": math.radians(1), "rad": 1.0}
 LOOK_AHEAD = 1000  # samples, where there are as many, of which the interval is the median
 

@@ -84,7 +84,7 @@ def _add_known_angle(
             estimates.add(method, names, estimate.values[:2], estimate.covariance[:2, :2], {})
         elif own:
             reason = f"the formula needs whole turns about {axis} forward and backward"
-            refused = [r.plan.name for r in own if r.refusal]
+            refused = [r.plan.name for r in own if r.refusal or not r.done.complete]
             reason += f"; not whole: {', '.join(refused)}" if refused else ""
             nothing = (np.zeros(2), np.zeros((2, 2)))
             estimates.add(method, names, *nothing, dict.fromkeys(names, reason))

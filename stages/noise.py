@@ -9,9 +9,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from stages.contracts import tables
+from stages.contracts.masks import Masks
 from stages.contracts.parquet import Stream
 from stages.contracts.records import clocks_of, rows_of
-from stages.contracts.samples import inside, pieces
+from stages.contracts.samples import pieces
 from stages.contracts.stage import Stage, Tables
 from stages.inference.spectrum import band_levels, white_level
 
@@ -100,14 +101,16 @@ def _unbroken(
     samples: Stream, gaps: pd.DataFrame, masks: pd.DataFrame
 ) -> Iterator[tuple[str, NDArray[np.int64], Array]]:
     """Records of one log without a gap or a masked record between them: log, numbers, values."""
+    known = Masks(masks)
     for log, piece in pieces(samples, ["record", *tables.CHANNELS]):
         record = piece["record"]
         values = np.column_stack([piece[channel] for channel in tables.CHANNELS])
         starts = gaps.loc[gaps["log"] == log, "record"].to_numpy(np.int64)
-        masked = masks[masks["log"] == log]
-        edges_of_masks = [masked[name].to_numpy(np.int64) for name in ("from_record", "to_record")]
-        bad = inside(record, edges_of_masks[0], edges_of_masks[1])
+        masked = known.of(log, record)
+        values[masked.channels] = np.nan
+        bad, here = masked.whole, masked.channels
         breaks = (np.diff(record) != 1) | np.isin(record[1:], starts) | np.diff(bad)
+        breaks |= (here[1:] != here[:-1]).any(axis=1)
         edges = [0, *(np.flatnonzero(breaks) + 1).tolist(), len(record)]
         for first, after in pairwise(edges):
             if not bad[first]:

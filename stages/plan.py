@@ -13,7 +13,15 @@ import pandas as pd
 from stages.campaign.known import known
 from stages.campaign.manoeuvres import expanded
 from stages.campaign.published import published_values
-from stages.campaign.recording import by_log, instrument, logs, recording, sensors
+from stages.campaign.recording import (
+    by_log,
+    count_sizes,
+    instrument,
+    logs,
+    ranges,
+    recording,
+    sensors,
+)
 from stages.contracts import tables
 from stages.contracts.code import hash_of_file
 from stages.contracts.stage import Stage, Tables
@@ -61,6 +69,8 @@ def plan(
         "known": pd.DataFrame(taken_as_known),
         "sensors": pd.DataFrame(sensors(entry)),
         "logs": pd.DataFrame(logs(manoeuvres, entry)),
+        "ranges": pd.DataFrame(ranges(manoeuvres, entry)),
+        "count_sizes": pd.DataFrame(count_sizes(instruments[0])),
         "inputs": pd.DataFrame(
             {"file": path.name, "size": path.stat().st_size, "sha256": hash_of_file(path)}
             for path in [campaign[0], *used]
@@ -114,6 +124,8 @@ STAGE = Stage(
         "known": tables.KNOWN,
         "sensors": tables.SENSORS,
         "logs": tables.LOGS,
+        "ranges": tables.RANGES,
+        "count_sizes": tables.COUNT_SIZES,
         "inputs": tables.INPUTS,
         "published": tables.PUBLISHED,
         "manoeuvres": tables.MANOEUVRES,

@@ -20,15 +20,17 @@ from stages.contracts.code import code_of, hash_of
 from stages.contracts.errors import Refusal
 from stages.contracts.parquet import Stream, Table
 from stages.contracts.parquet import provenance as made_by
+from stages.notation import numbers
 from stages.reporting import (
     account,
     averaging,
     comparisons,
     compensation,
+    evidence,
+    expected,
     findings,
     history,
     lacks,
-    numbers,
     parameters,
     raw_data,
     recording,
@@ -47,6 +49,8 @@ from stages.reporting import (
 from stages.reporting import (
     simulated as over_simulated,
 )
+from stages.reporting.close_ups import close_ups
+from stages.reporting.logs import logs
 from stages.reporting.outline import Report
 from stages.reporting.page import page
 from stages.reporting.rows import only, records
@@ -61,7 +65,11 @@ READS: Mapping[str, Table] = {
     "refused": tables.REFUSED,
     "clocks": tables.CLOCKS,
     "quality_findings": tables.FINDINGS,
+    "masks": tables.MASKS,
+    "gaps": tables.GAPS,
+    "quality_close_ups": tables.CLOSE_UPS,
     "segment_findings": tables.FINDINGS,
+    "segment_close_ups": tables.CLOSE_UPS,
     "segments": tables.SEGMENTS,
     "performed": tables.PERFORMED,
     "traces": tables.TRACES,
@@ -87,6 +95,7 @@ READS: Mapping[str, Table] = {
     "archived": tables.ARCHIVED,
     "earlier": tables.EARLIER,
 }
+GYRO = ("gyroscope", verdict.JOINT)
 STREAMS = ("simulated",)  # too long for memory
 
 
@@ -108,7 +117,11 @@ def report(
     refused: pd.DataFrame,
     clocks: pd.DataFrame,
     quality_findings: pd.DataFrame,
+    masks: pd.DataFrame,
+    gaps: pd.DataFrame,
+    quality_close_ups: pd.DataFrame,
     segment_findings: pd.DataFrame,
+    segment_close_ups: pd.DataFrame,
     segments: pd.DataFrame,
     performed: pd.DataFrame,
     traces: pd.DataFrame,
@@ -144,6 +157,27 @@ def report(
         (quality_findings, segment_findings, criticism_findings, compensation_findings)
     )
     sought = lacks.sought(scores, effects)
+    asked_for = [one.finding for one in sought if one.score["named"]]
+    drawn = logs(traces, segments, clocks, gaps)
+    shown = evidence.evidence(
+        worst_first[: findings.MOST_IN_FULL],
+        evidence.Recording(
+            {log.name: log for log in drawn},
+            close_ups((quality_close_ups, segment_close_ups)),
+            gaps,
+            masks,
+            manoeuvres,
+            performed,
+            expected.stated(known, about["rate"]),
+        ),
+        evidence.Model(
+            simulated,
+            lines,
+            gain,
+            [row for one in found if (one.stage, one.kind) == GYRO for row in one.determined],
+            lacks.shifts(extended_parameters, found),
+        ),
+    )
     given = verdict.verdict(found, manoeuvres, performed, worst_first, lacks.named(sought))
     estimated = [*records(accelerometer_parameters), *records(gyroscope_parameters)]
     name = numbers.shortened(about["campaign"], 80)
@@ -159,14 +193,14 @@ def report(
             verdict.section(given, found, about, known, clocks),
             parameters.section(found),
             lacks.section(sought, lines, gain, extended_parameters, found),
-            findings.section(worst_first),
+            findings.section(worst_first, shown, segments, asked_for),
             undetermined.section(found),
             over_simulated.section(simulated, fidelity, manoeuvres, segments),
             comparisons.section(differences),
             compensation.section(checks, traces, compensated_traces, segments, manoeuvres),
             history.section(earlier, archived, estimated, about["date"]),
             recording.section(manoeuvres, performed),
-            raw_data.section(traces, segments, clocks, worst_first),
+            raw_data.section(drawn),
             noise_of_channels.section(noise, sensors),
             averaging.section(accelerometer_averaging, gyroscope_averaging, estimated),
             taken_as_known.section(known),

@@ -1,6 +1,6 @@
 """Where the manoeuvres of the plan are in the logs, and each reduced to short means."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 
 import numpy as np
@@ -9,13 +9,23 @@ from numpy.typing import NDArray
 
 from stages.contracts import tables
 from stages.contracts.findings import table_of
+from stages.contracts.masks import Masks
 from stages.contracts.parquet import Stream
-from stages.contracts.records import Performed, clocks_of, manoeuvres_of
+from stages.contracts.records import Manoeuvre, Performed, clocks_of, known_of, manoeuvres_of
 from stages.contracts.samples import extents
 from stages.contracts.stage import Stage, Tables
+from stages.detectors import OF_PLAN, OF_RESTS
+from stages.detectors.detector import Log
+from stages.screening.close_ups import close_ups
+from stages.screening.comparing import compare
+from stages.screening.logs import given_by, logs
+from stages.screening.rests import rests_of, screen
 from stages.segmentation import judging, reduction
-from stages.segmentation.matching import Part, match, position_parts, rest_part, turn_parts
-from stages.segmentation.motion import moving, rest_level, stretches
+from stages.segmentation.explaining import explain
+from stages.segmentation.locating import Located, shown
+from stages.segmentation.matching import Part, position_parts, rest_part, turn_parts
+from stages.segmentation.motion import rest_level
+from stages.segmentation.recorded import recorded_of
 from stages.segmentation.windows import Binned, binned, windows
 
 SLOWEST = 0.05  # of the slowest planned rate: what counts as motion
@@ -27,6 +37,10 @@ Array = NDArray[np.float64]
 
 def segment(
     samples: Stream,
+    campaign: pd.DataFrame,
+    known: pd.DataFrame,
+    ranges: pd.DataFrame,
+    count_sizes: pd.DataFrame,
     manoeuvres: pd.DataFrame,
     clocks: pd.DataFrame,
     gaps: pd.DataFrame,
@@ -37,28 +51,29 @@ def segment(
     margin: float,
     angle_tolerance: float,
 ) -> Tables:
-    """Segments, what was performed of each manoeuvre, blocks, traces and findings."""
+    """Segments, what was performed of each manoeuvre, blocks, traces, findings and close-ups."""
     plan, clock, ends = manoeuvres_of(manoeuvres), clocks_of(clocks), extents(samples)
-    every = list(binned(samples, windows(samples, plan, ends), clock))
+    masked = Masks(masks)
+    every = list(binned(samples, windows(samples, plan, ends), clock, masked))
     level, scatter = _rest_level(every)
     rates = [abs(m.rate) for m in plan if m.rate]
     noise = UNLIKE_NOISE * scatter
     threshold = max(SLOWEST * min(rates) if rates else BY_HAND, noise)
+    earth = known_of(known)["earth_rate_up"].number
+    explained = explain([shown(one, level, (threshold, noise)) for one in every], earth)
 
     parts: list[Part] = []
+    turns: list[tuple[Located, int, Manoeuvre]] = []
     performed: dict[str, Performed] = {}
-    for one in every:
-        found = stretches(moving(one.rates, one.forces, level, threshold), one.bin_seconds)
-        matched = match(one, found, level)
-        if any(matched.get(m.name, 0) is None for m in one.window.manoeuvres if m.do == "turn"):
-            # A wrong unit makes a turn too slow to count as motion; then all above the noise does.
-            slower = stretches(moving(one.rates, one.forces, level, noise), one.bin_seconds)
-            again = match(one, slower, level)
-            if sum(place is None for place in again.values()) < list(matched.values()).count(None):
-                found, matched = slower, again
-        for m in one.window.manoeuvres:
+    left = dict(judging.left_out(explained, plan))
+    for located in explained.located:
+        one, found, matched = located.one, located.found, located.matched
+        for m in located.plan:
             place = matched.get(m.name)
-            if m.do == "positions":
+            if m.name in left:
+                new = []
+                performed[m.name] = left[m.name]
+            elif m.do == "positions":
                 new = list(position_parts(one, found, m, matched, margin))
                 performed[m.name] = judging.positions(m, len(new))
             elif place is None:
@@ -69,29 +84,57 @@ def segment(
                 performed[m.name] = judging.rest(one, m, found[place])
             else:
                 new = list(turn_parts(one, found, m, matched, level, margin))
-                step = clock[m.log].step
-                performed[m.name] = judging.turn(
-                    one, found, place, m, new, gaps, level, step, angle_tolerance
-                )
+                turns.append((located, place, m))
             parts += new
-    findings = [f for m in plan for f in judging.findings(m, performed[m.name], angle_tolerance)]
+    blocks = reduction.blocks(samples, parts, gaps, masked, clock, rest_block, turn_block)
+    in_motion = dict(list(blocks[~blocks["phase"].str.startswith("rest")].groupby("manoeuvre")))
+    for located, place, m in turns:
+        own = in_motion.get(m.name, blocks.iloc[:0])
+        performed[m.name] = judging.turn(
+            located.one, located.found, place, m, own, gaps, level, angle_tolerance
+        )
+    segments = reduction.segments(samples, parts)
+    given = given_by(campaign, known, count_sizes, clocks)
+    looked = logs(samples, clocks, ranges, given)
+    recorded = recorded_of(
+        plan, explained, performed, segments, gaps, _counts(looked), given, angle_tolerance
+    )
+    told = [
+        *compare("segment", OF_PLAN, recorded),
+        *screen("segment", OF_RESTS, samples, rests_of(segments), masked, looked),
+    ]
     return {
-        "segments": reduction.segments(samples, parts),
+        "segments": segments,
         "performed": pd.DataFrame([asdict(performed[m.name]) for m in plan]),
-        "blocks": reduction.blocks(samples, parts, gaps, masks, clock, rest_block, turn_block),
+        "blocks": blocks,
         "traces": reduction.traces(samples, ends),
-        "findings": table_of(findings),
+        "findings": table_of([one.finding for one in told]),
+        "close_ups": close_ups(samples, told),
+    }
+
+
+def _counts(looked: Mapping[str, Log]) -> dict[str, float]:
+    """What a count of the gyros is by the campaign, rad, where they write increments."""
+    return {
+        name: float(np.nanmedian(log.count[3:])) * log.step
+        for name, log in looked.items()
+        if log.increments and np.isfinite(log.count[3:]).any()
     }
 
 
 def _rest_level(every: Sequence[Binned]) -> tuple[Array, float]:
-    """The gyros at rest over the campaign: from the windows of rests alone, if there are any."""
+    """The gyros at rest over the campaign: from the windows of rests alone, if there are any.
+
+    An axis that none of them records does not count; one that some do not record is told by the
+    others.
+    """
     rests = [one for one in every if {m.do for m in one.window.manoeuvres} == {"rest"}]
     for group in (rests, every):
-        rates = [one.rates[np.isfinite(one.rates).all(axis=1)] for one in group]
-        together = np.concatenate(rates) if rates else np.empty((0, 3))
-        if len(together):
-            return rest_level(together)
+        rates = np.concatenate([np.empty((0, 3)), *(one.rates for one in group)])
+        recorded = np.isfinite(rates).any(axis=0)
+        whole = rates[np.isfinite(rates[:, recorded]).all(axis=1)] if recorded.any() else []
+        if len(whole):
+            return rest_level(np.where(recorded, whole, 0.0))
     return np.zeros(3), 0.0
 
 
@@ -99,6 +142,10 @@ STAGE = Stage(
     segment,
     reads={
         "samples": tables.SAMPLES,
+        "campaign": tables.CAMPAIGN,
+        "known": tables.KNOWN,
+        "ranges": tables.RANGES,
+        "count_sizes": tables.COUNT_SIZES,
         "manoeuvres": tables.MANOEUVRES,
         "clocks": tables.CLOCKS,
         "gaps": tables.GAPS,
@@ -111,6 +158,7 @@ STAGE = Stage(
         "blocks": tables.BLOCKS,
         "traces": tables.TRACES,
         "findings": tables.FINDINGS,
+        "close_ups": tables.CLOSE_UPS,
     },
 )
 

@@ -8,6 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from stages.contracts import tables
+from stages.contracts.masks import inside
 from stages.contracts.parquet import Stream
 from stages.contracts.records import (
     Clock,
@@ -51,7 +52,7 @@ def simulation(
     gyroscope_parameters: pd.DataFrame,
     gyroscope_positions: pd.DataFrame,
 ) -> Pieces:
-    """Whole turns sample by sample, rests block by block, each with what is left of the reading."""
+    """Turns sample by sample, rests block by block, each with what is left of the reading."""
     given, done, clock = known_of(known), performed_of(performed), clocks_of(clocks)
     levels = NoiseLevels(noise)
     for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
@@ -68,14 +69,17 @@ def simulation(
             continue
         whole = [m for m in plan if _whole(m, done)]
         for m, parts in _samples_of(samples, segments, whole):
-            frame, how = _turn(m, parts, segments, clock[m.log], solution, given["heading"].value)
+            heading = given["heading"].value
+            used = blocks[blocks["manoeuvre"] == m.name]
+            frame, how = _turn(m, parts, segments, used, clock[m.log], solution, heading)
             yield "simulated", frame
             yield "fidelity", _fidelity(frame, levels, how, None, clock[m.log].step)
 
 
 def _whole(m: Manoeuvre, done: Mapping[str, Performed]) -> bool:
     known = m.up is not None and m.angle is not None
-    return m.do == "turn" and m.recorded == "whole" and known and done[m.name].complete
+    recorded = done[m.name].complete or done[m.name].bridged
+    return m.do == "turn" and m.recorded == "whole" and known and recorded
 
 
 def _rests(
@@ -119,7 +123,7 @@ def _predicted(motion: Motion, solution: Solution) -> Reading:
 def _samples_of(
     samples: Stream, segments: pd.DataFrame, whole: list[Manoeuvre]
 ) -> Iterator[tuple[Manoeuvre, dict[str, NDArray[Any]]]]:
-    """The samples of each whole turn, from the rest before it to the rest after it."""
+    """The samples of each of these turns, from the rest before it to the rest after it."""
     spans = {
         str(name): (int(rows["from_record"].min()), int(rows["to_record"].max()))
         for name, rows in segments.groupby("manoeuvre")
@@ -144,17 +148,21 @@ def _turn(
     m: Manoeuvre,
     parts: dict[str, NDArray[Any]],
     segments: pd.DataFrame,
+    blocks: pd.DataFrame,
     clock: Clock,
     solution: Solution,
     heading: float | None,
 ) -> tuple[pd.DataFrame, str]:
+    """A turn sample by sample; what is in none of its blocks is masked, and not compared."""
     record = parts["record"]
     own = [row for row in rows_of(segments) if row["manoeuvre"] == m.name]
     phase = np.full(len(record), "rest", dtype=object)
     for row in own:
         phase[(record >= row["from_record"]) & (record < row["to_record"])] = row["phase"]
     read = np.column_stack([parts[channel] for channel in tables.CHANNELS])
-    increments = np.column_stack([parts[channel] for channel in GYRO]) * clock.step
+    edges = [blocks[name].to_numpy(np.int64) for name in ("from_record", "to_record")]
+    read[~inside(record, *edges)] = np.nan
+    increments = read[:, len(GYRO) :] * clock.step
     steady = phase == "steady"
     motion, how = in_samples(m, increments, clock.step, steady, parts["time"], solution, heading)
     said = _predicted(motion, solution)

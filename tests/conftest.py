@@ -5,6 +5,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+# As in the Snakefile: for matrices as small as ours threads cost more than they bring. It must
+# stand before numpy is loaded.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import chain
 import pytest
 

@@ -65,7 +65,7 @@ def test_clean_data_raise_no_finding(clean):
 
 
 def test_the_sigmas_stand_where_the_bounds_have_them(clean):
-    # discovery.md 6, plan b, with the noise of the demo: VRW 0.0064 instead of 0.03 m/s/√h, ARW
+    # design study, 6, plan b, with the noise of the demo: VRW 0.0064 instead of 0.03 m/s/√h, ARW
     # 0.012 instead of 0.1 °/√h. Scale: noise of two means, and 5.1 ppm of gravity's sigma on top.
     table = clean[0].parameters("accelerometer")
     gravity = 5e-5 / 9.7936174

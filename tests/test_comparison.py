@@ -42,7 +42,7 @@ def up_and_down(
 
 
 def test_s0_rests_and_turns_differ_with_the_noise_of_its_data():
-    """discovery.md 4.5, T14: chi-squared 18.44 with 0.012 °/√h, rests of 300 s, turns of 40 s."""
+    """Design study 4.5, T14: chi-squared 18.44 with 0.012 °/√h, rests of 300 s, turns of 40 s."""
     turns = np.array([2.96905e-07, 7.16724e-07, 3.64076e-07])  # S0, table 5-2
     rests = np.array([-2.15039e-08, -7.45963e-07, -6.06855e-07])  # S0, table 5-7
     arw = random_walk(0.012)
@@ -54,7 +54,7 @@ def test_s0_rests_and_turns_differ_with_the_noise_of_its_data():
 
 
 def test_s0_scale_factors_from_rests_are_no_evidence():
-    """discovery.md 4.5, T15: chi-squared 0.49 with 0.1 °/√h and rests of 120 s."""
+    """Design study 4.5, T15: chi-squared 0.49 with 0.1 °/√h and rests of 120 s."""
     scales = np.array([0.029747, -0.016849, -0.009088])  # S0, table 5-8
     static = two_positions(up_and_down(random_walk(0.1), 120), NO_CROSS, WUHAN, 0.0)
     assert static.scale_sigma == pytest.approx(0.0507, rel=0.005)
@@ -63,7 +63,7 @@ def test_s0_scale_factors_from_rests_are_no_evidence():
 
 @pytest.mark.parametrize("azimuth", [0.0, 1.0, 2.5])
 def test_the_level_earth_rate_reaches_the_gyro_through_a_cross_term(azimuth):
-    """discovery.md 4.5, T16: a cross term of 7.608 mrad changes s by up to 0.01290."""
+    """Design study 4.5, T16: a cross term of 7.608 mrad changes s by up to 0.01290."""
     cross = np.array([0, 0.007608, 0])
     north = np.array([0, np.cos(azimuth), np.sin(azimuth)])
     coupled = WUHAN.level * cross @ north

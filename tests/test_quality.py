@@ -1,6 +1,9 @@
 """What is wrong with a recording, told without its plan."""
 
+import zlib
+
 import chain
+import numpy as np
 import pytest
 
 RESTS = [
@@ -37,18 +40,43 @@ def test_a_repeated_record_is_named_and_masked(tmp_path):
     results = two_rests(tmp_path, lambda lines: lines[:700] + lines[699:])
     assert list(results["quality/findings"]["cause"]) == ["duplicate"]
     mask = results["quality/masks"].iloc[0]
-    assert (mask["from_record"], mask["to_record"]) == (700, 701)
+    assert (mask["from_record"], mask["to_record"], mask["repeated"]) == (700, 701, True)
+    counts = results["segment/blocks"].groupby("manoeuvre")["count"].sum()
+    assert counts["up"] == counts["down"]  # 2001 records, with one of which no time passes
+
+
+def test_a_record_that_is_held_is_masked_while_time_passes(tmp_path):
+    def held(lines):
+        return [
+            line if number not in (901, 902) else signed(line, lines[900])
+            for number, line in enumerate(lines)
+        ]
+
+    results = two_rests(tmp_path, held)
+    assert list(results["quality/findings"]["cause"]) == ["held_record"]
+    assert results["quality/findings"]["p_value"].iloc[0] < 1e-3
+    mask = results["quality/masks"].iloc[0]
+    assert (mask["from_record"], mask["to_record"], mask["repeated"]) == (901, 903, False)
     blocks = results["segment/blocks"]
     assert blocks[blocks["manoeuvre"] == "up"]["mask_share"].sum() > 0
-    counts = blocks.groupby("manoeuvre")["count"].sum()
-    assert counts["up"] == counts["down"]  # 2001 records, one of them masked
 
 
-def test_time_that_goes_back_is_named(tmp_path):
+def signed(line, of):
+    """A line with its own stamp and the readings of another, and the checksum of both."""
+    body = b",".join([*line[1:].split(b",")[:5], *of[1:].rpartition(b"*")[0].split(b",")[5:]])
+    checksum = zlib.crc32(body, 0xFFFFFFFF) ^ 0xFFFFFFFF
+    return b"%%%s*%08x\r\n" % (body, checksum)
+
+
+def test_time_that_goes_back_is_named_and_what_comes_again_is_masked(tmp_path):
     results = two_rests(tmp_path, lambda lines: lines[:900] + lines[600:])
-    causes = list(results["quality/findings"]["cause"])
-    assert causes == ["time_backwards"]
-    assert "goes back by 2.990" in results["quality/findings"]["sentence"].iloc[0]
+    findings = results["quality/findings"].set_index("cause")
+    assert set(findings.index) == {"time_backwards", "duplicate"}
+    assert "goes back by 2.990" in findings.loc["time_backwards", "sentence"]
+    mask = results["quality/masks"].iloc[0]
+    assert (mask["from_record"], mask["to_record"], mask["repeated"]) == (900, 1200, True)
+    counts = results["segment/blocks"].groupby("manoeuvre")["count"].sum()
+    assert counts["up"] == counts["down"]
 
 
 def test_a_storm_of_gaps_is_one_finding_with_a_count(tmp_path):
@@ -61,12 +89,9 @@ def test_a_storm_of_gaps_is_one_finding_with_a_count(tmp_path):
 
 
 def test_records_that_the_instrument_calls_invalid_are_masked(tmp_path):
-    import zlib
-
     def spoiled(lines):
-        body = lines[300].rstrip(b"\r\n")[1:].rpartition(b"*")[0].replace(b"00000077", b"00000076")
-        checksum = zlib.crc32(body, 0xFFFFFFFF) ^ 0xFFFFFFFF
-        return [*lines[:300], b"%%%s*%08x\r\n" % (body, checksum), *lines[301:]]
+        line = lines[300].replace(b"00000077", b"00000076")
+        return [*lines[:300], signed(line, line), *lines[301:]]
 
     results = two_rests(tmp_path, spoiled)
     assert list(results["quality/findings"]["cause"]) == ["status_invalid"]
@@ -77,6 +102,17 @@ def test_a_rate_that_is_not_the_stated_one_is_named(tmp_path):
     findings = two_rests(tmp_path, **{"span-cpt": "imar-fsas"})["quality/findings"]
     assert set(findings["cause"]) == {"rate_off"}
     assert findings["size"].iloc[0] == pytest.approx(0.5)
+    assert len(findings) == 1  # of both logs
+    assert "÷2" in findings["sentence"].iloc[0]
+
+
+def test_another_day_and_a_gravity_of_another_place_are_named(tmp_path):
+    changed = {"2026-11-02": "2026-11-12", "9.7936174": "9.80665"}
+    findings = two_rests(tmp_path, **changed)["quality/findings"].set_index("cause")
+    assert set(findings.index) == {"wrong_day", "gravity_error"}
+    assert findings.loc["wrong_day", "size"] == 10
+    assert findings.loc["gravity_error", "size"] == pytest.approx(0.01306, abs=1e-5)
+    assert findings.loc["gravity_error", "sensor"] == "accel"
 
 
 CAMPAIGN = """\
@@ -109,12 +145,15 @@ plan:
         ("g", ", counts_per_unit: 4096", 16384, "counts_per_unit is 4 times too small"),
     ],
 )
-def test_a_wrong_unit_or_count_size_is_named(unit, counts, reading, named, tmp_path):
+def test_a_wrong_scale_factor_is_named(unit, counts, reading, named, tmp_path):
     folder = tmp_path / "campaign"
     folder.mkdir()
     (folder / "campaign.yaml").write_text(CAMPAIGN.format(unit=unit, counts=counts))
-    (folder / "log.csv").write_text(f"0,0,{reading}\n" * 1000)
+    readings = reading * (
+        np.array([0, 0, 1]) + 1e-3 * np.random.default_rng(1).normal(size=(1000, 3))
+    )
+    np.savetxt(folder / "log.csv", readings, delimiter=",", fmt="%.6f")
     findings = chain.run(folder, tmp_path / "derived", "quality")["quality/findings"]
-    assert list(findings["cause"]) == ["wrong_unit"]
+    assert list(findings["cause"]) == ["wrong_scale_factor"]
     assert named in findings["sentence"].iloc[0]
-    assert findings["severity"].iloc[0] == 3
+    assert (findings["severity"].iloc[0], findings["sensor"].iloc[0]) == (3, "accel")

@@ -29,13 +29,16 @@ def test_the_gap_of_the_demo_is_the_one_that_was_found_by_hand(demo):  # T4
     assert degrees(turn["angle"]) == pytest.approx(-240.3, abs=0.1)
 
 
-def test_the_incomplete_turn_is_named_and_left_out(demo):
+def test_the_incomplete_turn_is_named_and_bridged(demo):
     finding = demo["segment/findings"]
     assert list(finding["cause"]) == ["incomplete_turn"]
     assert list(finding["manoeuvre"]) == ["z-backward"]
-    assert "z-backward" in demo["gyroscope/fit"]["left_out"].iloc[0]
+    turn = performed(demo).loc["z-backward"]
+    assert turn["bridged"] and not turn["complete"]
+    assert "z-backward" in demo["gyroscope/fit"]["used"].iloc[0].split(", ")
+    assert "z-backward" not in demo["gyroscope/fit"]["left_out"].iloc[0]
     others = performed(demo).drop("z-backward")
-    assert others["complete"].all()
+    assert others["complete"].all() and not others["bridged"].any()
 
 
 def test_the_phases_of_a_turn_follow_its_profile(clean):

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from stages.campaign.units import DEGREE, PER_ROOT_HOUR, in_si
+from stages.campaign.units import CHANNEL_UNITS, DEGREE, PER_ROOT_HOUR, in_si
 from stages.contracts import tables
 from stages.contracts.yaml_file import Key, YamlFile
 from stages.model.site import STANDARD_GRAVITY
@@ -50,6 +50,40 @@ def sensors(entry: dict[str, Any]) -> Iterator[Row]:
     }
     for channel in tables.CHANNELS:
         yield {"channel": channel, **figures[channel.partition("_")[0]]}
+
+
+def ranges(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
+    """What one count of each channel of each log is, and how far the channel reaches, in SI."""
+    scales = {row["channel"]: row["full_scale"] for row in sensors(entry)}
+    keys = {"accel": ("accelerometer", "count_m_s"), "gyro": ("gyro", "count_rad")}
+    for log, rows in by_log(manoeuvres).items():
+        layout = rows[0]["layout"]
+        for channel in tables.CHANNELS:
+            key, increment = keys[channel.partition("_")[0]]
+            triad, full = layout.get(key) or {}, scales[channel]
+            increments = layout["kind"] == "rawimus"
+            count, limit = entry.get(key, {}).get(increment) if increments else None, None
+            if "counts_per_unit" in triad:
+                count = CHANNEL_UNITS[triad["unit"]] / triad["counts_per_unit"]
+                limit = triad["limit_counts"] * count if "limit_counts" in triad else None
+            yield {
+                "log": log,
+                "channel": channel,
+                "count": count,
+                "increments": increments,
+                "limit": full if limit is None else limit,
+            }
+
+
+def count_sizes(instruments: Path) -> Iterator[Row]:
+    """The increments that one count is worth in each of the listed instruments."""
+    for name, entry in YamlFile(instruments).content.items():
+        for sensor, key, size in (
+            ("accel", "accelerometer", "count_m_s"),
+            ("gyro", "gyro", "count_rad"),
+        ):
+            if size in entry.get(key, {}):
+                yield {"instrument": name, "sensor": sensor, "count_size": entry[key][size]}
 
 
 def recording(file: YamlFile, key: Key, item: dict[str, Any], entry: dict[str, Any]) -> Row:

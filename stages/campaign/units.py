@@ -2,9 +2,12 @@
 
 from math import pi
 
+from stages.model.site import STANDARD_GRAVITY
+
 DEGREE = pi / 180
 ARC_SECOND = DEGREE / 3600
 PER_ROOT_HOUR = 1 / 60  # a random walk per √h, per √s
+CHANNEL_UNITS = {"m/s2": 1.0, "g": STANDARD_GRAVITY, "rad/s": 1.0, "deg/s": DEGREE}  # of a reading
 
 
 def in_si(value: float | None, unit: float) -> float | None:

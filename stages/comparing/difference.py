@@ -9,8 +9,8 @@ import pandas as pd
 from stages.contracts import tables
 from stages.contracts.records import Row
 from stages.inference.agreement import beyond_chance, chance_of
-from stages.reporting.numbers import decimals_of, fixed, p_is, with_sigma
-from stages.reporting.units import quantity
+from stages.notation.numbers import decimals_of, fixed, p_is, with_sigma
+from stages.notation.units import quantity
 
 SENSORS = {"accelerometer": ("accelerometer", "force"), "gyroscope": ("gyro", "rate")}
 NEAR = 2.0  # sigmas within which values simply agree

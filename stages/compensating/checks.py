@@ -19,8 +19,8 @@ from stages.estimation.stills import Still, stills
 from stages.estimation.turns import GYRO, Recorded, gyro_inputs, position_of
 from stages.inference.whole_turns import Position
 from stages.model.forward import Triad
-from stages.reporting.numbers import decimals_of, fixed, with_sigma
-from stages.reporting.units import DEGREES, DEGREES_PER_HOUR, MICRO_G, SECONDS_OF_ARC, Unit
+from stages.notation.numbers import decimals_of, fixed, with_sigma
+from stages.notation.units import DEGREES, DEGREES_PER_HOUR, MICRO_G, SECONDS_OF_ARC, Unit
 
 Array = NDArray[np.float64]
 
@@ -99,7 +99,7 @@ def checks(
         for still in inputs.stills:
             yield from _rate(still, correction.gyro, known)
         for one in inputs.usable:
-            if one.plan.recorded == "whole":
+            if one.plan.recorded == "whole" and one.done.complete:
                 yield from _angle(one, levels, correction.gyro, known)
 
 

@@ -8,6 +8,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from stages.compensating.correction import Mounted
+from stages.contracts.masks import Masks
 from stages.contracts.parquet import Stream
 from stages.contracts.tables import CHANNELS
 
@@ -16,9 +17,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class CompensatedStream(Stream):
-    """A stream of samples whose six channels are compensated; all else stays as it is."""
+    """A stream of samples whose six channels are compensated; all else stays as it is.
+
+    What is masked has no compensated reading.
+    """
 
     mounted: Mapping[str, Sequence[Mounted]]  # by log
+    masks: Masks
 
     def columns(self, names: list[str]) -> Iterator[pa.RecordBatch]:
         """Batch by batch, of some columns only."""
@@ -46,5 +51,8 @@ class CompensatedStream(Stream):
             for part in self.mounted.get(log, ()):
                 own = (index == number) & (record >= part.first) & (record < part.after)
                 if own.any():
-                    truth[own] = part.correction.truth(readings[own])
+                    masked = self.masks.of(log, record[own])
+                    kept = np.where(masked.channels, np.nan, readings[own])
+                    kept[masked.whole] = np.nan
+                    truth[own] = part.correction.truth(kept)
         return truth

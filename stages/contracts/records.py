@@ -92,6 +92,7 @@ class Performed:
     missing_s: float = 0.0
     rate: float | None = None
     seconds: float = 0.0
+    bridged: bool = False
 
 
 def performed_of(table: pd.DataFrame) -> dict[str, Performed]:

@@ -9,6 +9,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from stages.contracts.masks import Masked, Masks
 from stages.contracts.parquet import Stream
 from stages.contracts.tables import CHANNELS
 
@@ -67,7 +68,7 @@ _OTHERS = ("time", "table_angle", "temperature")
 def sums_over(
     samples: Stream,
     stretches: Mapping[str, tuple[Integers, Integers]],
-    masks: Mapping[str, tuple[Integers, Integers]] | None = None,
+    masks: Masks | None = None,
 ) -> dict[str, Sums]:
     """Means and extremes of the channels over stretches of records, in one pass.
 
@@ -75,24 +76,14 @@ def sums_over(
     ----------
     stretches : for each log the first records and the records after the last, (k,) each,
         ascending and without overlap
-    masks : for each log stretches of records that do not count
+    masks : what does not count
     """
     totals = {log: _Totals(len(first)) for log, (first, _) in stretches.items()}
     for log, piece in pieces(samples, ["record", *_OTHERS, "mean_of", *CHANNELS]):
         if log in stretches and len(stretches[log][0]):
-            masked = inside(piece["record"], *masks[log]) if masks and log in masks else None
+            masked = masks.of(log, piece["record"]) if masks else None
             totals[log].add(piece, *stretches[log], masked)
     return {log: total.sums() for log, total in totals.items()}
-
-
-def inside(records: Integers, first: Integers, after: Integers) -> NDArray[np.bool_]:
-    """Which records lie in one of the stretches [first, after)."""
-    if not len(first):
-        return np.zeros(len(records), bool)
-    order = np.argsort(first)
-    first, after = first[order], np.maximum.accumulate(after[order])
-    stretch = np.searchsorted(first, records, side="right") - 1
-    return np.asarray((stretch >= 0) & (records < after[np.maximum(stretch, 0)]))
 
 
 class _Totals:
@@ -107,12 +98,12 @@ class _Totals:
         self.others = np.zeros((k, len(_OTHERS)))
         self.first, self.last = np.full(k, np.nan), np.full(k, np.nan)
 
-    def add(
-        self, piece: Columns, first: Integers, after: Integers, masked: NDArray[np.bool_] | None
-    ) -> None:
+    def add(self, piece: Columns, first: Integers, after: Integers, masked: Masked | None) -> None:
         record = piece["record"]
         stretch = np.searchsorted(first, record, side="right") - 1
         kept = (stretch >= 0) & (record < after[np.maximum(stretch, 0)])
+        if masked is not None:
+            kept &= ~masked.repeated
         if not kept.any():
             return
         stretch = stretch[kept]
@@ -124,10 +115,11 @@ class _Totals:
         self.last[k] = time[np.append(starts[1:], len(stretch)) - 1]
 
         weight = np.nan_to_num(piece["mean_of"][kept], nan=1.0)
-        if masked is not None:
-            weight = np.where(masked[kept], 0.0, weight)
-            self.masked[k] += np.add.reduceat(masked[kept].astype(np.float64), starts)
         values = np.column_stack([piece[channel][kept] for channel in CHANNELS])
+        if masked is not None:
+            weight = np.where(masked.lost[kept], 0.0, weight)
+            self.masked[k] += np.add.reduceat(masked.lost[kept].astype(np.float64), starts)
+            values[masked.channels[kept]] = np.nan
         there = ~np.isnan(values) & (weight > 0)[:, None]
         self.shift[k] = np.where(np.isnan(self.shift[k]), values[starts], self.shift[k])
         share = np.where(there, weight[:, None], 0.0)

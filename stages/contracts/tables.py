@@ -96,6 +96,26 @@ LOGS = Table(
         Column("layout", _text, "", "how its bytes are read, as JSON"),
     ),
 )
+RANGES = Table(
+    "ranges",
+    1,
+    (
+        _LOG,
+        Column("channel", _text, "", "one of the six channels"),
+        Column("count", _double, "as the channel", "what one count is, if stated", nullable=True),
+        Column("increments", _truth, "", "a count is an increment: its unit is times s"),
+        Column("limit", _double, "as the channel", "how far it reaches, if stated", nullable=True),
+    ),
+)
+COUNT_SIZES = Table(
+    "count_sizes",
+    1,
+    (
+        Column("instrument", _text, "", "entry of the list of instruments"),
+        Column("sensor", _text, "", "accel or gyro"),
+        Column("count_size", _double, "rad, m/s", "increment of one count"),
+    ),
+)
 INPUTS = Table(
     "inputs",
     1,
@@ -238,11 +258,26 @@ FINDINGS = Table(
 )
 MASKS = Table(
     "masks",
-    1,
+    2,
     (
         _LOG,
         *_RECORDS,
+        Column("channel", _text, "", "the one channel that is masked, else all", nullable=True),
+        Column("repeated", _truth, "", "they repeat other records: no time passes with them"),
         Column("finding", _text, "", "id of the finding that masks these records"),
+    ),
+)
+CLOSE_UPS = Table(
+    "close_ups",
+    1,
+    (
+        Column("finding", _text, "", "id of the finding that these records show"),
+        _LOG,
+        Column("record", _integer, "1", "number of the record in its log"),
+        Column("line", _integer, "1", "number of its line, from 1"),
+        Column("time", _double, "s", "as in samples", nullable=True),
+        *_channels("as in samples"),
+        Column("concerned", _truth, "", "it lies in the stretch that the finding is about"),
     ),
 )
 GAPS = Table(
@@ -270,16 +305,23 @@ SEGMENTS = Table(
 )
 PERFORMED = Table(
     "performed",
-    1,
+    2,
     (
         Column("manoeuvre", _text, "", "as in manoeuvres"),
         Column("found", _truth, "", "found in its log"),
         Column("complete", _truth, "", "recorded from rest to rest without a gap, as planned"),
+        Column(
+            "bridged",
+            _truth,
+            "",
+            "not complete, but what is missing lies in the steady part, so the joint estimate can"
+            " bridge it; in a ramp, or by hand, only a few masked samples",
+        ),
         Column("angle", _double, "rad", "angle that was recorded, about `about`", BODY, True),
         Column(
             "missing_angle", _double, "rad", "angle that was planned but not recorded", BODY, True
         ),
-        Column("missing_s", _double, "s", "time that is missing while it turns"),
+        Column("missing_s", _double, "s", "time that is lost or masked while it turns"),
         Column("rate", _double, "rad/s", "mean rate of the steady part, about `about`", BODY, True),
         Column("seconds", _double, "s", "duration of the rest, or from start to stop of the turn"),
         Column("sentence", _text, "", "what was recorded of it, in words"),
@@ -287,7 +329,7 @@ PERFORMED = Table(
 )
 BLOCKS = Table(
     "blocks",
-    1,
+    2,
     (
         Column("manoeuvre", _text, "", "as in manoeuvres"),
         Column("phase", _text, "", PHASES),
@@ -296,6 +338,12 @@ BLOCKS = Table(
         Column("time", _double, "s", "middle of the block", nullable=True),
         Column("seconds", _double, "s", "count × step: mean × seconds is a sum", nullable=True),
         Column("count", _double, "1", "number of samples in the means"),
+        Column(
+            "missing_s",
+            _double,
+            "s",
+            "of a turn: time before it, since the block before, that is lost or masked; else 0",
+        ),
         *_channels("mean"),
         Column("table_angle", _double, "rad", "mean angle of the table", nullable=True),
         Column("temperature", _double, "K", "mean temperature", nullable=True),

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
@@ -175,7 +176,8 @@ def campaign_of(
         turns.append(motion)
         if not turn.by_hand:
             density = levels.of(one.plan.name, "steady", ACCEL)
-            rests += _turning(one.plan, one.blocks, motion, density)
+            edges = [0, *(bridge.before for bridge in turn.bridges), len(turn.seconds)]
+            rests += _turning(one.plan, one.blocks, motion, density, edges)
     return Campaign(
         inputs,
         rests,
@@ -201,16 +203,18 @@ def _rest(still: Still) -> Rest:
 
 
 def _turning(
-    m: Manoeuvre, blocks: pd.DataFrame, motion: Motion, density: Array
+    m: Manoeuvre, blocks: pd.DataFrame, motion: Motion, density: Array, edges: Sequence[int]
 ) -> list[tuple[str, Rest, Motion]]:
-    """The accelerometers during a turn, some blocks at a time."""
+    """The accelerometers during a turn, some blocks at a time, none across the `edges`."""
     read = blocks[ACCEL].to_numpy(np.float64)
     seconds = blocks["seconds"].to_numpy(np.float64)
     assert m.up is not None  # else the turn is refused
     ups = turned_all(m.up, m.axis, motion.angle)
     parts = []
-    for start in range(0, len(read), MERGED):
-        some = slice(start, start + MERGED)
+    pieces = [range(first, after, MERGED) for first, after in pairwise(edges)]
+    starts = [start for piece in pieces for start in piece]
+    for start, after in pairwise([*starts, len(read)]):
+        some = slice(start, after)
         share = seconds[some] / seconds[some].sum()
         mean = share @ read[some]
         up = share @ ups[some]

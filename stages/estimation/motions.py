@@ -1,5 +1,7 @@
 """How the table moved: in every rest, in the blocks of a turn, and sample by sample."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,34 +33,41 @@ def in_blocks(
     up, north = solution.upright(m), solution.north(position_of(m, heading))
     gyro, site = solution.gyro, solution.site
     assert gyro is not None  # else nothing is simulated
-    angle = angles_seen(turn.sums, turn.seconds, m.axis, up, north, gyro, site)
+    angle = angles_seen(turn.sums, turn.seconds, m.axis, up, north, gyro, site, turn.turned)
     rate = angle / turn.seconds
-    ends = np.cumsum(turn.seconds)
-    middle = np.cumsum(angle) - angle / 2
+    middle = turn.turned(angle)
     return Motion(
         time,
         m.axis,
         middle,
         rate,
-        np.gradient(rate, ends - turn.seconds / 2),
+        np.gradient(rate, turn.elapsed),
         turned_all(up, m.axis, middle),
         turned_all(north, m.axis, middle),
     )
 
 
 def angles_seen(
-    sums: Array, seconds: Array, about: Array, up: Array, north: Array, gyro: Triad, site: Site
+    sums: Array,
+    seconds: Array,
+    about: Array,
+    up: Array,
+    north: Array,
+    gyro: Triad,
+    site: Site,
+    at_middle: Callable[[Array], Array],
 ) -> Array:
     """The angle that the table turned in each stretch, by the gyros, (k,), rad.
 
-    The earth's rate is taken out in the direction that the angle so far gives it.
+    The earth's rate is taken out in the direction that the angle so far gives it; `at_middle`
+    makes of the angles of the stretches that of the table at the middle of each.
     """
     inverse = np.linalg.inv(gyro.matrix)
     truth = (sums - np.outer(seconds, gyro.bias)) @ inverse.T
     level = site.earth_level * np.nan_to_num(north)
     angle = truth @ about
     for _ in range(2):
-        middle = np.cumsum(angle) - angle / 2
+        middle = at_middle(angle)
         earth = site.earth_up * turned_all(up, about, middle) + turned_all(level, about, middle)
         angle = truth @ about - earth @ about * seconds
     return np.asarray(angle)
@@ -73,7 +82,7 @@ def in_samples(
     solution: Solution,
     heading: float | None,
 ) -> tuple[Motion, str]:
-    """A whole turn sample by sample, and how its profile was had.
+    """A turn from rest to rest, sample by sample, and how its profile was had.
 
     A table with a stated rate and acceleration turns by a trapezoid of the rate, whose
     middle in time is taken from the steady part of the gyros' angle. Else the angle is that
@@ -81,34 +90,65 @@ def in_samples(
 
     Parameters
     ----------
-    increments : (n, 3), rad, of the gyros; `step`, s, of each
+    increments : (n, 3), rad, of the gyros, NaN where they are masked; `step`, s, of each
     steady : (n,), which samples are at the steady rate
+    time : (n,), s; where it jumps at the steady rate, samples were lost
     """
     up, north = solution.upright(m), solution.north(position_of(m, heading))
     assert solution.gyro is not None and m.angle is not None  # else it is not simulated
-    seconds = np.full(len(increments), step)
-    seen = angles_seen(increments, seconds, m.axis, up, north, solution.gyro, solution.site)
-    ends = step * np.arange(1, len(seen) + 1)
+    passed = np.round(np.diff(time, prepend=time[0] - step) / step)  # samples, 0 where one repeats
+    counts, lost = np.minimum(passed, 1.0), np.maximum(passed - 1.0, 0.0)
+    increments = _filled(increments) * counts[:, None]
+    ends = step * np.cumsum(passed)
+
+    def so_far(angle: Array) -> Array:
+        """The angle of the table at the end of each sample, what was lost at the mean rate."""
+        rate = float(angle[steady].mean()) if steady.any() else 0.0
+        return np.asarray(np.cumsum(angle + lost * rate))
+
+    seen = angles_seen(
+        increments,
+        step * counts,
+        m.axis,
+        up,
+        north,
+        solution.gyro,
+        solution.site,
+        lambda angle: so_far(angle) - angle / 2,
+    )
     if m.rate is not None and m.acceleration is not None and steady.any():
-        after = np.cumsum(seen)
+        after = so_far(seen)
         middle = float(np.mean(ends[steady] - (after[steady] - m.angle / 2) / m.rate))
         profile = Profile(abs(m.angle), abs(m.rate), m.acceleration)
-        edges = np.append(0.0, ends) - (middle - profile.seconds / 2)
-        angles, rates = profile.at(edges)
-        sign = np.sign(m.angle)
-        angles, rates, how = sign * angles, sign * rates, "trapezoid"
+        sign, start = np.sign(m.angle), middle - profile.seconds / 2
+        edges = [sign * np.stack(profile.at(edge - start)) for edge in (ends - step, ends)]
+        (first, after), (rate, rate_after) = zip(*edges, strict=True)
+        how = "trapezoid"
     else:
         angles = np.append(0.0, np.cumsum(seen)) * (m.angle / float(seen.sum()))
         rates = np.gradient(angles, step)
+        first, after, rate, rate_after = angles[:-1], angles[1:], rates[:-1], rates[1:]
         how = "as the gyros have it"
-    halfway = (angles[1:] + angles[:-1]) / 2
+    halfway = (first + after) / 2
     motion = Motion(
         time,
         m.axis,
         halfway,
-        np.diff(angles) / step,
-        np.diff(rates) / step,
+        (after - first) / step,
+        (rate_after - rate) / step,
         turned_all(up, m.axis, halfway),
         turned_all(north, m.axis, halfway),
     )
     return motion, how
+
+
+def _filled(values: Array) -> Array:
+    """Values (n, 3) with those that are NaN taken from a straight line between their neighbours."""
+    place = np.arange(len(values))
+    known = np.isfinite(values)
+    return np.column_stack(
+        [
+            np.interp(place, place[there], column[there]) if there.any() else column
+            for column, there in zip(values.T, known.T, strict=True)
+        ]
+    )

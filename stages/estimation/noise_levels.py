@@ -24,10 +24,12 @@ class NoiseLevels:
 
     def __init__(self, noise: pd.DataFrame) -> None:
         self._own: dict[tuple[str, str, str], tuple[float, float]] = {}
+        self._samples: dict[tuple[str, str, str], float] = {}
         by_channel: dict[str, list[tuple[float, float]]] = {}
         for row in rows_of(noise):
             level = (row["white_noise"], row["sigma"])
             self._own[row["manoeuvre"], row["phase"], row["channel"]] = level
+            self._samples[row["manoeuvre"], row["phase"], row["channel"]] = row["per_sample"]
             by_channel.setdefault(row["channel"], []).append(level)
         self._common: dict[str, float] = {}
         self._relative = 0.0
@@ -48,6 +50,11 @@ class NoiseLevels:
     def of(self, manoeuvre: str, phase: str, channels: Sequence[str]) -> Array:
         """The levels of some channels, rest or steady; NaN where nothing is known."""
         return np.array([self._one(manoeuvre, phase, channel) for channel in channels])
+
+    def of_samples(self, manoeuvre: str, phase: str, channels: Sequence[str]) -> Array:
+        """What the samples of some channels scatter in all, not per √s; NaN where not known."""
+        keys = [(manoeuvre, phase, channel) for channel in channels]
+        return np.array([self._samples.get(key, np.nan) for key in keys])
 
     def _one(self, manoeuvre: str, phase: str, channel: str) -> float:
         common = self._common.get(channel, np.nan)

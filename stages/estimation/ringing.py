@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,8 @@ from stages.inference.lines import Line, strongest
 from stages.model.forward import Triad
 
 Array = NDArray[np.float64]
+
+FEW = 3  # samples in a row without which an oscillation is still the same
 
 
 @dataclass(frozen=True)
@@ -24,20 +27,42 @@ class Ringing:
 
 
 def steady_residuals(simulated: Stream) -> Iterator[tuple[str, Array]]:
-    """The gyro residuals of the steady part of each turn, (n, 3), rad/s; one turn at a time."""
-    columns = ["manoeuvre", "phase", *(f"residual_gyro_{axis}" for axis in AXES)]
+    """The gyro residuals of the steady part of each turn, (n, 3), rad/s; one turn at a time.
+
+    Of a turn with a gap it is the longest stretch without one.
+    """
+    columns = ["manoeuvre", "phase", "time", *(f"residual_gyro_{axis}" for axis in AXES)]
     name, parts = "", []  # type: str, list[Array]
     for batch in simulated.columns(columns):
         frame = batch.to_pandas()
         steady = frame[frame["phase"] == "steady"]
         for manoeuvre, rows in steady.groupby("manoeuvre", sort=False):
             if manoeuvre != name and parts:
-                yield name, np.concatenate(parts)
+                yield name, _unbroken(np.concatenate(parts))
                 parts = []
             name = str(manoeuvre)
             parts.append(rows[columns[2:]].to_numpy(np.float64))
     if parts:
-        yield name, np.concatenate(parts)
+        yield name, _unbroken(np.concatenate(parts))
+
+
+def _unbroken(rows: Array) -> Array:
+    """The longest stretch of residuals, (m, 3), from rows of time and residuals, (n, 4).
+
+    A few samples that are missing or masked break none: they hold nothing but noise, so nothing.
+    """
+    rows = rows[~np.isnan(rows[:, 1:]).all(axis=1)]
+    if len(rows) < 2 or np.isnan(rows[:, 0]).any():
+        return rows[:, 1:]
+    pause = np.diff(rows[:, 0])
+    step = np.mean(pause[pause < 1.5 * np.median(pause)])
+    passed = np.maximum(np.round(pause / step), 1).astype(np.int64)
+    edges = [0, *(np.flatnonzero(passed > FEW + 1) + 1).tolist(), len(rows)]
+    first, after = max(pairwise(edges), key=lambda edge: edge[1] - edge[0])
+    place = np.append(0, np.cumsum(passed[first : after - 1]))
+    stretch = np.zeros((place[-1] + 1, len(AXES)))
+    stretch[place] = rows[first:after, 1:]
+    return stretch
 
 
 def ringing(

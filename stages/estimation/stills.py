@@ -42,8 +42,12 @@ class Still:
     def over(self, seconds: float = np.inf) -> tuple[Array, Array]:
         """Mean reading over the first so many seconds, and the sigma that white noise leaves."""
         used = np.cumsum(self.seconds) - self.seconds < seconds
-        mean = np.average(self.means[used], weights=self.counts[used], axis=0)
-        return mean, self.density / np.sqrt(np.sum(self.seconds[used]))
+        there = np.isfinite(self.means[used])
+        weight = there * self.counts[used, None]
+        lasted = (there * self.seconds[used, None]).sum(axis=0)
+        with np.errstate(invalid="ignore", divide="ignore"):  # a channel that is not recorded
+            mean = np.sum(weight * np.nan_to_num(self.means[used]), axis=0) / weight.sum(axis=0)
+            return mean, self.density / np.sqrt(lasted)
 
 
 def stills(
@@ -56,7 +60,7 @@ def stills(
     """The stretches at rest with a known attitude, and what is left out with the reason.
 
     After a turn the IMU stands where the turn has brought it, so that stretch counts
-    where the turn was recorded whole. `sensor` is accel or gyro.
+    where the turn was recorded from rest to rest. `sensor` is accel or gyro.
     """
     found: list[Still] = []
     left: list[str] = []
@@ -74,10 +78,10 @@ def stills(
                 continue
             density = noise.of(m.name, "rest", channels)
             label = m.name if phase == "rest" else f"{m.name} ({phase})"
-            after = phase == "rest-after"
+            after, whole = phase == "rest-after", performed[m.name].complete
             if m.up is None:
                 left.append(f"{label}: which way is up is not known")
-            elif after and (not performed[m.name].complete or m.angle is None):
+            elif after and (not (whole or performed[m.name].bridged) or m.angle is None):
                 left.append(f"{label}: its attitude is not known, for the turn is not whole")
             elif part["seconds"].isna().any() or np.isnan(density).all():
                 left.append(f"{label}: its noise is not known, for it has no time or is too short")

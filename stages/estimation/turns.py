@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from stages.contracts import tables
 from stages.contracts.records import Known, Manoeuvre, Performed
+from stages.estimation.bridging import bridges, sigma_of
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import Still, stills
 from stages.inference import whole_turns
@@ -37,7 +38,7 @@ class GyroInputs:
 
     stills: list[Still]
     recorded: list[Recorded]
-    turns: list[Turn]  # whole, with their angle known
+    turns: list[Turn]  # from rest to rest, with their angle known
     steadies: list[Steady]  # at a known rate
     earth: Earth
     position_sigma: float
@@ -81,7 +82,7 @@ def gyro_inputs(
     return GyroInputs(
         found,
         recorded,
-        [turn_of(r, levels, heading) for r in usable if r.plan.recorded == "whole"],
+        [turn_of(r, levels, heading, rate_sigma) for r in usable if r.plan.recorded == "whole"],
         [steady_of(r, levels, heading, rate_sigma) for r in usable if r.plan.recorded == "steady"],
         Earth(up.number, up.scatter, level.number),
         known["position"].scatter,
@@ -113,7 +114,7 @@ def refusal_of(m: Manoeuvre, done: Performed, part: pd.DataFrame) -> str:
         return "it has no time, so no angle can be summed"
     if m.recorded == "steady":
         return "" if bool((part["phase"] == "steady").any()) else "no steady rate was found"
-    if not done.complete:
+    if not (done.complete or done.bridged):
         return f"the angle method needs the whole turn, and {done.sentence}"
     if m.angle is None or m.angle_sigma is None:
         return "its angle is not stated"
@@ -142,9 +143,13 @@ def still_of(still: Still, heading: float | None, seconds: float = np.inf) -> wh
     return whole_turns.Still(position, *still.over(seconds), still.about, still.angle)
 
 
-def turn_of(one: Recorded, noise: NoiseLevels, heading: float | None) -> Turn:
-    """A whole turn with its blocks in motion."""
+def turn_of(one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float) -> Turn:
+    """A turn from rest to rest with its blocks in motion; what is missing of it is bridged.
+
+    `rate_sigma`: relative, of the table's rate.
+    """
     m, part = one.plan, one.blocks
+    missing = bridges(part)
     assert m.angle is not None and m.angle_sigma is not None  # else it is refused
     seconds = part["seconds"].to_numpy(np.float64)
     return Turn(
@@ -157,6 +162,8 @@ def turn_of(one: Recorded, noise: NoiseLevels, heading: float | None) -> Turn:
         density=noise.of(m.name, "steady", GYRO),
         quiet_density=noise.of(m.name, "rest", GYRO),
         by_hand=bool((part["phase"] == "turning").any()),
+        bridges=missing,
+        bridged_sigma=sigma_of(part, missing, m.axis, m.name, noise, rate_sigma),
     )
 
 
@@ -165,24 +172,28 @@ def steady_of(
 ) -> Steady:
     m, part = one.plan, one.blocks[one.blocks["phase"] == "steady"]
     assert m.rate is not None  # the plan wants a rate of such a turn
-    seconds = float(part["seconds"].sum())
+    seconds = part["seconds"].to_numpy(np.float64)
+    missing = part["missing_s"].to_numpy(np.float64)
+    ends = np.cumsum(seconds + missing) - missing[0]
     return Steady(
         position=position_of(m, heading),
         about=m.axis,
         rate=m.rate,
         rate_sigma=abs(m.rate) * rate_sigma,
         seconds=seconds,
+        elapsed=ends - seconds / 2,
         mean=np.average(part[GYRO].to_numpy(np.float64), weights=part["count"], axis=0),
-        sigma=noise.of(m.name, "steady", GYRO) / np.sqrt(seconds),
+        sigma=noise.of(m.name, "steady", GYRO) / np.sqrt(seconds.sum()),
     )
 
 
 def angles_about(inputs: GyroInputs, i: int, noise: NoiseLevels) -> list[tuple[str, Angle]]:
     """The whole turns about body axis i while it points up or down, as their own gyro saw them.
 
-    Each with the name of its manoeuvre.
+    Each with the name of its manoeuvre. A turn that is bridged is not whole.
     """
-    whole = [r for r in inputs.usable if r.plan.recorded == "whole" and _upright(r.plan, i)]
+    recorded = [r for r in inputs.usable if r.plan.recorded == "whole" and r.done.complete]
+    whole = [r for r in recorded if _upright(r.plan, i)]
     angles = [(r.plan.name, _angle(r, i, noise)) for r in whole]
     return [(name, angle) for name, angle in angles if np.isfinite(angle.summed)]
 

@@ -9,6 +9,16 @@ readings tell; what is known is the whole angle from rest to rest. So a block
 gives the two combinations of its channels that do not see Δθ, and the turn as a
 whole the third.
 
+A stretch that is missing in a turn is bridged by the blocks about it: the table turned in it as
+at their rate, which is known to a sigma only, an unknown of its own. So in the turn as a whole
+every block counts for itself and for its share of what is missing,
+
+    sum of w · (sum over a block) = M · (u α + sum of w · E) + bias · sum of w · τ,   w ≥ 1,
+
+and noise, earth and bias are those of what was recorded, w times. In a steady part the
+share is the same for all, T_missing/T_steady; by the sums S of one gyro that is a recorded angle
+of α / (1 + S_steady/S · T_missing/T_steady), in which its scale factor cancels.
+
 The earth's rate has an upward part, known from the latitude, and a level part of
 known size whose direction is known only with `mark` and the table's heading. Else
 it is an unknown of each position, with the size as its sigma.
@@ -70,12 +80,26 @@ class Still:
 
 
 @dataclass(frozen=True)
+class Bridge:
+    """A missing stretch of a turn, before the block `before`.
+
+    The table turned in it by the sum of `shares` (k,) times the angles of the blocks;
+    `seconds`: how long it is.
+    """
+
+    before: int
+    seconds: float
+    shares: Array
+
+
+@dataclass(frozen=True)
 class Turn:
     """A whole turn from rest to rest, in blocks.
 
     `sums`: (k, 3), rad; `seconds`: (k,); `angle`, `angle_sigma`: rad; `density` and
     `quiet_density`: (3,), rad/√s, white noise while turning and at rest. `by_hand`: the
-    axis sways on the way, so only the sums over the whole turn are used.
+    axis sways on the way, so only the sums over the whole turn are used. `bridges`: what is
+    missing between the blocks; `bridged_sigma`: rad, of the angle that the table turned there.
     """
 
     position: Position
@@ -87,18 +111,54 @@ class Turn:
     density: Array
     quiet_density: Array
     by_hand: bool = False
+    bridges: Sequence[Bridge] = ()
+    bridged_sigma: float = 0.0
     traces: Traces = field(default_factory=dict)
+
+    @property
+    def weights(self) -> Array:
+        """How often each block counts in the turn as a whole, (k,)."""
+        return np.ones(len(self.seconds)) + sum((b.shares for b in self.bridges), np.zeros(1))
+
+    @property
+    def alone(self) -> NDArray[np.bool_]:
+        """Which blocks count by themselves too, (k,): those that no missing stretch cuts short.
+
+        In a full block an oscillation of the case averages out, beside a gap it may not.
+        """
+        cut = [b.before - side for b in self.bridges for side in (0, 1)]
+        return ~np.isin(np.arange(len(self.seconds)), cut) | self.by_hand
+
+    @property
+    def elapsed(self) -> Array:
+        """The middle of each block since the first began, (k,), s."""
+        return self._past(self.seconds, [b.seconds for b in self.bridges])
+
+    def turned(self, angle: Array) -> Array:
+        """The angle of the table at the middle of each block, (k,), from those of the blocks."""
+        return self._past(angle, [float(b.shares @ angle) for b in self.bridges])
+
+    def _past(self, own: Array, missing: Sequence[float]) -> Array:
+        """What has passed at the middle of each block: of the blocks, and of what is missing."""
+        past = np.cumsum(own) - own / 2
+        for bridge, passed in zip(self.bridges, missing, strict=True):
+            past[bridge.before :] += passed
+        return np.asarray(past)
 
 
 @dataclass(frozen=True)
 class Steady:
-    """A stretch of a turn at a known rate: mean rates (3,), rad/s, sigma, rate and its sigma."""
+    """A stretch of a turn at a known rate: mean rates (3,), rad/s, sigma, rate and its sigma.
+
+    `seconds`, `elapsed`: (k,), of its blocks, how long each is and when its middle is, s.
+    """
 
     position: Position
     about: Array
     rate: float
     rate_sigma: float
-    seconds: float
+    seconds: Array
+    elapsed: Array
     mean: Array
     sigma: Array
     traces: Traces = field(default_factory=dict)
@@ -287,11 +347,11 @@ def _add_turn(
     present = known + sum((levels[c] * axis for c, axis in level), np.zeros(3))
     angle = np.zeros(k)
     for _ in range(2):
-        middle = np.cumsum(angle) - angle / 2
+        middle = turn.turned(angle)
         earthly = earth.up * turn.position.up + turned_all(present, turn.about, middle)
         rest = sums - (earthly * turn.seconds[:, None]) @ matrix.T - np.outer(turn.seconds, bias)
         angle = (rest * weight) @ along / along_length
-    middle = np.cumsum(angle) - angle / 2
+    middle = turn.turned(angle)
 
     # What a block sees of each unknown, all three channels: (k, 3, columns).
     truth = (
@@ -322,35 +382,56 @@ def _add_turn(
     # Two combinations of every block that do not see its angle.
     across = np.zeros((int(recorded.sum()) - 1, 3))
     across[:, recorded] = np.linalg.svd(along[None, recorded])[2][1:]
-    blocks = [slice(0, k)] if turn.by_hand else [slice(i, i + 1) for i in range(k)]
-    noise = np.sqrt([turn.seconds[block].sum() for block in blocks])
-    starts = [block.start for block in blocks]
+    starts = [0] if turn.by_hand else range(k)
+    noise = np.sqrt(np.add.reduceat(turn.seconds, starts))
+    alone = turn.alone[starts]
     for direction in across:
         whitened = {
             c: np.add.reduceat(np.einsum("r,krc->kc", direction * weight, part), starts, axis=0)
             / noise[:, None]
             for c, part in parts.items()
         }
-        rows.design.append(whitened)
-        rows.observed.append(np.add.reduceat(observed @ (direction * weight), starts) / noise)
-        rows.sigma.append(np.ones(len(blocks)))
+        seen = np.add.reduceat(observed @ (direction * weight), starts) / noise
+        rows.design.append({c: part[alone] for c, part in whitened.items()})
+        rows.observed.append(seen[alone])
+        rows.sigma.append(np.ones(int(alone.sum())))
 
-    # The turn as a whole, along its axis; what the table does on the way is no noise here.
+    _add_whole(rows, unknowns, turn, number, matrix, parts, observed, angle)
+
+
+def _add_whole(
+    rows: _Rows,
+    unknowns: _Unknowns,
+    turn: Turn,
+    number: int,
+    matrix: Array,
+    parts: Mapping[int, Array],  # (k, 3, columns), what a block sees of each unknown
+    observed: Array,  # (k, 3)
+    angle: Array,  # (k,), rad, of the blocks
+) -> None:
+    """The turn as a whole, along its axis; what the table does on the way is no noise here."""
+    recorded = np.isfinite(turn.sums).all(axis=0) & np.isfinite(turn.density)
     quiet = np.where(recorded, 1 / np.where(recorded, turn.quiet_density, 1.0), 0.0)
     along = quiet * (matrix @ turn.about)
-    along = quiet * along / float(np.linalg.norm(along)) / np.sqrt(turn.seconds.sum())
-    whole = {c: (along @ part.sum(axis=0))[None, :] for c, part in parts.items()}
-    shortfall = turn.angle - float(angle.sum())
+    times = turn.weights
+    spread = float(np.linalg.norm(along)) * np.sqrt(times**2 @ turn.seconds)
+    along = quiet * along / spread
+    whole = {c: (along @ np.einsum("k,krc->rc", times, part))[None, :] for c, part in parts.items()}
+    shortfall = turn.angle - float(times @ angle)
     whole[0] = (
         whole[0]
         + (along @ np.hstack([np.kron(np.eye(3), shortfall * turn.about), np.zeros((3, 3))]))[
             None, :
         ]
     )
-    column = unknowns.column("angle", f"{turn.position.name} {number}", turn.angle_sigma)
-    whole[column] = np.array([[along @ (matrix @ turn.about)]])
+    errors = {"angle": turn.angle_sigma}
+    if turn.bridges:
+        errors["bridged"] = turn.bridged_sigma
+    for kind, sigma in errors.items():
+        column = unknowns.column(kind, f"{turn.position.name} {number}", sigma)
+        whole[column] = np.array([[along @ (matrix @ turn.about)]])
     rows.design.append(whole)
-    rows.observed.append(np.array([along @ observed.sum(axis=0)]))
+    rows.observed.append(np.array([along @ (times @ observed)]))
     rows.sigma.append(np.ones(1))
 
 
@@ -364,13 +445,13 @@ def _add_steady(
     sigmas: tuple[float, float],  # of the position and between manoeuvres
 ) -> None:
     known, level = _earth_columns(unknowns, steady.position, earth)
-    angles = steady.rate * np.linspace(0, steady.seconds, 200)
-    known = turned_all(known, steady.about, angles).mean(axis=0)
+    angles, shares = steady.rate * steady.elapsed, steady.seconds / steady.seconds.sum()
+    known = shares @ turned_all(known, steady.about, angles)
     up = matrix @ steady.position.up
     truth = steady.rate * steady.about + known + earth.up * steady.position.up
     coefficients = {0: design_of(truth), UNKNOWNS: up}
     for column, axis in level:
-        coefficients[column] = matrix @ turned_all(axis, steady.about, angles).mean(axis=0)
+        coefficients[column] = matrix @ (shares @ turned_all(axis, steady.about, angles))
     for i, axis in enumerate(level_axes(steady.about)):
         column = unknowns.column(f"tilt {i}", steady.position.name, sigmas[0])
         coefficients[column] = steady.rate * (matrix @ np.cross(axis, steady.about))

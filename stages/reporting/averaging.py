@@ -8,12 +8,12 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from stages.reporting import numbers
+from stages.notation import numbers
+from stages.notation.units import Quantity, quantity
 from stages.reporting.drawing import AXIS_COLOUR, INK, Margins, panels, plain_numbers, style, svg
 from stages.reporting.outline import Figure, Heading, Paragraph, Part, Section
 from stages.reporting.parameters import SENSOR, Estimate, by_kind, kind_of
 from stages.reporting.rows import Record, records
-from stages.reporting.units import Quantity, quantity
 
 COLUMNS = 3
 MOST_PANELS = 24

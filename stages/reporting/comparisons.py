@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from stages.reporting import numbers, units
+from stages.notation import numbers, units
 from stages.reporting.outline import Column, Paragraph, Part, Row, Section, Table
 from stages.reporting.rows import Record, records
 

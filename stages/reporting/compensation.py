@@ -13,11 +13,8 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from stages.contracts.tables import AXES, CHANNELS
-from stages.reporting import numbers
-from stages.reporting.drawing import AXIS_COLOUR, QUIET, Margins, panels, shade, style, svg
-from stages.reporting.outline import Column, Figure, Heading, Paragraph, Part, Row, Section, Table
-from stages.reporting.rows import Record, records
-from stages.reporting.units import (
+from stages.notation import numbers
+from stages.notation.units import (
     DEGREES,
     DEGREES_PER_HOUR,
     DEGREES_PER_SECOND,
@@ -27,6 +24,9 @@ from stages.reporting.units import (
     SECONDS_OF_ARC,
     Unit,
 )
+from stages.reporting.drawing import AXIS_COLOUR, QUIET, Margins, panels, shade, style, svg
+from stages.reporting.outline import Column, Figure, Heading, Paragraph, Part, Row, Section, Table
+from stages.reporting.rows import Record, records
 
 Array = NDArray[np.float64]
 

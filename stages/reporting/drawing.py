@@ -10,7 +10,7 @@ from __future__ import annotations
 import io
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -39,6 +39,7 @@ PHASE_COLOUR = {
     "spin-down": "#fbe3b8",
 }
 MISSING = "#8e2a5b"
+MASKED = "#aeb7c2"
 
 _STYLE: Any = {
     "axes.axisbelow": True,
@@ -52,6 +53,7 @@ _STYLE: Any = {
     "axes.titlelocation": "left",
     "axes.titlepad": 4,
     "axes.titlesize": 7.5,
+    "axes.titley": 1.0,  # titles stand still, which saves measuring every label
     "axes.unicode_minus": True,
     "font.family": "DejaVu Sans",
     "font.size": 7.5,
@@ -123,6 +125,24 @@ def panels(
     return figure, [list(row) for row in axes]
 
 
+def side_by_side(
+    widths: Sequence[float], height: float, margins: Margins
+) -> tuple[Figure, list[Axes]]:
+    """An empty figure of panels in one row, whose widths are as `widths` to each other."""
+    total = margins.top + height + margins.bottom
+    figure = Figure(figsize=(WIDTH, total))
+    FigureCanvasSVG(figure)
+    room = WIDTH - margins.left - margins.right - (len(widths) - 1) * margins.across
+    axes = []
+    left = margins.left
+    for share in widths:
+        width = room * share / sum(widths)
+        place = (left / WIDTH, margins.bottom / total, width / WIDTH, height / total)
+        axes.append(figure.add_axes(place))
+        left += width + margins.across
+    return figure, axes
+
+
 def plain_numbers(axis: Axis) -> None:
     """Tick labels of a logarithmic axis as plain numbers, at 1, 2 and 5 of a decade."""
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=12))
@@ -152,6 +172,7 @@ def _light(drawn: str, key: str) -> str:
     )
     element = re.sub(r'(href="#|url\(#)', rf"\1{key}-", element)
     element = _without_idle_groups(element).replace("<defs>\n</defs>", "")
+    element = _styled_once(element)
     return re.sub(r"\n\s*", "\n", _rounded(element)).strip()
 
 
@@ -168,11 +189,34 @@ def _without_idle_groups(element: str) -> str:
     return re.sub(r"<g( [^>]*)?>|</g>", tag, element)
 
 
+def _styled_once(element: str) -> str:
+    """The style of a mark told where it is defined, not wherever it is used, if it is but one."""
+    styles: dict[str, set[str]] = {}
+    for mark, style in re.findall(r'<use xlink:href="#([^"]+)"[^>]* style="([^"]*)"/>', element):
+        styles.setdefault(mark, set()).add(style)
+    told: set[str] = set()
+
+    def definition(match: re.Match[str]) -> str:
+        own = styles.get(match[2], set())
+        if len(own) != 1:
+            return match[0]
+        told.add(match[2])
+        # What the definition says itself counts for more, as it did.
+        return f'{match[1]}{own.pop()}; {match[3]}"'
+
+    def use(match: re.Match[str]) -> str:
+        return f"{match[1]}/>" if match[2] in told else match[0]
+
+    element = re.sub(r'(<path id="([^"]+)"[^>]* style=")([^"]*)"', definition, element)
+    return re.sub(r'(<use xlink:href="#([^"]+)"[^>]*?) style="[^"]*"/>', use, element)
+
+
 def _rounded(element: str) -> str:
-    """Coordinates to a hundredth of a point, which is finer than any printer."""
+    """Coordinates to a hundredth of a point, finer than any printer, with no needless space."""
 
     def path(match: re.Match[str]) -> str:
-        return match[1] + re.sub(r"-?\d+\.\d{3,}", lambda n: f"{float(n[0]):.2f}", match[2]) + '"'
+        short = re.sub(r"-?\d+\.\d{3,}", lambda n: f"{float(n[0]):.2f}", match[2])
+        return match[1] + re.sub(r"\s*\n\s*", "", short) + '"'
 
     return re.sub(r'( (?:d|x|y)=")([^"]*)"', path, element)
 
@@ -183,8 +227,40 @@ def shade(axes: Axes, phase: str, start: float, end: float) -> None:
     axes.axvspan(start, end, color=colour, zorder=0, linewidth=0)
 
 
-def hatch_missing(axes: Axes, start: float, end: float) -> None:
-    """Mark a stretch that was not recorded."""
+def hatch_missing(
+    axes: Axes, start: float, end: float, *, ymin: float = 0.0, ymax: float = 1.0
+) -> None:
+    """Mark a stretch that was not recorded; between heights in shares of the panel."""
     axes.axvspan(
-        start, end, facecolor="#f6ebf1", edgecolor=MISSING, hatch="///", linewidth=0.6, zorder=3
+        start,
+        end,
+        ymin,
+        ymax,
+        facecolor="#f6ebf1",
+        edgecolor=MISSING,
+        hatch="///",
+        linewidth=0.6,
+        zorder=3,
+    )
+
+
+def hatch_masked(axes: Axes, start: float, end: float) -> None:
+    """Mark a stretch that was recorded but is not used."""
+    axes.axvspan(
+        start, end, facecolor="#f1f3f5", edgecolor=MASKED, hatch="||", linewidth=0, zorder=1
+    )
+
+
+def mark_place(axes: Axes, start: float, end: float) -> None:
+    """Mark where in a curve something is: a band, and above it a wedge for where it is narrow."""
+    axes.axvspan(start, end, color=MISSING, alpha=0.18, linewidth=0.8, zorder=1.5)
+    axes.plot(
+        (start + end) / 2,
+        1.0,
+        marker="v",
+        markersize=4.5,
+        color=MISSING,
+        transform=axes.get_xaxis_transform(),
+        clip_on=False,
+        zorder=5,
     )

@@ -3,16 +3,33 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 import pandas as pd
 
-from stages.reporting import numbers
-from stages.reporting.outline import Column, Finding, Paragraph, Part, Row, Section, Table, Tone
+from stages.notation import numbers
+from stages.notation.causes import how_grave, in_words, tally
+from stages.reporting.evidence import Evidence
+from stages.reporting.outline import (
+    Column,
+    Finding,
+    Link,
+    Paragraph,
+    Part,
+    Row,
+    Section,
+    Table,
+    Tone,
+)
+from stages.reporting.related import related
 from stages.reporting.rows import Record, records
 
+COUNTED = frozenset(
+    {"samples", "records", "readings", "days"}
+)  # units of a size that is a number of them
 MOST_IN_FULL = 40
 TONE: dict[int, Tone] = {3: "poor", 2: "fair"}
+SENSOR = {"accel": "accelerometer", "gyro": "gyroscope"}
 
 
 def ranked(findings: Iterable[pd.DataFrame]) -> list[Record]:
@@ -29,15 +46,32 @@ def ranked(findings: Iterable[pd.DataFrame]) -> list[Record]:
     )
 
 
-def section(rows: Sequence[Record]) -> Section:
-    """Each finding with its sentence, its consequence and the action."""
-    parts: list[Part] = [_finding(row) for row in rows[:MOST_IN_FULL]]
-    if not rows:
+def section(
+    rows: Sequence[Record],
+    evidence: Mapping[str, Evidence],
+    segments: pd.DataFrame,
+    named: Collection[str],
+) -> Section:
+    """Each finding with its sentence, what shows it, its consequence and the action.
+
+    `named`: places of other sections that tell more, by the identifier of the finding.
+    """
+    full = rows[:MOST_IN_FULL]
+    others = related(full, records(segments))
+    nothing = Evidence()
+    parts: list[Part] = []
+    if rows:
+        worst = rows[0]["severity"]
+        parts.append(Paragraph(tally([row["severity"] for row in rows]), TONE.get(worst, "")))
+    else:
         parts.append(
             Paragraph(
                 "None: neither the recording, nor its segments, nor the model gave cause.", "good"
             )
         )
+    parts += [
+        _finding(row, evidence.get(row["id"], nothing), _links(row, others, named)) for row in full
+    ]
     if len(rows) > MOST_IN_FULL:
         rest = Counter(row["cause"] for row in rows[MOST_IN_FULL:])
         parts.append(
@@ -56,21 +90,34 @@ def section(rows: Sequence[Record]) -> Section:
         "What was found wrong with the recording or the model, with what it does to the result "
         "and what was or should be done.",
         "Worst first: above, what spoils a result; then what weakens one; then what is good to "
-        "know. p is the chance of such a size if nothing is wrong.",
+        "know. p is the chance of such a size if nothing is wrong. Left, the whole log: a wedge "
+        "marks the place; right, the samples there.",
         parts,
     )
 
 
-def in_words(cause: str) -> str:
-    """The name of a cause or an effect as it is read."""
-    words = cause.replace("_", " ").replace("g sensitivity", "g-sensitivity")
-    if words.startswith("accel "):
-        words = words.replace("accel", "accelerometer", 1)
-    return numbers.shortened(words, 60)
+def _links(
+    row: Record, others: Mapping[str, Sequence[Record]], named: Collection[str]
+) -> Iterator[Link]:
+    for other in others.get(row["id"], ()):
+        yield Link(_title(other), f"finding/{other['id']}")
+    if row["id"] in named:
+        yield Link(f"What the model lacks: {in_words(row['cause'])}", f"lacks/{row['id']}")
 
 
-def _finding(row: Record) -> Finding:
-    sensor = {"accel": "accelerometer", "gyro": "gyroscope"}.get(row["sensor"] or "", row["sensor"])
+def _title(row: Record) -> str:
+    """What it is and where."""
+    cause = in_words(row["cause"])
+    where = row["manoeuvre"] or row["log"]
+    if not where and row["id"].startswith("criticism/"):
+        where = "residuals of the model"
+    sensor = SENSOR.get(row["sensor"] or "", row["sensor"])
+    concerned = f"{row['axis']} {sensor}" if row["axis"] and sensor else ""
+    places = [numbers.shortened(text, 60) for text in (where, concerned) if text]
+    return " · ".join([cause[:1].upper() + cause[1:], *places])
+
+
+def _finding(row: Record, evidence: Evidence, links: Iterable[Link]) -> Finding:
     span = None
     if row["from_s"] is not None:
         span = numbers.fixed(row["from_s"], 2)
@@ -79,12 +126,13 @@ def _finding(row: Record) -> Finding:
         span += " s"
     size = None
     if row["size"] is not None:
-        size = f"{numbers.significant(row['size'])} {row['unit'] or ''}".strip()
+        size = f"{numbers.significant(row['size'])} {row['unit'] or ''}".strip().replace(" °", "°")
         size = size.removesuffix(" 1")
+        if row["unit"] in COUNTED:
+            size = numbers.counted(round(row["size"]), row["unit"].removesuffix("s"))
     facts = {
-        "sensor": " ".join(filter(None, (sensor, row["axis"]))),
-        "manoeuvre": row["manoeuvre"],
-        "log": row["log"],
+        "sensor": SENSOR.get(row["sensor"] or "", row["sensor"]) if not row["axis"] else None,
+        "log": row["log"] if row["manoeuvre"] else None,
         "time": span,
         "size": size,
         "times": numbers.whole(row["count"]) if row["count"] > 1 else None,
@@ -93,11 +141,16 @@ def _finding(row: Record) -> Finding:
     }
     return Finding(
         anchor=f"finding/{row['id']}",
+        title=_title(row),
+        grade=how_grave(row["severity"]),
         sentence=numbers.shortened(row["sentence"], 600),
-        consequence=numbers.shortened(row["consequence"], 400),
+        consequence=numbers.shortened(row["consequence"], 600),
         action=numbers.shortened(row["action"], 400),
+        measure=evidence.measure,
+        parts=evidence.parts,
         facts=tuple(
             (name, numbers.shortened(str(value), 120)) for name, value in facts.items() if value
         ),
+        links=tuple(links),
         tone=TONE.get(row["severity"], ""),
     )

@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from stages.contracts.tables import AXES
-from stages.reporting import numbers
+from stages.notation import numbers
+from stages.notation.units import quantity
 from stages.reporting.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg
 from stages.reporting.outline import Column, Figure, Paragraph, Part, Row, Section, Table
 from stages.reporting.parameters import KIND, SENSOR
 from stages.reporting.rows import Record, records
-from stages.reporting.units import quantity
 
 FOLDER = "data/history"
 MOST_DRAWN = 12

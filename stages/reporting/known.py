@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import pandas as pd
 
-from stages.reporting import numbers
+from stages.notation import numbers
+from stages.notation.units import DEGREES, DEGREES_PER_HOUR, PPM, SECONDS_OF_ARC, Unit
 from stages.reporting.outline import Column, Row, Section, Table
 from stages.reporting.rows import Record, records
-from stages.reporting.units import DEGREES, DEGREES_PER_HOUR, PPM, SECONDS_OF_ARC, Unit
 
 NAME = {
     "gravity": "gravity",

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from stages.reporting import numbers, units
-from stages.reporting.findings import in_words
+from stages.notation import numbers, units
+from stages.notation.causes import in_words
 from stages.reporting.outline import (
     Column,
     Heading,
@@ -37,6 +37,7 @@ MOST_LINES = 18
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 NOT_VISIBLE = "not visible by this plan"
 LABORATORY, SI = "Laboratory", "SI"
+Pair = tuple[Record, Record | None]
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,21 @@ class Sought:
         """The effect in words."""
         mount = f" (mount {numbers.shortened(self.mount, 60)})" if self.mount else ""
         return in_words(self.score["effect"]) + mount
+
+    @property
+    def finding(self) -> str:
+        """The identifier of the finding that names it."""
+        mount = f"@{self.mount}" if self.mount else ""
+        return f"criticism/{self.score['effect']}{mount}"
+
+
+@dataclass(frozen=True)
+class Shift:
+    """How far a parameter moves, in sigmas of the joint fit."""
+
+    stage: str
+    name: str
+    sigmas: float
 
 
 def sought(scores: pd.DataFrame, effects: pd.DataFrame) -> list[Sought]:
@@ -136,7 +152,7 @@ def _listed(names: Sequence[str]) -> str:
 
 def _named(one: Sought, lines: pd.DataFrame) -> Iterator[Part]:
     score = one.score
-    yield Heading(_capital(one.name))
+    yield Heading(_capital(one.name), f"lacks/{one.finding}")
     cause = numbers.shortened(score["cause"], 300)
     said = [f"Cause: {cause}."]
     if score["sought_in"] == "blocks":
@@ -290,21 +306,10 @@ def _sensor(name: str) -> str:
 
 def _extended(rows: Sequence[Record], joint: Sequence[Estimate]) -> Iterator[Part]:
     """The parameters of the extended model beside those of the joint fit."""
-    own = [row for row in rows if "." not in row["parameter"]]
-    if not own:
-        return
-    yield Heading("The parameters with the effects in the model")
-    before = {
-        (estimate.stage, estimate.method, row["parameter"]): row
-        for estimate in joint
-        for row in estimate.determined
-    }
-    for method in dict.fromkeys(row["method"] for row in own):
-        pairs = []
-        for row in by_kind(row for row in own if row["method"] == method):
-            stage, _, mount = method.partition("@")
-            key = (stage, f"joint@{mount}" if mount else "joint", row["parameter"])
-            pairs.append((row, before.get(key)))
+    by_method = _pairs(rows, joint)
+    if by_method:
+        yield Heading("The parameters with the effects in the model")
+    for method, pairs in by_method.items():
         yield Table(
             f"{in_words_of(method)}: the joint fit, and the same with the effects in the model.",
             (
@@ -321,7 +326,35 @@ def _extended(rows: Sequence[Record], joint: Sequence[Estimate]) -> Iterator[Par
         )
 
 
-def _beside(pairs: Sequence[tuple[Record, Record | None]]) -> Iterator[Row]:
+def _pairs(rows: Sequence[Record], joint: Sequence[Estimate]) -> dict[str, list[Pair]]:
+    """Each parameter of the extended model with its like in the joint fit, by method."""
+    before = {
+        (estimate.stage, estimate.method, row["parameter"]): row
+        for estimate in joint
+        for row in estimate.determined
+    }
+    pairs: dict[str, list[Pair]] = {}
+    for row in by_kind(row for row in rows if "." not in row["parameter"]):
+        stage, _, mount = row["method"].partition("@")
+        key = (stage, f"joint@{mount}" if mount else "joint", row["parameter"])
+        pairs.setdefault(row["method"], []).append((row, before.get(key)))
+    return pairs
+
+
+def shifts(extended: pd.DataFrame, joint: Sequence[Estimate]) -> list[Shift]:
+    """How far each parameter moves with the effects in the model."""
+    found = []
+    for method, pairs in _pairs(records(extended), joint).items():
+        for row, before in pairs:
+            moved = _shift(row, before)
+            if moved is not None:
+                kind, _, axes = row["parameter"].partition("_")
+                name = f"{KIND.get(kind, kind).lower()} {axes} of the {in_words_of(method).lower()}"
+                found.append(Shift(method.partition("@")[0], name, moved))
+    return found
+
+
+def _beside(pairs: Sequence[Pair]) -> Iterator[Row]:
     gap = {"value": None, "sigma": None}
     cells: list[tuple[str, str]] = []
     for kind in dict.fromkeys(kind_of(row["parameter"]) for row, _ in pairs):

@@ -8,7 +8,8 @@ from statistics import median
 import pandas as pd
 
 from stages.contracts.tables import AXES, CHANNELS
-from stages.reporting import numbers
+from stages.notation import numbers
+from stages.notation.units import RANDOM_WALK
 from stages.reporting.drawing import (
     AXIS_COLOUR,
     AXIS_MARK,
@@ -21,7 +22,6 @@ from stages.reporting.drawing import (
 )
 from stages.reporting.outline import Column, Figure, Part, Row, Section, Table
 from stages.reporting.rows import Record, records
-from stages.reporting.units import RANDOM_WALK
 
 SENSOR = {"gyro": "Angle random walk", "accel": "Velocity random walk"}
 DATA_SHEET = "data sheet"

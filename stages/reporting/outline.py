@@ -85,6 +85,7 @@ class Heading:
 
     kind: ClassVar[str] = "heading"
     text: str
+    anchor: str = ""
 
 
 @dataclass(frozen=True)
@@ -142,15 +143,28 @@ class Level:
 
 
 @dataclass(frozen=True)
+class Link:
+    """Words that lead to another place of the page."""
+
+    words: str
+    anchor: str
+
+
+@dataclass(frozen=True)
 class Finding:
-    """What was found, what it does to the result, what was or should be done."""
+    """What was found, what it does to the result, what was or should be done, what shows it."""
 
     kind: ClassVar[str] = "finding"
     anchor: str
+    title: str
+    grade: str  # how grave it is, in words
     sentence: str
     consequence: str
     action: str
     facts: tuple[tuple[str, str], ...]
+    measure: tuple[str, ...] = ()  # what it costs, in numbers
+    parts: tuple[Figure | Table, ...] = ()
+    links: tuple[Link, ...] = ()
     tone: Tone = ""
 
 

@@ -12,7 +12,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from stages.contracts.tables import AXES
-from stages.reporting import numbers, units
+from stages.notation import numbers, units
 from stages.reporting.outline import (
     Column,
     Equation,

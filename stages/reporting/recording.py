@@ -7,10 +7,10 @@ from collections.abc import Iterator
 import pandas as pd
 
 from stages.contracts.tables import AXES
-from stages.reporting import numbers
+from stages.notation import numbers
+from stages.notation.units import DEGREES, DEGREES_PER_SECOND
 from stages.reporting.outline import Column, Row, Section, Table, Tone
 from stages.reporting.rows import Record, records
-from stages.reporting.units import DEGREES, DEGREES_PER_SECOND
 
 COLUMNS = (
     Column("", "mark"),

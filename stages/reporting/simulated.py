@@ -14,17 +14,17 @@ from numpy.typing import NDArray
 
 from stages.contracts.parquet import Stream
 from stages.contracts.tables import AXES, CHANNELS
-from stages.reporting import numbers
-from stages.reporting.drawing import AXIS_COLOUR, INK, Margins, panels, shade, style, svg
-from stages.reporting.outline import Column, Figure, Heading, Paragraph, Part, Row, Section, Table
-from stages.reporting.rows import Record, records
-from stages.reporting.units import (
+from stages.notation import numbers
+from stages.notation.units import (
     DEGREES_PER_HOUR,
     DEGREES_PER_SECOND,
     METRES,
     MILLIMETRES,
     Unit,
 )
+from stages.reporting.drawing import AXIS_COLOUR, INK, Margins, panels, shade, style, svg
+from stages.reporting.outline import Column, Figure, Heading, Paragraph, Part, Row, Section, Table
+from stages.reporting.rows import Record, records
 
 Array = NDArray[np.float64]
 

@@ -11,8 +11,8 @@ from math import degrees
 import pandas as pd
 
 from stages.contracts.tables import AXES
-from stages.reporting import numbers, units
-from stages.reporting.findings import in_words
+from stages.notation import numbers, units
+from stages.notation.causes import in_words
 from stages.reporting.outline import (
     Column,
     Facts,
@@ -143,7 +143,11 @@ def _performed(manoeuvres: pd.DataFrame, performed: pd.DataFrame) -> str:
     if planned == 0:
         return "No manoeuvre was planned."
     missing = [row["manoeuvre"] for row in rows if not row["found"]]
-    partly = [row["manoeuvre"] for row in rows if row["found"] and not row["complete"]]
+    partly = [
+        row["manoeuvre"] + (" (bridged)" if row["bridged"] else "")
+        for row in rows
+        if row["found"] and not row["complete"]
+    ]
     text = f"{complete} of {numbers.counted(planned, 'manoeuvre')} recorded as planned"
     if partly:
         text += f"; not complete: {_listed(partly)}"

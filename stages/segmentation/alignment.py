@@ -5,6 +5,11 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+ASKEW = np.radians(25)  # how far an IMU may be mounted from the planned direction
+ASLANT = np.radians(45)  # and a turn about another axis than the planned one, as by hand
+UPRIGHT = 0.9  # share of the planned direction in the axes that are recorded, to tell it
+WRONG_WAY = 0.01  # score of a turn against the planned direction
+
 
 def align(scores: Array) -> list[int | None]:
     """Match rows to columns in ascending order so that the sum of the scores is largest.
@@ -47,20 +52,39 @@ def rest_score(seconds: float, planned: float | None, force: Array, up: Array | 
     force : (3,), m/s², mean specific force, NaN where not recorded
     up : (3,), the planned direction, None where unknown
     """
-    along = np.nan if up is None else float(force @ up)
-    if along < np.cos(np.radians(25)) * np.linalg.norm(force):
+    if up is not None and not points(force, up):
         return 0.0
     return min(seconds / planned, 1.0) if planned else seconds / (seconds + 1.0)
 
 
-def turn_score(angle: float, planned: float | None) -> float:
-    """How well a motion fits a planned turn: by its angle about the axis, rad.
+def points(force: Array, up: Array) -> bool:
+    """Whether a specific force, (3,), points up as planned, as far as its axes are recorded."""
+    there = np.isfinite(force)
+    seen = float(np.linalg.norm(up[there]))
+    if seen < UPRIGHT:
+        return True  # the axis that would tell is not recorded
+    along = float(force[there] @ up[there]) / seen
+    return bool(along >= np.cos(ASKEW) * float(np.linalg.norm(force[there])))
 
-    A turn in the wrong direction is still the turn, unless a better one is there.
+
+def turn_score(turned: Array, about: Array, planned: float | None) -> float:
+    """How well a motion fits a planned turn: by its angle, rad, or its rate, rad/s.
+
+    A turn in the wrong direction is still the turn, unless a better one is there; a turn about
+    another axis is not.
+
+    Parameters
+    ----------
+    turned : (3,), angles or rates about the axes of the body, NaN where not recorded
+    about : (3,), the planned axis
     """
+    own = np.nan_to_num(turned)
+    angle = float(own @ about)
+    if abs(angle) < np.cos(ASLANT) * float(np.linalg.norm(own)):
+        return 0.0
     if planned is None:
         return abs(angle) / (abs(angle) + 0.1)
     ratio = angle / planned
     if ratio < 0:
-        return 0.01 if ratio < -0.5 else 0.0
+        return WRONG_WAY if ratio < -0.5 else 0.0
     return max(1.0 - abs(1.0 - ratio), 0.02) if ratio > 0.005 else 0.0

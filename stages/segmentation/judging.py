@@ -1,15 +1,17 @@
 """What was recorded of each manoeuvre, against what the plan says of it."""
 
 from collections.abc import Iterator, Sequence
-from math import degrees, pi
+from math import degrees
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from stages.contracts.findings import Finding
 from stages.contracts.records import Manoeuvre, Performed
-from stages.segmentation.matching import Part, motion
+from stages.contracts.tables import CHANNELS
+from stages.segmentation.explaining import Explained
+from stages.segmentation.matching import motion
+from stages.segmentation.missing import missing_of
 from stages.segmentation.motion import Stretch
 from stages.segmentation.windows import BIN, Binned
 
@@ -21,6 +23,26 @@ def not_found(m: Manoeuvre) -> Performed:
     what = "no rest in the planned direction" if m.do == "rest" else "no turn about its axis"
     told = f"{m.name} is not in {m.log}: {what} was found where the plan has it."
     return Performed(m.name, told, found=False, complete=False)
+
+
+def left_out(explained: Explained, plan: Sequence[Manoeuvre]) -> Iterator[tuple[str, Performed]]:
+    """Manoeuvres that are found otherwise than planned, so that only the laboratory can say more.
+
+    They bear another's name, or stand in its place, or their log alone has axes that are taken
+    for others.
+    """
+    why: dict[str, str] = {}
+    for one in explained.exchanged:
+        half = len(one.names) // 2
+        pairs = [*zip(one.names, one.names[half:] + one.names[:half], strict=True)]
+        for name, other in pairs:
+            what = "its log holds" if len(one.logs) == 2 else "in its place stands"
+            why[name] = f"{name} is left out: {what} {other}."
+    for m in plan:
+        if m.log in explained.misread:
+            why[m.name] = f"{m.name} is left out: in {m.log} axes are taken for others."
+    for name, sentence in why.items():
+        yield name, Performed(name, sentence, found=False, complete=False)
 
 
 def positions(m: Manoeuvre, number: int) -> Performed:
@@ -44,40 +66,73 @@ def turn(
     found: Sequence[Stretch],
     place: int,
     m: Manoeuvre,
-    parts: Sequence[Part],
+    moving: pd.DataFrame,
     gaps: pd.DataFrame,
     level: Array,
-    interval: float,
     tolerance: float,
 ) -> Performed:
-    """A turn: its angle, its rate, and whether all of it was recorded."""
+    """A turn: its angle, its rate, whether all of it was recorded, or what is missing is known.
+
+    `moving`: its blocks in motion; `gaps`: of all logs; `level`: (3,), rad/s, the gyros at rest.
+    """
+    if moving.empty:
+        return Performed(m.name, "it turns, but its gyros are masked.", True, False)
     first, after = motion(one, found, place)
-    about = one.about(m.axis, level)
-    moving = [part for part in parts if not part.phase.startswith("rest")]
-    lost = gaps[
-        (gaps["log"] == one.window.log)
-        & (gaps["record"] > moving[0].first)
-        & (gaps["record"] < moving[-1].after)
-    ]
-    missing_s = float(lost["missing"].sum()) * interval
-    rate = _steady_rate(one, about, parts, first, after)
+    about = _about(moving, m.axis, level)
+    length = moving["seconds"].to_numpy(np.float64)
+    timed = bool(np.isfinite(length).all())
+    angle = float(np.nansum(about * length)) if timed else None
+    lacking = missing_of(moving, np.nan_to_num(about), gaps[gaps["log"] == one.window.log])
+    rate = _steady_rate(moving, about)
     seconds = one.duration(first, after)
-    timed = bool(np.isfinite(one.first_s[first]))
-    angle = float(np.nansum(about[first:after] * one.seconds[first:after])) if timed else None
     if m.recorded == "steady":
         said = (
             f"steady at {_signed(degrees(rate), 4)} °/s." if rate is not None else "no steady rate."
         )
-        whole = missing_s == 0
-        return Performed(m.name, said, True, whole, angle, None, missing_s, rate, seconds)
+        whole = lacking.seconds == 0
+        return Performed(m.name, said, True, whole, angle, None, lacking.seconds, rate, seconds)
 
     if angle is None:
         return Performed(m.name, "it turns, but has no time.", True, False, rate=rate)
     of = f"{_signed(degrees(angle), 2)}°"
     of += f" of {_signed(degrees(m.angle), 0)}°" if m.angle else ""
-    reasons = [f"{missing_s:.2f} s are missing while it turns"] if missing_s else []
+    reasons, remark = _cut_off(one, first, after, one.about(m.axis, level), m)
+    known = 0.0 if lacking.hindrance else lacking.angle
+    off = m.angle and abs((angle + known) / m.angle - 1) > tolerance
+    if off and not (reasons or lacking.hindrance):
+        reasons.append("the angle is not the planned one")
+    gone = [f"{lacking.seconds:.2f} s are missing while it turns"] if lacking.seconds else []
+    gone += [lacking.hindrance] if lacking.hindrance else []
+    if not reasons and not gone:
+        told = f"{of} from rest to rest{remark}."
+        return Performed(m.name, told, True, True, angle, 0.0, 0.0, rate, seconds)
+    bridged = not reasons and not lacking.hindrance
+    missing = lacking.angle if bridged else m.angle - angle if m.angle is not None else None
+    told = f"{of} recorded{remark}: {', and '.join([*gone, *reasons])}"
+    told += f"; {_signed(degrees(missing), 2)}° are missing." if missing is not None else "."
+    if bridged:
+        told += " The rate about it tells them, so the joint estimate bridges what is missing."
+    return Performed(
+        m.name, told, True, False, angle, missing, lacking.seconds, rate, seconds, bridged
+    )
+
+
+def _about(moving: pd.DataFrame, axis: Array, level: Array) -> Array:
+    """The rates of blocks about an axis, (k,), rad/s; NaN where no gyro is recorded."""
+    rates = moving[list(CHANNELS[3:])].to_numpy(np.float64) - level
+    recorded = np.isfinite(rates).any(axis=1)
+    return np.where(recorded, np.nan_to_num(rates) @ axis, np.nan)
+
+
+def _cut_off(
+    one: Binned, first: int, after: int, about: Array, m: Manoeuvre
+) -> tuple[list[str], str]:
+    """Where the log begins or ends while it turns: as reasons against it, and as a remark.
+
+    A hand stops within a bin: what is cut off then is less than the sigma of the angle.
+    """
+    reasons: list[str] = []
     remark = ""
-    # A hand stops within a bin: what is cut off then is less than the sigma of the angle.
     edges = [("begins", about[0])] if first == 0 else []
     edges += [("ends", about[-1])] if after == one.bins else []
     for what, edge in edges:
@@ -85,17 +140,7 @@ def turn(
             remark += f"; the log {what} at {degrees(abs(edge)):.0f} °/s, which its sigma covers"
         else:
             reasons.append(f"the log {what} while it turns")
-    if not reasons and m.angle and abs(angle / m.angle - 1) > tolerance:
-        reasons.append("the angle is not the planned one")
-    if not reasons:
-        told = f"{of} from rest to rest{remark}."
-        return Performed(m.name, told, True, True, angle, 0.0, 0.0, rate, seconds)
-    missing = m.angle - angle if m.angle is not None else None
-    if missing_s and rate is not None and not edges:
-        missing = rate * missing_s
-    told = f"{of} recorded: {', and '.join(reasons)}"
-    told += f"; {_signed(degrees(missing), 2)}° are missing." if missing is not None else "."
-    return Performed(m.name, told, True, False, angle, missing, missing_s, rate, seconds)
+    return reasons, remark
 
 
 def _signed(value: float, digits: int) -> str:
@@ -103,77 +148,9 @@ def _signed(value: float, digits: int) -> str:
     return f"{value:.{digits}f}".replace("-", "−")
 
 
-def _steady_rate(
-    one: Binned, about: Array, parts: Sequence[Part], first: int, after: int
-) -> float | None:
-    steady = [part for part in parts if part.phase == "steady"]
-    if not steady:
+def _steady_rate(moving: pd.DataFrame, about: Array) -> float | None:
+    """The mean rate of the steady part, rad/s; none where there is no such part."""
+    steady = (moving["phase"] == "steady").to_numpy(bool) & np.isfinite(about)
+    if not steady.any():
         return None
-    inside = (one.edges[:-1] >= steady[0].first) & (one.edges[1:] <= steady[0].after)
-    return float(np.nanmean(about[inside] if inside.any() else about[first:after]))
-
-
-def findings(m: Manoeuvre, done: Performed, tolerance: float) -> Iterator[Finding]:
-    """What the plan has and the recording has not."""
-    if not done.found:
-        yield Finding(
-            id=f"segment/manoeuvre_missing/{m.name}",
-            cause="manoeuvre_missing",
-            sentence=done.sentence,
-            consequence="It is left out; the others are used.",
-            action="Correct the plan, or record it.",
-            severity=2,
-            manoeuvre=m.name,
-            log=m.log,
-        )
-        return
-    if m.do != "turn":
-        return
-    if not done.complete and m.recorded == "whole":
-        missing = done.missing_angle
-        yield Finding(
-            id=f"segment/incomplete_turn/{m.name}",
-            cause="incomplete_turn",
-            sensor="gyro",
-            size=None if missing is None else degrees(missing),
-            unit="°",
-            sentence=f"{m.name}: {done.sentence}",
-            consequence="Its angle is not known, so it gives no scale factor.",
-            action="It is left out of the angle method. Record it again.",
-            severity=2,
-            manoeuvre=m.name,
-            log=m.log,
-        )
-    turned, wanted = (done.rate, m.rate) if m.rate is not None else (done.angle, m.angle)
-    if turned is None or wanted is None:
-        return
-    ratio = turned / wanted
-    if ratio < 0:
-        yield Finding(
-            id=f"segment/wrong_direction/{m.name}",
-            cause="wrong_direction",
-            sensor="gyro",
-            size=ratio,
-            sentence=f"{m.name} turns against the planned direction.",
-            consequence="The sign of its scale factor would be wrong; it is left out.",
-            action="Correct the sign of degrees, or the axes of the gyros.",
-            severity=3,
-            manoeuvre=m.name,
-            log=m.log,
-        )
-    elif m.rate is not None and abs(ratio - 1) > tolerance:
-        swapped = min(abs(ratio * pi / 180 - 1), abs(ratio * 180 / pi - 1)) < tolerance
-        cause = ": degrees are taken for radians, or the other way round" if swapped else ""
-        yield Finding(
-            id=f"segment/wrong_rate/{m.name}",
-            cause="wrong_rate",
-            sensor="gyro",
-            size=ratio,
-            sentence=f"{m.name} turns at {degrees(turned):.4g} °/s, {ratio:.6g} times the planned"
-            f" {degrees(wanted):.4g} °/s{cause}.",
-            consequence="Its angle does not agree with the plan either.",
-            action="Correct the rate of the plan, or the unit or count size of the gyros.",
-            severity=3,
-            manoeuvre=m.name,
-            log=m.log,
-        )
+    return float(np.average(about[steady], weights=moving["count"].to_numpy(np.float64)[steady]))

@@ -25,27 +25,65 @@ class Part:
     after: int
 
 
-def match(one: Binned, found: Sequence[Stretch], level: Array) -> dict[str, int | None]:
-    """For each manoeuvre of the window its stretch, None where it is not found."""
-    sought = [m for m in one.window.manoeuvres if m.do != "positions"]
-    scores = np.array([[_score(one, stretch, m, level) for stretch in found] for m in sought])
-    places = align(scores.reshape(len(sought), len(found)))
+@dataclass(frozen=True)
+class Seen:
+    """What a stretch shows: seconds; force and rate, (3,), means; turned, (3,), angles, rad.
+
+    NaN where an axis is not recorded; rates and angles are those above the gyros' level at rest.
+    unsure: (3,), rad/s, sigma of the mean rate.
+    """
+
+    moves: bool
+    seconds: float
+    force: Array
+    rate: Array
+    turned: Array
+    unsure: Array
+
+
+def seen(one: Binned, found: Sequence[Stretch], level: Array) -> list[Seen]:
+    """What each stretch of a window shows; `level` is what the gyros read at rest."""
+    return [_seen(one, stretch, level) for stretch in found]
+
+
+def _seen(one: Binned, stretch: Stretch, level: Array) -> Seen:
+    inside = slice(stretch.first, stretch.after)
+    rates, seconds = one.rates[inside] - level, one.seconds[inside]
+    mean, number = _mean(rates), np.isfinite(rates).sum(axis=0)
+    angles = np.nansum(rates * seconds[:, None], axis=0)
+    return Seen(
+        stretch.moves,
+        float(seconds.sum()),
+        _mean(one.forces[inside]),
+        mean,
+        np.where(number > 0, angles, np.nan),
+        np.sqrt(_mean((rates - mean) ** 2) / np.maximum(number, 1)),
+    )
+
+
+def _mean(values: Array) -> Array:
+    """Means of the columns of (k, 3), NaN where nothing is."""
+    there = np.isfinite(values)
+    number = there.sum(axis=0)
+    total = np.where(there, values, 0.0).sum(axis=0)
+    return np.where(number > 0, total / np.maximum(number, 1), np.nan)
+
+
+def match(manoeuvres: Sequence[Manoeuvre], shown: Sequence[Seen]) -> dict[str, int | None]:
+    """For each manoeuvre of a window its stretch, None where it is not found."""
+    sought = [m for m in manoeuvres if m.do != "positions"]
+    scores = np.array([[_score(one, m) for one in shown] for m in sought], np.float64)
+    places = align(scores.reshape(len(sought), len(shown)))
     return {m.name: place for m, place in zip(sought, places, strict=True)}
 
 
-def _score(one: Binned, stretch: Stretch, m: Manoeuvre, level: Array) -> float:
-    inside = slice(stretch.first, stretch.after)
-    if stretch.moves is (m.do == "rest"):
+def _score(shown: Seen, m: Manoeuvre) -> float:
+    if shown.moves is (m.do == "rest"):
         return 0.0
     if m.do == "rest":
-        forces = one.forces[inside]
-        there = np.isfinite(forces).all(axis=1)
-        force = forces[there].mean(axis=0) if there.any() else np.full(3, np.nan)
-        return rest_score(float(one.seconds[inside].sum()), m.seconds, force, m.up)
-    about = one.about(m.axis, level)[inside]
-    if m.recorded == "steady":
-        return turn_score(float(np.nanmean(about)), m.rate)
-    return turn_score(float(np.nansum(about * one.seconds[inside])), m.angle)
+        return rest_score(shown.seconds, m.seconds, shown.force, m.up)
+    steady = m.recorded == "steady"
+    return turn_score(shown.rate if steady else shown.turned, m.axis, m.rate if steady else m.angle)
 
 
 def motion(one: Binned, found: Sequence[Stretch], place: int) -> tuple[int, int]:

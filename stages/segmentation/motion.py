@@ -52,7 +52,7 @@ def moving(rates: Array, forces: Array, level: Array, threshold: float) -> Boole
     """
     recorded = ~np.isnan(rates).all(axis=0)
     if recorded.any():
-        away = np.nan_to_num(rates[:, recorded]) - level[recorded]
+        away = np.column_stack([_filled(rates[:, i]) - level[i] for i in np.flatnonzero(recorded)])
         return np.asarray(np.linalg.norm(away, axis=1) > threshold)
     forces = np.nan_to_num(forces)
     k = len(forces)
@@ -60,6 +60,12 @@ def moving(rates: Array, forces: Array, level: Array, threshold: float) -> Boole
     spread = np.ptp(np.stack(windows), axis=0)
     usual = 6 * np.quantile(np.linalg.norm(spread, axis=1), 0.25)
     return np.asarray(np.linalg.norm(spread, axis=1) > max(usual, LEVEL_CHANGE))
+
+
+def _filled(values: Array) -> Array:
+    """A channel with what is masked of it between its neighbours: clipped, it moves on."""
+    there = np.flatnonzero(np.isfinite(values))
+    return np.interp(np.arange(len(values)), there, values[there])
 
 
 def stretches(moves: Booleans, bin_seconds: float) -> list[Stretch]:

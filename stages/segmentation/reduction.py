@@ -4,12 +4,16 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from stages.contracts import tables
+from stages.contracts.masks import Masks
 from stages.contracts.parquet import Stream
 from stages.contracts.records import Clock
 from stages.contracts.samples import Integers, Sums, regular, sums_over
 from stages.segmentation.matching import Part
+
+Floats = NDArray[np.float64]
 
 TRACE_POINTS = 1200  # per log, what a figure shows
 Span = tuple[str, int, int]  # log, first record, record after the last
@@ -38,28 +42,34 @@ def blocks(
     samples: Stream,
     parts: Sequence[Part],
     gaps: pd.DataFrame,
-    masks: pd.DataFrame,
+    masks: Masks,
     clocks: Mapping[str, Clock],
     rest_block: float,
     turn_block: float,
 ) -> pd.DataFrame:
-    """Every part in blocks of equal length; none reaches across a gap."""
+    """Every part in blocks of equal length; none reaches across a gap, or masked gyros in a turn.
+
+    A turn has no blocks where its gyros are masked: what is missing stands in the block behind.
+    """
     spans: list[Span] = []
     owners: list[Part] = []
+    hidden = _hidden(parts, masks)
     for part in parts:
         seconds = rest_block if part.phase.startswith("rest") else turn_block
         length = max(1, round(seconds / clocks[part.log].step))
         cuts = {*range(part.first, part.after, length)}
         cuts |= {*gaps.loc[gaps["log"] == part.log, "record"].tolist()}
+        unseen = hidden.get(part.manoeuvre, np.array([], np.int64))
+        cuts |= {*unseen[np.diff(unseen, prepend=-2) > 1].tolist()}
+        cuts |= {*(unseen[np.diff(unseen, append=np.iinfo(np.int64).max) > 1] + 1).tolist()}
         starts = sorted(cut for cut in cuts if part.first <= cut < part.after)
+        kept = ~np.isin(starts, unseen)
         ends = [*starts[1:], part.after]
-        spans += [(part.log, a, b) for a, b in zip(starts, ends, strict=True)]
-        owners += [part] * len(starts)
-    masked = {
-        str(log): (rows["from_record"].to_numpy(np.int64), rows["to_record"].to_numpy(np.int64))
-        for log, rows in masks.groupby("log")
-    }
-    sums = _over(samples, spans, masked)
+        edges = zip(starts, ends, kept, strict=True)
+        new: list[Span] = [(part.log, first, after) for first, after, seen in edges if seen]
+        spans += new
+        owners += [part] * len(new)
+    sums = _over(samples, spans, masks)
     rows = [
         {
             "manoeuvre": owner.manoeuvre,
@@ -70,14 +80,63 @@ def blocks(
             "time": total.time[k],
             "seconds": total.count[k] * (clocks[log].duration or np.nan),
             "count": total.count[k],
+            "missing_s": 0.0,
             **dict(zip(tables.CHANNELS, total.mean[k], strict=True)),
             "table_angle": total.table_angle[k],
             "temperature": total.temperature[k],
             "mask_share": total.masked[k] / max(total.records[k], 1),
+            "first": total.first[k],
+            "last": total.last[k],
         }
         for owner, (log, first, after), (total, k) in zip(owners, spans, sums, strict=True)
+        if total.records[k] or owner.phase.startswith("rest")
     ]
-    return pd.DataFrame(rows) if rows else tables.BLOCKS.empty()
+    if not rows:
+        return tables.BLOCKS.empty()
+    table = pd.DataFrame(rows)
+    for _, turn in table[~table["phase"].str.startswith("rest")].groupby("manoeuvre"):
+        log = turn["log"].iloc[0]
+        after_gap = turn["from_record"].isin(gaps.loc[gaps["log"] == log, "record"])
+        table.loc[turn.index, "missing_s"] = _missing(turn, after_gap, clocks[log])
+    return table.drop(columns=["first", "last"])
+
+
+def _hidden(parts: Sequence[Part], masks: Masks) -> dict[str, Integers]:
+    """For each turn the records in motion whose gyros are not to be used.
+
+    A gyro that is masked in all of them is one that was not recorded, and hides no other.
+    """
+    turns: dict[str, list[Part]] = {}
+    for part in parts:
+        if not part.phase.startswith("rest"):
+            turns.setdefault(part.manoeuvre, []).append(part)
+    hidden = {}
+    for name, own in turns.items():
+        records = np.concatenate([np.arange(part.first, part.after) for part in own])
+        masked = masks.of(own[0].log, records)
+        gyros = masked.channels[:, len(tables.CHANNELS) // 2 :]
+        unseen = masked.lost | gyros[:, ~gyros.all(axis=0)].any(axis=1)
+        hidden[name] = records[unseen & ~masked.repeated]
+    return hidden
+
+
+def _missing(turn: pd.DataFrame, after_gap: pd.Series, clock: Clock) -> Floats:
+    """The time that is missing before each block of a turn, (k,), s; negative where time goes back.
+
+    By the stamps; where they tell a whole number of samples within their own scatter, that.
+    """
+    missing = np.zeros(len(turn))
+    step = clock.duration
+    if step is None:
+        return missing
+    pause = np.nan_to_num(turn["first"].to_numpy()[1:] - turn["last"].to_numpy()[:-1] - step)
+    hole = after_gap.to_numpy()[1:]
+    hole = hole | (turn["from_record"].to_numpy()[1:] != turn["to_record"].to_numpy()[:-1])
+    scatter = np.sqrt(np.mean(pause[~hole] ** 2)) if (~hole).any() else 0.0
+    whole = step * np.round(pause / step)
+    near = np.abs(pause - whole) <= max(3 * scatter, 1e-3 * step)
+    missing[1:] = np.where(hole, np.where(near, whole, pause), 0.0)
+    return missing
 
 
 def traces(samples: Stream, ends: Mapping[str, int]) -> pd.DataFrame:
@@ -103,7 +162,7 @@ def traces(samples: Stream, ends: Mapping[str, int]) -> pd.DataFrame:
 def _over(
     samples: Stream,
     spans: Sequence[Span],
-    masks: Mapping[str, tuple[Integers, Integers]] | None = None,
+    masks: Masks | None = None,
 ) -> list[tuple[Sums, int]]:
     """For each span the sums of its log, and its place in them."""
     order: dict[str, list[int]] = {}

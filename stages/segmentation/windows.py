@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from stages.contracts.masks import Masks
 from stages.contracts.parquet import Stream
 from stages.contracts.records import Clock, Manoeuvre
 from stages.contracts.samples import Integers, pieces, regular, sums_over
@@ -35,7 +36,8 @@ class Binned:
     """A window in k bins of equal length.
 
     `edges`: (k + 1,), records; `rates`, `forces`: (k, 3), rad/s and m/s², NaN where not
-    recorded; `seconds`: (k,), what the means are sums over; `first_s`, `last_s`: (k,).
+    recorded; where a gyro is masked its rate is on a straight line; `seconds`: (k,), what the
+    means are sums over; `first_s`, `last_s`: (k,).
     """
 
     window: Window
@@ -53,8 +55,9 @@ class Binned:
 
     @property
     def bin_seconds(self) -> float:
-        """The length of a bin, s."""
-        return float(np.median(self.seconds)) if self.bins else BIN
+        """The length of a bin that is not masked, s."""
+        there = self.seconds[self.seconds > 0]
+        return float(np.median(there)) if len(there) else BIN
 
     def about(self, axis: Array, level: Array) -> Array:
         """Rate about an axis, (k,), rad/s; `level` is what the gyros read at rest."""
@@ -102,7 +105,7 @@ def _selected(samples: Stream, manoeuvres: Sequence[Manoeuvre]) -> dict[str, tup
 
 
 def binned(
-    samples: Stream, found: Sequence[Window], clocks: Mapping[str, Clock]
+    samples: Stream, found: Sequence[Window], clocks: Mapping[str, Clock], masks: Masks
 ) -> Iterator[Binned]:
     """Every window in bins, all in one pass over the samples; windows ascend within a log."""
     cut: dict[str, list[tuple[Integers, Integers]]] = {}
@@ -114,7 +117,7 @@ def binned(
         log: (np.concatenate([f for f, _ in cuts]), np.concatenate([a for _, a in cuts]))
         for log, cuts in cut.items()
     }
-    sums = sums_over(samples, stretches)
+    sums = sums_over(samples, stretches, masks)
     used = dict.fromkeys(cut, 0)
     for window in found:
         first, after = cut[window.log].pop(0)
@@ -124,9 +127,21 @@ def binned(
         yield Binned(
             window,
             np.append(first, after[-1:]),
-            total.mean[part, 3:],
+            _straight(total.mean[part, 3:]),
             total.mean[part, :3],
             total.count[part] * clocks[window.log].step if len(first) else np.array([]),
             total.first[part],
             total.last[part],
         )
+
+
+def _straight(rates: Array) -> Array:
+    """The rates of bins, (k, 3), and straight lines over the bins in which a gyro is masked.
+
+    So a turn stays one where a stretch of it is masked; no angle is made of these rates.
+    """
+    place, filled = np.arange(len(rates)), rates.copy()
+    for i, there in enumerate(np.isfinite(rates).T):
+        if there.any():
+            filled[:, i] = np.interp(place, place[there], rates[there, i])
+    return filled

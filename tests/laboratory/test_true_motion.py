@@ -228,5 +228,5 @@ def test_normal_gravity_of_wgs84() -> None:
     """NIMA TR8350.2, table 3.4: at the equator and at the pole."""
     assert normal_gravity(0.0, 0.0) == pytest.approx(9.7803253359, abs=1e-10)
     assert normal_gravity(pi / 2, 0.0) == pytest.approx(9.8321849378, abs=1e-9)
-    # discovery.md, section 1: 9.793571 at 30 m above 30.53 degrees north
+    # design study, section 1: 9.793571 at 30 m above 30.53 degrees north
     assert normal_gravity(radians(30.53), 30.0) == pytest.approx(9.793571, abs=1e-6)

@@ -20,6 +20,9 @@ DEGREE = np.pi / 180
 INTERVAL = 0.01
 REST_S, TURN_S = 300.0, 58.0
 GAP = (21.89, 33.87)
+GAP_LINE = 2192  # the first record after it, numbered from 0; lines are numbered from 1
+GAP_FINDING = "quality/gap/z-backward.asc/2192"
+RINGING_FINDING = "quality/oscillation/gyro_x"
 AXES = "xyz"
 PAIRS = [(i, j) for i in range(3) for j in range(3) if i != j]
 SCALE = {"accel": (3.2852e-4, 3.2826e-4, 2.3567e-4), "gyro": (6.151e-4, -1.62e-5, 6.442e-4)}
@@ -60,32 +63,36 @@ def campaign(logs: Collection[str] | None = None) -> dict[str, Any]:
     manoeuvres = _manoeuvres()
     traces = [_trace(row, generator) for row in manoeuvres if logs is None or row["log"] in logs]
     made: dict[str, Any] = {
-        "campaign": _frame(tables.CAMPAIGN, [_about()]),
-        "known": _frame(tables.KNOWN, _known()),
-        "sensors": _frame(tables.SENSORS, _sensors()),
-        "inputs": _frame(tables.INPUTS, _inputs(manoeuvres)),
-        "manoeuvres": _frame(tables.MANOEUVRES, manoeuvres),
-        "accounts": _frame(tables.ACCOUNTS, _accounts(manoeuvres)),
-        "refused": _frame(tables.REFUSED, _refused()),
-        "clocks": _frame(tables.CLOCKS, _clocks(manoeuvres)),
-        "quality_findings": _frame(tables.FINDINGS, _quality_findings()),
-        "segment_findings": _frame(tables.FINDINGS, _segment_findings()),
-        "segments": _frame(tables.SEGMENTS, _segments(manoeuvres)),
-        "performed": _frame(tables.PERFORMED, _performed(manoeuvres)),
+        "campaign": rows_as(tables.CAMPAIGN, [_about()]),
+        "known": rows_as(tables.KNOWN, _known()),
+        "sensors": rows_as(tables.SENSORS, _sensors()),
+        "inputs": rows_as(tables.INPUTS, _inputs(manoeuvres)),
+        "manoeuvres": rows_as(tables.MANOEUVRES, manoeuvres),
+        "accounts": rows_as(tables.ACCOUNTS, _accounts(manoeuvres)),
+        "refused": rows_as(tables.REFUSED, _refused()),
+        "clocks": rows_as(tables.CLOCKS, _clocks(manoeuvres)),
+        "quality_findings": rows_as(tables.FINDINGS, _quality_findings()),
+        "masks": tables.MASKS.empty(),
+        "gaps": rows_as(tables.GAPS, [_gap()]),
+        "quality_close_ups": pd.concat([_gap_close_up(generator), _ringing(generator)]),
+        "segment_findings": rows_as(tables.FINDINGS, _segment_findings()),
+        "segment_close_ups": tables.CLOSE_UPS.empty(),
+        "segments": rows_as(tables.SEGMENTS, _segments(manoeuvres)),
+        "performed": rows_as(tables.PERFORMED, _performed(manoeuvres)),
         "traces": pd.concat(traces, ignore_index=True) if traces else tables.TRACES.empty(),
-        "noise": _frame(tables.NOISE, _noise(manoeuvres, generator)),
+        "noise": rows_as(tables.NOISE, _noise(manoeuvres, generator)),
     }
     for stage, other in (("accelerometer", "six_position"), ("gyroscope", "turns")):
         parameters = _parameters(stage, "joint") + _parameters(stage, other)
-        made[f"{stage}_parameters"] = _frame(tables.PARAMETERS, parameters)
-        made[f"{stage}_fit"] = _frame(tables.FIT, _fit(stage, other))
-        made[f"{stage}_averaging"] = _frame(tables.AVERAGING, _averaging(parameters, generator))
+        made[f"{stage}_parameters"] = rows_as(tables.PARAMETERS, parameters)
+        made[f"{stage}_fit"] = rows_as(tables.FIT, _fit(stage, other))
+        made[f"{stage}_averaging"] = rows_as(tables.AVERAGING, _averaging(parameters, generator))
     made |= _of_the_model(manoeuvres, made["gyroscope_parameters"], generator)
-    made["checks"] = _frame(tables.CHECKS, _checks(manoeuvres))
+    made["checks"] = rows_as(tables.CHECKS, _checks(manoeuvres))
     made["compensated_traces"] = _compensated(made["traces"])
-    made["differences"] = _frame(tables.DIFFERENCES, _differences())
-    made["archived"] = _frame(tables.ARCHIVED, [_archived()])
-    made["earlier"] = _frame(tables.EARLIER, _earlier(made, generator))
+    made["differences"] = rows_as(tables.DIFFERENCES, _differences())
+    made["archived"] = rows_as(tables.ARCHIVED, [_archived()])
+    made["earlier"] = rows_as(tables.EARLIER, _earlier(made, generator))
     maker: dict[str, Any] = {
         "settings": {"rest_block": 5.0},
         "code": "c0de" * 16,
@@ -107,7 +114,7 @@ def poor() -> dict[str, Any]:
     return {**empty, "campaign": made["campaign"], "provenance": provenance}
 
 
-def _frame(table: Any, rows: Rows) -> pd.DataFrame:
+def rows_as(table: Any, rows: Rows) -> pd.DataFrame:
     """Rows with the columns of the contract; what a row leaves out is a gap."""
     names = [column.name for column in table.columns]
     unknown = {name for row in rows for name in row} - set(names)
@@ -273,26 +280,28 @@ def _clocks(manoeuvres: Rows) -> Rows:
 def _quality_findings() -> Rows:
     return [
         {
-            "id": "quality/gap/z-backward.asc/2192",
+            "id": GAP_FINDING,
             "cause": "gap",
             "severity": 1,
             "log": "z-backward.asc",
             "from_s": GAP[0],
             "to_s": GAP[1],
             "count": 1,
-            "size": GAP[1] - GAP[0],
-            "unit": "s",
+            "size": 1197.0,
+            "unit": "samples",
             "consequence": "The turn is not whole: a sum over it lacks 119.8°.",
             "action": "The manoeuvre is left out where its whole angle is used. Record it again.",
             "sentence": "Between lines 2192 and 2193 of z-backward.asc 11.98 s are missing.",
         },
         {
-            "id": "quality/oscillation/gyro_x",
+            "id": RINGING_FINDING,
             "cause": "oscillation",
             "severity": 1,
             "sensor": "gyro",
             "axis": "x",
             "log": "x-forward.asc",
+            "from_s": 12.0,
+            "to_s": 46.0,
             "count": 2,
             "size": 0.01,
             "unit": "rad/s",
@@ -308,7 +317,7 @@ def _segment_findings() -> Rows:
     return [
         {
             "id": "segment/incomplete/z-backward",
-            "cause": "incomplete turn",
+            "cause": "incomplete_turn",
             "severity": 2,
             "manoeuvre": "z-backward",
             "log": "z-backward.asc",
@@ -320,6 +329,56 @@ def _segment_findings() -> Rows:
             "sentence": "Of z-backward 240.2° of 360° were recorded.",
         }
     ]
+
+
+def _gap() -> dict[str, Any]:
+    missing = round((GAP[1] - GAP[0]) / INTERVAL) - 1
+    stretch = {"from_s": GAP[0], "to_s": GAP[1], "missing": missing}
+    return {"log": "z-backward.asc", "record": GAP_LINE, **stretch}
+
+
+def _gap_close_up(generator: np.random.Generator) -> pd.DataFrame:
+    """Sixty records on both sides of the gap, as S0 shows its lines 2192 and 2193."""
+    places = np.arange(-60, 60)
+    time = np.where(places < 0, GAP[0] + (places + 1) * INTERVAL, GAP[1] + places * INTERVAL)
+    record = GAP_LINE + places
+    return close_up(GAP_FINDING, "z-backward", record, time, generator, concerned=places == 99)
+
+
+def _ringing(generator: np.random.Generator) -> pd.DataFrame:
+    """The steady part of a turn about x from its beginning on."""
+    record = 1140 + np.arange(400)
+    time = record * INTERVAL
+    frame = close_up(RINGING_FINDING, "x-forward", record, time, generator, concerned=time >= 12)
+    frame["gyro_x"] += 0.01 * np.sin(2 * np.pi * 20 * time + 0.3) * (time >= 12)
+    return frame
+
+
+def close_up(
+    finding: str,
+    manoeuvre: str,
+    record: npt.NDArray[np.int64],
+    time: npt.NDArray[np.float64],
+    generator: np.random.Generator,
+    *,
+    concerned: npt.NDArray[np.bool_],
+) -> pd.DataFrame:
+    """Records of a manoeuvre as its log has them, some of which a finding is about."""
+    [row] = [row for row in _manoeuvres() if row["manoeuvre"] == manoeuvre]
+    columns: dict[str, Any] = {
+        "finding": finding,
+        "log": row["log"],
+        "record": record,
+        "line": record + 1,
+        "time": time,
+        "concerned": concerned,
+    }
+    for i, axis in enumerate(AXES):
+        force = GRAVITY * row[f"up_{axis}"] + BIAS["accel"][i]
+        rate = _rate(row, time) * (row.get(f"about_{axis}") or 0.0) + BIAS["gyro"][i]
+        for name, value in (("accel", force), ("gyro", rate)):
+            columns[f"{name}_{axis}"] = value + NOISE[name] * generator.standard_normal(len(time))
+    return pd.DataFrame(tables.CLOSE_UPS.arrow(pd.DataFrame(columns)).to_pandas())
 
 
 def _phases(row: dict[str, Any]) -> list[tuple[str, float, float]]:
@@ -362,6 +421,7 @@ def _performed(manoeuvres: Rows) -> Rows:
                 "manoeuvre": row["manoeuvre"],
                 "found": True,
                 "complete": whole,
+                "bridged": not whole,
                 "angle": angle,
                 "missing_angle": missing if turn else None,
                 "missing_s": 0.0 if whole else GAP[1] - GAP[0],
@@ -518,13 +578,13 @@ def _of_the_model(
     simulated = pd.concat([_simulated(row, generator) for row in turns], ignore_index=True)
     return {
         "simulated": Held(simulated),
-        "fidelity": _frame(tables.FIDELITY, _fidelity(manoeuvres, turns)),
-        "scores": _frame(tables.SCORES, _scores()),
-        "effects": _frame(tables.EFFECTS, _effects()),
-        "lines": _frame(tables.LINES, _lines(turns)),
-        "gain": _frame(tables.GAIN, _gain()),
-        "extended_parameters": _frame(tables.PARAMETERS, _extended(parameters)),
-        "criticism_findings": _frame(tables.FINDINGS, _criticism_findings()),
+        "fidelity": rows_as(tables.FIDELITY, _fidelity(manoeuvres, turns)),
+        "scores": rows_as(tables.SCORES, _scores()),
+        "effects": rows_as(tables.EFFECTS, _effects()),
+        "lines": rows_as(tables.LINES, _lines(turns)),
+        "gain": rows_as(tables.GAIN, _gain()),
+        "extended_parameters": rows_as(tables.PARAMETERS, _extended(parameters)),
+        "criticism_findings": rows_as(tables.FINDINGS, _criticism_findings()),
         "compensation_findings": tables.FINDINGS.empty(),
     }
 

@@ -1,4 +1,4 @@
-"""The envelope that is drawn: it loses no spike and hides no gap."""
+"""The envelope of a log as it is drawn: it loses no spike and hides no gap."""
 
 from __future__ import annotations
 
@@ -7,20 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from stages.reporting import findings, raw_data
+from stages.reporting import raw_data
+from stages.reporting.logs import MOST_MISSING, envelope, logs
 from tests.reporting import made_up
 
 
 def drawn(tables: dict[str, Any]) -> list[Any]:
-    ranked = findings.ranked((tables["quality_findings"], tables["segment_findings"]))
-    return raw_data.logs(tables["traces"], tables["segments"], tables["clocks"], ranked)
+    found = ("traces", "segments", "clocks", "gaps")
+    return logs(*(tables[name] for name in found))
 
 
 def test_a_single_spike_survives_every_reduction() -> None:
     tables = made_up.campaign(logs=("x-up.asc",))
     tables["traces"].loc[317, "most_gyro_y"] = 0.5
     [log] = drawn(tables)
-    _, low, high = raw_data.envelope(log, "gyro_y", 40)
+    _, low, high = envelope(log, "gyro_y", 40)
     assert len(low) == 40
     assert high.max() == 0.5
 
@@ -28,15 +29,15 @@ def test_a_single_spike_survives_every_reduction() -> None:
 def test_the_curve_breaks_off_where_samples_are_missing() -> None:
     [log] = drawn(made_up.campaign(logs=("z-backward.asc",)))
     assert log.missing == (made_up.GAP,)
-    time, low, _ = raw_data.envelope(log, "gyro_z", 60)
+    time, low, _ = envelope(log, "gyro_z", 60)
     [broken] = np.flatnonzero(np.isnan(low))
     assert time[broken - 1] <= made_up.GAP[0]
     assert time[broken + 1] >= made_up.GAP[1]
 
 
-def test_a_missing_stretch_that_no_finding_tells_is_seen_in_the_envelope() -> None:
+def test_a_missing_stretch_that_no_gap_tells_is_seen_in_the_envelope() -> None:
     tables = made_up.campaign(logs=("z-backward.asc",))
-    tables["quality_findings"] = tables["quality_findings"].iloc[:0]
+    tables["gaps"] = tables["gaps"].iloc[:0]
     # whole rows of the envelope are missing
     tables["traces"] = tables["traces"].drop(index=[20, 21, 22]).reset_index(drop=True)
     [log] = drawn(tables)
@@ -55,7 +56,7 @@ def test_logs_without_time_are_drawn_over_records() -> None:
 
 def test_identifiers_of_figures_do_not_collide() -> None:
     tables = made_up.campaign(logs=("x-up.asc", "z-backward.asc"))
-    section = raw_data.section(tables["traces"], tables["segments"], tables["clocks"], [])
+    section = raw_data.section(drawn(tables))
     figures = "".join(getattr(part, "drawn", "") for part in section.parts)
     identifiers = re.findall(r' id="([^"]+)"', figures)
     assert identifiers
@@ -66,5 +67,5 @@ def test_thousands_of_gaps_are_told_but_not_all_drawn() -> None:
     tables = made_up.campaign(logs=("x-up.asc",))
     tables["traces"] = tables["traces"].iloc[::2].reset_index(drop=True)
     [log] = drawn(tables)
-    assert len(log.missing) == raw_data.MOST_MISSING
+    assert len(log.missing) == MOST_MISSING
     assert log.lost > 140

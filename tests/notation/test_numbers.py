@@ -2,9 +2,9 @@
 
 import pytest
 
-from stages.reporting import numbers
-from stages.reporting.numbers import FIGURE_SPACE, POINT_SPACE
-from stages.reporting.units import quantity
+from stages.notation import numbers
+from stages.notation.numbers import FIGURE_SPACE, POINT_SPACE
+from stages.notation.units import quantity
 
 
 @pytest.mark.parametrize(

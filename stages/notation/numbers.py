@@ -8,6 +8,7 @@ from math import floor, isfinite, log10
 FIGURE_SPACE = "\u2007"  # as wide as a digit
 POINT_SPACE = "\u2008"  # as wide as a decimal point
 THIN_SPACE = "\u202f"
+KEPT = frozenset(("\n", FIGURE_SPACE, POINT_SPACE, THIN_SPACE))  # no control characters
 DIGITS_OF_SIGMA = 2
 MOST_DECIMALS = 15
 
@@ -110,7 +111,10 @@ def counted(count: int, one: str, many: str = "") -> str:
 
 def shortened(text: str, most: int) -> str:
     """The beginning of a long text, control characters made visible."""
-    visible = "".join(
-        letter if letter.isprintable() or letter == "\n" else "�" for letter in text
-    ).strip()
-    return visible if len(visible) <= most else visible[: most - 1].rstrip() + "…"
+    seen = visible(text).strip()
+    return seen if len(seen) <= most else seen[: most - 1].rstrip() + "…"
+
+
+def visible(text: str) -> str:
+    """A text from outside in which nothing can act on a terminal: control characters show as �."""
+    return "".join(letter if letter.isprintable() or letter in KEPT else "�" for letter in text)

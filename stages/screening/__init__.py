@@ -1,0 +1,1 @@
+"""Showing the logs to the detectors, and turning what they see into findings and masks."""

@@ -1,0 +1,85 @@
+"""An axis that stands still is found for as long as it does; coarse counts stand still by right."""
+
+import numpy as np
+import pytest
+from on_a_table import carried, recorded, rest, tumble, turn
+from recorded_by_hand import COUNT, NOISE, assert_told
+
+from stages.detectors.dead_axis import DeadAxis
+
+
+def found(values, **of_log):
+    one, log = recorded(values, **of_log)
+    events = list(DeadAxis().finds(one, log))
+    for event in events:
+        assert_told(DeadAxis(), event, "log")
+    return events
+
+
+def stretches(values, **of_log):
+    return [(event.channel, event.first, event.after) for event in found(values, **of_log)]
+
+
+@pytest.mark.parametrize("samples", [14, 100, 2000])
+def test_a_frozen_axis_is_found_as_long_as_it_is_frozen(samples):
+    values = rest(5000)
+    values[1500 : 1500 + samples, 4] = values[1500, 4] + 3 * COUNT[4]
+    ((channel, first, after),) = stretches(values)
+    assert channel == 4
+    assert abs(first - 1500) <= 1
+    assert abs(after - 1500 - samples) <= 1
+
+
+@pytest.mark.parametrize("samples", [4, 10, 500])
+def test_zeros_in_a_turn_are_found_however_short(samples):
+    values = turn()
+    values[2000 : 2000 + samples, 5] = 0.0
+    (event,) = found(values)
+    assert (event.channel, event.first, event.after) == (5, 2000, 2000 + samples)
+    assert "gyro z reads 0 rad/s" in DeadAxis().tells(event, "log").sentence
+
+
+def test_an_axis_that_never_changes_is_measured_by_the_other_axes():
+    values = rest(3000)
+    values[:, 1] = 0.0
+    (event,) = found(values)
+    assert (event.channel, event.first, event.after) == (1, 0, 3000)
+    words = DeadAxis().tells(event, "up.asc")
+    assert "accelerometer y reads 0 m/s² in all 3\u202f000 readings" in words.sentence
+    assert "Their mean is 0 m/s²" in words.consequence
+
+
+def test_a_sensor_that_never_changes_is_dead_where_the_other_is_not():
+    values = rest(3000)
+    values[:, 3:] = 0.0
+    assert [channel for channel, _, _ in stretches(values)] == [3, 4, 5]
+
+
+def test_of_readings_without_any_noise_nothing_is_said():
+    values = np.tile([0.0, 0.0, 9.81, 0.0, 0.0, 0.0], (5000, 1))
+    assert found(values) == []
+    values[:, 3:] = np.nan
+    assert found(values) == []
+
+
+def test_a_channel_that_is_not_recorded_is_not_dead():
+    values = rest(3000)
+    values[:, 5] = np.nan
+    assert found(values) == []
+
+
+@pytest.mark.parametrize("noise", [0.02, 0.1, 0.3, 0.5, 0.7, 1.0, 2.0])
+def test_coarse_counts_are_not_dead(noise):
+    for seed in range(3):
+        generator = np.random.default_rng(seed)
+        # Rests at levels that lie anywhere between two counts: some never change.
+        levels = np.repeat(generator.uniform(0, 1, (8, 6)), 3000, axis=0)
+        plain = np.rint(levels + noise * generator.standard_normal(levels.shape)) * COUNT
+        assert found(plain) == []
+        assert found(carried(levels * COUNT, seed, noise * COUNT)) == []
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_clean_readings_are_silent(seed):
+    assert [found(values) for values in (rest(200_000, seed), turn(seed), tumble(seed))] == [[]] * 3
+    assert found(rest(200_000, seed, noise=NOISE / 3)) == []

@@ -1,0 +1,248 @@
+"""Rests that are none: biases that jump, tables that move; and what must not be taken for it."""
+
+import numpy as np
+import pytest
+from recorded_by_hand import GRAVITY, INTERVAL, NOISE, given, log, piece, rest, stamps
+from scipy.signal import lfilter
+
+from stages.detectors.bias_jump import BiasJump
+from stages.detectors.detector import CHANNELS, Event
+from stages.detectors.table_moving import TableMoving
+
+ARC_SECOND = np.radians(1 / 3600)
+N = 3000  # records: half a minute
+K = 1200  # where something happens
+FORCE = np.array([0.02, -0.01, GRAVITY])  # of the rest by hand, z up
+
+
+def seen(values: np.ndarray, position: float = 2.0) -> list[tuple[str, Event]]:
+    """What both detectors see in a rest; `position`: arc seconds, how well it was set."""
+    one = piece(values, stamps(len(values)))
+    known = log(one, given(position_sigma=position * ARC_SECOND))
+    found = [(d, e) for d in (TableMoving(), BiasJump()) for e in d.finds(one, known)]
+    for detector, event in found:
+        words = detector.tells(event, "z-up")
+        assert words.sentence.startswith("z-up:") and "nan" not in str(words)
+    return [(detector.name, event) for detector, event in found]
+
+
+def jumping(channel: int, sigmas: float, seed: int = 1, until: int = N) -> np.ndarray:
+    values = rest(N, seed)
+    values[K:until, channel] += sigmas * NOISE[channel]
+    return values
+
+
+def turning(rate: np.ndarray, seed: int = 1) -> np.ndarray:
+    """A rest in which the case turns at small rates, (n, 3), rad/s: both sensors feel it."""
+    values = rest(len(rate), seed)
+    values[:, 3:] += rate
+    values[:, :3] += np.cross(FORCE, np.cumsum(rate, axis=0) * INTERVAL)
+    return values
+
+
+def tilting(arc_seconds: float, first: int = 0, after: int = N, axis: int = 0) -> np.ndarray:
+    rate = np.zeros((N, 3))
+    rate[first:after, axis] = arc_seconds * ARC_SECOND / ((after - first) * INTERVAL)
+    return turning(rate)
+
+
+# ---- jumps
+
+
+@pytest.mark.parametrize("channel", range(6), ids=CHANNELS)
+@pytest.mark.parametrize("sigmas", [50, -10, 4])
+def test_a_jump_is_found_to_within_two_records(channel, sigmas):
+    for seed in range(10):
+        ((name, event),) = seen(jumping(channel, sigmas, seed))
+        assert (name, event.channel) == ("bias_jump", channel)
+        assert abs(event.first - K) <= 2
+        assert event.after == N
+        # The noise stated by hand is that of S0; a step of 4 of its sigmas is known to 3 %.
+        assert event.size / NOISE[channel] == pytest.approx(sigmas, abs=0.6)
+        assert event.p_value < 1e-4
+
+
+def test_a_jump_of_one_sigma_is_found_with_an_uncertain_place():
+    number = inside = 0
+    for seed in range(30):
+        found = seen(jumping(seed % 6, 1, seed))
+        assert {name for name, _ in found} <= {"bias_jump"}
+        for _, event in found:
+            number += 1
+            off = K * INTERVAL - event.from_s
+            inside += -event.facts.early - 1e-9 <= off <= event.facts.late + 1e-9
+    assert number >= 28
+    assert inside >= 0.85 * number  # 95 %
+
+
+def test_a_jump_that_goes_back_is_one_event():
+    ((name, event),) = seen(jumping(1, 10, until=K + 150))
+    assert name == "bias_jump"
+    assert abs(event.first - K) <= 2 and abs(event.after - (K + 150)) <= 2
+    words = BiasJump().tells(event, "z-up")
+    assert "and back" in words.sentence
+    assert event.facts.share == pytest.approx(0.05, abs=0.002)
+
+
+def test_the_consequence_is_the_jump_times_its_share():
+    ((_, event),) = seen(jumping(2, 10))
+    words = BiasJump().tells(event, "z-up")
+    # 10 × 1.07e-3 m/s² over 60 %; half of it is bias of the pair, and over 2 g ppm of scale.
+    assert "+0.0064" in words.consequence and "60%" in words.consequence
+    assert "+0.0032" in words.consequence
+    assert "+328 ppm" in words.consequence or "+33" in words.consequence or "+32" in words.consequence
+
+
+def test_two_jumps_of_a_channel_are_two_events():
+    values = jumping(4, 20)
+    values[2000:, 4] += 15 * NOISE[4]
+    places = [event.first for _, event in seen(values)]
+    assert places == pytest.approx([K, 2000], abs=2)
+
+
+# ---- silence
+
+
+def coloured(kind: str, seed: int) -> np.ndarray:
+    generator = np.random.default_rng(seed)
+    values, t = rest(N, seed), np.arange(N) * INTERVAL
+    white = generator.standard_normal((N, 6))
+    if kind == "random walk":  # K = 0.2 °/h/√h, and the accelerometers' 3e-4 m/s²/√h
+        k = np.array([3e-4 / 60] * 3 + [np.radians(0.2 / 3600) / 60] * 3)
+        values += np.cumsum(k * np.sqrt(INTERVAL) * white, axis=0)
+    if kind == "flicker":
+        values += 0.3 * NOISE * sum(
+            np.sqrt(1 - p**2) * lfilter([1], [1, -p], generator.standard_normal((N, 6)), axis=0)
+            for p in (0.9, 0.99, 0.999)
+        )
+    if kind == "excess noise":  # as S0's y axis, where it is level
+        values[:, 1] += 6e-3 * white[:, 1]
+    if kind == "oscillation":
+        values[:, 3] += 0.01 * np.sin(2 * np.pi * 20 * t + seed)
+        values[:, 0] += 0.02 * np.sin(2 * np.pi * 20 * t)
+    if kind == "sway":
+        values[:, 0] += 5e-3 * np.sin(2 * np.pi * 0.7 * t + seed)
+    if kind == "settling":  # the bias just after a motion
+        values += 30 * NOISE * np.exp(-t / (0.3 + seed % 5))[:, None]
+    if kind == "drift":
+        values += 10 * NOISE * (t / t[-1])[:, None]
+    if kind == "spikes":
+        values[generator.integers(0, N, 30), generator.integers(0, 6, 30)] += 0.5
+    return values
+
+
+KINDS = [
+    "white",
+    "random walk",
+    "flicker",
+    "excess noise",
+    "oscillation",
+    "sway",
+    "settling",
+    "drift",
+    "spikes",
+]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_noise_drift_and_settling_are_no_jump(kind):
+    jumps = [
+        (seed, event)
+        for seed in range(25)
+        for name, event in seen(coloured(kind, seed))
+        if name == "bias_jump"
+    ]
+    assert jumps == []
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ("settling", "drift")])
+def test_noise_is_no_motion(kind):
+    assert all(not seen(coloured(kind, seed)) for seed in range(25))
+
+
+# ---- motions
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize("arc_seconds", [20, 100, 500])
+def test_a_sudden_tilt_is_the_table_and_no_bias(arc_seconds, axis):
+    ((name, event),) = seen(tilting(arc_seconds, K, K + 10, axis))
+    assert name == "table_moving"
+    assert event.size == pytest.approx(arc_seconds, rel=0.15)
+    assert event.from_s == pytest.approx(K * INTERVAL, abs=1.1)
+    assert event.to_s == pytest.approx(K * INTERVAL, abs=2.1)
+    assert "the gyros turn along" in TableMoving().tells(event, "z-up").sentence
+
+
+@pytest.mark.parametrize("arc_seconds", [50, 200, 2000])
+def test_a_slow_creep_is_told_by_the_accelerometers(arc_seconds):
+    ((name, event),) = seen(tilting(arc_seconds))
+    assert (name, event.first, event.after) == ("table_moving", 0, N)
+    assert event.size == pytest.approx(arc_seconds, rel=0.05, abs=3)
+    assert "too slowly for the gyros" in TableMoving().tells(event, "z-up").sentence
+
+
+@pytest.mark.parametrize("arc_seconds", [100, 1000])
+def test_a_creep_that_begins_is_told_by_both(arc_seconds):
+    ((name, event),) = seen(tilting(arc_seconds, 1500, N))
+    assert name == "table_moving"
+    assert event.size == pytest.approx(arc_seconds, rel=0.1)
+    assert event.from_s == pytest.approx(15, abs=1.5)
+    assert "the gyros turn along" in TableMoving().tells(event, "z-up").sentence
+
+
+def test_what_only_the_accelerometers_show_and_the_gyros_deny_is_no_motion():
+    values = rest(N)
+    values[:, 0] += 5e-3 * (np.arange(N) / N) ** 2  # 105″, were it a tilt
+    assert seen(values) == []
+
+
+def test_a_warm_up_of_all_three_is_no_motion():
+    values = rest(N)
+    values[:, :3] += 5e-3 * (np.arange(N) / N)[:, None]
+    assert seen(values) == []
+
+
+def test_a_creep_within_the_uncertainty_of_the_position_is_not_told():
+    assert seen(tilting(500), position=3600) == []
+
+
+def test_a_knock_is_told_and_is_no_jump():
+    values = rest(N)
+    knock = np.exp(-np.arange(40) / 15) * np.sin(np.arange(40) * 0.9)
+    values[K : K + 40, 3] += 0.02 * knock
+    values[K : K + 40, 1] += 0.5 * knock
+    ((name, event),) = seen(values)
+    assert name == "table_moving" and event.severity == 1
+    assert "knocked" in TableMoving().tells(event, "z-up").sentence
+    assert event.from_s == pytest.approx(K * INTERVAL, abs=0.2)
+
+
+def test_a_jump_of_a_level_gyro_is_told_from_a_turn():
+    values = rest(N)
+    values[K:, 3] += 10 * NOISE[3]  # turning so for 18 s, the case would tilt by 0.4°
+    ((name, event),) = seen(values)
+    assert (name, event.channel) == ("bias_jump", 3)
+    turned = np.zeros((N, 3))
+    turned[K:, 0] = 10 * NOISE[3]
+    assert {name for name, _ in seen(turning(turned))} == {"table_moving"}
+
+
+def test_a_jump_about_the_vertical_says_what_it_may_be_as_well():
+    ((name, event),) = seen(jumping(5, 10))
+    assert name == "bias_jump"
+    assert "about the vertical would look the same" in BiasJump().tells(event, "z-up").sentence
+
+
+def test_masked_readings_do_not_count():
+    values = jumping(0, 10)
+    values[K:, 0] = np.nan  # quality has masked them
+    assert seen(values) == []
+
+
+def test_a_rest_without_time_is_not_judged():
+    values = jumping(0, 50)
+    one = piece(values)
+    known = log(one, given())
+    assert not list(BiasJump().finds(one, known))
+    assert not list(TableMoving().finds(one, known))

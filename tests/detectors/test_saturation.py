@@ -1,0 +1,114 @@
+"""A channel at the end of its range: stated, a full count, or told by the pile of its readings."""
+
+import numpy as np
+import pytest
+from on_a_table import RATE, recorded, rest, tumble, turn
+from recorded_by_hand import COUNT, INTERVAL, NOISE, assert_told
+
+from stages.detectors.saturation import Saturation
+
+
+def found(values, **of_log):
+    one, log = recorded(values, **of_log)
+    events = list(Saturation().finds(one, log))
+    for event in events:
+        assert_told(Saturation(), event, "log")
+    return events
+
+
+def clipped(values, channel, limit):
+    """The readings cut off at ±limit, and the records that this changed."""
+    limit = np.rint(limit / COUNT[channel]) * COUNT[channel]
+    after = values.copy()
+    after[:, channel] = np.clip(values[:, channel], -limit, limit)
+    return after, np.flatnonzero(after[:, channel] != values[:, channel])
+
+
+def limits(channel, limit):
+    return np.where(np.arange(6) == channel, limit, np.inf)
+
+
+def test_readings_at_the_stated_limit_are_found_one_by_one():
+    values = rest(3000)
+    values[1000:1012, 3] = [1, 2, 3, 4, 4.5, 4.8, 5, 5, 4, 3, 2, 1]
+    values[2000:2003, 3] = [-4, -5, -4]
+    values, touched = clipped(values, 3, 4.3656)
+    events = found(values, limit=limits(3, 4.3656))
+    assert [(event.first, event.after, event.size) for event in events] == [
+        (1004, 1008, 4),
+        (2001, 2002, 1),
+    ]
+    assert touched.tolist() == [1004, 1005, 1006, 1007, 2001]
+
+
+def test_what_is_lost_of_a_smooth_crest_is_told():
+    time = (np.arange(60) - 30) * INTERVAL
+    values = rest(3000)
+    crest = 5.0 * (1 - (time / 0.25) ** 2)
+    values[1000:1060, 4] += np.maximum(crest, 0)
+    after, _ = clipped(values, 4, 4.5)
+    (event,) = found(after, limit=limits(4, 4.5))
+    lost = float(np.sum(values[:, 4] - after[:, 4])) * INTERVAL
+    assert event.facts.lost == pytest.approx(lost, rel=0.15)
+    words = Saturation().tells(event, "log")
+    assert "the end of the range" in words.sentence
+    assert f"about {event.facts.lost:.4f}"[:11] in words.consequence
+
+
+def test_the_full_count_of_a_converter_needs_no_statement():
+    values = rest(3000)
+    values[1000:1010, 0] = 32767 * COUNT[0]
+    (event,) = found(values)
+    assert (event.first, event.after) == (1000, 1010)
+
+
+@pytest.mark.parametrize("sigma", [-300, -3, 0, 1, 1.5])
+def test_a_turn_cut_off_without_a_stated_limit_is_found(sigma):
+    values, touched = clipped(turn(), 5, RATE + sigma * NOISE[5])
+    events = found(values)
+    assert {event.channel for event in events} == {5}
+    assert events[0].p_value < 1e-6
+    # Readings that lay at the limit by themselves count as well.
+    assert touched[0] - 30 <= events[0].first <= touched[0]
+    assert touched[-1] < events[-1].after <= touched[-1] + 31
+    assert sum(event.size for event in events) >= len(touched)
+
+
+def test_both_ends_are_seen():
+    values, _ = clipped(np.vstack([turn(), -turn(2)]), 5, RATE - 0.01)
+    first, second = found(values)
+    assert first.facts.limit == -second.facts.limit > 0
+
+
+def test_a_dead_axis_a_frozen_one_and_a_leap_are_none():
+    values = turn()
+    values[2000:2500, 2] = 0.0
+    values[2000:2500, 5] = 0.0
+    values[100:400, 0] = values[100, 0]
+    values[3000:3300, 4] = 20 * NOISE[4]
+    assert found(values) == []
+
+
+@pytest.mark.parametrize("noise", [0.02, 0.1, 0.3, 0.5, 0.7, 1.0, 3.0])
+def test_coarse_counts_are_none(noise):
+    # Noise in counts, for plain rounding and for carry: then a steady turn has few values.
+    scatter = noise * COUNT
+    for seed in range(3):
+        values = turn(seed, noise=scatter)
+        assert found(values) == []
+        plain = np.rint((turn(seed) + 0.37 * COUNT) / (NOISE / noise)) * (NOISE / noise)
+        assert found(plain, quantum=NOISE / noise) == []
+
+
+def test_the_crests_of_an_oscillation_are_none():
+    time = np.arange(12_000) * INTERVAL
+    values = rest(12_000)
+    for channel, frequency in ((3, 20.0), (4, 1.7), (0, 37.0)):
+        crests = 500 * COUNT[channel] * np.sin(2 * np.pi * frequency * time)
+        values[:, channel] += np.rint(crests / COUNT[channel]) * COUNT[channel]
+    assert found(values) == []
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_clean_readings_are_silent(seed):
+    assert [found(values) for values in (rest(200_000, seed), turn(seed), tumble(seed))] == [[]] * 3

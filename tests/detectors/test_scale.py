@@ -1,0 +1,167 @@
+"""What a count is worth, gravity, temperature: named where wrong, silent where right."""
+
+import numpy as np
+import pytest
+from recorded_by_hand import COUNTS, GRAVITY, assert_told, given, log, piece, rest, seen, stamps
+
+from stages.detectors.gravity_error import GravityError
+from stages.detectors.temperature_drift import TemperatureDrift
+from stages.detectors.wrong_scale_factor import WrongScaleFactor, explanations
+
+
+def up(reading: float) -> np.ndarray:
+    """z up, with a specific force of `reading`."""
+    values = rest(1000)
+    values[:, 2] += reading - GRAVITY
+    return values
+
+
+@pytest.mark.parametrize("reading", [0.87 * GRAVITY, GRAVITY, 1.13 * GRAVITY])
+def test_a_large_bias_is_no_wrong_unit(reading):
+    assert not seen(WrongScaleFactor(), piece(up(reading), stamps(1000)))
+
+
+@pytest.mark.parametrize(
+    ("ratio", "said"),
+    [
+        (9.80665, "the values are in m/s² but are read as g"),
+        (1 / 9.80665, "the values are in g but are read as m/s²"),
+        (2.05, "counts_per_unit is 2 times too small"),
+        (0.26, "counts_per_unit is 4 times too large"),
+        (16384, "the values are counts, and counts_per_unit is missing"),
+        (5.5, "no known unit explains it"),
+    ],
+)
+def test_a_wrong_scale_factor_is_explained(ratio, said):
+    one = piece(up(ratio * GRAVITY), stamps(1000))
+    (event,) = seen(WrongScaleFactor(), one, recorded_on=None)
+    assert event.size == pytest.approx(ratio, rel=1e-3)
+    assert said in WrongScaleFactor().tells(event, "log").sentence
+    assert (WrongScaleFactor.severity, WrongScaleFactor.sensor) == (3, "accel")
+
+
+def test_the_quiet_part_of_a_log_is_looked_at():
+    values = rest(4000)
+    values[1000:3000, :3] += 30 * np.sin(np.arange(2000) / 9)[:, None]
+    assert not seen(WrongScaleFactor(), piece(values, stamps(4000)))
+
+
+def test_without_all_three_accelerometers_nothing_is_said():
+    values = rest(1000)
+    values[:, 1] = np.nan
+    assert not seen(WrongScaleFactor(), piece(values, stamps(1000)))
+
+
+def test_the_instrument_whose_counts_these_are_is_named():
+    """S0 names the iMAR-FSAS; its counts are those of the SPAN-CPT, 180/π times as large."""
+    mine = COUNTS["imar-fsas"][1]
+    said = explanations(1 / 57.29578, "gyro", given(), mine)
+    assert "the counts are those of span-cpt or xw-gi7681" in said
+    assert "the values are in radians but are read as degrees" in said
+    # An instrument with the present one's counts explains nothing.
+    assert "instrument" not in explanations(2.0, "accel", given(), COUNTS["span-cpt"][0])
+    assert "those of" not in explanations(57.29578, "accel", given(), COUNTS["span-cpt"][0])
+    other = given(count_sizes={**COUNTS, "other": (4.5e-6, 3e-7)})
+    one = piece(up(GRAVITY * COUNTS["span-cpt"][0] / 4.5e-6), stamps(1000))
+    (event,) = seen(WrongScaleFactor(), one, other)
+    assert "the counts are those of other" in event.facts[1]
+
+
+@pytest.mark.parametrize(
+    ("ratio", "said"),
+    [
+        (57.29578, "the values are in degrees but are read as radians"),
+        (2.0, "counts_per_unit is 2 times too small, as of another full scale, or the sample rate"),
+        (0.125, "counts_per_unit is 8 times too large"),
+        (131.0, "the values are counts"),
+        (1.3, "no known unit, full scale or instrument explains it"),
+    ],
+)
+def test_what_explains_the_ratio_of_a_turn(ratio, said):
+    assert said in explanations(ratio, "gyro", given(count_sizes={}))
+    assert said in explanations(-ratio, "gyro", given(count_sizes={}))
+
+
+# ---- gravity
+
+
+def test_a_gravity_that_is_not_of_the_place_is_named():
+    (event,) = GravityError().judges(given(gravity=9.80665, gravity_sigma=5e-5))
+    assert_told(GravityError(), event, "")
+    assert event.size == pytest.approx(9.80665 - 9.7935882)
+    words = GravityError().tells(event, "")
+    assert "the size of the unit g" in words.sentence
+    assert "off by −1332 ppm" in words.consequence
+
+
+@pytest.mark.parametrize("off", [-150, -60, 0, 60, 150])
+def test_what_geology_makes_is_no_error(off):
+    """Free-air anomalies: 42 mGal rms over the earth."""
+    assert not list(GravityError().judges(given(gravity=9.7935882 + off * 1e-5)))
+
+
+def test_without_a_place_or_with_a_large_sigma_nothing_is_said():
+    assert not list(GravityError().judges(given(normal_gravity=np.nan, gravity=9.9)))
+    assert not list(GravityError().judges(given(gravity=9.80, gravity_sigma=0.02)))
+
+
+# ---- temperature
+
+
+def warming(kelvin: float, n: int = 6000, seed: int = 1) -> np.ndarray:
+    """A thermometer with a noise of 0.05 K beside a warming of so many kelvin, (n,), K."""
+    noise = 0.05 * np.random.default_rng(seed).standard_normal(n)
+    return 295.0 + kelvin * np.linspace(0, 1, n) + noise
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_an_even_temperature_is_silent(seed):
+    one = piece(rest(6000, seed), stamps(6000), temperature=warming(0.5, seed=seed))
+    assert not seen(TemperatureDrift(), one)
+    assert not seen(TemperatureDrift(), piece(rest(6000, seed), stamps(6000)))
+
+
+def test_a_warming_is_named_with_what_moves_with_it():
+    values, temperature = rest(6000), warming(8.0)
+    values[:, 4] += 1e-4 * (temperature - 295.0)
+    (event,) = seen(TemperatureDrift(), piece(values, stamps(6000), temperature=temperature))
+    assert event.size == pytest.approx(8.0, abs=0.2)
+    words = TemperatureDrift().tells(event, "log")
+    assert "goes from 21.9 °C to 29.8 °C" in words.sentence
+    assert list(event.facts.changes) == [4]
+    assert event.facts.changes[4] == pytest.approx(1e-4 * 8.0 * 2 / 3, rel=0.05)
+
+
+def test_a_cooling_is_told_in_its_order():
+    temperature = warming(5.0)[::-1]
+    one = piece(rest(6000), stamps(6000), temperature=temperature)
+    (event,) = seen(TemperatureDrift(), one)
+    assert "goes from 26.8 °C to 21.9 °C" in TemperatureDrift().tells(event, "log").sentence
+
+
+def test_single_wrong_readings_of_the_thermometer_are_no_drift():
+    temperature = warming(0.2, n=60_000)
+    temperature[5000:5050] = 400.0
+    assert not seen(
+        TemperatureDrift(), piece(rest(60_000), stamps(60_000), temperature=temperature)
+    )
+
+
+def test_a_table_of_means_without_time_is_compared_row_by_row():
+    temperature = 273.15 + np.linspace(1.4, 65.5, 29)
+    one = piece(rest(29), temperature=temperature)
+    (event,) = seen(TemperatureDrift(), one)
+    assert event.size == pytest.approx(64.1)
+    assert "from 1.40 °C to 65.5 °C" in TemperatureDrift().tells(event, "log").sentence
+
+
+def test_logs_at_different_temperatures_are_one_finding():
+    ones = {
+        name: piece(rest(2000), stamps(2000), temperature=warming(0.1, 2000) + start)
+        for name, start in (("a", 0.0), ("b", 3.0), ("c", 6.0))
+    }
+    logs = {name: log(one) for name, one in ones.items()}
+    (event,) = TemperatureDrift().compares(logs)
+    assert_told(TemperatureDrift(), event, "")
+    assert event.size == pytest.approx(6.1, abs=0.2)
+    assert not list(TemperatureDrift().compares({"a": logs["a"]}))

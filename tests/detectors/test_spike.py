@@ -1,0 +1,138 @@
+"""Readings far off their neighbours are found to the record; motion, however rough, is none."""
+
+import numpy as np
+import pytest
+from on_a_table import recorded, rest, tumble, turn
+from recorded_by_hand import GRAVITY, INTERVAL, NOISE, assert_told, log, piece
+
+from stages.detectors.spike import Spikes, chance
+
+
+def found(values, **of_log):
+    one, whole = recorded(values, **of_log)
+    events = list(Spikes().finds(one, whole))
+    for event in events:
+        assert_told(Spikes(), event, "log")
+    return events
+
+
+def places(values, **of_log):
+    return [(event.channel, event.first, event.after) for event in found(values, **of_log)]
+
+
+@pytest.mark.parametrize("times", [10, 100, 10_000])
+@pytest.mark.parametrize("width", [1, 2, 3])
+def test_a_spike_is_found_to_the_record(times, width):
+    values = rest(6000)
+    values[2500 : 2500 + width, 1] += times * NOISE[1]
+    values[4000 : 4000 + width, 5] -= times * NOISE[5]
+    events = found(values)
+    assert [(event.channel, event.first, event.after) for event in events] == [
+        (1, 2500, 2500 + width),
+        (5, 4000, 4000 + width),
+    ]
+    for event, size in zip(events, (NOISE[1], -NOISE[5]), strict=True):
+        assert event.size == pytest.approx(times * size, abs=3.5 * abs(size))
+        assert event.p_value < 1e-4
+
+
+def test_of_spikes_that_noise_could_hide_most_are_found_at_nine_sigma_and_none_is_invented():
+    values = rest(60_000)
+    hidden = np.arange(300, 59_000, 300)
+    values[hidden, 0] += 9 * NOISE[0]
+    seen = places(values)
+    assert {first for _, first, _ in seen} <= set(hidden.tolist())
+    assert len(seen) > 0.8 * len(hidden)
+
+
+def test_its_words_tell_what_it_would_have_moved():
+    values = rest(3000)
+    values[1000, 2] += 30.0
+    (event,) = found(values)
+    words = Spikes().tells(event, "up.asc")
+    assert "1 reading of accelerometer z is off the neighbours by +30.0 m/s²" in words.sentence
+    assert "line 1001" in words.sentence
+    assert "that of 1 s by +0.300 m/s²" in words.consequence
+    assert "of all 3\u202f000 readings by +0.0100 m/s²" in words.consequence
+
+
+def test_a_spike_in_a_steady_turn_and_on_a_ramp_is_found():
+    values = turn()
+    values[1200, 5] += 0.01  # the ramp rises by 8.7e-4 rad/s from reading to reading
+    values[2500, 5] -= 0.001
+    values[2600, 0] += 0.05
+    assert places(values) == [(0, 2600, 2601), (5, 1200, 1201), (5, 2500, 2501)]
+
+
+def test_a_spike_in_an_oscillation_is_found_if_it_is_a_gross_one():
+    values = turn()
+    time = np.arange(len(values)) * INTERVAL
+    values[1200:4500, 3] += 0.01 * np.sin(2 * np.pi * 20 * time[1200:4500])
+    assert places(values) == []
+    values[3000, 3] += 0.5
+    assert places(values) == [(3, 3000, 3001)]
+
+
+def test_what_lasts_longer_is_no_spike():
+    values = rest(3000)
+    values[1000:1004, 0] += 1.0
+    values[2000:, 1] += 1.0  # a step
+    assert places(values) == []
+
+
+def test_a_knock_is_no_spike():
+    values = rest(3000)
+    ringing = np.exp(-np.arange(12) / 3) * np.cos(2 * np.pi * 0.3 * np.arange(12))
+    for channel, size in enumerate((1.0, -0.6, 2.0, 0.02, 0.03, 0.01)):
+        values[1500:1512, channel] += size * ringing
+    assert places(values) == []
+
+
+def test_one_record_spoilt_in_several_channels_is_found():
+    values = rest(3000)
+    values[1500, [0, 2, 4]] += [1.0, -3.0, 0.1]
+    assert places(values) == [(0, 1500, 1501), (2, 1500, 1501), (4, 1500, 1501)]
+
+
+def test_motion_by_hand_is_silent():
+    generator = np.random.default_rng(8)
+    values = rest(20_000)
+    for start in range(1000, 18_000, 3000):
+        # Jerks of a hand: noise of 5 Hz and heavy tails, in all channels.
+        jerks = generator.standard_t(4.0, (1200, 6)) * np.array([2.0] * 3 + [0.5] * 3)
+        kernel = np.hanning(7) / np.hanning(7).sum()
+        for channel in range(6):
+            moved = np.convolve(jerks[:, channel], kernel, mode="same") * np.hanning(1200)
+            values[start : start + 1200, channel] += moved
+    assert places(values) == []
+
+
+def test_coarse_counts_are_silent():
+    generator = np.random.default_rng(9)
+    step = 8 * NOISE
+    values = np.rint((rest(40_000) + generator.normal(size=(40_000, 6)) * NOISE) / step) * step
+    assert places(values, quantum=step) == []
+
+
+def test_beside_masked_readings_nothing_is_judged():
+    values = turn()
+    values[1350:4450, 5] = np.nan  # from a ramp to a ramp
+    assert places(values) == []
+
+
+def test_the_chance_is_that_of_gaussian_readings():
+    assert chance(7.5) < 1e-4
+    assert chance(4.0) == 1.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_clean_readings_are_silent(seed):
+    readings = [rest(200_000, seed), turn(seed), tumble(seed)]
+    assert [places(values) for values in readings] == [[], [], []]
+
+
+def test_a_log_without_time_is_not_judged():
+    values = rest(100)
+    values[50] += GRAVITY
+    one = piece(values)
+    assert list(Spikes().finds(one, log(one))) == []

@@ -1,0 +1,181 @@
+"""`make check`: what is wrong with a recording, in words, and the exit code that goes with it."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import chain
+import pandas as pd
+import pyarrow.parquet as pq
+import pytest
+from chain import ROOT, Results
+
+from stages.checking.__main__ import main
+from stages.checking.verdict import WIDTH
+from stages.contracts import tables
+
+NAME = "demo"
+READ = ("quality/findings", "segment/findings", "segment/performed", "decode/accounts")
+
+
+@pytest.fixture
+def data(demo: Results, tmp_path: Path) -> Path:
+    """A data folder with the tables of the demo that are read."""
+    return copied(demo, tmp_path / "data")
+
+
+def copied(results: Results, data: Path) -> Path:
+    for name in READ:
+        path = data / "derived" / NAME / f"{name}.parquet"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(results.folder / f"{name}.parquet", path)
+    return data
+
+
+def change(data: Path, table: str, **columns: object) -> None:
+    """The same table with other values in some columns."""
+    path = data / f"derived/{NAME}/{table}.parquet"
+    old = pq.read_table(path)
+    frame = old.to_pandas().assign(**columns)
+    new = type(old).from_pandas(frame, schema=old.schema, preserve_index=False)
+    pq.write_table(new.replace_schema_metadata(old.schema.metadata), path)
+
+
+def check(data: Path) -> int:
+    return main(["--campaign", NAME, "--data", str(data)])
+
+
+def test_what_is_wrong_with_the_demo(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code = check(data)
+    said = capsys.readouterr().out
+    lines = said.splitlines()
+    assert lines[0] == "demo: 12 of 12 manoeuvres found, 11 complete."
+    assert "1197 samples are missing between 2771.800 s and 2783.780 s" in " ".join(said.split())
+    assert "incomplete turn · z-backward" in said
+    assert said.count("Consequence: ") == said.count("What to do: ") == said.count(" · ") / 2
+    assert lines[-1].endswith(".")
+    assert ": " in lines[-1]
+    findings = pd.concat(
+        [pd.read_parquet(data / f"derived/{NAME}/{name}.parquet") for name in READ[:2]]
+    )
+    assert lines[-1].startswith(f"{len(findings)} findings: ")
+    assert code == int((findings["severity"] == 3).any())
+
+
+def test_the_worst_comes_first(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    check(data)
+    said = capsys.readouterr().out
+    assert said.index("WEAKENS A RESULT") < said.index("GOOD TO KNOW")
+
+
+def test_it_fits_into_a_terminal(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    change(data, "quality/findings", consequence="A result is not what it should be. " * 20)
+    check(data)
+    assert max(map(len, capsys.readouterr().out.splitlines())) <= WIDTH
+
+
+def test_a_number_stays_in_one_line(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    change(data, "quality/findings", consequence=f"{'x' * 80} of 1\u202f576 ppm.")
+    check(data)
+    assert "1\u202f576 ppm" in capsys.readouterr().out
+
+
+def test_what_spoils_a_result_is_told_by_the_exit_code(
+    data: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for table in READ[:2]:
+        change(data, table, severity=2)
+    assert check(data) == 0
+    change(data, "segment/findings", severity=3)
+    assert check(data) == 1
+    last = capsys.readouterr().out.splitlines()[-1]
+    assert "1 spoils a result, " in last
+
+
+def test_nothing_is_wrong(clean: list[Results], tmp_path: Path, capsys) -> None:
+    data = copied(clean[0], tmp_path / "data")
+    assert check(data) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "demo: 12 of 12 manoeuvres found, 12 complete.",
+        "",
+        "Nothing is wrong with this recording.",
+    ]
+
+
+def test_lines_that_cannot_be_read_are_not_passed_over(
+    clean: list[Results], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = copied(clean[0], tmp_path / "data")
+    change(data, "decode/accounts", kind="refused", lines=1)
+    check(data)
+    said = capsys.readouterr().out
+    assert "1 line of x-up.asc cannot be read and is left out." in said
+    assert "No finding, but 12 lines cannot be read." in said
+
+
+def test_a_log_cannot_act_on_the_terminal(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    change(data, "quality/findings", log="a\x1b[2J\x07.asc", sentence="\x1b]0;title\x07 \x9b31m")
+    check(data)
+    said = capsys.readouterr().out
+    assert all(letter.isprintable() or letter in "\n\u202f" for letter in said)
+    assert "a�[2J�.asc" in said
+
+
+def test_more_than_a_screenful_is_summed_up(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = data / f"derived/{NAME}/quality/findings.parquet"
+    old = pq.read_table(path)
+    many = pd.concat([old.to_pandas()] * 50)
+    new = tables.FINDINGS.arrow(many)
+    pq.write_table(new.replace_schema_metadata(old.schema.metadata), path)
+    check(data)
+    said = capsys.readouterr().out
+    assert said.count("Consequence: ") == 20
+    assert "more: gap (" in said
+
+
+def test_where_there_is_nothing_to_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert check(tmp_path) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"check: {tmp_path}/derived/demo/")
+    assert "cure: " in said
+
+
+@pytest.mark.workflow
+def test_a_campaign_that_names_no_log_is_refused_as_by_make_report(tmp_path: Path) -> None:
+    raw = tmp_path / "data/raw" / NAME
+    document = chain.short()
+    chain.simulate(document, raw)
+    (raw / "x-up.asc").rename(raw / "x_up.asc")
+    goals = [f"data/derived/{NAME}/{name}.parquet" for name in READ[:2]]
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--directory", str(tmp_path)]
+    done = subprocess.run(
+        [*command, "--snakefile", str(ROOT / "Snakefile"), "--", *goals],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode != 0
+    said = done.stdout + done.stderr
+    assert f"data/raw/{NAME}/campaign.yaml, line" in said
+    assert "'x-up.asc'" in said
+    assert "put the log there, or correct its name" in said
+    assert check(tmp_path / "data") == 2
+
+
+@pytest.mark.workflow
+def test_a_check_makes_what_a_report_begins_with(tmp_path: Path) -> None:
+    """From nothing but the logs: the first four stages, and no other."""
+    raw = tmp_path / "data/raw" / NAME
+    chain.simulate(chain.short(), raw)
+    recipe = (ROOT / "Makefile").read_text().partition("\ncheck:")[2].partition("\n\n")[0]
+    assert "data/derived/$$CAMPAIGN/{quality,segment}/findings.parquet" in recipe
+    goals = [f"data/derived/{NAME}/{name}.parquet" for name in READ[:2]]
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--directory", str(tmp_path)]
+    command += ["--snakefile", str(ROOT / "Snakefile"), "--", *goals]
+    subprocess.run(command, capture_output=True, check=True)
+    made = {path.name for path in (tmp_path / "data/derived" / NAME).iterdir()}
+    assert made == {"plan", "decode", "quality", "segment"}
+    assert check(tmp_path / "data") == 0

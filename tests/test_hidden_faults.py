@@ -1,0 +1,183 @@
+"""Faults of a recording are hidden in logs on the disk; each must be named, with its place."""
+
+from typing import Any
+
+import chain
+import numpy as np
+import pandas as pd
+import pytest
+
+import laboratory
+
+SAMPLE = 0.01  # s
+ACCEL = 1.07e-3  # m/s², scatter of a reading: 0.0064 m/s/√h at 100 Hz
+GYRO = 3.49e-5  # rad/s: 0.012 °/√h
+PLACES = np.random.default_rng(4).choice(np.arange(40, 1960), 100, replace=False).tolist()
+
+CONSEQUENCE = {"incomplete_turn"}  # of a turn whose readings are masked
+
+Fault = dict[str, dict[str, Any]]
+
+
+def lost(samples: int) -> Fault:
+    return {"lose": {"log": "z-down.asc", "line": 700, "samples": samples}}
+
+
+def dropped(number: int) -> Fault:
+    return {"drop": {"log": "y-up.asc", "lines": sorted(PLACES[:number])}}
+
+
+def spikes(size: float) -> Fault:
+    place = {"log": "x-up.asc", "channel": "accel_y", "lines": sorted(PLACES[:50])}
+    return {"spikes": place | {"size_m_s2": size}}
+
+
+def repeated(samples: int) -> Fault:
+    return {"repeat": {"log": "y-down.asc", "line": 900, "samples": samples, "stamps": "same"}}
+
+
+def clipped(limit: float) -> Fault:
+    return {"clip": {"log": "z-forward.asc", "channel": "gyro_z", "limit_rad_s": limit}}
+
+
+def oscillation(amplitude: float) -> Fault:
+    place = {"log": "y-up.asc", "channel": "accel_x", "line": 400, "samples": 1100}
+    return {"oscillate": place | {"frequency_hz": 37, "amplitude_m_s2": amplitude}}
+
+
+def step(size: float) -> Fault:
+    place = {"log": "x-down.asc", "channel": "gyro_y", "line": 801}
+    return {"step": place | {"size_rad_s": size}}
+
+
+def back(seconds: float) -> Fault:
+    return {"turn_back": {"log": "z-up.asc", "line": 1201, "seconds": seconds}}
+
+
+def dead(samples: int) -> Fault:
+    place = {"log": "y-backward.asc", "channel": "gyro_x", "line": 300, "samples": samples}
+    return {"kill": place | {"reads": "frozen"}}
+
+
+def drift(ppm: float) -> Fault:
+    return {"drift": {"log": "x-up.asc", "ppm": ppm, "line": 501, "samples": 1000}}
+
+
+def swapped(samples: int) -> Fault:
+    place = {"log": "y-up.asc", "line": 601, "samples": samples}
+    return {"swap": place | {"sensor": "accelerometer", "axes": ["x", "y"]}}
+
+
+# Each at three sizes, the last near what can be seen at all.
+HIDDEN = {
+    "gap": [lost(1000), lost(20), lost(1)],
+    "spike": [spikes(50.0), spikes(0.1), spikes(9 * ACCEL)],
+    "duplicate": [repeated(50), repeated(5), repeated(1)],
+    "saturation": [clipped(0.9), clipped(1.0472), clipped(1.0472 + 1.5 * GYRO)],
+    "oscillation": [oscillation(0.1), oscillation(10 * ACCEL), oscillation(6 * ACCEL)],
+    "bias_jump": [step(50 * GYRO), step(10 * GYRO), step(4 * GYRO)],
+    "time_backwards": [back(9.0), back(0.5), back(0.02)],
+    "dead_axis": [dead(500), dead(100), dead(10)],
+    "gap, dropped samples": [dropped(100), dropped(20), dropped(3)],
+    "clock_scale": [drift(10_000), drift(500), drift(20)],
+    "axis_swap": [swapped(1400), swapped(200), swapped(10)],
+}
+
+
+def hide(faults: list[Fault], folder, **changes: Any) -> tuple[chain.Results, laboratory.Recording]:
+    recording = laboratory.perform(laboratory.specify(chain.short(faults=faults, **changes)))
+    laboratory.write(recording, folder / "campaign")
+    return chain.run(folder / "campaign", folder / "derived", "segment"), recording
+
+
+def findings(results: chain.Results) -> pd.DataFrame:
+    return pd.concat([results["quality/findings"], results["segment/findings"]])
+
+
+def spoiled(recording: laboratory.Recording, name: str, results: chain.Results):
+    """When a fault spoiled its log: from, to, s since the campaign's first sample."""
+    epoch = results["decode/clocks"]["epoch_gps"].iloc[0]
+    own = [one for one in recording.spoiled if one.fault == name]
+    assert len({one.log for one in own}) == 1
+    first, last = min(s.first_stamp for s in own), max(s.last_stamp for s in own)
+    return own[0].log, first / 1e9 - epoch, last / 1e9 - epoch
+
+
+def assert_named(found: pd.DataFrame, cause: str, place: tuple[str, float, float]) -> None:
+    log, start, end = place
+    own = found[(found["cause"] == cause) & (found["log"] == log)]
+    assert len(own), f"{cause} is not found; found: {list(found['cause'])}"
+    assert abs(own["from_s"].min() - start) <= 2.001 * SAMPLE
+    assert abs(own["to_s"].max() - end) <= 2.001 * SAMPLE
+
+
+CASES = [
+    pytest.param(cause.partition(",")[0], fault, id=f"{cause}-{number}")
+    for cause, faults in HIDDEN.items()
+    for number, fault in enumerate(faults)
+]
+
+
+@pytest.mark.parametrize(("cause", "fault"), CASES)
+def test_a_hidden_fault_is_named_with_its_place_and_nothing_else(cause, fault, tmp_path):
+    results, recording = hide([fault], tmp_path)
+    found = findings(results)
+    (name,) = fault
+    log, start, end = spoiled(recording, name, results)
+    if cause == "gap":  # what is missing lies before the record that tells of it
+        start = found.loc[found["cause"] == "gap", "from_s"].min()
+        missing = sum(s["missing"] for _, s in results["quality/gaps"].iterrows())
+        assert missing == fault[name].get("samples", len(fault[name].get("lines", [])))
+    assert_named(found, cause, (log, start, end))
+    assert set(found["cause"]) - CONSEQUENCE == {cause}
+
+
+COMBINATIONS = [
+    (["gap", "spike", "dead_axis"], [lost(20), spikes(0.1), dead(100)]),
+    (["bias_jump", "duplicate", "oscillation"], [step(10 * GYRO), repeated(5), oscillation(0.01)]),
+    (["axis_swap", "saturation", "clock_scale"], [swapped(200), clipped(1.0472), drift(500)]),
+    (["gap", "time_backwards", "bias_jump"], [dropped(20), back(0.5), step(50 * GYRO)]),
+    (["spike", "clock_scale", "oscillation"], [spikes(0.1), drift(500), oscillation(0.1)]),
+]
+
+
+@pytest.mark.parametrize(("causes", "faults"), COMBINATIONS)
+def test_three_faults_at_once_are_named_all_three(causes, faults, tmp_path):
+    results, recording = hide(faults, tmp_path)
+    found = findings(results)
+    for cause, fault in zip(causes, faults, strict=True):
+        if cause != "gap":
+            assert_named(found, cause, spoiled(recording, *fault, results))
+    assert set(found["cause"]) - CONSEQUENCE == set(causes)
+
+
+# ---- silence
+
+
+def hard(number: int) -> dict[str, Any]:
+    """Clean campaigns, none like the other: what is no fault must not be taken for one."""
+    document = chain.short(seed=1000 + number)
+    noise, truth = document["noise"], document["truth"]
+    generator = np.random.default_rng(number)
+    if number % 4 == 1:  # drift of the biases
+        noise["gyro_rate_random_walk_deg_h_sqrt_h"] = 0.3
+        noise["accelerometer_random_walk_m_s2_sqrt_h"] = 3e-4
+    if number % 4 == 2:  # noise that depends on attitude, as S0's
+        noise["table_sway_m_s_sqrt_h"] = [0.036, 0.006]
+    if number % 4 == 3:  # mounted askew
+        axis = generator.normal(size=3)
+        x, y, z = np.radians(5) * axis / np.linalg.norm(axis)
+        askew = np.eye(3) + np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        for sensor in ("accelerometer", "gyro"):
+            truth[sensor]["matrix"] = (np.array(truth[sensor]["matrix"]) @ askew).tolist()
+    for key in ("angle_random_walk_deg_sqrt_h", "velocity_random_walk_m_s_sqrt_h"):
+        noise[key] *= float(generator.uniform(0.7, 8.0))
+    return document
+
+
+def test_a_hundred_clean_campaigns_raise_no_finding(tmp_path):
+    for number in range(100):
+        folder = tmp_path / str(number)
+        campaign = chain.simulate(hard(number), folder / "campaign")
+        found = findings(chain.run(campaign, folder / "derived", "segment"))
+        assert found.empty, (number, found[["cause", "sentence"]].to_dict("records"))

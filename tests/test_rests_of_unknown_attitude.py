@@ -1,0 +1,202 @@
+"""Rests of unknown attitude from blocks to rows: what is used, what is left out, what is told."""
+
+from dataclasses import fields
+
+import numpy as np
+import pandas as pd
+import pytest
+from moved_by_hand import (
+    FACES,
+    GIVEN,
+    LEVEL,
+    MPU6050,
+    TWENTY_FOUR,
+    UP,
+    Imu,
+    handled,
+)
+
+from stages.contracts.records import Known, Manoeuvre
+from stages.contracts.tables import CHANNELS
+from stages.estimation.between_rests import add_free_gyros
+from stages.estimation.estimates import Estimates
+from stages.estimation.free_positions import add_free_accelerometers, free_stills, in_words
+from stages.estimation.noise_levels import NoiseLevels
+from stages.inference.unseen import Unseen
+
+KNOWN = {
+    "gravity": Known(GIVEN.gravity, GIVEN.gravity_sigma),
+    "earth_rate_up": Known(UP, 1e-10),
+    "earth_rate_level": Known(LEVEL, None),
+}
+LOG = "by-hand.csv"
+
+
+def manoeuvre(name, do, up=None):
+    nothing = dict.fromkeys(field.name for field in fields(Manoeuvre))
+    stated = {"name": name, "do": do, "log": LOG, "position": name, "mount": "", "up": up}
+    return Manoeuvre(**{**nothing, **stated, "recorded": "whole", "seconds": 1.0})
+
+
+PLAN = [manoeuvre("settle", "rest"), manoeuvre("by-hand", "positions")]
+
+
+def noise(imu):
+    levels = {"accel": imu.noise[0], "gyro": imu.noise[1]}
+    return NoiseLevels(
+        pd.DataFrame(
+            {
+                "manoeuvre": "settle",
+                "phase": "rest",
+                "channel": channel,
+                "white_noise": levels[channel[:-2]],
+                "sigma": 0.01 * levels[channel[:-2]],
+                "per_sample": 10 * levels[channel[:-2]],
+            }
+            for channel in CHANNELS
+        )
+    )
+
+
+def blocks_of(stops, passages):
+    """One block for each rest, one for each record between: as the stage segment makes them."""
+    rows, record = [], 0
+
+    def add(name, phase, records, seconds, values):
+        rows.append(
+            {"manoeuvre": name, "phase": phase, "log": LOG, "from_record": record}
+            | {"to_record": record + records, "seconds": seconds, "count": float(records)}
+            | {"missing_s": 0.0, **dict(zip(CHANNELS, values, strict=True))}
+        )
+        return record + records
+
+    names = ["settle", *(f"by-hand-{i:02d}" for i in range(1, len(stops)))]
+    for i, stop in enumerate(stops):
+        values = [*stop.forces.mean, *stop.mean]
+        record = add(names[i], "rest", round(100 * stop.seconds), stop.seconds, values)
+        for rates in passages[i].rates if i < len(passages) else []:
+            moved = f"{names[i]} to {names[i + 1]}"
+            record = add(moved, "between", 1, 0.01, [*np.zeros(3), *rates])
+    return pd.DataFrame(rows)
+
+
+@pytest.fixture(scope="module")
+def imu():
+    return Imu(np.random.default_rng(1), noise=MPU6050, bias=(0.02, 1e-2))
+
+
+@pytest.fixture(scope="module")
+def recorded(imu):
+    return blocks_of(*handled(imu, TWENTY_FOUR[:18], 20))
+
+
+def rows(add, stage, blocks, imu, plan=PLAN):
+    estimates = Estimates(stage)
+    add(estimates, "", blocks, plan, noise(imu), KNOWN)
+    tables = estimates.tables()
+    parameters = tables["parameters"]
+    assert parameters.empty or set(parameters["method"]) == {"free_positions"}
+    return parameters.set_index("parameter"), tables["fit"], tables["covariance"]
+
+
+def test_accelerometers(imu, recorded):
+    table, fit, covariance = rows(add_free_accelerometers, "accelerometer", recorded, imu)
+    names = [f"symmetric_{pair}" for pair in ("xx", "yy", "zz", "xy", "xz", "yz")]
+    truth = imu.free - [1, 1, 1, 0, 0, 0, 0, 0, 0]
+    told = table.loc[[*names, "bias_x", "bias_y", "bias_z"]]
+    assert np.abs((told["value"] - truth) / told["sigma"]).max() < 3.5
+    # The axes are such that M = P, so the cross terms are alike; the mounting is not told.
+    assert table.loc["cross_xy", "value"] == table.loc["cross_yx", "value"]
+    assert table.loc["scale_y", "value"] == table.loc["symmetric_yy", "value"]
+    mounting = table.loc[["mounting_x", "mounting_y", "mounting_z"]]
+    assert mounting["value"].isna().all()
+    assert mounting["reason"].str.contains("upward direction is known").all()
+    assert fit.loc[0, "degrees"] == 18 - 9 and fit.loc[0, "p_value"] > 0.01
+    assert fit.loc[0, "used"].startswith("settle, by-hand-01, by-hand-02")
+    assert len(covariance) == 18**2
+
+
+def test_gyros(imu, recorded):
+    table, fit, _ = rows(add_free_gyros, "gyroscope", recorded, imu)
+    values = table.loc[["scale_x", "cross_xy", "cross_zx", "scale_z", "bias_y"]]
+    truth = [imu.gyro[0, 0] - 1, imu.gyro[0, 1], imu.gyro[2, 0], imu.gyro[2, 2] - 1]
+    truth = np.append(truth, imu.rate_bias[1])
+    assert np.abs((values["value"] - truth) / values["sigma"]).max() < 3.5
+    assert "by-hand-01 to by-hand-02" in fit.loc[0, "used"] and not fit.loc[0, "left_out"]
+
+
+def test_a_motion_with_masked_records_is_left_out_by_name(imu, recorded):
+    inside = recorded["manoeuvre"] == "by-hand-03 to by-hand-04"
+    hidden = recorded.index[inside][80:92]
+    _, fit, _ = rows(add_free_gyros, "gyroscope", recorded.drop(index=hidden), imu)
+    assert fit.loc[0, "left_out"] == (
+        "by-hand-03 to by-hand-04: 12 records are masked while it moves,"
+        " so no attitude is carried through"
+    )
+    assert "by-hand-03 to by-hand-04" not in fit.loc[0, "used"]
+    assert "by-hand-04 to by-hand-05" in fit.loc[0, "used"]
+
+
+def test_without_blocks_of_the_motions_the_gyros_say_so(imu, recorded):
+    table, fit, _ = rows(add_free_gyros, "gyroscope", recorded[recorded["phase"] == "rest"], imu)
+    assert "nothing of the motion between them is kept" in fit.loc[0, "left_out"]
+    assert table.loc[["bias_x", "bias_y", "bias_z"], "value"].notna().all()
+    assert np.isnan(table.loc["scale_x", "value"])
+    assert "hardly turned about x" in table.loc["scale_x", "reason"]
+
+
+def test_what_six_faces_do_not_tell_is_said_with_the_rest_that_would(imu):
+    faces = blocks_of(*handled(imu, FACES, 3))
+    table, _, _ = rows(add_free_accelerometers, "accelerometer", faces, imu)
+    assert table.loc["cross_yx", "reason"] == table.loc["symmetric_xy", "reason"]
+    assert table.loc["symmetric_xy", "reason"] == (
+        "no rest has both x and y far from level, which would show their angle: add one with"
+        " +x and +y both 45° above level, and z level"
+    )
+    assert table.loc[["bias_x", "scale_z", "symmetric_yy"], "value"].notna().all()
+
+
+def test_where_every_attitude_is_known_the_method_has_no_rows(imu, recorded):
+    plan = [manoeuvre("settle", "rest", np.array([0.0, 0.0, 1.0]))]
+    for add, stage in (
+        (add_free_accelerometers, "accelerometer"),
+        (add_free_gyros, "gyroscope"),
+    ):
+        assert rows(add, stage, recorded, imu, plan)[0].empty
+
+
+def test_an_accelerometer_that_is_not_recorded_is_named(imu, recorded):
+    found, left = free_stills(recorded.assign(accel_y=np.nan), PLAN, noise(imu))
+    assert not found and left[0] == "settle: |f| = g needs y too"
+    table, _, _ = rows(
+        add_free_accelerometers, "accelerometer", recorded.assign(accel_y=np.nan), imu
+    )
+    assert table["value"].isna().all()
+
+
+@pytest.mark.parametrize(
+    ("shares", "up", "told"),
+    [
+        (
+            {2: 0.7, 8: -0.7},
+            (0, 0, -1),
+            "the rests do not tell the scale factor of z from the bias of z: add one with -z up",
+        ),
+        (
+            {7: 1.0},
+            (0, 1, 0),
+            "too few rests have y up or down: add one with +y up and one with -y up",
+        ),
+        (
+            {3: 0.6, 5: 0.5, 6: 0.5},
+            (1, -1, 1),
+            "the rests do not tell the angle between x and y, the angle between y and z from the"
+            " bias of x: add one with +x, -y and +z all 35° above level",
+        ),
+    ],
+)
+def test_words(shares, up, told):
+    along = np.zeros(9)
+    for i, share in shares.items():
+        along[i] = share
+    assert in_words(Unseen(along, np.array(up, float))) == told
