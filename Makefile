@@ -36,9 +36,10 @@ report: campaign setup
 	kinds=(html)
 	if $(BIN)/python -c "import weasyprint" 2> /dev/null; then kinds+=(pdf); fi
 	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
-	$(SNAKEMAKE) "$${kinds[@]/#/reports/$$CAMPAIGN.}"
+	$(SNAKEMAKE) "$${kinds[@]/#/reports/$$CAMPAIGN.}" "reports/$$CAMPAIGN.calibration.json"
 	echo
 	sed '/^Campaign:/,$$d' "reports/$$CAMPAIGN.txt"
+	echo "For other programs:" reports/$$CAMPAIGN.{calibration.json,calibration.yaml,kalibr.yaml,px4.params,ardupilot.param}
 	echo "The report:" "$${kinds[@]/#/reports/$$CAMPAIGN.}"
 
 # By hand `python -m stages.checking --campaign=<name>` ends with 1 where something spoils a result;

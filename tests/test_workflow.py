@@ -30,6 +30,7 @@ pytestmark = pytest.mark.workflow
 
 COPIED = ("Snakefile", "config.yaml", "requirements.lock", "profiles", "stages", "laboratory")
 PAGE = "reports/short.html"
+EXPORT = "reports/short.calibration.json"
 PUBLISHED = "data/raw/short/published.yaml"
 USING = {"comparison", "compensation", "simulation", "criticism", "extension", "history", "report"}
 ESTIMATION = {"accelerometer", "gyroscope", *USING}
@@ -80,7 +81,7 @@ def short() -> dict[str, Any]:
 
 @pytest.fixture(scope="module")
 def workflow(tmp_path_factory: pytest.TempPathFactory) -> Workflow:
-    """A copy of the project in which the short campaign was run once, up to its page."""
+    """A copy of the project in which the short campaign was run once, up to page and export."""
     made = Workflow(tmp_path_factory.mktemp("home"), tmp_path_factory.mktemp("data"))
     for name in COPIED:
         copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy2
@@ -93,7 +94,7 @@ def workflow(tmp_path_factory: pytest.TempPathFactory) -> Workflow:
     (made.data / PUBLISHED).write_text(
         "source: data sheet\ngyro: {bias_x: {value: 0.5, unit: deg/h}}\n"
     )
-    first = made.run(PAGE)
+    first = made.run(PAGE, EXPORT)
     assert first.returncode == 0, first.stdout + first.stderr
     return made
 
@@ -147,7 +148,7 @@ def test_a_file_that_is_only_newer_changes_nothing(workflow: Workflow) -> None:
 @pytest.mark.parametrize(
     ("setting", "rerun"),
     [
-        ("quality: {gap: 1.6}", AFTER_DECODE),
+        ("segment: {margin: 0.6}", AFTER_DECODE - {"quality"}),
         ("noise: {from_hz: 0.6}", {"noise", *ESTIMATION}),
         ("accelerometer: {averaging_steps: 5}", {"accelerometer", *USING}),
     ],

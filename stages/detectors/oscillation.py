@@ -35,9 +35,10 @@ class Ringing:
 class Oscillation(Detector):
     """One frequency that stands out of the spectra of a channel, and keeps its phase.
 
-    It is seen in windows of 256 readings, from 8 periods a window on; its frequency is that by
-    which the phase stays the same from window to window, its edges are those that are most likely
-    reading by reading. Where several channels have it, the one is told in which it is largest, of
+    It is seen in windows of 256 readings, from 8 periods a window on and in four windows at least;
+    its frequency is that by which the phase stays the same from window to window, its edges are
+    those that are most likely reading by reading. A log of 24 to 64 readings is looked at as a
+    whole. Where several channels have it, the one is told in which it is largest, of
     the sensor that has it clearest; what others have in step with it may be coupling. Motion by
     hand, ramps and coloured noise rise above their own spectrum on one side only, or keep no
     phase.

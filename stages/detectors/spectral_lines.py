@@ -24,7 +24,8 @@ NOISE = 2.0  # times the background: the largest of three bins, by noise alone
 ONE_SIDED = 0.76  # the last part has nothing above it: one median is less than the larger of two
 WIDE = 8  # bins on each side that a line takes with it
 IN_STEP = 0.5  # of full: how well a line must keep its phase from one window to the next but one
-PERIODS = 4  # in a log that is no longer than one window
+PERIODS = 6  # in a log that is no longer than one window
+ABOVE = 6.0  # times the power of anything slower in it
 FINER = 4  # steps in a bin, by which its line is sought
 APART = 2.5  # bins from a line to what is beside it
 FEWEST = 6  # bins beside it
@@ -105,19 +106,21 @@ def lines(cut: Array, time: Array) -> Iterator[Line]:
         ratio[max(first - 2, 0) : after + 2, near] = 0.0
 
 
-def line_of_one(cut: Array, time: Array) -> Line | None:
-    """The line of a single window (1, length), where there are no more.
+def line_of_one(cut: Array, time: Array) -> Iterator[Line]:
+    """The line of a single window (1, length), if there is one.
 
-    It must stand out of the median of all other bins, and the two halves must agree on it.
+    It must stand out of the median of all other bins, be larger than anything slower, which
+    coloured noise and motion are not, and be the same in both halves.
     """
     length = cut.shape[1]
     power = np.abs(np.fft.rfft(cut[0], FINER * length)) ** 2
     bins = np.arange(len(power)) / FINER
-    power[bins < PERIODS] = 0.0
-    peak = int(np.argmax(power))
-    others = power[(bins >= PERIODS) & (np.abs(bins - bins[peak]) > APART)][::FINER]
-    if len(others) < FEWEST:
-        return None
+    peak = int(np.argmax(np.where(bins < PERIODS, 0.0, power)))
+    apart = np.abs(bins - bins[peak]) > APART
+    others = power[apart & (bins >= PERIODS)][::FINER]
+    slower = power[apart & (bins < bins[peak])]
+    if len(others) < FEWEST or power[peak] < ABOVE * slower.max(initial=0.0):
+        return
     ratio = float(np.log(2) * power[peak] / np.median(others))
     # Of a background from m bins, of which a Hann window makes two thirds independent.
     m = len(others) / 1.5
@@ -130,7 +133,8 @@ def line_of_one(cut: Array, time: Array) -> Line | None:
         for part in (slice(0, half), slice(length - half, length))
     ]
     agreed = abs(parts[0] - parts[1]) < DISAGREED * (abs(parts[0]) + abs(parts[1]))
-    return Line(0, 1, frequency, p_value) if agreed and p_value < CERTAIN else None
+    if agreed and p_value < CERTAIN:
+        yield Line(0, 1, frequency, p_value)
 
 
 def phasors(cut: Array, time: Array, frequency: float) -> Complex:

@@ -70,14 +70,15 @@ def steps(readings: Array, interval: float, quantum: float, level: float) -> lis
         if p_value > level:
             break
         step = _fitted(rest, place, width, noise, QUICK / interval)
-        if step is None or any(abs(step.place - one.place) < shortest for one in found):
+        if step is None or any(abs(step.place - one.place) < FEWEST for one in found):
             refused[max(place - width, 0) : place + width + 1] = True
         else:
             new = replace(step, p_value=p_value)
-            found = _together(clean, [*found, new], noise)
+            found = _together(clean, [*found, new], noise, places=False)
     # With all others known, each is fitted to all that is between them.
     noise = _Noise(clean - _course(found, n), longest, quantum)
-    found = _together(clean, [replace(step, reach=longest) for step in found], noise)
+    wide = [replace(step, reach=longest) for step in found]
+    found = _together(clean, wide, noise, places=True)
     edges = np.array([0, *(step.place for step in found), n])
     lasts = np.minimum(edges[1:-1] - edges[:-2], edges[2:] - edges[1:-1]) >= shortest
     stands_out = np.array([abs(step.size) > CLEAR * step.sigma for step in found], bool)
@@ -215,13 +216,13 @@ def _within(rest: Array, first: int, after: int, noise: _Noise, quick: float) ->
     )
 
 
-def _placed(y: Array, noise: _Noise, width: int) -> Step:
-    """The step that fits m readings best beside a level and a trend."""
+def _placed(y: Array, noise: _Noise, width: int, only: int | None = None) -> Step:
+    """The step that fits m readings best beside a level and a trend; `only`: at this place."""
     m = len(y)
     t = np.arange(m) - (m - 1) / 2
     level = y - y.mean()
     straight = level - t * float(level @ t) / float(t @ t)
-    k = np.arange(FEWEST, m - FEWEST + 1)
+    k = np.arange(FEWEST, m - FEWEST + 1) if only is None else np.array([only])
     after = -np.cumsum(straight)[k - 1]  # the sum of what follows
     own = k * (m - k) / m - (k * (m - k) / 2) ** 2 / float(t @ t)
     size, sigma = after / own, noise.white(width)
@@ -267,8 +268,11 @@ def _course(found: Sequence[Step], n: int) -> Array:
     return course
 
 
-def _together(readings: Array, found: Sequence[Step], noise: _Noise) -> list[Step]:
-    """Every step once more, between its neighbours and without the others; in their order."""
+def _together(readings: Array, found: Sequence[Step], noise: _Noise, *, places: bool) -> list[Step]:
+    """Every step once more, between its neighbours and without the others; in their order.
+
+    places: they are looked for again; else the sizes alone.
+    """
     n = len(readings)
     now = sorted(found, key=lambda step: step.place)
     for _ in range(2):
@@ -280,7 +284,8 @@ def _together(readings: Array, found: Sequence[Step], noise: _Noise) -> list[Ste
                 continue
             others = [other for other in now if other is not step]
             own = (readings - _course(others, n))[first:after]
-            again = _placed(own, noise, (after - first) // 2)
+            only = None if places else step.place - first
+            again = _placed(own, noise, (after - first) // 2, only)
             now[i] = replace(
                 again,
                 place=first + again.place,

@@ -26,7 +26,7 @@ LOWEST = 2.0  # Hz: what is slower is motion
 COUPLED = 5.0  # sigma: what another channel has of an oscillation at the least, to be named
 BRIDGED = 8  # intervals between two readings at the most, to be interpolated
 RECORDED = 0.5  # of the readings of a channel at the least
-SHORTEST = 24  # readings
+EXCERPT = (24, 64)  # readings of a log that is looked at as a whole
 WHOLE = 0.9  # of the usual size: a window in which the oscillation is there all the time
 FEWEST = 2  # such windows
 
@@ -129,7 +129,7 @@ def _triads(piece: Piece, interval: float, first_channel: int) -> Iterator[Triad
     there = np.isfinite(readings)
     places = np.flatnonzero(there.any(axis=1))
     steps = np.rint(np.diff(piece.time[places]) / interval)
-    if len(places) < SHORTEST or not np.isfinite(steps).all():
+    if not len(places) or not np.isfinite(steps).all():
         return
     # Stamps may jitter; what counts is how many intervals lie between two readings.
     steps = np.maximum(steps, 1.0)
@@ -143,10 +143,11 @@ def _triads(piece: Piece, interval: float, first_channel: int) -> Iterator[Triad
         own = there[places, axis]
         if own.mean() > RECORDED:
             values[:, axis] = np.interp(time, read[own], readings[places[own], axis])
-    whole = len(time) >= WINDOW + (LENGTHS[0] - 1) * HOP
-    window = WINDOW if whole else len(time)
-    even = np.append(places[known], places[-1])
-    yield Triad(first_channel, even, values, time, 1 / interval, window)
+    excerpt = EXCERPT[0] <= len(time) <= EXCERPT[1]
+    if excerpt or len(time) >= WINDOW + (LENGTHS[0] - 1) * HOP:
+        even = np.append(places[known], places[-1])
+        window = len(time) if excerpt else WINDOW
+        yield Triad(first_channel, even, values, time, 1 / interval, window)
 
 
 def _seen(triad: Triad, axis: int, log: Log) -> Iterator[Seen]:
@@ -155,8 +156,7 @@ def _seen(triad: Triad, axis: int, log: Log) -> Iterator[Seen]:
         return
     cut, time = triad.cut(axis), triad.times()
     count = float(np.nan_to_num(log.quantum[triad.first_channel + axis]))
-    one = line_of_one(cut, time) if len(cut) < LENGTHS[0] else None
-    for line in [one] if one else lines(cut, time) if len(cut) >= LENGTHS[0] else []:
+    for line in lines(cut, time) if triad.window == WINDOW else line_of_one(cut, time):
         # Windows at its ends may hold but part of it.
         inner = 1 if line.after - line.first > LENGTHS[0] else 0
         part = slice(line.first + inner, line.after - inner)

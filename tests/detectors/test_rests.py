@@ -1,5 +1,7 @@
 """Rests that are none: biases that jump, tables that move; and what must not be taken for it."""
 
+import re
+
 import numpy as np
 import pytest
 from recorded_by_hand import GRAVITY, INTERVAL, NOISE, given, log, piece, rest, stamps
@@ -90,7 +92,7 @@ def test_the_consequence_is_the_jump_times_its_share():
     # 10 × 1.07e-3 m/s² over 60 %; half of it is bias of the pair, and over 2 g ppm of scale.
     assert "+0.0064" in words.consequence and "60%" in words.consequence
     assert "+0.0032" in words.consequence
-    assert "+328 ppm" in words.consequence or "+33" in words.consequence or "+32" in words.consequence
+    assert re.search(r"\+3[23]\d ppm", words.consequence)
 
 
 def test_two_jumps_of_a_channel_are_two_events():
@@ -111,9 +113,13 @@ def coloured(kind: str, seed: int) -> np.ndarray:
         k = np.array([3e-4 / 60] * 3 + [np.radians(0.2 / 3600) / 60] * 3)
         values += np.cumsum(k * np.sqrt(INTERVAL) * white, axis=0)
     if kind == "flicker":
-        values += 0.3 * NOISE * sum(
-            np.sqrt(1 - p**2) * lfilter([1], [1, -p], generator.standard_normal((N, 6)), axis=0)
-            for p in (0.9, 0.99, 0.999)
+        values += (
+            0.3
+            * NOISE
+            * sum(
+                np.sqrt(1 - p**2) * lfilter([1], [1, -p], generator.standard_normal((N, 6)), axis=0)
+                for p in (0.9, 0.99, 0.999)
+            )
         )
     if kind == "excess noise":  # as S0's y axis, where it is level
         values[:, 1] += 6e-3 * white[:, 1]
