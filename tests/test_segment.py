@@ -98,9 +98,10 @@ def test_a_count_of_the_wrong_unit_is_named(tmp_path):  # T3, what S0's own log 
     campaign = folder / "campaign.yaml"
     campaign.write_text(campaign.read_text().replace("span-cpt", "imar-fsas"))
     results = chain.run(folder, tmp_path / "derived", "segment")
-    wrong = results["segment/findings"].set_index("cause").loc["wrong_rate"]
+    wrong = results["segment/findings"].set_index("cause").loc["wrong_scale_factor"]
     assert 1 / wrong["size"] == pytest.approx(57.29578, rel=2e-3)
-    assert "degrees are taken for radians" in wrong["sentence"]
+    assert "the counts are those of span-cpt" in wrong["sentence"]
+    assert "radians but are read as degrees" in wrong["sentence"]
     assert "rate_off" in set(results["quality/findings"]["cause"])  # 100 Hz, stated 200 Hz
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.ndimage import median_filter, uniform_filter1d
 from scipy.special import stdtr
 
-from stages.detectors.detector import Array, Booleans
+from stages.detectors.detector import Array, Integers
 
 SIDE = 10.0  # s on each side that are compared at most: further away a bias may have wandered
 SHORTEST = 0.2  # s that a level has to last: what is shorter is a knock or a spike
@@ -62,7 +62,7 @@ def steps(readings: Array, interval: float, quantum: float, level: float) -> lis
         return []
     clean = without_spikes(readings)
     found: list[Step] = []
-    refused = np.zeros(n, bool)
+    refused = np.full(n, longest + 1)  # from this width on, what is there was refused
     while len(found) < MOST:
         rest = clean - _course(found, n)
         noise = _Noise(rest, longest, quantum)
@@ -71,7 +71,8 @@ def steps(readings: Array, interval: float, quantum: float, level: float) -> lis
             break
         step = _fitted(rest, place, width, noise, QUICK / interval)
         if step is None or any(abs(step.place - one.place) < FEWEST for one in found):
-            refused[max(place - width, 0) : place + width + 1] = True
+            near = slice(max(place - width, 0), place + width + 1)
+            refused[near] = np.minimum(refused[near], width)
         else:
             new = replace(step, p_value=p_value)
             found = _together(clean, [*found, new], noise, places=False)
@@ -153,14 +154,14 @@ class _Noise:
 
 
 def _strongest(
-    rest: Array, noise: _Noise, shortest: int, refused: Booleans
+    rest: Array, noise: _Noise, shortest: int, refused: Integers
 ) -> tuple[float, int, int]:
     """The difference that is least probable by chance: its p-value, place and width."""
     best = (1.0, 0, 0)
     width = shortest
     while width <= noise.longest:
         size = np.abs(differences(rest, width) - noise.drift(width))
-        size[refused[width : width + len(size)]] = 0.0
+        size[refused[width : width + len(size)] <= width] = 0.0
         k = int(np.argmax(size))
         z = float(size[k]) / max(noise.of_difference(width), 1e-300)
         # A scale has about n/width independent places, so all of them together about n.
