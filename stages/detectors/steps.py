@@ -22,6 +22,7 @@ BETTER = 12.0  # chi-squared by which a step must fit better than everything smo
 COLOURED = 1.6  # times what shorter means scatter by, for their length: noise that grows
 TOLD = 800.0  # readings on each side that tell a step of one sigma from a bend
 UNSTEADY = 3.0  # times the usual variance about the two levels: a motion, no level
+LEFT = 0.3  # of a step, what may be left of it at first
 CLEAR = 6.0  # sigmas that are left of a step once all others and the trend are taken off
 MOST = 40  # steps of one record
 POINTS = 500  # to which a window is reduced where smooth courses are fitted
@@ -70,12 +71,16 @@ def steps(readings: Array, interval: float, quantum: float, level: float) -> lis
         if p_value > level:
             break
         step = _fitted(rest, place, width, noise, QUICK / interval)
-        if step is None or any(abs(step.place - one.place) < FEWEST for one in found):
+        beside = [] if step is None else [one for one in found if _corrects(step, one, shortest)]
+        if step is None or beside:
             near = slice(max(place - width, 0), place + width + 1)
             refused[near] = np.minimum(refused[near], width)
-        else:
-            new = replace(step, p_value=p_value)
-            found = _together(clean, [*found, new], noise, places=False)
+        if beside:
+            # Its size was taken from too few readings.
+            found = [replace(one, reach=longest) if one in beside else one for one in found]
+        elif step is not None:
+            found = [*found, replace(step, p_value=p_value)]
+        found = _together(clean, found, noise, places=False)
     # With all others known, each is fitted to all that is between them.
     noise = _Noise(clean - _course(found, n), longest, quantum)
     wide = [replace(step, reach=longest) for step in found]
@@ -84,6 +89,12 @@ def steps(readings: Array, interval: float, quantum: float, level: float) -> lis
     lasts = np.minimum(edges[1:-1] - edges[:-2], edges[2:] - edges[1:-1]) >= shortest
     stands_out = np.array([abs(step.size) > CLEAR * step.sigma for step in found], bool)
     return [step for step, kept in zip(found, lasts & stands_out, strict=True) if kept]
+
+
+def _corrects(step: Step, other: Step, shortest: int) -> bool:
+    """Whether a step is what is left of another one whose size was not well known."""
+    near = abs(step.place - other.place) < shortest
+    return near and abs(step.size) < LEFT * abs(other.size)
 
 
 def without_spikes(readings: Array) -> Array:
@@ -281,7 +292,7 @@ def _together(readings: Array, found: Sequence[Step], noise: _Noise, *, places: 
         for i, step in enumerate(now):
             first = max(edges[i], step.place - step.reach)
             after = min(edges[i + 2], step.place + step.reach)
-            if after - first < 2 * FEWEST + 2:
+            if min(step.place - first, after - step.place) < FEWEST:
                 continue
             others = [other for other in now if other is not step]
             own = (readings - _course(others, n))[first:after]

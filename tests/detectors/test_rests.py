@@ -90,9 +90,11 @@ def test_the_consequence_is_the_jump_times_its_share():
     ((_, event),) = seen(jumping(2, 10))
     words = BiasJump().tells(event, "z-up")
     # 10 × 1.07e-3 m/s² over 60 %; half of it is bias of the pair, and over 2 g ppm of scale.
-    assert "+0.0064" in words.consequence and "60%" in words.consequence
-    assert "+0.0032" in words.consequence
-    assert re.search(r"\+3[23]\d ppm", words.consequence)
+    off = float(event.size) * 0.6
+    assert off == pytest.approx(6.4e-3, rel=0.03)
+    assert f"+{off:.5f} m/s²" in words.consequence and "60%" in words.consequence
+    assert f"+{off / 2:.5f} m/s² of bias" in words.consequence
+    assert f"+{off / 2 / GRAVITY * 1e6:.0f} ppm" in words.consequence
 
 
 def test_two_jumps_of_a_channel_are_two_events():
