@@ -24,6 +24,7 @@ from stages.detectors.oscillation import Oscillation
 from stages.detectors.quantisation import Quantisation
 from stages.detectors.rate_off import RateOff
 from stages.detectors.saturation import Saturation
+from stages.detectors.short_rest import ShortRest
 from stages.detectors.sign_flip import SignFlip, SignFlipOfGyros
 from stages.detectors.sign_flip_against_plan import SignFlipAgainstPlan
 from stages.detectors.spike import Spikes
@@ -78,4 +79,5 @@ OF_PLAN: tuple[AgainstPlan, ...] = (
     WrongDirection(),
     IncompleteTurn(),
     WrongRate(),
+    ShortRest(),
 )

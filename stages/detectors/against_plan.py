@@ -38,13 +38,14 @@ class Recorded:
 
     name, log, do: what the plan calls it, where, and rest, turn or positions; steady: only its
     steady part is planned to be recorded.
-    up, about: (m, 3), planned directions, NaN where none; angle, rate: (m,), planned, signed about
-    `about`, NaN where none.
+    up, about: (m, 3), planned directions, NaN where none; angle, rate, seconds: (m,), planned, the
+    first two signed about `about`, NaN where none.
     found, complete, bridged: (m,); said: what was recorded of it, in words.
     force: (m, 3), mean of its rest, or of that before its turn; of one that is not found, of what
     its log holds instead; turned: (m, 3), angles of its motion; NaN where not recorded.
     moved: (m,), angle about `about`; speed: (m,), mean rate of its steady part about `about`;
-    lacking, lacking_s: (m,), angle and time that are missing; duration: (m,), s, start to stop.
+    lacking, lacking_s: (m,), angle and time that are missing; duration: (m,), s, of the rest
+    or from start to stop.
     first, after: (m,), records of it, or of what its log holds instead, −1 where there are none;
     from_s, to_s: (m,). gap_first, gap_from_s, gap_to_s: (m,), record after the longest gap in its
     motion, −1 and NaN where it has none.
@@ -65,6 +66,7 @@ class Recorded:
     about: Array
     angle: Array
     rate: Array
+    seconds: Array
     found: Booleans
     complete: Booleans
     bridged: Booleans

@@ -66,7 +66,9 @@ def _if_taken(recorded: Recorded, i: int) -> str:
     said = [f"Taken for {fixed(planned, 0)}°, {_wrong_by(read / planned - 1)}"]
     if common:
         said[0] = f"Without the common ratio it is {fixed(read, 2)}°. {said[0]}"
-    seconds = float(recorded.duration[i])
+    # The formula of two turns takes the time of a whole one, whatever the log holds of it.
+    whole_turn = abs(recorded.angle[i] / recorded.rate[i]) if recorded.rate[i] else 0.0
+    seconds = float(np.fmax(recorded.duration[i], whole_turn))
     if seconds > 0 and abs(planned - read) > 0:
         said[0] += f", bias by {fixed(abs(planned - read) / (2 * seconds), 4)} °/s"
     rounded = round(read)

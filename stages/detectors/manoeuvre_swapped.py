@@ -38,7 +38,7 @@ class ManoeuvreSwapped(AgainstPlan):
             sentence = f"In {one.logs[0]}, {first} and {second} stand in each other's place."
         own = [i for i, name in enumerate(recorded.name) if name in one.names]
         return Words(
-            sentence + _or_a_sign(recorded, own),
+            sentence + (_or_a_sign(recorded, own) if len(one.logs) == 2 else ""),
             _if_used(recorded, own),
             "Both are left out, for only the laboratory knows which is which. Correct the names, or"
             " the plan, and run it again.",

@@ -80,9 +80,13 @@ class Estimates:
         matrix = unknowns[:9].reshape(3, 3)
         jacobian = np.zeros((21, 12))
         jacobian[:12] = np.eye(12)
-        jacobian[12:, :9] = triad.jacobian_of_mounting(matrix)
-        values = np.append(triad.errors_of(unknowns), triad.mounting_and_rest(matrix))
         derived = triad.MOUNTING + triad.SYMMETRIC
+        values = np.append(triad.errors_of(unknowns), np.zeros(len(derived)))
+        if np.linalg.det(matrix) > 0:
+            jacobian[12:, :9] = triad.jacobian_of_mounting(matrix)
+            values[12:] = triad.mounting_and_rest(matrix)
+        else:  # two axes are taken for each other, or a sign is wrong: the findings say so
+            reasons = reasons | {name: "M is left-handed: it is no mounting" for name in derived}
         if any(name.startswith(("scale", "cross")) for name in reasons):
             reasons = reasons | {name: "it needs all nine elements of M" for name in derived}
         self.add(method, NAMES + derived, values, jacobian @ covariance @ jacobian.T, reasons)

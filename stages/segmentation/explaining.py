@@ -14,7 +14,7 @@ from stages.segmentation.locating import AS_NAMED, AS_PLANNED, Axes, Located, Sh
 
 Array = NDArray[np.float64]
 
-CLEARLY = 2  # observations more that agree with the plan
+CLEARLY = 2  # observations more that agree with the plan, in place of as many that do not
 UPRIGHT = 0.9  # share of the vertical in an axis that points up
 SURE = 4.0  # sigmas to which the earth's rate must be seen to half of itself
 FEW = 4  # manoeuvres of a log for which an exchange with every other one is tried
@@ -55,10 +55,11 @@ class _Case:
     exchanged: tuple[Exchanged, ...] = ()
 
     @property
-    def agreeing(self) -> int:
-        """How many observations agree with the plan, less those of the earth that do not."""
+    def balance(self) -> int:
+        """Observations that agree with the plan, less those that do not."""
+        counts = [one.agreeing for one in self.located]
         earth = earth_seen(self.located, self.everywhere, self.earth_rate)
-        return sum(one.agreeing[0] for one in self.located) + sum(earth)
+        return sum(2 * right - said for right, said in counts) + sum(earth)
 
     @property
     def lacking(self) -> list[int]:
@@ -79,8 +80,11 @@ def explain(windows: Sequence[Shown], earth_rate: float) -> Explained:
     """
     case = _Case(tuple(locate(window) for window in windows), earth_rate)
     while case.lacking:
-        best = max(_suppositions(windows, case), key=lambda one: one.agreeing, default=case)
-        if best.agreeing < case.agreeing + CLEARLY:
+        best = max(_suppositions(windows, case), key=lambda one: one.balance, default=case)
+        gain = best.balance - case.balance
+        # Two that changed places within a log cost one of them at most: the other one fits.
+        whole = gain >= 2 and not best.lacking and best.exchanged != case.exchanged
+        if gain < 2 * CLEARLY and not whole:
             break
         case = best
     misread = dict(_misread(windows, case))

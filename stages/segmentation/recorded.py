@@ -53,6 +53,7 @@ def recorded_of(
         about=_vectors([m.about for m in plan]),
         angle=_numbers([m.angle for m in plan]),
         rate=_numbers([m.rate for m in plan]),
+        seconds=_numbers([m.seconds for m in plan]),
         found=np.array([d.found for d in done], bool),
         complete=np.array([d.complete for d in done], bool),
         bridged=np.array([d.bridged for d in done], bool),

@@ -1,7 +1,5 @@
 """Rests that are none: biases that jump, tables that move; and what must not be taken for it."""
 
-import re
-
 import numpy as np
 import pytest
 from recorded_by_hand import GRAVITY, INTERVAL, NOISE, given, log, piece, rest, stamps
