@@ -1,0 +1,1 @@
+"""Programs in the peers' environment that do a peer's part of a benchmark."""

@@ -1,0 +1,97 @@
+"""The project's own chain on a campaign: what it finds, what it says, and how long it takes."""
+
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import chain  # of the tests: the stages one after another in this process
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+import laboratory
+from benchmarks.parameters import NAMES, SENSORS
+from benchmarks.timing import Seconds, timed
+
+Array = NDArray[np.float64]
+
+
+SEVERITY = {3: "spoils a result", 2: "weakens it", 1: "good to know"}
+
+
+@dataclass(frozen=True)
+class Solved:
+    """What the chain made of a campaign.
+
+    `values`, `sigmas`: by sensor and method, (12,), NaN where not determined, M and not its errors.
+    `seconds`: from the logs to the last of the stages that ran; `says`: see `complaints`.
+    """
+
+    results: chain.Results
+    values: dict[tuple[str, str], Array]
+    sigmas: dict[tuple[str, str], Array]
+    seconds: Seconds
+    says: list[str]
+
+    def covariance(self, stage: str) -> Array:
+        """The covariance of the joint estimate of a sensor, (12, 12)."""
+        table = self.results[f"{stage}/covariance"]
+        ids = [f"{stage}/joint/{name}" for name in NAMES]
+        square = table.pivot(index="first", columns="second", values="covariance")
+        return square.loc[ids, ids].to_numpy(np.float64)
+
+
+def solve(recording: laboratory.Recording, folder: Path, until: str = "gyroscope") -> Solved:
+    """Write a recording and run the chain on it, up to and with a stage."""
+    laboratory.write(recording, folder / "raw" / "bench")
+    raw, derived = folder / "raw" / "bench", folder / "derived" / "bench"
+    seconds = timed(lambda: chain.run(raw, derived, until), 1)
+    results = chain.Results(derived)
+    values, sigmas = {}, {}
+    for stage, method in (
+        *((stage, "joint") for stage in SENSORS),
+        ("accelerometer", "six_position"),
+        ("gyroscope", "turns"),
+    ):
+        table = results.parameters(stage, method).reindex(NAMES)
+        unit = np.append(np.eye(3).ravel(), np.zeros(3))
+        values[stage, method] = table["value"].to_numpy(np.float64) + unit
+        sigmas[stage, method] = table["sigma"].to_numpy(np.float64)
+    return Solved(results, values, sigmas, seconds, complaints(results))
+
+
+def complaints(results: chain.Results) -> list[str]:
+    """What the stages complain of, as far as they ran: each cause, how badly, how many times."""
+    counted: dict[str, int] = {}
+    for stage in ("quality", "segment", "criticism"):
+        if (results.folder / stage / "findings.parquet").exists():
+            table = results[f"{stage}/findings"]
+            for cause, severity in zip(table["cause"], table["severity"], strict=True):
+                words = f"{cause} ({SEVERITY[severity]})"
+                counted[words] = counted.get(words, 0) + 1
+    told = [words if times == 1 else f"{words} ×{times}" for words, times in counted.items()]
+    for stage in SENSORS:
+        fit = results[f"{stage}/fit"].iloc[0]
+        if fit["scatter"] > 0:
+            told.append(f"{stage}: the manoeuvres differ by more than noise, sigmas grow")
+        parameters = results[f"{stage}/parameters"]
+        for method, rows in parameters[parameters["reason"] != ""].groupby("method"):
+            told.append(f"{stage}/{method} refuses {', '.join(rows['parameter'])}")
+    return told
+
+
+def tables_for(derived: Path, stage: str) -> dict[str, pd.DataFrame]:
+    """The tables that a stage reads, as earlier stages left them under `derived`."""
+    made = {}
+    for earlier in chain.ORDER[: chain.ORDER.index(stage)]:
+        for table in import_module(f"stages.{earlier}").STAGE.writes:
+            made[table] = derived / earlier / f"{table}.parquet"
+    reads = import_module(f"stages.{stage}").STAGE.reads
+    return {table: contract.read(made[table]) for table, contract in reads.items()}
+
+
+def run_again(stage: str, inputs: dict[str, pd.DataFrame], **changed: Any) -> Any:
+    """A stage on tables in memory, nothing read or written; `changed`: settings."""
+    settings = {**chain.SETTINGS.get(stage, {}), **changed}
+    return import_module(f"stages.{stage}").STAGE.function(**inputs, **settings)
