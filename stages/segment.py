@@ -22,7 +22,7 @@ from stages.screening.logs import given_by, logs
 from stages.screening.rests import rests_of, screen
 from stages.segmentation import judging, reduction
 from stages.segmentation.explaining import explain
-from stages.segmentation.locating import Located, shown
+from stages.segmentation.locating import AS_NAMED, Located, shown
 from stages.segmentation.matching import Part, position_parts, rest_part, turn_parts
 from stages.segmentation.motion import rest_level
 from stages.segmentation.recorded import recorded_of
@@ -90,9 +90,9 @@ def segment(
     in_motion = dict(list(blocks[~blocks["phase"].str.startswith("rest")].groupby("manoeuvre")))
     for located, place, m in turns:
         own = in_motion.get(m.name, blocks.iloc[:0])
-        performed[m.name] = judging.turn(
-            located.one, located.found, place, m, own, gaps, level, angle_tolerance
-        )
+        done = judging.turn(located.one, located.found, place, m, own, gaps, level, angle_tolerance)
+        as_named = located.axes.gyro == AS_NAMED
+        performed[m.name] = done if as_named else judging.by_other_axes(done)
     segments = reduction.segments(samples, parts)
     given = given_by(campaign, known, count_sizes, clocks)
     looked = logs(samples, clocks, ranges, given)

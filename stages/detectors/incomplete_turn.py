@@ -23,13 +23,16 @@ class IncompleteTurn(AgainstPlan):
     def finds(self, recorded: Recorded) -> Iterator[Deviation]:
         common = common_ratio(recorded)
         _, angle = ratios(recorded)
+        # By other axes no turn is used, though it may be whole.
+        misread = any(one.sensor == "gyro" and not one.log for one in recorded.misread)
         for i, name in enumerate(recorded.name):
             whole_planned = recorded.do[i] == "turn" and not recorded.steady[i]
             if not whole_planned or not recorded.found[i] or recorded.complete[i]:
                 continue
             scaled = common is not None and abs(angle[i] / common[0] - 1) <= ALIKE
             reversed_ = angle[i] < 0
-            if scaled or reversed_ or name in recorded.explained:
+            refused = misread and recorded.lacking_s[i] == 0
+            if scaled or reversed_ or refused or name in recorded.explained:
                 continue
             missing = float(np.degrees(recorded.lacking[i]))
             place = {}

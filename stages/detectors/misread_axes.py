@@ -45,8 +45,13 @@ def told(one: Misread, recorded: Recorded) -> Words:
     if not one.log:
         consequence = (
             f"The parameters of the {sensor} come out under wrong names:"
-            f" {_in_the_matrix(one.axes)}, and so for the biases."
+            f" {_in_the_matrix(one.axes)}; the biases likewise."
         )
+        if one.sensor == "gyro":
+            consequence = (
+                "The turns give no parameters of the gyros. Used, they would give"
+                f" {_in_the_matrix(one.axes)}; the biases are under wrong names."
+            )
         action = (
             "The manoeuvres are found by the right axes; the data are not changed. Correct the axes"
             " of the instrument, or the columns, and run it again."

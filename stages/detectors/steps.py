@@ -81,6 +81,8 @@ def steps(readings: Array, interval: float, quantum: float, level: float) -> lis
         elif step is not None:
             found = [*found, replace(step, p_value=p_value)]
         found = _together(clean, found, noise, places=False)
+    if not found:
+        return []
     # With all others known, each is fitted to all that is between them.
     noise = _Noise(clean - _course(found, n), longest, quantum)
     wide = [replace(step, reach=longest) for step in found]

@@ -1,6 +1,7 @@
 """What was recorded of each manoeuvre, against what the plan says of it."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import degrees
 
 import numpy as np
@@ -43,6 +44,15 @@ def left_out(explained: Explained, plan: Sequence[Manoeuvre]) -> Iterator[tuple[
             why[m.name] = f"{m.name} is left out: in {m.log} axes are taken for others."
     for name, sentence in why.items():
         yield name, Performed(name, sentence, found=False, complete=False)
+
+
+def by_other_axes(done: Performed) -> Performed:
+    """A turn that is found only because axes of the gyros are taken for others.
+
+    An estimate that takes them as they are named would be led far astray.
+    """
+    why = " It is left out of the estimates, for axes of the gyros are taken for others."
+    return replace(done, complete=False, bridged=False, sentence=done.sentence + why)
 
 
 def positions(m: Manoeuvre, number: int) -> Performed:

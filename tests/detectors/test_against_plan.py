@@ -1,0 +1,390 @@
+"""Campaigns of the simulated laboratory that are not what their plan says."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import degrees
+from typing import Any
+
+import chain
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.detectors.exchanges import EVERY, Permutation
+from stages.detectors.misread_axes import determinant
+from stages.detectors.standing import read_as_other_axes
+
+Fault = dict[str, dict[str, Any]]
+
+
+def segmented(folder, faults: Sequence[Fault] = (), edit=lambda text: text, **changes: Any):
+    """The short campaign with faults, its file edited, up to segment."""
+    campaign = chain.simulate(chain.short(faults=list(faults), **changes), folder / "campaign")
+    file = campaign / "campaign.yaml"
+    text = file.read_text()
+    file.write_text(edit(text))
+    return chain.run(campaign, folder / "derived", "segment")
+
+
+def found_in(results: chain.Results) -> pd.DataFrame:
+    found = results["segment/findings"]
+    words = found[["sentence", "consequence", "action"]].to_numpy().ravel()
+    assert not any("nan" in text or " -" in text or not text for text in words)
+    return found
+
+
+def performed(results: chain.Results) -> pd.DataFrame:
+    return results["segment/performed"].set_index("manoeuvre")
+
+
+def swap(log: str, sensor: str, axes: str) -> Fault:
+    return {"swap": {"log": log, "sensor": sensor, "axes": list(axes)}}
+
+
+def flip(log: str, sensor: str, axis: str) -> Fault:
+    return {"flip": {"log": log, "sensor": sensor, "axis": axis}}
+
+
+def exchange(*logs: str) -> Fault:
+    return {"exchange": {"logs": list(logs)}}
+
+
+BOTH = ("accelerometer", "gyro")
+
+
+# ---- axes taken for others
+
+
+@pytest.mark.parametrize(
+    ("faults", "cause", "sensors", "said"),
+    [
+        ([swap("all", "accelerometer", "xy")], "axis_swap", ["accel"], "x reads y and y reads x"),
+        ([swap("all", "gyro", "yz")], "axis_swap", ["gyro"], "y reads z and z reads y"),
+        ([flip("all", s, "y") for s in BOTH], "sign_flip", ["accel", "gyro"], "y reads −y"),
+        ([flip("all", "accelerometer", "x")], "sign_flip", ["accel"], "x reads −x"),
+        # Told from exchanged names by the rests, in which the gyros see the earth turn.
+        ([flip("all", "gyro", "z")], "sign_flip", ["gyro"], "z reads −z"),
+        ([swap("all", s, "xz") for s in BOTH], "axis_swap", ["accel", "gyro"], "x reads z"),
+    ],
+)
+def test_axes_that_are_others_in_all_logs_are_named(faults, cause, sensors, said, tmp_path):
+    results = segmented(tmp_path, faults)
+    found = found_in(results)
+    assert list(found["cause"]) == [cause] * len(sensors)
+    assert list(found["sensor"]) == sensors
+    assert list(found["id"]) == [f"segment/{cause}/{sensor}" for sensor in sensors]
+    assert (found["severity"] == 3).all()
+    for sentence in found["sentence"]:
+        assert said in sentence and "in all logs" in sentence
+        assert "determinant −1" in sentence
+    # They are found by the right axes, and the data stay as they are.
+    done = performed(results)
+    assert done["found"].all()
+    assert len(results["segment/segments"]) == 6 + 6 * 5
+    if "gyro" in sensors:  # an estimate by the wrong axes would be led astray
+        turns = done[done.index.str.contains("ward")]
+        assert not turns["complete"].any()
+        np.testing.assert_allclose(np.degrees(turns["angle"].abs()), 360, atol=1)
+
+
+def test_rawimus_minus_y_is_named_as_the_usual_cause(tmp_path):
+    found = found_in(segmented(tmp_path, [flip("all", sensor, "y") for sensor in BOTH]))
+    assert found["sentence"].str.contains("RAWIMUS writes z, −y, x").all()
+    assert found["consequence"].str.contains("scale error of y −200 %").all()
+
+
+def test_two_flips_that_cancel_are_told_by_the_determinant(tmp_path):
+    faults = [flip("all", "accelerometer", axis) for axis in "xy"]
+    (sentence,) = found_in(segmented(tmp_path, faults))["sentence"]
+    assert "x reads −x and y reads −y" in sentence
+    assert "determinant +1" in sentence and "two mistakes cancel" in sentence
+
+
+def test_an_imu_that_is_mounted_turned_says_so_in_both_sensors(tmp_path):
+    faults = [f for s in BOTH for f in (flip("all", s, "x"), flip("all", s, "y"))]
+    found = found_in(segmented(tmp_path, faults))
+    assert list(found["cause"]) == ["sign_flip"] * 2
+    assert found["sentence"].str.contains("may be mounted turned against the plan").all()
+
+
+@pytest.mark.parametrize(
+    ("fault", "cause", "sensor"),
+    [
+        (swap("x-up.asc", "accelerometer", "xy"), "axis_swap", "accel"),
+        (flip("y-down.asc", "accelerometer", "y"), "sign_flip", "accel"),
+        (flip("y-forward.asc", "accelerometer", "y"), "sign_flip", "accel"),
+        (swap("z-backward.asc", "gyro", "xz"), "axis_swap", "gyro"),
+    ],
+)
+def test_axes_that_are_others_in_one_log_are_named_and_the_log_is_left_out(
+    fault, cause, sensor, tmp_path
+):
+    results = segmented(tmp_path, [fault])
+    (finding,) = found_in(results).to_dict("records")
+    ((_, where),) = fault.items()
+    name = where["log"].removesuffix(".asc")
+    assert (finding["cause"], finding["sensor"], finding["severity"]) == (cause, sensor, 3)
+    assert (finding["log"], finding["manoeuvre"]) == (where["log"], name)
+    assert finding["to_s"] > finding["from_s"]
+    done = performed(results)
+    assert not done.loc[name, "found"] and done.drop(name)["complete"].all()
+    assert name not in set(results["segment/segments"]["manoeuvre"])
+    assert finding["id"] in set(results["segment/close_ups"]["finding"])
+
+
+def test_one_long_log_is_found_by_the_right_axes(tmp_path):
+    document = chain.short(faults=[swap("all", "accelerometer", "yz")])
+    for manoeuvre in document["campaign"]["plan"]:
+        del manoeuvre["log"]
+    document["campaign"]["log"] = "session.asc"
+    document["handling"]["change_s"] = 10
+    campaign = chain.simulate(document, tmp_path / "campaign")
+    results = chain.run(campaign, tmp_path / "derived", "segment")
+    assert list(found_in(results)["cause"]) == ["axis_swap"]
+    assert performed(results)["complete"].all()
+
+
+@pytest.mark.parametrize("askew", [5, 20])
+def test_an_imu_that_is_mounted_askew_raises_nothing(askew, tmp_path):
+    document = chain.short()
+    axis = np.array([1.0, -2.0, 2.0]) / 3
+    x, y, z = np.sin(np.radians(askew)) * axis
+    across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    turned = (
+        np.eye(3)
+        + across
+        + (1 - np.cos(np.radians(askew))) / (x * x + y * y + z * z) * (across @ across)
+    )
+    for sensor in ("accelerometer", "gyro"):
+        matrix = np.array(document["truth"][sensor]["matrix"]) @ turned
+        document["truth"][sensor]["matrix"] = matrix.tolist()
+    campaign = chain.simulate(document, tmp_path / "campaign")
+    results = chain.run(campaign, tmp_path / "derived", "segment")
+    assert found_in(results).empty
+    assert performed(results)["complete"].all()
+
+
+# ---- names
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        ("x-up", "x-down"),
+        ("x-up", "y-up"),
+        ("z-forward", "z-backward"),
+        ("x-forward", "y-forward"),
+        ("z-down", "y-backward"),
+    ],
+)
+def test_logs_under_each_others_names_are_named_and_left_out(one, other, tmp_path):
+    results = segmented(tmp_path, [exchange(f"{one}.asc", f"{other}.asc")])
+    (finding,) = found_in(results).to_dict("records")
+    assert finding["cause"] == "manoeuvre_swapped"
+    assert finding["id"] == f"segment/manoeuvre_swapped/{one}"
+    assert f"{one}.asc holds what {other} should be" in finding["sentence"]
+    assert f"{other}.asc what {one} should be" in finding["sentence"]
+    done = performed(results)
+    assert list(done.index[~done["found"]]) == [one, other]
+    assert done.drop([one, other])["complete"].all()
+    assert not {one, other} & set(results["segment/segments"]["manoeuvre"])
+
+
+def test_two_pairs_of_exchanged_logs_are_two_findings(tmp_path):
+    faults = [exchange("x-up.asc", "x-down.asc"), exchange("y-forward.asc", "y-backward.asc")]
+    found = found_in(segmented(tmp_path, faults))
+    assert list(found["cause"]) == ["manoeuvre_swapped"] * 2
+
+
+def test_a_sign_that_would_look_the_same_is_told(tmp_path):
+    (sentence,) = found_in(segmented(tmp_path, [exchange("x-up.asc", "x-down.asc")]))["sentence"]
+    assert "A wrong sign of the x accelerometer would look the same" in sentence
+
+
+def test_two_manoeuvres_in_each_others_place_within_a_log_are_named(tmp_path):
+    document = chain.short()
+    for manoeuvre in document["campaign"]["plan"]:
+        del manoeuvre["log"]
+    document["campaign"]["log"] = "session.asc"
+    document["handling"]["change_s"] = 10
+    campaign = chain.simulate(document, tmp_path / "campaign")
+    file = campaign / "campaign.yaml"
+    lines = file.read_text().splitlines(keepends=True)
+    i, j = (
+        next(k for k, line in enumerate(lines) if f"id: {n}," in line) for n in ("x-up", "y-up")
+    )
+    lines[i], lines[j] = lines[j], lines[i]
+    file.write_text("".join(lines))
+    results = chain.run(campaign, tmp_path / "derived", "segment")
+    (finding,) = found_in(results).to_dict("records")
+    assert finding["cause"] == "manoeuvre_swapped"
+    assert "y-up and x-up stand in each other's place" in finding["sentence"]
+    done = performed(results)
+    assert done.drop(["x-up", "y-up"])["complete"].all()
+
+
+# ---- turns
+
+
+def test_the_counts_of_another_instrument_are_one_finding(tmp_path):  # as S0 names its IMU
+    results = segmented(tmp_path, edit=lambda text: text.replace("span-cpt", "imar-fsas"))
+    (finding,) = found_in(results).to_dict("records")
+    assert finding["id"] == "segment/wrong_scale_factor"
+    assert (finding["cause"], finding["sensor"], finding["count"]) == (
+        "wrong_scale_factor",
+        "gyro",
+        6,
+    )
+    assert 1 / finding["size"] == pytest.approx(57.29578, rel=1e-3)
+    assert "the counts are those of span-cpt" in finding["sentence"]
+    assert performed(results)["found"].all()
+
+
+def test_a_gap_is_told_beside_a_wrong_count(tmp_path):
+    fault = {"lose": {"log": "z-backward.asc", "line": 550, "samples": 200}}
+    results = segmented(tmp_path, [fault], lambda text: text.replace("span-cpt", "imar-fsas"))
+    found = found_in(results).set_index("cause")
+    assert list(found.index) == ["wrong_scale_factor", "incomplete_turn"]
+    assert found.loc["incomplete_turn", "manoeuvre"] == "z-backward"
+
+
+def with_line(name: str, old: str, new: str):
+    def edit(text: str) -> str:
+        lines = text.splitlines(keepends=True)
+        (k,) = [k for k, line in enumerate(lines) if f"id: {name}," in line]
+        assert old in lines[k]
+        lines[k] = lines[k].replace(old, new)
+        return "".join(lines)
+
+    return edit
+
+
+def test_a_turn_against_the_plan_is_named(tmp_path):
+    results = segmented(tmp_path, edit=with_line("x-forward", "degrees: 360", "degrees: -360"))
+    (finding,) = found_in(results).to_dict("records")
+    assert (finding["cause"], finding["manoeuvre"]) == ("wrong_direction", "x-forward")
+    assert finding["size"] == pytest.approx(-1, abs=1e-3)
+    assert "by 360.24° in place of −360°" in finding["sentence"]
+
+
+def test_a_rate_that_is_not_the_planned_one_is_named_for_its_turn(tmp_path):
+    edit = with_line("y-forward", "rate_deg_s: 60", "rate_deg_s: 30")
+    (finding,) = found_in(segmented(tmp_path, edit=edit)).to_dict("records")
+    assert (finding["cause"], finding["manoeuvre"]) == ("wrong_rate", "y-forward")
+    assert finding["size"] == pytest.approx(2, abs=2e-3)
+    assert finding["severity"] == 1  # the angle is right, and the angle is what counts
+    assert "so its scale factor holds" in finding["consequence"]
+
+
+def test_an_incomplete_turn_says_what_a_wrong_angle_would_cost(tmp_path):
+    fault = {"lose": {"log": "z-backward.asc", "line": 500, "samples": 200}}
+    results = segmented(tmp_path, [fault])
+    (finding,) = found_in(results).to_dict("records")
+    assert finding["cause"] == "incomplete_turn"
+    turn = performed(results).loc["z-backward"]
+    assert degrees(turn["angle"]) == pytest.approx(-240.2, abs=0.1)
+    assert finding["size"] == pytest.approx(degrees(turn["missing_angle"]))
+    # The place is the gap: 200 samples, 2.01 s from stamp to stamp.
+    assert finding["to_s"] - finding["from_s"] == pytest.approx(2.01)
+    share = 1e6 * (degrees(turn["angle"]) / -360 - 1)
+    thin = finding["consequence"].replace("\u202f", "").replace("−", "-")
+    assert f"wrong by {share:.0f} ppm ({share / 2:.0f} ppm in a pair" in thin
+    rounded = 1e6 * (degrees(turn["angle"]) / -240 - 1)
+    assert f"rounded to -240°, its scale error is wrong by {rounded:.0f} ppm" in thin
+    assert turn["bridged"] == ("bridges" in finding["action"])
+    shown = results["segment/close_ups"]
+    assert set(shown["finding"]) == {finding["id"]} and len(shown) == 120
+
+
+# ---- what is missing
+
+
+def test_what_the_log_has_instead_is_told(tmp_path):
+    # The IMU stood with z down; the plan has it so in another log as well.
+    results = segmented(tmp_path, edit=with_line("z-down", "up: -z", "up: +y"))
+    (finding,) = found_in(results).to_dict("records")
+    assert (finding["cause"], finding["manoeuvre"]) == ("manoeuvre_missing", "z-down")
+    assert "rests 90° from there, with −z up" in finding["sentence"]
+    assert "seen in y-up" in finding["consequence"]
+
+
+def test_a_dead_gyro_does_not_hinder_the_others(tmp_path):
+    logs = [f"{axis}-{way}.asc" for axis in "xyz" for way in ("up", "down", "forward", "backward")]
+    faults = [
+        {"kill": {"log": log, "channel": "gyro_z", "line": 1, "samples": n, "reads": "frozen"}}
+        for log in logs
+        for n in [1300 if "ward" in log else 2000]
+    ]
+    results = segmented(tmp_path, faults)
+    found = found_in(results)
+    assert list(found["manoeuvre"]) == ["z-forward", "z-backward"]
+    assert set(found["cause"]) == {"manoeuvre_missing"}
+    assert found["sentence"].str.contains("z gyro, which would see it, has no reading").all()
+    assert performed(results).drop(["z-forward", "z-backward"])["complete"].all()
+
+
+def test_a_rest_that_was_cut_off_is_told(tmp_path):
+    results = segmented(tmp_path, edit=with_line("x-up", "seconds: 20", "seconds: 180"))
+    (finding,) = found_in(results).to_dict("records")
+    assert (finding["cause"], finding["manoeuvre"]) == ("short_rest", "x-up")
+    assert "3.0 times what was planned" in finding["consequence"]
+
+
+# ---- the table
+
+
+def test_a_table_that_creeps_is_named_in_the_rests_that_it_spoils(tmp_path):
+    creep = {"table_creep": {"about": "north", "rate_deg_h": 10, "from_s": 85, "to_s": 95}}
+    results = segmented(tmp_path, effects=creep)
+    (finding,) = found_in(results).to_dict("records")
+    assert (finding["cause"], finding["manoeuvre"]) == ("table_moving", "x-down")
+    assert (finding["unit"], finding["size"]) == ("″", pytest.approx(100, rel=0.1))
+    assert finding["from_s"] == pytest.approx(85, abs=1.5)
+    assert finding["to_s"] == pytest.approx(95, abs=1.5)
+
+
+def test_jumps_beside_turns_are_told_with_their_phase(tmp_path):
+    place = {"log": "x-forward.asc", "channel": "gyro_y", "line": 130}
+    results = segmented(tmp_path, [{"step": place | {"size_rad_s": 7e-4, "samples": 600}}])
+    (finding,) = found_in(results).to_dict("records")
+    assert (finding["cause"], finding["manoeuvre"]) == ("bias_jump", "x-forward")
+    assert finding["sentence"].startswith("x-forward (rest-before):")
+
+
+# ---- arrays alone
+
+
+def test_an_attitude_is_told_from_axes_by_the_biases_of_the_sensors():
+    generator = np.random.default_rng(5)
+    matrix = np.eye(3) + 5e-3 * generator.standard_normal((3, 3))
+    bias = 5e-3 * generator.standard_normal(3)
+    ups = np.array([[-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1], [1, 0, 0]], float)
+
+    def read(up: np.ndarray) -> np.ndarray:
+        return matrix @ (9.8 * up) + bias + 1e-4 * generator.standard_normal(3)
+
+    forces = np.array([read(up) for up in ups])
+    right = np.array([1.0, 0.0, 0.0])
+    for permutation in EVERY:
+        force = permutation.inverse.of(read(right))
+        said = read_as_other_axes(force, right, forces, ups)
+        other = permutation.inverse.of(right)
+        if np.array_equal(other, right):
+            continue  # the axis that points up is read as it is
+        assert said == permutation
+        assert read_as_other_axes(read(other), right, forces, ups) is None
+    # By hand, where positions are off by a degree, it cannot be told.
+    tilted = ups + np.radians(1) * generator.standard_normal(ups.shape)
+    forces = np.array([read(up / np.linalg.norm(up)) for up in tilted])
+    swapped = Permutation((1, 0, 2), (1, 1, 1)).of(read(right))
+    assert read_as_other_axes(swapped, right, forces, ups) is None
+    assert read_as_other_axes(swapped, right, forces[:2], ups[:2]) is None
+
+
+def test_the_determinant_of_a_signed_permutation():
+    one = Permutation((0, 1, 2), (1, 1, 1))
+    assert determinant(one) == 1
+    assert determinant(replace(one, signs=(1, -1, 1))) == -1
+    assert determinant(replace(one, sources=(1, 0, 2))) == -1
+    assert determinant(replace(one, sources=(1, 2, 0))) == 1
+    assert sum(determinant(permutation) for permutation in EVERY) == -1
