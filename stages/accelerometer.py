@@ -9,6 +9,7 @@ from stages.contracts import tables
 from stages.contracts.records import known_of, manoeuvres_of, performed_of
 from stages.contracts.stage import Stage, Tables
 from stages.estimation.estimates import NAMES, Estimates, by_mount, reasons
+from stages.estimation.free_positions import add_free_accelerometers
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import Still, averaging_times, stills
 from stages.inference import triad
@@ -41,6 +42,7 @@ def accelerometer(
     about = (gravity.number, gravity.scatter, given["position"].scatter)
     estimates = Estimates("accelerometer")
     for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
+        add_free_accelerometers(estimates, suffix, blocks, plan, levels, given)
         found, left = stills(blocks, plan, done, levels, "accel")
         if not found:
             estimates.add_nothing(f"joint{suffix}", "; ".join(left))

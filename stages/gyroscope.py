@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from stages.contracts import tables
 from stages.contracts.records import known_of, manoeuvres_of, performed_of
 from stages.contracts.stage import Stage, Tables
+from stages.estimation.between_rests import add_free_gyros
 from stages.estimation.estimates import Estimates, by_mount, reasons
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import averaging_times
@@ -40,6 +41,7 @@ def gyroscope(
     given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
     estimates = Estimates("gyroscope")
     for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
+        add_free_gyros(estimates, suffix, blocks, plan, levels, given)
         inputs = gyro_inputs(blocks, plan, done, levels, given)
         if inputs.nothing:
             estimates.add_nothing(f"joint{suffix}", "; ".join(inputs.left_out))

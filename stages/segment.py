@@ -23,7 +23,13 @@ from stages.screening.rests import rests_of, screen
 from stages.segmentation import judging, reduction
 from stages.segmentation.explaining import explain
 from stages.segmentation.locating import AS_NAMED, Located, shown
-from stages.segmentation.matching import Part, position_parts, rest_part, turn_parts
+from stages.segmentation.matching import (
+    Part,
+    between_parts,
+    position_parts,
+    rest_part,
+    turn_parts,
+)
 from stages.segmentation.motion import rest_level
 from stages.segmentation.recorded import recorded_of
 from stages.segmentation.windows import Binned, binned, windows
@@ -68,6 +74,7 @@ def segment(
     left = dict(judging.left_out(explained, plan))
     for located in explained.located:
         one, found, matched = located.one, located.found, located.matched
+        first = len(parts)
         for m in located.plan:
             place = matched.get(m.name)
             if m.name in left:
@@ -86,6 +93,8 @@ def segment(
                 new = list(turn_parts(one, found, m, matched, level, margin))
                 turns.append((located, place, m))
             parts += new
+        if any(m.do == "positions" for m in located.plan):
+            parts += between_parts([p for p in parts[first:] if p.phase.startswith("rest")])
     blocks = reduction.blocks(samples, parts, gaps, masked, clock, rest_block, turn_block)
     in_motion = dict(list(blocks[~blocks["phase"].str.startswith("rest")].groupby("manoeuvre")))
     for located, place, m in turns:

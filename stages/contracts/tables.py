@@ -7,7 +7,10 @@ from stages.contracts.parquet import Column, Table
 AXES = ("x", "y", "z")
 CHANNELS = tuple(f"{sensor}_{axis}" for sensor in ("accel", "gyro") for axis in AXES)
 UNITS = {"accel": "m/s²", "gyro": "rad/s"}
-PHASES = "rest; for a turn rest-before, spin-up, steady, spin-down, rest-after; by hand: turning"
+PHASES = (
+    "rest; for a turn rest-before, spin-up, steady, spin-down, rest-after; by hand: turning;"
+    " from one rest of unknown attitude to the next: between"
+)
 BODY = "body"  # axes x, y, z of the IMU's case, right-handed
 
 _double, _text, _integer, _truth = pa.float64(), pa.string(), pa.int64(), pa.bool_()

@@ -32,6 +32,7 @@ SENSOR = {"accelerometer": "Accelerometer", "gyroscope": "Gyroscope"}
 METHOD = {
     "joint": "joint fit of all manoeuvres",
     "six_position": "six positions",
+    "free_positions": "rests of unknown attitude, by |f| = g",
     "turns": "turns forward and back",
 }
 KIND = {

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,8 @@ from stages.segmentation.motion import Stretch, steady_part
 from stages.segmentation.windows import Binned
 
 Array = NDArray[np.float64]
+
+BETWEEN = "between"  # from a rest to the next, where attitudes are unknown: what carries them on
 
 
 @dataclass(frozen=True)
@@ -118,6 +121,14 @@ def position_parts(
         if free and seconds >= (m.seconds or 0.0):
             number += 1
             yield rest_part(one, stretch, f"{m.name}-{number:02d}", margin)
+
+
+def between_parts(rests: Sequence[Part]) -> Iterator[Part]:
+    """All that lies between each rest and the next one of the same log."""
+    for before, behind in pairwise(sorted(rests, key=lambda part: (part.log, part.first))):
+        if before.log == behind.log and before.after < behind.first:
+            name = f"{before.manoeuvre} to {behind.manoeuvre}"
+            yield Part(name, BETWEEN, before.log, before.after, behind.first)
 
 
 def turn_parts(

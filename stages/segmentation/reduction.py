@@ -11,7 +11,7 @@ from stages.contracts.masks import Masks
 from stages.contracts.parquet import Stream
 from stages.contracts.records import Clock
 from stages.contracts.samples import Integers, Sums, regular, sums_over
-from stages.segmentation.matching import Part
+from stages.segmentation.matching import BETWEEN, Part
 
 Floats = NDArray[np.float64]
 
@@ -57,6 +57,8 @@ def blocks(
     for part in parts:
         seconds = rest_block if part.phase.startswith("rest") else turn_block
         length = max(1, round(seconds / clocks[part.log].step))
+        if part.phase == BETWEEN:  # a hand turns about ever other axes, so every record counts
+            length = 1
         cuts = {*range(part.first, part.after, length)}
         cuts |= {*gaps.loc[gaps["log"] == part.log, "record"].tolist()}
         unseen = hidden.get(part.manoeuvre, np.array([], np.int64))
