@@ -66,7 +66,7 @@ def segment(
     noise = UNLIKE_NOISE * scatter
     threshold = max(SLOWEST * min(rates) if rates else BY_HAND, noise)
     earth = known_of(known)["earth_rate_up"].number
-    explained = explain([shown(one, level, (threshold, noise)) for one in every], earth)
+    explained = explain([shown(one, level, threshold, noise) for one in every], earth)
 
     parts: list[Part] = []
     turns: list[tuple[Located, int, Manoeuvre]] = []

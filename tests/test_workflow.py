@@ -312,15 +312,18 @@ def test_make_report_in_a_clean_clone(tmp_path: Path) -> None:
     pages = ["reports/demo.html", *(["reports/demo.pdf"] if has_pango() else [])]
     for page in pages:
         assert (clone / page).stat().st_size > 100_000
-    *_, path = first.stdout.splitlines()
+    *_, exported, path = first.stdout.splitlines()
     assert path == f"The report: {' '.join(pages)}"
+    assert exported.startswith("For other programs: reports/demo.calibration.json ")
+    for file in exported.partition(": ")[2].split():
+        assert (clone / file).stat().st_size > 100
     verdict, _, _ = (clone / "reports/demo.txt").read_text().partition("\nCampaign:")
     assert verdict.startswith("SIMULATED")
-    assert f"{verdict}\n{path}\n" in first.stdout
+    assert f"{verdict}\n{exported}\n{path}\n" in first.stdout
 
     second = make(clone, "report")
     assert "Nothing to be done" in second.stderr
-    assert f"{verdict}\n{path}\n" in second.stdout
+    assert f"{verdict}\n{exported}\n{path}\n" in second.stdout
     assert ".venv" not in second.stdout  # it was not made again
 
 

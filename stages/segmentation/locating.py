@@ -10,7 +10,7 @@ from stages.contracts.records import Manoeuvre
 from stages.detectors.exchanges import Permutation
 from stages.segmentation.alignment import points
 from stages.segmentation.matching import Seen, match, seen
-from stages.segmentation.motion import Stretch, moving, stretches
+from stages.segmentation.motion import Stretch, moving, stretches, with_slow_ends
 from stages.segmentation.windows import Binned
 
 Array = NDArray[np.float64]
@@ -103,11 +103,13 @@ class Located:
         return said
 
 
-def shown(one: Binned, level: Array, thresholds: Sequence[float]) -> Shown:
-    """A window with all that rates beyond one of the thresholds count as motion."""
+def shown(one: Binned, level: Array, threshold: float, noise: float) -> Shown:
+    """A window in which rates beyond the threshold, or else beyond the noise, count as motion."""
     ways = []
-    for threshold in thresholds:
-        found = stretches(moving(one.rates, one.forces, level, threshold), one.bin_seconds)
+    above_noise = moving(one.rates, one.forces, level, noise)
+    for lowest in (threshold, noise):
+        found = stretches(moving(one.rates, one.forces, level, lowest), one.bin_seconds)
+        found = with_slow_ends(found, above_noise, one.bin_seconds)
         ways.append((found, seen(one, found, level)))
     return Shown(one, ways)
 

@@ -131,6 +131,20 @@ def between_parts(rests: Sequence[Part]) -> Iterator[Part]:
             yield Part(name, BETWEEN, before.log, before.after, behind.first)
 
 
+def _first_of(rest: Stretch, room: int, shared: bool) -> int:
+    """Where the rest before a turn begins; the turn before it, if any, has the first half."""
+    if shared:
+        return (rest.first + rest.after) // 2
+    return min(rest.first + (room if rest.first > 0 else 0), rest.after)
+
+
+def _after_of(rest: Stretch, room: int, shared: bool, bins: int) -> int:
+    """Where the rest after a turn ends; the turn behind it, if any, has the second half."""
+    if shared:
+        return (rest.first + rest.after) // 2
+    return max(rest.after - (room if rest.after < bins else 0), rest.first)
+
+
 def turn_parts(
     one: Binned,
     found: Sequence[Stretch],
@@ -145,9 +159,13 @@ def turn_parts(
     first, after = motion(one, found, place)
     room = round(margin / one.bin_seconds)
     start, stop = max(first - room, 0), min(after + room, one.bins)
-    free = [place + side not in matched.values() for side in (-1, 1)]
-    before = 0 if one.window.alone else found[max(place - 1, 0)].first
-    behind = one.bins if one.window.alone else found[min(place + 1, len(found) - 1)].after
+    taken = set(matched.values())
+    free = [place + side not in taken for side in (-1, 1)]
+    before, behind = 0, one.bins
+    if not one.window.alone and place > 0:
+        before = _first_of(found[place - 1], room, place - 2 in taken)
+    if not one.window.alone and place + 1 < len(found):
+        behind = _after_of(found[place + 1], room, place + 2 in taken, one.bins)
 
     phases: list[tuple[str, int, int]] = []
     if free[0] and first > 0:

@@ -10,6 +10,7 @@ Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
 BLIP = 0.3  # s, a motion or a rest shorter than this is none, or a tenth of the stretch
+SLOW_END = 3.0  # s, at most, in which a motion begins or ends below what counts as motion
 LEVEL_CHANGE = 0.1  # m/s², change of the specific force that tells motion where no gyro is recorded
 
 
@@ -78,6 +79,33 @@ def stretches(moves: Booleans, bin_seconds: float) -> list[Stretch]:
             if stretch.moves is kind and inner and stretch.after - stretch.first < shortest:
                 moves[stretch.first : stretch.after] = not kind
     return _runs(moves)
+
+
+def with_slow_ends(
+    found: list[Stretch], above_noise: Booleans, bin_seconds: float
+) -> list[Stretch]:
+    """The stretches, every motion with the bins beside it in which it begins and ends slowly.
+
+    A table that is moved smoothly stands nearly still for a second, and not yet quite. Such bins
+    are above the noise without a break; no rest gives more than a quarter of itself at each end.
+    """
+    moves = np.repeat([s.moves for s in found], [s.after - s.first for s in found])
+    for stretch in found:
+        most = min(round(SLOW_END / bin_seconds), (stretch.after - stretch.first) // 4)
+        if stretch.moves or not most:
+            continue
+        if stretch.first > 0:
+            ahead = above_noise[stretch.first : stretch.first + most]
+            moves[stretch.first : stretch.first + _length(ahead)] = True
+        if stretch.after < len(moves):
+            behind = above_noise[stretch.after - most : stretch.after]
+            moves[stretch.after - _length(behind[::-1]) : stretch.after] = True
+    return _runs(moves)
+
+
+def _length(true: Booleans) -> int:
+    """How many are true from the first on."""
+    return int(np.logical_and.accumulate(true).sum())
 
 
 def _runs(moves: Booleans) -> list[Stretch]:
