@@ -14,6 +14,7 @@ from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import Still, averaging_times, stills
 from stages.inference import triad
 from stages.inference.least_squares import with_scatter
+from stages.inference.pooled_positions import pooled_positions
 from stages.inference.six_position import Rest, formula, weighted
 
 CURES = {
@@ -33,7 +34,7 @@ def accelerometer(
     *,
     averaging_steps: int,
 ) -> Tables:
-    """Parameters of the joint weighted estimate and of S0's formula, with their covariance.
+    """Parameters of the joint weighted estimate and of S0's and S3's formulas, with covariance.
 
     Each mount has parameters of its own, for its mounting rotation is one of them.
     """
@@ -66,6 +67,11 @@ def accelerometer(
             unknowns, covariance = solved
             values = triad.errors_of(unknowns)
             estimates.add(f"six_position{suffix}", NAMES, values, covariance, {})
+        rests = [_rest(still) for still in found]
+        pooled = pooled_positions(rests, *about, fitted.scatter)
+        if pooled is not None and len({rest.position for rest in rests}) < len(rests):
+            values = triad.errors_of(pooled.values)
+            estimates.add(f"pooled_positions{suffix}", NAMES, values, pooled.covariance, {})
     return estimates.tables()
 
 

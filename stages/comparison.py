@@ -1,4 +1,4 @@
-"""Rests against turns, forward against backward, method against method, published against ours."""
+"""What should agree: rests and turns, both ways of turning, methods, rates, published and ours."""
 
 from collections.abc import Iterator
 
@@ -10,6 +10,7 @@ from stages.comparing.method_against_method import method_against_method
 from stages.comparing.published import against_published
 from stages.comparing.results import Results
 from stages.comparing.static_against_turns import static_against_turns
+from stages.comparing.straight_line import straight_line
 from stages.contracts import tables
 from stages.contracts.records import known_of, manoeuvres_of, performed_of, rows_of
 from stages.contracts.stage import Stage, Tables
@@ -35,16 +36,22 @@ def comparison(
     given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
     scatter = {row["method"]: row["scatter"] for row in rows_of(gyroscope_fit)}
 
+    plans = dict(by_mount(manoeuvres_of(manoeuvres)))
+    inputs_of = {
+        suffix: gyro_inputs(blocks, plan, done, levels, given) for suffix, plan in plans.items()
+    }
+
     def of_mount(suffix: str, gyro: Results, accelerometer: Results) -> Iterator[Difference]:
-        inputs = gyro_inputs(blocks, plans[suffix], done, levels, given)
+        inputs = inputs_of[suffix]
         yield from static_against_turns(inputs, levels, gyro)
         between = scatter.get(f"joint{suffix}", 0.0)
         yield from forward_against_backward(inputs, levels, gyro, between)
-        yield from method_against_method(accelerometer, "six_position")
-        yield from method_against_method(gyro, "turns")
+        for method in ("six_position", "pooled_positions"):
+            yield from method_against_method(accelerometer, method)
+        for method in ("turns", "turn_and_stop", "stops", "rate_table"):
+            yield from method_against_method(gyro, method)
         yield from against_published(published, {r.stage: r for r in (accelerometer, gyro)})
 
-    plans = dict(by_mount(manoeuvres_of(manoeuvres)))
     found = [
         difference
         for suffix in plans
@@ -54,6 +61,11 @@ def comparison(
             Results("accelerometer", accelerometer_parameters, suffix),
         )
     ]
+    found += straight_line(
+        [run for inputs in inputs_of.values() for run in inputs.steadies],
+        next(iter(inputs_of.values())).earth,
+        [scatter.get(f"joint{suffix}") or 0.0 for suffix in plans],
+    )
     return {"differences": table_of(found, level)}
 
 

@@ -11,10 +11,10 @@ from stages.contracts.records import known_of, manoeuvres_of, performed_of
 from stages.contracts.stage import Stage, Tables
 from stages.estimation.between_rests import add_free_gyros
 from stages.estimation.estimates import Estimates, by_mount, reasons
+from stages.estimation.gyro_formulas import add_formulas
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import averaging_times
-from stages.estimation.turns import GyroInputs, angles_about, gyro_inputs
-from stages.inference import whole_turns
+from stages.estimation.turns import GyroInputs, gyro_inputs
 from stages.inference.least_squares import with_scatter
 from stages.inference.whole_turns import joint
 
@@ -34,7 +34,7 @@ def gyroscope(
     *,
     averaging_steps: int,
 ) -> Tables:
-    """Parameters of the joint estimate and of S0's turns of a known angle, with covariance.
+    """Parameters of the joint estimate and of the sources' formulas, with covariance.
 
     Each mount has parameters of its own, for its mounting rotation is one of them.
     """
@@ -56,7 +56,7 @@ def gyroscope(
         for seconds in averaging_times(inputs.stills, averaging_steps):
             shorter = joint(inputs.rests(seconds), *moving, fitted.scatter, start=fitted.estimate)
             estimates.add_averaging(f"joint{suffix}", seconds, shorter)
-        _add_known_angle(estimates, f"turns{suffix}", inputs, levels, fitted.scatter)
+        add_formulas(estimates, suffix, inputs, levels, fitted)
     return estimates.tables()
 
 
@@ -66,30 +66,6 @@ def _channels(inputs: GyroInputs) -> NDArray[np.bool_]:
     readings += [steady.mean for steady in inputs.steadies]
     readings += [turn.sums.sum(axis=0) for turn in inputs.turns]
     return np.asarray(np.isfinite(np.array(readings)).any(axis=0))
-
-
-def _add_known_angle(
-    estimates: Estimates,
-    method: str,
-    inputs: GyroInputs,
-    noise: NoiseLevels,
-    scatter: float,
-) -> None:
-    """S0's formulas, axis by axis: they need whole turns both ways about the axis that is up."""
-    for i, axis in enumerate(tables.AXES):
-        whole = [r for r in inputs.recorded if r.plan.recorded == "whole"]
-        own = [r for r in whole if abs(r.plan.axis[i]) > 1 - 1e-9]
-        turns = [angle for _, angle in angles_about(inputs, i, noise)]
-        names = (f"bias_{axis}", f"scale_{axis}")
-        if len({np.sign(turn.angle) for turn in turns}) == 2:
-            estimate = whole_turns.known_angle(turns, inputs.earth, scatter)
-            estimates.add(method, names, estimate.values[:2], estimate.covariance[:2, :2], {})
-        elif own:
-            reason = f"the formula needs whole turns about {axis} forward and backward"
-            refused = [r.plan.name for r in own if r.refusal or not r.done.complete]
-            reason += f"; not whole: {', '.join(refused)}" if refused else ""
-            nothing = (np.zeros(2), np.zeros((2, 2)))
-            estimates.add(method, names, *nothing, dict.fromkeys(names, reason))
 
 
 STAGE = Stage(

@@ -13,6 +13,10 @@ from stages.notation.numbers import decimals_of, fixed, p_is, with_sigma
 from stages.notation.units import quantity
 
 SENSORS = {"accelerometer": ("accelerometer", "force"), "gyroscope": ("gyro", "rate")}
+FORMS = {
+    "cubic": "what all gyros read beyond a straight line, with the cube of the rate",
+    "asymmetry": "what all gyros read beyond a straight line, with the size of the rate",
+}
 NEAR = 2.0  # sigmas within which values simply agree
 
 
@@ -34,6 +38,7 @@ class Difference:
     between: tuple[str, str]  # what is compared, as the sentence names it
     remark: str = ""
     place: str = ""  # which of several, such as the turns that are compared
+    degrees: float = np.inf  # of freedom, from which sigma is estimated
 
     @property
     def id(self) -> str:
@@ -56,7 +61,7 @@ class Difference:
     @property
     def p_value(self) -> float | None:
         """Chance of a difference so large, either way, if the two are the same."""
-        return None if self.in_sigmas is None else chance_of(self.in_sigmas)
+        return None if self.in_sigmas is None else chance_of(self.in_sigmas, self.degrees)
 
     def sentence(self, beyond: bool, among: int) -> str:
         """The difference in the laboratory's unit, and whether it is more than chance."""
@@ -85,6 +90,8 @@ class Difference:
 def named(parameter: str) -> str:
     """A parameter in words: gyroscope/bias_y is the bias of the y gyro."""
     stage, _, name = parameter.partition("/")
+    if name in FORMS:
+        return FORMS[name]
     kind, _, axes = name.partition("_")
     sensor, input_ = SENSORS[stage]
     if kind == "cross":

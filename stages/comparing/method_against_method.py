@@ -1,4 +1,4 @@
-"""The joint estimate against the formulas of S0, which use the same data."""
+"""The joint estimate against the formulas of the sources, which use the same data."""
 
 from collections.abc import Iterator
 
@@ -7,7 +7,14 @@ from stages.comparing.results import Results
 
 KIND = "method_against_method"
 ALIKE = 0.01  # relative difference of two sigmas below which two methods are one
-WORDS = {"six_position": "the six-position formula", "turns": "the formula for turns"}
+WORDS = {
+    "six_position": "the six-position formula",
+    "pooled_positions": "the formula for pooled positions",
+    "turns": "the formula for turns",
+    "turn_and_stop": "the turn-and-stop formulas",
+    "stops": "the mean of the stops",
+    "rate_table": "the least squares of the rate table",
+}
 
 
 def method_against_method(results: Results, method: str) -> Iterator[Difference]:

@@ -25,6 +25,9 @@ def against_published(
         ours = own.of("joint", name)
         missing = ours is None or ours["value"] is None
         reason = ours["reason"] if ours else "nothing was recorded that shows it"
+        table = own.of("rate_table", name)
+        if table is not None and table["reason"]:  # with the rank of what was put in
+            reason = table["reason"]
         alone = told["sigma"] is None
         yield Difference(
             kind=f"{KIND}{own.suffix}",

@@ -7,9 +7,10 @@ import numpy as np
 from stages.comparing.difference import Difference
 from stages.comparing.results import Results
 from stages.contracts.tables import AXES
+from stages.estimation.gyro_formulas import uprights
 from stages.estimation.noise_levels import NoiseLevels
-from stages.estimation.turns import GyroInputs, angles_about, position_of
-from stages.inference.two_positions import Upright, two_positions
+from stages.estimation.turns import GyroInputs, angles_about
+from stages.inference.two_positions import two_positions
 from stages.inference.whole_turns import known_angle
 
 KIND = "static_against_turns"
@@ -26,7 +27,7 @@ def static_against_turns(
     lacks, and that is what differs here.
     """
     for i, axis in enumerate(AXES):
-        rests = _rests(inputs, i)
+        rests = list(uprights(inputs, i))
         static = two_positions(
             [rest for _, rest in rests], _cross(gyro, axis), inputs.earth, inputs.position_sigma
         )
@@ -51,19 +52,6 @@ def static_against_turns(
                 sigma=float(np.hypot(sigma, turns.sigma[column])),
                 between=("rests", "turns"),
             )
-
-
-def _rests(inputs: GyroInputs, i: int) -> list[tuple[str, Upright]]:
-    """The rests of the plan with body axis i up or down, each with its name."""
-    found = []
-    for still in inputs.stills:
-        up = float(still.up_now[i])
-        mean, sigma = still.over()
-        if still.manoeuvre.do == "rest" and abs(up) > 1 - 1e-9 and np.isfinite(mean[i] * sigma[i]):
-            position = position_of(still.manoeuvre, inputs.heading)
-            upright = Upright(position, up, float(mean[i]), float(sigma[i]))
-            found.append((still.manoeuvre.name, upright))
-    return found
 
 
 def _cross(gyro: Results, axis: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:

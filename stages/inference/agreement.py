@@ -4,12 +4,15 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import norm
+from scipy.stats import t as t_distribution
 
 
-def chance_of(in_sigmas: float) -> float:
-    """Chance that a normal error is at least so many sigmas, either way."""
-    return float(2 * norm.sf(abs(in_sigmas)))
+def chance_of(in_sigmas: float, degrees: float = np.inf) -> float:
+    """Chance that a normal error is at least so many sigmas, either way.
+
+    `degrees`: of freedom, where sigma is estimated (Student's t).
+    """
+    return float(2 * t_distribution.sf(abs(in_sigmas), degrees))
 
 
 def beyond_chance(p_values: Sequence[float], level: float) -> NDArray[np.bool_]:

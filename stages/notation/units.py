@@ -61,10 +61,12 @@ _BY_UNIT = {
     ),
     "m/s³": Quantity(Unit("µg/h", STANDARD_GRAVITY * 1e-6 / HOUR), Unit("10⁻⁹ m/s³", 1e-9)),
     "m": Quantity(Unit("mm", 1e-3), Unit("m", 1.0)),
+    "s²/rad²": Quantity(Unit("ppm/(°/s)²", 1e-6 / DEGREE**2), Unit("s²/rad²", 1.0)),
 }
 _OF_OSCILLATION = Quantity(Unit("rad/s", 1.0), Unit("rad/s", 1.0))
 _RATIO = Quantity(PPM, Unit("10⁻⁶", 1e-6))
 _DIMENSIONLESS = {
+    "asymmetry": _RATIO,
     "scale": _RATIO,
     "cross": _ANGLE,
     "symmetric": _ANGLE,

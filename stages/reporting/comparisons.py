@@ -14,6 +14,7 @@ KINDS = {
     "static_against_turns": "Static, turn",
     "forward_against_backward": "Forward, backward",
     "method_against_method": "Two methods",
+    "straight_line": "Rates, straight line",
     "published": "Published, ours",
 }
 BEYOND = ": more than chance"  # as the sentences of comparison say it

@@ -31,9 +31,14 @@ from stages.reporting.rows import Record, records
 SENSOR = {"accelerometer": "Accelerometer", "gyroscope": "Gyroscope"}
 METHOD = {
     "joint": "joint fit of all manoeuvres",
-    "six_position": "six positions",
+    "six_position": "six positions, S0",
     "free_positions": "rests of unknown attitude, by |f| = g",
-    "turns": "turns forward and back",
+    "pooled_positions": "stops at one attitude pooled, S3",
+    "static": "rests up and down, S0",
+    "turns": "turns forward and back, S0",
+    "turn_and_stop": "turn and stop, S3: M, and the bias by turns",
+    "stops": "turn and stop, S3: the bias by stops",
+    "rate_table": "rate table, S4",
 }
 KIND = {
     "bias": "Bias",
@@ -73,9 +78,14 @@ class Estimate:
         return self.method.partition("@")[0]
 
     @property
+    def mount(self) -> str:
+        """The mount of its parameters where there are several."""
+        return self.method.partition("@")[2]
+
+    @property
     def sensor(self) -> str:
         """The sensor in words, with the mount where there are several."""
-        mount = numbers.shortened(self.method.partition("@")[2], 60)
+        mount = numbers.shortened(self.mount, 60)
         sensor = SENSOR.get(self.stage, self.stage)
         return f"{sensor} (mount {mount})" if mount else sensor
 

@@ -29,6 +29,7 @@ from stages.reporting.parameters import SENSOR, Estimate, fit_in_words, kind_of
 from stages.reporting.rows import Record, only, records
 
 JOINT = "joint"
+FREE = "free_positions"
 WANTED = frozenset(
     [f"{kind}_{axis}" for kind in ("bias", "scale") for axis in AXES]
     + [f"cross_{row}{column}" for row in AXES for column in AXES if row != column]
@@ -93,8 +94,13 @@ def verdict(
 
 
 def joint_fits(found: Sequence[Estimate]) -> list[Estimate]:
-    """The joint fits of both sensors, one per mount; an empty one where there is none."""
+    """The joint fits of both sensors, one per mount; an empty one where there is none.
+
+    Where no attitude is known, the fit to rests of unknown attitude stands in its place.
+    """
     joint = [estimate for estimate in found if estimate.kind == JOINT]
+    free = {(e.stage, e.mount): e for e in found if e.kind == FREE}
+    joint = [e if e.determined else free.get((e.stage, e.mount), e) for e in joint]
     missing = [stage for stage in SENSOR if all(estimate.stage != stage for estimate in joint)]
     joint += [Estimate(stage, JOINT, (), None) for stage in missing]
     return sorted(joint, key=lambda estimate: list(SENSOR).index(estimate.stage))
@@ -112,6 +118,7 @@ def _sentence(estimate: Estimate) -> str:
         return f"{estimate.sensor}: nothing is determined."
     whole = "all 12 parameters are determined"
     amount = whole if count == len(WANTED) else f"{count} of 12 parameters are determined"
+    amount += ", by rests of unknown attitude" * (estimate.kind == FREE)
     worst = "; ".join(f"{KINDS[kind]} {text}" for kind, text in _worst(have).items())
     return f"{estimate.sensor}: {amount}." + (f" Largest σ: {worst}." if worst else "")
 

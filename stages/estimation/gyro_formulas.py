@@ -1,0 +1,127 @@
+"""The gyros by the sources' own formulas, beside the joint estimate: rows, and why there are none.
+
+`static`: S0 (3-13), (3-14), rests with the axis up and down. `turns`: S0 (3-9), (3-10), turns of a
+known angle. `turn_and_stop` and `stops`: S3 (13) to (15), M from turns both ways, the bias by turns
+and by rests. `rate_table`: S4's least squares of steady runs. All have the sigmas that the sources
+leave out.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stages.contracts.tables import AXES
+from stages.estimation.estimates import NAMES, Estimates
+from stages.estimation.noise_levels import NoiseLevels
+from stages.estimation.turns import GyroInputs, angles_about, position_of
+from stages.inference import whole_turns
+from stages.inference.least_squares import Fitted
+from stages.inference.linear_formula import Solution
+from stages.inference.rate_table import rate_table
+from stages.inference.triad import BIAS, errors_of
+from stages.inference.turn_and_stop import UNKNOWN, turn_and_stop
+from stages.inference.two_positions import Upright, two_positions
+
+Array = NDArray[np.float64]
+
+UNTURNED = "no axis {axis} was turned about both ways over the same known angle: add such turns"
+UNREAD = "the {axis} gyro is not recorded"
+
+
+def add_formulas(
+    estimates: Estimates,
+    suffix: str,
+    inputs: GyroInputs,
+    noise: NoiseLevels,
+    joint: Fitted,
+) -> None:
+    """The rows of every formula that the plan feeds, with the scatter of the joint estimate."""
+    scatter, told = joint.scatter, joint.estimate.determined[:9]
+    cross = np.where(told, joint.estimate.values[:9], UNKNOWN).reshape(3, 3)
+    _add_static(estimates, f"static{suffix}", inputs, cross)
+    _add_known_angle(estimates, f"turns{suffix}", inputs, noise, scatter)
+    _add_turn_and_stop(estimates, suffix, inputs, scatter)
+    _add_rate_table(estimates, f"rate_table{suffix}", inputs, scatter)
+
+
+def uprights(inputs: GyroInputs, i: int) -> Iterator[tuple[str, Upright]]:
+    """The rests of the plan with body axis i up or down, each with its name."""
+    for still in inputs.stills:
+        up = float(still.up_now[i])
+        mean, sigma = still.over()
+        if still.manoeuvre.do == "rest" and abs(up) > 1 - 1e-9 and np.isfinite(mean[i] * sigma[i]):
+            position = position_of(still.manoeuvre, inputs.heading)
+            yield still.manoeuvre.name, Upright(position, up, float(mean[i]), float(sigma[i]))
+
+
+def _add_static(estimates: Estimates, method: str, inputs: GyroInputs, cross: Array) -> None:
+    for i, axis in enumerate(AXES):
+        rests = [rest for _, rest in uprights(inputs, i)]
+        found = two_positions(
+            rests, cross[i] * (np.arange(3) != i), inputs.earth, inputs.position_sigma
+        )
+        if found is None:
+            continue
+        names, values = (f"bias_{axis}", f"scale_{axis}"), [found.bias, found.scale or 0.0]
+        sigmas = np.array([found.bias_sigma, found.scale_sigma or 0.0])
+        reason = "the upward earth rate is not known well enough to be an input"
+        why = {names[1]: reason} if found.scale is None else {}
+        estimates.add(method, names, np.array(values), np.diag(sigmas**2), why)
+
+
+def _add_known_angle(
+    estimates: Estimates, method: str, inputs: GyroInputs, noise: NoiseLevels, scatter: float
+) -> None:
+    """Axis by axis: it needs whole turns both ways about the axis that is up."""
+    for i, axis in enumerate(AXES):
+        whole = [r for r in inputs.recorded if r.plan.recorded == "whole"]
+        own = [r for r in whole if abs(r.plan.axis[i]) > 1 - 1e-9]
+        turns = [angle for _, angle in angles_about(inputs, i, noise)]
+        names = (f"bias_{axis}", f"scale_{axis}")
+        if len({np.sign(turn.angle) for turn in turns}) == 2:
+            estimate = whole_turns.known_angle(turns, inputs.earth, scatter)
+            estimates.add(method, names, estimate.values[:2], estimate.covariance[:2, :2], {})
+        elif own:
+            reason = f"the formula needs whole turns about {axis} forward and backward"
+            refused = [r.plan.name for r in own if r.refusal or not r.done.complete]
+            reason += f"; not whole: {', '.join(refused)}" if refused else ""
+            nothing = (np.zeros(2), np.zeros((2, 2)))
+            estimates.add(method, names, *nothing, dict.fromkeys(names, reason))
+
+
+def _add_turn_and_stop(
+    estimates: Estimates, suffix: str, inputs: GyroInputs, scatter: float
+) -> None:
+    found = turn_and_stop(
+        inputs.turns, inputs.rests(), inputs.earth, inputs.position_sigma, scatter
+    )
+    if not found.pairs or found.by_turns is None:
+        return
+    _add(estimates, f"turn_and_stop{suffix}", found.by_turns, _untold(found.by_turns))
+    if found.by_rests is not None:
+        bias = slice(NAMES.index(BIAS[0]), None)
+        values, covariance = found.by_rests.values[bias], found.by_rests.covariance[bias, bias]
+        missing = zip(BIAS, found.by_rests.determined[bias], strict=True)
+        why = {name: UNREAD.format(axis=name[-1]) for name, there in missing if not there}
+        estimates.add(f"stops{suffix}", BIAS, values, covariance, why)
+
+
+def _untold(solution: Solution) -> dict[str, str]:
+    """Why S3's formulas leave a parameter open, by its name."""
+    why = {}
+    for name, there in zip(NAMES, solution.determined, strict=True):
+        if not there:
+            words = UNREAD if name in BIAS else UNTURNED
+            why[name] = words.format(axis=name[-1])
+    return why
+
+
+def _add_rate_table(estimates: Estimates, method: str, inputs: GyroInputs, scatter: float) -> None:
+    found = rate_table(inputs.steadies, inputs.earth, inputs.position_sigma, scatter)
+    if found is not None:
+        _add(estimates, method, found.solution, found.refusals())
+
+
+def _add(estimates: Estimates, method: str, solution: Solution, why: dict[str, str]) -> None:
+    estimates.add(method, NAMES, errors_of(solution.values), solution.covariance, why)
