@@ -7,6 +7,8 @@
 #   make trace ID=<number>        from a number of the report, such as gyroscope/joint/bias_x, down to
 #                                 the lines of the logs; also with CAMPAIGN=<name>
 #   make test                     every test; the same as CI with `make style`
+#   make bench                    errors, time and memory beside other programs, in one run; also
+#                                 with ONLY="cost noise"
 #   make style                    linters, types, and who may import whom
 #   make clean                    what can be made again from the raw logs; reports stay
 #   make setup                    only the environment, .venv; everything above sees to it itself
@@ -15,15 +17,17 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check trace test style clean setup pango campaign
+.PHONY: report check trace test style bench clean setup pango campaign
 
 # Taken word for word and given to the shell through the environment, so that neither make nor the
 # shell runs what may stand in them.
 CAMPAIGN ?= demo
 ID ?=
+ONLY ?=
 override CAMPAIGN := $(value CAMPAIGN)
 override ID := $(value ID)
-export CAMPAIGN ID
+override ONLY := $(value ONLY)
+export CAMPAIGN ID ONLY
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -72,8 +76,13 @@ style: setup
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy stages laboratory
+	MYPYPATH=tests $(BIN)/mypy benchmarks/*.py benchmarks/own/*.py
 	$(BIN)/snakefmt --check -l 100 Snakefile
 	$(BIN)/lint-imports
+
+bench: .venv/complete benchmarks/.venv/complete
+	read -ra parts <<< "$$ONLY"
+	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks "$${parts[@]}"
 
 clean:
 	rm -rf data/derived .snakemake
@@ -90,9 +99,20 @@ setup: .venv/complete pango
 		echo "make: $(PYTHON) lacks venv; on Debian: apt-get install python3-venv"
 		exit 2
 	fi >&2
+	if [[ -L .venv ]]; then # what it points to may serve another checkout
+		echo "make: .venv is a link to an environment that is older than requirements.lock; remove the link"
+		exit 2
+	fi >&2
 	echo "Making .venv from requirements.lock, once; it takes a minute or two."
 	$(PYTHON) -m venv --clear .venv
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
+	touch $@
+
+# The peers have needs of their own, so they live in an environment of their own.
+benchmarks/.venv/complete: benchmarks/requirements.lock .venv/complete
+	echo "Making benchmarks/.venv from benchmarks/requirements.lock, once."
+	$(PYTHON) -m venv --clear benchmarks/.venv
+	benchmarks/.venv/bin/python -m pip install --quiet --require-hashes -r benchmarks/requirements.lock
 	touch $@
 
 # WeasyPrint sets the PDF with Pango, which pip cannot install. Where this may not either, only the
