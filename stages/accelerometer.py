@@ -8,7 +8,13 @@ import pandas as pd
 from stages.contracts import tables
 from stages.contracts.records import known_of, manoeuvres_of, performed_of
 from stages.contracts.stage import Stage, Tables
-from stages.estimation.estimates import NAMES, Estimates, by_mount, reasons
+from stages.estimation.estimates import (
+    NAMES,
+    Estimates,
+    by_mount,
+    reasons,
+    stops_between_turns,
+)
 from stages.estimation.free_positions import add_free_accelerometers
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import Still, averaging_times, stills
@@ -69,7 +75,7 @@ def accelerometer(
             estimates.add(f"six_position{suffix}", NAMES, values, covariance, {})
         rests = [_rest(still) for still in found]
         pooled = pooled_positions(rests, *about, fitted.scatter)
-        if pooled is not None and len({rest.position for rest in rests}) < len(rests):
+        if pooled is not None and stops_between_turns(plan):
             values = triad.errors_of(pooled.values)
             estimates.add(f"pooled_positions{suffix}", NAMES, values, pooled.covariance, {})
     return estimates.tables()

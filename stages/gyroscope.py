@@ -10,8 +10,8 @@ from stages.contracts import tables
 from stages.contracts.records import known_of, manoeuvres_of, performed_of
 from stages.contracts.stage import Stage, Tables
 from stages.estimation.between_rests import add_free_gyros
-from stages.estimation.estimates import Estimates, by_mount, reasons
-from stages.estimation.gyro_formulas import add_formulas
+from stages.estimation.estimates import Estimates, by_mount, reasons, stops_between_turns
+from stages.estimation.gyro_formulas import add_formulas, add_turn_and_stop
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import averaging_times
 from stages.estimation.turns import GyroInputs, gyro_inputs
@@ -57,6 +57,8 @@ def gyroscope(
             shorter = joint(inputs.rests(seconds), *moving, fitted.scatter, start=fitted.estimate)
             estimates.add_averaging(f"joint{suffix}", seconds, shorter)
         add_formulas(estimates, suffix, inputs, levels, fitted)
+        if stops_between_turns(plan):
+            add_turn_and_stop(estimates, suffix, inputs, fitted.scatter)
     return estimates.tables()
 
 

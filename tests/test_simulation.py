@@ -29,7 +29,8 @@ def test_noise_free_logs_are_met_to_a_count(quiet):
         # An increment is a difference of two rounded sums, so one count is the least there is.
         assert counts.abs().max() < 1.01, channel
         sums = counts.groupby(turns["manoeuvre"]).cumsum()
-        assert sums.abs().max() < 1.5, channel
+        # Nor is a sum off by more, but for what the fit takes the rounding for.
+        assert sums.abs().max() < 3, channel
 
 
 def test_on_clean_data_the_residuals_are_the_noise(clean, tmp_path_factory):

@@ -40,6 +40,7 @@ def method_against_method(results: Results, method: str) -> Iterator[Difference]
             second_value=joint["value"],
             sigma=None if alike else sigma,
             between=(WORDS[method], "the joint estimate"),
+            place=method,
             remark=(
                 f"{WORDS[method]} and the joint estimate use the same data with the same sigma:"
                 " there is nothing to compare"

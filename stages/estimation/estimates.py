@@ -172,6 +172,11 @@ def by_mount(plan: list[Manoeuvre]) -> list[tuple[str, list[Manoeuvre]]]:
     ]
 
 
+def stops_between_turns(plan: list[Manoeuvre]) -> bool:
+    """Whether several manoeuvres stand at one set position, as S3 turns and stops."""
+    return len({m.position for m in plan}) < len(plan)
+
+
 def reasons(
     determined: Booleans, recorded: Booleans, sensor: str, cures: dict[str, str]
 ) -> dict[str, str]:

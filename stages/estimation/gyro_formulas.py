@@ -7,6 +7,7 @@ leave out.
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,9 +40,8 @@ def add_formulas(
     """The rows of every formula that the plan feeds, with the scatter of the joint estimate."""
     scatter, told = joint.scatter, joint.estimate.determined[:9]
     cross = np.where(told, joint.estimate.values[:9], UNKNOWN).reshape(3, 3)
-    _add_static(estimates, f"static{suffix}", inputs, cross)
+    _add_static(estimates, f"static{suffix}", inputs, cross, scatter)
     _add_known_angle(estimates, f"turns{suffix}", inputs, noise, scatter)
-    _add_turn_and_stop(estimates, suffix, inputs, scatter)
     _add_rate_table(estimates, f"rate_table{suffix}", inputs, scatter)
 
 
@@ -55,9 +55,12 @@ def uprights(inputs: GyroInputs, i: int) -> Iterator[tuple[str, Upright]]:
             yield still.manoeuvre.name, Upright(position, up, float(mean[i]), float(sigma[i]))
 
 
-def _add_static(estimates: Estimates, method: str, inputs: GyroInputs, cross: Array) -> None:
+def _add_static(
+    estimates: Estimates, method: str, inputs: GyroInputs, cross: Array, scatter: float
+) -> None:
     for i, axis in enumerate(AXES):
-        rests = [rest for _, rest in uprights(inputs, i)]
+        read = [rest for _, rest in uprights(inputs, i)]
+        rests = [replace(rest, sigma=float(np.hypot(rest.sigma, scatter))) for rest in read]
         found = two_positions(
             rests, cross[i] * (np.arange(3) != i), inputs.earth, inputs.position_sigma
         )
@@ -90,9 +93,10 @@ def _add_known_angle(
             estimates.add(method, names, *nothing, dict.fromkeys(names, reason))
 
 
-def _add_turn_and_stop(
+def add_turn_and_stop(
     estimates: Estimates, suffix: str, inputs: GyroInputs, scatter: float
 ) -> None:
+    """S3's formulas, for plans that turn both ways and stop at positions in common."""
     found = turn_and_stop(
         inputs.turns, inputs.rests(), inputs.earth, inputs.position_sigma, scatter
     )
