@@ -25,18 +25,33 @@ class Instants:
     start: float  # s since the campaign's first sample: where the first interval begins
     samples: int
     interval: float  # s
+    late: float = 0.0  # s: all of it so much earlier, as a sensor that lags behind reads it
 
     @cached_property
     def elapsed(self) -> Array:
-        """Time since the start, (m,), s."""
+        """Time since the start, (m,), s; from -late on."""
         nodes = np.array([0.0, *INNER_NODES])
         inside = (np.arange(self.samples)[:, None] + nodes).ravel()
-        return np.append(inside, self.samples) * self.interval
+        return np.append(inside, self.samples) * self.interval - self.late
 
     @property
     def time(self) -> Array:
         """Time since the campaign's first sample, (m,), s."""
         return self.start + self.elapsed
+
+    def since(self, moment: float) -> Array:
+        """0 before a moment, s since the campaign's first sample, and 1 from it on: (m,).
+
+        The inner nodes of the interval that holds it are such that the integral is exact.
+        """
+        after = (self.time >= moment).astype(float)
+        ends = self.time[::NODES_PER_INTERVAL]
+        within = int(np.searchsorted(ends, moment)) - 1
+        if 0 <= within < self.samples:
+            share = (ends[within + 1] - moment) / self.interval
+            first = NODES_PER_INTERVAL * within + 1
+            after[first : first + 2] = (12 * share - 1) / 10
+        return after
 
     def integral(self, values: Array) -> Array:
         """Integral over every interval: values (m, …) → (samples, …), their unit × s."""

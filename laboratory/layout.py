@@ -1,17 +1,41 @@
 """What is in every log, stretch by stretch: manoeuvres, and the way from one to the next."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import ceil
+from math import ceil, pi
 
 import numpy as np
 
 from laboratory.arrays import Array
+from laboratory.manoeuvre import Manoeuvre
 from laboratory.placement import Placement
-from laboratory.plan import Manoeuvre
-from laboratory.profiles import Change, Profile
+from laboratory.profiles import Change, Profile, Trapezoid
 from laboratory.rotation import axis_and_angle, rotation_about
+
+SETTLED = 0.1  # s at rest after every step of a tumble
+
+
+@dataclass(frozen=True)
+class Handling:
+    """How the table goes from one position to the next within a log."""
+
+    interval: float  # s, of a sample
+    change: float  # s; 0 where none does
+    step_rate: float  # rad/s, of the steps of a tumble
+    step_acceleration: float  # rad/s²
+
+    def samples(self, seconds: float) -> int:
+        """Whole samples that hold so many seconds."""
+        return ceil(seconds / self.interval - 1e-6)
+
+    def step(self, angle: float) -> Trapezoid:
+        """The course of a step, from its start."""
+        return Trapezoid(0.0, angle, self.step_rate, self.step_acceleration)
+
+    def step_samples(self, size: float) -> int:
+        """The samples of a step, until the table has settled."""
+        return self.samples(self.step(size).seconds + SETTLED)
 
 
 @dataclass(frozen=True)
@@ -24,6 +48,11 @@ class Stretch:
     axis: Array  # the table's axis, (3,), body axes
     profile: Profile
 
+    @property
+    def end(self) -> Array:
+        """The attitude at the end, (3, 3)."""
+        return self.attitude @ rotation_about(self.axis, np.asarray(self.profile.angle))
+
 
 def logs_of(manoeuvres: Sequence[Manoeuvre]) -> dict[str, list[Manoeuvre]]:
     """The manoeuvres of every log, logs in the order of the plan."""
@@ -34,46 +63,80 @@ def logs_of(manoeuvres: Sequence[Manoeuvre]) -> dict[str, list[Manoeuvre]]:
 
 
 def changes_between(before: Manoeuvre, after: Manoeuvre) -> bool:
-    """Whether the table has to bring the IMU to another attitude."""
+    """Whether the table has to bring the IMU to another attitude, steps of a tumble left out."""
+    if steps_between(before, after):
+        return False
     return before.position != after.position or not before.comes_back
 
 
-def length(manoeuvres: Sequence[Manoeuvre], interval: float, change_s: float) -> int:
+def steps_between(before: Manoeuvre, after: Manoeuvre) -> list[float]:
+    """The steps from one rest of a tumble to the next, rad about its axis.
+
+    Where the way back begins, the table first goes on by one step, so that it comes to every
+    rest of the way back from the other side, to the last one too.
+    """
+    one, other = before.step, after.step
+    if one is None or other is None or one.tumble != other.tumble:
+        return []
+    if one.way != other.way:
+        return [one.size, -one.size]
+    return [other.angle - one.angle]
+
+
+def length(manoeuvres: Sequence[Manoeuvre], handling: Handling) -> int:
     """The samples of a log."""
-    changes = sum(changes_between(*pair) for pair in pairwise(manoeuvres))
-    resting_or_turning = sum(manoeuvre.samples(interval) for manoeuvre in manoeuvres)
-    return resting_or_turning + changes * ceil(change_s / interval - 1e-6)
+    pairs = list(pairwise(manoeuvres))
+    changes = sum(changes_between(*pair) for pair in pairs)
+    steps = sum(handling.step_samples(step) for pair in pairs for step in steps_between(*pair))
+    resting_or_turning = sum(manoeuvre.samples(handling.interval) for manoeuvre in manoeuvres)
+    return resting_or_turning + changes * handling.samples(handling.change) + steps
 
 
 def lay_out(
     manoeuvres: Sequence[Manoeuvre],
     placements: Mapping[str, Placement],
-    interval: float,
-    change_s: float,
+    handling: Handling,
+    carried_out: Callable[[Profile], Profile],
 ) -> list[Stretch]:
-    """The stretches of one log. A change of position is one rotation about one axis."""
+    """The stretches of one log. A change of position is one rotation about one axis.
+
+    carried_out: what the table makes of the turn that it is set to.
+    """
     stretches: list[Stretch] = []
     before: Manoeuvre | None = None
     for manoeuvre in manoeuvres:
         placement = placements[manoeuvre.position]
+        axis = placement.true_axis(manoeuvre.about)
         if before is not None and changes_between(before, manoeuvre):
-            left = stretches[-1]
-            turned = rotation_about(left.axis, np.asarray(left.profile.angle))
-            stretches.append(change(left.attitude @ turned, placement.attitude, interval, change_s))
-        stretches.append(
-            Stretch(
-                manoeuvre.name,
-                manoeuvre.samples(interval),
-                placement.attitude,
-                placement.true_axis(manoeuvre.about),
-                manoeuvre.profile,
-            )
-        )
+            stretches.append(change(stretches[-1].end, placement.attitude, handling))
+        elif before is not None and (steps := steps_between(before, manoeuvre)):
+            for planned in steps[:-1]:  # beyond the rest before which the table turns back
+                start = stretches[-1].end
+                turned = rotation_about(axis, np.asarray(planned))
+                stretches.append(step(start, start @ turned, axis, planned, handling))
+            start = stretches[-1].end
+            stretches.append(step(start, placement.attitude, axis, steps[-1], handling))
+        samples = manoeuvre.samples(handling.interval)
+        profile = carried_out(manoeuvre.profile)
+        stretches.append(Stretch(manoeuvre.name, samples, placement.attitude, axis, profile))
         before = manoeuvre
     return stretches
 
 
-def change(start: Array, end: Array, interval: float, change_s: float) -> Stretch:
+def change(start: Array, end: Array, handling: Handling) -> Stretch:
     """The way from one attitude to another."""
     axis, angle = axis_and_angle(start.T @ end)
-    return Stretch(None, ceil(change_s / interval - 1e-6), start, axis, Change(angle, change_s))
+    samples = handling.samples(handling.change)
+    return Stretch(None, samples, start, axis, Change(angle, handling.change))
+
+
+def step(start: Array, end: Array, about: Array, planned: float, handling: Handling) -> Stretch:
+    """A step of a tumble: from one attitude to another, by about the planned angle about `about`.
+
+    The axis is the one that leads to the end exactly, position errors included.
+    """
+    axis, angle = axis_and_angle(start.T @ end)
+    if angle > pi / 2 and axis @ about * planned < 0:  # half a turn and a little: the other way
+        axis, angle = -axis, 2 * pi - angle
+    samples = handling.step_samples(planned)
+    return Stretch(None, samples, start, axis, handling.step(angle))

@@ -19,6 +19,7 @@ class Turning:
     rate: Array  # rad/s, (m,)
     acceleration: Array  # rad/s², (m,)
     steady_rate: float  # rad/s, greatest magnitude of the rate
+    planned: bool = True  # False of the table's on its way from one position to the next
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,13 @@ class Motion:
     rate: Array  # rad/s, (m, 3), without the earth's own
     acceleration: Array  # rad/s², (m, 3)
     turned: Array  # rad, (n, 3): integral of the rate over every sample
+    stands: bool  # nothing turns at all
+
+    def seen(self, vector: Array) -> Array:
+        """A vector of the level frame, (3,), in the axes of the case at the instants, (m, 3)."""
+        if self.stands:
+            return np.broadcast_to(seen_from(self.attitude[0], vector), self.rate.shape)
+        return seen_from(self.attitude, vector)
 
     @property
     def rate_change(self) -> Array:
@@ -65,4 +73,4 @@ def move(instants: Instants, attitude: Array, turnings: Sequence[Turning]) -> Mo
         turned = turned + instants.difference(turning.angle)[:, None] * turning.axis
     if len(turnings) > 1:
         turned = turned + instants.integral(rate - plain)
-    return Motion(instants, attitudes, rate, acceleration, turned)
+    return Motion(instants, attitudes, rate, acceleration, turned, not turnings)

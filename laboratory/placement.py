@@ -1,13 +1,13 @@
 """How the IMU stands at every position of the plan: as it was set, and as it truly stands."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from laboratory.arrays import Array
 from laboratory.chance import Chance
-from laboratory.plan import Manoeuvre
+from laboratory.manoeuvre import Manoeuvre
 from laboratory.rotation import rotation_of
 
 
@@ -17,12 +17,13 @@ class Placement:
 
     set_attitude: Array  # as the plan says, at the azimuth that it truly had, on a level table
     tilt: Array  # (3, 3), level frame: the error of the position
-    base: Array  # (3, 3), level frame: how the whole table leans
+    base: Array  # (3, 3), level frame: how the whole table leans, its axis included
+    mounting: Array  # (3, 3): what takes vectors of the case to the axes that the plan names
 
     @property
     def attitude(self) -> Array:
-        """C = base · tilt · set attitude."""
-        return self.base @ self.tilt @ self.set_attitude
+        """C = base · tilt · set attitude · mounting."""
+        return self.base @ self.tilt @ self.set_attitude @ self.mounting
 
     def true_axis(self, about: Array) -> Array:
         """The table's axis in body axes, (3,), where the plan names `about`.
@@ -40,14 +41,19 @@ def place(
     *,
     heading: float | None,
     position_sigma: float,
-    base: Array,
+    leaning: Callable[[Manoeuvre, Array], Array],
+    mountings: Mapping[str, Array],
+    missed: Callable[[Manoeuvre, Array], Array],
     chance: Chance,
 ) -> dict[str, Placement]:
     """The placement at every position, by its name.
 
     heading: azimuth of the table's zero mark, rad clockwise from north; None: drawn, the same for
-    all positions with a mark. A position without mark stands at an azimuth of its own, drawn.
-    position_sigma: rad, of the rotation about east and about north that the position is off.
+    all positions with a mark. A position without mark stands at an azimuth of its own, drawn; the
+    rests of a tumble share one. position_sigma: rad, of the rotation about east and about north
+    that the position is off. leaning: how the table leans at a set attitude; missed: by how much it
+    misses that besides; both rotations in the level frame. mountings: by mount, where it is not
+    as the plan says.
     """
     if heading is None:
         heading = azimuth(chance, "the table's zero mark")
@@ -56,15 +62,14 @@ def place(
         name = manoeuvre.position
         if name in placements:
             continue
-        east, north = chance.stream("tilt", name).normal(0.0, position_sigma, 2)
-        if manoeuvre.mark is None:
-            # Any direction will do as a mark: the azimuth is by chance.
-            across = np.eye(3)[np.argmin(np.abs(manoeuvre.up))]
-            set_attitude = facing(manoeuvre.up, across, azimuth(chance, name))
-        else:
-            set_attitude = facing(manoeuvre.up, manoeuvre.mark, heading)
-        tilt = rotation_of(np.array([east, north, 0.0]))
-        placements[name] = Placement(set_attitude, tilt, base)
+        east, north = chance.stream("tilt", manoeuvre.shares).normal(0.0, position_sigma, 2)
+        drawn = manoeuvre.azimuth
+        towards = heading if drawn is None else azimuth(chance, drawn)
+        set_attitude = facing(manoeuvre.up, manoeuvre.mark, towards)
+        tilt = rotation_of(np.array([east, north, 0.0])) @ missed(manoeuvre, set_attitude)
+        base = leaning(manoeuvre, set_attitude)
+        mounting = mountings.get(manoeuvre.mount, np.eye(3))
+        placements[name] = Placement(set_attitude, tilt, base, mounting)
     return placements
 
 

@@ -1,49 +1,17 @@
 """The plan of a campaign, manoeuvre by manoeuvre, with its shorthand written out."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from math import ceil, pi, sqrt
-from typing import Any
+from math import sqrt
+from typing import Any, Final
 
 import numpy as np
 
-from laboratory.arrays import Array
 from laboratory.axes import direction
 from laboratory.errors import Complaint
+from laboratory.manoeuvre import AS_MOUNTED, Manoeuvre, PlanError
 from laboratory.profiles import Profile, Standing, Steady, Trapezoid
+from laboratory.tumble import rests_of
 from laboratory.units import DEGREE
-
-
-@dataclass(frozen=True)
-class Manoeuvre:
-    """A rest or a turn."""
-
-    name: str
-    log: str
-    position: str  # manoeuvres with the same one stand alike, errors included
-    up: Array  # unit vector, (3,), body axes: points up at the start
-    mark: Array | None  # body axes: points at the table's zero mark at the start
-    about: Array  # unit vector, (3,), body axes: axis of the turn
-    profile: Profile
-    seconds: float  # with the rest before and after a turn
-
-    def samples(self, interval: float) -> int:
-        """Whole samples that hold the manoeuvre."""
-        return ceil(self.seconds / interval - 1e-6)
-
-    @property
-    def comes_back(self) -> bool:
-        """Whether the IMU stands at the end as it stood at the start."""
-        turns = self.profile.angle / (2 * pi)
-        return abs(turns - round(turns)) < 1e-12
-
-
-class PlanError(ValueError):
-    """A manoeuvre that cannot be carried out."""
-
-    def __init__(self, complaint: Complaint) -> None:
-        self.complaint = complaint
-        super().__init__(str(complaint))
 
 
 def written_out(campaign: Mapping[str, Any], still: float) -> list[Manoeuvre]:
@@ -55,30 +23,59 @@ def written_out(campaign: Mapping[str, Any], still: float) -> list[Manoeuvre]:
         if log is None:
             expected = "the manoeuvre's log, or a default log in campaign.log"
             raise PlanError(Complaint(f"{place}.log", "nothing", expected))
-        if written["id"] in (manoeuvre.name for manoeuvre in manoeuvres):
-            raise PlanError(Complaint(f"{place}.id", f"{written['id']} again", "another id"))
-        profile, seconds = (
-            resting(written, place) if written["do"] == "rest" else turning(written, place, still)
-        )
-        up = direction(written["up"])
-        mark = direction(written["mark"]) if "mark" in written else None
-        if mark is not None and np.linalg.norm(np.cross(up, mark)) < 1e-6:
-            expected = "a direction that is not the vertical, for it gives the azimuth"
-            raise PlanError(Complaint(f"{place}.mark", str(written["mark"]), expected))
-        about = direction(written.get("about", written["up"]))
-        position = written.get("position", f"of {written['id']}")
-        manoeuvre = Manoeuvre(written["id"], log, position, up, mark, about, profile, seconds)
-        check_position(manoeuvre, manoeuvres, place)
-        manoeuvres.append(manoeuvre)
+        check_keys(written, place)
+        one = stated(written, log, place, still)
+        for manoeuvre in rests_of(one, written, place) if written["do"] == "tumble" else [one]:
+            if manoeuvre.name in (other.name for other in manoeuvres):
+                raise PlanError(Complaint(f"{place}.id", f"{manoeuvre.name} again", "another id"))
+            check_position(manoeuvre, manoeuvres, place)
+            check_mount(manoeuvre, manoeuvres, place)
+            manoeuvres.append(manoeuvre)
     check_steady(manoeuvres)
     return manoeuvres
 
 
+def stated(written: Mapping[str, Any], log: str, place: str, still: float) -> Manoeuvre:
+    """A manoeuvre as it is written; of a tumble its first rest."""
+    turns = written["do"] == "turn"
+    profile, seconds = turning(written, place, still) if turns else resting(written, place)
+    up = direction(written["up"])
+    about = direction(written.get("about", written["up"]))
+    position = written.get("position", f"of {written['id']}")
+    azimuth = None if "mark" in written else position
+    across = np.eye(3)[np.argmin(np.abs(up))]  # any will do where the azimuth is by chance
+    mark = direction(written["mark"]) if "mark" in written else across
+    if np.linalg.norm(np.cross(up, mark)) < 1e-6:
+        expected = "a direction that is not the vertical, for it gives the azimuth"
+        raise PlanError(Complaint(f"{place}.mark", str(written["mark"]), expected))
+    mount = written.get("mount", AS_MOUNTED)
+    return Manoeuvre(
+        written["id"], log, position, position, mount, up, mark, azimuth, about, profile, seconds
+    )
+
+
+KEYS: Final = {  # that not every manoeuvre has
+    "rest": {"seconds"},
+    "turn": {"about", "degrees", "rate_deg_s", "accel_deg_s2", "seconds", "recorded"},
+    "tumble": {"about", "step_degrees", "steps", "and_back", "seconds"},
+}
+NEEDED: Final = {"tumble": ("about", "step_degrees", "steps")}
+
+
+def check_keys(written: Mapping[str, Any], place: str) -> None:
+    """Keys that belong to another kind of manoeuvre, or that are missing."""
+    known = set().union(*KEYS.values())
+    for key in written:
+        if key in known - KEYS[written["do"]]:
+            found, expected = str(written[key]), f"nothing: a {written['do']}"
+            raise PlanError(Complaint(f"{place}.{key}", found, expected))
+    for key in NEEDED.get(written["do"], ()):
+        if key not in written:
+            raise PlanError(Complaint(f"{place}.{key}", "nothing", f"{key} of a tumble"))
+
+
 def resting(written: Mapping[str, Any], place: str) -> tuple[Profile, float]:
     """The profile and the seconds of a rest."""
-    for key in ("about", "degrees", "rate_deg_s", "accel_deg_s2", "recorded"):
-        if key in written:
-            raise PlanError(Complaint(f"{place}.{key}", str(written[key]), "nothing: a rest"))
     if "seconds" not in written:
         raise PlanError(Complaint(f"{place}.seconds", "nothing", "the length of the rest, s"))
     return Standing(), written["seconds"]
@@ -126,15 +123,20 @@ def check_position(manoeuvre: Manoeuvre, others: Sequence[Manoeuvre], place: str
     for other in others:
         if other.position == manoeuvre.position and not (
             np.allclose(other.up, manoeuvre.up)
-            and (other.mark is None) == (manoeuvre.mark is None)
-            and (
-                other.mark is None
-                or manoeuvre.mark is None
-                or np.allclose(other.mark, manoeuvre.mark)
-            )
+            and np.allclose(other.mark, manoeuvre.mark)
+            and other.azimuth == manoeuvre.azimuth
+            and other.mount == manoeuvre.mount
         ):
-            found = f"{manoeuvre.position} with another up or mark than in {other.name}"
+            found = f"{manoeuvre.position} with another up, mark or mount than in {other.name}"
             raise PlanError(Complaint(f"{place}.position", found, "the same, or another name"))
+
+
+def check_mount(manoeuvre: Manoeuvre, others: Sequence[Manoeuvre], place: str) -> None:
+    """The IMU is not unscrewed while a log is written."""
+    for other in others:
+        if other.log == manoeuvre.log and other.mount != manoeuvre.mount:
+            found = f"{manoeuvre.log}, in which {other.name} has another mount"
+            raise PlanError(Complaint(f"{place}.log", found, "another log for another mount"))
 
 
 def check_steady(manoeuvres: Sequence[Manoeuvre]) -> None:

@@ -2,10 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from laboratory.arrays import Array, Counts
 from laboratory.placement import Placement
+from laboratory.receiver import Receiver
+from laboratory.records import Records
 from laboratory.sensor import Reading
 
 
@@ -13,11 +16,12 @@ from laboratory.sensor import Reading
 class LogTruth:
     """What truly happened during one log, before any fault; n samples."""
 
-    time: Array  # s since the campaign's first sample, (n,): the end of every sample
+    time: Array  # s since the campaign's first sample, (n,): when every sample truly ended
     rate: Array  # rad/s, (n, 3), body axes: true mean rate over every sample
     force: Array  # m/s², (n, 3), body axes: true mean specific force over every sample
+    temperature: Array  # K, (n,): at the end of every sample
     noiseless: Reading  # (n, 3) m/s and rad: running integrals of what the sensors read
-    noisy: Reading  # the same with the noise
+    noisy: Reading  # the same with the noise, within the range of the sensors
     accelerometer: Counts  # (n, 3): as counted, x y z
     gyro: Counts  # (n, 3)
     rows: Mapping[str, range]  # manoeuvre → its samples, rest before and after a turn included
@@ -45,7 +49,17 @@ class Recording:
     """A campaign as recorded."""
 
     campaign: Mapping[str, Any]  # what campaign.yaml says
-    logs: Mapping[str, bytes]  # name → bytes, in the order in which they were written
+    receiver: Receiver
+    start: int  # ns since the start of GPS time: the campaign's first sample
+    records: Mapping[str, Records]  # name → what is written, in the order of writing
     truth: Mapping[str, LogTruth]  # by log, before any fault: also before an exchange of names
     placements: Mapping[str, Placement]  # by position ("of <id>" where the plan names none)
     spoiled: Sequence[Spoiled]  # by log, then by fault as they struck, then by record
+
+    @cached_property
+    def logs(self) -> dict[str, bytes]:
+        """The bytes of every log; they are written when they are first asked for."""
+        return {
+            log: self.receiver.log_bytes(records, self.start)
+            for log, records in self.records.items()
+        }

@@ -1,6 +1,7 @@
 """What the IMU makes of the truth: reading = M · truth + bias, and whatever its effects add."""
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -18,6 +19,10 @@ class Triad:
     matrix: Array
     bias: Array
 
+    def feels(self, truth: Array) -> Array:
+        """M · truth, (…, 3): what each sensor has along its own axis, scale factor included."""
+        return truth @ self.matrix.T
+
 
 @dataclass(frozen=True)
 class Sensors:
@@ -33,6 +38,16 @@ class Reading:
 
     accelerometer: Array  # (…, 3)
     gyro: Array  # (…, 3)
+
+    @classmethod
+    def of_gyros(cls, added: Array) -> Self:
+        """Nothing but what the gyros read."""
+        return cls(np.zeros_like(added), added)
+
+    @classmethod
+    def of_accelerometers(cls, added: Array) -> Self:
+        """Nothing but what the accelerometers read."""
+        return cls(added, np.zeros_like(added))
 
     def __add__(self, other: "Reading") -> "Reading":
         return Reading(self.accelerometer + other.accelerometer, self.gyro + other.gyro)
@@ -52,7 +67,7 @@ def read(sensors: Sensors, truth: Truth, added: Reading) -> Reading:
     instants = truth.motion.instants
     accelerometer, gyro = sensors.accelerometer, sensors.gyro
     return Reading(
-        truth.velocity @ accelerometer.matrix.T
+        accelerometer.feels(truth.velocity)
         + instants.integral(accelerometer.bias + added.accelerometer),
-        truth.turned @ gyro.matrix.T + instants.integral(gyro.bias + added.gyro),
+        gyro.feels(truth.turned) + instants.integral(gyro.bias + added.gyro),
     )

@@ -19,11 +19,13 @@ class Site:
 
     latitude: float  # rad
     gravity: float  # m/s²
+    heading: float | None  # rad clockwise from north: the table's zero mark; None: by chance
+    spin: float = 1.0  # share of the earth's rotation that the gyros have in their readings
 
     @property
     def earth_rate(self) -> Array:
         """ω_e (0, cos φ, sin φ), (3,), rad/s."""
-        return EARTH_RATE * np.array([0.0, cos(self.latitude), sin(self.latitude)])
+        return self.spin * EARTH_RATE * np.array([0.0, cos(self.latitude), sin(self.latitude)])
 
     @property
     def reaction(self) -> Array:

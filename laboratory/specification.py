@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
+from laboratory.arrays import Array
 from laboratory.chance import Chance
 from laboratory.checking import check
 from laboratory.effects import EFFECTS, NOISE
@@ -19,41 +20,20 @@ from laboratory.effects.effect import Effect
 from laboratory.errors import Complaint, SpecificationError
 from laboratory.faults import FAULTS
 from laboratory.faults.fault import Fault
+from laboratory.feasibility import impossible
 from laboratory.gps_time import NANOSECONDS, gps_nanoseconds
-from laboratory.layout import changes_between, length, logs_of
-from laboratory.plan import Manoeuvre, PlanError, written_out
+from laboratory.layout import Handling, length, logs_of
+from laboratory.manoeuvre import Manoeuvre, PlanError
+from laboratory.plan import written_out
 from laboratory.rawimusa import Samples
+from laboratory.receiver import Receiver
 from laboratory.records import Records
 from laboratory.rehearsal import rehearse
+from laboratory.rotation import rotation_of
 from laboratory.sensor import Sensors, Triad
 from laboratory.site import Site, normal_gravity
-from laboratory.units import ARCSECOND, DEGREE
-
-
-@dataclass(frozen=True)
-class Receiver:
-    """What writes the logs."""
-
-    step: int  # ns from sample to sample
-    gyro_count: float  # rad
-    accelerometer_count: float  # m/s
-    status: str
-    line_end: bytes
-
-    @property
-    def interval(self) -> float:
-        """Time from sample to sample, s."""
-        return self.step / NANOSECONDS
-
-    def records(self, samples: Samples) -> Records:
-        """A log before any fault."""
-        return Records(
-            stamps=samples.stamps,
-            counts=np.hstack([samples.accelerometer, samples.gyro]),
-            ends=samples.stamps,
-            units=np.repeat([self.accelerometer_count, self.gyro_count], 3) / self.interval,
-            interval=self.interval,
-        )
+from laboratory.temperature import Temperature
+from laboratory.units import ARCSECOND, DEGREE, MILLIRADIAN
 
 
 @dataclass(frozen=True)
@@ -71,16 +51,27 @@ class Specification:
     @property
     def campaign(self) -> dict[str, Any]:
         """What the laboratory tells the pipeline."""
-        return {**self.document["campaign"], "simulated": True}
+        campaign: dict[str, Any] = {**self.document["campaign"], "simulated": True}
+        if self.receiver.format is not None:
+            campaign["instrument"] = {**campaign["instrument"], "format": self.receiver.format}
+        return campaign
 
     @cached_property
     def manoeuvres(self) -> list[Manoeuvre]:
         return written_out(self._document["campaign"], self._document["handling"]["still_s"])
 
-    @property
-    def change_seconds(self) -> float:
-        """Time to go from one position to the next within a log, s; 0 where none does."""
-        return float(self._document["handling"].get("change_s", 0.0))
+    @cached_property
+    def handling(self) -> Handling:
+        """How positions are changed within a log, by true time."""
+        written = self._document["handling"]
+        step = written.get("step", {"rate_deg_s": 1.0, "accel_deg_s2": 1.0})
+        ticks = prod(effect.ticks() for effect in self.effects().values())
+        return Handling(
+            self.receiver.interval * ticks,
+            float(written.get("change_s", 0.0)),
+            step["rate_deg_s"] * DEGREE,
+            step["accel_deg_s2"] * DEGREE,
+        )
 
     @property
     def start(self) -> int:
@@ -93,16 +84,9 @@ class Specification:
         """From the last sample of a log to the first of the next, ns."""
         return round(float(self._document["start"]["pause_s"]) * NANOSECONDS)
 
-    @property
+    @cached_property
     def receiver(self) -> Receiver:
-        written = self._document["receiver"]
-        return Receiver(
-            round(NANOSECONDS / written["rate_hz"]),
-            written["gyro_count_rad"],
-            written["accelerometer_count_m_s"],
-            written["status"],
-            {"crlf": b"\r\n", "lf": b"\n"}[written["line_end"]],
-        )
+        return Receiver.specified(self._document["receiver"])
 
     @property
     def sensors(self) -> Sensors:
@@ -114,6 +98,21 @@ class Specification:
         )
 
     @property
+    def mountings(self) -> dict[str, Array]:
+        """By mount, what takes vectors of the case to the axes that the plan names, (3, 3)."""
+        mounts = self._document["truth"].get("mounts", {})
+        return {
+            name: rotation_of(np.array(mount["rotation_mrad"], float) * MILLIRADIAN)
+            for name, mount in mounts.items()
+        }
+
+    @property
+    def temperature(self) -> Temperature:
+        """The course of the temperature; an even one where nothing is said."""
+        written = self._document.get("temperature", {"start_deg_c": 20.0})
+        return Temperature.specified(written)
+
+    @property
     def site(self) -> Site:
         """The true place: what `truth` says, else the campaign, else normal gravity."""
         site, truth = self._document["campaign"]["site"], self._document["truth"]
@@ -121,14 +120,9 @@ class Specification:
         gravity = truth.get("gravity_m_s2", site.get("gravity_m_s2"))
         if gravity is None:
             gravity = normal_gravity(latitude, site.get("height_m", 0.0))
-        return Site(latitude, gravity)
-
-    @property
-    def heading(self) -> float | None:
-        """True azimuth of the table's zero mark, rad; None: by chance."""
         said = self._document["campaign"]["table"].get("heading_deg")
-        heading = self._document["truth"].get("heading_deg", said)
-        return None if heading is None else heading * DEGREE
+        heading = truth.get("heading_deg", said)
+        return Site(latitude, gravity, None if heading is None else heading * DEGREE)
 
     @property
     def position_sigma(self) -> float:
@@ -163,12 +157,11 @@ class Specification:
     @property
     def empty_logs(self) -> dict[str, Records]:
         """The logs in their full length, before any fault, with nothing but zeros in them."""
-        interval, change_seconds = self.receiver.interval, self.change_seconds
         logs = {}
         for log, manoeuvres in logs_of(self.manoeuvres).items():
-            samples = length(manoeuvres, interval, change_seconds)
-            counts = np.zeros((samples, 3), dtype=np.int64)
-            logs[log] = self.receiver.records(Samples(counts[:, 0], counts, counts))
+            zeros = np.zeros((length(manoeuvres, self.handling), 3), dtype=np.int64)
+            samples = Samples(zeros[:, 0], zeros, zeros)
+            logs[log] = self.receiver.records(samples, np.zeros(len(zeros)))
         return logs
 
 
@@ -188,31 +181,12 @@ def specify(document: Mapping[str, Any], source: str = "specification") -> Speci
     check(document, source)
     specification = Specification(source, deepcopy(dict(document)))
     try:
-        complaints = list(impossible(specification))
+        complaints = [
+            *impossible(document, specification.manoeuvres, [*specification.effects().values()]),
+            *rehearse(specification.faults, specification.empty_logs),
+        ]
     except PlanError as error:
         complaints = [error.complaint]
     if complaints:
         raise SpecificationError(source, *complaints)
     return specification
-
-
-def impossible(specification: Specification) -> list[Complaint]:
-    """What the schema allows and no laboratory can do."""
-    document = specification.document
-    complaints = []
-    if (
-        document["truth"].get("latitude_deg", document["campaign"]["site"].get("latitude_deg"))
-        is None
-    ):
-        expected = "the true latitude, degrees north, since the campaign does not tell it"
-        complaints.append(Complaint("truth.latitude_deg", "nothing", expected))
-    logs = logs_of(specification.manoeuvres)
-    pairs = [pair for log in logs.values() for pair in pairwise(log)]
-    if "change_s" not in document["handling"] and any(changes_between(*pair) for pair in pairs):
-        expected = "the time from one position to the next, s, since a log has several"
-        complaints.append(Complaint("handling.change_s", "nothing", expected))
-    creep = document.get("effects", {}).get("table_creep")
-    if creep is not None and creep["to_s"] <= creep["from_s"]:
-        expected = f"later than from_s, {creep['from_s']} s"
-        complaints.append(Complaint("effects.table_creep.to_s", f"{creep['to_s']}", expected))
-    return [*complaints, *rehearse(specification.faults, specification.empty_logs)]

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from laboratory.arrays import Array
 from laboratory.motion import Motion
-from laboratory.rotation import seen_from
 from laboratory.site import Site
 
 
@@ -26,6 +25,7 @@ class Truth:
     force: Array  # m/s², (m, 3), +g on the axis that points up
     turned: Array  # rad, (n, 3): integral of the rate over every sample
     velocity: Array  # m/s, (n, 3): integral of the force over every sample
+    warmer: Array  # K, (m,): than where M and bias of the sensors hold
 
     @property
     def time(self) -> Array:
@@ -33,13 +33,13 @@ class Truth:
         return self.motion.instants.time
 
 
-def sense(motion: Motion, site: Site, pulls: Iterable[Pull]) -> Truth:
+def sense(motion: Motion, site: Site, pulls: Iterable[Pull], warmer: Array) -> Truth:
     """ω = ω_table + Cᵀ ω_e,  f = Cᵀ (0, 0, g) + whatever else pulls at the case."""
     integral = motion.instants.integral
-    earth = seen_from(motion.attitude, site.earth_rate)
-    force = seen_from(motion.attitude, site.reaction)
+    earth, force = motion.seen(site.earth_rate), motion.seen(site.reaction)
     velocity = integral(force)
     for pull in pulls:
         force = force + pull.force
         velocity = velocity + pull.velocity
-    return Truth(motion, motion.rate + earth, force, motion.turned + integral(earth), velocity)
+    turned = motion.turned + integral(earth)
+    return Truth(motion, motion.rate + earth, force, turned, velocity, warmer)

@@ -7,32 +7,115 @@ To add an effect, write its file beside this one, list it here, and describe its
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
+from laboratory.effects.accel_bias_jump import AccelBiasJump
 from laboratory.effects.accel_bias_ramp import AccelBiasRamp
+from laboratory.effects.accel_bias_temperature import AccelBiasTemperature
+from laboratory.effects.accel_cross_products import AccelCrossProducts
+from laboratory.effects.accel_cubic import AccelCubic
+from laboratory.effects.accel_hysteresis import AccelHysteresis
 from laboratory.effects.accel_quadratic import AccelQuadratic
+from laboratory.effects.accel_saturation import AccelSaturation
+from laboratory.effects.accel_scale_asymmetry import AccelScaleAsymmetry
+from laboratory.effects.accel_scale_temperature import AccelScaleTemperature
+from laboratory.effects.accel_vibration_rectification import AccelVibrationRectification
+from laboratory.effects.accel_warm_up import AccelWarmUp
 from laboratory.effects.bias_random_walk import BiasRandomWalk
+from laboratory.effects.clock_scale import ClockScale
+from laboratory.effects.clock_step import ClockStep
+from laboratory.effects.earth_rate_omitted import EarthRateOmitted
 from laboratory.effects.effect import Effect
+from laboratory.effects.gravity_error import GravityError
+from laboratory.effects.gyro_accel_misalignment import GyroAccelMisalignment
+from laboratory.effects.gyro_bias_jump import GyroBiasJump
 from laboratory.effects.gyro_bias_ramp import GyroBiasRamp
+from laboratory.effects.gyro_bias_temperature import GyroBiasTemperature
+from laboratory.effects.gyro_cubic_drift import GyroCubicDrift
+from laboratory.effects.gyro_dead_band import GyroDeadBand
+from laboratory.effects.gyro_flicker import GyroFlicker
+from laboratory.effects.gyro_g2_sensitivity import GyroG2Sensitivity
 from laboratory.effects.gyro_g_sensitivity import GyroGSensitivity
+from laboratory.effects.gyro_hysteresis import GyroHysteresis
+from laboratory.effects.gyro_latency import GyroLatency
+from laboratory.effects.gyro_saturation import GyroSaturation
+from laboratory.effects.gyro_scale_asymmetry import GyroScaleAsymmetry
+from laboratory.effects.gyro_scale_cubic import GyroScaleCubic
+from laboratory.effects.gyro_scale_g_dependence import GyroScaleGDependence
+from laboratory.effects.gyro_scale_quadratic import GyroScaleQuadratic
+from laboratory.effects.gyro_scale_temperature import GyroScaleTemperature
+from laboratory.effects.gyro_telegraph import GyroTelegraph
+from laboratory.effects.gyro_warm_up import GyroWarmUp
+from laboratory.effects.heading_error import HeadingError
+from laboratory.effects.latitude_error import LatitudeError
 from laboratory.effects.lever_arm import LeverArm
 from laboratory.effects.oscillation import Oscillation
+from laboratory.effects.size_effect import SizeEffect
+from laboratory.effects.table_angle_scale import TableAngleScale
+from laboratory.effects.table_axis_non_orthogonality import TableAxisNonOrthogonality
 from laboratory.effects.table_creep import TableCreep
+from laboratory.effects.table_eccentricity import TableEccentricity
+from laboratory.effects.table_position_error import TablePositionError
+from laboratory.effects.table_ripple import TableRipple
+from laboratory.effects.table_speed_error import TableSpeedError
 from laboratory.effects.table_sway import TableSway
 from laboratory.effects.table_tilt import TableTilt
+from laboratory.effects.table_wobble import TableWobble
 from laboratory.effects.white_noise import WhiteNoise
 
 # Those that move the case go by the order of this list, not by that of the campaign's file.
 EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
+    # the site and the clock
+    "gravity_error": GravityError.specified,
+    "latitude_error": LatitudeError.specified,
+    "heading_error": HeadingError.specified,
+    "earth_rate_omitted": EarthRateOmitted.specified,
+    "clock_scale": ClockScale.specified,
+    "clock_step": ClockStep.specified,
     # the table and the mount
     "table_tilt": TableTilt.specified,
+    "table_axis_non_orthogonality": TableAxisNonOrthogonality.specified,
+    "table_position_error": TablePositionError.specified,
+    "table_speed_error": TableSpeedError.specified,
+    "table_angle_scale": TableAngleScale.specified,
+    "table_eccentricity": TableEccentricity.specified,
+    "table_ripple": TableRipple.specified,
+    "table_wobble": TableWobble.specified,
     "table_creep": TableCreep.specified,
     "oscillation": Oscillation.specified,
     "lever_arm": LeverArm.specified,
+    "size_effect": SizeEffect.specified,
     # the gyros
+    "gyro_accel_misalignment": GyroAccelMisalignment.specified,
     "gyro_g_sensitivity": GyroGSensitivity.specified,
+    "gyro_g2_sensitivity": GyroG2Sensitivity.specified,
+    "gyro_scale_asymmetry": GyroScaleAsymmetry.specified,
+    "gyro_scale_quadratic": GyroScaleQuadratic.specified,
+    "gyro_scale_cubic": GyroScaleCubic.specified,
+    "gyro_scale_g_dependence": GyroScaleGDependence.specified,
+    "gyro_scale_temperature": GyroScaleTemperature.specified,
+    "gyro_dead_band": GyroDeadBand.specified,
     "gyro_bias_ramp": GyroBiasRamp.specified,
+    "gyro_cubic_drift": GyroCubicDrift.specified,
+    "gyro_warm_up": GyroWarmUp.specified,
+    "gyro_bias_temperature": GyroBiasTemperature.specified,
+    "gyro_bias_jump": GyroBiasJump.specified,
+    "gyro_telegraph": GyroTelegraph.specified,
+    "gyro_hysteresis": GyroHysteresis.specified,
+    "gyro_flicker": GyroFlicker.specified,
+    "gyro_saturation": GyroSaturation.specified,
+    "gyro_latency": GyroLatency.specified,
     # the accelerometers
     "accel_quadratic": AccelQuadratic.specified,
+    "accel_cubic": AccelCubic.specified,
+    "accel_cross_products": AccelCrossProducts.specified,
+    "accel_scale_asymmetry": AccelScaleAsymmetry.specified,
+    "accel_scale_temperature": AccelScaleTemperature.specified,
     "accel_bias_ramp": AccelBiasRamp.specified,
+    "accel_warm_up": AccelWarmUp.specified,
+    "accel_bias_temperature": AccelBiasTemperature.specified,
+    "accel_bias_jump": AccelBiasJump.specified,
+    "accel_vibration_rectification": AccelVibrationRectification.specified,
+    "accel_hysteresis": AccelHysteresis.specified,
+    "accel_saturation": AccelSaturation.specified,
 }
 
 # The noise of every campaign: effects too, but with a section of their own.

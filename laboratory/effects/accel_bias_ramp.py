@@ -8,7 +8,7 @@ import numpy as np
 
 from laboratory.arrays import Array
 from laboratory.effects.effect import Effect
-from laboratory.sensor import Reading
+from laboratory.sensor import Reading, Sensors
 from laboratory.truth import Truth
 from laboratory.units import HOUR
 
@@ -26,5 +26,5 @@ class AccelBiasRamp(Effect):
     def specified(cls, parameters: Mapping[str, Any]) -> Self:
         return cls(np.array(parameters["ramp_m_s2_h"], dtype=float) / HOUR)
 
-    def reads(self, truth: Truth) -> Reading:
-        return Reading(truth.time[:, None] * self.ramp, np.zeros_like(truth.rate))
+    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
+        return Reading.of_accelerometers(truth.time[:, None] * self.ramp)

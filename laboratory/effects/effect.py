@@ -4,10 +4,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from laboratory.arrays import Array
+from laboratory.arrays import Array, Counts
+from laboratory.chance import Chance
 from laboratory.instants import Instants
+from laboratory.manoeuvre import Manoeuvre
 from laboratory.motion import Motion, Turning
-from laboratory.sensor import Reading
+from laboratory.profiles import Profile
+from laboratory.sensor import Reading, Sensors
+from laboratory.site import Site
 from laboratory.truth import Pull, Truth
 
 
@@ -18,13 +22,39 @@ class Effect:
     stretch by stretch in the order of time. Zero parameters mean that it is absent.
     """
 
-    def tilts(self) -> Array:
-        """How the base of the table stands in the level frame: a rotation, (3, 3)."""
+    # ---- the site and the clock
+
+    def stands(self, site: Site) -> Site:
+        """The place as it truly is, where the laboratory takes it for `site`."""
+        return site
+
+    def ticks(self) -> float:
+        """Seconds that truly pass while the receiver's clock says one."""
+        return 1.0
+
+    def stamps(self, stamps: Counts) -> Counts:
+        """The times that are written, (n,), ns since the campaign's first sample."""
+        return stamps
+
+    # ---- the table
+
+    def tilts(self, manoeuvre: Manoeuvre, set_attitude: Array) -> Array:
+        """How the table, its axis included, leans in the level frame: a rotation, (3, 3).
+
+        Asked once for every position; set_attitude: of the IMU, level from body, (3, 3).
+        """
         return np.eye(3)
 
-    def carries(self, instants: Instants) -> Sequence[Turning]:
-        """Rotations of the whole table, what stands on it included; axes in the level frame."""
-        return []
+    def misses(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
+        """How far the IMU stands from its set attitude on the table: a rotation, (3, 3), as above.
+
+        Unlike a lean of the table it goes along with a turn.
+        """
+        return np.eye(3)
+
+    def sets(self, profile: Profile) -> Profile:
+        """The turn that the table makes when it is set to `profile`."""
+        return profile
 
     def moves(self, turnings: Sequence[Turning], instants: Instants) -> Sequence[Turning]:
         """The rotations of the case, given those that the plan and the effects before it ask for.
@@ -33,14 +63,33 @@ class Effect:
         """
         return turnings
 
-    def pulls(self, motion: Motion) -> Pull | None:
+    def carries(
+        self, turnings: Sequence[Turning], attitude: Array, instants: Instants
+    ) -> Sequence[Turning]:
+        """Rotations of the whole table, what stands on it included; axes in the level frame.
+
+        turnings: those of the case; attitude: of the case before them, (3, 3), level from body.
+        """
+        return []
+
+    # ---- the IMU
+
+    def delays(self) -> float:
+        """Seconds by which the gyros lag behind."""
+        return 0.0
+
+    def pulls(self, motion: Motion, sensors: Sensors) -> Pull | None:
         """A specific force that the motion causes."""
         return None
 
-    def reads(self, truth: Truth) -> Reading | None:
+    def reads(self, truth: Truth, sensors: Sensors) -> Reading | None:
         """What it adds to the reading at the instants: (m, 3) m/s² and (m, 3) rad/s."""
         return None
 
     def scatters(self, truth: Truth, generator: np.random.Generator) -> Reading | None:
         """Noise that it adds to the increments of the samples: (n, 3) m/s and (n, 3) rad."""
         return None
+
+    def limits(self, increments: Reading, interval: float) -> Reading:
+        """What is left of the increments, noise included, (n, 3) m/s and (n, 3) rad."""
+        return increments

@@ -8,7 +8,7 @@ import numpy as np
 
 from laboratory.arrays import Array
 from laboratory.effects.effect import Effect
-from laboratory.sensor import Reading
+from laboratory.sensor import Reading, Sensors
 from laboratory.truth import Truth
 from laboratory.units import DEGREE, HOUR
 
@@ -26,5 +26,5 @@ class GyroBiasRamp(Effect):
     def specified(cls, parameters: Mapping[str, Any]) -> Self:
         return cls(np.array(parameters["ramp_deg_h_h"], dtype=float) * DEGREE / HOUR**2)
 
-    def reads(self, truth: Truth) -> Reading:
-        return Reading(np.zeros_like(truth.force), truth.time[:, None] * self.ramp)
+    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
+        return Reading.of_gyros(truth.time[:, None] * self.ramp)

@@ -8,7 +8,7 @@ import numpy as np
 
 from laboratory.arrays import Array
 from laboratory.effects.effect import Effect
-from laboratory.sensor import Reading
+from laboratory.sensor import Reading, Sensors
 from laboratory.truth import Truth
 from laboratory.units import DEGREE, HOUR, STANDARD_GRAVITY
 
@@ -28,5 +28,5 @@ class GyroGSensitivity(Effect):
         unit = DEGREE / HOUR / STANDARD_GRAVITY
         return cls(np.array(parameters["matrix_deg_h_g"], dtype=float) * unit)
 
-    def reads(self, truth: Truth) -> Reading:
-        return Reading(np.zeros_like(truth.force), truth.force @ self.matrix.T)
+    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
+        return Reading.of_gyros(truth.force @ self.matrix.T)

@@ -9,6 +9,7 @@ import numpy as np
 from laboratory.arrays import Array
 from laboratory.effects.effect import Effect
 from laboratory.motion import Motion
+from laboratory.sensor import Sensors
 from laboratory.truth import Pull
 
 
@@ -26,7 +27,7 @@ class LeverArm(Effect):
     def specified(cls, parameters: Mapping[str, Any]) -> Self:
         return cls(np.array(parameters["arm_m"], dtype=float))
 
-    def pulls(self, motion: Motion) -> Pull:
+    def pulls(self, motion: Motion, sensors: Sensors) -> Pull:
         centripetal = np.cross(motion.rate, np.cross(motion.rate, self.arm))
         return Pull(
             np.cross(motion.acceleration, self.arm) + centripetal,

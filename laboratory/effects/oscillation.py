@@ -22,11 +22,14 @@ class Oscillation(Effect):
 
     A: amplitude, rad/s; f: frequency, Hz; t: from the start of the manoeuvre; w: how fast the
     table turns, as a share of its steady rate and without corners, so 0 at rest: over a whole
-    turn the vibration adds no angle. It is a motion like any other: it tilts gravity, shakes a
-    lever arm, and reaches the other sensors through M. Seen in S0, figures 5-14 to 5-16.
+    turn the vibration adds no angle. Bound to the table it is A/(n r) w sin(nθ + phase), n times
+    in every revolution, θ the angle of the table and r its steady rate. It is a motion like any
+    other: it tilts gravity, shakes a lever arm, and reaches the other sensors through M. Seen in
+    S0, figures 5-14 to 5-16.
     """
 
-    frequency: float
+    frequency: float | None  # Hz; None: bound to the table
+    order: float  # n, where it is
     amplitude: float
     axis: Array  # unit vector, (3,), body axes
     phase: float  # rad
@@ -34,7 +37,8 @@ class Oscillation(Effect):
     @classmethod
     def specified(cls, parameters: Mapping[str, Any]) -> Self:
         return cls(
-            parameters["frequency_hz"],
+            parameters.get("frequency_hz"),
+            parameters.get("order", 0.0),
             parameters["amplitude_rad_s"],
             direction(parameters["axis"]),
             parameters.get("phase_deg", 0.0) * DEGREE,
@@ -47,15 +51,20 @@ class Oscillation(Effect):
         per_second = np.sign(table.rate) * table.acceleration / table.steady_rate
         w, slope, bend = smooth_step(np.abs(table.rate) / table.steady_rate)
         w1, w2 = slope * per_second, bend * per_second**2
-        angular = 2 * pi * self.frequency
-        sine = np.sin(angular * instants.elapsed + self.phase)
-        cosine = np.cos(angular * instants.elapsed + self.phase)
-        size = self.amplitude / angular
+        if self.frequency is None:
+            swing, swung = self.order * table.angle, self.order * table.rate
+            change, steady = self.order * table.acceleration, self.order * table.steady_rate
+        else:
+            steady = 2 * pi * self.frequency
+            swing, swung, change = steady * instants.elapsed, np.asarray(steady), np.asarray(0.0)
+        sine, cosine = np.sin(swing + self.phase), np.cos(swing + self.phase)
+        size = self.amplitude / steady
         vibration = Turning(
             self.axis,
             angle=size * w * sine,
-            rate=size * (w1 * sine + w * angular * cosine),
-            acceleration=size * (w2 * sine + 2 * w1 * angular * cosine - w * angular**2 * sine),
+            rate=size * (w1 * sine + w * swung * cosine),
+            acceleration=size
+            * (w2 * sine + 2 * w1 * swung * cosine + w * (change * cosine - swung**2 * sine)),
             steady_rate=self.amplitude,
         )
         return [*turnings, vibration]

@@ -37,7 +37,9 @@ class TableCreep(Effect):
             parameters["to_s"],
         )
 
-    def carries(self, instants: Instants) -> Sequence[Turning]:
+    def carries(
+        self, turnings: Sequence[Turning], attitude: Array, instants: Instants
+    ) -> Sequence[Turning]:
         if self.rate == 0 or instants.time[-1] <= self.start:
             return []
         since = np.clip(instants.time, self.start, self.end) - self.start

@@ -8,6 +8,7 @@ import numpy as np
 
 from laboratory.arrays import Array
 from laboratory.effects.effect import Effect
+from laboratory.manoeuvre import Manoeuvre
 from laboratory.rotation import rotation_of
 from laboratory.units import ARCSECOND
 
@@ -27,5 +28,5 @@ class TableTilt(Effect):
     def specified(cls, parameters: Mapping[str, Any]) -> Self:
         return cls(parameters["north_arcsec"] * ARCSECOND, parameters["east_arcsec"] * ARCSECOND)
 
-    def tilts(self) -> Array:
+    def tilts(self, manoeuvre: Manoeuvre, set_attitude: Array) -> Array:
         return rotation_of(np.array([-self.north, self.east, 0.0]))

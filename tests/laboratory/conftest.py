@@ -35,9 +35,17 @@ def demo_recording() -> Recording:
 
 @pytest.fixture
 def ideal(demo: Document) -> Ideal:
-    """The demo's laboratory with a perfect IMU on a perfect table, and another plan."""
+    """The demo's laboratory with a perfect IMU on a perfect table, and another plan.
 
-    def document(*plan: Document, effects: Document | None = None, **noise: float) -> Document:
+    `also`: further sections of the specification, in place of the demo's.
+    """
+
+    def document(
+        *plan: Document,
+        effects: Document | None = None,
+        also: Document | None = None,
+        **noise: float,
+    ) -> Document:
         demo["campaign"]["plan"] = list(plan)
         demo["campaign"]["log"] = "all.asc"
         demo["campaign"]["table"] |= {"position_sigma_arcsec": 0, "heading_deg": 0}
@@ -46,7 +54,7 @@ def ideal(demo: Document) -> Ideal:
             "gyro": {"bias_rad_s": [0, 0, 0], "matrix": IDENTITY},
         }
         demo["noise"] = dict.fromkeys(demo["noise"], 0) | noise
-        return demo | {"effects": effects or {}, "faults": []}
+        return demo | {"effects": effects or {}, "faults": []} | (also or {})
 
     return document
 

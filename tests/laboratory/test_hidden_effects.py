@@ -11,6 +11,7 @@ from laboratory import Recording, perform, specify
 from laboratory.checking import the_schema
 from laboratory.effects import EFFECTS
 from laboratory.faults import FAULTS
+from tests.laboratory.at_zero_and_not import ALSO, AT_ZERO_AND_NOT, PLAN
 
 GRAVITY, STANDARD, ARCSECOND = 9.7936174, 9.80665, radians(1 / 3600)
 Performed = Callable[..., Recording]
@@ -25,26 +26,6 @@ TURN = {
     "accel_deg_s2": 40,
     "log": "turn.asc",
 }
-ZERO, ONE = [0, 0, 0], [1, 1, 1]
-AT_ZERO_AND_NOT: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
-    "table_tilt": (
-        {"north_arcsec": 0, "east_arcsec": 0},
-        {"north_arcsec": 60, "east_arcsec": 0},
-    ),
-    "table_creep": (
-        {"about": "east", "rate_deg_h": 0, "from_s": 5, "to_s": 15},
-        {"about": "east", "rate_deg_h": 10, "from_s": 5, "to_s": 15},
-    ),
-    "oscillation": (
-        {"frequency_hz": 20, "amplitude_rad_s": 0, "axis": "+y"},
-        {"frequency_hz": 20, "amplitude_rad_s": 0.01, "axis": "+y"},
-    ),
-    "lever_arm": ({"arm_m": ZERO}, {"arm_m": [0.05, 0, 0]}),
-    "gyro_g_sensitivity": ({"matrix_deg_h_g": [ZERO] * 3}, {"matrix_deg_h_g": [ONE] * 3}),
-    "gyro_bias_ramp": ({"ramp_deg_h_h": ZERO}, {"ramp_deg_h_h": [100] * 3}),
-    "accel_quadratic": ({"k2_micro_g_g2": ZERO}, {"k2_micro_g_g2": ONE}),
-    "accel_bias_ramp": ({"ramp_m_s2_h": ZERO}, {"ramp_m_s2_h": ONE}),
-}
 
 
 def test_the_schema_and_these_tests_know_every_effect_and_fault() -> None:
@@ -55,11 +36,28 @@ def test_the_schema_and_these_tests_know_every_effect_and_fault() -> None:
 
 @pytest.mark.parametrize("name", EFFECTS)
 def test_zero_is_absent_and_anything_else_is_not(name: str, ideal: Callable[..., Any]) -> None:
-    document = ideal(REST, TURN)
-    zero, other = AT_ZERO_AND_NOT[name]
-    absent = perform(specify(document)).logs
-    assert perform(specify(document | {"effects": {name: zero}})).logs == absent
-    assert perform(specify(document | {"effects": {name: other}})).logs != absent
+    document = ideal(*PLAN, also=ALSO)
+    absent = written(document)
+    zero, other = (written(document | {"effects": {name: p}}) for p in AT_ZERO_AND_NOT[name])
+    assert zero == absent
+    assert other != absent
+
+
+def test_all_of_them_at_once_are_the_same_at_every_performance(ideal: Callable[..., Any]) -> None:
+    """Effects that remember begin anew, and those that draw have a stream of their own."""
+    every = {name: other for name, (_, other) in AT_ZERO_AND_NOT.items()}
+    specification = specify(ideal(*PLAN, also=ALSO | {"effects": every}))
+    once, again = perform(specification), perform(specification)
+    assert once.logs == again.logs
+    readings = [once.truth[log].noisy for log in once.records]
+    assert all(np.isfinite(reading.gyro).all() for reading in readings)
+    assert all(np.isfinite(reading.accelerometer).all() for reading in readings)
+
+
+def written(document: dict[str, Any]) -> dict[str, tuple[bytes, bytes]]:
+    """Stamps and counts of every log."""
+    records = perform(specify(document)).records
+    return {log: (one.stamps.tobytes(), one.counts.tobytes()) for log, one in records.items()}
 
 
 def test_a_lever_arm_feels_the_centripetal_and_the_tangential_force(performed: Performed) -> None:

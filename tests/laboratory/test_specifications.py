@@ -68,6 +68,12 @@ WRONG: list[tuple[Change, str]] = [
         "effects.table_creep.to_s: found 9; expected later than from_s, 9 s",
     ),
     (
+        lambda d: d["effects"].update(oscillation={"amplitude_rad_s": 0.01, "axis": "+x"}),
+        "effects.oscillation: found {'amplitude_rad_s': 0.01, 'axis': '+x'} (mapping); expected "
+        "the case rings about an axis while the table turns: frequency_hz, or order times per "
+        "revolution of the table",
+    ),
+    (
         lambda d: d["campaign"]["site"].update(latitude_deg=None),
         "truth.latitude_deg: found nothing; expected the true latitude, degrees north, "
         "since the campaign does not tell it",

@@ -216,7 +216,9 @@ def test_position_errors_scatter_as_the_table_says(ideal: Callable[..., dict[str
         specification.manoeuvres,
         heading=None,
         position_sigma=1e-5,
-        base=np.eye(3),
+        leaning=lambda manoeuvre, attitude: np.eye(3),
+        mountings={},
+        missed=lambda manoeuvre, attitude: np.eye(3),
         chance=specification.chance,
     )
     tilts = np.array([p.attitude.T @ [0, 0, 1] for p in placements.values()])[:, :2]

@@ -1,0 +1,33 @@
+"""Accelerometer biases that settle after the start."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+
+from laboratory.arrays import Array
+from laboratory.effects.effect import Effect
+from laboratory.sensor import Reading, Sensors
+from laboratory.truth import Truth
+from laboratory.units import MICROGRAVITY
+
+
+@dataclass(frozen=True)
+class AccelWarmUp(Effect):
+    """f̃ += b exp(−t/τ), t since the campaign's first sample, through all logs and pauses.
+
+    start: b, (3,), m/s²; time_constant: τ, s.
+    """
+
+    start: Array
+    time_constant: float
+
+    @classmethod
+    def specified(cls, parameters: Mapping[str, Any]) -> Self:
+        start = np.array(parameters["start_micro_g"], dtype=float) * MICROGRAVITY
+        return cls(start, parameters["time_constant_s"])
+
+    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
+        left = np.exp(-truth.time / self.time_constant)
+        return Reading.of_accelerometers(left[:, None] * self.start)

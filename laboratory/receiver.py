@@ -1,0 +1,69 @@
+"""What writes the logs: times, counts of the six channels, and where it can the temperature."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from laboratory import columns, rawimusa
+from laboratory.arrays import Array
+from laboratory.gps_time import NANOSECONDS
+from laboratory.rawimusa import Samples
+from laboratory.records import Records
+
+COLUMNS = "columns"  # the message that is a table of text
+
+
+@dataclass(frozen=True)
+class Receiver:
+    """What writes the logs."""
+
+    message: str
+    step: int  # ns from sample to sample
+    gyro_count: float  # rad
+    accelerometer_count: float  # m/s
+    status: str
+    line_end: bytes
+
+    @classmethod
+    def specified(cls, written: Mapping[str, Any]) -> "Receiver":
+        """The receiver that simulated.schema.yaml describes."""
+        return cls(
+            written["message"],
+            round(NANOSECONDS / written["rate_hz"]),
+            written["gyro_count_rad"],
+            written["accelerometer_count_m_s"],
+            written["status"],
+            {"crlf": b"\r\n", "lf": b"\n"}[written["line_end"]],
+        )
+
+    @property
+    def interval(self) -> float:
+        """Time from sample to sample by its own clock, s."""
+        return self.step / NANOSECONDS
+
+    def records(self, samples: Samples, temperature: Array) -> Records:
+        """A log before any fault; temperature: (n,), K."""
+        return Records(
+            stamps=samples.stamps,
+            counts=np.hstack([samples.accelerometer, samples.gyro]),
+            ends=samples.stamps,
+            temperature=temperature,
+            units=np.repeat([self.accelerometer_count, self.gyro_count], 3) / self.interval,
+            interval=self.interval,
+        )
+
+    def log_bytes(self, records: Records, start: int) -> bytes:
+        """A log as it is written; start: ns since the start of GPS time, the campaign's first."""
+        if self.message == COLUMNS:
+            return columns.log_bytes(records, start, self.line_end)
+        return rawimusa.log_bytes(records.samples, self.status, self.line_end)
+
+    @property
+    def format(self) -> dict[str, Any] | None:
+        """How a campaign file describes its logs; None where the instrument tells it."""
+        if self.message != COLUMNS:
+            return None
+        rate, force = self.interval / self.gyro_count, self.interval / self.accelerometer_count
+        return columns.layout(counts_per_rad_s=rate, counts_per_m_s2=force)

@@ -1,0 +1,107 @@
+"""Every effect with parameters that make it absent, and with others; a campaign that shows all."""
+
+from typing import Any
+
+ZERO, ONE = [0, 0, 0], [1, 1, 1]
+IDENTITY = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
+Parameters = dict[str, Any]
+
+AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
+    "gravity_error": ({"error_mgal": 0}, {"error_mgal": 50}),
+    "latitude_error": ({"error_deg": 0}, {"error_deg": 5}),
+    "heading_error": ({"error_deg": 0}, {"error_deg": 30}),
+    "earth_rate_omitted": ({"share": 0}, {"share": 1}),
+    "clock_scale": ({"fast_ppm": 0}, {"fast_ppm": 100}),
+    "clock_step": ({"at_s": 5, "step_ms": 0}, {"at_s": 5, "step_ms": 4}),
+    "table_tilt": (
+        {"north_arcsec": 0, "east_arcsec": 0},
+        {"north_arcsec": 60, "east_arcsec": 0},
+    ),
+    "table_axis_non_orthogonality": ({"lean_arcsec": 0}, {"lean_arcsec": 30}),
+    "table_position_error": (
+        {"sigma_arcsec": 0, "backlash_arcsec": 0},
+        {"sigma_arcsec": 0, "backlash_arcsec": 30},
+    ),
+    "table_speed_error": ({"rate_ppm": 0, "ramp_ppm": 0}, {"rate_ppm": 0, "ramp_ppm": 100}),
+    "table_angle_scale": ({"scale_ppm": 0}, {"scale_ppm": 100}),
+    "table_eccentricity": (
+        {"sin_arcsec": 0, "cos_arcsec": 0},
+        {"sin_arcsec": 0, "cos_arcsec": 30},
+    ),
+    "table_ripple": (
+        {"order": 36, "amplitude_arcsec": 0},
+        {"order": 36, "amplitude_arcsec": 5},
+    ),
+    "table_wobble": (
+        {"east_arcsec": 0, "north_arcsec": 0},
+        {"east_arcsec": 0, "north_arcsec": 10},
+    ),
+    "table_creep": (
+        {"about": "east", "rate_deg_h": 0, "from_s": 5, "to_s": 15},
+        {"about": "east", "rate_deg_h": 10, "from_s": 5, "to_s": 15},
+    ),
+    "oscillation": (
+        {"frequency_hz": 20, "amplitude_rad_s": 0, "axis": "+y"},
+        {"frequency_hz": 20, "amplitude_rad_s": 0.01, "axis": "+y"},
+    ),
+    "lever_arm": ({"arm_m": ZERO}, {"arm_m": [0.05, 0, 0]}),
+    "size_effect": ({"arms_mm": [ZERO] * 3}, {"arms_mm": [[50, 0, 0], ZERO, ZERO]}),
+    "gyro_accel_misalignment": ({"rotation_mrad": ZERO}, {"rotation_mrad": ONE}),
+    "gyro_g_sensitivity": ({"matrix_deg_h_g": [ZERO] * 3}, {"matrix_deg_h_g": [ONE] * 3}),
+    "gyro_g2_sensitivity": ({"k_deg_h_g2": ZERO}, {"k_deg_h_g2": ONE}),
+    "gyro_scale_asymmetry": ({"asymmetry_ppm": ZERO}, {"asymmetry_ppm": ONE}),
+    "gyro_scale_quadratic": ({"k2_ppm_per_deg_s": ZERO}, {"k2_ppm_per_deg_s": ONE}),
+    "gyro_scale_cubic": ({"k3_ppm_per_deg_s_2": ZERO}, {"k3_ppm_per_deg_s_2": ONE}),
+    "gyro_scale_g_dependence": ({"k_ppm_g": ZERO}, {"k_ppm_g": ONE}),
+    "gyro_scale_temperature": ({"k_ppm_k": ZERO}, {"k_ppm_k": ONE}),
+    "gyro_dead_band": ({"width_deg_h": ZERO}, {"width_deg_h": [10] * 3}),
+    "gyro_bias_ramp": ({"ramp_deg_h_h": ZERO}, {"ramp_deg_h_h": [100] * 3}),
+    "gyro_cubic_drift": ({"k_deg_h_h3": ZERO}, {"k_deg_h_h3": [1e5] * 3}),
+    "gyro_warm_up": (
+        {"start_deg_h": ZERO, "time_constant_s": 50},
+        {"start_deg_h": ONE, "time_constant_s": 50},
+    ),
+    "gyro_bias_temperature": ({"k_deg_h_k": ZERO}, {"k_deg_h_k": ONE}),
+    "gyro_bias_jump": ({"size_deg_h": ZERO, "at_s": 9}, {"size_deg_h": ONE, "at_s": 9}),
+    "gyro_telegraph": (
+        {"height_deg_h": ZERO, "dwell_s": 3},
+        {"height_deg_h": ONE, "dwell_s": 3},
+    ),
+    "gyro_hysteresis": ({"offset_deg_h": ZERO}, {"offset_deg_h": ONE}),
+    "gyro_flicker": ({"instability_deg_h": 0}, {"instability_deg_h": 1}),
+    "gyro_saturation": ({"limit_deg_s": [300] * 3}, {"limit_deg_s": [30] * 3}),
+    "gyro_latency": ({"lag_ms": 0}, {"lag_ms": 2}),
+    "accel_quadratic": ({"k2_micro_g_g2": ZERO}, {"k2_micro_g_g2": ONE}),
+    "accel_cubic": ({"k3_micro_g_g3": ZERO}, {"k3_micro_g_g3": ONE}),
+    "accel_cross_products": (
+        {"matrix_micro_g_g2": [ZERO] * 3},
+        {"matrix_micro_g_g2": [[50] * 3] * 3},
+    ),
+    "accel_scale_asymmetry": ({"asymmetry_micro_g_g": ZERO}, {"asymmetry_micro_g_g": ONE}),
+    "accel_scale_temperature": ({"k_ppm_k": ZERO}, {"k_ppm_k": ONE}),
+    "accel_bias_ramp": ({"ramp_m_s2_h": ZERO}, {"ramp_m_s2_h": ONE}),
+    "accel_warm_up": (
+        {"start_micro_g": ZERO, "time_constant_s": 50},
+        {"start_micro_g": ONE, "time_constant_s": 50},
+    ),
+    "accel_bias_temperature": ({"k_micro_g_k": ZERO}, {"k_micro_g_k": ONE}),
+    "accel_bias_jump": ({"size_micro_g": ZERO, "at_s": 9}, {"size_micro_g": ONE, "at_s": 9}),
+    "accel_vibration_rectification": (
+        {"k_micro_g_g2": ONE, "vibration_g": 0, "from_s": 3, "to_s": 9},
+        {"k_micro_g_g2": [1e4] * 3, "vibration_g": 0.1, "from_s": 3, "to_s": 9},
+    ),
+    "accel_hysteresis": ({"offset_micro_g": ZERO}, {"offset_micro_g": [20] * 3}),
+    "accel_saturation": ({"limit_g": [2] * 3}, {"limit_g": [0.9] * 3}),
+}
+
+PLAN: list[Parameters] = [
+    {"id": "still", "do": "rest", "up": "+z", "mark": "+x", "seconds": 20, "log": "rest.asc"},
+    {"id": "turn", "do": "turn", "up": "+z", "mark": "+x", "degrees": 360, "log": "turn.asc"}
+    | {"rate_deg_s": 40, "accel_deg_s2": 40},
+    {"id": "tumble", "do": "tumble", "up": "+z", "about": "+x", "step_degrees": 45, "steps": 8}
+    | {"and_back": True, "seconds": 2, "log": "tumble.asc"},
+]
+ALSO: Parameters = {
+    "handling": {"still_s": 10, "step": {"rate_deg_s": 40, "accel_deg_s2": 40}},
+    "temperature": {"start_deg_c": 20, "slope_k_h": 600},
+}

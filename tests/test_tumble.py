@@ -1,0 +1,100 @@
+"""Tumbles that the simulated laboratory makes are found rest by rest, with their temperatures."""
+
+from pathlib import Path
+from typing import Any
+
+import chain
+import numpy as np
+import pandas as pd
+import pytest
+
+import laboratory
+
+FORCE = ["accel_x", "accel_y", "accel_z"]
+SECONDS = 4
+
+
+def tumbles(**changes: Any) -> dict[str, Any]:
+    """The two tumbles of S4: 18 rests 20° apart about x and about z, and back; two mounts."""
+    document = chain.demo(**changes)
+    document["handling"] = {"still_s": 3, "step": {"rate_deg_s": 20, "accel_deg_s2": 40}}
+    document["truth"]["mounts"] = {"tumble-xy": {"rotation_mrad": [8, -6, 4]}}
+    common = {"do": "tumble", "step_degrees": 20, "steps": 18, "and_back": True}
+    document["campaign"]["plan"] = [
+        {"id": f"tumble-{mount}", "about": about, "up": up, "mount": f"tumble-{mount}"}
+        | common
+        | {"seconds": SECONDS, "log": f"tumble-{mount}.txt"}
+        for mount, about, up in (("z", "+x", "+z"), ("xy", "+z", "+x"))
+    ]
+    return document
+
+
+@pytest.fixture(scope="module", params=["RAWIMUSA", "columns"])
+def tumbled(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[laboratory.Recording, chain.Results]:
+    """The tumbles, recorded by one receiver and by another, and where the chain finds them."""
+    document = tumbles(temperature={"start_deg_c": 25, "slope_k_h": 60})
+    document["receiver"]["message"] = request.param
+    if request.param == "columns":
+        document["campaign"]["instrument"] = {"name": "rate-table unit", "rate_hz": 100}
+    recording = laboratory.perform(laboratory.specify(document))
+    folder: Path = tmp_path_factory.mktemp(request.param)
+    laboratory.write(recording, folder / "raw")
+    return recording, chain.run(folder / "raw", folder / "derived", "segment")
+
+
+def test_every_rest_of_a_tumble_is_found(
+    tumbled: tuple[laboratory.Recording, chain.Results],
+) -> None:
+    """72 rests in their order, each within the records in which the table stood; no complaint."""
+    recording, results = tumbled
+    performed = results["segment/performed"]
+    assert len(performed) == 72
+    assert performed["found"].all()
+    assert performed["complete"].all()
+    segments = results["segment/segments"].set_index("manoeuvre")
+    for log in recording.truth.values():
+        for name, rows in log.rows.items():
+            assert segments.loc[name, "phase"] == "rest"
+            first, after = (int(segments.loc[name, key]) for key in ("from_record", "to_record"))
+            # the tenth of a second for which the table settles is rest as well
+            assert rows.start <= first < after <= rows.stop + 10
+            assert after - first > 0.7 * 100 * SECONDS
+    assert results["segment/findings"].empty
+
+
+def test_the_force_at_every_rest_is_the_true_one(
+    tumbled: tuple[laboratory.Recording, chain.Results],
+) -> None:
+    """M of the demo's IMU takes the true force of a rest to its mean reading, to the noise."""
+    recording, results = tumbled
+    truth = laboratory.read(chain.ROOT / "data/simulated/demo.yaml").sensors.accelerometer
+    read = means(results["segment/blocks"], FORCE)
+    for log in recording.truth.values():
+        for name, rows in log.rows.items():
+            force = log.force[rows.start : rows.stop].mean(axis=0)
+            expected = truth.matrix @ force + truth.bias
+            # 0.0064 m/s/√h over 3 s: 6e-5 m/s², and five of that
+            assert read.loc[name].to_numpy() == pytest.approx(expected, abs=3.1e-4)
+    bolted = recording.placements["of tumble-xy-00"].mounting
+    assert np.linalg.norm(bolted - np.eye(3)) == pytest.approx(2**0.5 * 0.0108, rel=0.01)
+
+
+def test_the_temperature_of_every_rest_is_known_where_the_log_tells_it(
+    tumbled: tuple[laboratory.Recording, chain.Results],
+) -> None:
+    recording, results = tumbled
+    read = means(results["segment/blocks"], ["temperature"])["temperature"]
+    if isinstance(recording.campaign["instrument"], str):
+        assert read.isna().all()  # RAWIMUSA has no place for it
+        return
+    for log in recording.truth.values():
+        for name, rows in log.rows.items():
+            middle = log.temperature[(rows.start + rows.stop) // 2]
+            assert read[name] == pytest.approx(middle, abs=0.01)  # 60 K/h: 0.0167 K per second
+
+
+def means(blocks: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
+    """The mean of every manoeuvre."""
+    return blocks.groupby("manoeuvre")[columns].mean()
