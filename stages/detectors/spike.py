@@ -27,6 +27,7 @@ FEWEST = 18  # readings of a channel by which a spike can be told
 CERTAIN = 7.5  # scatters: see `chance`
 GROSS = 40.0  # scatters, where the IMU is moved by hand or rings
 LEAP = 4.0  # times the largest change between readings beside it, there
+FAINT = 0.01  # of a spike: what is less beside it in other channels is none of a knock's
 NEAR = 24  # readings on each side from which the scatter is taken where it changes
 SPARED = 4  # of them may be spikes as well
 LARGE = 1.37  # sigma: the fifth largest of 24 Gaussian readings
@@ -78,7 +79,8 @@ class Spikes(Detector):
         for i, channel in channels.items():
             for start, end, scatters in _spikes(channel, handled):
                 first, last = int(channel.places[start]), int(channel.places[end - 1])
-                if not _shaken(channels, first, last, i, bool(handled[first])):
+                loud = max(LOUD, FAINT * scatters)
+                if not _shaken(channels, (first, last), i, loud, bool(handled[first])):
                     k = start + int(np.argmax(np.abs(channel.off[start:end])))
                     yield piece.event(
                         first,
@@ -154,16 +156,30 @@ def _with_others(off: Array, far: Integers, scatter: Array) -> Integers:
     return np.unique(np.append(near[there & large], far))
 
 
-def _shaken(channels: dict[int, Channel], first: int, last: int, i: int, handled: bool) -> bool:
-    """Whether more is off at or beside the places first … last than this spike of channel i.
+def _single(off: Booleans) -> Booleans:
+    """Which of these stand alone, neither neighbour being off."""
+    beside = np.pad(off, 1)
+    return np.asarray(off & ~beside[:-2] & ~beside[2:])
 
-    One record alone may be spoilt in several channels, but not while the IMU is moved.
+
+def _shaken(
+    channels: dict[int, Channel], places: tuple[int, int], i: int, loud: float, handled: bool
+) -> bool:
+    """Whether more is off at or beside the places, first and last, than this spike of channel i.
+
+    `loud`: scatters by which a reading is off.
+    One record alone may be spoilt in several channels, but not while the IMU is moved. Nor does
+    another channel count in which single readings are grossly off: what is knocked rings.
     """
+    first, last = places
     for j, channel in channels.items():
         start, end = np.searchsorted(channel.places, [first - WIDEST, last + WIDEST + 1])
         near = slice(max(start - NEAR, 0), end + NEAR)
         usual = SCATTER * float(np.median(np.abs(channel.off[near]))) if end > start else 0.0
-        off = np.abs(channel.off[start:end]) > LOUD * np.maximum(channel.least[start:end], usual)
+        least = np.maximum(channel.least[start:end], usual)
+        off = np.abs(channel.off[start:end]) > loud * least
+        if j != i and not handled:
+            off &= ~(_single(off) & (np.abs(channel.off[start:end]) > GROSS * least))
         here = (channel.places[start:end] >= first) & (channel.places[start:end] <= last)
         spared = WIDEST if j == i else 0
         if j != i and first == last and not handled:
