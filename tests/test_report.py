@@ -32,6 +32,7 @@ SECTIONS = [
     "Raw data",
     "Noise",
     "Parameters against averaging time",
+    "Studies",
     "What was taken as known",
     "The account of every byte",
     "Provenance",
@@ -315,6 +316,7 @@ def test_a_campaign_that_gave_nothing_says_so_in_words() -> None:
     assert "None: no parameter was found in two ways" in page.text
     assert "None: there is nothing compensated that could be checked." in page.text
     assert "None: the archive holds no earlier calibration" in page.text
+    assert "None: there are no rests that could be studied." in page.text
 
 
 def test_one_sensor_without_time_stamps_or_turns() -> None:

@@ -41,13 +41,22 @@ def published_values(file: YamlFile) -> Iterator[Row]:
         for the first thing in the file that cannot be used
     """
     file.check("published")
+    window = file.content.get("gyro_window")
     for sensor, stage in STAGES.items():
         for name, told in file.content.get(sensor, {}).items():
             size = SIZES[told["unit"]] if "unit" in told else 1.0
+            by_time = window if stage == "gyroscope" and name.startswith("scale") else None
             yield {
                 "parameter": f"{stage}/{name}",
                 "value": told["value"] * size,
                 "sigma": told["sigma"] * size if "sigma" in told else None,
                 "unit": SI.get((sensor, name.partition("_")[0]), "1"),
                 "source": file.content["source"],
+                "window": by_time["degrees"] * DEGREE if by_time else None,
+                "samples": _samples(by_time) if by_time else None,
             }
+
+
+def _samples(window: Row) -> float:
+    """How many samples lie in a window: one for each interval."""
+    return float(window["degrees"] / window["rate_deg_s"] * window["rate_hz"])

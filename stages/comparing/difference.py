@@ -16,6 +16,7 @@ SENSORS = {"accelerometer": ("accelerometer", "force"), "gyroscope": ("gyro", "r
 FORMS = {
     "cubic": "what all gyros read beyond a straight line, with the cube of the rate",
     "asymmetry": "what all gyros read beyond a straight line, with the size of the rate",
+    "scale": "scale factors of the gyros",
 }
 NEAR = 2.0  # sigmas within which values simply agree
 

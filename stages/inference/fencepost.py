@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
+from stages.inference.agreement import chance_of
 from stages.inference.shared_cause import SharedCause, shared_cause
 
 Array = NDArray[np.float64]
@@ -40,11 +41,13 @@ class Fencepost:
     def told(self, level: float) -> bool:
         """Whether it is a fencepost.
 
-        Without it the ratios are not chance, with it they are; and the sigma of m is small enough
-        that not any number would be near a whole one.
+        Without it the ratios are not chance, with it they are, one by one and in common; and the
+        sigma of m is small enough that not any number would be near a whole one.
         """
         sharp = self.cause.sigma < 0.1
-        return sharp and self.whole != 0 and self.cause.p_without < level <= self.p_whole
+        off = chance_of((self.cause.amount - self.whole) / self.cause.sigma)
+        chance = min(self.p_whole, off)
+        return sharp and self.whole != 0 and self.cause.p_without < level <= chance
 
 
 def fencepost(scales: Array, reference: Array, sigma: Array, samples: Array) -> Fencepost:

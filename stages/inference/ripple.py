@@ -8,6 +8,11 @@ much. From rest to rest nothing is cut: whole turns are free of it, windows are 
 
 from math import pi, sqrt
 
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
 
 def ripple_angle(amplitude: float, frequency: float) -> float:
     """Rms of the angle that is left, rad, of an amplitude in rad/s at `frequency` in Hz.
@@ -23,3 +28,13 @@ def ripple_scale(amplitude: float, frequency: float, angle: float, windows: int 
     Forward and backward are two. At worst it is 2√windows times this.
     """
     return ripple_angle(amplitude, frequency) / abs(angle) / sqrt(windows)
+
+
+def ripple_window(amplitude: float, frequency: float, seconds: Array) -> Array:
+    """Rms over all starts of the angle that is left in windows of `seconds`, rad.
+
+    ∫ over T of A sin(2πf t + ψ) dt has the amplitude A/(πf) · |sin πfT|: nothing where T holds
+    whole periods, as 18 s do of 20 Hz.
+    """
+    size = amplitude / (pi * frequency) / sqrt(2)
+    return np.asarray(size * np.abs(np.sin(pi * frequency * seconds)))

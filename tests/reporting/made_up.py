@@ -14,6 +14,8 @@ import pyarrow as pa
 
 from stages.contracts import tables
 from stages.report import Documents, report
+from stages.studies import WRITES as STUDIES
+from tests.reporting.made_up_studies import studies
 
 GRAVITY = 9.7936174
 DEGREE = np.pi / 180
@@ -53,7 +55,7 @@ def brief(*logs: str) -> dict[str, Any]:
     """The same with few figures, for drawing takes its time: the raw data of `logs` alone."""
     made = campaign(logs)
     figures = ("noise", "accelerometer_averaging", "gyroscope_averaging", "fidelity", "earlier")
-    less = {name: made[name].iloc[:0] for name in (*figures, "compensated_traces")}
+    less = {name: made[name].iloc[:0] for name in (*figures, *STUDIES, "compensated_traces")}
     return made | less
 
 
@@ -87,7 +89,10 @@ def campaign(logs: Collection[str] | None = None) -> dict[str, Any]:
         made[f"{stage}_parameters"] = rows_as(tables.PARAMETERS, parameters)
         made[f"{stage}_fit"] = rows_as(tables.FIT, _fit(stage, other))
         made[f"{stage}_averaging"] = rows_as(tables.AVERAGING, _averaging(parameters, generator))
+        made[f"{stage}_wanted"] = rows_as(tables.WANTED, _wanted(stage, other))
     made |= _of_the_model(manoeuvres, made["gyroscope_parameters"], generator)
+    for name, rows in studies(np.random.default_rng(1)).items():
+        made[name] = rows_as(STUDIES[name], rows)
     made["checks"] = rows_as(tables.CHECKS, _checks(manoeuvres))
     made["compensated_traces"] = _compensated(made["traces"])
     made["differences"] = rows_as(tables.DIFFERENCES, _differences())
@@ -541,7 +546,8 @@ def _fit(stage: str, other: str) -> Rows:
     p_value = 2.4e-9 if stage == "gyroscope" else 0.41
     chi_squared = 812.4 if stage == "gyroscope" else 603.1
     used = "x-up, x-down, y-up, y-down, z-up, z-down, x-forward, x-backward, y-forward"
-    noise = {"scatter": 0.0, "unit": tables.UNITS["accel" if stage == "accelerometer" else "gyro"]}
+    noise = {"scatter": 0.0, "random_walk": 0.0, "random_walk_sigma": 0.0}
+    noise |= {"unit": tables.UNITS["accel" if stage == "accelerometer" else "gyro"]}
     row = {"chi_squared": chi_squared, "degrees": 594, "p_value": p_value, "used": used}
     plain = {"chi_squared": 5.1, "degrees": 6, "p_value": 0.53, "used": "x-up, x-down, y-up"}
     return [
@@ -567,6 +573,17 @@ def _averaging(parameters: Rows, generator: np.random.Generator) -> Rows:
     return rows
 
 
+def _wanted(stage: str, method: str) -> Rows:
+    sigma, floor = (9e-5, 3e-5) if stage == "accelerometer" else (7e-7, 0.0)
+    row = {"seconds": REST_S, "sigma": sigma, "floor": floor, "random_walk": sigma * REST_S**0.5}
+    times = {"x": (2 * sigma, 60.0), "y": (sigma / 2, 1200.0), "z": (floor / 2, None)}
+    return [
+        {"parameter": f"{stage}/{method}/bias_{axis}", "wanted": wanted, "wanted_seconds": time}
+        | row
+        for axis, (wanted, time) in times.items()
+    ]
+
+
 # ---- simulation, criticism, extension
 
 
@@ -585,6 +602,7 @@ def _of_the_model(
         "gain": rows_as(tables.GAIN, _gain()),
         "extended_parameters": rows_as(tables.PARAMETERS, _extended(parameters)),
         "criticism_findings": rows_as(tables.FINDINGS, _criticism_findings()),
+        "accelerometer_findings": tables.FINDINGS.empty(),
         "compensation_findings": tables.FINDINGS.empty(),
     }
 

@@ -1,0 +1,75 @@
+"""The page of studies: what it says in numbers, and what of it is left where there is little."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stages.contracts import tables
+from stages.reporting import comparisons, studies
+from stages.reporting.outline import Figure, Paragraph, Section, Sentences, Table
+from stages.studies import WRITES
+from tests.reporting.made_up import rows_as
+from tests.reporting.made_up_studies import studies as made_up
+
+
+@pytest.fixture
+def made() -> dict[str, pd.DataFrame]:
+    rows = made_up(np.random.default_rng(1))
+    return {name: rows_as(WRITES[name], rows[name]) for name in WRITES}
+
+
+def of(section: Section, kind: type) -> list:
+    return [part for part in section.parts if isinstance(part, kind)]
+
+
+def text(section: Section) -> str:
+    return " ".join(part.text for part in of(section, Paragraph))
+
+
+def test_every_study_has_its_figure_and_a_sentence_with_numbers(made):
+    section = studies.section(**made)
+    # Two sensors by epochs, their scatter, windows, growing angle, time and angle.
+    assert len(of(section, Figure)) == 6
+    said = text(section)
+    assert "scatter 1.10 to 1.10 times as much as white noise" in said
+    assert "x gyro, x-forward and x-backward: wherever the 180° lie" in said
+    assert "± 3.0 ppm at 180°" in said
+    assert "was off its set rate by 2.0 to 2.0 ppm" in said
+    assert "common scale factor and the table's speed are one unknown" in said
+    (left,) = of(section, Sentences)
+    assert left.items == ("z-backward: 240.38° of 360° recorded",)
+
+
+def test_the_middle_of_the_turns_is_held_against_the_whole(made):
+    section = studies.section(**made)
+    *_, middle = of(section, Table)
+    by = {(row.cells[0][0], row.cells[1]): row.cells for row in middle.rows}
+    assert len(by) == 8
+    whole = by["x", "the whole turn"]
+    assert whole[2:] == ("615.1", "3.0", "—", "—")
+    by_time = by["x", "180° by time, at the set rate"]
+    assert by_time[3] == "100.0" and by_time[5] == "4.2"
+
+
+@pytest.mark.parametrize("name", [*WRITES, "all"])
+def test_without_a_table_the_rest_of_the_page_is_there(made, name):
+    empty = WRITES if name == "all" else {name: WRITES[name]}
+    section = studies.section(**made | {one: table.empty() for one, table in empty.items()})
+    drawn = len(of(section, Figure))
+    assert drawn == 0 if name == "all" else drawn >= 4
+    assert bool(of(section, Sentences)) == (name not in ("not_studied", "all"))
+
+
+def test_a_fencepost_stands_on_top_of_the_comparisons():
+    named = {"kind": "fencepost", "parameter": "gyroscope/scale", "unit": "1", "first": "ours"}
+    named |= {"id": "comparison/fencepost/gyroscope/scale", "second": "others"}
+    named |= {"sentence": "scale factors of the gyros: fencepost."}
+    other = named | {"id": "comparison/published/gyroscope/scale_x", "kind": "published"}
+    other |= {"parameter": "gyroscope/scale_x", "first_value": 1e-3, "second_value": 1.5e-3}
+    other |= {"difference": -5e-4, "sigma": 1e-5, "in_sigmas": -50.0, "p_value": 0.0}
+    other |= {"sentence": "scale factor of the x gyro: they differ: more than chance."}
+    section = comparisons.section(rows_as(tables.DIFFERENCES, [other, named]))
+    assert "1 value of 1 comparison" in text(section) or "1 value of one" in text(section)
+    assert "Scale factors of the gyros: fencepost." in text(section)
+    (table,) = of(section, Table)
+    assert table.rows[0].anchor == named["id"] and table.rows[0].tone == "fair"
