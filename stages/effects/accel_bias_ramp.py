@@ -4,12 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from stages.model.drift import without_clock
 from stages.model.effect import Array, Effect, Parameter, Reading, Truth
 from stages.model.motion import Motion
+from stages.model.sizes import by_grade
+from stages.notation.units import HOUR, STANDARD_GRAVITY
 
 
 class AccelBiasRamp(Effect):
-    """Reading += c t, with t since the start of the campaign.
+    """Reading += c t, with t since the first sample of all logs.
 
     Told from a constant by the order of the positions. Only logs with a common clock show it.
     """
@@ -18,10 +21,18 @@ class AccelBiasRamp(Effect):
     cause = "the bias of the accelerometers drifts, as the sensor or its electronics warm up or age"
     source = "IEEE Std 1554-2005, 'ramp' of the Allan variance"
     parameters = tuple(
-        Parameter(f"c_{axis}", "m/s³", 3e-8, f"drift of the {axis} specific force, per second")
+        Parameter(
+            f"c_{axis}",
+            "m/s³",
+            1e-5 * STANDARD_GRAVITY / HOUR,
+            f"drift of the {axis} specific force, per second",
+        )
         for axis in "xyz"
     )
+    sizes = by_grade(1e-6 * STANDARD_GRAVITY / HOUR, 20, 100, 100, 1000)
+
+    def blind(self, motion: Motion) -> str:
+        return without_clock(motion)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        drift = np.outer(np.nan_to_num(motion.time), values)
-        return replace(reading, accel=reading.accel + drift)
+        return replace(reading, accel=reading.accel + np.outer(motion.time, values))

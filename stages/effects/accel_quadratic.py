@@ -4,22 +4,27 @@ from dataclasses import replace
 
 from stages.model.effect import Array, Effect, Parameter, Reading, Truth
 from stages.model.motion import Motion
+from stages.model.sizes import by_grade
+from stages.notation.units import STANDARD_GRAVITY
 
 
 class AccelQuadratic(Effect):
     """f̃_i += K_i f_i².
 
-    Told from a bias by three positions of an axis: up and down have it, level has not.
+    Told from a bias by three positions of an axis: up and down have it, level has not. Without
+    oblique positions a scale factor that differs up and down does the same.
     """
 
     name = "accel_quadratic"
     cause = "the suspension of the proof mass is not symmetric: second-order nonlinearity K2"
     source = "IEEE Std 1293-2018, model equation, K2"
     parameters = tuple(
-        # 10 µg per g²
-        Parameter(f"k2_{axis}", "(m/s²)/(m/s²)²", 1.02e-6, f"of the {axis} accelerometer")
+        Parameter(
+            f"k2_{axis}", "(m/s²)/(m/s²)²", 1e-5 / STANDARD_GRAVITY, f"of the {axis} accelerometer"
+        )
         for axis in "xyz"
     )
+    sizes = by_grade(1e-6 / STANDARD_GRAVITY, 20, 100, 200, 1000)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         return replace(reading, accel=reading.accel + values * truth.force**2)

@@ -6,6 +6,7 @@ import numpy as np
 
 from stages.model.effect import Array, Effect, Parameter, Truth
 from stages.model.motion import Motion
+from stages.model.sizes import by_grade
 
 
 class LeverArm(Effect):
@@ -22,6 +23,7 @@ class LeverArm(Effect):
         Parameter(f"r_{axis}", "m", 0.01, f"from the table's axis to the case, along {axis}")
         for axis in "xyz"
     )
+    sizes = by_grade(1e-3, 30, 30, 30, 30)
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         swing = np.cross(motion.alpha, values)

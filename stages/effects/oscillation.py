@@ -1,13 +1,14 @@
 """A case that rings while the table turns."""
 
 from stages.model.effect import Effect, Parameter
+from stages.model.sizes import of_tables
 
 
 class Oscillation(Effect):
     """ω_i += A sin(2πf t), on one axis; the others see it through M.
 
-    Faster than a block: it is sought in the spectrum of the full-rate residuals. Over a whole
-    turn it adds no angle.
+    Faster than a block: it is sought in the spectrum of the full-rate residuals, against time.
+    Over a whole turn it adds no angle.
     """
 
     name = "oscillation"
@@ -17,4 +18,6 @@ class Oscillation(Effect):
         Parameter("frequency", "Hz", 1.0, "frequency, or an alias of it"),
         Parameter("amplitude", "rad/s", 1e-4, "amplitude of the rate"),
     )
+    sizes = of_tables(1, 1e-5, 1e-2)
+    sought_in = "spectrum"
     rings = True

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from stages.model.effect import Array, Effect, Parameter, Truth
-from stages.model.motion import Motion
-from stages.model.site import STANDARD_GRAVITY
+from stages.model.motion import Motion, without_north
+from stages.model.sizes import of_tables
+from stages.notation.units import ARC_SECOND
 
 
 class TableTilt(Effect):
@@ -23,11 +24,13 @@ class TableTilt(Effect):
         Parameter("north", "rad", 2e-5, "lean of the table's vertical towards north"),
         Parameter("east", "rad", 2e-5, "lean of the table's vertical towards east"),
     )
+    sizes = of_tables(ARC_SECOND, 3, 60)
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         north = np.nan_to_num(motion.north)
-        east = np.cross(north, motion.up)
-        return replace(
-            truth,
-            force=truth.force - STANDARD_GRAVITY * (values[0] * north + values[1] * east),
-        )
+        leant = values[0] * north + values[1] * np.cross(north, motion.up)
+        lean = np.cross(motion.up, leant)
+        return replace(truth, force=truth.force - np.cross(lean, truth.force))
+
+    def blind(self, motion: Motion) -> str:
+        return without_north(motion)

@@ -1,6 +1,7 @@
 """How the table moved: in every rest, in the blocks of a turn, and sample by sample."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from stages.estimation.stills import Still
 from stages.estimation.turns import position_of
 from stages.inference.whole_turns import Turn
 from stages.model.forward import Site, Triad
-from stages.model.motion import Motion, Profile, turned, turned_all
+from stages.model.motion import Motion, Profile, turned_all, turning
 
 Array = NDArray[np.float64]
 
@@ -19,32 +20,37 @@ Array = NDArray[np.float64]
 def at_rest(still: Still, solution: Solution, heading: float | None, time: float) -> Motion:
     """A rest as one stretch of time, about its middle `time`, s."""
     m = still.manoeuvre
-    up = turned(solution.upright(m), still.about, still.angle)
-    north = turned(solution.north(position_of(m, heading)), still.about, still.angle)
+    position = position_of(m, heading)
+    up, north = solution.upright(m), solution.north(position)
     zero = np.zeros(1)
-    angle = np.array([still.angle])
-    return Motion(np.array([time]), still.about, angle, zero, zero, up[None], north[None])
+    rest = turning(
+        still.about,
+        up,
+        north,
+        np.array([still.angle]),
+        zero,
+        zero,
+        np.array([time]),
+        np.array([still.seconds.sum()]),
+    )
+    return replace(rest, surveyed=np.array([position.north is not None]))
 
 
 def in_blocks(
     m: Manoeuvre, turn: Turn, solution: Solution, heading: float | None, time: Array
 ) -> Motion:
     """A turn in the k blocks of its sums; the angle of each is what the gyros saw of it."""
-    up, north = solution.upright(m), solution.north(position_of(m, heading))
+    position = position_of(m, heading)
+    up, north = solution.upright(m), solution.north(position)
     gyro, site = solution.gyro, solution.site
     assert gyro is not None  # else nothing is simulated
     angle = angles_seen(turn.sums, turn.seconds, m.axis, up, north, gyro, site, turn.turned)
     rate = angle / turn.seconds
-    middle = turn.turned(angle)
-    return Motion(
-        time,
-        m.axis,
-        middle,
-        rate,
-        np.gradient(rate, turn.elapsed),
-        turned_all(up, m.axis, middle),
-        turned_all(north, m.axis, middle),
-    )
+    # It rests before and after, so that the acceleration adds up to nothing.
+    edges = np.concatenate([[0.0], (rate[1:] + rate[:-1]) / 2, [0.0]])
+    acceleration = np.diff(edges) / turn.seconds
+    blocks = turning(m.axis, up, north, turn.turned(angle), rate, acceleration, time, turn.seconds)
+    return replace(blocks, surveyed=np.full(len(time), position.north is not None))
 
 
 def angles_seen(
@@ -129,15 +135,15 @@ def in_samples(
         rates = np.gradient(angles, step)
         first, after, rate, rate_after = angles[:-1], angles[1:], rates[:-1], rates[1:]
         how = "as the gyros have it"
-    halfway = (first + after) / 2
-    motion = Motion(
-        time,
+    motion = turning(
         m.axis,
-        halfway,
+        up,
+        north,
+        (first + after) / 2,
         (after - first) / step,
         (rate_after - rate) / step,
-        turned_all(up, m.axis, halfway),
-        turned_all(north, m.axis, halfway),
+        time,
+        np.full(len(time), step),
     )
     return motion, how
 

@@ -16,7 +16,7 @@ from stages.model.effect import Effect, Reading, Truth
 from stages.model.motion import Motion
 
 Array = NDArray[np.float64]
-Values = Mapping[str, Array]  # name of an effect → values of its parameters
+Values = Mapping[str, Array]  # label of an effect → values of its parameters
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,14 @@ def truth_of(motion: Motion, site: Site) -> Truth:
     return Truth(rate=motion.omega + earth, force=site.gravity * motion.up)
 
 
+def sensed(truth: Truth, gyro: Triad, accelerometer: Triad) -> Reading:
+    """What the two triads make of the truth, (n, 3) each."""
+    return Reading(
+        gyro=truth.rate @ gyro.matrix.T + gyro.bias,
+        accel=truth.force @ accelerometer.matrix.T + accelerometer.bias,
+    )
+
+
 def predict(
     motion: Motion,
     site: Site,
@@ -53,35 +61,41 @@ def predict(
     """What the IMU should read on this motion, had it all these effects."""
     truth = truth_of(motion, site)
     for effect in effects:
-        truth = effect.moves(truth, motion, (values or {})[effect.name])
-    reading = Reading(
-        gyro=truth.rate @ gyro.matrix.T + gyro.bias,
-        accel=truth.force @ accelerometer.matrix.T + accelerometer.bias,
-    )
+        truth = effect.moves(truth, motion, (values or {})[effect.label])
+    reading = sensed(truth, gyro, accelerometer)
     for effect in effects:
-        reading = effect.reads(reading, truth, motion, (values or {})[effect.name])
+        reading = effect.reads(reading, truth, motion, (values or {})[effect.label])
     return reading
 
 
-def signature(
-    motion: Motion, site: Site, gyro: Triad, accelerometer: Triad, effect: Effect
-) -> Reading:
-    """How the readings change per unit of each parameter of an effect that is absent.
+def signatures(
+    motion: Motion, site: Site, gyro: Triad, accelerometer: Triad, effects: Sequence[Effect]
+) -> list[Reading]:
+    """How the readings change per unit of each parameter of effects that are absent.
 
-    The derivative is central, about zero.
+    The derivative is central, about zero. Where an effect is blind, or its trace is not known,
+    the readings do not change.
 
     Returns
     -------
-    gyro and accel, (n, 3, number of parameters) each
+    for each effect gyro and accel, (n, 3, number of parameters) each
     """
+    truth = truth_of(motion, site)
+    plain = sensed(truth, gyro, accelerometer)
 
-    def reading(values: Array) -> Reading:
-        return predict(motion, site, gyro, accelerometer, [effect], {effect.name: values})
+    def reading(effect: Effect, values: Array) -> Reading:
+        moved = effect.moves(truth, motion, values)
+        before = plain if moved is truth else sensed(moved, gyro, accelerometer)
+        return effect.reads(before, moved, motion, values)
 
-    gyros, accels = [], []
-    for step in np.diag([parameter.typical for parameter in effect.parameters]):
-        ahead, behind = reading(step), reading(-step)
-        size = 2 * float(step.sum())
-        gyros.append((ahead.gyro - behind.gyro) / size)
-        accels.append((ahead.accel - behind.accel) / size)
-    return Reading(np.stack(gyros, axis=-1), np.stack(accels, axis=-1))
+    def signature(effect: Effect) -> Reading:
+        traces = np.zeros((2, len(motion.rate), 3, len(effect.parameters)))
+        for i, parameter in enumerate(effect.parameters if not effect.blind(motion) else ()):
+            step = np.zeros(len(effect.parameters))
+            step[i] = parameter.typical
+            ahead, behind = reading(effect, step), reading(effect, -step)
+            traces[0, :, :, i] = (ahead.gyro - behind.gyro) / (2 * parameter.typical)
+            traces[1, :, :, i] = (ahead.accel - behind.accel) / (2 * parameter.typical)
+        return Reading(*np.nan_to_num(traces, posinf=0.0, neginf=0.0))
+
+    return [signature(effect) for effect in effects]

@@ -1,0 +1,91 @@
+"""How each stretch of a campaign moved, and when, how warm and how shaken it was."""
+
+from collections.abc import Sequence
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from stages.contracts import tables
+from stages.contracts.records import Manoeuvre
+from stages.estimation.motions import at_rest, in_blocks
+from stages.estimation.noise_levels import NoiseLevels
+from stages.estimation.solution import Solution
+from stages.estimation.stills import Still
+from stages.estimation.turns import Recorded
+from stages.inference.whole_turns import Turn
+from stages.model.motion import Motion
+
+Array = NDArray[np.float64]
+
+ACCEL = [f"accel_{axis}" for axis in tables.AXES]
+MOVING, AFTER = 1 / 3, 2 / 3  # of a visit: the turn, and the rest behind it
+UPRIGHT = 1 - 1e-6  # cosine of an axis to the vertical
+
+
+class CampaignMotions:
+    """The stretches of one mount; without a clock that the logs share, no time is given."""
+
+    def __init__(
+        self,
+        blocks: pd.DataFrame,
+        plan: Sequence[Manoeuvre],
+        levels: NoiseLevels,
+        solution: Solution,
+        heading: float | None,
+    ) -> None:
+        self._means = _means(blocks)
+        self._visits = {m.name: float(place) for place, m in enumerate(plan)}
+        self._levels, self._solution, self._heading = levels, solution, heading
+
+    def at_rest(self, still: Still) -> Motion:
+        """A rest as one stretch."""
+        name, (time, temperature) = still.manoeuvre.name, self._means[still.label]
+        later = AFTER if still.label.endswith("(rest-after)") else 0.0
+        return replace(
+            at_rest(still, self._solution, self._heading, time),
+            visit=np.array([self._visits[name] + later]),
+            temperature=np.array([temperature]),
+            vibration=self._levels.of_samples(name, "rest", ACCEL)[None],
+        )
+
+    def turning(self, one: Recorded, turn: Turn) -> Motion:
+        """A turn in its blocks; about an axis that is not upright gravity hides how it shakes."""
+        name = one.plan.name
+        time, temperature = one.blocks[["time", "temperature"]].to_numpy(np.float64).T
+        motion = in_blocks(one.plan, turn, self._solution, self._heading, time)
+        upright = abs(float(turn.position.up @ turn.about)) > UPRIGHT
+        shaken = self._levels.of_samples(name, "steady", ACCEL) if upright else np.full(3, np.nan)
+        return replace(
+            motion,
+            visit=np.full(len(time), self._visits[name] + MOVING),
+            temperature=temperature,
+            vibration=np.tile(shaken, (len(time), 1)),
+        )
+
+
+def _means(blocks: pd.DataFrame) -> dict[str, tuple[float, float]]:
+    """Middle, s, and temperature, K, of every stretch at rest by its label; NaN where not known."""
+    means = {}
+    for (name, phase), part in blocks[blocks["count"] > 0].groupby(["manoeuvre", "phase"]):
+        label = str(name) if phase == "rest" else f"{name} ({phase})"
+        values = np.average(part[["time", "temperature"]], weights=part["count"], axis=0)
+        means[label] = float(values[0]), float(values[1])
+    return means
+
+
+def mean_motion(motion: Motion, some: slice, share: Array) -> Motion:
+    """Some stretches as one; `share`: what each of them counts for."""
+
+    def mean(values: Array) -> Array:
+        return np.asarray([share @ values[some]])
+
+    names = [field.name for field in fields(Motion) if field.name != "about"]
+    means: dict[str, Any] = {name: mean(getattr(motion, name)) for name in names}
+    # The pull of a lever arm goes with the square of the rate, so its mean is the root of that.
+    means["rate"] = np.sign(means["rate"]) * np.sqrt(mean(motion.rate**2))
+    means["seconds"] = np.array([motion.seconds[some].sum()])
+    means["surveyed"] = motion.surveyed[some][:1]
+    return Motion(about=motion.about, **means)

@@ -1,0 +1,150 @@
+"""What every effect of the catalogue must do."""
+
+from dataclasses import replace
+
+import numpy as np
+import plans
+import pytest
+
+from stages.effects import CATALOGUE
+from stages.model.effect import Effect
+from stages.model.forward import predict, signatures
+from stages.model.motion import Motion
+
+SENSOR_GRADES = {"fog", "tactical", "mti", "consumer"}
+OTHER_SIZES = ({"good table", "poor table"}, {"usual"})
+WITHOUT_TRACE = {"noise", "quality"}
+TRIADS = (plans.SITE, plans.GYRO, plans.ACCELEROMETER)
+
+
+@pytest.fixture(scope="module")
+def motion():
+    """Rests and turns up, level, oblique, with all that can be known of them."""
+    moved = with_a_tumble()
+    return replace(moved, vibration=np.linspace(0.01, 0.02, moved.vibration.size).reshape(-1, 3))
+
+
+def with_a_tumble() -> Motion:
+    """Plan b, three oblique rests, and a turn about a level axis."""
+    plan = plans.plan_b()
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        plan.rest(0.6 * np.eye(3)[i] + 0.8 * np.eye(3)[j], np.eye(3)[k], 60)
+    plan.turn(np.eye(3)[2], np.eye(3)[1], np.eye(3)[0], 90, 20, 20)
+    return plan.campaign().motion
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_it_introduces_itself(name):
+    effect = CATALOGUE[name]
+    assert effect.name == name == type(effect).__module__.rpartition(".")[2]
+    assert effect.cause and effect.source and type(effect).__doc__
+    assert all(p.unit and p.meaning and p.typical > 0 for p in effect.parameters)
+    assert set(effect.sizes) == SENSOR_GRADES or set(effect.sizes) in OTHER_SIZES
+    assert all(size > 0 for size in effect.sizes.values())
+    assert effect.sought_in in {"blocks", "spectrum", "noise", "quality"}
+    assert bool(effect.finding) == (effect.sought_in == "quality")
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_zero_is_absent(name, motion):
+    plain = predict(motion, *TRIADS)
+    for effect in (CATALOGUE[name], *CATALOGUE[name].candidates(motion)):
+        zero = {effect.label: np.zeros(len(effect.parameters))}
+        read = predict(motion, *TRIADS, [effect], zero)
+        np.testing.assert_array_equal(read.gyro, plain.gyro)
+        np.testing.assert_array_equal(read.accel, plain.accel)
+
+
+@pytest.mark.parametrize("name", CATALOGUE)
+def test_every_parameter_leaves_a_trace_in_proportion_to_it(name, motion):
+    plain = predict(motion, *TRIADS)
+    for effect in CATALOGUE[name].candidates(motion):
+        (trace,) = signatures(motion, *TRIADS, [effect])
+        if effect.sought_in in WITHOUT_TRACE or effect.rings:
+            assert not trace.gyro.any() and not trace.accel.any()
+            continue
+        for i, parameter in enumerate(effect.parameters):
+            values = np.zeros(len(effect.parameters))
+            values[i] = 0.1 * parameter.typical
+            read = predict(motion, *TRIADS, [effect], {effect.label: values})
+            change = np.hstack([read.gyro - plain.gyro, read.accel - plain.accel])
+            told = values[i] * np.hstack([trace.gyro[:, :, i], trace.accel[:, :, i]])
+            assert np.abs(told).max() > 0, parameter.name
+            # An effect on both sensors is compared in each: their units differ.
+            for part in (slice(0, 3), slice(3, 6)):
+                bar = 1e-3 * np.abs(told[:, part]).max() + 1e-13
+                assert np.abs(change[:, part] - told[:, part]).max() < bar, parameter.name
+
+
+def test_sensor_effects_touch_their_sensor_alone(motion):
+    for effect in CATALOGUE.values():
+        (trace,) = signatures(motion, *TRIADS, [effect])
+        if effect.name.startswith("gyro"):
+            assert not trace.accel.any(), effect.name
+        if effect.name.startswith("accel") or effect.name in {"size_effect", "lever_arm"}:
+            assert not trace.gyro.any(), effect.name
+
+
+def test_what_is_scanned_has_candidates_of_its_own(motion):
+    scanned = [effect for effect in CATALOGUE.values() if effect.scan]
+    assert {e.name for e in scanned} == {
+        "gyro_warm_up", "gyro_bias_jump", "gyro_dead_band",
+        "accel_warm_up", "accel_bias_jump", "table_ripple",
+    }  # fmt: skip
+    for effect in CATALOGUE.values():
+        candidates = effect.candidates(motion)
+        assert len({one.label for one in candidates}) == len(candidates)
+        assert len(candidates) > 1 if effect.scan else candidates == [effect]
+        assert all(one.name == effect.name and effect.at is None for one in candidates)
+
+
+def test_a_family_acts_with_the_middle_of_its_candidates(motion):
+    for effect in CATALOGUE.values():
+        if effect.scan:
+            candidates = effect.candidates(motion)
+            middle = candidates[len(candidates) // 2]
+            family, one = signatures(motion, *TRIADS, [effect, middle])
+            np.testing.assert_array_equal(family.gyro, one.gyro)
+            np.testing.assert_array_equal(family.accel, one.accel)
+
+
+BLIND = {
+    "clock": {
+        "gyro_bias_ramp", "gyro_warm_up", "gyro_bias_jump",
+        "accel_bias_ramp", "accel_warm_up", "accel_bias_jump",
+    },
+    "temperature": {
+        "gyro_bias_temperature", "gyro_scale_temperature",
+        "accel_bias_temperature", "accel_scale_temperature",
+    },
+    "heading": {
+        "heading_error", "table_tilt", "table_axis_non_orthogonality", "table_wobble",
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("lacking", BLIND)
+def test_it_says_why_a_campaign_cannot_show_it(lacking):
+    campaign = plans.plan_b(**{lacking: False}).campaign()
+    told = {name: campaign.blind(effect) for name, effect in CATALOGUE.items()}
+    assert {name for name, why in told.items() if why} == BLIND[lacking]
+    assert all(why.endswith(".") for why in told.values() if why)
+    blind: list[Effect] = [CATALOGUE[name] for name in BLIND[lacking]]
+    for trace in signatures(campaign.motion, *TRIADS, blind):
+        assert not trace.gyro.any() and not trace.accel.any()
+
+
+def test_vibration_that_is_not_known_everywhere_tells_nothing(motion):
+    effect = CATALOGUE["accel_vibration_rectification"]
+    # The turn about a level axis: gravity hides how the table shakes.
+    assert effect.blind(with_a_tumble())
+    assert not effect.blind(plans.plan_b().campaign().motion)
+    half = replace(motion, temperature=np.where(np.arange(len(motion.rate)) % 2, 300.0, np.nan))
+    assert CATALOGUE["gyro_bias_temperature"].blind(half) == (
+        "The temperature is not recorded everywhere."
+    )
+
+
+def test_nothing_is_blind_where_all_is_known():
+    motion = plans.plan_b().campaign().motion
+    assert not any(effect.blind(motion) for effect in CATALOGUE.values())

@@ -1,0 +1,257 @@
+"""Effects against what follows from their definition by other means: exact rotations, integrals."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.spatial.transform import Rotation
+
+from stages.effects import CATALOGUE
+from stages.effects.accel_hysteresis import remembered
+from stages.model.forward import Site, Triad, predict, truth_of
+from stages.model.motion import Motion, Profile, turning
+from stages.model.site import earth_rate
+
+DEGREE = np.radians(1)
+GRAVITY = 9.79
+SITE = Site(GRAVITY, *earth_rate(30 * DEGREE))
+STILL = Site(GRAVITY, 0.0, 0.0)  # where the earth does not turn
+EXACT = Triad(np.eye(3), np.zeros(3))
+# The case lies on a side, oblique.
+UP, NORTH = np.array([0.96, 0.0, 0.28]), np.array([0.0, 1.0, 0.0])
+EAST = np.cross(NORTH, UP)
+STEP = 1e-3  # s
+
+
+def on_a_turn(angle: np.ndarray, about: np.ndarray = UP) -> Motion:
+    """A turn with these angles one millisecond apart."""
+    rate = np.gradient(angle, STEP)
+    time = STEP * np.arange(len(angle))
+    seconds = np.full(len(angle), STEP)
+    acceleration = np.gradient(rate, STEP)
+    turn = turning(about, UP, NORTH, angle, rate, acceleration, time, seconds)
+    return replace(turn, surveyed=np.ones(len(angle), bool))
+
+
+def acted(name: str, values: list[float], motion: Motion, site: Site = STILL, at=None):
+    """What an effect adds to the readings of exact sensors."""
+    effect = CATALOGUE[name] if at is None else CATALOGUE[name].fixed(at)
+    triads = (motion, site, EXACT, EXACT)
+    plain = predict(*triads)
+    read = predict(*triads, [effect], {effect.label: np.array(values)})
+    return read.gyro - plain.gyro, read.accel - plain.accel
+
+
+def sensed(attitudes: Rotation, arm: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Rate and specific force of a case whose attitudes, body to laboratory, are these."""
+    between = (attitudes[:-1].inv() * attitudes[1:]).as_rotvec() / STEP
+    rate = (between[:-1] + between[1:]) / 2
+    pull = np.tile([0.0, 0.0, GRAVITY], (len(attitudes) - 2, 1))
+    if arm is not None:
+        place = attitudes.apply(arm)
+        pull = pull + (place[2:] - 2 * place[1:-1] + place[:-2]) / STEP**2
+    return rate, attitudes[1:-1].inv().apply(pull)
+
+
+# East, north, up of the laboratory, from body axes at the start of a turn.
+AT_START = Rotation.from_matrix(np.stack([EAST, NORTH, UP]))
+ANGLES = 0.3 * np.cumsum(np.sin(np.linspace(0, np.pi, 2001))) * STEP * 10
+VERTICAL = np.array([0.0, 0.0, 1.0])
+
+
+def about_the_vertical(angles: np.ndarray) -> Rotation:
+    return Rotation.from_rotvec(angles[:, None] * VERTICAL)
+
+
+def lean(north: float, east: float) -> np.ndarray:
+    """The rotation, in the laboratory, that leans the vertical so."""
+    return np.cross(VERTICAL, np.array([east, north, 0.0]))
+
+
+@pytest.mark.parametrize(
+    "name, attitudes",
+    [
+        ("table_tilt", lambda tilt: Rotation.from_rotvec(tilt) * about_the_vertical(ANGLES)),
+        (
+            "table_wobble",
+            lambda tilt: (
+                Rotation.from_rotvec(about_the_vertical(2 * ANGLES).apply(tilt))
+                * about_the_vertical(ANGLES)
+            ),
+        ),
+        (
+            "table_axis_non_orthogonality",
+            lambda tilt: about_the_vertical(ANGLES) * Rotation.from_rotvec(tilt),
+        ),
+    ],
+)
+@pytest.mark.parametrize("north, east", [(1e-4, 0.0), (0.0, 1e-4)])
+def test_leans_of_the_table_by_exact_rotations(name, attitudes, north, east):
+    leaning = sensed(attitudes(lean(north, east)) * AT_START)
+    level = sensed(about_the_vertical(ANGLES) * AT_START)
+    gyro, accel = acted(name, [north, east], on_a_turn(ANGLES))
+    assert np.abs(accel).max() > 9e-4
+    np.testing.assert_allclose(accel[1:-1], leaning[1] - level[1], atol=2e-7)
+    np.testing.assert_allclose(gyro[1:-1], leaning[0] - level[0], atol=5e-8)  # 2 δ² ω
+
+
+def test_axes_at_other_than_right_angles_leave_a_case_upright_alone():
+    flat = replace(on_a_turn(ANGLES), up=np.tile(VERTICAL, (len(ANGLES), 1)), about=VERTICAL)
+    assert not acted("table_axis_non_orthogonality", [1e-4, 1e-4], flat)[1].any()
+
+
+@pytest.mark.parametrize("name", ["lever_arm", "size_effect"])
+def test_an_arm_by_the_second_derivative_of_the_place(name):
+    arm = np.array([0.05, -0.03, 0.02])
+    attitudes = about_the_vertical(ANGLES) * AT_START
+    felt = sensed(attitudes, arm)[1] - sensed(attitudes)[1]
+    values = list(arm) if name == "lever_arm" else [*arm, *arm, *arm]
+    _, accel = acted(name, values, on_a_turn(ANGLES))
+    assert np.abs(felt).max() > 0.1
+    np.testing.assert_allclose(accel[2:-2], felt[1:-1], atol=1e-3 * np.abs(felt).max())
+
+
+def test_late_gyros_say_what_was_so_much_earlier():
+    moved = on_a_turn(ANGLES)
+    gyro, accel = acted("gyro_latency", [2 * STEP], moved)
+    earlier = moved.omega[:-4] - moved.omega[2:-2]
+    np.testing.assert_allclose(gyro[4:-4], earlier[2:-2], atol=2e-3 * np.abs(earlier).max())
+    assert not accel.any()
+
+
+@pytest.mark.parametrize("order", [1.0, 7.25])
+def test_a_ripple_is_the_change_of_what_the_table_is_ahead(order):
+    moved = on_a_turn(ANGLES)
+    a, b = 1e-4, 2e-4
+    name, at = ("table_eccentricity", None) if order == 1 else ("table_ripple", order)
+    gyro, _ = acted(name, [a, b], moved, at=at)
+    ahead = a * np.sin(order * ANGLES) + b * np.cos(order * ANGLES)
+    summed = np.cumsum(gyro @ UP) * STEP
+    np.testing.assert_allclose(summed, ahead - ahead[0], atol=3e-6)
+
+
+def test_a_whole_turn_is_free_of_a_ripple_and_a_half_turn_is_not():
+    for turns, left in ((1.0, 0.0), (0.5, -2e-4)):
+        edges = np.linspace(0, turns * 2 * np.pi, 101)  # from block to block
+        middle, rate = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / STEP
+        moved = replace(on_a_turn(middle), rate=rate)
+        gyro, _ = acted("table_eccentricity", [3e-4, 1e-4], moved)
+        assert (gyro @ UP).sum() * STEP == pytest.approx(left, abs=1e-12)
+
+
+def test_another_speed_is_sooner_over_and_adds_no_angle():
+    block = 0.2
+    edges = block * np.arange(186)  # 37 s
+    set_angle = Profile(2 * np.pi, 10 * DEGREE, 10 * DEGREE)
+    faster = Profile(2 * np.pi, 10.01 * DEGREE, 10 * 1.001**2 * DEGREE)  # θ(1.001 t)
+    steps = [np.diff(profile.at(edges)[0]) / block for profile in (set_angle, faster)]
+    rates = np.concatenate([[0.0], (steps[0][1:] + steps[0][:-1]) / 2, [0.0]])
+    moved = replace(
+        on_a_turn(np.cumsum(steps[0]) * block),
+        rate=steps[0], acceleration=np.diff(rates) / block,
+        time=edges[:-1] + block / 2, seconds=np.full(185, block),
+    )  # fmt: skip
+    gyro, _ = acted("table_speed_error", [1e-3], moved)
+    assert abs(np.sum(gyro @ UP) * block) < 1e-15
+    # About the middle of the turn, for when it begins is not told by a speed.
+    both = steps[1] - steps[0] - 1e-3 * 18.5 * moved.acceleration
+    np.testing.assert_allclose((gyro @ UP)[6:-6], both[6:-6], atol=1e-6)
+    assert np.abs(gyro @ UP).max() > 1e-4
+
+
+@pytest.mark.parametrize("name", ["gyro_warm_up", "accel_warm_up"])
+def test_a_warm_up_in_a_long_rest_is_its_mean(name):
+    rests = replace(
+        on_a_turn(np.zeros(3)), time=np.array([150.0, 450, 900]), seconds=np.full(3, 300.0)
+    )
+    read = np.hstack(acted(name, [1.0, 0, 0], rests, at=120.0))
+    column = 0 if name.startswith("gyro") else 3
+    for i, middle in enumerate(rests.time):
+        mean = quad(lambda t: np.exp(-t / 120) / 300, middle - 150, middle + 150)[0]
+        assert read[i, column] == pytest.approx(mean, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["gyro_bias_jump", "accel_bias_jump"])
+def test_a_jump_within_a_rest_counts_for_what_is_behind_it(name):
+    rests = replace(
+        on_a_turn(np.zeros(3)), time=np.array([150.0, 450, 750]), seconds=np.full(3, 300.0)
+    )
+    read = np.hstack(acted(name, [0, 1.0, 0], rests, at=400.0))
+    np.testing.assert_allclose(read[:, 1 if name.startswith("gyro") else 4], [0, 2 / 3, 1])
+
+
+def test_hysteresis_remembers_the_side_from_which_an_axis_came():
+    force = GRAVITY * np.array([[1.0, 0, 0], [0, 1, 0], [-1, 0, 0], [0, 0, 1]])
+    visits = np.array([0.0, 1, 2, 3])
+    np.testing.assert_array_equal(remembered(force, visits)[:, 0], [1, 1, -1, -1])
+    np.testing.assert_array_equal(remembered(force, visits)[:, 2], [0, 0, 0, 1])
+    # The order of the plan counts, not that of the rows.
+    np.testing.assert_array_equal(remembered(force, visits[::-1])[:, 0], [1, -1, -1, 0])
+    rests = replace(on_a_turn(np.zeros(4)), up=force / GRAVITY, visit=visits)
+    _, accel = acted("accel_hysteresis", [1e-4, 0, 0], rests)
+    np.testing.assert_allclose(accel[:, 0], [0, 1e-4, 0, -1e-4], atol=2e-7)  # 9.79 of 9.81 at ±g
+
+
+def test_sites_that_are_wrong_by_their_own_formulas():
+    moved = on_a_turn(ANGLES)
+    truth = truth_of(moved, SITE)
+    wrong = 1e-3
+    there = truth_of(moved, Site(GRAVITY, *earth_rate(30 * DEGREE + wrong)))
+    gyro, _ = acted("latitude_error", [wrong], moved, SITE)
+    np.testing.assert_allclose(gyro, there.rate - truth.rate, atol=1e-10)
+    # North lies further counter-clockwise, seen from above.
+    north = Rotation.from_rotvec(wrong * UP).apply(moved.north)
+    gyro, _ = acted("heading_error", [wrong], moved, SITE)
+    elsewhere = truth_of(replace(moved, north=north), SITE)
+    np.testing.assert_allclose(gyro, elsewhere.rate - truth.rate, atol=1e-10)
+    gyro, _ = acted("earth_rate_omitted", [1.0], moved, SITE)
+    np.testing.assert_allclose(gyro, truth_of(moved, STILL).rate - truth.rate, atol=1e-18)
+    _, accel = acted("gravity_error", [1e-3], moved, SITE)
+    heavier = truth_of(moved, Site(GRAVITY + 1e-3, 0, 0))
+    np.testing.assert_allclose(accel, heavier.force - truth.force, atol=1e-12)
+
+
+def test_a_slow_clock_leaves_the_angle_of_a_turn_and_enlarges_the_rest():
+    moved = on_a_turn(ANGLES)
+    truth = truth_of(moved, SITE)
+    gyro, accel = acted("clock_scale", [1e-3], moved, SITE)
+    # The table turns by the same angle in the stated interval; the earth has longer for it.
+    np.testing.assert_allclose(gyro, 1e-3 * (truth.rate - moved.omega), atol=1e-16)
+    np.testing.assert_allclose(accel, 1e-3 * truth.force, rtol=1e-9)
+
+
+def test_a_dead_band_swallows_the_earth_at_rest_and_nothing_of_a_turn():
+    at_rest = on_a_turn(np.zeros(5))
+    earth = truth_of(at_rest, SITE).rate
+    gyro, _ = acted("gyro_dead_band", [1.0, 1.0, 1.0], at_rest, SITE, at=1e-4)
+    np.testing.assert_allclose(gyro, -earth, atol=1e-18)
+    turn = on_a_turn(0.2 * STEP * np.arange(5), np.ones(3) / np.sqrt(3))
+    assert not acted("gyro_dead_band", [1.0, 1.0, 1.0], turn, SITE, at=1e-4)[0].any()
+
+
+def test_triads_that_are_mounted_askew_see_the_rate_in_other_axes():
+    moved = on_a_turn(ANGLES)
+    phi = np.array([1e-4, -2e-4, 3e-4])
+    gyro, accel = acted("gyro_accel_misalignment", list(phi), moved, SITE)
+    turned = Rotation.from_rotvec(phi).inv().apply(truth_of(moved, SITE).rate)
+    np.testing.assert_allclose(gyro, turned - truth_of(moved, SITE).rate, atol=5e-7)  # φ² ω
+    assert not accel.any()
+
+
+@pytest.mark.parametrize(
+    "name, values",
+    [
+        ("latitude_error", [1e-3]),
+        ("earth_rate_omitted", [1.0]),
+        ("clock_scale", [1e-3]),
+        ("gyro_dead_band", [1.0, 1.0, 1.0]),
+    ],
+)
+def test_an_azimuth_that_the_gyros_tell_themselves_is_no_evidence(name, values):
+    """It takes up whatever an effect would make of the level part of the earth's rate."""
+    found = replace(on_a_turn(np.zeros(5)), surveyed=np.zeros(5, bool))
+    at = 1e-4 if name == "gyro_dead_band" else None
+    gyro, _ = acted(name, values, found, SITE, at=at)
+    assert np.abs(gyro @ UP).max() > 1e-9
+    np.testing.assert_allclose(np.cross(gyro, UP), 0, atol=1e-16)
