@@ -2,17 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import reduce
-from operator import add
 
-import numpy as np
-from numpy.typing import NDArray
 from scipy.stats import chi2
 from scipy.stats import f as f_distribution
 
-from stages.inference.least_squares import INCONSISTENT, Reduced
-
-Array = NDArray[np.float64]
+from stages.inference.naming.evidence import Evidence
 
 
 @dataclass(frozen=True)
@@ -28,44 +22,6 @@ class Score:
     degrees: int
     p_value: float
     named: bool
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """What each sensor says of the effects, and all together.
-
-    `sensors`: independent equations about the same effects; `labels`: their names.
-    """
-
-    sensors: tuple[Reduced, ...]
-    labels: tuple[str, ...]
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """The parameters of the effects."""
-        return self.sensors[0].names if self.sensors else ()
-
-    @property
-    def total(self) -> Reduced:
-        """All sensors together."""
-        return reduce(add, self.sensors)
-
-    def left_over(self, sensor: Reduced, chosen: Sequence[int]) -> tuple[float, int, float]:
-        """What the chosen columns leave of a sensor: chi-squared, degrees, and its chance."""
-        dropped, used = sensor.drop(chosen) if len(chosen) else (0.0, 0)
-        rest, degrees = sensor.chi_squared - dropped, max(sensor.degrees - used, 1)
-        return rest, degrees, float(chi2.sf(rest, degrees))
-
-    def misfit(self, chosen: Sequence[int], of: Sequence[int]) -> tuple[float, int]:
-        """By how much the residuals exceed the noise where the columns `of` are seen best.
-
-        1 where the model with the chosen columns describes that sensor within its noise; else
-        chi-squared per degree, and the degrees.
-        """
-        share = [float(np.trace(s.information[np.ix_(of, of)])) for s in self.sensors]
-        sensor = self.sensors[int(np.argmax(share))]
-        rest, degrees, p_value = self.left_over(sensor, chosen)
-        return (1.0, degrees) if p_value >= INCONSISTENT else (rest / degrees, degrees)
 
 
 def name(evidence: Evidence, columns: Mapping[str, Sequence[int]], level: float) -> list[Score]:

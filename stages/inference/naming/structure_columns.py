@@ -1,0 +1,152 @@
+"""The functions whose trace in the residuals would be a structure."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+SMOOTH = 6  # half waves of a smooth course over the whole campaign
+FREQUENCIES = 200  # of an oscillation in time, in steps of half a cycle per campaign
+ORDERS = np.arange(0.25, 60.01, 0.25)  # of a ripple, cycles per turn
+HARMONICS = (1, 2, 3)
+RATES = 8  # bins between the fastest rates backward and forward
+CHANGES = 60  # times of a change
+FEWEST = 4  # readings, or rates, that a function needs
+
+
+@dataclass(frozen=True)
+class Where:
+    """Where readings were taken: NaN where it is not known.
+
+    `time`: (n,), s; `angle` of the table: (n,), rad; `up`: (n, 3), body axes; `temperature`:
+    (n,), °C; `rate`: (n,), rad/s, what the channel is exposed to: of a gyro that about its own
+    axis, of an accelerometer that of the table.
+    """
+
+    time: Array
+    angle: Array
+    rate: Array
+    up: Array
+    temperature: Array
+
+
+@dataclass(frozen=True)
+class Question:
+    """Functions (n, k) in groups (g, w) of their columns, one of which may have a trace.
+
+    `where`: (g,), the value of what is scanned; `independent`: the columns stand group after
+    group, and groups are so many and so different that each is its own trial.
+    """
+
+    functions: Array
+    groups: Integers
+    where: Array
+    independent: bool = False
+
+
+Asking = Callable[[Where], Iterator[Question]]
+
+
+def _one(functions: Array) -> Question:
+    return Question(functions, np.arange(functions.shape[1])[None], np.array([np.nan]))
+
+
+def _waves(phase: Array, where: Array) -> Question:
+    """Cosine and sine of each column of `phase` (n, g), none where the phase is not known."""
+    known = np.isfinite(phase)
+    phase = np.where(known, phase, 0.0)
+    functions = np.stack([known * np.cos(phase), known * np.sin(phase)], axis=2)
+    count = phase.shape[1]
+    groups = np.arange(2 * count).reshape(count, 2)
+    return Question(functions.reshape(len(phase), 2 * count), groups, where, independent=True)
+
+
+def _unit(x: Array) -> tuple[Array, float]:
+    """From 0 to 1, NaN where not known; and the span."""
+    low, high = np.nanmin(x), np.nanmax(x)
+    return (x - low) / (high - low), float(high - low)
+
+
+def _varies(x: Array) -> bool:
+    return len(np.unique(x[np.isfinite(x)])) >= FEWEST
+
+
+def of_time(read: Where) -> Iterator[Question]:
+    """A smooth course, and oscillations."""
+    if not _varies(read.time):
+        return
+    phase, span = _unit(read.time)
+    half_waves = np.arange(1, SMOOTH + 1)
+    yield _one(np.nan_to_num(np.cos(np.pi * phase[:, None] * half_waves)))
+    # Faster than every second reading cannot be told from slower.
+    count = min(FREQUENCIES, len(np.unique(read.time[np.isfinite(read.time)])) // 2)
+    cycles = SMOOTH / 2 + np.arange(1, count + 1) / 2
+    yield _waves(2 * np.pi * phase[:, None] * cycles, cycles / span)
+
+
+def of_angle(read: Where) -> Iterator[Question]:
+    """Harmonics of a turn, and ripples of any order."""
+    if not _varies(read.angle):
+        return
+    harmonics = _waves(read.angle[:, None] * np.array(HARMONICS), np.array(HARMONICS, dtype=float))
+    ripples = _waves(read.angle[:, None] * ORDERS, ORDERS)
+    # What an angle of the table does to a rate goes with the rate as well.
+    for weight in (np.ones(len(read.angle)), np.nan_to_num(read.rate)):
+        yield _one(harmonics.functions * weight[:, None])
+        yield replace(ripples, functions=ripples.functions * weight[:, None])
+
+
+def of_rate(read: Where) -> Iterator[Question]:
+    """Means of bins of the rate."""
+    rate = read.rate
+    if not np.any(np.nan_to_num(rate)):
+        return
+    fastest = float(np.nanmax(np.abs(rate)))
+    bins = np.floor((rate / fastest + 1) / 2 * RATES * 0.999999)
+    bins = np.where(np.isfinite(rate), bins, -1)
+    bins = np.where(rate == 0, RATES, bins)
+    yield _one((bins[:, None] == np.arange(RATES + 1)).astype(np.float64))
+
+
+def of_attitude(read: Where) -> Iterator[Question]:
+    """Linear and quadratic functions of the direction of up."""
+    known = np.isfinite(read.up.sum(axis=1))
+    if known.sum() < FEWEST:
+        return
+    x, y, z = np.where(known[:, None], read.up, 0.0).T
+    ones = known.astype(np.float64)
+    yield _one(np.column_stack([x, y, z, ones, x * x, y * y, x * y, x * z, y * z]))
+
+
+def of_temperature(read: Where) -> Iterator[Question]:
+    """A polynomial of the third degree."""
+    if not _varies(read.temperature):
+        return
+    phase, _ = _unit(read.temperature)
+    yield _one(np.nan_to_num(np.cos(np.pi * phase[:, None] * np.arange(1, 4))))
+
+
+def of_change(read: Where) -> Iterator[Question]:
+    """A step at any time: the generalised likelihood ratio."""
+    times = np.unique(read.time[np.isfinite(read.time)])
+    if len(times) < FEWEST:
+        return
+    between = (times[1:] + times[:-1]) / 2
+    chosen = between[np.unique(np.linspace(0, len(between) - 1, CHANGES).round().astype(int))]
+    known: Array = np.where(np.isfinite(read.time), read.time, -np.inf)
+    steps: Array = np.where(known[:, np.newaxis] > chosen, 1.0, 0.0)
+    yield Question(steps, np.arange(len(chosen))[:, None], chosen)
+
+
+TESTS: dict[str, Asking] = {
+    "time": of_time,
+    "angle": of_angle,
+    "rate": of_rate,
+    "attitude": of_attitude,
+    "temperature": of_temperature,
+    "change": of_change,
+}

@@ -1,0 +1,97 @@
+"""What a campaign could have seen, and which manoeuvre would split a class."""
+
+import numpy as np
+import pytest
+
+from stages.inference.least_squares import Reduced
+from stages.inference.naming.causes import causes
+from stages.inference.naming.chance import chance
+from stages.inference.naming.evidence import Evidence
+from stages.inference.naming.sought import sought
+from stages.inference.naming.splitting import split
+from stages.inference.naming.visible import ABSORBED, NOT_EXCITED, ONLY_TOGETHER, VISIBLE, visible
+from tests.inference.naming_evidence import plan_of, whitened
+from tests.inference.naming_plans import catalogue, times_of_jumps
+
+
+def test_five_sigma_are_those_of_a_plain_fit():
+    p = plan_of("b")
+    seen = {(one.effect, one.parameter): one for one in visible(quiet("b"), p.effects)}
+    r, ((sigma, columns), _) = whitened("b")
+    traces, _ = catalogue(r, times_of_jumps("b"))["heading"]
+    design = np.column_stack([columns, traces[0].reshape(len(sigma), -1) / sigma[:, None]])
+    size = np.sqrt(np.sum(design**2, axis=0))
+    covariance = np.linalg.inv((design / size).T @ (design / size))
+    by_hand = 5 * np.sqrt(covariance[-1, -1]) / size[-1]
+    assert seen["heading", 0].size == pytest.approx(by_hand, rel=1e-6)
+    # Design study: a heading error of 3.4° with a gyro of 0.1 °/√h.
+    assert np.degrees(by_hand) == pytest.approx(3.4, rel=0.2)
+
+
+def test_what_is_not_seen_has_a_reason():
+    p = plan_of("b")
+    seen = {one.effect: one for one in visible(quiet("b"), p.effects)}
+    assert seen["accel_cross"].reason == NOT_EXCITED  # no axis is ever between two others
+    assert seen["accel_k3"].reason == ABSORBED  # ±1 cubed is ±1: a scale factor
+    assert seen["mounting"].reason == ABSORBED  # a rotation of the case: cross terms
+    assert np.isnan(seen["accel_k3"].size)
+    assert seen["accel_k2"].reason == VISIBLE
+    scanned = seen["gyro_jump"]
+    assert scanned.best < scanned.size < scanned.worst
+    assert 0 < seen["latitude"].share < 1
+
+
+def test_parameters_that_are_seen_together_alone():
+    information = np.ones((2, 2))
+    said = Reduced(("a", "b"), information, np.zeros(2), 5.0, 5)
+    seen = visible(Evidence((said,), ("gyro",), raw=np.ones(2)), [sought("pair", [0, 1])])
+    assert [one.reason for one in seen] == [ONLY_TOGETHER] * 2
+
+
+def test_the_manoeuvre_that_splits_a_class_is_found():
+    """Turns up at one rate and down at another: the same rates at opposite gravity split."""
+    p, rng = plan_of("c"), np.random.default_rng(1)
+    law = chance(p.information, p.effects, 0.01, draws=1000)
+    beta, _ = p.signal("gyro_scale_g", 12.0, rng)
+    said = p.draw(beta, rng)
+    found = causes(said, p.effects, law).causes
+    (one,) = found
+    assert "gyro_quadratic" in one.members
+    names = ("c, same rates at opposite g", "c, all rests again")
+    further = {name: quiet(name).total for name in names}
+    best, other = split(said.total, further, p.effects, found, 0)
+    assert best.manoeuvre == names[0]
+    now = {frozenset((pair.one, pair.other)): pair for pair in best.pairs}
+    for nonlinearity in ("gyro_quadratic", "gyro_cubic"):
+        pair = now[frozenset(("gyro_scale_g", nonlinearity))]
+        assert pair.now < 3.3 < best.separation <= pair.then
+    # Both are of the rate alone: two rates in each direction do not tell them apart.
+    assert not now[frozenset(("gyro_quadratic", "gyro_cubic"))].told
+    assert other.rank < best.rank
+
+
+def test_a_separation_is_what_simulation_gives():
+    """Root of the mean difference of chi-squared of the wrong member and the right one."""
+    p, rng = plan_of("c"), np.random.default_rng(2)
+    law = chance(p.information, p.effects, 0.01, draws=1000)
+    beta, _ = p.signal("gyro_scale_g", 12.0, rng)
+    said = p.draw(beta, rng)
+    found = causes(said, p.effects, law).causes
+    name = "c, same rates at opposite g"
+    after = plan_of(name)
+    (one,) = split(said.total, {name: quiet(name).total}, p.effects, found, 0)
+    pair = one.pairs[0]
+    columns = [list(p.effects[p.index(e)].candidates[0]) for e in (pair.one, pair.other)]
+    lost = []
+    for right, wrong in (columns, columns[::-1]):
+        truth = np.zeros(len(beta))
+        truth[right] = said.total.estimate(right)[0]
+        draws = [after.draw(truth, rng).total for _ in range(100)]
+        lost.append(np.mean([d.drop(right)[0] - d.drop(wrong)[0] for d in draws]))
+    scatter = 2 * pair.then / np.sqrt(100)
+    assert min(lost) == pytest.approx(pair.then**2, abs=4 * scatter)
+
+
+def quiet(plan: str) -> Evidence:
+    p = plan_of(plan)
+    return p.draw(np.zeros(len(p.raw)), np.random.default_rng(0))
