@@ -76,13 +76,13 @@ style: setup
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy stages laboratory
-	MYPYPATH=tests $(BIN)/mypy benchmarks/*.py benchmarks/own/*.py
+	MYPYPATH=tests:tests/bounds $(BIN)/mypy benchmarks/*.py benchmarks/own/*.py
 	$(BIN)/snakefmt --check -l 100 Snakefile
 	$(BIN)/lint-imports
 
 bench: .venv/complete benchmarks/.venv/complete
 	read -ra parts <<< "$$ONLY"
-	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks "$${parts[@]}"
+	PYTHONPATH=tests:tests/bounds OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks "$${parts[@]}"
 
 clean:
 	rm -rf data/derived .snakemake

@@ -273,6 +273,7 @@ rule accelerometer:
         performed=f"{DERIVED}/segment/performed.parquet",
         noise=f"{DERIVED}/noise/noise.parquet",
         known=f"{DERIVED}/plan/known.parquet",
+        clocks=f"{DERIVED}/decode/clocks.parquet",
         code=code("accelerometer"),
     output:
         multiext(
@@ -282,6 +283,8 @@ rule accelerometer:
             "fit.parquet",
             "averaging.parquet",
             "positions.parquet",
+            "wanted.parquet",
+            "findings.parquet",
         ),
     log:
         f"{DERIVED}/accelerometer/stage.log",
@@ -304,6 +307,7 @@ rule gyroscope:
         performed=f"{DERIVED}/segment/performed.parquet",
         noise=f"{DERIVED}/noise/noise.parquet",
         known=f"{DERIVED}/plan/known.parquet",
+        clocks=f"{DERIVED}/decode/clocks.parquet",
         code=code("gyroscope"),
     output:
         multiext(
@@ -313,6 +317,7 @@ rule gyroscope:
             "fit.parquet",
             "averaging.parquet",
             "positions.parquet",
+            "wanted.parquet",
         ),
     log:
         f"{DERIVED}/gyroscope/stage.log",
@@ -328,6 +333,46 @@ rule gyroscope:
         STAGE
 
 
+rule studies:
+    input:
+        samples=f"{DERIVED}/decode/samples.parquet",
+        masks=f"{DERIVED}/quality/masks.parquet",
+        clocks=f"{DERIVED}/decode/clocks.parquet",
+        segments=f"{DERIVED}/segment/segments.parquet",
+        blocks=f"{DERIVED}/segment/blocks.parquet",
+        manoeuvres=f"{DERIVED}/plan/manoeuvres.parquet",
+        performed=f"{DERIVED}/segment/performed.parquet",
+        noise=f"{DERIVED}/noise/noise.parquet",
+        known=f"{DERIVED}/plan/known.parquet",
+        gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
+        gyroscope_fit=f"{DERIVED}/gyroscope/fit.parquet",
+        code=code("studies"),
+    output:
+        multiext(
+            f"{DERIVED}/studies/",
+            "epochs.parquet",
+            "spreads.parquet",
+            "windows.parquet",
+            "growing.parquet",
+            "middles.parquet",
+            "time_angle.parquet",
+            "motions.parquet",
+            "not_studied.parquet",
+        ),
+    log:
+        f"{DERIVED}/studies/stage.log",
+    benchmark:
+        f"{DERIVED}/studies/benchmark.tsv"
+    params:
+        settings=settings("studies"),
+        reads=reads,
+        output=f"{DERIVED}/studies",
+    message:
+        "{wildcards.campaign}: S0's studies: epochs, windows, time and angle"
+    shell:
+        STAGE
+
+
 rule comparison:
     input:
         blocks=f"{DERIVED}/segment/blocks.parquet",
@@ -338,6 +383,8 @@ rule comparison:
         accelerometer_parameters=f"{DERIVED}/accelerometer/parameters.parquet",
         gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
         gyroscope_fit=f"{DERIVED}/gyroscope/fit.parquet",
+        growing=f"{DERIVED}/studies/growing.parquet",
+        motions=f"{DERIVED}/studies/motions.parquet",
         published=f"{DERIVED}/plan/published.parquet",
         code=code("comparison"),
     output:
@@ -441,6 +488,8 @@ rule criticism:
         accelerometer_positions=f"{DERIVED}/accelerometer/positions.parquet",
         gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
         gyroscope_positions=f"{DERIVED}/gyroscope/positions.parquet",
+        accelerometer_fit=f"{DERIVED}/accelerometer/fit.parquet",
+        gyroscope_fit=f"{DERIVED}/gyroscope/fit.parquet",
         code=code("criticism"),
     output:
         multiext(
@@ -479,6 +528,8 @@ rule extension:
         accelerometer_positions=f"{DERIVED}/accelerometer/positions.parquet",
         gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
         gyroscope_positions=f"{DERIVED}/gyroscope/positions.parquet",
+        accelerometer_fit=f"{DERIVED}/accelerometer/fit.parquet",
+        gyroscope_fit=f"{DERIVED}/gyroscope/fit.parquet",
         code=code("extension"),
     output:
         multiext(
@@ -589,10 +640,21 @@ rule report:
         noise=f"{DERIVED}/noise/noise.parquet",
         accelerometer_parameters=f"{DERIVED}/accelerometer/parameters.parquet",
         accelerometer_fit=f"{DERIVED}/accelerometer/fit.parquet",
+        accelerometer_findings=f"{DERIVED}/accelerometer/findings.parquet",
         accelerometer_averaging=f"{DERIVED}/accelerometer/averaging.parquet",
+        accelerometer_wanted=f"{DERIVED}/accelerometer/wanted.parquet",
         gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
         gyroscope_fit=f"{DERIVED}/gyroscope/fit.parquet",
         gyroscope_averaging=f"{DERIVED}/gyroscope/averaging.parquet",
+        gyroscope_wanted=f"{DERIVED}/gyroscope/wanted.parquet",
+        epochs=f"{DERIVED}/studies/epochs.parquet",
+        spreads=f"{DERIVED}/studies/spreads.parquet",
+        windows=f"{DERIVED}/studies/windows.parquet",
+        growing=f"{DERIVED}/studies/growing.parquet",
+        middles=f"{DERIVED}/studies/middles.parquet",
+        time_angle=f"{DERIVED}/studies/time_angle.parquet",
+        motions=f"{DERIVED}/studies/motions.parquet",
+        not_studied=f"{DERIVED}/studies/not_studied.parquet",
         simulated=f"{DERIVED}/simulation/simulated.parquet",
         fidelity=f"{DERIVED}/simulation/fidelity.parquet",
         scores=f"{DERIVED}/criticism/scores.parquet",

@@ -1,12 +1,15 @@
-"""The accelerometers from rests: bias, scale factors, cross terms, mounting, with covariance."""
+"""The accelerometers from rests and steady turns: bias, M, mounting, with covariance."""
 
-from functools import partial
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from stages.contracts import tables
-from stages.contracts.records import known_of, manoeuvres_of, performed_of
+from stages.contracts.findings import Finding, table_of
+from stages.contracts.records import known_of, manoeuvres_of, performed_of, share_a_clock
 from stages.contracts.stage import Stage, Tables
 from stages.estimation.estimates import (
     NAMES,
@@ -17,18 +20,23 @@ from stages.estimation.estimates import (
 )
 from stages.estimation.free_positions import add_free_accelerometers
 from stages.estimation.noise_levels import NoiseLevels
+from stages.estimation.off_positions import findings
 from stages.estimation.stills import Still, averaging_times, stills
-from stages.inference import triad
-from stages.inference.least_squares import with_scatter
+from stages.estimation.turning_rests import LEVER_ARM, turning_rests
+from stages.estimation.wanted import Wanted
+from stages.inference import six_position, triad
+from stages.inference.least_squares import INCONSISTENT
+from stages.inference.off_position import off_position
 from stages.inference.pooled_positions import pooled_positions
-from stages.inference.six_position import Rest, formula, weighted
+from stages.inference.six_position import Rest, equations, formula, weighted
+
+Array = NDArray[np.float64]
 
 CURES = {
     "bias": "the rests do not part it from the scale factors: turn the IMU over, so that an axis"
     " points up once and down once",
     "matrix": "no rests differ enough along {axis}: add one with +{axis} up, one with -{axis} up",
 }
-SCATTER = (1e-7, 1.0)  # m/s²: how much rests may differ beyond the noise
 
 
 def accelerometer(
@@ -37,52 +45,82 @@ def accelerometer(
     performed: pd.DataFrame,
     noise: pd.DataFrame,
     known: pd.DataFrame,
+    clocks: pd.DataFrame,
     *,
     averaging_steps: int,
+    wanted_bias: float,
 ) -> Tables:
     """Parameters of the joint weighted estimate and of S0's and S3's formulas, with covariance.
 
     Each mount has parameters of its own, for its mounting rotation is one of them.
     """
     given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
+    shared = share_a_clock(clocks)
     gravity = given["gravity"]
     about = (gravity.number, gravity.scatter, given["position"].scatter)
     estimates = Estimates("accelerometer")
+    told: list[Finding] = []
     for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
         add_free_accelerometers(estimates, suffix, blocks, plan, levels, given)
-        found, left = stills(blocks, plan, done, levels, "accel")
+        found, left = stills(blocks, plan, done, levels, "accel", shared)
         if not found:
             estimates.add_nothing(f"joint{suffix}", "; ".join(left))
             continue
-        rests = [_rest(still) for still in found]
-        fitted = with_scatter(
-            partial(weighted, rests, *about), between=SCATTER, noise_degrees=levels.degrees
-        )
+        turns = turning_rests(blocks, plan, done, levels, shared)
+        wide = LEVER_ARM if turns else None
+        moving = [rest for _, rest in turns]
+        rests = [*(_rest(still) for still in found), *moving]
+        fitted = six_position.fitted(rests, *about, levels.degrees, wide)
         recorded = np.isfinite(np.array([rest.mean for rest in rests])).any(axis=0)
         why = reasons(fitted.estimate.determined, recorded, "accelerometer", CURES)
         estimates.add_triad(f"joint{suffix}", fitted.estimate, why)
-        estimates.add_fit(f"joint{suffix}", fitted, [still.label for still in found], left)
+        used = [still.label for still in found] + list(dict.fromkeys(label for label, _ in turns))
+        estimates.add_fit(f"joint{suffix}", fitted, used, left)
+        matrix = fitted.estimate.values[:9].reshape(3, 3)
+        if fitted.p_value < INCONSISTENT:
+            told += _off(rests, about, matrix, wide, suffix)
         for seconds in averaging_times(found, averaging_steps):
-            part = [_rest(still, seconds) for still in found]
-            estimates.add_averaging(
-                f"joint{suffix}", seconds, weighted(part, *about, fitted.scatter)
-            )
+            part = [*(_rest(still, seconds) for still in found), *moving]
+            shorter = equations(part, *about, fitted.scatter, matrix, wide, fitted.walk)
+            estimates.add_averaging(f"joint{suffix}", seconds, shorter.solve_shared())
         planned = [_rest(still) for still in found if still.manoeuvre.do == "rest"]
         solved = formula(planned, *about, fitted.scatter) if planned else None
         if solved is not None:
             unknowns, covariance = solved
             values = triad.errors_of(unknowns)
             estimates.add(f"six_position{suffix}", NAMES, values, covariance, {})
+            ideal = formula([replace(r, sigma=np.zeros(3)) for r in planned], *about)
+            assert ideal is not None  # it depends on the same attitudes
+            seconds = float(np.mean([s.seconds.sum() for s in found if s.manoeuvre.do == "rest"]))
+            for i, axis in enumerate(tables.AXES, triad.UNKNOWNS - 3):
+                sigma, floor = (float(np.sqrt(of[i, i])) for of in (covariance, ideal[1]))
+                time = Wanted(sigma, floor, seconds)
+                estimates.add_wanted(f"six_position{suffix}", axis, time, wanted_bias)
         rests = [_rest(still) for still in found]
         pooled = pooled_positions(rests, *about, fitted.scatter)
         if pooled is not None and stops_between_turns(plan):
             values = triad.errors_of(pooled.values)
             estimates.add(f"pooled_positions{suffix}", NAMES, values, pooled.covariance, {})
-    return estimates.tables()
+    return {**estimates.tables(), "findings": table_of(told)}
+
+
+def _off(
+    rests: list[Rest],
+    about: tuple[float, float, float],
+    matrix: Array,
+    wide: Mapping[str, float] | None,
+    suffix: str,
+) -> Iterator[Finding]:
+    """The position that does not fit, where one alone explains why the model does not."""
+    off = off_position(rests, *about, matrix, wide)
+    if off is not None:
+        sigma = weighted(rests, *about, wide=wide).sigma[: triad.UNKNOWNS]
+        yield from findings(off, sigma, suffix)
 
 
 def _rest(still: Still, seconds: float = np.inf) -> Rest:
-    return Rest(still.manoeuvre.position, still.up_now, *still.over(seconds))
+    stretch = still.during(seconds)
+    return Rest(still.manoeuvre.position, still.up_now, *still.over(seconds), stretch=stretch)
 
 
 STAGE = Stage(
@@ -93,6 +131,7 @@ STAGE = Stage(
         "performed": tables.PERFORMED,
         "noise": tables.NOISE,
         "known": tables.KNOWN,
+        "clocks": tables.CLOCKS,
     },
     writes={
         "parameters": tables.PARAMETERS,
@@ -100,6 +139,8 @@ STAGE = Stage(
         "fit": tables.FIT,
         "averaging": tables.AVERAGING,
         "positions": tables.POSITIONS,
+        "wanted": tables.WANTED,
+        "findings": tables.FINDINGS,
     },
 )
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import pandas as pd
 
 from stages.comparing.difference import Difference, table_of
+from stages.comparing.fencepost import off_by_a_sample
 from stages.comparing.forward_against_backward import forward_against_backward
 from stages.comparing.method_against_method import method_against_method
 from stages.comparing.published import against_published
@@ -28,6 +29,8 @@ def comparison(
     accelerometer_parameters: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
     gyroscope_fit: pd.DataFrame,
+    growing: pd.DataFrame,
+    motions: pd.DataFrame,
     published: pd.DataFrame,
     *,
     level: float,
@@ -51,6 +54,7 @@ def comparison(
         for method in ("turns", "turn_and_stop", "stops", "rate_table"):
             yield from method_against_method(gyro, method)
         yield from against_published(published, {r.stage: r for r in (accelerometer, gyro)})
+        yield from off_by_a_sample(published, gyro, growing, motions, level)
 
     found = [
         difference
@@ -80,6 +84,8 @@ STAGE = Stage(
         "accelerometer_parameters": tables.PARAMETERS,
         "gyroscope_parameters": tables.PARAMETERS,
         "gyroscope_fit": tables.FIT,
+        "growing": tables.WINDOWS,
+        "motions": tables.MOTIONS,
         "published": tables.PUBLISHED,
     },
     writes={"differences": tables.DIFFERENCES},

@@ -53,6 +53,8 @@ def criticism(
     accelerometer_positions: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
     gyroscope_positions: pd.DataFrame,
+    accelerometer_fit: pd.DataFrame,
+    gyroscope_fit: pd.DataFrame,
     *,
     level: float,
     lowest_hz: float,
@@ -79,6 +81,7 @@ def criticism(
             (accelerometer_positions, gyroscope_positions),
             given,
             suffix,
+            (accelerometer_fit, gyroscope_fit),
         )
         campaign = campaign_of(blocks, plan, done, levels, given, solution, share_a_clock(clocks))
         said = evidence(campaign, in_blocks)
@@ -312,6 +315,8 @@ STAGE = Stage(
         "accelerometer_positions": tables.POSITIONS,
         "gyroscope_parameters": tables.PARAMETERS,
         "gyroscope_positions": tables.POSITIONS,
+        "accelerometer_fit": tables.FIT,
+        "gyroscope_fit": tables.FIT,
     },
     streams=("simulated",),
     writes={

@@ -44,6 +44,8 @@ def extension(
     accelerometer_positions: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
     gyroscope_positions: pd.DataFrame,
+    accelerometer_fit: pd.DataFrame,
+    gyroscope_fit: pd.DataFrame,
 ) -> Tables:
     """Parameters and covariance of the extended model, and its gain on fitted and held-out data.
 
@@ -62,6 +64,7 @@ def extension(
             (accelerometer_positions, gyroscope_positions),
             given,
             suffix,
+            (accelerometer_fit, gyroscope_fit),
         )
         if in_blocks:
             campaign = campaign_of(
@@ -266,6 +269,8 @@ STAGE = Stage(
         "accelerometer_positions": tables.POSITIONS,
         "gyroscope_parameters": tables.PARAMETERS,
         "gyroscope_positions": tables.POSITIONS,
+        "accelerometer_fit": tables.FIT,
+        "gyroscope_fit": tables.FIT,
     },
     streams=("simulated",),
     writes={

@@ -1,13 +1,11 @@
 """The gyros from turns and rests: bias, scale factors, cross terms, mounting, with covariance."""
 
-from functools import partial
-
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from stages.contracts import tables
-from stages.contracts.records import known_of, manoeuvres_of, performed_of
+from stages.contracts.records import known_of, manoeuvres_of, performed_of, share_a_clock
 from stages.contracts.stage import Stage, Tables
 from stages.estimation.between_rests import add_free_gyros
 from stages.estimation.estimates import Estimates, by_mount, reasons, stops_between_turns
@@ -15,14 +13,12 @@ from stages.estimation.gyro_formulas import add_formulas, add_turn_and_stop
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import averaging_times
 from stages.estimation.turns import GyroInputs, gyro_inputs
-from stages.inference.least_squares import with_scatter
-from stages.inference.whole_turns import joint
+from stages.inference import whole_turns
 
 CURES = {
     "bias": "neither a rest nor a turn there and back shows it: add a rest",
     "matrix": "no whole turn about {axis} was recorded: add one of 360° about {axis}",
 }
-SCATTER = (1e-11, 0.1)  # rad/s: how much manoeuvres may differ beyond the noise
 
 
 def gyroscope(
@@ -31,32 +27,34 @@ def gyroscope(
     performed: pd.DataFrame,
     noise: pd.DataFrame,
     known: pd.DataFrame,
+    clocks: pd.DataFrame,
     *,
     averaging_steps: int,
+    wanted_bias: float,
 ) -> Tables:
     """Parameters of the joint estimate and of the sources' formulas, with covariance.
 
     Each mount has parameters of its own, for its mounting rotation is one of them.
     """
     given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
+    shared = share_a_clock(clocks)
     estimates = Estimates("gyroscope")
     for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
         add_free_gyros(estimates, suffix, blocks, plan, levels, given)
-        inputs = gyro_inputs(blocks, plan, done, levels, given)
+        inputs = gyro_inputs(blocks, plan, done, levels, given, shared)
         if inputs.nothing:
             estimates.add_nothing(f"joint{suffix}", "; ".join(inputs.left_out))
             continue
         moving = (inputs.turns, inputs.steadies, inputs.earth, inputs.position_sigma)
-        fitted = with_scatter(
-            partial(joint, inputs.rests(), *moving), between=SCATTER, noise_degrees=levels.degrees
-        )
+        fitted = whole_turns.fitted(inputs.rests(), *moving, levels.degrees)
         why = reasons(fitted.estimate.determined, _channels(inputs), "gyro", CURES)
         estimates.add_triad(f"joint{suffix}", fitted.estimate, why)
         estimates.add_fit(f"joint{suffix}", fitted, inputs.used, inputs.left_out)
+        linear = whole_turns.about(whole_turns.around_of(fitted.estimate, inputs.earth), *moving)
         for seconds in averaging_times(inputs.stills, averaging_steps):
-            shorter = joint(inputs.rests(seconds), *moving, fitted.scatter, start=fitted.estimate)
-            estimates.add_averaging(f"joint{suffix}", seconds, shorter)
-        add_formulas(estimates, suffix, inputs, levels, fitted)
+            shorter = linear.system(inputs.rests(seconds), fitted.scatter, fitted.walk)
+            estimates.add_averaging(f"joint{suffix}", seconds, shorter.solve_shared())
+        add_formulas(estimates, suffix, inputs, levels, fitted, wanted_bias)
         if stops_between_turns(plan):
             add_turn_and_stop(estimates, suffix, inputs, fitted.scatter)
     return estimates.tables()
@@ -78,6 +76,7 @@ STAGE = Stage(
         "performed": tables.PERFORMED,
         "noise": tables.NOISE,
         "known": tables.KNOWN,
+        "clocks": tables.CLOCKS,
     },
     writes={
         "parameters": tables.PARAMETERS,
@@ -85,6 +84,7 @@ STAGE = Stage(
         "fit": tables.FIT,
         "averaging": tables.AVERAGING,
         "positions": tables.POSITIONS,
+        "wanted": tables.WANTED,
     },
 )
 

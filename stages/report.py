@@ -34,6 +34,7 @@ from stages.reporting import (
     parameters,
     raw_data,
     recording,
+    studies,
     undetermined,
     verdict,
 )
@@ -76,10 +77,21 @@ READS: Mapping[str, Table] = {
     "noise": tables.NOISE,
     "accelerometer_parameters": tables.PARAMETERS,
     "accelerometer_fit": tables.FIT,
+    "accelerometer_findings": tables.FINDINGS,
     "accelerometer_averaging": tables.AVERAGING,
+    "accelerometer_wanted": tables.WANTED,
     "gyroscope_parameters": tables.PARAMETERS,
     "gyroscope_fit": tables.FIT,
     "gyroscope_averaging": tables.AVERAGING,
+    "gyroscope_wanted": tables.WANTED,
+    "epochs": tables.EPOCHS,
+    "spreads": tables.SPREADS,
+    "windows": tables.WINDOWS,
+    "growing": tables.WINDOWS,
+    "middles": tables.WINDOWS,
+    "time_angle": tables.TIME_ANGLE,
+    "motions": tables.MOTIONS,
+    "not_studied": tables.NOT_STUDIED,
     "simulated": tables.SIMULATED,
     "fidelity": tables.FIDELITY,
     "scores": tables.SCORES,
@@ -128,10 +140,21 @@ def report(
     noise: pd.DataFrame,
     accelerometer_parameters: pd.DataFrame,
     accelerometer_fit: pd.DataFrame,
+    accelerometer_findings: pd.DataFrame,
     accelerometer_averaging: pd.DataFrame,
+    accelerometer_wanted: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
     gyroscope_fit: pd.DataFrame,
     gyroscope_averaging: pd.DataFrame,
+    gyroscope_wanted: pd.DataFrame,
+    epochs: pd.DataFrame,
+    spreads: pd.DataFrame,
+    windows: pd.DataFrame,
+    growing: pd.DataFrame,
+    middles: pd.DataFrame,
+    time_angle: pd.DataFrame,
+    motions: pd.DataFrame,
+    not_studied: pd.DataFrame,
     simulated: Stream,
     fidelity: pd.DataFrame,
     scores: pd.DataFrame,
@@ -154,7 +177,13 @@ def report(
         accelerometer_parameters, accelerometer_fit, gyroscope_parameters, gyroscope_fit
     )
     worst_first = findings.ranked(
-        (quality_findings, segment_findings, criticism_findings, compensation_findings)
+        (
+            quality_findings,
+            segment_findings,
+            accelerometer_findings,
+            criticism_findings,
+            compensation_findings,
+        )
     )
     sought = lacks.sought(scores, effects)
     asked_for = [one.finding for one in sought if one.score["named"]]
@@ -202,7 +231,15 @@ def report(
             recording.section(manoeuvres, performed),
             raw_data.section(drawn),
             noise_of_channels.section(noise, sensors),
-            averaging.section(accelerometer_averaging, gyroscope_averaging, estimated),
+            averaging.section(
+                accelerometer_averaging,
+                gyroscope_averaging,
+                [*records(accelerometer_wanted), *records(gyroscope_wanted)],
+                estimated,
+            ),
+            studies.section(
+                epochs, spreads, windows, growing, middles, time_angle, motions, not_studied
+            ),
             taken_as_known.section(known),
             account.section(accounts, refused, inputs),
             origin.section(inputs, provenance),

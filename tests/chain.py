@@ -21,6 +21,7 @@ ORDER = (
     "noise",
     "accelerometer",
     "gyroscope",
+    "studies",
     "comparison",
     "compensation",
     "simulation",

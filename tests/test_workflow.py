@@ -33,7 +33,7 @@ PAGE = "reports/short.html"
 EXPORT = "reports/short.calibration.json"
 PUBLISHED = "data/raw/short/published.yaml"
 USING = {"comparison", "compensation", "simulation", "criticism", "extension", "history", "report"}
-ESTIMATION = {"accelerometer", "gyroscope", *USING}
+ESTIMATION = {"accelerometer", "gyroscope", "studies", *USING}
 AFTER_DECODE = {"quality", "segment", "noise", *ESTIMATION}
 PATIENCE = 60  # s, until a stage must have begun
 
@@ -166,7 +166,7 @@ def test_a_changed_setting_reruns_its_stage_and_what_follows(
     [
         ("stages/formats/pieces.py", {"decode", *AFTER_DECODE}),
         ("stages/inference/spectrum.py", {"noise", *ESTIMATION}),
-        ("stages/inference/whole_turns.py", {"gyroscope", *USING}),
+        ("stages/inference/whole_turns.py", {"gyroscope", "studies", *USING}),
         ("stages/notation/numbers.py", AFTER_DECODE),
         ("stages/notation/causes.py", {"report"}),
         ("stages/reporting/report.css", {"report"}),

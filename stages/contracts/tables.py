@@ -159,13 +159,15 @@ MANOEUVRES = Table(
 )
 PUBLISHED = Table(
     "published",
-    1,
+    2,
     (
         Column("parameter", _text, "", "stage and parameter, such as gyroscope/bias_x"),
         Column("value", _double, "as unit", "what others found for it"),
         Column("sigma", _double, "as unit", "its standard deviation, if told", nullable=True),
         Column("unit", _text, "", "unit of value and sigma, SI"),
         Column("source", _text, "", "where it is published"),
+        Column("window", _double, "rad", "angle of the window it is from, if told", nullable=True),
+        Column("samples", _double, "1", "intervals of that window, if told", nullable=True),
     ),
 )
 
@@ -411,7 +413,7 @@ COVARIANCE = Table(
 )
 FIT = Table(
     "fit",
-    1,
+    2,
     (
         Column("method", _text, "", "method of estimation"),
         Column(
@@ -428,6 +430,10 @@ FIT = Table(
         Column("unit", _text, "", "unit of the scatter"),
         Column("used", _text, "", "the manoeuvres that were used"),
         Column("left_out", _text, "", "the manoeuvres that were not, each with the reason"),
+        Column(
+            "random_walk", _double, "unit/√s", "of the bias, which is that of the middle; 0: none"
+        ),
+        Column("random_walk_sigma", _double, "unit/√s", "its standard deviation", nullable=True),
     ),
 )
 POSITIONS = Table(
@@ -450,6 +456,25 @@ AVERAGING = Table(
         Column("seconds", _double, "s", "length of each rest that was used, from its start"),
         Column("value", _double, "as the parameter", "estimate from these"),
         Column("sigma", _double, "as the parameter", "its standard deviation"),
+    ),
+)
+WANTED = Table(
+    "wanted",
+    1,
+    (
+        Column("parameter", _text, "", "id of a bias by one of S0's formulas"),
+        Column("seconds", _double, "s", "length of each rest that was recorded"),
+        Column("sigma", _double, "as the parameter", "standard deviation of the bias by these"),
+        Column("floor", _double, "as the parameter", "what of it no time averages out"),
+        Column("random_walk", _double, "parameter·√s", "white noise of the bias, √s of a rest"),
+        Column("wanted", _double, "as the parameter", "sigma that is wanted"),
+        Column(
+            "wanted_seconds",
+            _double,
+            "s",
+            "for it; none where the floor is above it",
+            nullable=True,
+        ),
     ),
 )
 
@@ -581,6 +606,98 @@ FIDELITY = Table(
     ),
 )
 
+# ---- studies
+
+EPOCHS = Table(
+    "epochs",
+    1,
+    (
+        Column("parameter", _text, "", "stage, rests and parameter: gyroscope/rests/bias_x"),
+        Column("unit", _text, "", "unit of the parameter, SI"),
+        Column("seconds", _double, "s", "end of the epoch, from the start of every rest"),
+        Column("single", _double, "as unit", "by this epoch alone", nullable=True),
+        Column("single_sigma", _double, "as unit", "its sigma by white noise"),
+        Column("running", _double, "as unit", "by all epochs up to this one", nullable=True),
+        Column("running_sigma", _double, "as unit", "its sigma by white noise"),
+    ),
+)
+SPREADS = Table(
+    "spreads",
+    1,
+    (
+        Column("parameter", _text, "", "as in epochs"),
+        Column("unit", _text, "", "unit of the parameter, SI"),
+        Column("seconds", _double, "s", "length of an epoch"),
+        Column("epochs", _integer, "1", "how many there are"),
+        Column("single", _double, "unit²", "variance of the values by single epochs"),
+        Column("running", _double, "unit²", "variance of the values by running means"),
+        Column("white", _double, "unit²", "variance by single epochs that white noise would give"),
+    ),
+)
+WINDOWS = Table(
+    "windows",
+    1,
+    (
+        Column("axis", _text, "", "gyro, and axis of both turns", BODY),
+        Column("forward", _text, "", "manoeuvre of the turn forward"),
+        Column("backward", _text, "", "manoeuvre of the turn backward"),
+        Column(
+            "by",
+            _text,
+            "",
+            "how the angle of the window is known: whole turn; set rate: by time; own angle: by the"
+            " time and angle of the same two turns; other turns: by the speed of turns about other"
+            " axes",
+        ),
+        Column("from_s", _double, "s", "start of the window, from the start of the steady part"),
+        Column("samples", _integer, "1", "intervals of the window"),
+        Column("angle", _double, "rad", "half of what lies between the two angles of the table"),
+        Column("scale", _double, "1", "scale factor error"),
+        Column("scale_sigma", _double, "1", "its sigma"),
+        Column("cut_sigma", _double, "1", "the part of it that differs from window to window"),
+        Column("bias", _double, "rad/s", "bias"),
+        Column("bias_sigma", _double, "rad/s", "its sigma"),
+    ),
+)
+TIME_ANGLE = Table(
+    "time_angle",
+    1,
+    (
+        Column("manoeuvre", _text, "", "a turn that was recorded whole"),
+        Column("seconds", _double, "s", "since the stretch with its motion began"),
+        Column("angle", _double, "rad", "turned so far, mean over some samples about this time"),
+        Column("swing", _double, "rad", "half the range within them, what bends slowly left out"),
+        Column("sigma", _double, "rad", "of the angle; at the end that of the whole angle"),
+        Column("set_angle", _double, "rad", "of the trapezoid that was set", nullable=True),
+    ),
+)
+MOTIONS = Table(
+    "motions",
+    1,
+    (
+        Column("manoeuvre", _text, "", "a turn that was recorded whole"),
+        Column(
+            "quantity",
+            _text,
+            "",
+            "speed; spin-up or spin-down and start, seconds, acceleration: as if it were constant",
+        ),
+        Column("value", _double, "as unit", "by time and angle"),
+        Column("sigma", _double, "as unit", "its sigma"),
+        Column("set_value", _double, "as unit", "what was set", nullable=True),
+        Column("unit", _text, "", "unit of these"),
+    ),
+)
+NOT_STUDIED = Table(
+    "not_studied",
+    1,
+    (
+        Column("study", _text, "", "rests, or turns"),
+        Column("subject", _text, "", "manoeuvres or parameters, in words"),
+        Column("reason", _text, "", "why there is nothing of it"),
+    ),
+)
+
 # ---- comparison
 
 DIFFERENCES = Table(
@@ -592,8 +709,8 @@ DIFFERENCES = Table(
             "kind",
             _text,
             "",
-            "static_against_turns, forward_against_backward, method_against_method, published;"
-            " with @ and the mount where there are several",
+            "static_against_turns, forward_against_backward, method_against_method, published,"
+            " fencepost; with @ and the mount where there are several",
         ),
         Column("parameter", _text, "", "stage and parameter, such as gyroscope/bias_x"),
         Column("unit", _text, "", "unit of the values, SI"),

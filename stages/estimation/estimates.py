@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from stages.contracts import tables
 from stages.contracts.parquet import Table
 from stages.contracts.records import Manoeuvre
+from stages.estimation.wanted import Wanted
 from stages.inference import triad
 from stages.inference.least_squares import Estimate, Fitted
 
@@ -33,6 +34,7 @@ class Estimates:
     _fit: list[dict[str, Any]] = field(default_factory=list)
     _averaging: list[dict[str, Any]] = field(default_factory=list)
     _positions: list[dict[str, Any]] = field(default_factory=list)
+    _wanted: list[dict[str, Any]] = field(default_factory=list)
 
     def add(
         self,
@@ -127,6 +129,8 @@ class Estimates:
                 "unit": UNIT[self.stage],
                 "used": ", ".join(used),
                 "left_out": "; ".join(left),
+                "random_walk": fitted.walk,
+                "random_walk_sigma": fitted.walk_sigma,
             }
         )
 
@@ -144,8 +148,12 @@ class Estimates:
             if estimate.determined[i]
         ]
 
+    def add_wanted(self, method: str, axis: str, told: Wanted, wanted: float) -> None:
+        """How long the rests must last for a bias with the sigma `wanted`."""
+        self._wanted.append({"parameter": f"{self.stage}/{method}/bias_{axis}"} | told.row(wanted))
+
     def tables(self) -> dict[str, pd.DataFrame]:
-        """The five tables, with their columns even where there are no rows."""
+        """The six tables, with their columns even where there are no rows."""
 
         def frame(rows: list[dict[str, Any]], empty: Table) -> pd.DataFrame:
             return pd.DataFrame(rows) if rows else empty.empty()
@@ -157,6 +165,7 @@ class Estimates:
             "fit": frame(self._fit, tables.FIT),
             "averaging": frame(self._averaging, tables.AVERAGING),
             "positions": frame(self._positions, tables.POSITIONS),
+            "wanted": frame(self._wanted, tables.WANTED),
         }
 
 

@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from functools import cached_property
+from itertools import accumulate, pairwise
 
 import numpy as np
 import pandas as pd
@@ -10,23 +11,27 @@ from numpy.typing import NDArray
 
 from stages.contracts import tables
 from stages.contracts.records import Known, Manoeuvre, Performed
-from stages.estimation.motions import at_rest, in_blocks
+from stages.estimation.campaign_motions import CampaignMotions, mean_motion
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.solution import Solution
 from stages.estimation.stills import Still, stills
 from stages.estimation.turns import GyroInputs, Recorded, gyro_inputs
 from stages.inference import six_position, whole_turns
-from stages.inference.least_squares import System
+from stages.inference.azimuth import said_of
+from stages.inference.least_squares import Reduced, System
 from stages.inference.naming import Evidence
 from stages.inference.six_position import Rest
 from stages.inference.whole_turns import Around
-from stages.model.effect import Effect, Reading
-from stages.model.forward import Triad, signature
-from stages.model.motion import Motion, turned_all
+from stages.model.effect import Effect
+from stages.model.forward import Triad, signatures
+from stages.model.motion import Motion, joined, turned_all
 
 Array = NDArray[np.float64]
+Traces = Mapping[str, Array]  # column → how the readings change per unit of it, (k, 3)
 
 ACCEL = [f"accel_{axis}" for axis in tables.AXES]
+NOTHING = "Nothing is simulated, for the joint estimate determines no sensor wholly."
+CLEAR = 5.0  # sigmas of an effect that is seen
 MERGED = 5  # blocks of a turn that make one of the accelerometers, whose truth changes slowly
 
 
@@ -56,6 +61,27 @@ class Campaign:
     def _whole(self) -> list[Recorded]:
         return [r for r in self.inputs.usable if r.plan.recorded == "whole"]
 
+    @cached_property
+    def motion(self) -> Motion:
+        """All stretches of the equations: rests of the gyros, turns, the accelerometers'."""
+        return joined(self._motions)
+
+    @property
+    def _motions(self) -> list[Motion]:
+        return [*self.still_motions, *self.turn_motions, *(motion for _, _, motion in self.rests)]
+
+    def candidates(self, effects: Sequence[Effect]) -> dict[str, list[Effect]]:
+        """Each effect by its name with every value of what is scanned of it, or by itself."""
+        if not self._motions:
+            return {effect.name: [effect] for effect in effects}
+        return {
+            effect.name: list(effect.candidates(self.motion)) or [effect] for effect in effects
+        }
+
+    def blind(self, effect: Effect) -> str:
+        """Why this campaign cannot show an effect; empty where it may."""
+        return effect.blind(self.motion) if self._motions else NOTHING
+
     def systems(
         self, effects: Sequence[Effect], wide: float, only: set[str] | None = None
     ) -> tuple[System | None, System | None]:
@@ -65,27 +91,28 @@ class Campaign:
         manoeuvres that are used.
         """
         widths = {
-            f"{effect.name}.{parameter.name}": wide * parameter.typical
+            f"{effect.label}.{parameter.name}": wide * parameter.typical
             for effect in effects
             for parameter in effect.parameters
         }
-        return self._gyro(effects, widths, only), self._accelerometer(effects, widths, only)
+        gyro, accel = self._traces(effects)
+        return self._gyro(gyro, widths, only), self._accelerometer(accel, widths, only)
 
     def _gyro(
-        self, effects: Sequence[Effect], widths: Mapping[str, float], only: set[str] | None
+        self, traces: list[Traces], widths: Mapping[str, float], only: set[str] | None
     ) -> System | None:
         if self.solution.gyro is None:
             return None
         rests, turns = [], []
-        pairs = zip(self.inputs.stills, self.inputs.rests(), self.still_motions, strict=True)
-        for still, rest, motion in pairs:
+        of_stills, of_turns = traces[: len(self.still_motions)], traces[len(self.still_motions) :]
+        for still, rest, told in zip(
+            self.inputs.stills, self.inputs.rests(), of_stills, strict=True
+        ):
             if only is None or still.manoeuvre.name in only:
-                traces = self._traces(effects, motion, "gyro")
-                rests.append(replace(rest, traces={k: trace[0] for k, trace in traces.items()}))
-        whole = zip(self._whole, self.inputs.turns, self.turn_motions, strict=True)
-        for recorded, turn, motion in whole:
+                rests.append(replace(rest, traces={k: trace[0] for k, trace in told.items()}))
+        for recorded, turn, told in zip(self._whole, self.inputs.turns, of_turns, strict=True):
             if only is None or recorded.plan.name in only:
-                turns.append(replace(turn, traces=self._traces(effects, motion, "gyro")))
+                turns.append(replace(turn, traces=told))
         if not (rests or turns):
             return None
         gyro = self.solution.gyro
@@ -96,21 +123,19 @@ class Campaign:
             turns,
             [],
             self.inputs.earth,
-            (self.position_sigma, 0.0),
-            Around(gyro.matrix, gyro.bias, levels),
+            (self.position_sigma, 0.0, self.solution.walks[0]),
+            Around(gyro.matrix, gyro.bias, levels, said_of(levels, self.inputs.earth.level)),
             widths,
         )
 
     def _accelerometer(
-        self, effects: Sequence[Effect], widths: Mapping[str, float], only: set[str] | None
+        self, traces: list[Traces], widths: Mapping[str, float], only: set[str] | None
     ) -> System | None:
         if self.solution.accelerometer is None:
             return None
         rests = [
-            replace(
-                rest, traces={k: t[0] for k, t in self._traces(effects, motion, "accel").items()}
-            )
-            for name, rest, motion in self.rests
+            replace(rest, traces={k: trace[0] for k, trace in told.items()})
+            for (name, rest, _), told in zip(self.rests, traces, strict=True)
             if only is None or name in only
         ]
         if not rests:
@@ -123,25 +148,34 @@ class Campaign:
             0.0,
             self.solution.accelerometer.matrix,
             widths,
+            self.solution.walks[1],
         )
 
-    def _traces(self, effects: Sequence[Effect], motion: Motion, sensor: str) -> dict[str, Array]:
-        """How the readings change per unit of each parameter, (k, 3) each."""
-        solution = self.solution
+    def _traces(self, effects: Sequence[Effect]) -> tuple[list[Traces], list[Traces]]:
+        """How the readings of the gyros, and of the accelerometers, go with each effect.
+
+        Gyros: one for each rest, then for each turn; accelerometers: one for each of `rests`.
+        """
+        if not effects or not self._motions:
+            return [{} for _ in self._motions[: -len(self.rests) or None]], [{} for _ in self.rests]
         unit = Triad(np.eye(3), np.zeros(3))
-        traces = {}
-        for effect in effects:
-            told: Reading = signature(
-                motion,
-                solution.site,
-                solution.gyro or unit,
-                solution.accelerometer or unit,
-                effect,
-            )
-            part = told.gyro if sensor == "gyro" else told.accel
-            for i, parameter in enumerate(effect.parameters):
-                traces[f"{effect.name}.{parameter.name}"] = part[:, :, i]
-        return traces
+        solution = self.solution
+        triads = solution.gyro or unit, solution.accelerometer or unit
+        told = signatures(self.motion, solution.site, *triads, effects)
+        ends = [0, *accumulate(len(motion.rate) for motion in self._motions)]
+        parts = [slice(first, after) for first, after in pairwise(ends)]
+        gyros = len(parts) - len(self.rests)
+
+        def of(sensor: str, part: slice) -> Traces:
+            return {
+                f"{effect.label}.{parameter.name}": getattr(trace, sensor)[part, :, i]
+                for effect, trace in zip(effects, told, strict=True)
+                for i, parameter in enumerate(effect.parameters)
+            }
+
+        return [of("gyro", part) for part in parts[:gyros]], [
+            of("accel", part) for part in parts[gyros:]
+        ]
 
 
 def campaign_of(
@@ -157,27 +191,27 @@ def campaign_of(
 
     Without a shared clock the times of different logs are not comparable, and so none is given.
     """
-    inputs = gyro_inputs(blocks, plan, done, levels, known)
+    inputs = gyro_inputs(blocks, plan, done, levels, known, shared_clock)
+    found, _ = stills(blocks, plan, done, levels, "accel", shared_clock)
     heading = inputs.heading
     blocks = blocks if shared_clock else blocks.assign(time=np.nan)
-    times = _times(blocks)
-    stills_of_gyro = [at_rest(s, solution, heading, times[s.label]) for s in inputs.stills]
+    motions = CampaignMotions(blocks, plan, levels, solution, heading)
+    stills_of_gyro = [motions.at_rest(still) for still in inputs.stills]
     turns: list[Motion] = []
     rests: list[tuple[str, Rest, Motion]] = []
-    for still in stills(blocks, plan, done, levels, "accel")[0]:
-        motion = at_rest(still, solution, heading, times[still.label])
-        rests.append((still.manoeuvre.name, _rest(still), motion))
+    for still in found:
+        rests.append((still.manoeuvre.name, _rest(still), motions.at_rest(still)))
     whole = [r for r in inputs.usable if r.plan.recorded == "whole"]
     for one, turn in zip(whole, inputs.turns, strict=True):
         if solution.gyro is None:
             break
-        time = one.blocks["time"].to_numpy(np.float64)
-        motion = in_blocks(one.plan, turn, solution, heading, time)
+        motion = motions.turning(one, turn)
         turns.append(motion)
         if not turn.by_hand:
             density = levels.of(one.plan.name, "steady", ACCEL)
             edges = [0, *(bridge.before for bridge in turn.bridges), len(turn.seconds)]
-            rests += _turning(one.plan, one.blocks, motion, density, edges)
+            parts = _turning(one.plan, one.blocks, motion, density, edges)
+            rests += [(m, replace(part, stretch=turn.stretch), at) for m, part, at in parts]
     return Campaign(
         inputs,
         rests,
@@ -189,17 +223,9 @@ def campaign_of(
     )
 
 
-def _times(blocks: pd.DataFrame) -> dict[str, float]:
-    """The middle of every stretch at rest by its label, s; NaN without a common clock."""
-    times = {}
-    for (name, phase), part in blocks[blocks["count"] > 0].groupby(["manoeuvre", "phase"]):
-        label = str(name) if phase == "rest" else f"{name} ({phase})"
-        times[label] = float(np.average(part["time"], weights=part["count"]))
-    return times
-
-
 def _rest(still: Still) -> Rest:
-    return Rest(still.manoeuvre.position, still.up_now, *still.over())
+    stretch = still.stretch
+    return Rest(still.manoeuvre.position, still.up_now, *still.over(), stretch=stretch)
 
 
 def _turning(
@@ -220,32 +246,38 @@ def _turning(
         up = share @ ups[some]
         sigma = density / np.sqrt(seconds[some].sum())
         rest = Rest(m.position, up / np.linalg.norm(up), mean, sigma)
-        parts.append((m.name, rest, _mean_motion(motion, some, share)))
+        parts.append((m.name, rest, mean_motion(motion, some, share)))
     return parts
-
-
-def _mean_motion(motion: Motion, some: slice, share: Array) -> Motion:
-    def mean(values: Array) -> Array:
-        return np.asarray([share @ values[some]])
-
-    # The pull of a lever arm goes with the square of the rate, so its mean is the root of that.
-    rate = np.sign(mean(motion.rate)) * np.sqrt(mean(motion.rate**2))
-    return Motion(
-        mean(motion.time),
-        motion.about,
-        mean(motion.angle),
-        rate,
-        mean(motion.acceleration),
-        mean(motion.up),
-        mean(motion.north),
-    )
 
 
 def evidence(campaign: Campaign, effects: Sequence[Effect]) -> Evidence:
     """What gyros and accelerometers say of the effects, all other unknowns fitted.
 
-    Both are told apart but for the tilts of the positions, which each fits for itself.
+    Both are told apart but for the tilts of the positions, which each fits for itself. The
+    columns are named by label and parameter of an effect. Nothing is said of an effect that is
+    sought elsewhere, nor where it would not be seen at the largest size that is thought of: there
+    it could only take up what the equations round off.
     """
     systems = zip(("gyro", "accel"), campaign.systems(effects, 1.0), strict=True)
     said = [(sensor, system.reduced()) for sensor, system in systems if system is not None]
-    return Evidence(tuple(reduced for _, reduced in said), tuple(sensor for sensor, _ in said))
+    largest = np.array(
+        [
+            effect.largest if effect.sought_in == "blocks" else 0.0
+            for effect in effects
+            for _ in effect.parameters
+        ]
+    )
+    information = sum((np.diag(reduced.information) for _, reduced in said), np.zeros(1))
+    clear = (largest * np.sqrt(information) > CLEAR).astype(np.float64)
+    return Evidence(
+        tuple(_only(reduced, clear) for _, reduced in said), tuple(sensor for sensor, _ in said)
+    )
+
+
+def _only(reduced: Reduced, clear: Array) -> Reduced:
+    """The same without what is said of columns that are not clear, (k,)."""
+    return replace(
+        reduced,
+        information=reduced.information * np.outer(clear, clear),
+        right=reduced.right * clear,
+    )

@@ -16,6 +16,7 @@ from stages.contracts.tables import AXES
 from stages.estimation.estimates import NAMES, Estimates
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.turns import GyroInputs, angles_about, position_of
+from stages.estimation.wanted import Wanted
 from stages.inference import whole_turns
 from stages.inference.least_squares import Fitted
 from stages.inference.linear_formula import Solution
@@ -27,6 +28,7 @@ from stages.inference.two_positions import Upright, two_positions
 Array = NDArray[np.float64]
 
 UNTURNED = "no axis {axis} was turned about both ways over the same known angle: add such turns"
+SILENT = 1e-15  # rad/s, a sigma as good as none
 UNREAD = "the {axis} gyro is not recorded"
 
 
@@ -36,11 +38,15 @@ def add_formulas(
     inputs: GyroInputs,
     noise: NoiseLevels,
     joint: Fitted,
+    wanted: float,
 ) -> None:
-    """The rows of every formula that the plan feeds, with the scatter of the joint estimate."""
+    """The rows of every formula that the plan feeds, with the scatter of the joint estimate.
+
+    `wanted`: rad/s, sigma of a bias for which the length of the rests is reckoned.
+    """
     scatter, told = joint.scatter, joint.estimate.determined[:9]
     cross = np.where(told, joint.estimate.values[:9], UNKNOWN).reshape(3, 3)
-    _add_static(estimates, f"static{suffix}", inputs, cross, scatter)
+    _add_static(estimates, f"static{suffix}", inputs, cross, (scatter, wanted))
     _add_known_angle(estimates, f"turns{suffix}", inputs, noise, scatter)
     _add_rate_table(estimates, f"rate_table{suffix}", inputs, scatter)
 
@@ -56,14 +62,19 @@ def uprights(inputs: GyroInputs, i: int) -> Iterator[tuple[str, Upright]]:
 
 
 def _add_static(
-    estimates: Estimates, method: str, inputs: GyroInputs, cross: Array, scatter: float
+    estimates: Estimates,
+    method: str,
+    inputs: GyroInputs,
+    cross: Array,
+    sigmas_of: tuple[float, float],  # between manoeuvres, and wanted of a bias, rad/s
 ) -> None:
+    scatter, wanted = sigmas_of
+    seconds = [s.seconds.sum() for s in inputs.stills if s.manoeuvre.do == "rest"]
     for i, axis in enumerate(AXES):
         read = [rest for _, rest in uprights(inputs, i)]
         rests = [replace(rest, sigma=float(np.hypot(rest.sigma, scatter))) for rest in read]
-        found = two_positions(
-            rests, cross[i] * (np.arange(3) != i), inputs.earth, inputs.position_sigma
-        )
+        about = (cross[i] * (np.arange(3) != i), inputs.earth, inputs.position_sigma)
+        found = two_positions(rests, *about)
         if found is None:
             continue
         names, values = (f"bias_{axis}", f"scale_{axis}"), [found.bias, found.scale or 0.0]
@@ -71,6 +82,10 @@ def _add_static(
         reason = "the upward earth rate is not known well enough to be an input"
         why = {names[1]: reason} if found.scale is None else {}
         estimates.add(method, names, np.array(values), np.diag(sigmas**2), why)
+        ideal = two_positions([replace(rest, sigma=max(scatter, SILENT)) for rest in rests], *about)
+        if ideal is not None:
+            told = Wanted(found.bias_sigma, ideal.bias_sigma, float(np.mean(seconds)))
+            estimates.add_wanted(method, axis, told, wanted)
 
 
 def _add_known_angle(

@@ -21,13 +21,15 @@ Array = NDArray[np.float64]
 class Solution:
     """M and bias of both triads, the site, and what was found of each position.
 
-    A triad that is not wholly determined is None.
+    A triad that is not wholly determined is None. `walks`: random walks of the biases of gyros and
+    accelerometers, rad/s/√s and m/s²/√s.
     """
 
     gyro: Triad | None
     accelerometer: Triad | None
     site: Site
     found: Mapping[tuple[str, str], float]  # position and quantity → value, rad or rad/s
+    walks: tuple[float, float] = (0.0, 0.0)
 
     def upright(self, m: Manoeuvre) -> Array:
         """The direction that points up at the start of a manoeuvre, its tilt included, (3,)."""
@@ -56,6 +58,7 @@ def solution_of(
     positions: tuple[pd.DataFrame, pd.DataFrame],
     known: Mapping[str, Known],
     suffix: str,
+    fits: tuple[pd.DataFrame, pd.DataFrame] | None = None,
 ) -> Solution:
     """The joint result of the mount `suffix`; tables of accelerometer and gyroscope, in this order.
 
@@ -72,7 +75,15 @@ def solution_of(
         and (row["quantity"].startswith("tilt") or row["sigma"] < level / 3)
     }
     site = Site(known["gravity"].number, known["earth_rate_up"].number, level)
-    return Solution(triad_of(parameters[1], method), triad_of(parameters[0], method), site, found)
+    gyro, accelerometer = (triad_of(table, method) for table in reversed(parameters))
+    walks = [_walk_of(fit, method) for fit in reversed(fits)] if fits else [0.0, 0.0]
+    return Solution(gyro, accelerometer, site, found, (walks[0], walks[1]))
+
+
+def _walk_of(fit: pd.DataFrame, method: str) -> float:
+    """The random walk of the bias by a method."""
+    walks = [row["random_walk"] for row in rows_of(fit) if row["method"] == method]
+    return float(walks[0] or 0.0) if walks else 0.0
 
 
 def triad_of(parameters: pd.DataFrame, method: str) -> Triad | None:

@@ -1,7 +1,8 @@
 """The stretches of a campaign in which the IMU stands still, each with its attitude."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import pandas as pd
@@ -10,9 +11,13 @@ from numpy.typing import NDArray
 from stages.contracts.records import Manoeuvre, Performed
 from stages.contracts.tables import AXES
 from stages.estimation.noise_levels import NoiseLevels
+from stages.inference.random_walk import COMMON, Stretch
 from stages.model.motion import turned
 
 Array = NDArray[np.float64]
+
+
+UNTIMED = Stretch("")
 
 
 @dataclass(frozen=True)
@@ -21,7 +26,7 @@ class Still:
 
     `up`, `about`: (3,), body axes at the start of its manoeuvre; `angle`: rad, by which
     it has turned about `about` since; `means`: (k, 3), rad/s or m/s², NaN where not
-    recorded; `counts`, `seconds`: (k,); `density`: (3,), white noise per √s.
+    recorded; `counts`, `seconds`: (k,); `density`: (3,), white noise per √s; `stretch`: of time.
     """
 
     label: str
@@ -33,21 +38,35 @@ class Still:
     counts: Array
     seconds: Array
     density: Array
+    stretch: Stretch = UNTIMED
 
-    @property
+    @cached_property
     def up_now(self) -> Array:
         """The direction that points up in this stretch, (3,)."""
         return turned(self.up, self.about, self.angle)
 
     def over(self, seconds: float = np.inf) -> tuple[Array, Array]:
         """Mean reading over the first so many seconds, and the sigma that white noise leaves."""
-        used = np.cumsum(self.seconds) - self.seconds < seconds
-        there = np.isfinite(self.means[used])
-        weight = there * self.counts[used, None]
-        lasted = (there * self.seconds[used, None]).sum(axis=0)
+        count = int(np.searchsorted(self._starts, seconds))
         with np.errstate(invalid="ignore", divide="ignore"):  # a channel that is not recorded
-            mean = np.sum(weight * np.nan_to_num(self.means[used]), axis=0) / weight.sum(axis=0)
-            return mean, self.density / np.sqrt(lasted)
+            summed, samples, lasted = self._so_far[:, count - 1]
+            return summed / samples, self.density / np.sqrt(lasted)
+
+    def during(self, seconds: float = np.inf) -> Stretch:
+        """The stretch of time of the first so many seconds."""
+        return replace(self.stretch, seconds=min(self.stretch.seconds, seconds))
+
+    @cached_property
+    def _starts(self) -> Array:
+        """When each block starts, were there no pauses, (k,), s."""
+        return np.cumsum(self.seconds) - self.seconds
+
+    @cached_property
+    def _so_far(self) -> Array:
+        """Sums of readings, samples and seconds to the end of each block, (3, k, 3)."""
+        there = np.isfinite(self.means)
+        samples, lasted = there * self.counts[:, None], there * self.seconds[:, None]
+        return np.cumsum([samples * np.nan_to_num(self.means), samples, lasted], axis=1)
 
 
 def stills(
@@ -56,11 +75,13 @@ def stills(
     performed: Mapping[str, Performed],
     noise: NoiseLevels,
     sensor: str,
+    shared_clock: bool = False,
 ) -> tuple[list[Still], list[str]]:
     """The stretches at rest with a known attitude, and what is left out with the reason.
 
     After a turn the IMU stands where the turn has brought it, so that stretch counts
-    where the turn was recorded from rest to rest. `sensor` is accel or gyro.
+    where the turn was recorded from rest to rest. `sensor` is accel or gyro; `shared_clock`: the
+    times of different logs are comparable.
     """
     found: list[Still] = []
     left: list[str] = []
@@ -97,9 +118,18 @@ def stills(
                         part["count"].to_numpy(np.float64),
                         part["seconds"].to_numpy(np.float64),
                         density,
+                        stretch_of(label, part, shared_clock),
                     )
                 )
     return found, left
+
+
+def stretch_of(name: str, part: pd.DataFrame, shared_clock: bool) -> Stretch:
+    """The stretch of time of some blocks in their order."""
+    time, seconds = part["time"].to_numpy(np.float64), part["seconds"].to_numpy(np.float64)
+    start, end = time[0] - seconds[0] / 2, time[-1] + seconds[-1] / 2
+    clock = COMMON if shared_clock else str(part["log"].iloc[0])
+    return Stretch(name, clock, float(start), float(end - start))
 
 
 def averaging_times(found: list[Still], steps: int) -> list[float]:

@@ -1,7 +1,7 @@
 """Rests and turns as the equations of the gyros take them, and which turns are refused."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, degrees, sin
 
 import numpy as np
@@ -12,7 +12,7 @@ from stages.contracts import tables
 from stages.contracts.records import Known, Manoeuvre, Performed
 from stages.estimation.bridging import bridges, sigma_of
 from stages.estimation.noise_levels import NoiseLevels
-from stages.estimation.stills import Still, stills
+from stages.estimation.stills import Still, stills, stretch_of
 from stages.inference import whole_turns
 from stages.inference.whole_turns import Angle, Earth, Position, Steady, Turn
 
@@ -30,6 +30,11 @@ class Recorded:
     done: Performed
     blocks: pd.DataFrame
     refusal: str  # empty where it can be used
+
+    @property
+    def steady(self) -> pd.DataFrame:
+        """Its blocks at the steady rate."""
+        return self.blocks[self.blocks["phase"] == "steady"]
 
 
 @dataclass(frozen=True)
@@ -71,19 +76,29 @@ def gyro_inputs(
     done: Mapping[str, Performed],
     levels: NoiseLevels,
     known: Mapping[str, Known],
+    shared_clock: bool = False,
 ) -> GyroInputs:
-    """Gather the rests and turns of one mount."""
-    found, left = stills(blocks, plan, done, levels, "gyro")
+    """Gather the rests and turns of one mount; `shared_clock` as in `stills`."""
+    found, left = stills(blocks, plan, done, levels, "gyro", shared_clock)
     recorded = recorded_turns(blocks, plan, done)
     left += [f"{one.plan.name}: {one.refusal}" for one in recorded if one.refusal]
     heading, rate_sigma = known["heading"].value, known["turn_rate"].scatter
     usable = [one for one in recorded if not one.refusal]
     up, level = known["earth_rate_up"], known["earth_rate_level"]
+    given = (levels, heading, rate_sigma)
     return GyroInputs(
         found,
         recorded,
-        [turn_of(r, levels, heading, rate_sigma) for r in usable if r.plan.recorded == "whole"],
-        [steady_of(r, levels, heading, rate_sigma) for r in usable if r.plan.recorded == "steady"],
+        [
+            replace(turn_of(r, *given), stretch=stretch_of(r.plan.name, r.blocks, shared_clock))
+            for r in usable
+            if r.plan.recorded == "whole"
+        ],
+        [
+            replace(steady_of(r, *given), stretch=stretch_of(r.plan.name, r.steady, shared_clock))
+            for r in usable
+            if r.plan.recorded == "steady"
+        ],
         Earth(up.number, up.scatter, level.number),
         known["position"].scatter,
         heading,
@@ -140,7 +155,9 @@ def position_of(m: Manoeuvre, heading: float | None) -> Position:
 def still_of(still: Still, heading: float | None, seconds: float = np.inf) -> whole_turns.Still:
     """A rest, or its first seconds."""
     position = position_of(still.manoeuvre, heading)
-    return whole_turns.Still(position, *still.over(seconds), still.about, still.angle)
+    mean, sigma = still.over(seconds)
+    stretch = still.during(seconds)
+    return whole_turns.Still(position, mean, sigma, still.about, still.angle, stretch=stretch)
 
 
 def turn_of(one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float) -> Turn:
@@ -170,7 +187,7 @@ def turn_of(one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma
 def steady_of(
     one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float
 ) -> Steady:
-    m, part = one.plan, one.blocks[one.blocks["phase"] == "steady"]
+    m, part = one.plan, one.steady
     assert m.rate is not None  # the plan wants a rate of such a turn
     seconds = part["seconds"].to_numpy(np.float64)
     missing = part["missing_s"].to_numpy(np.float64)

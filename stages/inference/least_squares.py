@@ -9,7 +9,7 @@ observations that contains these errors.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,8 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import minimize_scalar
 from scipy.stats import chi2
 from scipy.stats import f as f_distribution
+
+from stages.inference.elimination import Apart
 
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
@@ -29,8 +31,9 @@ NARROWED = 4.0  # a parameter is determined when the data narrow its vague prior
 class Estimate:
     """What least squares gives.
 
-    `values`: (p,); `covariance`: (p, p); `determined`: (p,); `chi_squared` of
-    `degrees` of freedom; `deviance`: −2 log of the restricted likelihood, up to a constant.
+    `values`: (p,); `determined`: (p,); `covariance`: (s, s), of the first s, p unless errors were
+    eliminated, with `sigma_apart`: (p − s,), of these; `chi_squared` of `degrees` of freedom;
+    `deviance`: −2 log of the restricted likelihood, up to a constant.
     """
 
     values: Array
@@ -41,11 +44,12 @@ class Estimate:
     deviance: float
     rows: int
     names: tuple[tuple[str, str], ...] = ()  # kind and name of each unknown, see System
+    sigma_apart: Array = field(default_factory=lambda: np.zeros(0))
 
     @property
     def sigma(self) -> Array:
         """Standard deviations of the values, (p,)."""
-        return np.sqrt(np.diag(self.covariance))
+        return np.append(np.sqrt(np.diag(self.covariance)), self.sigma_apart)
 
     def p_value(self, noise_degrees: float = np.inf) -> float:
         """Chance of a larger sum of squares if the model is right.
@@ -68,6 +72,7 @@ def solve(
     prior: Array,
     prior_sigma: Array,
     sought: int,
+    count: int | None = None,
 ) -> Estimate:
     """The estimate of smallest variance, by orthogonal triangularisation.
 
@@ -78,6 +83,7 @@ def solve(
     prior, prior_sigma : (p,)
     sought : the first so many unknowns are parameters with vague priors; the others
         are errors, each of which is an observation of zero as well
+    count : of the observations, where they were made fewer rows before
     """
     n, p = design.shape
     # In units of the priors every column is of comparable size.
@@ -97,11 +103,11 @@ def solve(
         determined=shrunk < NARROWED**-2,
         chi_squared=remaining,
         # A parameter that the data leave where it was takes no degree of freedom.
-        degrees=max(round(n - float(np.sum(1 - shrunk[:sought]))), 0),
+        degrees=max(round((count or n) - float(np.sum(1 - shrunk[:sought]))), 0),
         deviance=remaining
         + 2 * float(np.sum(np.log(sigma)))
         + 2 * float(np.sum(np.log(np.abs(np.diag(upper))))),
-        rows=n,
+        rows=count or n,
     )
 
 
@@ -110,7 +116,8 @@ class System:
     """Equations, and the names of their unknowns: the arguments of `solve` as one thing.
 
     `names`: (p,), kind and name of each unknown; kinds are parameter, effect, and those of
-    the errors.
+    the errors. `apart`: errors that were eliminated from these equations; the estimate has
+    them behind the others.
     """
 
     design: Array
@@ -120,16 +127,41 @@ class System:
     prior_sigma: Array
     sought: int
     names: tuple[tuple[str, str], ...]
+    apart: Apart | None = None
+
+    @property
+    def rows(self) -> int:
+        """The number of observations."""
+        return len(self.observed) if self.apart is None else self.apart.count
 
     def solve(self) -> Estimate:
         """The estimate of smallest variance."""
+        shared = self.solve_shared()
+        if self.apart is None:
+            return shared
+        moved = shared.values - self.prior
+        values, sigma = self.apart.found(moved, shared.covariance)
+        names = self.apart.names
+        known = np.array([self.apart.sigma.get(name, np.inf) for name in names])
+        return replace(
+            shared,
+            names=(*self.names, *names),
+            values=np.append(shared.values, values),
+            sigma_apart=sigma,
+            determined=np.append(shared.determined, sigma < known / NARROWED),
+        )
+
+    def solve_shared(self) -> Estimate:
+        """The same without the errors that were eliminated."""
         rows = (self.design, self.observed, self.sigma)
-        estimate = solve(*rows, self.prior, self.prior_sigma, self.sought)
-        return replace(estimate, names=self.names)
+        estimate = solve(*rows, self.prior, self.prior_sigma, self.sought, self.rows)
+        of_errors = self.apart.deviance if self.apart else 0.0
+        return replace(estimate, names=self.names, deviance=estimate.deviance + of_errors)
 
     def column(self, kind: str, name: str) -> int | None:
-        """Where an unknown stands."""
-        return self.names.index((kind, name)) if (kind, name) in self.names else None
+        """Where an unknown stands in the estimate."""
+        names = (*self.names, *(self.apart.names if self.apart else ()))
+        return names.index((kind, name)) if (kind, name) in names else None
 
     def reduced(self) -> "Reduced":
         """What the data say of the effects, all other unknowns fitted."""
@@ -149,7 +181,7 @@ class System:
             columns.T @ columns,
             columns.T @ right,
             float(right @ right),
-            len(rest) - self.sought,
+            self.rows - self.sought,
         )
 
 
@@ -213,11 +245,16 @@ INCONSISTENT = 0.01  # p-value below which the residuals are larger than the noi
 
 @dataclass(frozen=True)
 class Fitted:
-    """A fit, the scatter that it allows for, and the p-value of the fit without scatter."""
+    """A fit, what it allows for, and the p-value of the fit that allows for noise alone.
+
+    `scatter`, in the unit of the readings; `walk`: random walk of the bias, per √s, and its sigma.
+    """
 
     estimate: Estimate
     scatter: float
     p_value: float
+    walk: float = 0.0
+    walk_sigma: float = 0.0
 
 
 def with_scatter(

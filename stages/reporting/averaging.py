@@ -9,9 +9,18 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from stages.notation import numbers
-from stages.notation.units import Quantity, quantity
+from stages.notation.units import RANDOM_WALK, Quantity, quantity
 from stages.reporting.drawing import AXIS_COLOUR, INK, Margins, panels, plain_numbers, style, svg
-from stages.reporting.outline import Figure, Heading, Paragraph, Part, Section
+from stages.reporting.outline import (
+    Column,
+    Figure,
+    Heading,
+    Paragraph,
+    Part,
+    Row,
+    Section,
+    Table,
+)
 from stages.reporting.parameters import SENSOR, Estimate, by_kind, kind_of
 from stages.reporting.rows import Record, records
 
@@ -23,9 +32,10 @@ UNIT_OF = {"accelerometer": {"bias": "m/s²"}, "gyroscope": {"bias": "rad/s"}}
 def section(
     accelerometer_averaging: pd.DataFrame,
     gyroscope_averaging: pd.DataFrame,
+    wanted: Sequence[Record],
     parameters: Sequence[Record],
 ) -> Section:
-    """One figure per sensor and method, one panel per parameter."""
+    """One figure per sensor and method, one panel per parameter; the time for a wanted sigma."""
     unit_of = {row["id"]: row["unit"] for row in parameters}
     parts: list[Part] = []
     for frame, stage in (
@@ -42,6 +52,7 @@ def section(
             parts.append(
                 Paragraph("None: the parameters were not followed over the averaging time.")
             )
+    parts.append(_wanted(wanted))
     return Section(
         "averaging",
         "Parameters against averaging time",
@@ -50,6 +61,51 @@ def section(
         "The band is value ± σ. Where it narrows about zero, longer rests would still help; where "
         "the line leaves the band and stays away, something drifts.",
         parts,
+    )
+
+
+def _wanted(rows: Sequence[Record]) -> Table:
+    """How long each rest must last for a bias of a wanted sigma."""
+    return Table(
+        "How long each rest must last for a bias of a wanted σ, by S0's formulas.",
+        (
+            Column("Bias"),
+            Column("random walk", "number"),
+            Column("unit", "unit"),
+            Column("σ", "number", "Recorded"),
+            Column("rests of", "number", "Recorded"),
+            Column("floor", "number"),
+            Column("σ", "number", "Wanted"),
+            Column("unit", "unit", "Wanted"),
+            Column("rests of", "number", "Wanted"),
+        ),
+        tuple(_wanted_row(row) for row in rows),
+        empty="None: no formula of S0 gives a bias here.",
+        note="σ² = N²/T + floor², with the random walk N of the bias and rests of T each. The "
+        "floor is what no time averages out: tilts of the positions, gravity, an unknown azimuth.",
+    )
+
+
+def _wanted_row(row: Record) -> Row:
+    stage, method, parameter = row["parameter"].split("/")
+    unit = quantity(parameter, UNIT_OF[stage]["bias"]).laboratory
+    walk = RANDOM_WALK["gyro" if stage == "gyroscope" else "accel"]
+    sigma, floor, wanted = (
+        numbers.significant(unit.of(row[which]), 2) for which in ("sigma", "floor", "wanted")
+    )
+    seconds = row["wanted_seconds"]
+    return Row(
+        (
+            f"{parameter.replace('_', ' ')}, {Estimate(stage, method, (), None).name}",
+            numbers.significant(walk.of(row["random_walk"]), 2),
+            walk.name,
+            sigma,
+            f"{numbers.significant(row['seconds'], 3)} s",
+            floor,
+            wanted,
+            unit.name,
+            "no time does" if seconds is None else f"{numbers.significant(seconds, 2)} s",
+        )
     )
 
 

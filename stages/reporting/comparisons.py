@@ -16,6 +16,7 @@ KINDS = {
     "method_against_method": "Two methods",
     "straight_line": "Rates, straight line",
     "published": "Published, ours",
+    "fencepost": "Published, ours",
 }
 BEYOND = ": more than chance"  # as the sentences of comparison say it
 MOST_ROWS = 120
@@ -25,10 +26,15 @@ def section(differences: pd.DataFrame) -> Section:
     """Every difference in units of its sigma with the verdict in words, worst first."""
     rows = sorted(
         records(differences),
-        key=lambda row: (row["in_sigmas"] is None, -abs(row["in_sigmas"] or 0.0), row["id"]),
+        key=lambda row: (
+            not _fencepost(row),
+            row["in_sigmas"] is None,
+            -abs(row["in_sigmas"] or 0.0),
+            row["id"],
+        ),
     )
     compared = [row for row in rows if row["in_sigmas"] is not None]
-    beyond = [row for row in rows if _beyond(row)]
+    beyond = [row for row in compared if _beyond(row)]
     parts: list[Part] = []
     if compared:
         told = numbers.counted(len(compared), "comparison")
@@ -36,6 +42,9 @@ def section(differences: pd.DataFrame) -> Section:
         if len(beyond) == 1:
             text = text.replace("differ ", "differs ")
         parts.append(Paragraph(text[:1].upper() + text[1:], "fair" if beyond else "good"))
+    for row in filter(_fencepost, rows):
+        said = str(row["sentence"])
+        parts.append(Paragraph(said[:1].upper() + said[1:], "fair"))
     parts.append(_table(rows))
     if rows and not any(_kind(row) == "published" for row in rows):
         parts.append(Paragraph("Published values: none are known for this instrument."))
@@ -55,8 +64,13 @@ def _kind(row: Record) -> str:
     return str(row["kind"]).partition("@")[0]
 
 
+def _fencepost(row: Record) -> bool:
+    """Whether it says why published values are wrong, rather than that they are."""
+    return _kind(row) == "fencepost"
+
+
 def _beyond(row: Record) -> bool:
-    return BEYOND in row["sentence"]
+    return BEYOND in row["sentence"] or _fencepost(row)
 
 
 def _table(rows: Sequence[Record]) -> Table:

@@ -48,6 +48,7 @@ KIND = {
     "symmetric": "Axes out of square: the symmetric rest P of M = P R",
 }
 SYMBOL = {"bias": "b", "scale": "s", "cross": "m", "mounting": "ρ", "symmetric": "p"}
+WALK = ("random_walk", "random_walk_sigma")
 SMALL_P = 0.01
 MISFIT = "the model does not describe the data within the noise; sigmas are of noise only"
 COLUMNS = (
@@ -200,8 +201,10 @@ def fit_in_words(estimate: Estimate) -> tuple[str, Tone]:
         if not fit["degrees"]:
             return "nothing is left over to test the model with", "fair"
         return f"the model describes the data within the noise ({p_is})", "good"
-    if not fit["scatter"]:
+    if not (fit["scatter"] or fit["random_walk"]):
         return f"{MISFIT} ({p_is})", "poor"
+    if not fit["scatter"]:
+        return f"noise alone does not describe the data ({p_is}), a bias that walks does", "fair"
     unit = units.quantity("bias", fit["unit"]).laboratory
     scatter = f"{numbers.significant(unit.of(fit['scatter']), 2)} {unit.name}"
     return (
@@ -213,11 +216,26 @@ def fit_in_words(estimate: Estimate) -> tuple[str, Tone]:
 def _fit(estimate: Estimate) -> Paragraph:
     fit = estimate.fit or {}
     words, tone = fit_in_words(estimate)
-    allowed = ", the scatter between manoeuvres allowed for" if fit["scatter"] else ""
+    sizes = {"the scatter between manoeuvres": "scatter", "the walk of the bias": "random_walk"}
+    there = [name for name, size in sizes.items() if fit[size]]
+    allowed = f", {' and '.join(there)} allowed for" if there else ""
     return Paragraph(
         f"χ² = {numbers.significant(fit['chi_squared'])} with "
-        f"{numbers.counted(fit['degrees'], 'degree')} of freedom{allowed}: {words}.",
+        f"{numbers.counted(fit['degrees'], 'degree')} of freedom{allowed}: {words}.{_walk(fit)}",
         tone,
+    )
+
+
+def _walk(fit: Record) -> str:
+    """How far the bias walks; nothing where it does not."""
+    if not fit["random_walk"]:
+        return ""
+    unit = units.quantity("bias", fit["unit"]).laboratory
+    per_root_hour = [units.HOUR**0.5 * (fit[size] or 0.0) for size in WALK]
+    walk, sigma = (numbers.significant(unit.of(size), 2) for size in per_root_hour)
+    return (
+        f" The bias walks by {walk} ± {sigma} {unit.name}/√h; its value is that in the middle of "
+        "the campaign, and the sigmas allow for the walk."
     )
 
 

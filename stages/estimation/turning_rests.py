@@ -1,0 +1,101 @@
+"""The accelerometers while the table turns steadily: as good as a rest, with a known pull.
+
+A whole turn shows every accelerometer its part of gravity for as long as a rest. It also pulls at
+the case: f += ω × (ω × r), with an unknown lever arm r from the table's axis, for each of the three
+its own. At a steady rate only the component of r along the accelerometer counts, so three unknowns
+are enough; ramps, where the others count too, are left out.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from stages.contracts.records import Manoeuvre, Performed
+from stages.contracts.tables import AXES
+from stages.estimation.noise_levels import NoiseLevels
+from stages.estimation.stills import stretch_of
+from stages.estimation.turns import GYRO, refusal_of
+from stages.inference.six_position import Rest
+from stages.model.motion import turned_all
+
+Array = NDArray[np.float64]
+
+ACCEL = [f"accel_{axis}" for axis in AXES]
+LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU stands farther off
+ALIKE = np.radians(5)  # by how much the vertical may turn in the case within one mean
+
+
+def turning_rests(
+    blocks: pd.DataFrame,
+    plan: Sequence[Manoeuvre],
+    performed: Mapping[str, Performed],
+    noise: NoiseLevels,
+    shared_clock: bool,
+) -> list[tuple[str, Rest]]:
+    """The steady parts of all whole turns, each with its label, in means of like attitude.
+
+    `shared_clock`: whether times of different logs are comparable. The `traces` of each are those
+    of LEVER_ARM.
+    """
+    moving = dict(list(blocks[~blocks["phase"].str.startswith("rest")].groupby("manoeuvre")))
+    at_rest = blocks[blocks["phase"].isin(["rest-before", "rest-after"])]
+    quiet = dict(list(at_rest.groupby("manoeuvre")))
+    found: list[tuple[str, Rest]] = []
+    for m in plan:
+        if m.do != "turn" or m.recorded != "whole" or m.name not in moving:
+            continue
+        part = moving[m.name]
+        usable = performed[m.name].complete and not refusal_of(m, performed[m.name], part)
+        if usable and m.name in quiet and bool((part["phase"] == "steady").any()):
+            density = noise.of(m.name, "steady", ACCEL)
+            steady = part[part["phase"] == "steady"]
+            stretch = stretch_of(m.name, steady, shared_clock)
+            found += [
+                (f"{m.name} (steady)", replace(rest, stretch=stretch))
+                for rest in _steady(m, part, quiet[m.name], density)
+            ]
+    return found
+
+
+def _steady(m: Manoeuvre, part: pd.DataFrame, quiet: pd.DataFrame, density: Array) -> list[Rest]:
+    """The blocks of the steady part, as many in one mean as see the same attitude."""
+    assert m.up is not None and m.angle is not None  # else the turn is refused
+    seconds = part["seconds"].to_numpy(np.float64)
+    angle = _angles(m, part, quiet)
+    steady = np.flatnonzero((part["phase"] == "steady").to_numpy())
+    middle = np.cumsum(angle) - angle / 2
+    # The mean of a vector that turns is shorter than the vector.
+    level = m.up - (m.up @ m.axis) * m.axis
+    shorter = np.sinc(angle / (2 * np.pi))[:, None]
+    ups = m.up - level + turned_all(level, m.axis, middle) * shorter
+    read = part[ACCEL].to_numpy(np.float64)
+    rate = angle / seconds
+    turns = abs(float(angle[steady].sum())) * float(np.linalg.norm(level))
+    pieces = np.array_split(steady, max(1, int(np.ceil(turns / ALIKE))))
+    rests = []
+    for some in (piece for piece in pieces if len(piece)):
+        share = seconds[some] / seconds[some].sum()
+        square = float(share @ rate[some] ** 2)
+        pull = square * (np.outer(m.axis, m.axis) - np.eye(3))  # ω × (ω × r) of r
+        rests.append(
+            Rest(
+                m.position,
+                share @ ups[some],
+                share @ read[some],
+                density / np.sqrt(seconds[some].sum()),
+                traces=dict(zip(LEVER_ARM, pull.T, strict=True)),
+            )
+        )
+    return rests
+
+
+def _angles(m: Manoeuvre, part: pd.DataFrame, quiet: pd.DataFrame) -> Array:
+    """The angle of each block, (k,), rad: as the gyros along the axis share out the known whole."""
+    assert m.angle is not None  # else the turn is refused
+    along = np.nan_to_num(part[GYRO].to_numpy(np.float64)) @ m.axis
+    still = float(np.nan_to_num(quiet[GYRO].to_numpy(np.float64) @ m.axis).mean())
+    own = (along - still) * part["seconds"].to_numpy(np.float64)
+    return np.asarray(own * (m.angle / own.sum()))

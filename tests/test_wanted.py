@@ -1,0 +1,57 @@
+"""The time that the rests must last for a wanted sigma is the time that gives it."""
+
+import chain
+import numpy as np
+import pytest
+
+BIAS = ["bias_x", "bias_y", "bias_z"]
+
+
+def wanted(results: chain.Results, stage: str):
+    return results[f"{stage}/wanted"].set_index("parameter")
+
+
+@pytest.mark.parametrize(
+    ("stage", "method"), [("accelerometer", "six_position"), ("gyroscope", "static")]
+)
+def test_rests_of_that_length_have_that_sigma(stage, method, tmp_path):
+    short, long = (
+        chain.run(
+            chain.simulate(lasting(seconds), tmp_path / f"{seconds}"),
+            tmp_path / f"derived-{seconds}",
+        )
+        for seconds in (20, 60)
+    )
+    told, then = wanted(short, stage), wanted(long, stage)
+    rows = [f"{stage}/{method}/{name}" for name in BIAS]
+    assert list(told.index) == rows
+    # From what rests of 20 s give, the sigma of rests of 60 s is foretold, and the time for it.
+    told, then = told.loc[rows], then.loc[rows]
+    noise = told["random_walk"] ** 2 / then["seconds"]
+    # The level of the noise is known to some per cent.
+    np.testing.assert_allclose(np.sqrt(noise + told["floor"] ** 2), then["sigma"], rtol=0.06)
+    room = told["wanted"] ** 2 - told["floor"] ** 2
+    reachable = room > 0
+    time = told["random_walk"] ** 2 / room
+    np.testing.assert_allclose(told["wanted_seconds"][reachable], time[reachable])
+    assert told["wanted_seconds"][~reachable].isna().all()
+    assert reachable.any()
+
+
+def lasting(seconds: float):
+    document = chain.short()
+    for m in document["campaign"]["plan"]:
+        if m["do"] == "rest":
+            m["seconds"] = seconds
+    return document
+
+
+def test_no_time_averages_out_a_tilt(tmp_path):
+    document = chain.short()
+    document["campaign"]["table"]["position_sigma_arcsec"] = 30
+    results = chain.run(chain.simulate(document, tmp_path / "a"), tmp_path / "b")
+    told = wanted(results, "accelerometer")
+    # Four of six readings of an axis are level: σ g/√6 · √(4/6) = σ g/3.
+    floor = np.radians(30 / 3600) * 9.794 / 3
+    np.testing.assert_allclose(told["floor"], floor, rtol=1e-3)
+    assert told["wanted_seconds"].isna().all()
