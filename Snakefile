@@ -496,6 +496,7 @@ rule criticism:
             f"{DERIVED}/criticism/",
             "scores.parquet",
             "effects.parquet",
+            "blind_spots.parquet",
             "lines.parquet",
             "findings.parquet",
         ),

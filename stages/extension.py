@@ -52,9 +52,8 @@ def extension(
     Where nothing was named there is nothing to extend, and the tables are empty.
     """
     given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
-    named = [CATALOGUE[row["effect"]] for row in rows_of(scores) if row["named"]]
-    named = list(dict.fromkeys(named))
-    in_blocks = [effect for effect in named if not effect.rings]
+    named = {row["effect"]: _effect(row) for row in rows_of(scores) if row["named"]}
+    in_blocks = [effect for effect in named.values() if effect.sought_in == "blocks"]
     parameters: list[Row] = []
     covariances: list[pd.DataFrame] = []
     gain: list[Row] = []
@@ -70,6 +69,9 @@ def extension(
             campaign = campaign_of(
                 blocks, plan, done, levels, given, solution, share_a_clock(clocks)
             )
+            still = campaign.without_walk()
+            if still.deviance(in_blocks) <= campaign.deviance(in_blocks):
+                campaign = still  # the effects explain what looked like a random walk
             systems = campaign.systems(in_blocks, WIDE)
             for sensor, system in zip(SENSORS, systems, strict=True):
                 if system is not None:
@@ -77,7 +79,7 @@ def extension(
                     parameters += rows
                     covariances.append(covariance)
             gain += _gain(campaign, in_blocks)
-        if any(effect.rings for effect in named):
+        if "oscillation" in named:
             own = {m.name for m in plan}
             steps = {row["log"]: row["step"] for row in rows_of(clocks)}
             step_of = {m.name: steps[m.log] for m in plan}
@@ -89,6 +91,12 @@ def extension(
         "covariance": pd.concat(covariances) if covariances else empty,
         "gain": pd.DataFrame(gain) if gain else tables.GAIN.empty(),
     }
+
+
+def _effect(score: Row) -> Effect:
+    """The named effect, with the value that was found of what is scanned."""
+    effect = CATALOGUE[score["effect"]]
+    return effect if score["at"] is None else effect.fixed(score["at"])
 
 
 def _solved(
@@ -106,7 +114,7 @@ def _solved(
     for effect in effects:
         for parameter in effect.parameters:
             full = f"{effect.name}.{parameter.name}"
-            place = system.column("effect", full)
+            place = system.column("effect", f"{effect.label}.{parameter.name}")
             if place is not None and estimate.determined[place]:
                 names.append(f"extension/{method}/{full}")
                 places.append(place)

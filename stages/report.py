@@ -97,7 +97,7 @@ READS: Mapping[str, Table] = {
     "scores": tables.SCORES,
     "effects": tables.EFFECTS,
     "lines": tables.LINES,
-    "criticism_findings": tables.FINDINGS,
+    "criticism_findings": tables.CAUSES,
     "extended_parameters": tables.PARAMETERS,
     "gain": tables.GAIN,
     "differences": tables.DIFFERENCES,

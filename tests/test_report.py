@@ -194,7 +194,7 @@ def test_what_the_model_lacks_is_named_with_its_numbers() -> None:
 def test_blind_spots_say_what_would_have_been_seen() -> None:
     page = Page(made_up.documents().html)
     assert page.rows["criticism/lever_arm/r_x"][1:3] == ["1.6", "mm"]  # 5 · 0.33 mm
-    assert "Table tilt: not visible by this plan." in page.text
+    assert "Table tilt: This campaign cannot show table tilt. No manoeuvre" in page.text
     assert "criticism/table_tilt/north" not in page.rows
 
 

@@ -777,17 +777,48 @@ CHECKS = Table(
 
 # ---- criticism, extension
 
+CAUSES = Table(
+    "causes",
+    1,
+    (
+        *FINDINGS.columns,
+        Column("verdict", _text, "", "found, one_of_class, unknown_structure", nullable=True),
+        Column("members", _text, "", "those that cannot be told apart", nullable=True),
+        Column("statistic", _double, "1", "drop of chi-squared beside the others", nullable=True),
+        Column("degrees", _integer, "1", "of freedom of the drop", nullable=True),
+        Column("snr", _double, "1", "root of the drop less what noise adds", nullable=True),
+        Column("parameters", _text, "SI", "name = value ± sigma unit, each", nullable=True),
+    ),
+)
+BLIND_SPOTS = Table(
+    "blind_spots",
+    1,
+    (
+        Column("effect", _text, "", "name in the catalogue, with @ and the mount if of several"),
+        Column("parameter", _text, "", "name within the effect"),
+        Column("visible", _double, "as unit", "5 sigma: what could have been seen", nullable=True),
+        Column("best", _double, "as unit", "at the best value of what is scanned", nullable=True),
+        Column("worst", _double, "as unit", "and at the worst", nullable=True),
+        Column("unit", _text, "", "unit of these"),
+        Column("reason", _text, "", "visible, not_excited, absorbed, or only_together"),
+        Column("sentence", _text, "", "the same in words"),
+    ),
+)
 SCORES = Table(
     "scores",
-    1,
+    2,
     (
         Column("effect", _text, "", "name in the catalogue"),
         Column("cause", _text, "", "its physical cause"),
-        Column("sought_in", _text, "", "blocks, or the spectrum of the full-rate residuals"),
+        Column("sought_in", _text, "", "blocks, spectrum, noise or quality"),
         Column("statistic", _double, "1", "drop of chi-squared beyond what was named before it"),
         Column("degrees", _integer, "1", "of freedom: what the plan excites of the effect"),
         Column("p_value", _double, "1", "chance of such a statistic, or peak, by noise alone"),
         Column("named", _truth, "", "below the family-wise level"),
+        Column("verdict", _text, "", "found, one_of_class, unknown_structure; empty: not needed"),
+        Column("members", _text, "", "all causes that cannot be told apart, likeliest first"),
+        Column("snr", _double, "1", "signal-to-noise ratio of what is named", nullable=True),
+        Column("at", _double, "", "value of what is scanned of the effect", nullable=True),
         Column("sentence", _text, "", "what is said of it"),
     ),
 )

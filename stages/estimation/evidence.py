@@ -19,7 +19,7 @@ from stages.estimation.turns import GyroInputs, Recorded, gyro_inputs
 from stages.inference import six_position, whole_turns
 from stages.inference.azimuth import said_of
 from stages.inference.least_squares import Reduced, System
-from stages.inference.naming import Evidence
+from stages.inference.naming.evidence import Evidence
 from stages.inference.six_position import Rest
 from stages.inference.whole_turns import Around
 from stages.model.effect import Effect
@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 Traces = Mapping[str, Array]  # column → how the readings change per unit of it, (k, 3)
 
 ACCEL = [f"accel_{axis}" for axis in tables.AXES]
+USUAL = 10.0  # times its typical size: what an effect may be before the data are seen
 NOTHING = "Nothing is simulated, for the joint estimate determines no sensor wholly."
 CLEAR = 5.0  # sigmas of an effect that is seen
 MERGED = 5  # blocks of a turn that make one of the accelerometers, whose truth changes slowly
@@ -74,13 +75,20 @@ class Campaign:
         """Each effect by its name with every value of what is scanned of it, or by itself."""
         if not self._motions:
             return {effect.name: [effect] for effect in effects}
-        return {
-            effect.name: list(effect.candidates(self.motion)) or [effect] for effect in effects
-        }
+        return {effect.name: list(effect.candidates(self.motion)) or [effect] for effect in effects}
 
     def blind(self, effect: Effect) -> str:
         """Why this campaign cannot show an effect; empty where it may."""
         return effect.blind(self.motion) if self._motions else NOTHING
+
+    def without_walk(self) -> "Campaign":
+        """The same, the biases not walking."""
+        return replace(self, solution=replace(self.solution, walks=(0.0, 0.0)))
+
+    def deviance(self, effects: Sequence[Effect]) -> float:
+        """−2 log of the likelihood with some effects, each within ten of its typical sizes."""
+        systems = self.systems(effects, USUAL)
+        return sum(system.solve_shared().deviance for system in systems if system is not None)
 
     def systems(
         self, effects: Sequence[Effect], wide: float, only: set[str] | None = None
@@ -250,16 +258,20 @@ def _turning(
     return parts
 
 
-def evidence(campaign: Campaign, effects: Sequence[Effect]) -> Evidence:
+def evidence(
+    campaign: Campaign, effects: Sequence[Effect], noise_degrees: float = np.inf
+) -> Evidence:
     """What gyros and accelerometers say of the effects, all other unknowns fitted.
 
     Both are told apart but for the tilts of the positions, which each fits for itself. The
     columns are named by label and parameter of an effect. Nothing is said of an effect that is
     sought elsewhere, nor where it would not be seen at the largest size that is thought of: there
-    it could only take up what the equations round off.
+    it could only take up what the equations round off. `noise_degrees`: of freedom, from which the
+    noise is estimated.
     """
-    systems = zip(("gyro", "accel"), campaign.systems(effects, 1.0), strict=True)
-    said = [(sensor, system.reduced()) for sensor, system in systems if system is not None]
+    pairs = zip(("gyro", "accel"), campaign.systems(effects, 1.0), strict=True)
+    systems = [(sensor, system) for sensor, system in pairs if system is not None]
+    said = [(sensor, system.reduced()) for sensor, system in systems]
     largest = np.array(
         [
             effect.largest if effect.sought_in == "blocks" else 0.0
@@ -270,7 +282,10 @@ def evidence(campaign: Campaign, effects: Sequence[Effect]) -> Evidence:
     information = sum((np.diag(reduced.information) for _, reduced in said), np.zeros(1))
     clear = (largest * np.sqrt(information) > CLEAR).astype(np.float64)
     return Evidence(
-        tuple(_only(reduced, clear) for _, reduced in said), tuple(sensor for sensor, _ in said)
+        tuple(_only(reduced, clear) for _, reduced in said),
+        tuple(sensor for sensor, _ in said),
+        (noise_degrees,) * len(said),
+        sum((system.raw_information() for _, system in systems), np.zeros(1)),
     )
 
 

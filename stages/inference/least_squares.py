@@ -163,6 +163,11 @@ class System:
         names = (*self.names, *(self.apart.names if self.apart else ()))
         return names.index((kind, name)) if (kind, name) in names else None
 
+    def raw_information(self) -> Array:
+        """The information of the column of each effect, nothing else fitted, (k,)."""
+        effects = [i for i, (kind, _) in enumerate(self.names) if kind == "effect"]
+        return np.asarray(np.sum((self.design[:, effects] / self.sigma[:, None]) ** 2, axis=0))
+
     def reduced(self) -> "Reduced":
         """What the data say of the effects, all other unknowns fitted."""
         effects = [i for i, (kind, _) in enumerate(self.names) if kind == "effect"]

@@ -47,6 +47,7 @@ RANDOM_WALK = {
     "accel": Unit("m/s/√h", METRE_PER_SECOND_PER_SQRT_HOUR),
 }
 
+_RATIO = Quantity(PPM, Unit("10⁻⁶", 1e-6))
 _ANGLE = Quantity(SECONDS_OF_ARC, Unit("µrad", 1e-6))
 _BY_UNIT = {
     "m/s²": Quantity(MICRO_G, Unit("10⁻³ m/s²", 1e-3)),
@@ -61,10 +62,24 @@ _BY_UNIT = {
     ),
     "m/s³": Quantity(Unit("µg/h", STANDARD_GRAVITY * 1e-6 / HOUR), Unit("10⁻⁹ m/s³", 1e-9)),
     "m": Quantity(Unit("mm", 1e-3), Unit("m", 1.0)),
+    "1": _RATIO,
+    "(rad/s)/(m/s²)²": Quantity(
+        Unit("°/h/g²", DEGREE_PER_HOUR / STANDARD_GRAVITY**2),
+        Unit("10⁻⁶ (rad/s)/(m/s²)²", 1e-6),
+    ),
+    "1/(rad/s)": Quantity(Unit("ppm/(°/s)", 1e-6 / DEGREE), Unit("1/(rad/s)", 1.0)),
+    "1/(rad/s)²": Quantity(Unit("ppm/(°/s)²", 1e-6 / DEGREE**2), Unit("1/(rad/s)²", 1.0)),
+    "1/(m/s²)": Quantity(Unit("ppm/g", 1e-6 / STANDARD_GRAVITY), Unit("10⁻⁶ 1/(m/s²)", 1e-6)),
+    "1/K": Quantity(Unit("ppm/K", 1e-6), Unit("10⁻⁶ 1/K", 1e-6)),
+    "rad/s/K": Quantity(Unit("°/h/K", DEGREE_PER_HOUR), Unit("10⁻⁶ rad/s/K", 1e-6)),
+    "m/s²/K": Quantity(Unit("µg/K", 1e-6 * STANDARD_GRAVITY), Unit("10⁻⁶ m/s²/K", 1e-6)),
+    "(m/s²)/(m/s²)³": Quantity(
+        Unit("µg/g³", 1e-6 / STANDARD_GRAVITY**2), Unit("10⁻⁶ (m/s²)/(m/s²)³", 1e-6)
+    ),
+    "s": Quantity(Unit("s", 1.0), Unit("s", 1.0)),
     "s²/rad²": Quantity(Unit("ppm/(°/s)²", 1e-6 / DEGREE**2), Unit("s²/rad²", 1.0)),
 }
 _OF_OSCILLATION = Quantity(Unit("rad/s", 1.0), Unit("rad/s", 1.0))
-_RATIO = Quantity(PPM, Unit("10⁻⁶", 1e-6))
 _DIMENSIONLESS = {
     "asymmetry": _RATIO,
     "scale": _RATIO,

@@ -421,7 +421,8 @@ def _blind(missed: Sequence[Sought]) -> Table:
 def _blind_rows(one: Sought) -> Iterator[Row]:
     cause = numbers.shortened(one.score["cause"], 300)
     if not one.score["degrees"]:
-        yield Row((f"{_capital(one.name)}: {NOT_VISIBLE}. {_capital(cause)}.",), heads=True)
+        told = numbers.shortened(one.score["sentence"], 300)
+        yield Row((f"{_capital(one.name)}: {told} {_capital(cause)}.",), heads=True)
         return
     p_is = numbers.p_is(one.score["p_value"])
     yield Row((f"{_capital(one.name)}: not needed ({p_is}). {_capital(cause)}.",), heads=True)

@@ -601,7 +601,7 @@ def _of_the_model(
         "lines": rows_as(tables.LINES, _lines(turns)),
         "gain": rows_as(tables.GAIN, _gain()),
         "extended_parameters": rows_as(tables.PARAMETERS, _extended(parameters)),
-        "criticism_findings": rows_as(tables.FINDINGS, _criticism_findings()),
+        "criticism_findings": rows_as(tables.CAUSES, _criticism_findings()),
         "accelerometer_findings": tables.FINDINGS.empty(),
         "compensation_findings": tables.FINDINGS.empty(),
     }
@@ -649,7 +649,7 @@ def _fidelity(manoeuvres: Rows, turns: Rows) -> Rows:
 def _scores() -> Rows:
     def score(effect: str, cause: str, **more: Any) -> dict[str, Any]:
         needless: dict[str, Any] = {"sought_in": "blocks", "statistic": 3.1, "named": False}
-        needless |= {"degrees": 3, "p_value": 0.38}
+        needless |= {"degrees": 3, "p_value": 0.38, "verdict": "", "members": ""}
         said = f"No {effect} is needed (p = 0.38)."
         return {
             "effect": effect,
@@ -671,7 +671,8 @@ def _scores() -> Rows:
         ),
         score("lever_arm", "the accelerometers stand beside the axis of the table"),
         score("accel_quadratic", "the suspension of the proof mass is not symmetric"),
-        score("table_tilt", "the base of the table is not level", degrees=0, p_value=1.0),
+        score("table_tilt", "the base of the table is not level", degrees=0, p_value=1.0)
+        | {"sentence": "This campaign cannot show table tilt. No manoeuvre excites it."},
         score(
             "oscillation",
             "the case or the table's drive vibrates about one axis",
@@ -770,6 +771,9 @@ def _criticism_findings() -> Rows:
             "consequence": "The model without it is not the whole truth.",
             "action": "It is added to the model by the extension.",
             "sentence": "The data ask for gyro g sensitivity.",
+            "verdict": "found",
+            "members": "gyro_g_sensitivity",
+            "snr": 77.0,
         }
     ]
 

@@ -10,8 +10,3 @@ structure   whether the residuals of the refit still have a structure
 splitting   the manoeuvre that tells the members of a class apart
 limits      the power that no search exceeds
 """
-
-from stages.inference.naming.evidence import Evidence
-from stages.inference.naming.one_after_another import Score, name
-
-__all__ = ["Evidence", "Score", "name"]

@@ -1,0 +1,167 @@
+"""The rows that criticism writes of causes: scores, parameters, blind spots and findings."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from stages.criticising import words
+from stages.criticising.judging import Judged
+from stages.effects import CATALOGUE
+from stages.estimation.evidence import Campaign
+from stages.inference.naming.named import FOUND, ONE_OF_CLASS, Asked, Cause
+from stages.inference.naming.visible import VISIBLE
+from stages.model.effect import Effect
+
+Row = dict[str, Any]
+
+SENSORS = ("gyro", "accel")
+NAMED = (FOUND, ONE_OF_CLASS)
+SHARED = {"severity": 2, "count": 1, "unit": "sigma"}
+
+
+class Rows:
+    """What is said of one mount, row by row."""
+
+    def __init__(self, campaign: Campaign, judged: Judged, suffix: str) -> None:
+        self.campaign, self.judged, self.suffix = campaign, judged, suffix
+        self.causes = {cause.effect: cause for cause in judged.named.causes}
+
+    def scores(self) -> Iterator[Row]:
+        """How every effect that is sought in blocks was judged."""
+        for asked in self._asked():
+            effect = self.judged.effect(asked.effect, asked.value)
+            cause = self.causes.get(asked.effect)
+            if cause is None:
+                told = words.of_silence(effect, asked, self.campaign.blind(effect))
+            else:
+                told = words.of_cause(cause, effect, self._parameters(effect, cause.value))
+            named = cause is not None and cause.verdict in NAMED
+            yield {
+                "effect": effect.name,
+                "cause": effect.cause,
+                "sought_in": "blocks",
+                "statistic": cause.statistic if cause else asked.statistic,
+                "degrees": cause.degrees if cause else asked.degrees,
+                "p_value": cause.p_value if cause else asked.after_search,
+                "named": named,
+                "verdict": cause.verdict if cause else "",
+                "members": ", ".join(cause.members) if cause else "",
+                "snr": cause.snr if cause else None,
+                "at": effect.at,
+                "sentence": told,
+            }
+
+    def effects(self) -> Iterator[Row]:
+        """The parameters of every effect beside all that are named, and what could be seen."""
+        for asked in self._asked():
+            cause = self.causes.get(asked.effect)
+            value = cause.value if cause else asked.value
+            yield from self._parameters(self.judged.effect(asked.effect, value), value)
+
+    def blind_spots(self) -> Iterator[Row]:
+        """What this campaign could have seen of each parameter, or why nothing."""
+        for one in self.judged.visible:
+            effect = CATALOGUE[one.effect]
+            parameter = effect.parameters[one.parameter]
+            yield {
+                "effect": f"{effect.name}{self.suffix}",
+                "parameter": parameter.name,
+                "visible": one.size if one.reason == VISIBLE else None,
+                "best": one.best if one.reason == VISIBLE else None,
+                "worst": one.worst if one.reason == VISIBLE else None,
+                "unit": parameter.unit,
+                "reason": one.reason,
+                "sentence": words.of_blindness(effect, one, self.campaign.blind(effect)),
+            }
+
+    def findings(self) -> Iterator[Row]:
+        """One finding for each cause, the columns of every finding and those of a cause."""
+        for cause in self.judged.named.causes:
+            free = cause.effect not in self.judged.families
+            effect = None if free else self.judged.effect(cause.effect, cause.value)
+            rows = [] if effect is None else self._parameters(effect, cause.value)
+            told = words.of_cause(cause, effect or CATALOGUE["gyro_bias_ramp"], rows)
+            clear = cause.verdict in NAMED
+            yield SHARED | {
+                "id": f"criticism/{cause.effect}{self.suffix}",
+                "cause": cause.effect,
+                "sensor": self._sensor(cause),
+                "size": cause.snr,
+                "p_value": cause.p_value,
+                "sentence": told,
+                "consequence": "The model without it is not the whole truth; see what the"
+                " extension gains."
+                if clear
+                else "The joint estimate holds it as a random walk or as a scatter.",
+                "action": "It is added to the model by the extension."
+                if clear
+                else "Look at the residuals against time; record again, the IMU switched on long"
+                " before.",
+                "verdict": cause.verdict,
+                "members": ", ".join(cause.members),
+                "statistic": cause.statistic,
+                "degrees": cause.degrees,
+                "snr": cause.snr,
+                "parameters": "; ".join(_told(row) for row in rows if row["sigma"]),
+            }
+
+    def _asked(self) -> Sequence[Asked]:
+        return [one for one in self.judged.named.asked if one.effect in self.judged.families]
+
+    def _sensor(self, cause: Cause) -> str:
+        said = self.judged.said
+        return said.labels[said.sensor_of(cause.columns)]
+
+    def _parameters(self, effect: Effect, value: int) -> list[Row]:
+        """An effect's parameters, estimated with those of the causes."""
+        said = self.judged.said
+        if not said.sensors:
+            nothing = {"value": None, "sigma": None, "visible": None}
+            told = ((one.name, one.unit, one.meaning) for one in effect.parameters)
+            return [self._row(effect, *one) | nothing for one in told]
+        place = {name: i for i, name in enumerate(said.names)}
+        own = [place[f"{effect.label}.{parameter.name}"] for parameter in effect.parameters]
+        others = [c.columns for c in self.judged.named.causes if c.effect != effect.name]
+        chosen = list(dict.fromkeys([*own, *(i for columns in others for i in columns)]))
+        values, covariance = said.total.estimate(chosen)
+        sizes = {
+            effect.parameters[one.parameter].name: one.size
+            for one in self.judged.visible
+            if one.effect == effect.name and one.reason == VISIBLE
+        }
+        rows = [
+            self._row(effect, parameter.name, parameter.unit, parameter.meaning)
+            | _estimate(float(values[i]), float(covariance[i, i]))
+            | {"visible": sizes.get(parameter.name)}
+            for i, parameter in enumerate(effect.parameters)
+        ]
+        if effect.scan is not None and effect.at is not None and effect.name in self.causes:
+            apart = [abs((one.at or 0.0) - effect.at) for one in self.judged.families[effect.name]]
+            step = min((one for one in apart if one), default=0.0)
+            rows.append(
+                self._row(effect, effect.scan.name, effect.scan.unit, effect.scan.meaning)
+                | {"value": effect.at, "sigma": step / 12**0.5, "visible": None}
+            )
+        return rows
+
+    def _row(self, effect: Effect, name: str, unit: str, meaning: str) -> Row:
+        return {
+            "id": f"criticism/{effect.name}{self.suffix}/{name}",
+            "effect": effect.name,
+            "parameter": name,
+            "unit": unit,
+            "meaning": meaning,
+        }
+
+
+def _estimate(value: float, variance: float) -> Row:
+    seen = np.isfinite(variance) and variance > 0
+    return {
+        "value": value if seen else None,
+        "sigma": float(np.sqrt(variance)) if seen else None,
+    }
+
+
+def _told(row: Row) -> str:
+    return f"{row['parameter']} = {row['value']:.6g} ± {row['sigma']:.2g} {row['unit']}"

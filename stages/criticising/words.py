@@ -1,0 +1,79 @@
+"""What is said of a cause, of a class of causes, and of what was not seen."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from stages.inference.naming.named import FOUND, ONE_OF_CLASS, Asked, Cause
+from stages.inference.naming.visible import ABSORBED, NOT_EXCITED, ONLY_TOGETHER, Visible
+from stages.model.effect import Effect
+from stages.notation.causes import in_words
+from stages.notation.numbers import decimals_of, p_is, significant, with_sigma
+from stages.notation.units import quantity
+
+Row = Mapping[str, Any]
+
+CLEAR = 3.0  # sigmas from which a parameter is told
+REASONS = {
+    NOT_EXCITED: "no manoeuvre of this plan changes a reading by it",
+    ABSORBED: "the parameters that are estimated anyway do the very same here",
+    ONLY_TOGETHER: "only combinations of its parameters are seen, none by itself",
+}
+
+
+def of_cause(cause: Cause, effect: Effect, rows: Sequence[Row]) -> str:
+    """A cause in a sentence or two, with its numbers; or its class."""
+    numbers = "; ".join(_number(row) for row in _told(rows)) or "no parameter by itself"
+    if cause.verdict == FOUND:
+        return f"The data ask for {in_words(cause.effect)}: {effect.cause}. {numbers}."
+    others = [in_words(member) for member in cause.members if member != cause.effect]
+    if cause.verdict == ONE_OF_CLASS:
+        return (
+            f"The data ask for {in_words(cause.effect)} ({effect.cause}), or for"
+            f" {' or '.join(others)}: this campaign cannot tell them apart. As"
+            f" {in_words(cause.effect)}: {numbers}."
+        )
+    like = ", ".join([in_words(cause.effect), *others])
+    return f"The data drift in a way that no effect of the catalogue explains; nearest is {like}."
+
+
+def of_silence(effect: Effect, asked: Asked, blind: str) -> str:
+    """Why an effect is not named."""
+    title = in_words(effect.name)
+    if asked.degrees:
+        return f"No {title} is needed ({p_is(asked.after_search)})."
+    if blind or not effect.absorbed_by:
+        return f"This campaign cannot show {title}. {blind or 'No manoeuvre excites it.'}"
+    return f"No campaign of this kind shows {title}: {effect.absorbed_by} take it up."
+
+
+def of_blindness(effect: Effect, one: Visible, blind: str) -> str:
+    """What of a parameter could have been seen, or why nothing."""
+    parameter = effect.parameters[one.parameter]
+    title = f"{in_words(effect.name)}, {parameter.name}"
+    if one.reason in REASONS:
+        why = blind or (
+            f"{effect.absorbed_by} take it up" if effect.absorbed_by else REASONS[one.reason]
+        )
+        return f"{title}: not seen, for {why[:1].lower()}{why[1:].rstrip('.')}."
+    unit = quantity(parameter.name, parameter.unit).laboratory
+    size = f"{significant(unit.of(one.size), 2)} {unit.name}"
+    if one.best < one.worst:
+        span = [significant(unit.of(x), 2) for x in (one.best, one.worst)]
+        return f"{title}: seen from {size} on, from {span[0]} to {span[1]} by {_scanned(effect)}."
+    return f"{title}: seen from {size} on."
+
+
+def _scanned(effect: Effect) -> str:
+    return "what is scanned" if effect.scan is None else effect.scan.meaning
+
+
+def _told(rows: Sequence[Row]) -> list[Row]:
+    clear = [r for r in rows if r["sigma"] and abs(r["value"]) > CLEAR * r["sigma"]]
+    return clear or [r for r in rows if r["sigma"]]
+
+
+def _number(row: Row) -> str:
+    unit = quantity(row["parameter"], row["unit"]).laboratory
+    sigma = unit.of(row["sigma"])
+    value = " ± ".join(with_sigma(unit.of(row["value"]), sigma, decimals_of(sigma)))
+    return f"{row['parameter']} = {value} {unit.name}"
