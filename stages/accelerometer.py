@@ -1,7 +1,6 @@
 """The accelerometers from rests and steady turns: bias, M, mounting, with covariance."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -11,8 +10,8 @@ from stages.contracts import tables
 from stages.contracts.findings import Finding, table_of
 from stages.contracts.records import known_of, manoeuvres_of, performed_of, share_a_clock
 from stages.contracts.stage import Stage, Tables
+from stages.estimation.accelerometer_formulas import add_pooled_positions, add_six_positions
 from stages.estimation.estimates import (
-    NAMES,
     Estimates,
     by_mount,
     reasons,
@@ -23,12 +22,10 @@ from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.off_positions import findings
 from stages.estimation.stills import Still, averaging_times, stills
 from stages.estimation.turning_rests import LEVER_ARM, turning_rests
-from stages.estimation.wanted import Wanted
 from stages.inference import six_position, triad
 from stages.inference.least_squares import INCONSISTENT
 from stages.inference.off_position import off_position
-from stages.inference.pooled_positions import pooled_positions
-from stages.inference.six_position import Rest, equations, formula, weighted
+from stages.inference.six_position import Rest, equations, weighted
 
 Array = NDArray[np.float64]
 
@@ -83,24 +80,13 @@ def accelerometer(
             part = [*(_rest(still, seconds) for still in found), *moving]
             shorter = equations(part, *about, fitted.scatter, matrix, wide, fitted.walk)
             estimates.add_averaging(f"joint{suffix}", seconds, shorter.solve_shared())
-        planned = [_rest(still) for still in found if still.manoeuvre.do == "rest"]
-        solved = formula(planned, *about, fitted.scatter) if planned else None
-        if solved is not None:
-            unknowns, covariance = solved
-            values = triad.errors_of(unknowns)
-            estimates.add(f"six_position{suffix}", NAMES, values, covariance, {})
-            ideal = formula([replace(r, sigma=np.zeros(3)) for r in planned], *about)
-            assert ideal is not None  # it depends on the same attitudes
-            seconds = float(np.mean([s.seconds.sum() for s in found if s.manoeuvre.do == "rest"]))
-            for i, axis in enumerate(tables.AXES, triad.UNKNOWNS - 3):
-                sigma, floor = (float(np.sqrt(of[i, i])) for of in (covariance, ideal[1]))
-                time = Wanted(sigma, floor, seconds)
-                estimates.add_wanted(f"six_position{suffix}", axis, time, wanted_bias)
-        rests = [_rest(still) for still in found]
-        pooled = pooled_positions(rests, *about, fitted.scatter)
-        if pooled is not None and stops_between_turns(plan):
-            values = triad.errors_of(pooled.values)
-            estimates.add(f"pooled_positions{suffix}", NAMES, values, pooled.covariance, {})
+        stops = [_rest(still) for still in found]
+        planned = [
+            pair for pair in zip(found, stops, strict=True) if pair[0].manoeuvre.do == "rest"
+        ]
+        add_six_positions(estimates, suffix, planned, about, fitted.scatter, wanted_bias)
+        if stops_between_turns(plan):
+            add_pooled_positions(estimates, suffix, stops, about, fitted.scatter)
     return {**estimates.tables(), "findings": table_of(told)}
 
 

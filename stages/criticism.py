@@ -1,5 +1,6 @@
 """Which physical effects the simulation lacks, by name."""
 
+from functools import partial
 from typing import Any
 
 import pandas as pd
@@ -16,8 +17,10 @@ from stages.contracts.records import (
 )
 from stages.contracts.stage import Stage, Tables
 from stages.criticising import elsewhere, oscillations
+from stages.criticising.further import further
 from stages.criticising.judging import judge
 from stages.criticising.rows import Rows
+from stages.criticising.splitting import Foreseen
 from stages.criticising.unexplained import unexplained
 from stages.effects import CATALOGUE
 from stages.estimation.estimates import by_mount
@@ -63,7 +66,7 @@ def criticism(
     """
     given, done, clock = known_of(known), performed_of(performed), clocks_of(clocks)
     averaged = {row["log"] for row in rows_of(clocks) if row["clock"] == "GPS"}
-    levels = NoiseLevels(noise)
+    levels, shared = NoiseLevels(noise), share_a_clock(clocks)
     logs = {m.name: m.log for m in manoeuvres_of(manoeuvres)}
     walks = {row["method"]: row for row in rows_of(gyroscope_fit)}
     sought = {place: [e for e in CATALOGUE.values() if e.sought_in == place] for place in PLACES}
@@ -78,9 +81,15 @@ def criticism(
             suffix,
             (accelerometer_fit, gyroscope_fit),
         )
-        campaign = campaign_of(blocks, plan, done, levels, given, solution, share_a_clock(clocks))
+        campaign = campaign_of(blocks, plan, done, levels, given, solution, shared)
         judged = judge(campaign, in_blocks, level * BLOCKS_SHARE, levels.degrees)
-        rows = Rows(campaign, judged, suffix)
+        more = {
+            one.name: partial(
+                campaign_of, one.blocks, one.plan, one.performed, levels, given, solution, shared
+            )
+            for one in further(plan, done, blocks)
+        }
+        rows = Rows(campaign, judged, Foreseen(judged, more), suffix)
         own = {m.name for m in plan}
         rings = [
             ring

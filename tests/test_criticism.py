@@ -102,6 +102,15 @@ def test_what_is_hidden_is_named_alone_with_its_number(criticised, effect):
             assert 3 < abs(hidden) / found["visible"] < 30
 
 
+def test_the_manoeuvre_that_splits_a_class_is_named(criticised):
+    """With positions up, down and level only, the square and the size of the force are one."""
+    (cause,) = criticised("accel_quadratic", 51)["criticism/findings"].to_dict("records")
+    assert "45°" in cause["split_manoeuvre"] and cause["split_snr"] > 10
+    assert cause["split_manoeuvre"] in cause["action"]
+    (cause,) = criticised("lever_arm", 51)["criticism/findings"].to_dict("records")
+    assert cause["split_snr"] < 3.3 and "Not even this" in cause["action"]
+
+
 def test_a_jump_is_told_with_its_time(criticised):
     results = criticised("gyro_bias_jump", 51)
     effects = results["criticism/effects"].set_index(["effect", "parameter"])

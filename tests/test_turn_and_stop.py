@@ -29,7 +29,7 @@ def session(tmp_path_factory) -> chain.Results:
     campaign = chain.simulate(document, folder / "campaign")
     file = campaign / "campaign.yaml"
     file.write_text(file.read_text().replace("seconds: 20,", "seconds: 26,"))
-    return chain.run(campaign, folder / "derived", "comparison")
+    return chain.run(campaign, folder / "derived", "criticism")
 
 
 def test_all_of_it_is_found_from_the_plan(session):
@@ -81,3 +81,11 @@ def test_the_methods_agree(session):
         one.rpartition("/")[2] for one in told["id"]
     }
     assert set(TRUTH) == {parameter.partition("/")[0] for parameter in told["parameter"]}
+
+
+def test_the_same_rate_with_the_axis_down_is_advised_with_its_gain(session):
+    """S3 turns up at one rate and down at another: what goes with the rate or with the force?"""
+    told = session["criticism/blind_spots"].set_index("effect")["sentence"]
+    (advice,) = (one for one in told["gyro_scale_g_dependence"] if "turn also" in one)
+    assert "turn also at the same rate with the axis down, and it is 0 %" in advice
+    assert session["criticism/findings"].empty

@@ -788,6 +788,8 @@ CAUSES = Table(
         Column("degrees", _integer, "1", "of freedom of the drop", nullable=True),
         Column("snr", _double, "1", "root of the drop less what noise adds", nullable=True),
         Column("parameters", _text, "SI", "name = value ± sigma unit, each", nullable=True),
+        Column("split_manoeuvre", _text, "", "what would tell the members apart", nullable=True),
+        Column("split_snr", _double, "1", "how clearly it would, in sigmas", nullable=True),
     ),
 )
 BLIND_SPOTS = Table(

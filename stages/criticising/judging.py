@@ -29,12 +29,13 @@ SENSORS = ("gyro", "accel")
 class Judged:
     """What the blocks of one mount say: of every effect, of those that are named, and unseen.
 
-    `walks`: whether the biases walk in these equations; `families`: the candidates of each effect
-    by its name, in the order of `Sought.candidates`.
+    `walks`: whether the biases walk in these equations; `asked`: the columns of each effect in
+    `said`; `families`: its candidates by its name, in the order of `Sought.candidates`.
     """
 
     walks: bool
     said: Evidence
+    asked: Sequence[Sought]
     families: Mapping[str, Sequence[Effect]]
     named: Named
     visible: Sequence[Visible]
@@ -66,14 +67,14 @@ def _judge(
     campaign: Campaign, effects: Sequence[Effect], level: float, noise_degrees: float
 ) -> Judged:
     families = {name: tuple(family) for name, family in campaign.candidates(effects).items()}
-    said, asked = _asked(campaign, families, noise_degrees)
+    said, asked = said_of(campaign, families, noise_degrees)
     named = name_causes(said, asked, level)
     seen = visible(said, [one for one in asked if not one.free])
     if refined := to_refine(said, named, asked):
         families |= {name: _finer(families[name], places) for name, places in refined.items()}
-        said, asked = _asked(campaign, families, noise_degrees)
+        said, asked = said_of(campaign, families, noise_degrees)
         named = name_causes(said, asked, level)
-    return Judged(any(campaign.solution.walks), said, families, named, seen)
+    return Judged(any(campaign.solution.walks), said, asked, families, named, seen)
 
 
 def _finer(family: Sequence[Effect], places: Sequence[int]) -> tuple[Effect, ...]:
@@ -81,7 +82,7 @@ def _finer(family: Sequence[Effect], places: Sequence[int]) -> tuple[Effect, ...
     return tuple(family[0].fixed(float(at)) for at in finer(values, places, FINER))
 
 
-def _asked(
+def said_of(
     campaign: Campaign, families: Mapping[str, Sequence[Effect]], noise_degrees: float
 ) -> tuple[Evidence, list[Sought]]:
     """What the equations say of all candidates and of free courses, and what is sought there."""

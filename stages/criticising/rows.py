@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 
 from stages.criticising import words
+from stages.criticising.further import TURNED_OVER
 from stages.criticising.judging import Judged
+from stages.criticising.splitting import LIKE, Foreseen
 from stages.effects import CATALOGUE
 from stages.estimation.evidence import Campaign
 from stages.inference.naming.named import FOUND, ONE_OF_CLASS, Asked, Cause
@@ -23,8 +25,9 @@ SHARED = {"severity": 2, "count": 1, "unit": "sigma"}
 class Rows:
     """What is said of one mount, row by row."""
 
-    def __init__(self, campaign: Campaign, judged: Judged, suffix: str) -> None:
+    def __init__(self, campaign: Campaign, judged: Judged, foreseen: Foreseen, suffix: str) -> None:
         self.campaign, self.judged, self.suffix = campaign, judged, suffix
+        self.foreseen = foreseen
         self.causes = {cause.effect: cause for cause in judged.named.causes}
 
     def scores(self) -> Iterator[Row]:
@@ -72,12 +75,14 @@ class Rows:
                 "worst": one.worst if one.reason == VISIBLE else None,
                 "unit": parameter.unit,
                 "reason": one.reason,
-                "sentence": words.of_blindness(effect, one, self.campaign.blind(effect)),
+                "sentence": words.of_blindness(effect, one, self.campaign.blind(effect))
+                + self._advice(effect, parameter.name),
             }
 
     def findings(self) -> Iterator[Row]:
         """One finding for each cause, the columns of every finding and those of a cause."""
-        for cause in self.judged.named.causes:
+        for number, cause in enumerate(self.judged.named.causes):
+            split = self.foreseen.splitting(number)
             free = cause.effect not in self.judged.families
             effect = None if free else self.judged.effect(cause.effect, cause.value)
             rows = [] if effect is None else self._parameters(effect, cause.value)
@@ -94,7 +99,7 @@ class Rows:
                 " extension gains."
                 if clear
                 else "The joint estimate holds it as a random walk or as a scatter.",
-                "action": "It is added to the model by the extension."
+                "action": "It is added to the model by the extension." + words.of_split(split)
                 if clear
                 else "Look at the residuals against time; record again, the IMU switched on long"
                 " before.",
@@ -103,8 +108,19 @@ class Rows:
                 "statistic": cause.statistic,
                 "degrees": cause.degrees,
                 "snr": cause.snr,
+                "split_manoeuvre": split.manoeuvre if split else None,
+                "split_snr": split.separation if split else None,
                 "parameters": "; ".join(_told(row) for row in rows if row["sigma"]),
             }
+
+    def _advice(self, effect: Effect, parameter: str) -> str:
+        """S3 turns up at one rate and down at another: what the same rate would bring."""
+        if effect.name != "gyro_scale_g_dependence" or parameter != effect.parameters[0].name:
+            return ""
+        shares = self.foreseen.mimicry(effect.name, "gyro_scale_quadratic", TURNED_OVER)
+        if shares is None or shares[0] < LIKE:
+            return ""
+        return words.of_same_rate(*shares)
 
     def _asked(self) -> Sequence[Asked]:
         return [one for one in self.judged.named.asked if one.effect in self.judged.families]

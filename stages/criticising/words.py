@@ -3,6 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from stages.criticising.further import TURNED_OVER
+from stages.criticising.splitting import Splitting
 from stages.inference.naming.named import FOUND, ONE_OF_CLASS, Asked, Cause
 from stages.inference.naming.visible import ABSORBED, NOT_EXCITED, ONLY_TOGETHER, Visible
 from stages.model.effect import Effect
@@ -61,6 +63,24 @@ def of_blindness(effect: Effect, one: Visible, blind: str) -> str:
         span = [significant(unit.of(x), 2) for x in (one.best, one.worst)]
         return f"{title}: seen from {size} on, from {span[0]} to {span[1]} by {_scanned(effect)}."
     return f"{title}: seen from {size} on."
+
+
+def of_split(split: Splitting | None) -> str:
+    """What would tell the members of a class apart."""
+    if split is None:
+        return ""
+    clear = f"{significant(split.separation, 2)} sigma"
+    if split.tells:
+        return f" To tell them apart, {split.manoeuvre}: that would do it by {clear}."
+    return f" Not even this would tell them apart: {split.manoeuvre} ({clear})."
+
+
+def of_same_rate(now: float, then: float) -> str:
+    """What turns at the same rate with the axis down would bring."""
+    return (
+        f" {100 * now:.0f} % of it could as well be a scale factor that goes with the rate;"
+        f" {TURNED_OVER}, and it is {100 * then:.0f} %."
+    )
 
 
 def _scanned(effect: Effect) -> str:

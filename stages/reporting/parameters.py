@@ -33,6 +33,7 @@ METHOD = {
     "joint": "joint fit of all manoeuvres",
     "six_position": "six positions, S0",
     "free_positions": "rests of unknown attitude, by |f| = g",
+    "up_and_down": "two positions with tilt, S1",
     "pooled_positions": "stops at one attitude pooled, S3",
     "static": "rests up and down, S0",
     "turns": "turns forward and back, S0",

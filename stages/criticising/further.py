@@ -1,0 +1,85 @@
+"""Manoeuvres that a laboratory might add: copies of what it did, to foresee what they would tell.
+
+Only their information counts, which depends on attitude, rate and noise; the readings are those
+of the originals and mean nothing.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+import pandas as pd
+
+from stages.contracts.records import Manoeuvre, Performed
+from stages.contracts.tables import AXES
+
+GYRO = [f"gyro_{axis}" for axis in AXES]
+PAUSE = 60.0  # s, before a manoeuvre that is added
+TURNED_OVER = "turn also at the same rate with the axis down"
+FASTER = "turn also at twice the rate"
+BETWEEN_AXES = "rest also with two axes at 45° to the vertical"
+ONCE_MORE = "do the rests once more, in the reverse order"
+
+
+@dataclass(frozen=True)
+class Further:
+    """A campaign with some manoeuvres more: its plan, what was performed, and its blocks."""
+
+    name: str
+    plan: list[Manoeuvre]
+    performed: dict[str, Performed]
+    blocks: pd.DataFrame
+
+
+def further(
+    plan: Sequence[Manoeuvre], performed: Mapping[str, Performed], blocks: pd.DataFrame
+) -> Iterator[Further]:
+    """What might be added to a campaign."""
+    whole = [m for m in plan if m.up is not None and performed[m.name].complete]
+    turns = [m for m in whole if m.do == "turn" and m.recorded == "whole" and m.rate is not None]
+    rests = [m for m in whole if m.do == "rest"]
+
+    def added(name: str, pairs: Sequence[tuple[Manoeuvre, Manoeuvre, float]]) -> Further:
+        start = float(blocks["time"].max())
+        own, done = [blocks], dict(performed)
+        for original, copy, faster in pairs:
+            part = blocks[blocks["manoeuvre"] == original.name].copy()
+            part["manoeuvre"] = copy.name
+            part["time"] = start + PAUSE + (part["time"] - part["time"].min()) / faster
+            part["seconds"] /= faster
+            part["count"] /= faster
+            moving = ~part["phase"].str.startswith("rest")
+            part.loc[moving, GYRO] *= faster
+            start = float(part["time"].max())
+            own.append(part)
+            done[copy.name] = replace(performed[original.name], manoeuvre=copy.name)
+        manoeuvres = [*plan, *(copy for _, copy, _ in pairs)]
+        return Further(name, manoeuvres, done, pd.concat(own, ignore_index=True))
+
+    if turns:
+        yield added(TURNED_OVER, [(m, _turned_over(m), 1.0) for m in turns])
+        yield added(FASTER, [(m, _named(m, "faster"), 2.0) for m in turns])
+    if rests:
+        like = rests[0]
+        ups = [
+            (np.eye(3)[i] + sign * np.eye(3)[j]) / np.sqrt(2)
+            for i, j in combinations(range(3), 2)
+            for sign in (1, -1)
+        ]
+        diagonal = [
+            replace(_named(like, f"at 45° {number}"), up=up, mark=None)
+            for number, up in enumerate(ups, 1)
+        ]
+        yield added(BETWEEN_AXES, [(like, copy, 1.0) for copy in diagonal])
+        yield added(ONCE_MORE, [(m, _named(m, "once more"), 1.0) for m in reversed(rests)])
+
+
+def _named(m: Manoeuvre, what: str) -> Manoeuvre:
+    """A copy at a position of its own."""
+    return replace(m, name=f"{m.name} {what}", position=f"{m.position} {what}")
+
+
+def _turned_over(m: Manoeuvre) -> Manoeuvre:
+    assert m.up is not None  # else it is not chosen
+    return replace(_named(m, "turned over"), up=-m.up)

@@ -1,0 +1,74 @@
+"""Which further manoeuvre would tell the members of a class apart, by this campaign's noise."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stages.criticising.judging import Judged, said_of
+from stages.estimation.evidence import Campaign
+from stages.inference.least_squares import Reduced
+from stages.inference.naming.splitting import TELLS, split
+
+Array = NDArray[np.float64]
+
+LIKE = 0.9  # share of a signal that another effect can mimic, from which the two are one
+
+
+@dataclass(frozen=True)
+class Splitting:
+    """The manoeuvre that tells best, and the signal-to-noise ratio of its telling."""
+
+    manoeuvre: str
+    separation: float
+
+    @property
+    def tells(self) -> bool:
+        """Whether the likelier member would be right in 95 of 100 campaigns."""
+        return self.separation >= TELLS
+
+
+class Foreseen:
+    """What the campaign would say with each further manoeuvre; reckoned when it is asked for."""
+
+    def __init__(self, judged: Judged, further: Mapping[str, Callable[[], Campaign]]) -> None:
+        self._judged, self._further = judged, further
+        self._made: dict[str, Reduced] = {}
+
+    def with_(self, manoeuvre: str) -> Reduced:
+        """The information of all sensors."""
+        if manoeuvre not in self._made:
+            campaign = self._further[manoeuvre]()
+            said, _ = said_of(campaign, self._judged.families, np.inf)
+            self._made[manoeuvre] = said.total
+        return self._made[manoeuvre]
+
+    def splitting(self, number: int) -> Splitting | None:
+        """For one of the causes; None where it is alone in its class, or nothing tells."""
+        causes = self._judged.named.causes
+        if len(causes[number].members) < 2 or not self._further:
+            return None
+        every = {manoeuvre: self.with_(manoeuvre) for manoeuvre in self._further}
+        found = split(self._judged.said.total, every, self._judged.asked, causes, number)
+        return Splitting(found[0].manoeuvre, found[0].separation) if found else None
+
+    def mimicry(self, effect: str, other: str, manoeuvre: str) -> tuple[float, float] | None:
+        """Which share of an effect another can mimic, now and with a manoeuvre; None: unseen."""
+        if manoeuvre not in self._further or not self._judged.said.sensors:
+            return None
+        shares = [
+            self._mimicked(reduced, effect, other)
+            for reduced in (self._judged.said.total, self.with_(manoeuvre))
+        ]
+        return None if None in shares else (shares[0] or 0.0, shares[1] or 0.0)
+
+    def _mimicked(self, reduced: Reduced, effect: str, other: str) -> float | None:
+        columns = {one.name: list(one.candidates[0]) for one in self._judged.asked}
+        own, theirs = columns[effect], columns[other]
+        total = float(np.trace(reduced.information[np.ix_(own, own)]))
+        if total <= 0 or not np.any(reduced.information[np.ix_(theirs, theirs)]):
+            return None
+        across = reduced.information[np.ix_(theirs, own)]
+        inverse = np.linalg.pinv(reduced.information[np.ix_(theirs, theirs)], rcond=1e-10)
+        return float(np.trace(across.T @ inverse @ across)) / total
