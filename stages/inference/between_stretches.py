@@ -32,18 +32,20 @@ CURVED = 0.2  # relative change of a size, for the curvature of the likelihood
 class Times:
     """What is known of the times of the stretches: s from first to last, by one clock or several.
 
-    `noise`: of the mean reading of a stretch, so that sizes are sought about it.
+    `noise`: of the mean reading of a stretch, so that sizes are sought about it; `largest`: random
+    walk that is thought of, per √s: what is more, as by a hand, is a scatter.
     """
 
     noise: float
     span: float
     common: bool
+    largest: float = np.inf
 
     @property
     def walks(self) -> tuple[float, float]:
         """Between which sizes a random walk is sought, per √s."""
         unit = self.noise / float(np.sqrt(self.span))
-        return SMALLEST * unit, LARGEST * unit
+        return SMALLEST * unit, max(min(LARGEST * unit, self.largest), 2 * SMALLEST * unit)
 
 
 def with_drift(

@@ -50,16 +50,16 @@ class Stretch:
         return self.start + self.seconds
 
 
-def times_of(stretches: Sequence[Stretch], noise: float) -> Times | None:
+def times_of(stretches: Sequence[Stretch], noise: float, largest: float) -> Times | None:
     """What their times can tell of a walk; None where too few stretches have one.
 
-    `noise`: of the mean reading of a stretch.
+    `noise`: of the mean reading of a stretch; `largest`: walk that is thought of, per √s.
     """
     timed = [stretch for stretch in stretches if np.isfinite(stretch.end)]
     if len(timed) < FEWEST or not noise > 0:
         return None
     span = max(stretch.end for stretch in timed) - min(stretch.start for stretch in timed)
-    return Times(noise, span, all(stretch.clock == COMMON for stretch in timed))
+    return Times(noise, span, all(stretch.clock == COMMON for stretch in timed), largest)
 
 
 def trend(stretches: Sequence[Stretch]) -> Callable[[Stretch], Stretch]:

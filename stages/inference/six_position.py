@@ -26,6 +26,7 @@ Array = NDArray[np.float64]
 PRIOR = np.append(np.eye(3).ravel(), np.zeros(3))
 PRIOR_SIGMA = np.append(np.ones(9), np.full(3, 10.0))
 BIAS = 9  # where the three biases stand
+WALK = 2e-3  # m/s²/√s, 10 mg/√h: a hundred times that of the poorest sensors
 SCATTER = (1e-7, 1.0)  # m/s²: how much rests may differ beyond the noise
 
 
@@ -98,7 +99,7 @@ def fitted(
         straight = trend(stretches)
         rivals.append(between([straight(rest.stretch or Stretch("")) for rest in rests]))
     noise = float(np.nanmedian([*(rest.sigma for rest in rests), np.full(3, np.nan)]))
-    found = with_drift(fit, SCATTER, times_of(stretches, noise), rivals, noise_degrees)
+    found = with_drift(fit, SCATTER, times_of(stretches, noise, WALK), rivals, noise_degrees)
     if found.scatter or found.walk:
         estimate = weighted(rests, *given, found.scatter, found.walk, wide)
     return replace(found, estimate=estimate)

@@ -66,6 +66,7 @@ PRIOR = np.append(np.eye(3).ravel(), np.zeros(3))
 PRIOR_SIGMA = np.append(np.full(9, 0.1), np.full(3, 1.0))
 ROUNDS = 5  # times that the equations are made
 BIAS = 9  # where the three biases stand
+WALK = 8e-5  # rad/s/√s, 1000 °/h/√h: a hundred times that of the poorest gyros
 SCATTER = (1e-11, 0.1)  # rad/s: how much manoeuvres may differ beyond the noise
 
 
@@ -126,7 +127,7 @@ def fitted(
         rivals.append(alike(lambda _, stretch: straight(stretch)))
     noises = [one.sigma for one in every if not isinstance(one, Turn)]
     noise = float(np.nanmedian([*noises, np.full(3, np.nan)])) if noises else 0.0
-    found = with_drift(fit, SCATTER, times_of(stretches, noise), rivals, noise_degrees)
+    found = with_drift(fit, SCATTER, times_of(stretches, noise, WALK), rivals, noise_degrees)
     if found.scatter or found.walk:
         estimate = joint(stills, *rows, found.scatter, found.walk)
     return replace(found, estimate=estimate)
