@@ -10,6 +10,8 @@
 #   make bench                    errors, time and memory beside other programs, in one run; also
 #                                 with ONLY="cost noise"
 #   make style                    linters, types, and who may import whom
+#   make challenge                hides effects in many campaigns and says what is found; can be
+#                                 resumed; DRAWS=600 takes about 40 minutes
 #   make clean                    what can be made again from the raw logs; reports stay
 #   make setup                    only the environment, .venv; everything above sees to it itself
 
@@ -17,17 +19,19 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check trace test style bench clean setup pango campaign
+.PHONY: report check trace test style bench challenge clean setup pango campaign
 
 # Taken word for word and given to the shell through the environment, so that neither make nor the
 # shell runs what may stand in them.
 CAMPAIGN ?= demo
 ID ?=
 ONLY ?=
+DRAWS ?= 600
 override CAMPAIGN := $(value CAMPAIGN)
 override ID := $(value ID)
 override ONLY := $(value ONLY)
-export CAMPAIGN ID ONLY
+override DRAWS := $(value DRAWS)
+export CAMPAIGN ID ONLY DRAWS
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -83,6 +87,9 @@ style: setup
 bench: .venv/complete benchmarks/.venv/complete
 	read -ra parts <<< "$$ONLY"
 	PYTHONPATH=tests:tests/bounds OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks "$${parts[@]}"
+
+challenge: .venv/complete
+	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m hidden "$$DRAWS" data/derived/challenge.jsonl
 
 clean:
 	rm -rf data/derived .snakemake

@@ -68,7 +68,12 @@ def criticism(
     averaged = {row["log"] for row in rows_of(clocks) if row["clock"] == "GPS"}
     levels, shared = NoiseLevels(noise), share_a_clock(clocks)
     logs = {m.name: m.log for m in manoeuvres_of(manoeuvres)}
-    walks = {row["method"]: row for row in rows_of(gyroscope_fit)}
+    fits = {"gyro": rows_of(gyroscope_fit), "accel": rows_of(accelerometer_fit)}
+
+    def walks_of(method: str) -> dict[str, Row]:
+        rows = ((sensor, row) for sensor, table in fits.items() for row in table)
+        return {s: row for s, row in rows if row["method"] == method and row["random_walk"]}
+
     sought = {place: [e for e in CATALOGUE.values() if e.sought_in == place] for place in PLACES}
     in_blocks = sought["blocks"]
     others = [*sought["noise"], *sought["quality"], *(e for e in sought["spectrum"] if not e.rings)]
@@ -106,9 +111,10 @@ def criticism(
         ]
         heard = together(rings, level * (1 - BLOCKS_SHARE))
         made["scores"] += [*rows.scores(), oscillations.score(heard, rings)]
-        made["scores"] += elsewhere.scores(
-            others, walks.get(f"joint{suffix}") if judged.walks else None
-        )
+        own_walks = walks_of(f"joint{suffix}") if judged.walks else {}
+        made["scores"] += elsewhere.scores(others, own_walks.get("gyro"))
+        for sensor, walk in own_walks.items():
+            made["findings"] += elsewhere.findings(sensor, walk, judged.instead, suffix)
         made["effects"] += [*rows.effects(), *oscillations.effects(heard, rings, suffix)]
         made["blind_spots"] += rows.blind_spots()
         made["lines"] += oscillations.lines(rings)

@@ -144,5 +144,7 @@ def test_a_random_walk_is_no_ramp_and_no_g_sensitivity(tmp_path):
     campaign = chain.simulate(document, tmp_path / "campaign")
     results = chain.run(campaign, tmp_path / "derived", "criticism")
     assert named(results) == {"gyro_random_walk"}
+    (finding,) = results["criticism/findings"].to_dict("records")
+    assert finding["cause"] == "gyro_random_walk" and finding["severity"] == 1
     walk = results["criticism/scores"].set_index("effect").loc["gyro_random_walk", "sentence"]
-    assert "walk by 0." in walk
+    assert "walk by 0." in walk and "°/h/√h" in walk

@@ -3,15 +3,18 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from stages.inference.naming.named import FOUND
+from stages.inference.naming.named import FOUND, ONE_OF_CLASS
 from stages.model.effect import Effect
 from stages.notation.causes import in_words
 from stages.notation.numbers import decimals_of, with_sigma
-from stages.notation.units import DEGREE_PER_HOUR
+from stages.notation.units import DEGREE_PER_HOUR, MICRO_G
 
 Row = dict[str, Any]
 
 WALK = "gyro_random_walk"
+SENSORS = {"gyro": "triad of gyros", "accel": "triad of accelerometers"}
+UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
+SHARED = {"gyro": ("earth", "latitude", "heading"), "accel": ("lever", "size", "table")}
 ELSEWHERE = {
     "gyro_flicker": "In one campaign it is not told from a random walk, which is estimated.",
     "table_position_error": "Each position has tilts of its own, with the sigma of the table; one"
@@ -29,7 +32,8 @@ def scores(effects: Sequence[Effect], walk: Row | None) -> Iterator[Row]:
         found = effect.name == WALK and walk is not None and bool(walk["random_walk"])
         if found:
             assert walk is not None
-            told = f"The biases of the gyros walk by {_walk(walk)}, which the sigmas allow for."
+            size = _walk("gyro", walk)
+            told = f"The biases of the gyros walk by {size}, which the sigmas allow for."
         elif effect.sought_in == "quality":
             told = f"The quality of the samples tells it: findings “{in_words(effect.finding)}”."
         else:
@@ -50,10 +54,37 @@ def scores(effects: Sequence[Effect], walk: Row | None) -> Iterator[Row]:
         }
 
 
-def _walk(walk: Row) -> str:
+def findings(sensor: str, walk: Row, instead: Sequence[str], suffix: str) -> Iterator[Row]:
+    """The random walk of a sensor, `gyro` or `accel`, with the effects that may be it instead."""
+    cause = f"{sensor}_random_walk"
+    others = [name for name in instead if name.startswith((sensor, *SHARED[sensor]))]
+    told = f"The {SENSORS[sensor]} has a random walk of its biases: {_walk(sensor, walk)}."
+    if others:
+        names = " or ".join(in_words(name) for name in others)
+        told += f" Instead it may be {names}: this campaign cannot tell them apart."
+    value, sigma = walk["random_walk"], walk["random_walk_sigma"] or 0.0
+    yield {
+        "id": f"criticism/{cause}{suffix}",
+        "cause": cause,
+        "sensor": sensor,
+        "count": 1,
+        "size": float(value),
+        "unit": UNITS[sensor],
+        "severity": 1,
+        "sentence": told,
+        "consequence": "The sigmas of all parameters allow for it.",
+        "action": "Record the positions once more, in another order, to tell a walk from others."
+        if others
+        else "A shorter campaign, or turns there and back, lessen what it does.",
+        "verdict": ONE_OF_CLASS if others else FOUND,
+        "members": ", ".join([cause, *others]),
+        "parameters": f"K = {value:.3g} ± {sigma:.2g} {UNITS[sensor]}",
+    }
+
+
+def _walk(sensor: str, walk: Row) -> str:
     # By K per √s a bias walks by 60 K in the root of an hour.
-    value, sigma = (
-        float(walk[key] or 0.0) / DEGREE_PER_HOUR * 60
-        for key in ("random_walk", "random_walk_sigma")
-    )
-    return f"{' ± '.join(with_sigma(value, sigma, decimals_of(sigma)))} °/h/√h"
+    size, unit = (DEGREE_PER_HOUR, "°/h") if sensor == "gyro" else (MICRO_G.size, "µg")
+    both = (walk["random_walk"], walk["random_walk_sigma"])
+    value, sigma = (float(one or 0.0) / size * 60 for one in both)
+    return f"{' ± '.join(with_sigma(value, sigma, decimals_of(sigma)))} {unit}/√h"

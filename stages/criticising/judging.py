@@ -6,7 +6,7 @@ explanations are weighed by their likelihoods.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from stages.inference.naming.sought import Sought, sought
 from stages.inference.naming.visible import Visible, visible
 from stages.model.effect import Effect
 
+OCCAM = 20.0  # of the deviance: so much the sizes that were possible beforehand weigh at most
 FINER = 4  # steps of the second look in each interval of the first
 SENSORS = ("gyro", "accel")
 
@@ -29,11 +30,13 @@ SENSORS = ("gyro", "accel")
 class Judged:
     """What the blocks of one mount say: of every effect, of those that are named, and unseen.
 
-    `walks`: whether the biases walk in these equations; `asked`: the columns of each effect in
+    `walks`: whether the biases walk in these equations; `instead`: causes that would explain about
+    as well what the walk explains; `asked`: the columns of each effect in
     `said`; `families`: its candidates by its name, in the order of `Sought.candidates`.
     """
 
     walks: bool
+    instead: tuple[str, ...]
     said: Evidence
     asked: Sequence[Sought]
     families: Mapping[str, Sequence[Effect]]
@@ -59,8 +62,15 @@ def judge(
         for cause in alone.named.causes
         if cause.effect in alone.families
     ]
-    by_effects, by_walk = still.deviance(named), campaign.deviance([])
-    return alone if named and by_effects < by_walk - LIKELIER else with_walk
+    if not named:
+        return with_walk
+    worse = still.deviance(named) - campaign.deviance([])
+    if worse < -LIKELIER:
+        return alone
+    if worse > OCCAM:
+        return with_walk
+    members = [member for cause in alone.named.causes for member in cause.members]
+    return replace(with_walk, instead=tuple(dict.fromkeys(members)))
 
 
 def _judge(
@@ -74,7 +84,7 @@ def _judge(
         families |= {name: _finer(families[name], places) for name, places in refined.items()}
         said, asked = said_of(campaign, families, noise_degrees)
         named = name_causes(said, asked, level)
-    return Judged(any(campaign.solution.walks), said, asked, families, named, seen)
+    return Judged(any(campaign.solution.walks), (), said, asked, families, named, seen)
 
 
 def _finer(family: Sequence[Effect], places: Sequence[int]) -> tuple[Effect, ...]:

@@ -14,6 +14,7 @@ NAMES = {
     "accel_cross_products": "accelerometer cross products",
     "accel_cubic": "accelerometer cubic term",
     "accel_hysteresis": "accelerometer hysteresis",
+    "accel_random_walk": "random walk of the accelerometer biases",
     "accel_saturation": "accelerometer saturation",
     "accel_scale_asymmetry": "accelerometer scale asymmetry",
     "accel_scale_temperature": "accelerometer scale factor with temperature",
