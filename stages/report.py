@@ -55,6 +55,7 @@ from stages.reporting.logs import logs
 from stages.reporting.outline import Report
 from stages.reporting.page import page
 from stages.reporting.rows import only, records
+from stages.reporting.sought import sought as sought_of
 
 READS: Mapping[str, Table] = {
     "campaign": tables.CAMPAIGN,
@@ -185,7 +186,7 @@ def report(
             compensation_findings,
         )
     )
-    sought = lacks.sought(scores, effects)
+    sought = sought_of(scores, effects)
     asked_for = [one.finding for one in sought if one.score["named"]]
     drawn = logs(traces, segments, clocks, gaps)
     shown = evidence.evidence(

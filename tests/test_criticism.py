@@ -131,11 +131,21 @@ def test_what_this_plan_cannot_see_is_said_with_the_reason(demo_criticised):
     for effect, words in {
         "gyro_bias_temperature": "no temperature is recorded",
         "gyro_scale_cubic": "do the very same",
-        "table_speed_error": "take it up",
+        "table_speed_error": "it is taken for the angle of the table",
         "heading_error": "no heading",
     }.items():
         rows = told.loc[effect]
         assert rows["visible"].isna().all() and rows["sentence"].str.contains(words).all(), effect
+
+
+def test_why_an_effect_is_not_named_is_true(demo_criticised):
+    told = demo_criticised["criticism/scores"].set_index("effect")["sentence"]
+    # The g-sensitivity that is named does what a wrong latitude would do; by itself it is seen.
+    assert "beside what is named" in told["latitude_error"]
+    # One rate alone: the scale factor does the same.
+    assert "estimated anyway do the very same" in told["gyro_scale_cubic"]
+    assert "scale factors of the accelerometers" in told["gravity_error"]
+    assert not told.str.contains("No manoeuvre excites it").any()
 
 
 def test_a_random_walk_is_no_ramp_and_no_g_sensitivity(tmp_path):

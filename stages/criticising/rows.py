@@ -12,7 +12,7 @@ from stages.criticising.splitting import LIKE, Foreseen
 from stages.effects import CATALOGUE
 from stages.estimation.evidence import Campaign
 from stages.inference.naming.named import FOUND, ONE_OF_CLASS, Asked, Cause
-from stages.inference.naming.visible import VISIBLE
+from stages.inference.naming.visible import NOT_EXCITED, VISIBLE
 from stages.model.effect import Effect
 
 Row = dict[str, Any]
@@ -32,11 +32,13 @@ class Rows:
 
     def scores(self) -> Iterator[Row]:
         """How every effect that is sought in blocks was judged."""
+        reasons = {one.effect: one.reason for one in reversed(self.judged.visible)}
         for asked in self._asked():
             effect = self.judged.effect(asked.effect, asked.value)
             cause = self.causes.get(asked.effect)
             if cause is None:
-                told = words.of_silence(effect, asked, self.campaign.blind(effect))
+                reason = reasons.get(asked.effect, NOT_EXCITED)
+                told = words.of_silence(effect, asked, reason, self.campaign.blind(effect))
             else:
                 told = words.of_cause(cause, effect, self._parameters(effect, cause.value))
             named = cause is not None and cause.verdict in NAMED

@@ -6,7 +6,13 @@ from typing import Any
 from stages.criticising.further import TURNED_OVER
 from stages.criticising.splitting import Splitting
 from stages.inference.naming.named import FOUND, ONE_OF_CLASS, Asked, Cause
-from stages.inference.naming.visible import ABSORBED, NOT_EXCITED, ONLY_TOGETHER, Visible
+from stages.inference.naming.visible import (
+    ABSORBED,
+    NOT_EXCITED,
+    ONLY_TOGETHER,
+    VISIBLE,
+    Visible,
+)
 from stages.model.effect import Effect
 from stages.notation.causes import in_words
 from stages.notation.numbers import decimals_of, p_is, significant, with_sigma
@@ -38,14 +44,21 @@ def of_cause(cause: Cause, effect: Effect, rows: Sequence[Row]) -> str:
     return f"The data drift in a way that no effect of the catalogue explains; nearest is {like}."
 
 
-def of_silence(effect: Effect, asked: Asked, blind: str) -> str:
-    """Why an effect is not named."""
+def of_silence(effect: Effect, asked: Asked, reason: str, blind: str) -> str:
+    """Why an effect is not named; `reason`: that of its first parameter in `visible`."""
     title = in_words(effect.name)
     if asked.degrees:
         return f"No {title} is needed ({p_is(asked.after_search)})."
-    if blind or not effect.absorbed_by:
-        return f"This campaign cannot show {title}. {blind or 'No manoeuvre excites it.'}"
-    return f"No campaign of this kind shows {title}: {effect.absorbed_by} take it up."
+    if reason == VISIBLE:
+        return f"Nothing is left that {title} could explain beside what is named."
+    return f"This campaign cannot show {title}: {_why_not(effect, reason, blind)}."
+
+
+def _why_not(effect: Effect, reason: str, blind: str) -> str:
+    if effect.absorbed_by and not blind:
+        return f"it is taken for {effect.absorbed_by}"
+    why = blind.rstrip(".") or REASONS[reason]
+    return why[:1].lower() + why[1:]
 
 
 def of_blindness(effect: Effect, one: Visible, blind: str) -> str:
@@ -53,10 +66,7 @@ def of_blindness(effect: Effect, one: Visible, blind: str) -> str:
     parameter = effect.parameters[one.parameter]
     title = f"{in_words(effect.name)}, {parameter.name}"
     if one.reason in REASONS:
-        why = blind or (
-            f"{effect.absorbed_by} take it up" if effect.absorbed_by else REASONS[one.reason]
-        )
-        return f"{title}: not seen, for {why[:1].lower()}{why[1:].rstrip('.')}."
+        return f"{title}: not seen, for {_why_not(effect, one.reason, blind)}."
     unit = quantity(parameter.name, parameter.unit).laboratory
     size = f"{significant(unit.of(one.size), 2)} {unit.name}"
     if one.best < one.worst:

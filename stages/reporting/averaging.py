@@ -82,7 +82,8 @@ def _wanted(rows: Sequence[Record]) -> Table:
         tuple(_wanted_row(row) for row in rows),
         empty="None: no formula of S0 gives a bias here.",
         note="σ² = N²/T + floor², with the random walk N of the bias and rests of T each. The "
-        "floor is what no time averages out: tilts of the positions, gravity, an unknown azimuth.",
+        "floor is what no time averages out: tilts of the positions, gravity, an unknown azimuth, "
+        "and by what manoeuvres differ beyond noise.",
     )
 
 

@@ -9,6 +9,7 @@ import pandas as pd
 
 from stages.notation import numbers, units
 from stages.notation.causes import in_words
+from stages.reporting import blind_spots
 from stages.reporting.outline import (
     Column,
     Heading,
@@ -30,35 +31,13 @@ from stages.reporting.parameters import (
     written,
 )
 from stages.reporting.rows import Record, records
+from stages.reporting.sought import LABORATORY, SI, Sought, capital
 
 CLEAR = 3.0  # sigmas from which a parameter stands out
 LOUD = 1e-3  # p-value below which a line is listed
 MOST_LINES = 18
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
-NOT_VISIBLE = "not visible by this plan"
-LABORATORY, SI = "Laboratory", "SI"
 Pair = tuple[Record, Record | None]
-
-
-@dataclass(frozen=True)
-class Sought:
-    """An effect of the catalogue: how it was judged, and its parameters."""
-
-    score: Record
-    parameters: tuple[Record, ...]
-    mount: str  # of which mount, where there are several
-
-    @property
-    def name(self) -> str:
-        """The effect in words."""
-        mount = f" (mount {numbers.shortened(self.mount, 60)})" if self.mount else ""
-        return in_words(self.score["effect"]) + mount
-
-    @property
-    def finding(self) -> str:
-        """The identifier of the finding that names it."""
-        mount = f"@{self.mount}" if self.mount else ""
-        return f"criticism/{self.score['effect']}{mount}"
 
 
 @dataclass(frozen=True)
@@ -68,20 +47,6 @@ class Shift:
     stage: str
     name: str
     sigmas: float
-
-
-def sought(scores: pd.DataFrame, effects: pd.DataFrame) -> list[Sought]:
-    """Every effect with its parameters; of several mounts each by itself, as they come."""
-    groups: dict[str, dict[str, list[Record]]] = {}
-    for row in records(effects):
-        mount = row["id"].split("/")[1].partition("@")[2]
-        groups.setdefault(row["effect"], {}).setdefault(mount, []).append(row)
-    found = []
-    for score in records(scores):
-        mounts = groups.get(score["effect"], {})
-        mount = next(iter(mounts), "")
-        found.append(Sought(score, tuple(mounts.pop(mount, ())), mount))
-    return found
 
 
 def named(found: Iterable[Sought]) -> list[str]:
@@ -106,7 +71,7 @@ def section(
     parts += _extended(records(extended), joint)
     missed = [one for one in found if not one.score["named"]]
     if missed:
-        parts += [Heading("Looked for and not found: the blind spots"), _blind(missed)]
+        parts += [Heading("Looked for and not found: the blind spots"), blind_spots.table(missed)]
     return Section(
         "lacks",
         "What the model lacks",
@@ -152,7 +117,7 @@ def _listed(names: Sequence[str]) -> str:
 
 def _named(one: Sought, lines: pd.DataFrame) -> Iterator[Part]:
     score = one.score
-    yield Heading(_capital(one.name), f"lacks/{one.finding}")
+    yield Heading(capital(one.name), f"lacks/{one.finding}")
     cause = numbers.shortened(score["cause"], 300)
     said = [f"Cause: {cause}."]
     if score["sought_in"] == "blocks":
@@ -170,7 +135,7 @@ def _named(one: Sought, lines: pd.DataFrame) -> Iterator[Part]:
     more = [f"{numbers.counted(others, 'parameter')} within 3 σ of zero not listed"] * bool(others)
     more += [f"{numbers.counted(gaps, 'parameter')} not determined"] * bool(gaps)
     yield Table(
-        f"{_capital(one.name)}: the parameters beyond 3 σ.",
+        f"{capital(one.name)}: the parameters beyond 3 σ.",
         (
             Column("", "symbol"),
             Column("value", "number", LABORATORY),
@@ -184,7 +149,7 @@ def _named(one: Sought, lines: pd.DataFrame) -> Iterator[Part]:
         ),
         tuple(_effect_rows(clear)),
         empty="None by itself: only together they are beyond noise.",
-        note=_capital("; ".join(more) + ".") if more else "",
+        note=capital("; ".join(more) + ".") if more else "",
     )
     if score["sought_in"] != "blocks" and (heard := _heard(lines)):
         yield heard
@@ -400,49 +365,3 @@ def _ratio(value: float | None) -> str:
 
 
 # ---- blind spots
-
-
-def _blind(missed: Sequence[Sought]) -> Table:
-    return Table(
-        "Effects that were looked for and not found, with the smallest that this campaign could "
-        "have seen (5 σ).",
-        (
-            Column("", "symbol"),
-            Column("seen from", "number", LABORATORY),
-            Column("unit", "unit", LABORATORY),
-            Column("seen from", "number", SI),
-            Column("unit", "unit", SI),
-            Column("Meaning", "note"),
-        ),
-        tuple(row for one in missed for row in _blind_rows(one)),
-    )
-
-
-def _blind_rows(one: Sought) -> Iterator[Row]:
-    cause = numbers.shortened(one.score["cause"], 300)
-    if not one.score["degrees"]:
-        told = numbers.shortened(one.score["sentence"], 300)
-        yield Row((f"{_capital(one.name)}: {told} {_capital(cause)}.",), heads=True)
-        return
-    p_is = numbers.p_is(one.score["p_value"])
-    yield Row((f"{_capital(one.name)}: not needed ({p_is}). {_capital(cause)}.",), heads=True)
-    for row in one.parameters:
-        if row["visible"] is None and row["unit"] == "Hz":
-            continue  # any frequency is heard; what counts is the amplitude
-        quantity = units.quantity(row["parameter"], row["unit"])
-        seen = [
-            (numbers.significant(unit.of(row["visible"]), 2), unit.name)
-            if row["visible"] is not None
-            else (NOT_VISIBLE, "")
-            for unit in (quantity.laboratory, quantity.si)
-        ]
-        meaning = numbers.shortened(row["meaning"], 160)
-        yield Row(
-            (symbol(row["parameter"]), *seen[0], *seen[1], meaning),
-            row["id"],
-            "" if row["visible"] is not None else "fair",
-        )
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
