@@ -24,7 +24,7 @@ from stages.inference.six_position import Rest
 from stages.inference.whole_turns import Around
 from stages.model.effect import Effect
 from stages.model.forward import Triad, signatures
-from stages.model.motion import Motion, joined, turned_all
+from stages.model.motion import Motion, joined, mean_turned
 
 Array = NDArray[np.float64]
 Traces = Mapping[str, Array]  # column → how the readings change per unit of it, (k, 3)
@@ -243,7 +243,7 @@ def _turning(
     read = blocks[ACCEL].to_numpy(np.float64)
     seconds = blocks["seconds"].to_numpy(np.float64)
     assert m.up is not None  # else the turn is refused
-    ups = turned_all(m.up, m.axis, motion.angle)
+    ups = mean_turned(m.up, m.axis, motion.angle, motion.rate * seconds)
     parts = []
     pieces = [range(first, after, MERGED) for first, after in pairwise(edges)]
     starts = [start for piece in pieces for start in piece]
@@ -253,7 +253,7 @@ def _turning(
         mean = share @ read[some]
         up = share @ ups[some]
         sigma = density / np.sqrt(seconds[some].sum())
-        rest = Rest(m.position, up / np.linalg.norm(up), mean, sigma)
+        rest = Rest(m.position, up, mean, sigma)
         parts.append((m.name, rest, mean_motion(motion, some, share)))
     return parts
 

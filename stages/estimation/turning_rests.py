@@ -19,7 +19,7 @@ from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import stretch_of
 from stages.estimation.turns import GYRO, refusal_of
 from stages.inference.six_position import Rest
-from stages.model.motion import turned_all
+from stages.model.motion import mean_turned
 
 Array = NDArray[np.float64]
 
@@ -67,13 +67,11 @@ def _steady(m: Manoeuvre, part: pd.DataFrame, quiet: pd.DataFrame, density: Arra
     angle = _angles(m, part, quiet)
     steady = np.flatnonzero((part["phase"] == "steady").to_numpy())
     middle = np.cumsum(angle) - angle / 2
-    # The mean of a vector that turns is shorter than the vector.
-    level = m.up - (m.up @ m.axis) * m.axis
-    shorter = np.sinc(angle / (2 * np.pi))[:, None]
-    ups = m.up - level + turned_all(level, m.axis, middle) * shorter
+    ups = mean_turned(m.up, m.axis, middle, angle)
+    level = np.linalg.norm(m.up - (m.up @ m.axis) * m.axis)
     read = part[ACCEL].to_numpy(np.float64)
     rate = angle / seconds
-    turns = abs(float(angle[steady].sum())) * float(np.linalg.norm(level))
+    turns = abs(float(angle[steady].sum())) * float(level)
     pieces = np.array_split(steady, max(1, int(np.ceil(turns / ALIKE))))
     rests = []
     for some in (piece for piece in pieces if len(piece)):

@@ -189,3 +189,13 @@ def turned_all(direction: Array, about: Array, angles: Array) -> Array:
     along = about * np.sum(about * direction, axis=-1, keepdims=True)
     across = np.cos(angles)[:, None] * (direction - along)
     return np.asarray(along + across - np.sin(angles)[:, None] * np.cross(about, direction))
+
+
+def mean_turned(direction: Array, about: Array, middle: Array, angle: Array) -> Array:
+    """The mean of a direction while it turns by `angle` (n,) about each `middle` (n,), (n, 3).
+
+    What is across the axis becomes shorter, by sin(θ/2) / (θ/2).
+    """
+    along = (direction @ about) * about
+    shorter = np.sinc(angle / (2 * np.pi))[:, None]
+    return np.asarray(along + shorter * turned_all(direction - along, about, middle))
