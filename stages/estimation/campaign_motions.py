@@ -5,7 +5,6 @@ from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from stages.contracts import tables
@@ -30,24 +29,25 @@ class CampaignMotions:
 
     def __init__(
         self,
-        blocks: pd.DataFrame,
         plan: Sequence[Manoeuvre],
         levels: NoiseLevels,
         solution: Solution,
         heading: float | None,
+        shared_clock: bool,
     ) -> None:
-        self._means = _means(blocks)
+        self._shared_clock = shared_clock
         self._visits = {m.name: float(place) for place, m in enumerate(plan)}
         self._levels, self._solution, self._heading = levels, solution, heading
 
     def at_rest(self, still: Still) -> Motion:
         """A rest as one stretch."""
-        name, (time, temperature) = still.manoeuvre.name, self._means[still.label]
+        name, time = still.manoeuvre.name, still.mean_of(still.time)
+        time = time if self._shared_clock else np.nan
         later = AFTER if still.label.endswith("(rest-after)") else 0.0
         return replace(
             at_rest(still, self._solution, self._heading, time),
             visit=np.array([self._visits[name] + later]),
-            temperature=np.array([temperature]),
+            temperature=np.array([still.mean_of(still.temperature)]),
             vibration=self._levels.of_samples(name, "rest", ACCEL)[None],
         )
 
@@ -55,6 +55,7 @@ class CampaignMotions:
         """A turn in its blocks; about an axis that is not upright gravity hides how it shakes."""
         name = one.plan.name
         time, temperature = one.blocks[["time", "temperature"]].to_numpy(np.float64).T
+        time = time if self._shared_clock else np.full(len(time), np.nan)
         motion = in_blocks(one.plan, turn, self._solution, self._heading, time)
         upright = abs(float(turn.position.up @ turn.about)) > UPRIGHT
         shaken = self._levels.of_samples(name, "steady", ACCEL) if upright else np.full(3, np.nan)
@@ -64,16 +65,6 @@ class CampaignMotions:
             temperature=temperature,
             vibration=np.tile(shaken, (len(time), 1)),
         )
-
-
-def _means(blocks: pd.DataFrame) -> dict[str, tuple[float, float]]:
-    """Middle, s, and temperature, K, of every stretch at rest by its label; NaN where not known."""
-    means = {}
-    for (name, phase), part in blocks[blocks["count"] > 0].groupby(["manoeuvre", "phase"]):
-        label = str(name) if phase == "rest" else f"{name} ({phase})"
-        values = np.average(part[["time", "temperature"]], weights=part["count"], axis=0)
-        means[label] = float(values[0]), float(values[1])
-    return means
 
 
 def mean_motion(motion: Motion, some: slice, share: Array) -> Motion:

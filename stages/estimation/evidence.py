@@ -33,6 +33,8 @@ ACCEL = [f"accel_{axis}" for axis in tables.AXES]
 USUAL = 10.0  # times its typical size: what an effect may be before the data are seen
 NOTHING = "Nothing is simulated, for the joint estimate determines no sensor wholly."
 CLEAR = 5.0  # sigmas of an effect that is seen
+PIECE = 30.0  # s of a rest that count as one
+MOST = 100  # pieces of all rests together
 MERGED = 5  # blocks of a turn that make one of the accelerometers, whose truth changes slowly
 
 
@@ -200,10 +202,10 @@ def campaign_of(
     Without a shared clock the times of different logs are not comparable, and so none is given.
     """
     inputs = gyro_inputs(blocks, plan, done, levels, known, shared_clock)
-    found, _ = stills(blocks, plan, done, levels, "accel", shared_clock)
+    inputs = replace(inputs, stills=_in_pieces(inputs.stills))
+    found = _in_pieces(stills(blocks, plan, done, levels, "accel", shared_clock)[0])
     heading = inputs.heading
-    blocks = blocks if shared_clock else blocks.assign(time=np.nan)
-    motions = CampaignMotions(blocks, plan, levels, solution, heading)
+    motions = CampaignMotions(plan, levels, solution, heading, shared_clock)
     stills_of_gyro = [motions.at_rest(still) for still in inputs.stills]
     turns: list[Motion] = []
     rests: list[tuple[str, Rest, Motion]] = []
@@ -229,6 +231,12 @@ def campaign_of(
         known["gravity"],
         known["position"].scatter,
     )
+
+
+def _in_pieces(found: Sequence[Still]) -> list[Still]:
+    """Rests so finely that what changes within them is seen, and no more equations than needed."""
+    lasted = sum(float(still.seconds.sum()) for still in found)
+    return [one for still in found for one in still.pieces(max(PIECE, lasted / MOST))]
 
 
 def _rest(still: Still) -> Rest:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
@@ -18,6 +19,7 @@ Array = NDArray[np.float64]
 
 
 UNTIMED = Stretch("")
+IN_BLOCKS = ("means", "counts", "seconds", "time", "temperature")
 
 
 @dataclass(frozen=True)
@@ -26,7 +28,8 @@ class Still:
 
     `up`, `about`: (3,), body axes at the start of its manoeuvre; `angle`: rad, by which
     it has turned about `about` since; `means`: (k, 3), rad/s or m/s², NaN where not
-    recorded; `counts`, `seconds`: (k,); `density`: (3,), white noise per √s; `stretch`: of time.
+    recorded; `counts`, `seconds`, `time` of the middle, s, `temperature`, K: (k,); `density`: (3,),
+    white noise per √s; `stretch`: of time.
     """
 
     label: str
@@ -37,6 +40,8 @@ class Still:
     means: Array
     counts: Array
     seconds: Array
+    time: Array
+    temperature: Array
     density: Array
     stretch: Stretch = UNTIMED
 
@@ -51,6 +56,25 @@ class Still:
         with np.errstate(invalid="ignore", divide="ignore"):  # a channel that is not recorded
             summed, samples, lasted = self._so_far[:, count - 1]
             return summed / samples, self.density / np.sqrt(lasted)
+
+    def mean_of(self, values: Array) -> float:
+        """The mean of something over all samples, from its means in the blocks, (k,)."""
+        return float(np.average(values, weights=self.counts))
+
+    def pieces(self, seconds: float) -> list["Still"]:
+        """The same in pieces of about so many seconds, each a stretch of its own."""
+        count = max(round(float(self.seconds.sum()) / seconds), 1)
+        edges = np.linspace(0, len(self.seconds), min(count, len(self.seconds)) + 1).round()
+        return [
+            self._piece(slice(int(first), int(after)), number)
+            for number, (first, after) in enumerate(pairwise(edges))
+        ]
+
+    def _piece(self, some: slice, number: int) -> "Still":
+        start, end = _ends(self.time[some], self.seconds[some])
+        stretch = Stretch(f"{self.label} {number}", self.stretch.clock, start, end - start)
+        each = {name: getattr(self, name)[some] for name in IN_BLOCKS}
+        return replace(self, stretch=stretch, **each)
 
     def during(self, seconds: float = np.inf) -> Stretch:
         """The stretch of time of the first so many seconds."""
@@ -117,6 +141,8 @@ def stills(
                         part[channels].to_numpy(np.float64),
                         part["count"].to_numpy(np.float64),
                         part["seconds"].to_numpy(np.float64),
+                        part["time"].to_numpy(np.float64),
+                        part["temperature"].to_numpy(np.float64),
                         density,
                         stretch_of(label, part, shared_clock),
                     )
@@ -126,10 +152,14 @@ def stills(
 
 def stretch_of(name: str, part: pd.DataFrame, shared_clock: bool) -> Stretch:
     """The stretch of time of some blocks in their order."""
-    time, seconds = part["time"].to_numpy(np.float64), part["seconds"].to_numpy(np.float64)
-    start, end = time[0] - seconds[0] / 2, time[-1] + seconds[-1] / 2
+    start, end = _ends(part["time"].to_numpy(np.float64), part["seconds"].to_numpy(np.float64))
     clock = COMMON if shared_clock else str(part["log"].iloc[0])
-    return Stretch(name, clock, float(start), float(end - start))
+    return Stretch(name, clock, start, end - start)
+
+
+def _ends(time: Array, seconds: Array) -> tuple[float, float]:
+    """When some blocks begin and end, from their middles, s."""
+    return float(time[0] - seconds[0] / 2), float(time[-1] + seconds[-1] / 2)
 
 
 def averaging_times(found: list[Still], steps: int) -> list[float]:
