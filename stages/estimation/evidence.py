@@ -21,13 +21,13 @@ from stages.inference.azimuth import said_of
 from stages.inference.least_squares import Reduced, System
 from stages.inference.naming.evidence import Evidence
 from stages.inference.six_position import Rest
+from stages.inference.traces import Traces
 from stages.inference.whole_turns import Around
 from stages.model.effect import Effect
 from stages.model.forward import Triad, signatures
 from stages.model.motion import Motion, joined, mean_turned
 
 Array = NDArray[np.float64]
-Traces = Mapping[str, Array]  # column → how the readings change per unit of it, (k, 3)
 
 ACCEL = [f"accel_{axis}" for axis in tables.AXES]
 USUAL = 10.0  # times its typical size: what an effect may be before the data are seen
@@ -119,7 +119,7 @@ class Campaign:
             self.inputs.stills, self.inputs.rests(), of_stills, strict=True
         ):
             if only is None or still.manoeuvre.name in only:
-                rests.append(replace(rest, traces={k: trace[0] for k, trace in told.items()}))
+                rests.append(replace(rest, traces=Traces(told.names, told.values[0])))
         for recorded, turn, told in zip(self._whole, self.inputs.turns, of_turns, strict=True):
             if only is None or recorded.plan.name in only:
                 turns.append(replace(turn, traces=told))
@@ -144,7 +144,7 @@ class Campaign:
         if self.solution.accelerometer is None:
             return None
         rests = [
-            replace(rest, traces={k: trace[0] for k, trace in told.items()})
+            replace(rest, traces=Traces(told.names, told.values[0]))
             for (name, rest, _), told in zip(self.rests, traces, strict=True)
             if only is None or name in only
         ]
@@ -166,26 +166,23 @@ class Campaign:
 
         Gyros: one for each rest, then for each turn; accelerometers: one for each of `rests`.
         """
+        ends = [0, *accumulate(len(motion.rate) for motion in self._motions)]
+        parts = [slice(first, after) for first, after in pairwise(ends)]
+        gyros = len(parts) - len(self.rests)
         if not effects or not self._motions:
-            return [{} for _ in self._motions[: -len(self.rests) or None]], [{} for _ in self.rests]
+            nothing = [Traces(values=np.zeros((part.stop - part.start, 3, 0))) for part in parts]
+            return nothing[:gyros], nothing[gyros:]
         unit = Triad(np.eye(3), np.zeros(3))
         solution = self.solution
         triads = solution.gyro or unit, solution.accelerometer or unit
         told = signatures(self.motion, solution.site, *triads, effects)
-        ends = [0, *accumulate(len(motion.rate) for motion in self._motions)]
-        parts = [slice(first, after) for first, after in pairwise(ends)]
-        gyros = len(parts) - len(self.rests)
+        names = tuple(f"{e.label}.{parameter.name}" for e in effects for parameter in e.parameters)
 
-        def of(sensor: str, part: slice) -> Traces:
-            return {
-                f"{effect.label}.{parameter.name}": getattr(trace, sensor)[part, :, i]
-                for effect, trace in zip(effects, told, strict=True)
-                for i, parameter in enumerate(effect.parameters)
-            }
+        def of(sensor: str, some: Sequence[slice]) -> list[Traces]:
+            every = np.concatenate([getattr(trace, sensor) for trace in told], axis=2)
+            return [Traces(names, every[part]) for part in some]
 
-        return [of("gyro", part) for part in parts[:gyros]], [
-            of("accel", part) for part in parts[gyros:]
-        ]
+        return of("gyro", parts[:gyros]), of("accel", parts[gyros:])
 
 
 def campaign_of(

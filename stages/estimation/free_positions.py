@@ -108,6 +108,8 @@ def _still(
         part[channels].to_numpy(np.float64),
         part["count"].to_numpy(np.float64),
         part["seconds"].to_numpy(np.float64),
+        part["time"].to_numpy(np.float64),
+        part["temperature"].to_numpy(np.float64),
         noise.of(name, "rest", channels),
     )
 

@@ -19,6 +19,7 @@ from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import stretch_of
 from stages.estimation.turns import GYRO, refusal_of
 from stages.inference.six_position import Rest
+from stages.inference.traces import Traces
 from stages.model.motion import mean_turned
 
 Array = NDArray[np.float64]
@@ -84,7 +85,7 @@ def _steady(m: Manoeuvre, part: pd.DataFrame, quiet: pd.DataFrame, density: Arra
                 share @ ups[some],
                 share @ read[some],
                 density / np.sqrt(seconds[some].sum()),
-                traces=dict(zip(LEVER_ARM, pull.T, strict=True)),
+                traces=Traces(tuple(LEVER_ARM), pull),
             )
         )
     return rests

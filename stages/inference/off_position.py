@@ -94,6 +94,6 @@ def _traced(rests: Sequence[Rest], gravity: float, matrix: Array) -> list[Rest]:
     for rest in rests:
         level = all_level_axes(rest.up[None])[0]
         leans = np.cross(level, gravity * rest.up) @ matrix.T
-        own = {f"{rest.position}/{i}": lean for i, lean in enumerate(leans)}
-        found.append(replace(rest, traces={**rest.traces, **own}))
+        own = [f"{rest.position}/{i}" for i in range(2)]
+        found.append(replace(rest, traces=rest.traces.and_of(own, leans.T)))
     return found

@@ -65,8 +65,7 @@ def of_rests(
         rows[:, row, 3 * row : 3 * row + 3] = known + earth.up * ups
         rows[:, row, 9 + row] = 1.0
     rows[:, :, UNKNOWNS] = ups @ matrix.T
-    for column, name in enumerate(effects, UNKNOWNS + 1):
-        rows[:, :, column] = [still.traces.get(name, np.zeros(3)) for still in stills]
+    rows[:, :, UNKNOWNS + 1 : s] = [still.traces.of(effects) for still in stills]
     for i in (0, 1):
         rows[:, :, s + i] = all_turned(levels[:, i], abouts, angles) @ matrix.T
     rows[:, :, -1] = np.array([still.mean for still in stills]) + rows[:, :, UNKNOWNS] * earth.up
@@ -108,8 +107,7 @@ def of_steady(
         known = shares @ turned_all(north, steady.about, angles)
     up = matrix @ steady.position.up
     truth = steady.rate * steady.about + known + earth.up * steady.position.up
-    columns = [design_of(truth), up[:, None]]
-    columns += [steady.traces.get(effect, np.zeros(3))[:, None] for effect in effects]
+    columns = [design_of(truth), up[:, None], steady.traces.of(effects)]
     sigma |= dict.fromkeys(names, earth.level / np.sqrt(2))
     if names:
         level = [shares @ turned_all(a, steady.about, angles) for a in level_of(steady.position)]

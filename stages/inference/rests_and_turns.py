@@ -1,16 +1,15 @@
 """Rests and turns of a campaign as the equations of the gyros take them."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stages.inference.random_walk import Stretch
+from stages.inference.traces import NONE, Traces
 
 Array = NDArray[np.float64]
-# How the rates change per unit of the parameters of effects, by name: (3,), or (k, 3) for blocks.
-Traces = Mapping[str, Array]
 
 
 @dataclass(frozen=True)
@@ -45,7 +44,7 @@ class Still:
     sigma: Array
     about: Array
     angle: float = 0.0
-    traces: Traces = field(default_factory=dict)
+    traces: Traces = NONE
     stretch: Stretch | None = None
 
 
@@ -83,7 +82,7 @@ class Turn:
     by_hand: bool = False
     bridges: Sequence[Bridge] = ()
     bridged_sigma: float = 0.0
-    traces: Traces = field(default_factory=dict)
+    traces: Traces = NONE
     stretch: Stretch | None = None
 
     @property
@@ -132,5 +131,5 @@ class Steady:
     elapsed: Array
     mean: Array
     sigma: Array
-    traces: Traces = field(default_factory=dict)
+    traces: Traces = NONE
     stretch: Stretch | None = None

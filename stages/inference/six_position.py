@@ -7,7 +7,7 @@ unknowns with the sigma of the table; g one unknown with the sigma of gravity.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from stages.inference.least_squares import Estimate, Fitted, System
 from stages.inference.level import all_level_axes
 from stages.inference.random_walk import Stretch, drifting, times_of, trend
 from stages.inference.rest_rows import whitened
+from stages.inference.traces import NONE, Traces
 from stages.inference.triad import UNKNOWNS
 
 Array = NDArray[np.float64]
@@ -41,7 +42,7 @@ class Rest:
     up: Array  # (3,)
     mean: Array  # (3,)
     sigma: Array  # (3,)
-    traces: Mapping[str, Array] = field(default_factory=dict)  # effect parameter → (3,) per unit
+    traces: Traces = NONE
     stretch: Stretch | None = None
 
 
@@ -166,8 +167,7 @@ def _rows(
         rows[:, row, 3 * row : 3 * row + 3] = gravity * ups
         rows[:, row, 9 + row] = 1.0
     rows[:, :, UNKNOWNS] = along
-    for column, name in enumerate(effects, UNKNOWNS + 1):
-        rows[:, :, column] = [rest.traces.get(name, np.zeros(3)) for rest in rests]
+    rows[:, :, UNKNOWNS + 1 : s] = [rest.traces.of(effects) for rest in rests]
     level = all_level_axes(ups)
     for axis in (0, 1):
         rows[:, :, s + axis] = np.cross(level[:, axis], gravity * ups) @ matrix.T

@@ -138,9 +138,9 @@ class _Blocks:
             seen[:, row, 3 * row : 3 * row + 3] = truth
             seen[:, row, 9 + row] = seconds
         seen[:, :, UNKNOWNS] = np.outer(seconds, matrix @ turn.position.up)
-        for column, effect in enumerate(self.effects, UNKNOWNS + 1):
-            if effect in turn.traces:
-                seen[:, :, column] = turn.traces[effect][some] * seconds[:, None]
+        if turn.traces.names:
+            traces = turn.traces.of(self.effects)[some]
+            seen[:, :, UNKNOWNS + 1 : s] = traces * seconds[:, None, None]
         column = s
         if turn.position.north is None:
             for axis in level_of(turn.position):

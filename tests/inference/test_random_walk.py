@@ -11,6 +11,7 @@ from stages.inference import six_position
 from stages.inference.elimination import Part, eliminated
 from stages.inference.random_walk import Stretch, drifting
 from stages.inference.six_position import Rest
+from stages.inference.traces import Traces
 from stages.inference.whole_turns import around_of, equations, fitted, joint
 
 G, GRAVITY_SIGMA = 9.7936174, 1e-6
@@ -126,11 +127,11 @@ def named(run, walk: float) -> bool:
     def traces(one):
         told = [np.eye(3)[i] * one.position.up[j] for i in range(3) for j in range(3)]
         told += [np.eye(3)[i] * (one.stretch.start + one.stretch.end) / 2 for i in range(3)]
-        return dict(zip(names, told, strict=True))
+        return np.column_stack(told)
 
-    stills = [replace(one, traces=traces(one)) for one in run.stills]
+    stills = [replace(one, traces=Traces(tuple(names), traces(one))) for one in run.stills]
     turns = [
-        replace(one, traces={k: np.tile(v, (len(one.sums), 1)) for k, v in traces(one).items()})
+        replace(one, traces=Traces(tuple(names), np.tile(traces(one), (len(one.sums), 1, 1))))
         for one in run.turns
     ]
     around = around_of(joint(run.stills, run.turns, [], EARTH, TILT), EARTH)
