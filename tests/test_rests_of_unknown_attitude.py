@@ -66,7 +66,8 @@ def blocks_of(stops, passages):
         rows.append(
             {"manoeuvre": name, "phase": phase, "log": LOG, "from_record": record}
             | {"to_record": record + records, "seconds": seconds, "count": float(records)}
-            | {"missing_s": 0.0, **dict(zip(CHANNELS, values, strict=True))}
+            | {"missing_s": 0.0, "time": record / 100 + seconds / 2, "temperature": np.nan}
+            | dict(zip(CHANNELS, values, strict=True))
         )
         return record + records
 
