@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from stages.contracts import tables
+from stages.contracts import criticism_tables, tables
 from stages.contracts.parquet import Stream
 from stages.contracts.records import (
     clocks_of,
@@ -16,12 +16,14 @@ from stages.contracts.records import (
     share_a_clock,
 )
 from stages.contracts.stage import Stage, Tables
-from stages.criticising import elsewhere, oscillations
+from stages.criticising import elsewhere, oscillations, structures
 from stages.criticising.further import further
-from stages.criticising.judging import judge
+from stages.criticising.judging import SENSORS, judge
 from stages.criticising.rows import Rows
 from stages.criticising.splitting import Foreseen
+from stages.criticising.structure import tested
 from stages.criticising.unexplained import unexplained
+from stages.criticising.walking import walks_with_sigmas
 from stages.effects import CATALOGUE
 from stages.estimation.estimates import by_mount
 from stages.estimation.evidence import campaign_of
@@ -38,6 +40,9 @@ WRITES = {
     "effects": tables.EFFECTS,
     "blind_spots": tables.BLIND_SPOTS,
     "lines": tables.LINES,
+    "walks": criticism_tables.WALKS,
+    "structures": criticism_tables.STRUCTURES,
+    "structure_points": criticism_tables.STRUCTURE_POINTS,
     "findings": tables.CAUSES,
 }
 
@@ -68,12 +73,6 @@ def criticism(
     averaged = {row["log"] for row in rows_of(clocks) if row["clock"] == "GPS"}
     levels, shared = NoiseLevels(noise), share_a_clock(clocks)
     logs = {m.name: m.log for m in manoeuvres_of(manoeuvres)}
-    fits = {"gyro": rows_of(gyroscope_fit), "accel": rows_of(accelerometer_fit)}
-
-    def walks_of(method: str) -> dict[str, Row]:
-        rows = ((sensor, row) for sensor, table in fits.items() for row in table)
-        return {s: row for s, row in rows if row["method"] == method and row["random_walk"]}
-
     sought = {place: [e for e in CATALOGUE.values() if e.sought_in == place] for place in PLACES}
     in_blocks = sought["blocks"]
     others = [*sought["noise"], *sought["quality"], *(e for e in sought["spectrum"] if not e.rings)]
@@ -88,6 +87,9 @@ def criticism(
         )
         campaign = campaign_of(blocks, plan, done, levels, given, solution, shared)
         judged = judge(campaign, in_blocks, level * BLOCKS_SHARE, levels.degrees)
+        left = tested(judged.campaign, judged.effects, levels.degrees)
+        judged = judged.demoted([sensor for sensor in SENSORS if left.of(sensor)])
+        walks = walks_with_sigmas(judged.campaign, judged.effects)
         more = {
             one.name: partial(
                 campaign_of, one.blocks, one.plan, one.performed, levels, given, solution, shared
@@ -111,15 +113,18 @@ def criticism(
         ]
         heard = together(rings, level * (1 - BLOCKS_SHARE))
         made["scores"] += [*rows.scores(), oscillations.score(heard, rings)]
-        own_walks = walks_of(f"joint{suffix}") if judged.walks else {}
-        made["scores"] += elsewhere.scores(others, own_walks.get("gyro"))
-        for sensor, walk in own_walks.items():
+        made["scores"] += elsewhere.scores(others, walks.get("gyro"))
+        for sensor, walk in walks.items():
             made["findings"] += elsewhere.findings(sensor, walk, judged.instead, suffix)
+            made["walks"].append(elsewhere.walk_row(f"joint{suffix}", sensor, walk))
+        made["structures"] += structures.rows(left, f"joint{suffix}")
+        made["structure_points"] += structures.pictures(left, f"joint{suffix}")
         made["effects"] += [*rows.effects(), *oscillations.effects(heard, rings, suffix)]
         made["blind_spots"] += rows.blind_spots()
         made["lines"] += oscillations.lines(rings)
         made["findings"] += rows.findings()
         made["findings"] += oscillations.findings(heard, rings, suffix)
+        made["findings"] += structures.findings(left, judged.consistent(), suffix)
         made["findings"] += unexplained(judged, suffix)
     return {
         name: pd.DataFrame(rows, columns=[column.name for column in table.columns])

@@ -3,7 +3,10 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from stages.inference.naming.named import FOUND, ONE_OF_CLASS
+import numpy as np
+
+from stages.criticising.walking import Walk
+from stages.inference.naming.named import UNKNOWN_STRUCTURE
 from stages.model.effect import Effect
 from stages.notation.causes import in_words
 from stages.notation.numbers import decimals_of, with_sigma
@@ -12,7 +15,7 @@ from stages.notation.units import DEGREE_PER_HOUR, MICRO_G
 Row = dict[str, Any]
 
 WALK = "gyro_random_walk"
-SENSORS = {"gyro": "triad of gyros", "accel": "triad of accelerometers"}
+SENSORS = {"gyro": "gyros", "accel": "accelerometers"}
 UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
 SHARED = {"gyro": ("earth", "latitude", "heading"), "accel": ("lever", "size", "table")}
 ELSEWHERE = {
@@ -26,12 +29,11 @@ ELSEWHERE = {
 }
 
 
-def scores(effects: Sequence[Effect], walk: Row | None) -> Iterator[Row]:
-    """One row for each; `walk`: the row of the joint fit of the gyros, if there is one."""
+def scores(effects: Sequence[Effect], walk: Walk | None) -> Iterator[Row]:
+    """One row for each; `walk`: of the gyros, if there is one."""
     for effect in effects:
-        found = effect.name == WALK and walk is not None and bool(walk["random_walk"])
-        if found:
-            assert walk is not None
+        found = effect.name == WALK and walk is not None
+        if found and walk is not None:
             size = _walk("gyro", walk)
             told = f"The biases of the gyros walk by {size}, which the sigmas allow for."
         elif effect.sought_in == "quality":
@@ -43,10 +45,10 @@ def scores(effects: Sequence[Effect], walk: Row | None) -> Iterator[Row]:
             "cause": effect.cause,
             "sought_in": effect.sought_in,
             "statistic": 0.0,
-            "degrees": 1 if effect.name == WALK and walk is not None else 0,
+            "degrees": 1 if found else 0,
             "p_value": 0.0 if found else 1.0,
             "named": found,
-            "verdict": FOUND if found else "",
+            "verdict": UNKNOWN_STRUCTURE if found else "",
             "members": effect.name if found else "",
             "snr": None,
             "at": None,
@@ -54,21 +56,27 @@ def scores(effects: Sequence[Effect], walk: Row | None) -> Iterator[Row]:
         }
 
 
-def findings(sensor: str, walk: Row, instead: Sequence[str], suffix: str) -> Iterator[Row]:
-    """The random walk of a sensor, `gyro` or `accel`, with the effects that may be it instead."""
+def findings(sensor: str, walk: Walk, instead: Sequence[str], suffix: str) -> Iterator[Row]:
+    """The random walk of a sensor, `gyro` or `accel`, with the effects that may be it instead.
+
+    It is never certain: what changes without a law, such as telegraph noise, looks much the same.
+    """
     cause = f"{sensor}_random_walk"
     others = [name for name in instead if name.startswith((sensor, *SHARED[sensor]))]
-    told = f"The {SENSORS[sensor]} has a random walk of its biases: {_walk(sensor, walk)}."
+    told = (
+        f"The biases of the {SENSORS[sensor]} change as by a random walk of {_walk(sensor, walk)}."
+    )
     if others:
         names = " or ".join(in_words(name) for name in others)
         told += f" Instead it may be {names}: this campaign cannot tell them apart."
-    value, sigma = walk["random_walk"], walk["random_walk_sigma"] or 0.0
+    else:
+        told += " Any other change without a law would look much the same."
     yield {
         "id": f"criticism/{cause}{suffix}",
         "cause": cause,
         "sensor": sensor,
         "count": 1,
-        "size": float(value),
+        "size": walk.size,
         "unit": UNITS[sensor],
         "severity": 1,
         "sentence": told,
@@ -76,15 +84,20 @@ def findings(sensor: str, walk: Row, instead: Sequence[str], suffix: str) -> Ite
         "action": "Record the positions once more, in another order, to tell a walk from others."
         if others
         else "A shorter campaign, or turns there and back, lessen what it does.",
-        "verdict": ONE_OF_CLASS if others else FOUND,
+        "verdict": UNKNOWN_STRUCTURE,
         "members": ", ".join([cause, *others]),
-        "parameters": f"K = {value:.3g} ± {sigma:.2g} {UNITS[sensor]}",
+        "parameters": f"K = {walk.size:.3g} ± {walk.sigma:.2g} {UNITS[sensor]}",
     }
 
 
-def _walk(sensor: str, walk: Row) -> str:
+def walk_row(method: str, sensor: str, walk: Walk) -> Row:
+    """The random walk as the extension takes it."""
+    sigma = walk.sigma if np.isfinite(walk.sigma) else None
+    return {"method": method, "sensor": sensor, "walk": walk.size, "sigma": sigma}
+
+
+def _walk(sensor: str, walk: Walk) -> str:
     # By K per √s a bias walks by 60 K in the root of an hour.
     size, unit = (DEGREE_PER_HOUR, "°/h") if sensor == "gyro" else (MICRO_G.size, "µg")
-    both = (walk["random_walk"], walk["random_walk_sigma"])
-    value, sigma = (float(one or 0.0) / size * 60 for one in both)
+    value, sigma = (np.array([walk.size, walk.sigma]) / size * 60).tolist()
     return f"{' ± '.join(with_sigma(value, sigma, decimals_of(sigma)))} {unit}/√h"

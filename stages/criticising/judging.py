@@ -1,8 +1,11 @@
 """The causes that a campaign asks for.
 
-Where something is scanned they are found twice, the second time with finer values about the first.
-Where the joint estimate has found a random walk, it may stand for effects, or they for it: the two
-explanations are weighed by their likelihoods.
+Where something is scanned they are found several times, with ever finer values about the first.
+
+A random walk of a bias may stand for effects, or they for it: a jump, a ramp, whatever drifts. So
+the two explanations are weighed by their likelihoods, and the walk is estimated anew beside the
+effects that are named. Of an effect that a walk could do as well no more is said than that the
+data are consistent with it, for what walks has no law that could be tested.
 """
 
 from collections.abc import Mapping, Sequence
@@ -11,11 +14,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stages.criticising.course import course_of, courses
+from stages.criticising.walking import walks_beside
 from stages.estimation.evidence import Campaign, evidence
 from stages.inference.least_squares import LIKELIER
-from stages.inference.naming.causes import name_causes
+from stages.inference.naming.causes import causes, law_of
 from stages.inference.naming.evidence import Evidence
-from stages.inference.naming.named import Named
+from stages.inference.naming.named import UNKNOWN_STRUCTURE, Cause, Named
 from stages.inference.naming.refining import finer, to_refine
 from stages.inference.naming.sought import Sought, sought
 from stages.inference.naming.visible import Visible, visible
@@ -23,6 +27,8 @@ from stages.model.effect import Effect
 
 OCCAM = 20.0  # of the deviance: so much the sizes that were possible beforehand weigh at most
 FINER = 4  # steps of the second look in each interval of the first
+SHARP = 20.0  # signal-to-noise ratio from which a third look is finer still
+WALKLIKE = 0.5  # share of its information that a walk leaves an effect, below which it is like one
 SENSORS = ("gyro", "accel")
 
 
@@ -30,12 +36,12 @@ SENSORS = ("gyro", "accel")
 class Judged:
     """What the blocks of one mount say: of every effect, of those that are named, and unseen.
 
-    `walks`: whether the biases walk in these equations; `instead`: causes that would explain about
-    as well what the walk explains; `asked`: the columns of each effect in
+    `campaign`: with the random walks that the equations had; `instead`: causes that would explain
+    about as well what a walk explains; `asked`: the columns of each effect in
     `said`; `families`: its candidates by its name, in the order of `Sought.candidates`.
     """
 
-    walks: bool
+    campaign: Campaign
     instead: tuple[str, ...]
     said: Evidence
     asked: Sequence[Sought]
@@ -47,30 +53,104 @@ class Judged:
         """A candidate."""
         return self.families[name][value]
 
+    @property
+    def effects(self) -> list[Effect]:
+        """The named effects; a course without a law is none."""
+        found = [cause for cause in self.named.causes if cause.effect in self.families]
+        return [self.effect(cause.effect, cause.value) for cause in found]
+
+    @property
+    def walks(self) -> tuple[float, float]:
+        """Random walks of the biases of gyros and accelerometers, rad/s/√s and m/s²/√s."""
+        return self.campaign.solution.walks
+
+    def demoted(self, sensors: Sequence[str]) -> "Judged":
+        """The same where structures are left in these sensors: their names are no longer certain."""
+
+        def uncertain(cause: Cause) -> Cause:
+            inside = self.sensor(cause) in sensors
+            return replace(cause, verdict=UNKNOWN_STRUCTURE) if inside else cause
+
+        causes = tuple(uncertain(cause) for cause in self.named.causes)
+        return replace(self, named=replace(self.named, causes=causes))
+
+    def sensor(self, cause: Cause) -> str:
+        """The sensor that sees a cause best."""
+        return self.said.labels[self.said.sensor_of(cause.columns)]
+
+    def consistent(self) -> dict[str, list[str]]:
+        """Of each sensor the causes with which the data are no more than consistent."""
+        found: dict[str, list[str]] = {sensor: [] for sensor in SENSORS}
+        for cause in self.named.causes:
+            if cause.verdict == UNKNOWN_STRUCTURE and cause.effect in self.families:
+                found[self.sensor(cause)] += cause.members
+        return found
+
+    def deviance(self) -> float:
+        """−2 log of the likelihood with what is named, and what the walks cost beforehand."""
+        return self.campaign.deviance(self.effects) + LIKELIER * sum(map(bool, self.walks))
+
 
 def judge(
     campaign: Campaign, effects: Sequence[Effect], level: float, noise_degrees: float
 ) -> Judged:
     """Name the causes among `effects`; `level`: accepted chance of naming one where none is."""
-    with_walk = _judge(campaign, effects, level, noise_degrees)
-    if not any(campaign.solution.walks):
-        return with_walk
-    still = campaign.without_walk()
-    alone = _judge(still, effects, level, noise_degrees)
-    named = [
-        alone.effect(cause.effect, cause.value)
-        for cause in alone.named.causes
-        if cause.effect in alone.families
-    ]
+
+    def judged(walks: tuple[float, float]) -> Judged:
+        return _judge(campaign.walking(walks), effects, level, noise_degrees)
+
+    still = judged((0.0, 0.0))
+    walks = campaign.solution.walks
+    if not any(walks):
+        if not still.effects:
+            return still
+        walks = walks_beside(campaign, [])
+        if not any(walks):
+            return still
+    walking = judged(walks)
+    if still.effects and still.deviance() < walking.deviance() - LIKELIER:
+        found = still
+    elif still.effects and still.deviance() < walking.deviance() + OCCAM:
+        found = replace(walking, instead=_members(still))
+    else:
+        found = walking
+    if found.effects:
+        walks = walks_beside(found.campaign, found.effects)
+        if walks != found.walks:
+            found = replace(judged(walks), instead=found.instead) if any(walks) else still
+    return _consistent(found) if any(found.walks) else found
+
+
+def _members(judged: Judged) -> tuple[str, ...]:
+    members = [member for cause in judged.named.causes for member in cause.members]
+    return tuple(dict.fromkeys(members))
+
+
+def _consistent(judged: Judged) -> Judged:
+    """The same; of causes that a walk could do as well no more is said than that they may be."""
+    named = judged.effects
     if not named:
-        return with_walk
-    worse = still.deviance(named) - campaign.deviance([])
-    if worse < -LIKELIER:
-        return alone
-    if worse > OCCAM:
-        return with_walk
-    members = [member for cause in alone.named.causes for member in cause.members]
-    return replace(with_walk, instead=tuple(dict.fromkeys(members)))
+        return judged
+    walking, still = (
+        evidence(campaign, named) for campaign in (judged.campaign, judged.campaign.without_walk())
+    )
+
+    def like_a_walk(cause: Cause) -> bool:
+        if cause.effect not in judged.families:
+            return False
+        label = judged.effect(cause.effect, cause.value).label
+        own = [i for i, name in enumerate(walking.names) if name.startswith(f"{label}.")]
+        values = np.nan_to_num(cause.values)
+        left, whole = (
+            values @ said.total.information[np.ix_(own, own)] @ values for said in (walking, still)
+        )
+        return bool(left < WALKLIKE * whole)
+
+    causes = tuple(
+        replace(cause, verdict=UNKNOWN_STRUCTURE) if like_a_walk(cause) else cause
+        for cause in judged.named.causes
+    )
+    return replace(judged, named=replace(judged.named, causes=causes))
 
 
 def _judge(
@@ -78,13 +158,18 @@ def _judge(
 ) -> Judged:
     families = {name: tuple(family) for name, family in campaign.candidates(effects).items()}
     said, asked = said_of(campaign, families, noise_degrees)
-    named = name_causes(said, asked, level)
+    law = law_of(said, asked, level)
+    named = causes(said, asked, law)
     seen = visible(said, [one for one in asked if not one.free])
-    if refined := to_refine(said, named, asked):
+    sharp = 0.0
+    while refined := to_refine(said, named, asked, sharp):
         families |= {name: _finer(families[name], places) for name, places in refined.items()}
         said, asked = said_of(campaign, families, noise_degrees)
-        named = name_causes(said, asked, level)
-    return Judged(any(campaign.solution.walks), (), said, asked, families, named, seen)
+        named = causes(said, asked, law)
+        if sharp:
+            break
+        sharp = SHARP
+    return Judged(campaign, (), said, asked, families, named, seen)
 
 
 def _finer(family: Sequence[Effect], places: Sequence[int]) -> tuple[Effect, ...]:

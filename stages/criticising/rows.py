@@ -11,7 +11,7 @@ from stages.criticising.judging import Judged
 from stages.criticising.splitting import LIKE, Foreseen
 from stages.effects import CATALOGUE
 from stages.estimation.evidence import Campaign
-from stages.inference.naming.named import FOUND, ONE_OF_CLASS, Asked, Cause
+from stages.inference.naming.named import FOUND, ONE_OF_CLASS, Asked
 from stages.inference.naming.visible import NOT_EXCITED, VISIBLE
 from stages.model.effect import Effect
 
@@ -93,7 +93,7 @@ class Rows:
             yield SHARED | {
                 "id": f"criticism/{cause.effect}{self.suffix}",
                 "cause": cause.effect,
-                "sensor": self._sensor(cause),
+                "sensor": self.judged.sensor(cause),
                 "size": cause.snr,
                 "p_value": cause.p_value,
                 "sentence": told,
@@ -126,10 +126,6 @@ class Rows:
 
     def _asked(self) -> Sequence[Asked]:
         return [one for one in self.judged.named.asked if one.effect in self.judged.families]
-
-    def _sensor(self, cause: Cause) -> str:
-        said = self.judged.said
-        return said.labels[said.sensor_of(cause.columns)]
 
     def _parameters(self, effect: Effect, value: int) -> list[Row]:
         """An effect's parameters, estimated with those of the causes."""

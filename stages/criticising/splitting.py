@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stages.criticising.judging import Judged, said_of
-from stages.estimation.evidence import Campaign
+from stages.estimation.evidence import Campaign, evidence
 from stages.inference.least_squares import Reduced
 from stages.inference.naming.splitting import TELLS, split
+from stages.model.effect import Effect
 
 Array = NDArray[np.float64]
 
@@ -57,18 +58,21 @@ class Foreseen:
         """Which share of an effect another can mimic, now and with a manoeuvre; None: unseen."""
         if manoeuvre not in self._further or not self._judged.said.sensors:
             return None
-        shares = [
-            self._mimicked(reduced, effect, other)
-            for reduced in (self._judged.said.total, self.with_(manoeuvre))
-        ]
+        two = [self._judged.effect(name, 0) for name in (effect, other)]
+        campaigns = (self._judged.campaign, self._further[manoeuvre]())
+        shares = [_mimicked(evidence(one, two).total, *two) for one in campaigns]
         return None if None in shares else (shares[0] or 0.0, shares[1] or 0.0)
 
-    def _mimicked(self, reduced: Reduced, effect: str, other: str) -> float | None:
-        columns = {one.name: list(one.candidates[0]) for one in self._judged.asked}
-        own, theirs = columns[effect], columns[other]
-        total = float(np.trace(reduced.information[np.ix_(own, own)]))
-        if total <= 0 or not np.any(reduced.information[np.ix_(theirs, theirs)]):
-            return None
-        across = reduced.information[np.ix_(theirs, own)]
-        inverse = np.linalg.pinv(reduced.information[np.ix_(theirs, theirs)], rcond=1e-10)
-        return float(np.trace(across.T @ inverse @ across)) / total
+
+def _mimicked(reduced: Reduced, effect: Effect, other: Effect) -> float | None:
+    """Which share of an effect another can mimic; None where either is not seen."""
+    own, theirs = (
+        [i for i, name in enumerate(reduced.names) if name.startswith(f"{one.label}.")]
+        for one in (effect, other)
+    )
+    total = float(np.trace(reduced.information[np.ix_(own, own)]))
+    if total <= 0 or not np.any(reduced.information[np.ix_(theirs, theirs)]):
+        return None
+    across = reduced.information[np.ix_(theirs, own)]
+    inverse = np.linalg.pinv(reduced.information[np.ix_(theirs, theirs)], rcond=1e-10)
+    return float(np.trace(across.T @ inverse @ across)) / total

@@ -23,7 +23,7 @@ from stages.inference.naming.evidence import Evidence
 from stages.inference.six_position import Rest
 from stages.inference.traces import Traces
 from stages.inference.whole_turns import Around
-from stages.model.effect import Effect
+from stages.model.effect import Effect, Reading
 from stages.model.forward import Triad, signatures
 from stages.model.motion import Motion, joined, mean_turned
 
@@ -73,6 +73,11 @@ class Campaign:
     def _motions(self) -> list[Motion]:
         return [*self.still_motions, *self.turn_motions, *(motion for _, _, motion in self.rests)]
 
+    def stretches(self, sensor: str) -> slice:
+        """Which stretches of `motion` are those of a sensor, `gyro` or `accel`."""
+        gyros = sum(len(motion.rate) for motion in [*self.still_motions, *self.turn_motions])
+        return slice(0, gyros) if sensor == "gyro" else slice(gyros, len(self.motion.rate))
+
     def candidates(self, effects: Sequence[Effect]) -> dict[str, list[Effect]]:
         """Each effect by its name with every value of what is scanned of it, or by itself."""
         if not self._motions:
@@ -83,9 +88,13 @@ class Campaign:
         """Why this campaign cannot show an effect; empty where it may."""
         return effect.blind(self.motion) if self._motions else NOTHING
 
+    def walking(self, walks: tuple[float, float]) -> "Campaign":
+        """The same, the biases of gyros and accelerometers walking so, rad/s/√s and m/s²/√s."""
+        return replace(self, solution=replace(self.solution, walks=walks))
+
     def without_walk(self) -> "Campaign":
         """The same, the biases not walking."""
-        return replace(self, solution=replace(self.solution, walks=(0.0, 0.0)))
+        return self.walking((0.0, 0.0))
 
     def deviance(self, effects: Sequence[Effect]) -> float:
         """−2 log of the likelihood with some effects, each within ten of its typical sizes."""
@@ -100,13 +109,31 @@ class Campaign:
         `wide`: sigma of the effects' parameters, in their typical sizes; `only`: the
         manoeuvres that are used.
         """
+        told = self._told(effects)
+        gyro, accel = (self._system(s, effects, wide, only, told) for s in ("gyro", "accel"))
+        return gyro, accel
+
+    def system(self, sensor: str, effects: Sequence[Effect], wide: float) -> System | None:
+        """The equations of one sensor, `gyro` or `accel`; arguments as in `systems`."""
+        return self._system(sensor, effects, wide, None, self._told(effects))
+
+    def _system(
+        self,
+        sensor: str,
+        effects: Sequence[Effect],
+        wide: float,
+        only: set[str] | None,
+        told: Sequence[Reading],
+    ) -> System | None:
         widths = {
             f"{effect.label}.{parameter.name}": wide * parameter.typical
             for effect in effects
             for parameter in effect.parameters
         }
-        gyro, accel = self._traces(effects)
-        return self._gyro(gyro, widths, only), self._accelerometer(accel, widths, only)
+        traces = self._traces(sensor, effects, told)
+        if sensor == "gyro":
+            return self._gyro(traces, widths, only)
+        return self._accelerometer(traces, widths, only)
 
     def _gyro(
         self, traces: list[Traces], widths: Mapping[str, float], only: set[str] | None
@@ -161,28 +188,30 @@ class Campaign:
             self.solution.walks[1],
         )
 
-    def _traces(self, effects: Sequence[Effect]) -> tuple[list[Traces], list[Traces]]:
-        """How the readings of the gyros, and of the accelerometers, go with each effect.
+    def _told(self, effects: Sequence[Effect]) -> list[Reading]:
+        """How the readings go with each effect, in all stretches."""
+        if not effects or not self._motions:
+            return []
+        unit = Triad(np.eye(3), np.zeros(3))
+        triads = self.solution.gyro or unit, self.solution.accelerometer or unit
+        return signatures(self.motion, self.solution.site, *triads, effects)
+
+    def _traces(
+        self, sensor: str, effects: Sequence[Effect], told: Sequence[Reading]
+    ) -> list[Traces]:
+        """The same of one sensor, in each stretch of its equations.
 
         Gyros: one for each rest, then for each turn; accelerometers: one for each of `rests`.
         """
         ends = [0, *accumulate(len(motion.rate) for motion in self._motions)]
         parts = [slice(first, after) for first, after in pairwise(ends)]
         gyros = len(parts) - len(self.rests)
-        if not effects or not self._motions:
-            nothing = [Traces(values=np.zeros((part.stop - part.start, 3, 0))) for part in parts]
-            return nothing[:gyros], nothing[gyros:]
-        unit = Triad(np.eye(3), np.zeros(3))
-        solution = self.solution
-        triads = solution.gyro or unit, solution.accelerometer or unit
-        told = signatures(self.motion, solution.site, *triads, effects)
+        own = parts[:gyros] if sensor == "gyro" else parts[gyros:]
+        if not told or not own:
+            return [Traces(values=np.zeros((part.stop - part.start, 3, 0))) for part in own]
         names = tuple(f"{e.label}.{parameter.name}" for e in effects for parameter in e.parameters)
-
-        def of(sensor: str, some: Sequence[slice]) -> list[Traces]:
-            every = np.concatenate([getattr(trace, sensor) for trace in told], axis=2)
-            return [Traces(names, every[part]) for part in some]
-
-        return of("gyro", parts[:gyros]), of("accel", parts[gyros:])
+        every = np.concatenate([getattr(trace, sensor) for trace in told], axis=2)
+        return [Traces(names, every[part]) for part in own]
 
 
 def campaign_of(

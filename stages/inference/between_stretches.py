@@ -69,14 +69,14 @@ def with_drift(
     if times is None:
         return scattered
     alone = fit(0.0, 0.0).deviance
-    walk, deviance = _likeliest(lambda size: fit(0.0, size).deviance, times.walks, alone)
+    walk, deviance = likeliest(lambda size: fit(0.0, size).deviance, times.walks, alone)
     if alone - deviance < LIKELIER:
         return scattered
     # Little tells a walk from other differences where nothing is known of the time from log to log.
     by = -LIKELIER if times.common else LIKELIER
     sizes = (SMALLEST * times.noise, LARGEST * times.noise)
-    plain = _likeliest(lambda size: fit(size, 0.0).deviance, sizes, np.inf)
-    others = [plain[1], *(_likeliest(rival, sizes, np.inf)[1] for rival in rivals)]
+    plain = likeliest(lambda size: fit(size, 0.0).deviance, sizes, np.inf)
+    others = [plain[1], *(likeliest(rival, sizes, np.inf)[1] for rival in rivals)]
     if min(others) - by < deviance:
         if scattered.scatter or alone - plain[1] < LIKELIER:
             return scattered
@@ -91,7 +91,7 @@ def with_drift(
     )
 
 
-def _likeliest(deviance: Deviance, sizes: tuple[float, float], alone: float) -> tuple[float, float]:
+def likeliest(deviance: Deviance, sizes: tuple[float, float], alone: float) -> tuple[float, float]:
     """The size of least deviance, and that deviance; rough where `alone` is about as likely."""
     low, high = np.log(sizes)
     steps = np.linspace(low, high, int(np.ceil((high - low) / np.log(STEP))) + 1)
@@ -106,6 +106,13 @@ def _likeliest(deviance: Deviance, sizes: tuple[float, float], alone: float) -> 
         options={"xatol": NEAR},
     )
     return float(np.exp(near.x)), float(near.fun)
+
+
+def sigma_of(deviance: Deviance, size: float) -> float:
+    """The sigma of a size by the curvature of its likelihood."""
+    behind, here, ahead = (deviance(size * float(np.exp(CURVED * i))) for i in (-1, 0, 1))
+    curvature = (ahead - 2 * here + behind) / CURVED**2
+    return size * float(np.sqrt(2 / curvature)) if curvature > 0 else float("nan")
 
 
 def _both(

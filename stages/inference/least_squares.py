@@ -168,6 +168,31 @@ class System:
         effects = [i for i, (kind, _) in enumerate(self.names) if kind == "effect"]
         return np.asarray(np.sum((self.design[:, effects] / self.sigma[:, None]) ** 2, axis=0))
 
+    def left(self, fitted: int) -> tuple[Array, Array, Array]:
+        """What is left when all is fitted but the effects after the first so many columns.
+
+        What is known beforehand of an unknown is a reading of its own.
+
+        Returns
+        -------
+        the residuals (n + p,) and the further columns (n + p, k), both in units of sigma, and the
+        columns' own squares (k,)
+        """
+        effects = [i for i, (kind, _) in enumerate(self.names) if kind == "effect"]
+        asked = effects[fitted:]
+        base = [i for i in range(len(self.names)) if i not in set(asked)]
+        scaled = self.design / self.sigma[:, None]
+        rest = (self.observed - self.design @ self.prior) / self.sigma
+        stacked = np.vstack([scaled[:, base] * self.prior_sigma[base], np.eye(len(base))])
+        columns = np.vstack([scaled[:, asked], np.zeros((len(base), len(asked)))])
+        space = np.linalg.qr(stacked)[0]
+        values = np.append(rest, np.zeros(len(base)))
+        return (
+            values - space @ (space.T @ values),
+            columns - space @ (space.T @ columns),
+            np.sum(columns**2, axis=0),
+        )
+
     def reduced(self) -> "Reduced":
         """What the data say of the effects, all other unknowns fitted."""
         effects = [i for i, (kind, _) in enumerate(self.names) if kind == "effect"]

@@ -28,15 +28,20 @@ ROUNDS = 3  # of how large the residuals are with what is found, and what is fou
 def name_causes(
     evidence: Evidence, effects: Sequence[Sought], level: float, seed: int = 0
 ) -> Named:
-    """Name the causes at the level of this campaign, see `causes` and `chance.chance`."""
-    seen = evidence.seen()
-    if not seen.sensors:
-        return Named((), tuple(Asked(e.name, 0, 0.0, 0, 1.0, 1.0) for e in effects), ())
-    law = chance.chance(seen.total.information, effects, level, seed=seed)
-    return causes(seen, effects, law)
+    """Name the causes at the level of this campaign, see `causes` and `law_of`."""
+    return causes(evidence, effects, law_of(evidence, effects, level, seed))
 
 
-def causes(evidence: Evidence, effects: Sequence[Sought], law: Chance) -> Named:
+def law_of(
+    evidence: Evidence, effects: Sequence[Sought], level: float, seed: int = 0
+) -> Chance | None:
+    """What chance would bring in this campaign; None where nothing is said of any effect."""
+    if not evidence.sensors:
+        return None
+    return chance.chance(evidence.seen().total.information, effects, level, seed=seed)
+
+
+def causes(evidence: Evidence, effects: Sequence[Sought], law: Chance | None) -> Named:
     """Name the causes.
 
     Where the residuals of a sensor exceed the noise also with what is found, something else is
@@ -45,8 +50,11 @@ def causes(evidence: Evidence, effects: Sequence[Sought], law: Chance) -> Named:
 
     Parameters
     ----------
-    law : the laws of the campaign without effects, see `chance.chance`
+    law : the laws of the campaign without effects; also where scans have finer values since
     """
+    if law is None:
+        return Named((), tuple(Asked(e.name, 0, 0.0, 0, 1.0, 1.0) for e in effects), ())
+    evidence = evidence.seen()
     candidates = Candidates(effects)
     excesses: tuple[tuple[float, float], ...] = tuple(
         (1.0, evidence.known_from(i)) for i in range(len(evidence.sensors))

@@ -1,6 +1,6 @@
 """What is said of causes: those that were found, and every effect that was asked about."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,8 +64,3 @@ class Named:
     causes: tuple[Cause, ...]
     asked: tuple[Asked, ...]
     excesses: tuple[tuple[float, float], ...]
-
-    def demoted(self) -> "Named":
-        """The same where a test of structure fires: the names are no more than consistent."""
-        causes = tuple(replace(cause, verdict=UNKNOWN_STRUCTURE) for cause in self.causes)
-        return replace(self, causes=causes)

@@ -19,11 +19,12 @@ Array = NDArray[np.float64]
 
 
 def to_refine(
-    evidence: Evidence, named: Named, effects: Sequence[Sought]
+    evidence: Evidence, named: Named, effects: Sequence[Sought], sharp: float = 0.0
 ) -> dict[str, tuple[int, ...]]:
     """Which values of which scans: those of every member of a cause, beside the others and alone.
 
-    Alone, because what a coarse scan leaves may have been given to others.
+    Alone, because what a coarse scan leaves may have been given to others. `sharp`: the
+    signal-to-noise ratio from which on a cause is worth it.
     """
     seen = evidence.seen()
     if not seen.sensors:
@@ -33,6 +34,8 @@ def to_refine(
     drops, _ = candidates.drops(total.information, total.right)
     found: dict[str, set[int]] = {}
     for cause in named.causes:
+        if cause.snr < sharp:
+            continue
         for member, value in zip(cause.members, cause.member_values, strict=True):
             found.setdefault(member, set()).add(value)
     refined = {}

@@ -10,8 +10,8 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 SMOOTH = 6  # half waves of a smooth course over the whole campaign
-FREQUENCIES = 200  # of an oscillation in time, in steps of half a cycle per campaign
-ORDERS = np.arange(0.25, 60.01, 0.25)  # of a ripple, cycles per turn
+FREQUENCIES = 60  # of an oscillation in time, in steps of half a cycle per campaign
+ORDERS = np.arange(0.5, 15.01, 0.5)  # of a ripple, cycles per turn: faster is in the spectrum
 HARMONICS = (1, 2, 3)
 RATES = 8  # bins between the fastest rates backward and forward
 CHANGES = 60  # times of a change
@@ -136,7 +136,8 @@ def of_change(read: Where) -> Iterator[Question]:
     if len(times) < FEWEST:
         return
     between = (times[1:] + times[:-1]) / 2
-    chosen = between[np.unique(np.linspace(0, len(between) - 1, CHANGES).round().astype(int))]
+    evenly = np.linspace(between[0], between[-1], CHANGES)
+    chosen = between[np.unique(np.searchsorted(between, evenly))]
     known: Array = np.where(np.isfinite(read.time), read.time, -np.inf)
     steps: Array = np.where(known[:, np.newaxis] > chosen, 1.0, 0.0)
     yield Question(steps, np.arange(len(chosen))[:, None], chosen)
