@@ -22,10 +22,6 @@ ELSEWHERE = {
     "gyro_flicker": "In one campaign it is not told from a random walk, which is estimated.",
     "table_position_error": "Each position has tilts of its own, with the sigma of the table; one"
     " that does not fit is a finding of the accelerometers.",
-    "table_ripple": "The steady parts are searched for lines in time; none in the table's angle"
-    " is looked for yet.",
-    "table_eccentricity": "The steady parts are searched for lines in time; none in the table's"
-    " angle is looked for yet.",
 }
 
 
@@ -33,7 +29,7 @@ def scores(effects: Sequence[Effect], walk: Walk | None) -> Iterator[Row]:
     """One row for each; `walk`: of the gyros, if there is one."""
     for effect in effects:
         found = effect.name == WALK and walk is not None
-        if found and walk is not None:
+        if effect.name == WALK and walk is not None:
             size = _walk("gyro", walk)
             told = f"The biases of the gyros walk by {size}, which the sigmas allow for."
         elif effect.sought_in == "quality":

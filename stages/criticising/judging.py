@@ -65,7 +65,7 @@ class Judged:
         return self.campaign.solution.walks
 
     def demoted(self, sensors: Sequence[str]) -> "Judged":
-        """The same where structures are left in these sensors: their names are no longer certain."""
+        """The same where structures are left in these sensors: no name of theirs is certain."""
 
         def uncertain(cause: Cause) -> Cause:
             inside = self.sensor(cause) in sensors

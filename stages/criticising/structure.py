@@ -6,6 +6,7 @@ do the equations leave, all else fitted? So tilts, gravity and random walks coun
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +31,7 @@ class Functions(Effect):
 
     cause = "unknown"
     source = "score test (Rao)"
-    sizes = {"usual": 1.0}
+    sizes = MappingProxyType({"usual": 1.0})
 
     def __init__(self, sensor: str, axis: int, name: str, functions: Array) -> None:
         self.sensor, self.axis, self.functions = sensor, axis, functions
@@ -90,7 +91,7 @@ def tested(campaign: Campaign, named: Sequence[Effect], noise_degrees: float) ->
 
 
 def points(told: Tested, test: Structure) -> Iterator[Point]:
-    """What there is to be seen of a structure: each bin of readings by itself, all else as fitted."""
+    """What is to be seen of a structure: each bin of readings by itself, all else as fitted."""
     sensor, axis = test.channel.split()
     own = told.campaign.stretches(sensor)
     where = where_of(told.campaign.motion, own, sensor, AXES.index(axis))

@@ -9,7 +9,9 @@ from stages.estimation.evidence import USUAL, Campaign
 from stages.inference.between_stretches import Times, likeliest, sigma_of
 from stages.inference.least_squares import LIKELIER
 from stages.inference.random_walk import times_of
+from stages.inference.rests_and_turns import Still, Turn
 from stages.inference.six_position import WALK as LARGEST_OF_ACCELEROMETERS
+from stages.inference.six_position import Rest
 from stages.inference.whole_turns import WALK as LARGEST_OF_GYROS
 from stages.model.effect import Effect
 
@@ -17,7 +19,7 @@ SENSORS = ("gyro", "accel")
 
 
 def walks_beside(campaign: Campaign, effects: Sequence[Effect]) -> tuple[float, float]:
-    """The random walks of largest likelihood of gyros and accelerometers; 0 where none is asked for."""
+    """The likeliest random walks of gyros and accelerometers; 0 where none is asked for."""
     found = [_walk(campaign, sensor, effects) for sensor in SENSORS]
     return found[0], found[1]
 
@@ -62,20 +64,15 @@ def _deviance(
 
 def _times(campaign: Campaign, sensor: str) -> Times | None:
     """What the times of a sensor's stretches can tell of a walk; None where they tell nothing."""
+    parts: Sequence[Still | Turn | Rest]
     if sensor == "gyro":
-        if campaign.solution.gyro is None:
-            return None
-        rests = campaign.inputs.rests()
+        solved, largest = campaign.solution.gyro, LARGEST_OF_GYROS
+        rests: Sequence[Still | Rest] = campaign.inputs.rests()
         parts = [*rests, *campaign.inputs.turns]
-        sigmas = [rest.sigma for rest in rests]
-        largest = LARGEST_OF_GYROS
     else:
-        if campaign.solution.accelerometer is None:
-            return None
-        parts = [rest for _, rest, _ in campaign.rests]
-        sigmas = [rest.sigma for rest in parts]
-        largest = LARGEST_OF_ACCELEROMETERS
-    if not sigmas:
+        solved, largest = campaign.solution.accelerometer, LARGEST_OF_ACCELEROMETERS
+        parts = rests = [rest for _, rest, _ in campaign.rests]
+    if solved is None or not rests:
         return None
     stretches = [part.stretch for part in parts if part.stretch is not None]
-    return times_of(stretches, float(np.nanmedian(sigmas)), largest)
+    return times_of(stretches, float(np.nanmedian([rest.sigma for rest in rests])), largest)

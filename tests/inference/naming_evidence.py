@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
@@ -12,8 +13,8 @@ from stages.inference.least_squares import Reduced
 from stages.inference.naming.evidence import Evidence
 from stages.inference.naming.scan import Candidates
 from stages.inference.naming.sought import Sought, sought
-from stages.inference.naming.structure import Residuals
-from stages.inference.naming.structure_columns import Where
+from stages.inference.naming.structure import Answer
+from stages.inference.naming.structure_columns import TESTS, Where
 from tests.inference.naming_plans import (
     GRAVITY,
     Rows,
@@ -172,6 +173,53 @@ def plan_of(plan: str, jumps: tuple[float, ...] = ()) -> Plan:
     gyro, accel = informations
     roots = (_root(gyro), _root(accel))
     return Plan(r, tuple(effects), (gyro, accel), roots, raw, (degrees[0], degrees[1]))
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """What a fit leaves, `values` (n,) in units of `sigma`, and where it was read.
+
+    `design`: (n, p), what was fitted, in units of sigma; `prior_sigma`: (p,), infinite where
+    nothing was known; `channel`: (n,), which of six; `noise_degrees`: from which sigma is known.
+    """
+
+    values: Array
+    sigma: Array
+    channel: NDArray[np.int64]
+    design: Array
+    prior_sigma: Array
+    read: Where
+    noise_degrees: float = np.inf
+
+    def answers(self) -> Iterator[Answer]:
+        """What they say of every question of the six tests."""
+        stacked = np.vstack([self.design, np.diag(1 / self.prior_sigma)])
+        size = np.sqrt(np.sum(stacked**2, axis=0))
+        space, triangle = np.linalg.qr(stacked / np.where(size > 0, size, 1.0))
+        turn, values, _ = np.linalg.svd(triangle)
+        space = (space @ turn[:, values > 1e-10 * values.max()])[: len(self.values)]
+        degrees = round(len(self.values) - float(np.sum(space**2)))
+        for channel in np.unique(self.channel):
+            own = self.channel == channel
+            r = self.read
+            where = Where(r.time[own], r.angle[own], r.rate[own], r.up[own], r.temperature[own])
+            for kind, test in TESTS.items():
+                for question in test(where):
+                    functions = question.functions / self.sigma[own, None]
+                    shadow = space[own].T @ functions
+                    information = functions.T @ functions - shadow.T @ shadow
+                    fitted = np.diag(information) < 1e-6 * np.sum(functions**2, axis=0)
+                    left = np.where(fitted, 0.0, 1.0)
+                    yield Answer(
+                        kind,
+                        f"{('gyro', 'accel')[channel // 3]} {'xyz'[channel % 3]}",
+                        question,
+                        information * np.outer(left, left),
+                        functions.T @ self.values[own] * left,
+                        float(self.values @ self.values),
+                        degrees,
+                        self.noise_degrees,
+                    )
 
 
 def fits(plan: str, signal: Array, rng: np.random.Generator) -> list[Residuals]:
