@@ -1,7 +1,7 @@
 """The stages one after another in this process, as the workflow runs them."""
 
 import inspect
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -47,8 +47,13 @@ class Results:
         return table[table["method"] == method].set_index("parameter")
 
 
-def run(campaign: Path, derived: Path, until: str = "gyroscope") -> Results:
-    """Run the chain on the folder of a campaign, up to and with the stage `until`."""
+def run(
+    campaign: Path, derived: Path, until: str = "gyroscope", without: Collection[str] = ()
+) -> Results:
+    """Run the chain on the folder of a campaign, up to and with the stage `until`.
+
+    `without`: stages that are left out, because no later one needs them.
+    """
     made: dict[str, Path] = {}
     told = {"campaign.yaml", "published.yaml"}
     raw = [path for path in campaign.iterdir() if path.name not in told]
@@ -60,6 +65,8 @@ def run(campaign: Path, derived: Path, until: str = "gyroscope") -> Results:
         "archive": [derived.parent / "history"],
     }
     for name in ORDER[: ORDER.index(until) + 1]:
+        if name in without:
+            continue
         stage = import_module(f"stages.{name}").STAGE
         files = {file: sources.get(file, []) for file in stage.files}
         stage.run(made, files, derived / name, SETTINGS.get(name, {}))

@@ -37,7 +37,6 @@ HIDDEN = {
 # What this plan cannot tell from it.
 CLASS = {
     "accel_quadratic": {"accel_scale_asymmetry"},
-    "accel_bias_ramp": {"accel_bias_jump", "accel_warm_up"},
     "lever_arm": {"size_effect"},
 }
 

@@ -15,10 +15,12 @@ import yaml
 
 from stages import export as stage
 from stages.compensating.correction import truth_of
-from stages.contracts import tables
+from stages.contracts import extension_tables, tables
 from stages.contracts.code import hash_of_file
+from stages.contracts.parquet import Writer
 from stages.estimation.solution import triad_of
 from stages.export import READS, STREAMS, export, main
+from stages.extension import STAGE as EXTENSION
 from tests.exporting.readers import mavproxy, qgroundcontrol
 
 ENDINGS = (
@@ -37,7 +39,19 @@ KINDS = {"accelerometer": slice(0, 3), "gyroscope": slice(3, 6)}
 def results(tmp_path_factory: pytest.TempPathFactory) -> chain.Results:
     folder = tmp_path_factory.mktemp("export")
     campaign = chain.simulate(chain.short(), folder / "short")
-    return chain.run(campaign, folder / "derived")
+    results = chain.run(campaign, folder / "derived")
+    write_nothing_extended(results.folder)
+    return results
+
+
+def write_nothing_extended(folder: Path) -> None:
+    """The tables of an extension that had no effect to add."""
+    writes = {name: EXTENSION.writes[name] for name in ("parameters", "covariance", "fit")}
+    writes["decision"] = extension_tables.DECISION
+    made_by = {"stage": "extension", "settings": {}, "code": "c0", "inputs": {}}
+    with Writer(folder / "extension", writes, made_by) as writer:
+        for name, table in writes.items():
+            writer.write(name, table.empty())
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +71,7 @@ def paths(results: chain.Results) -> dict[str, Path]:
     found = {}
     for name, table in READS.items():
         folder = name.partition("_")[0] if "_" in name else "*"
-        folder = folder if folder in KINDS else "*"
+        folder = {**dict(zip(KINDS, KINDS, strict=True)), "extended": "extension"}.get(folder, "*")
         (path,) = results.folder.glob(f"{folder}/{table.name}.parquet")
         found[name] = path
     return found
@@ -221,6 +235,78 @@ def test_a_temperature_that_was_recorded_is_told(results: chain.Results) -> None
     told = valid(exported(results, blocks=warm)["calibration.json"])["temperature"]
     assert (told["unit"], told["lowest"], told["highest"]) == ("K", 295.0, 299.0)
     assert 295 < told["mean"] < 299
+
+
+# ---- where the extended result counts
+
+
+def extended(results: chain.Results) -> dict[str, pd.DataFrame]:
+    """An extended result of the gyros: the joint one with another bias, and one effect."""
+    rows = results["gyroscope/parameters"].query("method == 'joint'")
+    rows = rows[rows["parameter"].str.match("scale|cross|bias")].assign(method="gyroscope")
+    rows["id"] = "extension/gyroscope/" + rows["parameter"]
+    moved = rows["parameter"] == "bias_x"
+    rows.loc[moved, "value"] += 1e-5
+    effect = rows[moved].assign(
+        id="extension/gyroscope/gyro_bias_ramp.c_x",
+        parameter="gyro_bias_ramp.c_x",
+        value=2.5e-9,
+        unit="rad/s²",
+    )
+    ids = list(rows["id"])
+    spread = np.diag(rows["sigma"].to_numpy() ** 2)
+    decided = {
+        column.name: [None if column.nullable else ""]
+        for column in extension_tables.DECISION.columns
+    }
+    return {
+        "extended_parameters": pd.concat([rows, effect]).assign(stage="extension"),
+        "extended_covariance": pd.DataFrame(
+            {
+                "first": np.repeat(ids, len(ids)),
+                "second": np.tile(ids, len(ids)),
+                "covariance": spread.ravel(),
+            }
+        ),
+        "extended_fit": results["gyroscope/fit"]
+        .query("method == 'joint'")
+        .assign(method="gyroscope", chi_squared=77.0),
+        "decision": pd.DataFrame(decided | {"sensor": ["gyro"], "result": ["extended"]}),
+    }
+
+
+def test_the_extended_result_is_exported_with_its_effects(results: chain.Results) -> None:
+    plain = valid(exported(results)["calibration.json"])["mounts"][0]
+    texts = exported(results, **extended(results))
+    (mount,) = valid(texts["calibration.json"])["mounts"]
+    gyros, accelerometers = mount["gyroscope"], mount["accelerometer"]
+    assert (gyros["result"], accelerometers["result"]) == ("extended", "joint")
+    assert accelerometers == plain["accelerometer"] and accelerometers["effects"] == []
+    (effect,) = gyros["effects"]
+    assert (effect["name"], effect["value"]) == ("gyro_bias_ramp.c_x", 2.5e-9)
+    difference = numbers(gyros["bias"]["value"]) - numbers(plain["gyroscope"]["bias"]["value"])
+    np.testing.assert_allclose(difference, [1e-5, 0, 0], atol=1e-18)
+    assert gyros["matrix"] == plain["gyroscope"]["matrix"]
+    assert gyros["fit"]["chi_squared"] == 77.0
+    assert set(gyros["covariance"]["names"]) >= {"extension/gyroscope/bias_x"}
+    offset = qgroundcontrol(texts["px4.params"])["CAL_GYRO0_XOFF"]
+    assert float(offset) == pytest.approx(gyros["bias"]["value"][0], rel=1e-6)
+
+
+@pytest.mark.parametrize("ending", ["kalibr.yaml", "px4.params", "ardupilot.param"])
+def test_a_file_says_which_terms_of_effects_it_does_not_hold(
+    results: chain.Results, ending: str
+) -> None:
+    assert "gyro_bias_ramp.c_x = 2.5e-09 rad/s^2" in said(
+        exported(results, **extended(results))[ending]
+    )
+    assert "terms of effects" not in said(exported(results)[ending])
+
+
+def said(text: str) -> str:
+    """The comments of a file on one line."""
+    lines = [line[1:].strip() for line in text.splitlines() if line.startswith("#")]
+    return " ".join(lines)
 
 
 # ---- what there is not

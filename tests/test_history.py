@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 from stages.archiving.archive import Archive
 from stages.archiving.names import file_name
-from stages.contracts import tables
+from stages.contracts import extension_tables, tables
 from stages.contracts.errors import Refusal
 from stages.contracts.parquet import Table, Writer, provenance
 from stages.history import STAGE
@@ -85,8 +85,13 @@ def write(folder: Path, name: str, table: Table, rows: Sequence[Row], made_by: R
         writer.write(name, pd.DataFrame(list(rows)) if rows else table.empty())
 
 
-def run(place: Path, bias: float = 1e-5, code: str = "c0", **facts: Any) -> Row:
-    """Run the stage on a campaign in `place`, into the archive there; its row of `archived`."""
+def run(
+    place: Path, bias: float = 1e-5, code: str = "c0", extended: float | None = None, **facts: Any
+) -> Row:
+    """Run the stage on a campaign in `place`, into the archive there; its row of `archived`.
+
+    `extended`: the bias with an effect in the model, whose result then counts.
+    """
     campaign = CAMPAIGN | facts
     derived = place / "derived" / str(campaign["campaign"])
     by = {"settings": {}, "code": code, "inputs": {}}
@@ -107,6 +112,17 @@ def run(place: Path, bias: float = 1e-5, code: str = "c0", **facts: Any) -> Row:
     for stage, rows, product in (("accelerometer", [], []), ("gyroscope", estimates, spread)):
         write(derived / stage, "parameters", tables.PARAMETERS, rows, gyro | {"stage": stage})
         write(derived / stage, "covariance", tables.COVARIANCE, product, gyro | {"stage": stage})
+    better = {"id": "extension/gyroscope/bias_x", "stage": "extension", "method": "gyroscope"}
+    rows = [] if extended is None else [parameter("bias_x", extended, 2e-7) | better]
+    product = [{"first": r["id"], "second": r["id"], "covariance": r["sigma"] ** 2} for r in rows]
+    by_extension = gyro | {"stage": "extension"}
+    write(derived / "extension", "parameters", tables.PARAMETERS, rows, by_extension)
+    write(derived / "extension", "covariance", tables.COVARIANCE, product, by_extension)
+    decided = {"sensor": "gyro", "mount": "", "result": "extended", "effects": "gyro_bias_ramp"}
+    nothing = dict.fromkeys(("drop", "snr_squared", "folds", "counted"))
+    decision = decided | nothing | {"alarms": "", "sentence": "It counts."}
+    some = [decision] if rows else [decision | {"result": "joint"}]
+    write(derived / "extension", "decision", extension_tables.DECISION, some, by_extension)
     paths = {
         "campaign": derived / "plan/campaign.parquet",
         "inputs": derived / "plan/inputs.parquet",
@@ -115,6 +131,9 @@ def run(place: Path, bias: float = 1e-5, code: str = "c0", **facts: Any) -> Row:
             for stage in ("accelerometer", "gyroscope")
             for table in ("parameters", "covariance")
         },
+        "extended_parameters": derived / "extension/parameters.parquet",
+        "extended_covariance": derived / "extension/covariance.parquet",
+        "decision": derived / "extension/decision.parquet",
     }
     STAGE.run(paths, {"archive": [place / "history"]}, derived / "history", {})
     return dict(pd.read_parquet(derived / "history/archived.parquet").iloc[0])
@@ -183,6 +202,24 @@ def test_the_report_gets_the_earlier_calibrations_of_the_same_imu(tmp_path: Path
         "sigma": 1e-7,
         "unit": "rad/s",
     }
+
+
+def test_the_extended_result_is_kept_beside_the_joint_one_and_compared_later(
+    tmp_path: Path,
+) -> None:
+    held = run(tmp_path, bias=1e-5, extended=3e-5, campaign="spring", date="2026-03-02")
+    row = tables.CALIBRATION.read(tmp_path / "history" / held["file"]).iloc[0]
+    by_id = {one["id"]: one for one in row["parameters"]}
+    assert by_id["gyroscope/joint/bias_x"]["value"] == 1e-5
+    assert by_id["extension/gyroscope/bias_x"]["value"] == 3e-5
+    assert {one["first"] for one in row["covariance"]} == {
+        "gyroscope/joint/bias_x",
+        "extension/gyroscope/bias_x",
+    }
+    assert "extension" in {one["stage"] for one in row["made_by"]}
+    run(tmp_path, bias=2e-5, campaign="autumn", date="2026-10-02")
+    (then,) = earlier(tmp_path, "autumn").to_dict("records")
+    assert (then["id"], then["value"], then["sigma"]) == ("gyroscope/joint/bias_x", 3e-5, 2e-7)
 
 
 def test_imus_without_a_serial_number_are_not_taken_for_one(tmp_path: Path) -> None:

@@ -204,10 +204,25 @@ def test_a_shift_of_the_extended_model_is_in_sigmas_of_the_joint_fit() -> None:
     assert number(page.rows["extension/gyroscope/bias_y"][6]) == 0.0
 
 
+def test_which_result_counts_is_said_beside_the_effects_and_the_joint_parameters() -> None:
+    text = Page(made_up.documents().html).text
+    assert "The extended result of the gyros counts, with gyro g-sensitivity." in text
+    assert text.count("These are not the parameters that count") == 1
+    assert "The joint result of the accelerometers counts" not in text  # they show no effect
+
+
+def test_what_it_is_worth_to_a_user_is_told_in_mrad_and_metres_per_second() -> None:
+    text = Page(made_up.documents().html).text
+    after = text[text.index("Errors of free inertial navigation after 60 s") :]
+    row = after[after.index("x-up") : after.index("x-forward")].split()
+    # 1 °/h for 60 s: 1/60°, and 9.8 · ψ t / 2.
+    assert row[1:4] == ["at", "rest", "0.29"] and "0.086" in row
+
+
 def test_nothing_is_missing() -> None:
     tables = made_up.brief()
     tables["scores"][["named", "degrees"]] = False, 3
-    for name in ("gain", "extended_parameters", "criticism_findings"):
+    for name in ("gain", "extended_parameters", "criticism_findings", "worth", "decision"):
         tables[name] = tables[name].iloc[:0]
     documents = report(**tables)
     assert "Nothing is missing: none of the five effects is needed." in Page(documents.html).text

@@ -69,7 +69,7 @@ def sensors(kind: str, missing: Sequence[str] = (), method: str = "joint") -> Se
     sigma[there] = np.sqrt(np.diag(covariance))
     return Sensors(
         kind,
-        method,
+        f"{kind}/{method}",
         matrix=np.eye(3) + values[:9].reshape(3, 3),
         matrix_sigma=sigma[:9].reshape(3, 3),
         bias=values[9:],

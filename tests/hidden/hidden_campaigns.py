@@ -1,100 +1,149 @@
-"""A drawn campaign through the whole chain, and what criticism made of it."""
+"""A drawn campaign through the stages, and what criticism and extension made of it."""
 
 import shutil
 import tempfile
 import time
-from functools import cache
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import chain
+import in_memory
 import numpy as np
-from hidden_draws import WAYS, Draw
+import pandas as pd
+from hidden_draws import Draw
+from hidden_sizes import BESIDE, code, reference
 
-from stages.contracts.records import known_of, manoeuvres_of, performed_of, share_a_clock
-from stages.criticising.judging import Judged, judge
-from stages.effects import CATALOGUE
-from stages.estimation.evidence import campaign_of
-from stages.estimation.noise_levels import NoiseLevels
-from stages.estimation.solution import solution_of
+import laboratory
 
-WALK = {"gyro_rate_random_walk_deg_h_sqrt_h": "gyro_random_walk"}
+SHARED_MEMORY = Path("/dev/shm")
+CLEAR = ("found", "one_of_class")
+Outcome = dict[str, Any]
 
 
-def run(draw: Draw) -> dict[str, Any]:
-    """What was hidden and what was found, as plain numbers and text."""
-    folder = Path(tempfile.mkdtemp())
+NOTHING_SAID: Outcome = {
+    "named": [],
+    "unexplained": [],
+    "quality": [],
+    "pulls": [],
+    "curse": {},
+    "gain": [],
+}
+
+
+def run(draw: Draw) -> Outcome:
+    """What was hidden and what was found, as plain numbers and text; or the error it ended with."""
+    told = {
+        "number": draw.number,
+        "code": code(),
+        "plan": draw.plan,
+        "kind": draw.kind,
+        "sort": draw.sort,
+        "hidden": list(draw.hidden),
+        "ratios": draw.ratios,
+        "on_disk": draw.on_disk,
+    }
+    if draw.kind == "single" and draw.sort == "ratio":
+        told["limits"] = reference(draw.plan).limits(*next(iter(draw.ratios.items())))
+    try:
+        return told | _found(draw)
+    except Exception as error:  # it is counted, and the others go on
+        return told | NOTHING_SAID | {"error": f"{type(error).__name__}: {error}"}
+
+
+def _found(draw: Draw) -> Outcome:
+    """What the stages made of it, and what that took."""
+    place = SHARED_MEMORY if SHARED_MEMORY.is_dir() and not draw.on_disk else None
+    folder = Path(tempfile.mkdtemp(dir=place))
     try:
         start = time.process_time()
-        campaign = chain.simulate(draw.document(), folder / "raw")
-        simulated = time.process_time()
-        results = chain.run(campaign, folder / "derived", "criticism")
-        seconds = time.process_time() - simulated
-        findings = results["criticism/findings"]
-        effects = results["criticism/effects"].set_index(["effect", "parameter"])
-        causes = findings[findings["verdict"].notna()]
-        pulls = [
-            (float(row["value"]) - value) / float(row["sigma"])
-            for name, values in draw.truth.items()
-            if name in set(causes["cause"])
-            for parameter, value in values.items()
-            for row in [effects.loc[(name, parameter)]]
-            if row["sigma"] and np.isfinite(row["sigma"])
-        ]
-        return {
-            "number": draw.number,
-            "kind": draw.kind,
-            "hidden": sorted([*draw.effects, *(WALK[key] for key in draw.noise if key in WALK)]),
-            "ratio": draw.ratio,
-            "named": [
-                {"cause": row["cause"], "verdict": row["verdict"]}
-                | {"snr": row["snr"] if np.isfinite(row["snr"]) else None}
-                | {"members": row["members"].split(", ")}
-                for row in causes.to_dict("records")
-            ],
-            "unexplained": bool((findings["cause"] == "unexplained").any()),
-            "pulls": pulls,
+        recording = laboratory.perform(laboratory.specify(draw.document()))
+        performed = time.process_time()
+        if draw.on_disk:
+            laboratory.write(recording, folder / "raw")
+            written = time.process_time()
+            results = chain.run(folder / "raw", folder / "derived", "extension")
+        else:
+            written = performed
+            with in_memory.recorded(recording, folder / "raw") as raw:
+                results = chain.run(raw, folder / "derived", "extension", BESIDE)
+        seconds = time.process_time() - written
+        outcome = {
+            "samples": sum(len(records) for records in recording.records.values()),
+            "simulating": performed - start,
             "seconds": seconds,
-            "simulating": simulated - start,
         }
+        outcome |= _said(results) | _estimated(draw, results)
+        outcome["gain"] = _gain(results)
+        if draw.twin:
+            outcome["shift"] = _shift(draw, results, folder)
+        return outcome
     finally:
         shutil.rmtree(folder)
 
 
-@cache
-def reference() -> Judged:
-    """What the plan says of every effect, by a clean campaign."""
-    folder = Path(tempfile.mkdtemp())
-    results = chain.run(
-        chain.simulate(chain.demo(seed=9_999), folder / "raw"), folder / "derived", "gyroscope"
-    )
-    given, levels = known_of(results["plan/known"]), NoiseLevels(results["noise/noise"])
-    stages = ("accelerometer", "gyroscope")
-    tables = [
-        tuple(results[f"{stage}/{table}"] for stage in stages)
-        for table in ("parameters", "positions", "fit")
+def _said(results: chain.Results) -> Outcome:
+    """The findings of criticism, and the causes that quality and segmentation name."""
+    findings = results["criticism/findings"]
+    causes = findings[findings["verdict"].notna()]
+    rest = findings[findings["verdict"].isna()]
+    named = [
+        {"cause": row["cause"], "verdict": row["verdict"]}
+        | {"snr": float(row["snr"]) if pd.notna(row["snr"]) else None}
+        | {"members": [one for one in str(row["members"] or "").split(", ") if one]}
+        for row in causes.to_dict("records")
     ]
-    solution = solution_of(tables[0], tables[1], given, "", tables[2])
-    campaign = campaign_of(
-        results["segment/blocks"],
-        manoeuvres_of(results["plan/manoeuvres"]),
-        performed_of(results["segment/performed"]),
-        levels,
-        given,
-        solution,
-        share_a_clock(results["decode/clocks"]),
-    )
-    shutil.rmtree(folder)
-    in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
-    return judge(campaign, in_blocks, 0.01, levels.degrees)
+    quality = [results[f"{stage}/findings"] for stage in ("quality", "segment")]
+    return {
+        "named": named,
+        "unexplained": sorted(set(rest["cause"])),
+        "quality": sorted({str(cause) for table in quality for cause in table["cause"]}),
+    }
 
 
-def size(name: str, at: float | None, values: np.ndarray) -> float:
-    """The signal-to-noise ratio of an effect in this plan."""
-    judged = reference()
-    family = judged.families[name]
-    number = 0 if at is None else int(np.argmin([abs((one.at or 0.0) - at) for one in family]))
-    names = [f"{family[number].label}.{parameter}" for parameter in WAYS[name].names]
-    places = [judged.said.names.index(one) for one in names]
-    information = judged.said.total.information[np.ix_(places, places)]
-    return float(np.sqrt(values @ information @ values))
+def _estimated(draw: Draw, results: chain.Results) -> Outcome:
+    """Errors of named effects in sigma, and their signal in units of the true one."""
+    findings = results["criticism/findings"]
+    clear = set(findings.loc[findings["verdict"].isin(CLEAR), "cause"])
+    effects = results["criticism/effects"].set_index(["effect", "parameter"])
+    pulls, curse = [], {}
+    for name, values in draw.truth.items():
+        if name not in clear:
+            continue
+        rows = [effects.loc[(name, parameter)] for parameter in values]
+        found = np.array([row["value"] for row in rows], np.float64)
+        sigmas = np.array([row["sigma"] for row in rows], np.float64)
+        errors = (found - list(values.values())) / sigmas
+        pulls += errors[np.isfinite(errors)].tolist()
+        if np.isfinite(found).all():
+            plan = reference(draw.plan)
+            curse[name] = plan.size(name, draw.at.get(name), found) / draw.ratios[name]
+    return {"pulls": pulls, "curse": curse}
+
+
+def _gain(results: chain.Results) -> list[Mapping[str, Any]]:
+    """What the extension gained on manoeuvres that the fit had not seen, for each sensor."""
+    try:
+        table = results["extension/gain"]
+    except FileNotFoundError:
+        return []
+    own = table[(table["scope"] == "held-out") & (table["effects"] != "oscillation")]
+    return [
+        {"sensor": str(row["sensor"]), "effects": str(row["effects"]), "drop": float(row["drop"])}
+        for row in own.to_dict("records")
+        if np.isfinite(row["drop"])
+    ]
+
+
+def _shift(draw: Draw, results: chain.Results, folder: Path) -> float:
+    """The largest change of the 24 parameters by what is hidden, in sigma."""
+    twin = laboratory.perform(laboratory.specify(draw.document(effects={})))
+    with in_memory.recorded(twin, folder / "twin") as raw:
+        without = chain.run(raw, folder / "twin-derived", "gyroscope", BESIDE)
+    largest = 0.0
+    for stage in ("accelerometer", "gyroscope"):
+        one, other = (some.parameters(stage) for some in (results, without))
+        moved = (one["value"] - other["value"]).abs() / other["sigma"]
+        kept = [name for name in moved.index if not str(name).startswith(("position", "azimuth"))]
+        largest = max(largest, float(moved[kept].max()))
+    return largest

@@ -1,129 +1,201 @@
 """What is hidden in a campaign: drawn by number, so that every draw can be made again.
 
-A quarter is clean, and hard to be silent on: random walk, noise of the table, noise that is not the
-data sheet's. The others hide one effect or two, in a random direction, as large as the wanted
-signal-to-noise ratio says; or what is in no catalogue.
+A quarter is clean, and hard to be silent on. A third hides one effect: most in a random
+direction, as large as a signal-to-noise ratio says; some of a physical size; some that are not
+sought in blocks. Decoys hide what every calibration takes up, or one of several that are alike.
+Others hide two or three effects, or what is in no catalogue.
 """
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Any
 
-import chain
 import numpy as np
+from hidden_elsewhere import ELSEWHERE, HARD, Random
+from hidden_outside import OUTSIDE, course_size
+from hidden_plans import PLANS, SPANS, sensors
+from hidden_ways import ABSORBED, MATES, POSITIVE, WAYS
 
-G = 9.80665
-DEGREE_PER_HOUR = np.radians(1 / 3600)  # rad/s
-ARC_SECOND = np.radians(1 / 3600)
-MICRO_G = 1e-6 * G
+from stages.effects import CATALOGUE
+
 RATIOS = (5.0, 6.0, 8.0, 10.0, 15.0)
-SPAN = 2900.0  # s, from the first to the last sample of the demo's plan
-
-
-@dataclass(frozen=True)
-class Way:
-    """How the laboratory hides an effect: the parameters for values in the model's units.
-
-    `names`: of the model's parameters, in the order of the values; `scan`: of the laboratory's
-    parameter that the model scans, and between which values it is drawn.
-    """
-
-    names: tuple[str, ...]
-    told: Callable[[np.ndarray], dict[str, Any]]
-    scan: tuple[str, float, float] | None = None
-
-
-def _three(key: str, unit: float, stem: str, scan: tuple[str, float, float] | None = None) -> Way:
-    names = tuple(f"{stem}_{axis}" for axis in "xyz")
-    return Way(names, lambda v: {key: (v / unit).tolist()}, scan)
-
-
-def _level(first: str, second: str) -> Way:
-    keys = {"north": "north_arcsec", "east": "east_arcsec"}
-
-    def told(v: np.ndarray) -> dict[str, Any]:
-        return {
-            keys[name]: float(x / ARC_SECOND) for name, x in zip((first, second), v, strict=True)
-        }
-
-    return Way((first, second), told)
-
-
-WAYS: Mapping[str, Way] = {
-    "gyro_g_sensitivity": Way(
-        tuple(f"g_{i}{j}" for i in "xyz" for j in "xyz"),
-        lambda v: {"matrix_deg_h_g": (v.reshape(3, 3) * G / DEGREE_PER_HOUR).tolist()},
-    ),
-    "gyro_g2_sensitivity": _three("k_deg_h_g2", DEGREE_PER_HOUR / G**2, "g2"),
-    "gyro_scale_asymmetry": _three("asymmetry_ppm", 1e-6, "a"),
-    "gyro_bias_ramp": _three("ramp_deg_h_h", DEGREE_PER_HOUR / 3600, "c"),
-    "gyro_warm_up": _three("start_deg_h", DEGREE_PER_HOUR, "b", ("time_constant_s", 200.0, 900.0)),
-    "gyro_bias_jump": _three("size_deg_h", DEGREE_PER_HOUR, "b", ("at_s", 300.0, 2300.0)),
-    "accel_quadratic": _three("k2_micro_g_g2", 1e-6 / G, "k2"),
-    "accel_bias_ramp": _three("ramp_m_s2_h", 1 / 3600, "c"),
-    "accel_bias_jump": _three("size_micro_g", MICRO_G, "b", ("at_s", 300.0, 2300.0)),
-    "accel_hysteresis": _three("offset_micro_g", MICRO_G, "h"),
-    "lever_arm": _three("arm_m", 1.0, "r"),
-    "table_tilt": _level("north", "east"),
-    "table_wobble": _level("north", "east"),
-}
-CLEAN: tuple[dict[str, Any], ...] = (
-    {},
-    {"gyro_rate_random_walk_deg_h_sqrt_h": 0.3},
-    {"table_sway_m_s_sqrt_h": [0.02, 0.01]},
-    {"angle_random_walk_deg_sqrt_h": 0.016, "velocity_random_walk_m_s_sqrt_h": 0.0045},
+BANDS = {"6 to 12": (6.0, 12.0), "12 to 40": (12.0, 40.0)}
+PHYSICAL = (0.3, 10.0)  # times the typical size of the catalogue
+# A quarter clean, 35 % singles, 15 % decoys, 15 % several, 10 % outside, well mixed.
+KINDS = tuple(
+    {"c": "clean", "s": "single", "d": "decoy", "m": "several", "o": "outside"}[letter]
+    for letter in "cscsmdsocsmdscsmdsco"
 )
-OUTSIDE: Mapping[str, dict[str, Any]] = {
-    "gyro_telegraph": {"height_deg_h": [2.0, 0, 0], "dwell_s": 400},
-    "gyro_cubic_drift": {"k_deg_h_h3": [0, 30.0, 0]},
-}
-KINDS = ("clean", "single", "single", "single", "two", "outside")
+CYCLE = len(KINDS)
+COMMON = ("positions", "positions", "rates", "positions", "stops")  # plans in turn
+
+Size = Callable[[str, str, float | None, Any], float]
 
 
 @dataclass(frozen=True)
 class Draw:
-    """One campaign: what is hidden in it, in the laboratory's words, and how clearly.
+    """One campaign: its plan, what is hidden in it, in the laboratory's words, and how clearly.
 
-    `truth`: for each effect its parameters in the model's units; `ratio`: wanted signal-to-noise
-    ratio of each.
+    `sort`: what sort of its kind; `hidden`: the effects that may be named; `truth`: for each
+    effect its parameters in the model's units; `at`: what is scanned; `ratios`: the
+    signal-to-noise ratio of each; `noise`: changes of it; `twin`: whether the 24 parameters are
+    compared with those of the same campaign without the effects; `on_disk`: written and read.
     """
 
     number: int
+    plan: str
     kind: str
-    effects: dict[str, dict[str, Any]]
-    truth: dict[str, dict[str, float]]
-    noise: dict[str, Any]
-    ratio: float
+    sort: str
+    hidden: tuple[str, ...] = ()
+    effects: dict[str, Any] = field(default_factory=dict)
+    truth: dict[str, dict[str, float]] = field(default_factory=dict)
+    at: dict[str, float] = field(default_factory=dict)
+    ratios: dict[str, float] = field(default_factory=dict)
+    noise: dict[str, Any] = field(default_factory=dict)
+    twin: bool = False
+    on_disk: bool = False
 
-    def document(self) -> dict[str, Any]:
+    def document(self, **changes: Any) -> dict[str, Any]:
         """What the laboratory is told."""
-        document = chain.demo(seed=10_000 + self.number, effects=self.effects)
+        document = PLANS[self.plan](**{"seed": 10_000 + self.number, "effects": self.effects})
         document["noise"] = {**document["noise"], **self.noise}
-        return document
+        document["truth"] = sensors(np.random.default_rng([2027, self.number]))
+        return document | changes
 
 
-def draw(number: int, size: Callable[[str, float | None, np.ndarray], float]) -> Draw:
+def draw(number: int, size: Size) -> Draw:
     """The draw of a number.
 
-    `size`: the signal-to-noise ratio that values of an effect have in this plan, by its name and
-    the value of what is scanned.
+    `size`: the signal-to-noise ratio that values of an effect have, by plan, name of the effect,
+    and the value of what is scanned.
     """
     random = np.random.default_rng([2026, number])
-    kind = KINDS[number % len(KINDS)]
-    ratio = float(random.choice(RATIOS))
-    if kind == "clean":
-        return Draw(number, kind, {}, {}, CLEAN[number // len(KINDS) % len(CLEAN)], 0.0)
-    if kind == "outside":
-        name = str(random.choice(list(OUTSIDE)))
-        return Draw(number, kind, {name: OUTSIDE[name]}, {}, {}, 0.0)
-    chosen = random.choice(list(WAYS), 2 if kind == "two" else 1, replace=False)
-    effects, truth = {}, {}
-    for name in map(str, chosen):
+    round_, place = divmod(number, CYCLE)
+    kind = KINDS[place]
+    turn = round_ * KINDS.count(kind) + KINDS[:place].count(kind)  # how many of its kind before
+    made = {
+        "clean": _clean,
+        "single": _single,
+        "decoy": _decoy,
+        "several": _several,
+        "outside": _outside,
+    }[kind](turn, random, size, number)
+    return Draw(number=number, kind=kind, on_disk=place == round_ % CYCLE, **made)
+
+
+def _clean(turn: int, random: Random, size: Size, number: int) -> dict[str, Any]:
+    hard = HARD[turn % len(HARD)]
+    plan = COMMON[turn // len(HARD) % len(COMMON)]
+    effects, noise = hard.told(random)
+    return {
+        "plan": plan,
+        "sort": hard.name,
+        "hidden": hard.hidden,
+        "effects": effects,
+        "noise": noise,
+        "twin": hard.twin,
+    }
+
+
+def _single(turn: int, random: Random, size: Size, number: int) -> dict[str, Any]:
+    turn, place = divmod(turn, 7)
+    if place == 6:  # of seven one is sought elsewhere, one has a physical size
+        one = ELSEWHERE[turn % len(ELSEWHERE)]
+        effects, noise = one.told(random)
+        return {
+            "plan": one.plan,
+            "sort": "elsewhere",
+            "hidden": one.hidden,
+            "effects": effects,
+            "noise": noise,
+        }
+    names = list(WAYS)
+    if place == 5:
+        name = names[turn % len(names)]
+        plan = _plan_of(name, turn, random)
+        factor = float(np.exp(random.uniform(*np.log(PHYSICAL))))
+        typical = CATALOGUE[name].parameters[0].typical
+        return {"plan": plan, "sort": "physical"} | _hide(
+            {name: ("size", factor * typical)}, plan, random, size
+        )
+    count = turn * 5 + place
+    name = names[count % len(names)]
+    ratio = RATIOS[(count // len(names) + count) % len(RATIOS)]
+    plan = _plan_of(name, count, random)
+    return {"plan": plan, "sort": "ratio"} | _hide({name: ("ratio", ratio)}, plan, random, size)
+
+
+def _decoy(turn: int, random: Random, size: Size, number: int) -> dict[str, Any]:
+    half, mates = divmod(turn, 2)
+    if mates:
+        plan, name = MATES[half % len(MATES)]
+        ratio = float(np.exp(random.uniform(np.log(8), np.log(20))))
+        return {"plan": plan, "sort": "mates"} | _hide({name: ("ratio", ratio)}, plan, random, size)
+    names = list(ABSORBED)
+    name = names[half % len(names)]
+    plan = COMMON[half // len(names) % len(COMMON)]
+    much = float(random.choice([-1, 1]) * np.exp(random.uniform(np.log(0.3), np.log(3))))
+    effects = {name: ABSORBED[name](much)}
+    return {"plan": plan, "sort": "absorbed", "hidden": (name,), "effects": effects}
+
+
+def _several(turn: int, random: Random, size: Size, number: int) -> dict[str, Any]:
+    count = 2 + turn % 2
+    band = list(BANDS)[turn // 2 % 2]
+    plan = COMMON[turn // 4 % len(COMMON)]
+    shown = [name for name, way in WAYS.items() if plan in way.plans]
+    chosen = [str(name) for name in random.choice(shown, count, replace=False)]
+    wanted = {
+        name: ("ratio", float(np.exp(random.uniform(*np.log(BANDS[band]))))) for name in chosen
+    }
+    return {"plan": plan, "sort": f"{count} at {band}"} | _hide(wanted, plan, random, size)
+
+
+def _outside(turn: int, random: Random, size: Size, number: int) -> dict[str, Any]:
+    one = OUTSIDE[turn % len(OUTSIDE)]
+    plan = COMMON[turn // len(OUTSIDE) % len(COMMON)]
+    effects = one.told(random, 1.0, SPANS[plan])
+    ratios = {}
+    if one.scales:
+        ratio = float(np.exp(random.uniform(np.log(12), np.log(40))))
+        unit = course_size(Draw(number, plan, "outside", one.name, effects=effects).document())
+        effects = one.scaled(effects, ratio / unit(plan))
+        ratios = {one.name: ratio}
+    return {
+        "plan": plan,
+        "sort": one.name,
+        "hidden": one.hidden,
+        "effects": effects,
+        "ratios": ratios,
+    }
+
+
+def _plan_of(name: str, turn: int, random: Random) -> str:
+    """One of the plans that show an effect; the demo's more often."""
+    plans = [plan for plan in COMMON if plan in WAYS[name].plans]
+    return str(random.choice(plans))
+
+
+def _hide(
+    wanted: dict[str, tuple[str, float]], plan: str, random: Random, size: Size
+) -> dict[str, Any]:
+    """Effects in random directions, by their signal-to-noise ratio or by their size."""
+    told: dict[str, Any] = {"hidden": tuple(wanted)}
+    told |= {key: {} for key in ("effects", "truth", "at", "ratios")}
+    for name, (by, amount) in wanted.items():
         way = WAYS[name]
-        at = None if way.scan is None else float(random.uniform(*way.scan[1:]))
         direction = random.normal(size=len(way.names))
-        unit = size(name, at, direction)
-        values = direction * (ratio / unit)
-        effects[name] = way.told(values) | ({way.scan[0]: at} if way.scan else {})
-        truth[name] = dict(zip(way.names, values.tolist(), strict=True))
-    return Draw(number, kind, effects, truth, {}, ratio)
+        if name in POSITIVE:
+            direction = np.abs(direction)
+        extra = {}
+        if way.scan is not None:
+            scale = SPANS[plan] if way.share else 1.0
+            told["at"][name] = float(random.uniform(*way.scan[1:]) * scale)
+            extra = {way.scan[0]: told["at"][name]}
+        unit = size(plan, name, told["at"].get(name), direction)
+        factor = amount / unit if by == "ratio" else amount
+        values = direction * factor
+        told["effects"][name] = way.told(values) | extra
+        told["truth"][name] = dict(zip(way.names, values.tolist(), strict=True))
+        told["ratios"][name] = unit * factor
+    return told

@@ -17,13 +17,13 @@ TIME = (ROWS.time - ROWS.time[0]) / np.ptp(ROWS.time)
 N = len(TIME)
 
 
-def tested(fits: Sequence[Residuals]) -> list[Structure]:
+def heard_of(fits: Sequence[Residuals]) -> list[Structure]:
     return structures([answer for fit in fits for answer in fit.answers()])
 
 
 def heard(signal: Array, seed: int) -> dict[str, Structure]:
     """The tests of residuals with a signal, (2, n, 3), whose ratio to the noise is 12."""
-    found = tested(fits("c", signal * 12 / ratio(signal), np.random.default_rng(seed)))
+    found = heard_of(fits("c", signal * 12 / ratio(signal), np.random.default_rng(seed)))
     return {one.kind: one for one in found}
 
 
@@ -50,7 +50,7 @@ def on(course: Array, sensor: int = 0, axis: int = 1) -> Array:
 def test_residuals_of_the_right_model_are_silent():
     """Six tests at 1 % together; their p-values are as uniform as many questions leave them."""
     rng = np.random.default_rng(1)
-    found = [tested(fits("c", np.zeros((2, N, 3)), rng)) for _ in range(5)]
+    found = [heard_of(fits("c", np.zeros((2, N, 3)), rng)) for _ in range(5)]
     assert sum(any(one.fires for one in each) for each in found) <= 1
     chances = np.array([[one.p_value for one in each] for each in found])
     assert np.mean(chances < 0.05) < 0.05 + 3 * np.sqrt(0.05 * 0.95 / chances.size)
@@ -105,8 +105,8 @@ def test_what_was_fitted_is_no_structure():
     size = np.sqrt(np.sum(space**2, axis=0))
     left = gyro.values - space / size @ np.linalg.lstsq(space / size, gyro.values)[0]
     refit = replace(gyro, values=left, design=space, prior_sigma=np.r_[gyro.prior_sigma, np.inf])
-    assert {one.kind for one in tested([gyro, accel]) if one.fires} >= {"time", "change"}
-    assert not any(one.fires for one in tested([refit, accel]))
+    assert {one.kind for one in heard_of([gyro, accel]) if one.fires} >= {"time", "change"}
+    assert not any(one.fires for one in heard_of([refit, accel]))
 
 
 def test_what_is_not_known_is_not_tested():
@@ -115,7 +115,7 @@ def test_what_is_not_known_is_not_tested():
         replace(one, read=replace(one.read, temperature=np.full(len(one.values), np.nan)))
         for one in (gyro, accel)
     ]
-    found = {one.kind: one for one in tested(blind)}
+    found = {one.kind: one for one in heard_of(blind)}
     assert not found["temperature"].possible
     assert found["time"].possible
 
@@ -124,6 +124,6 @@ def test_noise_known_from_few_readings_is_heard_less():
     """Residuals of twice the variance: a structure where sigma is certain, none where it is not."""
     one = fits("c", np.zeros((2, N, 3)), np.random.default_rng(9))[0]
     loud = replace(one, values=np.sqrt(2) * one.values)
-    certain = min(test.p_value for test in tested([loud]))
-    unsure = min(test.p_value for test in tested([replace(loud, noise_degrees=20.0)]))
+    certain = min(test.p_value for test in heard_of([loud]))
+    unsure = min(test.p_value for test in heard_of([replace(loud, noise_degrees=20.0)]))
     assert certain < 0.01 < unsure

@@ -12,7 +12,7 @@ import numpy.typing as npt
 import pandas as pd
 import pyarrow as pa
 
-from stages.contracts import tables
+from stages.contracts import extension_tables, tables
 from stages.report import Documents, report
 from stages.studies import WRITES as STUDIES
 from tests.reporting.made_up_studies import studies
@@ -599,7 +599,9 @@ def _of_the_model(
         "scores": rows_as(tables.SCORES, _scores()),
         "effects": rows_as(tables.EFFECTS, _effects()),
         "lines": rows_as(tables.LINES, _lines(turns)),
-        "gain": rows_as(tables.GAIN, _gain()),
+        "gain": rows_as(extension_tables.GAIN, _gain()),
+        "worth": rows_as(extension_tables.WORTH, _worth()),
+        "decision": rows_as(extension_tables.DECISION, _decision()),
         "extended_parameters": rows_as(tables.PARAMETERS, _extended(parameters)),
         "criticism_findings": rows_as(tables.CAUSES, _criticism_findings()),
         "accelerometer_findings": tables.FINDINGS.empty(),
@@ -732,8 +734,21 @@ def _lines(turns: Rows) -> Rows:
 
 
 def _gain() -> Rows:
-    g = {"sensor": "gyro", "effects": "gyro_g_sensitivity", "rows": 1996, "unit": "sigma"}
-    line = {"sensor": "gyro x", "effects": "oscillation", "rows": 17000, "unit": "rad/s"}
+    g = {
+        "sensor": "gyro",
+        "effects": "gyro_g_sensitivity",
+        "rows": 1996,
+        "unit": "sigma",
+        "mount": "",
+    }
+    line = {
+        "sensor": "gyro x",
+        "effects": "oscillation",
+        "rows": 17000,
+        "unit": "rad/s",
+        "mount": "",
+    }
+    channel = g | {"sensor": "gyro y", "rows": 74, "before": 90.0, "after": 71.0, "drop": 19.0}
     after = {"before": 4.4e-5, "after": 1.2e-9, "drop": 4.4e-5 - 1.2e-9}
     return [
         g
@@ -742,7 +757,47 @@ def _gain() -> Rows:
         g
         | {"scope": "held-out", "before": 12897.4, "after": 827.6, "drop": 12069.8}
         | {"rms_before": 2.652, "rms_after": 0.9766},
+        channel | {"scope": "held-out", "rms_before": 1.1, "rms_after": 0.98},
         line | after | {"scope": "fitted", "rms_before": 0.006615, "rms_after": 3.5e-5},
+    ]
+
+
+def _decision() -> Rows:
+    told = {
+        "gyro": "The extended result of the gyros counts, with gyro g-sensitivity.",
+        "accel": "The joint result of the accelerometers counts: they show no effect.",
+    }
+    return [
+        {
+            "sensor": sensor,
+            "mount": "",
+            "result": "extended" if sensor == "gyro" else "joint",
+            "effects": "gyro_g_sensitivity" if sensor == "gyro" else "",
+            "alarms": "",
+            "sentence": sentence,
+        }
+        for sensor, sentence in told.items()
+    ]
+
+
+def _worth() -> Rows:
+    """A gyro that is off by 1 °/h at rest, and less in a turn."""
+    rate = np.radians(1 / 3600)
+    return [
+        {
+            "manoeuvre": manoeuvre,
+            "mount": "",
+            "motion": motion,
+            "rate": np.radians(10.0) * (motion == "turn"),
+            "seconds": 60.0,
+            "attitude_joint": size * rate * 60,
+            "attitude_joint_sigma": 1e-6,
+            "attitude_extended": 2e-6,
+            "velocity_joint": size * 9.8 * rate * 1800,
+            "velocity_joint_sigma": 3e-4,
+            "velocity_extended": 6e-4,
+        }
+        for manoeuvre, motion, size in (("x-up", "rest", 1.0), ("x-forward", "turn", 0.1))
     ]
 
 
