@@ -10,6 +10,7 @@ from stages.contracts.records import rows_of
 
 Array = NDArray[np.float64]
 
+LOUD = 1.5  # times what white noise makes samples scatter, from which they oscillate
 UNLIKE = 3.0  # sigmas by which a manoeuvre's noise must differ from the others' to count as its own
 
 
@@ -55,6 +56,20 @@ class NoiseLevels:
         """What the samples of some channels scatter in all, not per √s; NaN where not known."""
         keys = [(manoeuvre, phase, channel) for channel in channels]
         return np.array([self._samples.get(key, np.nan) for key in keys])
+
+    def rings(self, manoeuvre: str, channels: Sequence[str]) -> bool:
+        """Whether a channel oscillates in the steady part of a turn, and not at rest."""
+        return any(self._ringing(manoeuvre, channel) for channel in channels)
+
+    def _ringing(self, manoeuvre: str, channel: str) -> bool:
+        def scatter(key: tuple[str, str, str]) -> float:
+            return self._samples[key] / self._own[key][0]
+
+        turn = (manoeuvre, "steady", channel)
+        rests = [key for key in self._own if key[1:] == ("rest", channel)]
+        if turn not in self._own or not rests:
+            return False
+        return bool(scatter(turn) > LOUD * np.median([scatter(key) for key in rests]))
 
     def _one(self, manoeuvre: str, phase: str, channel: str) -> float:
         common = self._common.get(channel, np.nan)

@@ -69,6 +69,7 @@ class Turn:
     `quiet_density`: (3,), rad/√s, white noise while turning and at rest. `by_hand`: the
     axis sways on the way, so only the sums over the whole turn are used. `bridges`: what is
     missing between the blocks; `bridged_sigma`: rad, of the angle that the table turned there.
+    `unsteady`: blocks in which the case rings ever more, or less, where it rings.
     """
 
     position: Position
@@ -82,6 +83,7 @@ class Turn:
     by_hand: bool = False
     bridges: Sequence[Bridge] = ()
     bridged_sigma: float = 0.0
+    unsteady: Sequence[int] = ()
     traces: Traces = NONE
     stretch: Stretch | None = None
 
@@ -94,9 +96,9 @@ class Turn:
     def alone(self) -> NDArray[np.bool_]:
         """Which blocks count by themselves too, (k,): those that no missing stretch cuts short.
 
-        In a full block an oscillation of the case averages out, beside a gap it may not.
+        In a full block a steady oscillation of the case averages out; beside a gap it may not.
         """
-        cut = [b.before - side for b in self.bridges for side in (0, 1)]
+        cut = [b.before - side for b in self.bridges for side in (0, 1)] + list(self.unsteady)
         return ~np.isin(np.arange(len(self.seconds)), cut) | self.by_hand
 
     @property
