@@ -125,7 +125,7 @@ def test_a_position_that_is_off_is_noticed_and_what_it_spoils_is_named(tmp_path)
     believed = {**true.campaign, "plan": told["campaign"]["plan"]}
     folder = tmp_path / "raw"
     laboratory.write(replace(true, campaign=believed), folder)
-    results = chain.run(folder, tmp_path / "derived", "accelerometer")
+    results = chain.run(folder, tmp_path / "derived", "criticism")
     (found,) = results["accelerometer/findings"].to_dict("records")
     assert found["cause"] == "table_position_error"
     assert "y-up" in found["sentence"] and "z-up" not in found["sentence"]
@@ -134,3 +134,7 @@ def test_a_position_that_is_off_is_noticed_and_what_it_spoils_is_named(tmp_path)
     for name in ("bias of the z accelerometer", "z accelerometer to force along y"):
         assert name in found["consequence"]
     assert "x accelerometer" not in found["consequence"]
+    # Criticism names it too, and nothing that would only look like it.
+    (cause,) = results["criticism/findings"].to_dict("records")
+    assert cause["cause"] == "table_position_error" and cause["manoeuvre"] == "y-up"
+    assert "at y-up" in cause["sentence"]

@@ -177,6 +177,10 @@ def _finer(family: Sequence[Effect], places: Sequence[int]) -> tuple[Effect, ...
     return tuple(family[0].fixed(float(at)) for at in finer(values, places, FINER))
 
 
+def _between(effect: Effect) -> bool:
+    return effect.scan is None or effect.scan.between
+
+
 def said_of(
     campaign: Campaign, families: Mapping[str, Sequence[Effect]], noise_degrees: float
 ) -> tuple[Evidence, list[Sought]]:
@@ -191,7 +195,10 @@ def said_of(
 
     if not said.sensors:
         return said, [sought(name) for name in families]
-    asked = [sought(name, *(columns(one) for one in family)) for name, family in families.items()]
+    asked = [
+        sought(name, *(columns(one) for one in family), between=_between(family[0]))
+        for name, family in families.items()
+    ]
     for name, waves in free.items():
         axes = np.array([columns(one) for one in waves]).T  # (3, waves)
         asked.append(sought(name, *axes.tolist(), axes.ravel().tolist(), free=True))

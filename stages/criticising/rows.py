@@ -40,7 +40,8 @@ class Rows:
                 reason = reasons.get(asked.effect, NOT_EXCITED)
                 told = words.of_silence(effect, asked, reason, self.campaign.blind(effect))
             else:
-                told = words.of_cause(cause, effect, self._parameters(effect, cause.value))
+                rows = self._parameters(effect, cause.value)
+                told = words.of_cause(cause, effect, rows, self._position(effect))
             named = cause is not None and cause.verdict in NAMED
             yield {
                 "effect": effect.name,
@@ -88,12 +89,14 @@ class Rows:
             free = cause.effect not in self.judged.families
             effect = None if free else self.judged.effect(cause.effect, cause.value)
             rows = [] if effect is None else self._parameters(effect, cause.value)
-            told = words.of_cause(cause, effect or CATALOGUE["gyro_bias_ramp"], rows)
+            place = self._position(effect)
+            told = words.of_cause(cause, effect, rows, place)
             clear = cause.verdict in NAMED
             yield SHARED | {
                 "id": f"criticism/{cause.effect}{self.suffix}",
                 "cause": cause.effect,
                 "sensor": self.judged.sensor(cause),
+                "manoeuvre": place or None,
                 "size": cause.snr,
                 "p_value": cause.p_value,
                 "sentence": told,
@@ -114,6 +117,12 @@ class Rows:
                 "split_snr": split.separation if split else None,
                 "parameters": "; ".join(_told(row) for row in rows if row["sigma"]),
             }
+
+    def _position(self, effect: Effect | None) -> str:
+        """The name of the position that is scanned; empty where none is."""
+        if effect is None or effect.at is None or effect.scan is None or effect.scan.between:
+            return ""
+        return self.campaign.positions[int(effect.at)]
 
     def _advice(self, effect: Effect, parameter: str) -> str:
         """S3 turns up at one rate and down at another: what the same rate would bring."""
@@ -150,8 +159,9 @@ class Rows:
             | {"visible": sizes.get(parameter.name)}
             for i, parameter in enumerate(effect.parameters)
         ]
-        if effect.scan is not None and effect.at is not None and effect.name in self.causes:
-            apart = [abs((one.at or 0.0) - effect.at) for one in self.judged.families[effect.name]]
+        if effect.scan is not None and effect.scan.between and effect.name in self.causes:
+            at = effect.at or 0.0
+            apart = [abs((one.at or 0.0) - at) for one in self.judged.families[effect.name]]
             step = min((one for one in apart if one), default=0.0)
             rows.append(
                 self._row(effect, effect.scan.name, effect.scan.unit, effect.scan.meaning)

@@ -28,20 +28,30 @@ REASONS = {
 }
 
 
-def of_cause(cause: Cause, effect: Effect, rows: Sequence[Row]) -> str:
-    """A cause in a sentence or two, with its numbers; or its class."""
+def of_cause(cause: Cause, effect: Effect | None, rows: Sequence[Row], place: str = "") -> str:
+    """A cause in a sentence or two, with its numbers; or its class; none: a course without a law.
+
+    `place`: the position that is meant, if it is one.
+    """
+    others = [in_words(member) for member in cause.members if member != cause.effect]
+    if effect is None:
+        near = f"; nearest is {', '.join(others)}" if others else ""
+        return f"The data drift in a way that no effect of the catalogue explains{near}."
+    at = f" at {place}" if place else ""
     numbers = "; ".join(_number(row) for row in _told(rows)) or "no parameter by itself"
     if cause.verdict == FOUND:
-        return f"The data ask for {in_words(cause.effect)}: {effect.cause}. {numbers}."
-    others = [in_words(member) for member in cause.members if member != cause.effect]
+        return f"The data ask for {in_words(cause.effect)}{at}: {effect.cause}. {numbers}."
     if cause.verdict == ONE_OF_CLASS:
         return (
-            f"The data ask for {in_words(cause.effect)} ({effect.cause}), or for"
+            f"The data ask for {in_words(cause.effect)}{at} ({effect.cause}), or for"
             f" {' or '.join(others)}: this campaign cannot tell them apart. As"
             f" {in_words(cause.effect)}: {numbers}."
         )
-    like = ", ".join([in_words(cause.effect), *others])
-    return f"The data drift in a way that no effect of the catalogue explains; nearest is {like}."
+    like = " or ".join([f"{in_words(cause.effect)}{at}", *others])
+    return (
+        f"The data are consistent with {like}, and no more is said, for what is left of them or a"
+        f" random walk has no law. As {in_words(cause.effect)}: {numbers}."
+    )
 
 
 def of_silence(effect: Effect, asked: Asked, reason: str, blind: str) -> str:

@@ -1,21 +1,39 @@
 """A table that does not stand quite where it is set."""
 
-from stages.model.effect import Effect, Parameter
+import numpy as np
+
+from stages.model.effect import Array, Effect, Parameter, Scan, Truth
+from stages.model.motion import Motion, level_axes
 from stages.model.sizes import of_tables
 from stages.notation.units import ARC_SECOND
 
 
 class TablePositionError(Effect):
-    """f += δ × f, with a tilt δ of its own in every set position.
+    """One set position is off by much more than the others: f += δ × f, ω += δ × ω there.
 
-    It has no mean over the positions, so no columns, but a covariance: two tilts of every
-    position are unknowns of the equations, with the position's stated sigma. Backlash is that
-    part of it which has the sign of the approach.
+    Two tilts of every position are errors of the equations already, with the stated sigma of the
+    table; what is sought is the position with which they cannot do, so the position is scanned.
+    Backlash is that part of it which has the sign of the approach.
     """
 
     name = "table_position_error"
-    cause = "encoder, backlash and clamping leave every position off by a little"
+    cause = "the position was set wrong, or encoder, backlash and clamping leave it off"
     source = "IEEE Std 1554-2005, position accuracy of tables"
-    parameters = (Parameter("sigma", "rad", 2 * ARC_SECOND, "scatter of the two tilts"),)
+    parameters = tuple(
+        Parameter(f"lean_{i}", "rad", 2 * ARC_SECOND, f"about the {which} level axis of the case")
+        for i, which in ((1, "first"), (2, "second"))
+    )
     sizes = of_tables(ARC_SECOND, 2, 30)
-    sought_in = "noise"
+    scan = Scan("position", "1", "place of the position among those of the plan", between=False)
+
+    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+        lean = np.zeros_like(motion.up)
+        for i in np.flatnonzero(motion.position == self.value(motion)):
+            lean[i] = values @ np.array(level_axes(motion.up[i]))
+        return Truth(
+            rate=truth.rate + np.cross(lean, motion.omega),
+            force=truth.force + np.cross(lean, truth.force),
+        )
+
+    def grid(self, motion: Motion) -> Array:
+        return np.unique(motion.position)

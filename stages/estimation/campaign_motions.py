@@ -37,6 +37,8 @@ class CampaignMotions:
     ) -> None:
         self._shared_clock = shared_clock
         self._visits = {m.name: float(place) for place, m in enumerate(plan)}
+        names = positions_of(plan)
+        self._places = {m.name: float(names.index(m.position)) for m in plan}
         self._levels, self._solution, self._heading = levels, solution, heading
 
     def at_rest(self, still: Still) -> Motion:
@@ -47,6 +49,7 @@ class CampaignMotions:
         return replace(
             at_rest(still, self._solution, self._heading, time),
             visit=np.array([self._visits[name] + later]),
+            position=np.array([self._places[name]]),
             temperature=np.array([still.mean_of(still.temperature)]),
             vibration=self._levels.of_samples(name, "rest", ACCEL)[None],
         )
@@ -62,9 +65,15 @@ class CampaignMotions:
         return replace(
             motion,
             visit=np.full(len(time), self._visits[name] + MOVING),
+            position=np.full(len(time), self._places[name]),
             temperature=temperature,
             vibration=np.tile(shaken, (len(time), 1)),
         )
+
+
+def positions_of(plan: Sequence[Manoeuvre]) -> list[str]:
+    """The positions of a plan in their order."""
+    return list(dict.fromkeys(m.position for m in plan))
 
 
 def mean_motion(motion: Motion, some: slice, share: Array) -> Motion:
@@ -78,5 +87,5 @@ def mean_motion(motion: Motion, some: slice, share: Array) -> Motion:
     # The pull of a lever arm goes with the square of the rate, so its mean is the root of that.
     means["rate"] = np.sign(means["rate"]) * np.sqrt(mean(motion.rate**2))
     means["seconds"] = np.array([motion.seconds[some].sum()])
-    means["surveyed"] = motion.surveyed[some][:1]
+    means["surveyed"], means["position"] = motion.surveyed[some][:1], motion.position[some][:1]
     return Motion(about=motion.about, **means)

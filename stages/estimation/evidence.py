@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from stages.contracts import tables
 from stages.contracts.records import Known, Manoeuvre, Performed
-from stages.estimation.campaign_motions import CampaignMotions, mean_motion
+from stages.estimation.campaign_motions import CampaignMotions, mean_motion, positions_of
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.solution import Solution
 from stages.estimation.stills import Still, stills
@@ -42,7 +42,7 @@ MERGED = 5  # blocks of a turn that make one of the accelerometers, whose truth 
 class Campaign:
     """One mount of a campaign with its joint result, ready to be asked about effects.
 
-    `manoeuvres`: those that are in the equations.
+    `positions`: of the plan, in its order; `manoeuvres`: those that are in the equations.
     """
 
     inputs: GyroInputs
@@ -52,6 +52,7 @@ class Campaign:
     solution: Solution
     gravity: Known
     position_sigma: float
+    positions: Sequence[str]
 
     @property
     def manoeuvres(self) -> list[str]:
@@ -256,6 +257,7 @@ def campaign_of(
         solution,
         known["gravity"],
         known["position"].scatter,
+        positions_of(plan),
     )
 
 

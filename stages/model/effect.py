@@ -44,11 +44,15 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Scan:
-    """A number on which an effect does not depend linearly, so that many values are tried."""
+    """A number on which an effect does not depend linearly, so that many values are tried.
+
+    `between`: whether the true value may lie between two of those that are tried.
+    """
 
     name: str
     unit: str
     meaning: str
+    between: bool = True
 
 
 class Effect(ABC):
@@ -83,7 +87,6 @@ class Effect(ABC):
     thinkable: ClassVar[float] = 100.0
     sought_in: ClassVar[str] = "blocks"
     finding: ClassVar[str] = ""
-    rings: ClassVar[bool] = False
     absorbed_by: ClassVar[str] = ""
     scan: ClassVar[Scan | None] = None
     at: float | None = None

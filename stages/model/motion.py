@@ -72,9 +72,10 @@ class Motion:
     table's vertical; `north`: (n, 3), NaN where the azimuth is not known.
 
     What else a stretch is: `seconds`: (n,), how long; `visit`: (n,), the place of its manoeuvre in
-    the plan; `surveyed`: (n,), whether north is known from the table's heading and not from the
-    gyros; `temperature`: (n,), K, and `vibration`: (n, 3), m/s², what the samples of specific
-    force scatter, both NaN where they are not known.
+    the plan, and `position`: (n,), that of its position among those of the plan; `surveyed`: (n,),
+    whether north is known from the table's heading and not from the gyros; `temperature`: (n,), K,
+    and `vibration`: (n, 3), m/s², what the samples of specific force scatter, both NaN where they
+    are not known.
     """
 
     time: Array
@@ -86,6 +87,7 @@ class Motion:
     north: Array
     seconds: Array
     visit: Array
+    position: Array
     surveyed: NDArray[np.bool_]
     temperature: Array
     vibration: Array
@@ -162,6 +164,7 @@ def turning(
         turned_all(up, about, angle),
         turned_all(north, about, angle),
         seconds,
+        np.zeros(n),
         np.zeros(n),
         np.zeros(n, bool),
         np.full(n, np.nan),

@@ -40,7 +40,7 @@ def to_refine(
             found.setdefault(member, set()).add(value)
     refined = {}
     for number, one in enumerate(effects):
-        if one.name in found and len(one.candidates) > 1 and not one.free:
+        if one.name in found and len(one.candidates) > 1 and one.between and not one.free:
             alone = int(np.argmax(drops[candidates.effect == number]))
             refined[one.name] = tuple(sorted(found[one.name] | {alone}))
     return refined

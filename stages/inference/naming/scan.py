@@ -60,10 +60,14 @@ class Candidates:
         near = [
             other
             for place in places
-            for other in (place, place - 1, place + 1)
+            for other in self._beside(place)
             if 0 <= other < len(self) and self.effect[other] == self.effect[place]
         ]
         return self.together(near)
+
+    def _beside(self, place: int) -> tuple[int, ...]:
+        between = self.effects[self.effect[place]].between
+        return (place, place - 1, place + 1) if between else (place,)
 
     def drops(
         self, information: Array, right: Array, beside: Sequence[int] = ()
