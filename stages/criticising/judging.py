@@ -28,7 +28,7 @@ from stages.model.effect import Effect
 OCCAM = 20.0  # of the deviance: so much the sizes that were possible beforehand weigh at most
 FINER = 4  # steps of the second look in each interval of the first
 SHARP = 20.0  # signal-to-noise ratio from which a third look is finer still
-WALKLIKE = 0.5  # share of its information that a walk leaves an effect, below which it is like one
+WALKLIKE = 0.2  # share of its information that a walk leaves an effect, below which it is like one
 SENSORS = ("gyro", "accel")
 
 
@@ -102,11 +102,9 @@ def judge(
     still = judged((0.0, 0.0))
     walks = campaign.solution.walks
     if not any(walks):
-        if not still.effects:
-            return still
-        walks = walks_beside(campaign, [])
-        if not any(walks):
-            return still
+        walks = _walks_instead(campaign, still.effects)
+    if not any(walks):
+        return still
     walking = judged(walks)
     if still.effects and still.deviance() < walking.deviance() - LIKELIER:
         found = still
@@ -118,7 +116,19 @@ def judge(
         walks = walks_beside(found.campaign, found.effects)
         if walks != found.walks:
             found = replace(judged(walks), instead=found.instead) if any(walks) else still
-    return _consistent(found) if any(found.walks) else found
+    if not any(found.walks):
+        return found
+    other = tuple(member for member in found.instead if member not in _members(found))
+    return _consistent(replace(found, instead=other))
+
+
+def _walks_instead(campaign: Campaign, effects: Sequence[Effect]) -> tuple[float, float]:
+    """The likeliest random walks that may stand for one of the effects, or for all; 0 for none."""
+    left = [[other for other in effects if other is not one] for one in effects]
+    some = left if len(effects) < 2 else [[], *left]
+    found = [(walks_beside(campaign, others), others) for others in some]
+    tried = [(campaign.walking(w).deviance(others), w) for w, others in found if any(w)]
+    return min(tried)[1] if tried else (0.0, 0.0)
 
 
 def _members(judged: Judged) -> tuple[str, ...]:

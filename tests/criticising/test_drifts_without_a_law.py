@@ -1,0 +1,47 @@
+"""What drifts by no law is said to do so, and does not spoil the name of what has one."""
+
+import chain
+import pytest
+
+WALK = {"gyro_rate_random_walk_deg_h_sqrt_h": 0.4}
+G_SENSITIVITY = {"matrix_deg_h_g": [[1.4, 0, 0], [0, -1.0, 0], [0, 0, 1.2]]}
+CLEAR = ("found", "one_of_class")
+
+
+def criticised(place, seed, effects, noise):
+    document = chain.demo(seed=seed, effects=effects)
+    document["noise"] = {**document["noise"], **noise}
+    campaign = chain.simulate(document, place / "campaign")
+    return chain.run(campaign, place / "derived", "criticism")
+
+
+@pytest.fixture(scope="module")
+def walking(tmp_path_factory):
+    effects = {"gyro_g_sensitivity": G_SENSITIVITY}
+    return criticised(tmp_path_factory.mktemp("walking"), 203, effects, WALK)
+
+
+def test_a_random_walk_beside_an_effect_is_estimated_and_takes_no_name(walking):
+    findings = walking["criticism/findings"].set_index("cause")
+    assert set(findings.index) == {"gyro_g_sensitivity", "gyro_random_walk"}
+    assert findings.loc["gyro_g_sensitivity", "verdict"] == "found"
+    assert findings.loc["gyro_random_walk", "verdict"] == "unknown_structure"
+    (walk,) = walking["criticism/walks"].itertuples()
+    # °/h/√h is per 60 √s; drawn once, so known to a part of itself only.
+    true = 0.4 * 4.848e-6 / 60
+    assert walk.sensor == "gyro" and true / 3 < walk.walk < true * 2.5
+
+
+def test_telegraph_noise_is_no_jump_and_its_structure_is_shown(tmp_path):
+    effects = {"gyro_telegraph": {"height_deg_h": [2.0, 0, 0], "dwell_s": 400}}
+    results = criticised(tmp_path, 4, effects, {})
+    findings = results["criticism/findings"]
+    assert not findings["verdict"].isin(CLEAR).any()
+    structure = findings.set_index("cause").loc["unknown_structure"]
+    assert structure["sensor"] == "gyro" and "no more than consistent" in structure["sentence"]
+    # Only that axis jumps, and there is something to be seen.
+    points = results["criticism/structure_points"]
+    assert set(points["channel"]) >= {"gyro x"}
+    off = points.loc[points["channel"] == "gyro x", ["left", "sigma"]]
+    assert (off["left"].abs() > 5 * off["sigma"]).any()
+    assert not results["criticism/scores"].set_index("effect").loc["gyro_bias_jump", "named"]
