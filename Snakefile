@@ -499,6 +499,9 @@ rule criticism:
             "blind_spots.parquet",
             "lines.parquet",
             "findings.parquet",
+            "walks.parquet",
+            "structures.parquet",
+            "structure_points.parquet",
         ),
     log:
         f"{DERIVED}/criticism/stage.log",
@@ -517,8 +520,9 @@ rule criticism:
 rule extension:
     input:
         simulated=f"{DERIVED}/simulation/simulated.parquet",
-        scores=f"{DERIVED}/criticism/scores.parquet",
+        criticism_findings=f"{DERIVED}/criticism/findings.parquet",
         effects=f"{DERIVED}/criticism/effects.parquet",
+        walks=f"{DERIVED}/criticism/walks.parquet",
         blocks=f"{DERIVED}/segment/blocks.parquet",
         manoeuvres=f"{DERIVED}/plan/manoeuvres.parquet",
         performed=f"{DERIVED}/segment/performed.parquet",
@@ -537,7 +541,12 @@ rule extension:
             f"{DERIVED}/extension/",
             "parameters.parquet",
             "covariance.parquet",
+            "fit.parquet",
             "gain.parquet",
+            "moved.parquet",
+            "worth.parquet",
+            "decision.parquet",
+            "result.parquet",
         ),
     log:
         f"{DERIVED}/extension/stage.log",
@@ -561,6 +570,9 @@ rule history:
         accelerometer_covariance=f"{DERIVED}/accelerometer/covariance.parquet",
         gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
         gyroscope_covariance=f"{DERIVED}/gyroscope/covariance.parquet",
+        extension_parameters=f"{DERIVED}/extension/parameters.parquet",
+        extension_covariance=f"{DERIVED}/extension/covariance.parquet",
+        decision=f"{DERIVED}/extension/decision.parquet",
         code=code("history"),
     output:
         multiext(f"{DERIVED}/history/", "archived.parquet", "earlier.parquet"),
@@ -596,6 +608,10 @@ rule export:
         gyroscope_parameters=f"{DERIVED}/gyroscope/parameters.parquet",
         gyroscope_covariance=f"{DERIVED}/gyroscope/covariance.parquet",
         gyroscope_fit=f"{DERIVED}/gyroscope/fit.parquet",
+        extension_parameters=f"{DERIVED}/extension/parameters.parquet",
+        extension_covariance=f"{DERIVED}/extension/covariance.parquet",
+        extension_fit=f"{DERIVED}/extension/fit.parquet",
+        decision=f"{DERIVED}/extension/decision.parquet",
         code=code("export"),
     output:
         multiext(
@@ -664,6 +680,8 @@ rule report:
         criticism_findings=f"{DERIVED}/criticism/findings.parquet",
         extended_parameters=f"{DERIVED}/extension/parameters.parquet",
         gain=f"{DERIVED}/extension/gain.parquet",
+        worth=f"{DERIVED}/extension/worth.parquet",
+        decision=f"{DERIVED}/extension/decision.parquet",
         differences=f"{DERIVED}/comparison/differences.parquet",
         checks=f"{DERIVED}/compensation/checks.parquet",
         compensated_traces=f"{DERIVED}/compensation/compensated_traces.parquet",

@@ -16,9 +16,10 @@ from stages.contracts.records import (
     share_a_clock,
 )
 from stages.contracts.stage import Stage, Tables
-from stages.criticising import elsewhere, oscillations, structures
+from stages.criticising import elsewhere, structures, warmth
 from stages.criticising.further import further
 from stages.criticising.judging import SENSORS, judge
+from stages.criticising.lines_of_turns import LinesOfTurns
 from stages.criticising.rows import Rows
 from stages.criticising.splitting import Foreseen
 from stages.criticising.structure import tested
@@ -27,9 +28,10 @@ from stages.criticising.walking import walks_with_sigmas
 from stages.effects import CATALOGUE
 from stages.estimation.estimates import by_mount
 from stages.estimation.evidence import campaign_of
+from stages.estimation.lines_of_turns import heard
 from stages.estimation.noise_levels import NoiseLevels
-from stages.estimation.ringing import ringing, steady_residuals, together
 from stages.estimation.solution import solution_of
+from stages.estimation.steady_turns import steady_turns
 
 Row = dict[str, Any]
 
@@ -72,10 +74,9 @@ def criticism(
     given, done, clock = known_of(known), performed_of(performed), clocks_of(clocks)
     averaged = {row["log"] for row in rows_of(clocks) if row["clock"] == "GPS"}
     levels, shared = NoiseLevels(noise), share_a_clock(clocks)
-    logs = {m.name: m.log for m in manoeuvres_of(manoeuvres)}
     sought = {place: [e for e in CATALOGUE.values() if e.sought_in == place] for place in PLACES}
     in_blocks = sought["blocks"]
-    others = [*sought["noise"], *sought["quality"], *(e for e in sought["spectrum"] if not e.rings)]
+    others = [*sought["noise"], *sought["quality"]]
     made: dict[str, list[Row]] = {name: [] for name in WRITES}
     for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
         solution = solution_of(
@@ -97,35 +98,24 @@ def criticism(
             for one in further(plan, done, blocks)
         }
         rows = Rows(campaign, judged, Foreseen(judged, more), suffix)
-        own = {m.name for m in plan}
-        rings = [
-            ring
-            for turn, residuals in steady_residuals(simulated)
-            if turn in own and solution.gyro is not None
-            for ring in ringing(
-                turn,
-                residuals,
-                solution.gyro,
-                clock[logs[turn]].step,
-                logs[turn] in averaged,
-                lowest_hz,
-            )
-        ]
-        heard = together(rings, level * (1 - BLOCKS_SHARE))
-        made["scores"] += [*rows.scores(), oscillations.score(heard, rings)]
+        turns = steady_turns(simulated, plan, solution.gyro, clock, averaged)
+        found = heard(turns, level * (1 - BLOCKS_SHARE), lowest_hz)
+        lines = LinesOfTurns(found, suffix)
+        made["scores"] += [*rows.scores(), *lines.scores()]
         made["scores"] += elsewhere.scores(others, walks.get("gyro"))
         for sensor, walk in walks.items():
             made["findings"] += elsewhere.findings(sensor, walk, judged.instead, suffix)
             made["walks"].append(elsewhere.walk_row(f"joint{suffix}", sensor, walk))
         made["structures"] += structures.rows(left, f"joint{suffix}")
         made["structure_points"] += structures.pictures(left, f"joint{suffix}")
-        made["effects"] += [*rows.effects(), *oscillations.effects(heard, rings, suffix)]
-        made["blind_spots"] += rows.blind_spots()
-        made["lines"] += oscillations.lines(rings)
+        made["effects"] += [*rows.effects(), *lines.effects()]
+        made["blind_spots"] += [*rows.blind_spots(), *lines.blind_spots()]
+        made["lines"] += lines.lines()
         made["findings"] += rows.findings()
-        made["findings"] += oscillations.findings(heard, rings, suffix)
+        made["findings"] += lines.findings()
         made["findings"] += structures.findings(left, judged.consistent(), suffix)
         made["findings"] += unexplained(judged, suffix)
+        made["findings"] += warmth.findings(blocks, plan, level, suffix)
     return {
         name: pd.DataFrame(rows, columns=[column.name for column in table.columns])
         if rows

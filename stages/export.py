@@ -15,8 +15,9 @@ from typing import Any
 
 import pandas as pd
 
-from stages.contracts import tables
+from stages.contracts import extension_tables, tables
 from stages.contracts.code import code_of, hash_of, hash_of_file
+from stages.contracts.counting import extended_methods
 from stages.contracts.errors import Refusal
 from stages.contracts.masks import Masks
 from stages.contracts.parquet import Stream, Table, provenance
@@ -53,6 +54,10 @@ READS: Mapping[str, Table] = {
     "gyroscope_parameters": tables.PARAMETERS,
     "gyroscope_covariance": tables.COVARIANCE,
     "gyroscope_fit": tables.FIT,
+    "extension_parameters": tables.PARAMETERS,
+    "extension_covariance": tables.COVARIANCE,
+    "extension_fit": tables.FIT,
+    "decision": extension_tables.DECISION,
 }
 STREAMS = ("samples",)  # too long for memory
 
@@ -74,6 +79,10 @@ def export(
     gyroscope_parameters: pd.DataFrame,
     gyroscope_covariance: pd.DataFrame,
     gyroscope_fit: pd.DataFrame,
+    extension_parameters: pd.DataFrame,
+    extension_covariance: pd.DataFrame,
+    extension_fit: pd.DataFrame,
+    decision: pd.DataFrame,
     made_by: Sequence[Row],
 ) -> dict[str, str]:
     """What the name of each file ends with → its text."""
@@ -101,7 +110,9 @@ def export(
                         accelerometer_fit,
                     ),
                     "gyroscope": (gyroscope_parameters, gyroscope_covariance, gyroscope_fit),
+                    "extension": (extension_parameters, extension_covariance, extension_fit),
                 },
+                extended_methods(rows_of(decision)),
                 worked(plan, blocks, samples, Masks(masks)),
             ),
             made_by,

@@ -8,8 +8,9 @@ from typing import Any
 import pandas as pd
 
 from stages.archiving.archive import Archive, Entry
-from stages.contracts import tables
+from stages.contracts import extension_tables, tables
 from stages.contracts.code import hash_of_file
+from stages.contracts.counting import counting, extended_methods
 from stages.contracts.records import Row, rows_of
 from stages.contracts.stage import Stage, Tables
 
@@ -21,23 +22,34 @@ def history(
     accelerometer_covariance: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
     gyroscope_covariance: pd.DataFrame,
+    extension_parameters: pd.DataFrame,
+    extension_covariance: pd.DataFrame,
+    decision: pd.DataFrame,
     archive: list[Path],
     provenance: Mapping[str, Mapping[str, Any]],
 ) -> Tables:
     """Which file of the archive holds this calibration, and what was found earlier.
 
     The archive grows with every campaign. What others add to it is read when this stage runs,
-    but never makes it run again.
+    but never makes it run again. Where the extended result of a sensor counts it is kept beside
+    the joint one, with the effects; a calibration that has none in the archive is of the joint one.
     """
     (facts,) = rows_of(campaign)
     parameters = [*rows_of(accelerometer_parameters), *rows_of(gyroscope_parameters)]
     covariance = [*rows_of(accelerometer_covariance), *rows_of(gyroscope_covariance)]
     joint = {row["id"] for row in parameters if _is_joint(row)}
+    methods = extended_methods(rows_of(decision))
+    extended = [row for row in rows_of(extension_parameters) if row["method"] in methods]
+    own = {row["id"] for row in extended}
+    parameters += extended
+    covariance += [row for row in rows_of(extension_covariance) if row["first"] in own]
+    of_extension = {"extension_parameters", "extension_covariance", "decision"}
+    used = {name: made for name, made in provenance.items() if extended or name not in of_extension}
     calibration = facts | {
         "parameters": parameters,
-        "covariance": [row for row in covariance if row["first"] in joint],
+        "covariance": [row for row in covariance if row["first"] in joint | own],
         "inputs": rows_of(inputs),
-        "made_by": _makers(provenance),
+        "made_by": _makers(used),
     }
     kept = Archive(archive[0], simulated=facts["simulated"])
     entry = kept.add(calibration)
@@ -69,12 +81,16 @@ def _makers(provenance: Mapping[str, Mapping[str, Any]]) -> list[Row]:
 
 
 def _numbers(entry: Entry) -> list[Row]:
-    """What the joint methods of an archived calibration have determined."""
+    """What an archived calibration has determined, by the names of the joint methods.
+
+    Where the extended result counted, the values are its own.
+    """
+    every = list(entry.row["parameters"])
     where = {"campaign": entry.row["campaign"], "date": entry.row["date"], "file": entry.file}
     return [
         where | {key: row[key] for key in ("id", "value", "sigma", "unit")}
-        for row in entry.row["parameters"]
-        if _is_joint(row) and row["value"] is not None
+        for row in counting([row for row in every if _is_joint(row)], every)
+        if row["value"] is not None
     ]
 
 
@@ -92,6 +108,9 @@ STAGE = Stage(
         "accelerometer_covariance": tables.COVARIANCE,
         "gyroscope_parameters": tables.PARAMETERS,
         "gyroscope_covariance": tables.COVARIANCE,
+        "extension_parameters": tables.PARAMETERS,
+        "extension_covariance": tables.COVARIANCE,
+        "decision": extension_tables.DECISION,
     },
     files=("archive",),
     writes={"archived": tables.ARCHIVED, "earlier": tables.EARLIER},

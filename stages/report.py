@@ -15,8 +15,9 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
-from stages.contracts import tables
+from stages.contracts import extension_tables, tables
 from stages.contracts.code import code_of, hash_of
+from stages.contracts.counting import counting, extended_methods
 from stages.contracts.errors import Refusal
 from stages.contracts.parquet import Stream, Table
 from stages.contracts.parquet import provenance as made_by
@@ -100,7 +101,9 @@ READS: Mapping[str, Table] = {
     "lines": tables.LINES,
     "criticism_findings": tables.CAUSES,
     "extended_parameters": tables.PARAMETERS,
-    "gain": tables.GAIN,
+    "gain": extension_tables.GAIN,
+    "worth": extension_tables.WORTH,
+    "decision": extension_tables.DECISION,
     "differences": tables.DIFFERENCES,
     "checks": tables.CHECKS,
     "compensated_traces": tables.TRACES,
@@ -164,6 +167,8 @@ def report(
     criticism_findings: pd.DataFrame,
     extended_parameters: pd.DataFrame,
     gain: pd.DataFrame,
+    worth: pd.DataFrame,
+    decision: pd.DataFrame,
     differences: pd.DataFrame,
     checks: pd.DataFrame,
     compensated_traces: pd.DataFrame,
@@ -210,6 +215,9 @@ def report(
     )
     given = verdict.verdict(found, manoeuvres, performed, worst_first, lacks.named(sought))
     estimated = [*records(accelerometer_parameters), *records(gyroscope_parameters)]
+    replaced = extended_methods(records(decision))
+    better = [row for row in records(extended_parameters) if row["method"] in replaced]
+    counted = counting(estimated, better)
     name = numbers.shortened(about["campaign"], 80)
     serial = numbers.shortened(about["serial"], 80)
     instrument = f"{numbers.shortened(about['instrument'], 80)} · serial {serial}"
@@ -221,14 +229,14 @@ def report(
         simulated=bool(about["simulated"]),
         sections=(
             verdict.section(given, found, about, known, clocks),
-            parameters.section(found),
-            lacks.section(sought, lines, gain, extended_parameters, found),
+            parameters.section(found, decision),
+            lacks.section(sought, lines, gain, extended_parameters, found, decision, worth),
             findings.section(worst_first, shown, segments, asked_for),
             undetermined.section(found),
             over_simulated.section(simulated, fidelity, manoeuvres, segments),
             comparisons.section(differences),
             compensation.section(checks, traces, compensated_traces, segments, manoeuvres),
-            history.section(earlier, archived, estimated, about["date"]),
+            history.section(earlier, archived, counted, about["date"]),
             recording.section(manoeuvres, performed),
             raw_data.section(drawn),
             noise_of_channels.section(noise, sensors),

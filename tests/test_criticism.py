@@ -124,7 +124,7 @@ def test_a_jump_is_told_with_its_time(criticised):
 def test_what_this_plan_cannot_see_is_said_with_the_reason(demo_criticised):
     told = demo_criticised["criticism/blind_spots"].set_index(["effect", "parameter"])
     assert set(told.index.get_level_values(0)) == {
-        name for name, effect in CATALOGUE.items() if effect.sought_in == "blocks"
+        name for name, effect in CATALOGUE.items() if effect.sought_in in ("blocks", "spectrum")
     }
     assert (told["visible"].notna() == (told["reason"] == "visible")).all()
     for effect, words in {

@@ -71,7 +71,7 @@ def paths(results: chain.Results) -> dict[str, Path]:
     found = {}
     for name, table in READS.items():
         folder = name.partition("_")[0] if "_" in name else "*"
-        folder = {**dict(zip(KINDS, KINDS, strict=True)), "extended": "extension"}.get(folder, "*")
+        folder = folder if folder in {*KINDS, "extension"} else "*"
         (path,) = results.folder.glob(f"{folder}/{table.name}.parquet")
         found[name] = path
     return found
@@ -260,15 +260,15 @@ def extended(results: chain.Results) -> dict[str, pd.DataFrame]:
         for column in extension_tables.DECISION.columns
     }
     return {
-        "extended_parameters": pd.concat([rows, effect]).assign(stage="extension"),
-        "extended_covariance": pd.DataFrame(
+        "extension_parameters": pd.concat([rows, effect]).assign(stage="extension"),
+        "extension_covariance": pd.DataFrame(
             {
                 "first": np.repeat(ids, len(ids)),
                 "second": np.tile(ids, len(ids)),
                 "covariance": spread.ravel(),
             }
         ),
-        "extended_fit": results["gyroscope/fit"]
+        "extension_fit": results["gyroscope/fit"]
         .query("method == 'joint'")
         .assign(method="gyroscope", chi_squared=77.0),
         "decision": pd.DataFrame(decided | {"sensor": ["gyro"], "result": ["extended"]}),

@@ -1,29 +1,58 @@
-"""The extended model: the parameters come back, and it foretells what it has not seen."""
+"""The extended model: the parameters come back, it foretells what it has not seen, and counts."""
 
+import chain
 import numpy as np
+import pandas as pd
+import pytest
 from test_closure import truth_of
+
+G = 9.80665  # m/s², of the unit of the laboratory's K2
+GRAVITY = 9.7936174
+SIZE = 90.0  # µg/g², twenty sigma of the short campaign
+BETWEEN = ("studies", "comparison", "compensation")  # not needed for it
+
+
+def run(folder, **changes):
+    campaign = chain.simulate(chain.short(**changes), folder / "short")
+    return chain.run(campaign, folder / "derived", "extension", without=BETWEEN)
+
+
+@pytest.fixture(scope="module")
+def quadratic(tmp_path_factory):
+    """A short campaign whose y accelerometer answers to the square of what it feels."""
+    effects = {"accel_quadratic": {"k2_micro_g_g2": [0, SIZE, 0]}}
+    return run(tmp_path_factory.mktemp("quadratic"), effects=effects, seed=5)
+
+
+# ---- the demo
 
 
 def test_the_parameters_that_the_effect_had_spoiled_come_back(demo_criticised):
     table = demo_criticised["extension/parameters"].set_index(["method", "parameter"])
-    for stage in ("gyroscope", "accelerometer"):
-        truth = truth_of(stage)
-        rows = table.loc[stage].loc[list(truth)]
-        pulls = (rows["value"] - list(truth.values())) / rows["sigma"]
-        assert np.abs(pulls).max() < 4
+    truth = truth_of("gyroscope")
+    rows = table.loc["gyroscope"].loc[list(truth)]
+    pulls = (rows["value"] - list(truth.values())) / rows["sigma"]
+    assert np.abs(pulls).max() < 4
     joint = demo_criticised.parameters("gyroscope")
     # Sigmas of noise alone again: the scatter that covered the effect is gone.
     assert table.loc[("gyroscope", "scale_x"), "sigma"] < joint.loc["scale_x", "sigma"] / 3
+    assert "accelerometer" not in table.index.get_level_values(0)  # they show nothing of it
+    decided = demo_criticised["extension/decision"].set_index("sensor")["result"]
+    assert dict(decided) == {"gyro": "extended", "accel": "joint"}
 
 
 def test_the_gain_is_there_on_data_that_the_fit_has_not_seen(demo_criticised):
-    gain = demo_criticised["extension/gain"].set_index(["sensor", "scope"])
+    gain = demo_criticised["extension/gain"].set_index(["sensor", "scope", "unit"])
     assert "accel" not in gain.index.get_level_values(0)  # it shows nothing of either effect
-    fitted, held_out = gain.loc[("gyro", "fitted")], gain.loc[("gyro", "held-out")]
+    fitted, held_out = (gain.loc[("gyro", scope, "sigma")] for scope in ("fitted", "held-out"))
     assert fitted["drop"] > 1000 and held_out["drop"] > 1000
+    assert 0.9 < held_out["drop"] / held_out["snr_squared"] < 1.1
     assert fitted["rms_after"] < 1.1 < fitted["rms_before"]
     assert held_out["rms_after"] < 1.1 < held_out["rms_before"]
-    ringing = gain.loc[("gyro x", "held-out")]
+    for axis in "xyz":
+        channel = gain.loc[(f"gyro {axis}", "held-out", "sigma")]
+        assert channel["rms_after"] < 1.3 < channel["rms_before"]
+    ringing = gain.loc[("gyro x", "held-out", "rad/s")]
     assert ringing["rms_after"] < 0.02 * ringing["rms_before"]
     assert ringing["rms_after"] < 4e-5  # rad/s: the white noise of a sample, 3.5e-5
 
@@ -33,3 +62,112 @@ def test_covariance_and_parameters_agree(demo_criticised):
     covariance = demo_criticised["extension/covariance"]
     own = covariance[covariance["first"] == covariance["second"]].set_index("first")["covariance"]
     np.testing.assert_allclose(np.sqrt(own[table.index]), table["sigma"], rtol=1e-9)
+
+
+# ---- an effect of twenty sigma
+
+
+def test_the_effect_and_what_it_moved_come_back(quadratic):
+    found = quadratic["extension/parameters"].set_index("parameter")
+    (name,) = set(quadratic["extension/gain"]["effects"])
+    assert name in ("accel_quadratic", "accel_scale_asymmetry")  # this plan cannot tell them apart
+    if name == "accel_quadratic":
+        size = found.loc["accel_quadratic.k2_y"]
+        assert abs(size["value"] - SIZE * 1e-6 / G) < 4 * size["sigma"]
+        truth = truth_of("accelerometer")
+        pulls = (found.loc[list(truth), "value"] - list(truth.values())) / found.loc[
+            list(truth), "sigma"
+        ]
+        assert np.abs(pulls).max() < 4
+    moved = quadratic["extension/moved"].set_index("parameter")
+    assert set(moved["joint_id"].str.partition("/")[0]) == {"accelerometer"}
+    # The mean of the two rests of y is off by K2 g², which the joint fit takes for a bias.
+    assert moved.loc["bias_y", "in_sigmas"] < -4
+    assert moved["in_sigmas"].drop(["bias_y", "scale_y", "cross_yx", "cross_yz"]).abs().max() < 1
+
+
+def test_the_held_out_drop_is_the_snr_squared_at_stake(quadratic):
+    gain = quadratic["extension/gain"].set_index(["sensor", "scope"])
+    fitted, held_out = gain.loc[("accel", "fitted")], gain.loc[("accel", "held-out")]
+    assert 15**2 < fitted["snr_squared"] < 25**2
+    assert 0.8 < held_out["drop"] / fitted["snr_squared"] < 1.6
+    assert 0.8 < held_out["drop"] / held_out["snr_squared"] < 1.2
+    loud = gain.loc[("accel y", "fitted")]
+    assert loud["rms_after"] < 1.3 < loud["rms_before"] and loud["drop"] > 0.9 * fitted["drop"]
+    for quiet in ("accel x", "accel z"):
+        assert abs(gain.loc[(quiet, "fitted"), "drop"]) < 12  # of noise, a parameter or two
+
+
+def test_a_rest_that_alone_shows_it_is_not_counted_and_that_is_said(quadratic):
+    held_out = quadratic["extension/gain"].set_index(["sensor", "scope"]).loc["accel", "held-out"]
+    assert held_out["left_out"] == "y-down"  # the turns show y upward as well
+    assert (held_out["folds"], held_out["counted"]) == (12, 11)
+    decided = quadratic["extension/decision"].set_index("sensor").loc["accel"]
+    assert "Not counted: y-down" in decided["sentence"]
+
+
+def test_the_extended_result_counts_and_the_other_sensor_keeps_its_own(quadratic):
+    decided = quadratic["extension/decision"].set_index("sensor")
+    assert dict(decided["result"]) == {"gyro": "joint", "accel": "extended"}
+    result = quadratic["extension/result"]
+    assert len(result) == 24
+    assert set(result["id"].str.rpartition("/")[0]) == {
+        "gyroscope/joint",
+        "extension/accelerometer",
+    }
+
+
+def test_an_alarm_keeps_the_joint_result_and_a_random_walk_is_none(quadratic):
+    findings = quadratic["criticism/findings"]
+    for cause, counts in (("accel_drift", "joint"), ("accel_random_walk", "extended")):
+        alarm = findings.iloc[:1].assign(
+            id=f"criticism/{cause}", cause=cause, sensor="accel", verdict="unknown_structure"
+        )
+        made = chain.again(quadratic, "extension", criticism_findings=pd.concat([findings, alarm]))
+        decided = made["decision"].set_index("sensor")
+        assert decided.loc["accel", "result"] == counts
+        assert decided.loc["gyro", "result"] == "joint"
+        own = made["result"]["id"].str.startswith("extension/")
+        assert own.sum() == (12 if counts == "extended" else 0)
+
+
+def test_the_worth_is_the_error_of_the_joint_result_by_hand(quadratic):
+    worth = quadratic["extension/worth"].set_index("manoeuvre")
+    moved = quadratic["extension/moved"].set_index("parameter")
+    effects = quadratic["extension/parameters"].set_index("parameter")
+    (name,) = set(quadratic["extension/gain"]["effects"])
+    force = GRAVITY * np.array([0, -1, 0])  # y down
+    error = np.zeros(3)
+    for i, row in enumerate("xyz"):
+        change = moved.loc[f"bias_{row}", "difference"]
+        for j, column in enumerate("xyz"):
+            element = f"scale_{row}" if i == j else f"cross_{row}{column}"
+            change += moved.loc[element, "difference"] * force[j]
+        term = "k2" if name == "accel_quadratic" else "a"
+        felt = force[i] ** 2 if name == "accel_quadratic" else abs(force[i])
+        error[i] = change + effects.loc[f"{name}.{term}_{row}", "value"] * felt
+    # M differs from the unit matrix by less than 1 %, and so does what it does to the error.
+    row = worth.loc["y-down"]
+    assert row["velocity_joint"] == pytest.approx(60 * np.linalg.norm(error), rel=0.02)
+    assert row["velocity_joint"] > 5 * row["velocity_joint_sigma"]
+    assert (row["attitude_joint"], row["motion"]) == (0.0, "rest")
+    assert worth.loc["x-forward", "motion"] == "turn"
+    assert worth.loc["x-forward", "rate"] == pytest.approx(np.radians(60), rel=0.3)
+
+
+# ---- nothing to add
+
+
+def test_without_a_named_effect_the_joint_result_counts(tmp_path):
+    results = run(tmp_path, seed=21)
+    for table in ("parameters", "covariance", "fit", "gain", "moved", "worth"):
+        assert results[f"extension/{table}"].empty
+    assert set(results["extension/decision"]["result"]) == {"joint"}
+    result = results["extension/result"].set_index("id")
+    for stage in ("gyroscope", "accelerometer"):
+        joint = results.parameters(stage).set_index("id")
+        own = result[result["stage"] == stage]
+        assert len(own) == 12
+        pd.testing.assert_frame_equal(
+            own[["value", "sigma"]], joint.loc[own.index, ["value", "sigma"]]
+        )

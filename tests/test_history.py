@@ -131,8 +131,8 @@ def run(
             for stage in ("accelerometer", "gyroscope")
             for table in ("parameters", "covariance")
         },
-        "extended_parameters": derived / "extension/parameters.parquet",
-        "extended_covariance": derived / "extension/covariance.parquet",
+        "extension_parameters": derived / "extension/parameters.parquet",
+        "extension_covariance": derived / "extension/covariance.parquet",
         "decision": derived / "extension/decision.parquet",
     }
     STAGE.run(paths, {"archive": [place / "history"]}, derived / "history", {})

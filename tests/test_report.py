@@ -214,9 +214,9 @@ def test_which_result_counts_is_said_beside_the_effects_and_the_joint_parameters
 def test_what_it_is_worth_to_a_user_is_told_in_mrad_and_metres_per_second() -> None:
     text = Page(made_up.documents().html).text
     after = text[text.index("Errors of free inertial navigation after 60 s") :]
-    row = after[after.index("x-up") : after.index("x-forward")].split()
+    row = after[after.index("x-up") : after.index("x-forward")]
     # 1 °/h for 60 s: 1/60°, and 9.8 · ψ t / 2.
-    assert row[1:4] == ["at", "rest", "0.29"] and "0.086" in row
+    assert "at rest0.29" in row and "0.086" in row
 
 
 def test_nothing_is_missing() -> None:

@@ -10,13 +10,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import chain
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from stages import history
+from stages import extension, history
 from stages.contracts import tables
 from stages.contracts.code import code_of, hash_of, hash_of_file
 from stages.contracts.parquet import Writer
@@ -55,8 +56,25 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
     chain.run(raw, derived, until="gyroscope")
     paths = {name: derived / f"{name.replace('_', '/')}.parquet" for name in history.STAGE.reads}
     paths |= {name: derived / f"plan/{name}.parquet" for name in ("campaign", "inputs")}
+    nothing = {
+        name: extension.STAGE.writes[name] for name in ("parameters", "covariance", "decision")
+    }
+    with Writer(derived / "extension", nothing, made_by_extension()) as writer:
+        for name, table in nothing.items():
+            writer.write(name, table.empty())
+            paths[f"extension_{name}"] = derived / f"extension/{name}.parquet"
+    paths["decision"] = paths.pop("extension_decision")
     history.STAGE.run(paths, {"archive": [data / "history"]}, derived / "history", {})
     return data
+
+
+def made_by_extension(**inputs: str) -> dict[str, Any]:
+    return {
+        "stage": "extension",
+        "settings": chain.SETTINGS.get("extension", {}),
+        "code": hash_of(code_of("extension")),
+        "inputs": inputs,
+    }
 
 
 @dataclass(frozen=True)
@@ -159,16 +177,13 @@ def test_a_stage_without_a_fit_rests_on_those_behind_it(trace, data: Path) -> No
     again = found[found["method"] == "joint"].assign(stage="extension", method="gyroscope")
     again["id"] = "extension/gyroscope/" + again["parameter"]
     read = ("gyroscope/parameters.parquet", "accelerometer/parameters.parquet")
-    made_by = {
-        "stage": "extension",
-        "settings": chain.SETTINGS.get("extension", {}),
-        "code": hash_of(code_of("extension")),
-        "inputs": {file: hash_of_file(derived / file) for file in read},
-    }
-    with Writer(derived / "extension", {"parameters": tables.PARAMETERS}, made_by) as writer:
-        writer.write("parameters", again)
-    said = trace("extension/gyroscope/bias_x")
-    shutil.rmtree(derived / "extension")
+    made_by = made_by_extension(**{file: hash_of_file(derived / file) for file in read})
+    with put_back(derived / "extension/parameters.parquet"):
+        with Writer(derived / "extension", {"parameters": tables.PARAMETERS}, made_by) as writer:
+            writer.write("parameters", again)
+        (derived / "history").rename(data / "away")  # it was made from what the stage said before
+        said = trace("extension/gyroscope/bias_x")
+        (data / "away").rename(derived / "history")
     assert said.code == 0, said.text
     assert "extension, method gyroscope, keeps no record" in said.text
     assert "the fit of the stage gyroscope, method joint\n" in said.text

@@ -527,7 +527,7 @@ CALIBRATION = Table(
                 ("covariance", _double, "of the two estimates"),
             ),
             "product of the units",
-            "the covariance of the joint methods",
+            "of the joint methods, and of the extended result where that counts",
         ),
         Column(
             "inputs",
@@ -566,13 +566,13 @@ ARCHIVED = Table(
 )
 EARLIER = Table(
     "earlier",
-    1,
+    2,
     (
         Column("campaign", _text, "", "campaign of another calibration of the same IMU"),
         Column("date", _text, "", "its date, not later than this campaign's, or unknown"),
         Column("file", _text, "", "the archive's file that holds it"),
-        Column("id", _text, "", "identifier of the parameter, as in parameters"),
-        Column("value", _double, "as unit", "its estimate then"),
+        Column("id", _text, "", "identifier of the parameter by the joint method"),
+        Column("value", _double, "as unit", "its estimate then, by the result that counted"),
         Column("sigma", _double, "as unit", "standard deviation of the estimate"),
         Column("unit", _text, "", "unit of value and sigma"),
     ),
@@ -840,7 +840,7 @@ EFFECTS = Table(
 )
 LINES = Table(
     "lines",
-    1,
+    2,
     (
         Column("manoeuvre", _text, "", "as in manoeuvres"),
         Column("axis", _text, "", "gyro axis, of the case", BODY),
@@ -849,21 +849,7 @@ LINES = Table(
         Column("amplitude", _double, "rad/s", "of the rate, the averaging of a sample undone"),
         Column("amplitude_sigma", _double, "rad/s", "its standard deviation"),
         Column("p_value", _double, "1", "chance of such a peak by noise, the search paid for"),
-    ),
-)
-GAIN = Table(
-    "gain",
-    1,
-    (
-        Column("sensor", _text, "", "gyro or accel"),
-        Column("effects", _text, "", "the effects that were added"),
-        Column("scope", _text, "", "fitted: all manoeuvres; held-out: each by the fit to others"),
-        Column("rows", _integer, "1", "number of equations"),
-        Column("before", _double, "1", "chi-squared without the effects; or −2 log predictive"),
-        Column("after", _double, "1", "the same with them"),
-        Column("drop", _double, "1", "before less after"),
-        Column("rms_before", _double, "as unit", "root mean square of the residuals without"),
-        Column("rms_after", _double, "as unit", "and with the effects"),
-        Column("unit", _text, "", "sigma, or the unit of the channel"),
+        Column("order", _double, "1", "periods in one turn of the table", nullable=True),
+        Column("effect", _text, "", "that it is taken for; empty: none stands out", nullable=True),
     ),
 )

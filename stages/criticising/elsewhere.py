@@ -20,8 +20,6 @@ UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
 SHARED = {"gyro": ("earth", "latitude", "heading"), "accel": ("lever", "size", "table")}
 ELSEWHERE = {
     "gyro_flicker": "In one campaign it is not told from a random walk, which is estimated.",
-    "table_position_error": "Each position has tilts of its own, with the sigma of the table; one"
-    " that does not fit is a finding of the accelerometers.",
 }
 
 

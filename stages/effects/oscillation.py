@@ -7,8 +7,9 @@ from stages.model.sizes import of_tables
 class Oscillation(Effect):
     """ω_i += A sin(2πf t), on one axis; the others see it through M.
 
-    Faster than a block: it is sought in the spectrum of the full-rate residuals, against time.
-    Over a whole turn it adds no angle.
+    Faster than a block: it is sought in the spectrum of the full-rate residuals, against time, with
+    a phase of its own in each turn. Over a whole turn it adds no angle. What rings with one phase
+    against the table's angle, and about its axis, is a ripple of the table.
     """
 
     name = "oscillation"
@@ -20,4 +21,3 @@ class Oscillation(Effect):
     )
     sizes = of_tables(1, 1e-5, 1e-2)
     sought_in = "spectrum"
-    rings = True

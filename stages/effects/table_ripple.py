@@ -29,7 +29,7 @@ class TableRipple(Effect):
     )
     sizes = of_tables(ARC_SECOND, 0.5, 5)
     sought_in = "spectrum"
-    scan = Scan("n", "1", "periods in one turn")
+    scan = Scan("n", "per turn", "periods in one turn")
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         ahead = motion.ripples(self.value(motion), values[0], values[1])

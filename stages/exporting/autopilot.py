@@ -6,6 +6,7 @@ Both correct axis by axis, accelerometers by offset and scale factor, gyros by a
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from stages.exporting import effects
 from stages.exporting.calibration import Calibration
 from stages.exporting.diagonal import Diagonal, diagonal
 from stages.exporting.heading import heading, mounts
@@ -50,6 +51,7 @@ def parameters(calibration: Calibration, autopilot: Autopilot) -> Parameters:
         f"- cross-axis terms of the accelerometers: {cross_terms(accelerometer)}",
         f"- scale factor errors of the gyros: {scale_errors(gyroscope)}",
         f"- cross-axis terms of the gyros: {cross_terms(gyroscope)}",
+        *effects.told(sensors for _, sensors in chosen),
         "- the sigma of every number, their covariance, the noise densities, the temperature",
         "",
         "What this file cannot carry leaves:",

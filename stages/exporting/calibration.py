@@ -5,7 +5,7 @@
 An element that was not determined is NaN here and null in the files, never 0 or 1.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from statistics import median
@@ -38,13 +38,15 @@ class Sensors:
     kind : accelerometer or gyroscope
     matrix, matrix_sigma : M, (3, 3), unit 1, NaN where not determined; row: the sensor
     bias, bias_sigma : (3,), `unit`, NaN where not determined
+    stem : what the ids of its parameters begin with: kind/method, or that of the extended fit
     names, covariance : ids of the n numbers that are determined, and their covariance, (n, n)
     reasons : parameter → why it is not determined
     fit : the row of the fit table; none where nothing was fitted
+    effects : rows of the parameters of effects, where the extended fit counts
     """
 
     kind: str
-    method: str
+    stem: str
     matrix: Array
     matrix_sigma: Array
     bias: Array
@@ -53,6 +55,7 @@ class Sensors:
     covariance: Array
     reasons: Mapping[str, str]
     fit: Row | None
+    effects: Sequence[Row] = ()
 
     @property
     def unit(self) -> str:
@@ -93,7 +96,7 @@ class Sensors:
         return np.asarray(inverse @ (reading - self.bias))
 
     def _covariance_of(self, names: Sequence[str]) -> Array:
-        index = [self.names.index(f"{self.kind}/{self.method}/{name}") for name in names]
+        index = [self.names.index(f"{self.stem}/{name}") for name in names]
         return self.covariance[np.ix_(index, index)]
 
 
@@ -140,20 +143,28 @@ def _of(mount: Mount, kind: str) -> Sensors:
 def mounts_of(
     plan: list[Manoeuvre],
     tables: Mapping[str, tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]],
+    extended: Collection[str],
     worked: Mapping[str, Sequence[Worked]],
 ) -> list[Mount]:
-    """The joint result of every mount.
+    """The result of every mount that counts: the joint one, or the extended one.
 
     Parameters
     ----------
-    tables : accelerometer and gyroscope → parameters, covariance, fit
+    tables : accelerometer, gyroscope and extension → parameters, covariance, fit
+    extended : methods of the extension that count
     worked : mount → readings
     """
+
+    def sensors(kind: str, suffix: str) -> Sensors:
+        if f"{kind}{suffix}" in extended:
+            return _sensors(kind, "extension", f"{kind}{suffix}", *tables["extension"])
+        return _sensors(kind, kind, f"joint{suffix}", *tables[kind])
+
     return [
         Mount(
             own[0].mount,
-            _sensors("accelerometer", f"joint{suffix}", *tables["accelerometer"]),
-            _sensors("gyroscope", f"joint{suffix}", *tables["gyroscope"]),
+            sensors("accelerometer", suffix),
+            sensors("gyroscope", suffix),
             worked.get(own[0].mount, ()),
         )
         for suffix, own in by_mount(plan)
@@ -161,11 +172,16 @@ def mounts_of(
 
 
 def _sensors(
-    kind: str, method: str, parameters: pd.DataFrame, covariance: pd.DataFrame, fit: pd.DataFrame
+    kind: str,
+    stage: str,
+    method: str,
+    parameters: pd.DataFrame,
+    covariance: pd.DataFrame,
+    fit: pd.DataFrame,
 ) -> Sensors:
     rows = {row["parameter"]: row for row in rows_of(parameters) if row["method"] == method}
     found = [name for name in NAMES if rows.get(name, {}).get("value") is not None]
-    ids = [f"{kind}/{method}/{name}" for name in found]
+    ids = [f"{stage}/{method}/{name}" for name in found]
     values = np.array([rows[n]["value"] if n in found else np.nan for n in NAMES], np.float64)
     sigmas = np.array([rows[n]["sigma"] if n in found else np.nan for n in NAMES], np.float64)
     product = {
@@ -176,7 +192,7 @@ def _sensors(
     nothing = {"reason": f"there is no result for the {kind}"}
     return Sensors(
         kind,
-        method,
+        f"{stage}/{method}",
         matrix=np.eye(3) + values[:9].reshape(3, 3),
         matrix_sigma=sigmas[:9].reshape(3, 3),
         bias=values[9:],
@@ -185,6 +201,7 @@ def _sensors(
         covariance=np.array([product[a, b] for a in ids for b in ids]).reshape(len(ids), len(ids)),
         reasons={n: rows.get(n, nothing)["reason"] for n in NAMES if n not in found},
         fit=next((row for row in rows_of(fit) if row["method"] == method), None),
+        effects=[row for name, row in rows.items() if "." in name],
     )
 
 

@@ -17,7 +17,7 @@ from stages.exporting.worked import Worked
 Array = NDArray[np.float64]
 
 FORMAT = "turntable calibration"
-VERSION = 1
+VERSION = 2
 SQRT_HZ = {"accel": "(m/s²)/√Hz", "gyro": "(rad/s)/√Hz"}
 EQUATION = {
     "reading": "reading = M · truth + bias",
@@ -83,6 +83,17 @@ def _mount(mount: Mount) -> Row:
 
 def _sensors(sensors: Sensors) -> Row:
     return {
+        "result": "extended" if sensors.effects else "joint",
+        "effects": [
+            {
+                "name": row["parameter"],
+                "value": _number(row["value"]),
+                "sigma": _number(row["sigma"]),
+                "unit": row["unit"],
+                "meaning": row["meaning"],
+            }
+            for row in sensors.effects
+        ],
         "matrix": {
             "unit": "1",
             "value": _numbers(sensors.matrix),
@@ -100,7 +111,7 @@ def _sensors(sensors: Sensors) -> Row:
         },
         "covariance": {"names": list(sensors.names), "value": _numbers(sensors.covariance)},
         "not_determined": [
-            {"name": f"{sensors.kind}/{sensors.method}/{name}", "reason": reason}
+            {"name": f"{sensors.stem}/{name}", "reason": reason}
             for name in (*NAMES, "inverse")
             if (reason := sensors.no_inverse if name == "inverse" else sensors.reasons.get(name))
         ],

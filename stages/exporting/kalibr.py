@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from stages.exporting import effects
 from stages.exporting.calibration import Calibration
 from stages.exporting.comments import commented
 from stages.exporting.heading import heading, mounts
@@ -72,6 +73,7 @@ def _losses(calibration: Calibration) -> Iterator[str]:
                 f"- noise densities of the single {kind}s: {each}; the file has one for all three,"
                 " that of the noisiest, so that Kalibr trusts none too much"
             )
+    yield from effects.told(sensors for _, sensors in chosen)
     yield "- the sigma of every number, their covariance, the temperature"
     yield from mounts(calibration, chosen)
     yield (

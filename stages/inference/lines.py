@@ -1,5 +1,6 @@
 """Oscillations in residuals: lines that stand out of the noise of a spectrum."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ Array = NDArray[np.float64]
 
 FEWEST = 64  # samples in which a line can be told from noise
 OVERSAMPLED = 2  # the search steps by half a bin, so that no line falls between two
+LEAKS = 0.05  # of a line that is taken out may be left a bin beside it: it is never quite even
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,22 @@ class Line:
     p_value: float
 
 
-def strongest(record: Array, rate: float, lowest: float) -> Line | None:
+@dataclass(frozen=True)
+class Taken:
+    """A line that was taken out of a record: Hz, and its amplitude there."""
+
+    frequency: float
+    amplitude: float
+
+    def leaks(self, frequency: Array, seconds: float) -> Array:
+        """The amplitude that may be left of it at other frequencies, in a record of so long."""
+        bins = np.abs(frequency - self.frequency) * seconds
+        return np.asarray(LEAKS * self.amplitude / np.maximum(bins, LEAKS))
+
+
+def strongest(
+    record: Array, rate: float, lowest: float, taken: Sequence[Taken] = ()
+) -> Line | None:
     """The line of a record that stands out most.
 
     The periodogram of white noise is exponentially distributed about its level, which is
@@ -39,6 +56,7 @@ def strongest(record: Array, rate: float, lowest: float) -> Line | None:
     record : (n,), samples without gaps
     rate : Hz, samples per second
     lowest : Hz, below which nothing is looked for
+    taken : lines that were taken out of it; what they may have left is none
     """
     n = len(record)
     if n < FEWEST:
@@ -48,18 +66,34 @@ def strongest(record: Array, rate: float, lowest: float) -> Line | None:
     level = float(np.median(density[inside]) / np.log(2)) if inside.any() else 0.0
     if level <= 0:
         return None
-    peak = int(np.argmax(np.where(inside, density, 0.0)))
+    stands = inside.copy()
+    for one in taken:
+        stands &= density > n / (2 * rate) * one.leaks(frequency, n / rate) ** 2
+    if not stands.any():
+        return None
+    peak = int(np.argmax(np.where(stands, density, 0.0)))
     trials = float(inside.sum())
     p_value = float(-np.expm1(trials * np.log1p(-np.exp(-density[peak] / level))))
-    found = _refined(record, rate, float(frequency[peak]))
-    # The line itself leaks into all bins, so the noise is read again without it.
-    split = without_line(record, rate, found)
-    _, left = _spectrum(split.less(split.amplitude), rate)
+    return near(record, rate, lowest, float(frequency[peak]), p_value)
+
+
+def near(record: Array, rate: float, lowest: float, frequency: float, p_value: float) -> Line:
+    """The line within a bin of a frequency, as `line_at` has it."""
+    return line_at(record, rate, lowest, _refined(record, rate, frequency), p_value)
+
+
+def line_at(record: Array, rate: float, lowest: float, frequency: float, p_value: float) -> Line:
+    """The line of one frequency; the noise is read from `lowest` on, Hz."""
+    n = len(record)
+    # The line itself leaks into all bins, so the noise is read without it.
+    split = without_line(record, rate, frequency)
+    bins, left = _spectrum(split.less(split.amplitude), rate)
+    inside = (bins >= lowest) & (bins < rate / 2)
     per_sample = float(np.sqrt(np.median(left[inside]) / np.log(2) * rate / 2))
     # Rife & Boorstyn, IEEE Trans. Inform. Theory 20 (1974) 591: bounds of both.
     sigma_frequency = np.sqrt(6) * per_sample * rate / (np.pi * split.amplitude * n**1.5)
     sigma_amplitude = per_sample * np.sqrt(2 / n)
-    return Line(found, float(sigma_frequency), split.amplitude, float(sigma_amplitude), p_value)
+    return Line(frequency, float(sigma_frequency), split.amplitude, float(sigma_amplitude), p_value)
 
 
 def _spectrum(record: Array, rate: float) -> tuple[Array, Array]:
@@ -107,11 +141,25 @@ def without_line(record: Array, rate: float, frequency: float) -> Split:
     return Split(level, amplitude, line / amplitude if amplitude else line)
 
 
+def energy(record: Array, rate: float, frequency: float) -> float:
+    """By how much a line of one frequency lessens the sum of squares beside mean and slope."""
+    columns, parts = _fitted(record, rate, frequency)
+    slow = np.linalg.qr(columns[:, 2:])[0]
+    level = record - slow @ (slow.T @ record)
+    return float(level @ level - np.sum((record - columns @ parts) ** 2))
+
+
+def phasor(record: Array, rate: float, frequency: float) -> complex:
+    """c of Re c exp(2πi f t), t from the first sample, of the line of one frequency."""
+    sine, cosine = _fitted(record, rate, frequency)[1][:2]
+    return complex(cosine, -sine)
+
+
 def _fitted(record: Array, rate: float, frequency: float) -> tuple[Array, Array]:
     """Sine, cosine, mean and slope by least squares: columns (n, 4) and their parts (4,)."""
     time = np.arange(len(record)) / rate
     phase = 2 * np.pi * frequency * time
-    columns = np.column_stack(
-        [np.sin(phase), np.cos(phase), np.ones_like(time), time - time.mean()]
-    )
-    return columns, np.asarray(np.linalg.lstsq(columns, record, rcond=None)[0])
+    slope = 2 * time / time[-1] - 1
+    columns = np.column_stack([np.sin(phase), np.cos(phase), np.ones_like(time), slope])
+    inverse = np.linalg.pinv(columns.T @ columns, hermitian=True)
+    return columns, np.asarray(inverse @ (columns.T @ record))

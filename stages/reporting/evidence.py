@@ -140,7 +140,11 @@ def _measure(row: Record, recording: Recording, model: Model) -> Iterator[str]:
 
 def _gained(row: Record, model: Model) -> Iterator[str]:
     """How much nearer the model comes with an effect, and how far the parameters move."""
-    own = [line for line in records(model.gain) if row["cause"] in line["effects"].split(", ")]
+    own = [
+        line
+        for line in records(model.gain)
+        if row["cause"] in line["effects"].split(", ") and line["sensor"] in STAGE
+    ]
     for line in own:
         if line["scope"] == "held-out":
             names = " and ".join(in_words(name) for name in line["effects"].split(", "))

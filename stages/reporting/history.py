@@ -48,7 +48,8 @@ def section(
         "Earlier calibrations",
         "What the same instrument, by its serial, was found to be before; and where this "
         "calibration is kept.",
-        "Each point is value ± σ of the joint fit, drawn from the last value. A bias may change "
+        "Each point is value ± σ of the result that counts, of the joint fit or of the one with "
+        "effects in the model, drawn from the last value. A bias may change "
         "from one time that the instrument is switched on to the next; a scale error should not.",
         parts,
     )

@@ -9,7 +9,7 @@ import pandas as pd
 
 from stages.notation import numbers, units
 from stages.notation.causes import in_words
-from stages.reporting import blind_spots
+from stages.reporting import blind_spots, extended
 from stages.reporting.outline import (
     Column,
     Heading,
@@ -58,8 +58,10 @@ def section(
     found: Sequence[Sought],
     lines: pd.DataFrame,
     gain: pd.DataFrame,
-    extended: pd.DataFrame,
+    parameters: pd.DataFrame,
     joint: Sequence[Estimate],
+    decision: pd.DataFrame,
+    worth: pd.DataFrame,
 ) -> Section:
     """The named effects, what they gain, what they do to the parameters, and the blind spots."""
     parts: list[Part] = [_summary(found)]
@@ -68,7 +70,8 @@ def section(
             parts += _named(one, lines)
     if rows := records(gain):
         parts += [Heading("What the extended model gains"), _gain(rows)]
-    parts += _extended(records(extended), joint)
+    parts += extended.parts(decision, worth)
+    parts += _extended(records(parameters), joint)
     missed = [one for one in found if not one.score["named"]]
     if missed:
         parts += [Heading("Looked for and not found: the blind spots"), blind_spots.table(missed)]
@@ -77,10 +80,12 @@ def section(
         "What the model lacks",
         "Physical effects beyond bias, scale and cross-axis terms that the data ask for; how much "
         "they explain; and how small an effect this campaign would still have seen.",
-        "An effect is named where noise alone would hardly ever ask for it. The drop is that of χ² "
-        "for the fitted data, and of −2 ln of the predictive density for held-out ones: each "
-        "quarter of the manoeuvres foretold from the others. An effect that only fits noise does "
-        "not gain there. The blind spot is 5 σ: a smaller effect may be there unseen.",
+        "An effect is named where noise alone would hardly ever ask for it. The drop is that of "
+        "χ², on the data that were fitted and on held-out ones: each manoeuvre foretold from the "
+        "others, with and without the effects. An effect that only fits noise does not gain there; "
+        "a manoeuvre that alone shows it cannot be foretold and is not counted. A channel by "
+        "itself is judged by its means over rests and whole turns. The blind spot is 5 σ: a "
+        "smaller effect may be there unseen.",
         parts,
     )
 

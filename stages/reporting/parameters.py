@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from stages.contracts.counting import extended_methods
 from stages.contracts.tables import AXES
 from stages.notation import numbers, units
 from stages.reporting.outline import (
@@ -52,6 +53,10 @@ SYMBOL = {"bias": "b", "scale": "s", "cross": "m", "mounting": "ρ", "symmetric"
 WALK = ("random_walk", "random_walk_sigma")
 SMALL_P = 0.01
 MISFIT = "the model does not describe the data within the noise; sigmas are of noise only"
+REPLACED = (
+    "These are not the parameters that count: the fit with effects in the model replaces them. "
+    "It stands below “What the model lacks”, and in the archive and the export."
+)
 COLUMNS = (
     Column("", "symbol"),
     Column("value", "number", "Laboratory"),
@@ -151,8 +156,9 @@ def symbol(parameter: str) -> str:
     return f"{SYMBOL[kind]}_{axes}" if kind in SYMBOL and axes else parameter
 
 
-def section(found: Sequence[Estimate]) -> Section:
-    """Parameters by sensor and method."""
+def section(found: Sequence[Estimate], decision: pd.DataFrame) -> Section:
+    """Parameters by sensor and method; `decision`: whether the extended result counts."""
+    replaced = extended_methods(records(decision))
     parts: list[Part] = [
         Equation(
             "reading = M · truth + bias",
@@ -163,6 +169,8 @@ def section(found: Sequence[Estimate]) -> Section:
     ]
     for estimate in found:
         parts += _parts(estimate)
+        if estimate.kind == "joint" and _extended(estimate) in replaced:
+            parts.append(Paragraph(REPLACED, "fair"))
     if not any(estimate.parameters for estimate in found):
         parts.append(Paragraph("None: no method estimated a parameter.", "poor"))
     return Section(
@@ -172,9 +180,15 @@ def section(found: Sequence[Estimate]) -> Section:
         "by each method that the plan allows.",
         "Each value stands with its standard deviation σ, first in the unit of the laboratory, "
         "then in the SI. Specific force: the axis that points up reads +g. Rotations follow the "
-        "right hand. The joint fit is the result; the other methods are there to be compared.",
+        "right hand. The joint fit is the result, unless it is said beside it that the one "
+        "with effects in the model replaces it; the other methods are there to be compared.",
         parts,
     )
+
+
+def _extended(estimate: Estimate) -> str:
+    """What the extension calls its method for the same sensor and mount."""
+    return estimate.stage + (f"@{estimate.mount}" if estimate.mount else "")
 
 
 def _parts(estimate: Estimate) -> Iterator[Part]:

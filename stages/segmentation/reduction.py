@@ -10,7 +10,7 @@ from stages.contracts import tables
 from stages.contracts.masks import Masks
 from stages.contracts.parquet import Stream
 from stages.contracts.records import Clock
-from stages.contracts.samples import Integers, Sums, regular, sums_over
+from stages.contracts.samples import Integers, Sums, pieces, regular, sums_over
 from stages.segmentation.matching import BETWEEN, Part
 
 Floats = NDArray[np.float64]
@@ -54,10 +54,12 @@ def blocks(
     spans: list[Span] = []
     owners: list[Part] = []
     hidden = _hidden(parts, masks)
+    of_means = _of_means(samples, clocks)
     for part in parts:
         seconds = rest_block if part.phase.startswith("rest") else turn_block
         length = max(1, round(seconds / clocks[part.log].step))
-        if part.phase == BETWEEN:  # a hand turns about ever other axes, so every record counts
+        # A hand turns about ever other axes; of records that are means already, each is a block.
+        if part.phase == BETWEEN or part.log in of_means:
             length = 1
         cuts = {*range(part.first, part.after, length)}
         cuts |= {*gaps.loc[gaps["log"] == part.log, "record"].tolist()}
@@ -101,6 +103,17 @@ def blocks(
         after_gap = turn["from_record"].isin(gaps.loc[gaps["log"] == log, "record"])
         table.loc[turn.index, "missing_s"] = _missing(turn, after_gap, clocks[log])
     return table.drop(columns=["first", "last"])
+
+
+def _of_means(samples: Stream, clocks: Mapping[str, Clock]) -> set[str]:
+    """The logs without time whose records are means of many samples."""
+    if all(clock.duration for clock in clocks.values()):
+        return set()
+    return {
+        log
+        for log, piece in pieces(samples, ["mean_of"])
+        if clocks[log].duration is None and bool((np.nan_to_num(piece["mean_of"]) > 1).any())
+    }
 
 
 def _hidden(parts: Sequence[Part], masks: Masks) -> dict[str, Integers]:
