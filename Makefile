@@ -10,8 +10,9 @@
 #   make bench                    errors, time and memory beside other programs, in one run; also
 #                                 with ONLY="cost noise"
 #   make style                    linters, types, and who may import whom
-#   make challenge                hides effects in many campaigns and says what is found; can be
-#                                 resumed; DRAWS=600 takes about 40 minutes
+#   make challenge                hides effects in many campaigns and says what is found, on
+#                                 docs/challenge.md; 90 minutes on two cores, can be resumed; with
+#                                 DRAWS=100 a tenth of them
 #   make clean                    what can be made again from the raw logs; reports stay
 #   make setup                    only the environment, .venv; everything above sees to it itself
 
@@ -26,7 +27,7 @@ SHELL := bash
 CAMPAIGN ?= demo
 ID ?=
 ONLY ?=
-DRAWS ?= 600
+DRAWS ?= 1200
 override CAMPAIGN := $(value CAMPAIGN)
 override ID := $(value ID)
 override ONLY := $(value ONLY)
@@ -89,7 +90,7 @@ bench: .venv/complete benchmarks/.venv/complete
 	PYTHONPATH=tests:tests/bounds OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks "$${parts[@]}"
 
 challenge: .venv/complete
-	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m hidden "$$DRAWS" data/derived/challenge.jsonl
+	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m hidden "$$DRAWS" data/derived/challenge
 
 clean:
 	rm -rf data/derived .snakemake

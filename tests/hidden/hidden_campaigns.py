@@ -122,15 +122,22 @@ def _estimated(draw: Draw, results: chain.Results) -> Outcome:
 
 
 def _gain(results: chain.Results) -> list[Mapping[str, Any]]:
-    """What the extension gained on manoeuvres that the fit had not seen, for each sensor."""
-    try:
-        table = results["extension/gain"]
-    except FileNotFoundError:
-        return []
-    own = table[(table["scope"] == "held-out") & (table["effects"] != "oscillation")]
+    """What the extension gained on manoeuvres that the fit had not seen, for each sensor.
+
+    `whole`: SNR² of the effects in all manoeuvres; `at_stake`: in those that were held out.
+    """
+    table = results["extension/gain"]
+    own = table[table["sensor"].isin(["gyro", "accel"])]
+    whole = own[own["scope"] == "fitted"].set_index("sensor")["snr_squared"]
     return [
-        {"sensor": str(row["sensor"]), "effects": str(row["effects"]), "drop": float(row["drop"])}
-        for row in own.to_dict("records")
+        {
+            "sensor": str(row["sensor"]),
+            "effects": str(row["effects"]),
+            "drop": float(row["drop"]),
+            "at_stake": float(row["snr_squared"]),
+            "whole": float(whole[row["sensor"]]),
+        }
+        for row in own[own["scope"] == "held-out"].to_dict("records")
         if np.isfinite(row["drop"])
     ]
 

@@ -27,7 +27,7 @@ KINDS = tuple(
     for letter in "cscsmdsocsmdscsmdsco"
 )
 CYCLE = len(KINDS)
-COMMON = ("positions", "positions", "rates", "positions", "stops")  # plans in turn
+COMMON = ("positions", "rates", "positions", "stops", "positions", "positions")  # in turn
 
 Size = Callable[[str, str, float | None, Any], float]
 

@@ -1,12 +1,15 @@
 """What many draws say: false names, power, classes, coverage, gain, time."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from hidden_campaigns import CLEAR, Outcome
 
 NOTHING, UNKNOWN = "nothing", "unknown"
 TRUE_ANYWAY = {"temperature_drift"}  # what quality rightly says of a plan in which it changes
+AT_STAKE = 0.5  # of SNR², for a gain on what is held out
+LEAST_AT_STAKE = 9.0
 Tally = tuple[int, int]  # how many of how many
 
 
@@ -31,6 +34,12 @@ def detected(outcome: Outcome, effect: str) -> bool:
         if told and (one["verdict"] in CLEAR or effect.endswith("_random_walk")):
             return True
     return any(effect == cause or effect.endswith(f"_{cause}") for cause in outcome["quality"])
+
+
+def consistent(outcome: Outcome) -> bool:
+    """Whether all that is hidden is among the members of what is named, however certain that is."""
+    said = {member for one in outcome["named"] for member in (one["cause"], *one["members"])}
+    return {*outcome["hidden"]} <= said and not false_names(outcome)
 
 
 def class_right(outcome: Outcome) -> bool:
@@ -106,16 +115,24 @@ def sets(outcomes: Sequence[Outcome]) -> tuple[Tally, float]:
     return (held, len(own)), mean
 
 
-def gains(outcomes: Sequence[Outcome]) -> list[float]:
+def gains(outcomes: Sequence[Outcome]) -> tuple[list[float], int]:
     """Held-out drop of chi-squared over the square of the ratio, of rightly named effects.
 
-    An effect that no fold can test has none.
+    And of how many there is none, for the effect was not half at stake in what was held out: an
+    effect that one manoeuvre shows is foretold by no other.
     """
-    return [
+    named = [one for one in outcomes if class_right(one) and one["gain"]]
+    tested = [one for one in named if _tested(one["gain"])]
+    found = [
         sum(row["drop"] for row in one["gain"]) / next(iter(one["ratios"].values())) ** 2
-        for one in outcomes
-        if one["gain"] and class_right(one)
+        for one in tested
     ]
+    return found, len(named) - len(tested)
+
+
+def _tested(rows: Sequence[Mapping[str, Any]]) -> bool:
+    at_stake, whole = (sum(row[key] for row in rows) for key in ("at_stake", "whole"))
+    return bool(at_stake >= max(AT_STAKE * whole, LEAST_AT_STAKE))
 
 
 def seconds(outcomes: Sequence[Outcome]) -> dict[str, float]:

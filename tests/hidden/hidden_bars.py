@@ -1,0 +1,210 @@
+"""What is demanded, what was measured, and whether it is met: by the figures, never by hand."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from hidden_campaigns import Outcome
+from hidden_scores import (
+    Tally,
+    class_right,
+    consistent,
+    curses,
+    detected,
+    false_names,
+    gains,
+    of,
+    pulls,
+    seconds,
+    sets,
+    tally,
+    unknown_or_true,
+    warned,
+)
+
+FALSE_NAMES, CLEAN = 8, 300
+SHORT = 0.05  # of its limit a power may be
+RIGHT = {6.0: 0.80, 8.0: 0.93, 10.0: 0.95, 15.0: 0.97}
+TOGETHER = {
+    "2 at 12 to 40": 0.94,
+    "3 at 12 to 40": 0.92,
+    "2 at 6 to 12": 0.82,
+    "3 at 6 to 12": 0.72,
+}
+CURSE = {5.0: 1.12, 6.0: 1.06, 8.0: 1.03}
+SHIFT = 0.5  # sigma
+TIME = 10.0  # s
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A demand: in words, what is wanted, what was measured, and whether that is enough.
+
+    `met`: None where nothing was drawn that could tell.
+    """
+
+    words: str
+    wanted: str
+    measured: str
+    met: bool | None
+
+    @property
+    def verdict(self) -> str:
+        """In words."""
+        return "not drawn" if self.met is None else "met" if self.met else "**not met**"
+
+
+def bars(outcomes: Sequence[Outcome], statistics: Sequence[dict[str, Any]]) -> Iterator[Bar]:
+    """Every demand."""
+    yield from _of_clean(outcomes)
+    yield from _of_power(outcomes, statistics)
+    for ratio, wanted in RIGHT.items():
+        yield _right(
+            f"class right at SNR {ratio:g}", of(outcomes, "single", "ratio", ratio), wanted
+        )
+    for sort, wanted in TOGETHER.items():
+        number, _, band = sort.partition(" at ")
+        words = f"{number} effects at once at SNR {band} each, all classes right"
+        yield _right(words, of(outcomes, "several", sort), wanted)
+    yield from _of_estimates(outcomes)
+    outside = of(outcomes, "outside")
+    yield _least("outside the catalogue: a warning", tally(outside, warned), 0.95)
+    yield _least("the same: “unknown” or the true class", tally(outside, unknown_or_true), 0.80)
+    yield from _of_gain(outcomes)
+    times = seconds(outcomes)
+    yield Bar(
+        "CPU time of a campaign of at most 214,800 samples, from the bytes to the extension",
+        f"≤ {TIME:g} s",
+        ", ".join(f"{plan} {time:.1f} s" for plan, time in times.items()) or "–",
+        max(times.values()) <= TIME if times else None,
+    )
+
+
+def _of_clean(outcomes: Sequence[Outcome]) -> Iterator[Bar]:
+    errors = [one for one in outcomes if "error" in one]
+    yield Bar(
+        "campaigns that end with an error",
+        "none",
+        f"{len(errors)} of {len(outcomes)}",
+        not errors if outcomes else None,
+    )
+    clean = of(outcomes, "clean")
+    count, number = tally(clean, lambda one: bool(false_names(one)))
+    allowed = FALSE_NAMES if number >= CLEAN else FALSE_NAMES * number / CLEAN
+    yield Bar(
+        "clean campaigns with a false name",
+        f"≤ {FALSE_NAMES} of {CLEAN}",
+        f"{count} of {number}",
+        count <= allowed if number else None,
+    )
+    rung = [one for one in clean if "shift" in one]
+    most = max((one["shift"] for one in rung), default=np.nan)
+    counted = tally(rung, lambda one: detected(one, "oscillation"))
+    yield Bar(
+        "oscillation at 20 Hz: reported, and the 24 parameters moved by less than half a sigma",
+        f"all, < {SHIFT} sigma",
+        f"{counted[0]} of {counted[1]}, at most {most:.4f} sigma" if rung else "–",
+        counted[0] == counted[1] and most < SHIFT if rung else None,
+    )
+
+
+def _of_power(outcomes: Sequence[Outcome], statistics: Sequence[dict[str, Any]]) -> Iterator[Bar]:
+    for ratio in CURSE:
+        own = of(outcomes, "single", "ratio", ratio)
+        limit = float(np.mean([one["limits"]["limit"] for one in own])) if own else np.nan
+        counted = tally(own, lambda one: bool(one["named"]))
+        yield _least(
+            f"power at SNR {ratio:g}, campaigns, all effects (limit {limit:.3f})",
+            counted,
+            limit - SHORT,
+        )
+    for ratio in CURSE:
+        rows = [row for row in statistics if row["ratio"] == ratio]
+        short = [short_by(row) for row in rows]
+        scatter = [2 * scatter_of(row) for row in rows]
+        below = sum(s > SHORT + e for s, e in zip(short, scatter, strict=True))
+        yield Bar(
+            f"power at SNR {ratio:g} of each effect, sufficient statistics",
+            f"no effect below its limit by more than {SHORT} and twice the scatter of the draws",
+            f"{below} of {len(rows)} effects; the worst is {max(short):+.3f} below"
+            if rows
+            else "–",
+            below == 0 if rows else None,
+        )
+
+
+def scatter_of(row: dict[str, Any]) -> float:
+    """Standard deviation of a share of so many trials, were it the limit."""
+    return float(np.sqrt(row["limit"] * (1 - row["limit"]) / row["trials"]))
+
+
+def short_by(row: dict[str, Any]) -> float:
+    """By how much the power of an effect falls short of its limit."""
+    return float(row["limit"] - row["power"] / row["trials"])
+
+
+def _of_estimates(outcomes: Sequence[Outcome]) -> Iterator[Bar]:
+    inside, number = pulls(outcomes)
+    yield Bar(
+        "95 % intervals of rightly named effects that hold the truth",
+        "0.92 to 0.98",
+        _share((inside, number)),
+        0.92 <= inside / number <= 0.98 if number else None,
+    )
+    for ratio, wanted in CURSE.items():
+        found = curses(of(outcomes, "single", "ratio", ratio))
+        mean = float(np.mean(found)) if found else np.nan
+        yield Bar(
+            f"estimated over true signal at SNR {ratio:g} (design study)",
+            f"≤ {wanted}",
+            f"{mean:.3f} of {len(found)}" if found else "–",
+            mean <= wanted if found else None,
+        )
+    held, size = sets(of(outcomes, "single", "ratio"))
+    yield Bar(
+        "95 % set of causes: holds the truth, mean size (design study)",
+        "≥ 0.95, ≤ 4",
+        f"{_share(held)}, {size:.1f}" if held[1] else "–",
+        held[0] >= 0.95 * held[1] and size <= 4 if held[1] else None,
+    )
+
+
+def _of_gain(outcomes: Sequence[Outcome]) -> Iterator[Bar]:
+    every, untested = gains(of(outcomes, "single", "ratio"))
+    median = float(np.median(every)) if every else np.nan
+    yield Bar(
+        "held-out gain over SNR², median",
+        "≥ 0.8",
+        f"{median:.2f} of {len(every)}; {untested} cannot be tested so" if every else "–",
+        median >= 0.8 if every else None,
+    )
+    for least, most, wanted in ((6.0, 6.0, 0.85), (10.0, 15.0, 0.95)):
+        own = [
+            gain
+            for ratio in (5.0, 6.0, 8.0, 10.0, 15.0)
+            if least <= ratio <= most
+            for gain in gains(of(outcomes, "single", "ratio", ratio))[0]
+        ]
+        words = f"SNR {least:g}" if least == most else f"SNR {least:g} and more"
+        above = sum(gain > 0 for gain in own)
+        yield _least(f"held-out gain above 0 at {words} (design study)", (above, len(own)), wanted)
+
+
+def _right(words: str, outcomes: Sequence[Outcome], wanted: float) -> Bar:
+    """How often all classes are right; and with those that the data are said to allow no more."""
+    bar = _least(words, tally(outcomes, class_right), wanted)
+    allowed = tally(outcomes, consistent)[0]
+    more = f"; {allowed} with classes that are called uncertain" if outcomes else ""
+    return replace(bar, measured=bar.measured + more)
+
+
+def _least(words: str, counted: Tally, wanted: float) -> Bar:
+    count, number = counted
+    told = f"≥ {wanted:.3g}" if np.isfinite(wanted) else "–"
+    return Bar(words, told, _share(counted), count >= wanted * number if number else None)
+
+
+def _share(counted: Tally) -> str:
+    count, number = counted
+    return f"{count / number:.3f} ({count} of {number})" if number else "–"

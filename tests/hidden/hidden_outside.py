@@ -1,0 +1,90 @@
+"""What is hidden and in no catalogue."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from hidden_courses import known_course
+from hidden_elsewhere import Random, between, direction
+from hidden_sizes import reference
+
+import laboratory
+
+Document = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Outside:
+    """What is in no catalogue. `key`: the parameter that is its size, where it has a ratio."""
+
+    name: str
+    hidden: tuple[str, ...]
+    told: Callable[[Random, float, float], dict[str, Any]]
+    key: str = ""
+
+    @property
+    def scales(self) -> bool:
+        """Whether it has a signal-to-noise ratio."""
+        return bool(self.key)
+
+    def scaled(self, effects: Mapping[str, Any], factor: float) -> dict[str, Any]:
+        """The effects, so many times as large."""
+        own = effects[self.name]
+        return {self.name: own | {self.key: [factor * value for value in own[self.key]]}}
+
+
+OUTSIDE: tuple[Outside, ...] = (
+    Outside(
+        "gyro_telegraph",
+        (),
+        lambda r, s, span: {
+            "gyro_telegraph": {
+                "height_deg_h": (s * direction(r)).tolist(),
+                "dwell_s": float(r.uniform(150, 500)),
+            }
+        },
+        "height_deg_h",
+    ),
+    Outside(
+        "gyro_cubic_drift",
+        (),
+        lambda r, s, span: {"gyro_cubic_drift": {"k_deg_h_h3": (s * direction(r)).tolist()}},
+        "k_deg_h_h3",
+    ),
+    Outside(
+        "gyro_hysteresis",
+        (),
+        lambda r, s, span: {"gyro_hysteresis": {"offset_deg_h": (s * direction(r)).tolist()}},
+        "offset_deg_h",
+    ),
+    Outside(
+        "clock_step",
+        (),
+        lambda r, s, span: {
+            "clock_step": {
+                "at_s": float(r.uniform(0.1, 0.9) * span),
+                "step_ms": float(r.choice([-1, 1])) * between(r, 2, 50),
+            }
+        },
+    ),
+    Outside(
+        "table_ripple",  # of an order between those that are looked for
+        ("table_ripple",),
+        lambda r, s, span: {
+            "table_ripple": {
+                "order": float(r.integers(5, 60)) + 0.1 + 0.05 * float(r.random()),
+                "amplitude_arcsec": between(r, 3, 20),
+            }
+        },
+    ),
+)
+
+
+def course_size(document: Document) -> Callable[[str], float]:
+    """The signal-to-noise ratio that what is hidden has in the reference of a plan."""
+    one, other = (
+        laboratory.perform(laboratory.specify(document | {"effects": effects}))
+        for effects in (document["effects"], {})
+    )
+    course = known_course(one, other)
+    return lambda plan: reference(plan).size_of(course)

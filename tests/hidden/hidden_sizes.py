@@ -1,0 +1,148 @@
+"""What each plan says of every effect, by a clean campaign: sizes, and the price of a name."""
+
+import pickle
+import shutil
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import chain
+import in_memory
+import numpy as np
+from hidden_plans import PLANS
+from hidden_ways import WAYS
+
+import laboratory
+from stages.contracts.code import code_of, hash_of
+from stages.contracts.records import known_of, manoeuvres_of, performed_of, share_a_clock
+from stages.criticising.judging import said_of
+from stages.criticism import BLOCKS_SHARE
+from stages.effects import CATALOGUE
+from stages.estimation.evidence import Campaign, campaign_of, evidence
+from stages.estimation.noise_levels import NoiseLevels
+from stages.estimation.solution import solution_of
+from stages.inference.naming.causes import law_of
+from stages.inference.naming.chance import Chance
+from stages.inference.naming.evidence import Evidence
+from stages.inference.naming.limits import power, power_limit
+from stages.inference.naming.sought import Sought
+from stages.model.effect import Effect
+
+SEED = 9_999
+KEPT = chain.ROOT / "data/derived/challenge"
+DRAWN_BY = ("campaigns", "courses", "draws", "elsewhere", "outside", "plans", "sizes")
+DRAWN_BY += ("statistics", "ways")
+BESIDE = ("studies", "comparison", "compensation")  # no later stage of these campaigns needs them
+LEVEL = chain.SETTINGS["criticism"]["level"] * BLOCKS_SHARE
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A clean campaign of a plan, ready to be asked.
+
+    `said`: of all candidates; `asked`: the columns of each effect; `families`: its candidates;
+    `law`: what noise alone brings forth, by simulation; `noise_degrees`: of freedom of the noise.
+    """
+
+    campaign: Campaign
+    said: Evidence
+    asked: Sequence[Sought]
+    families: Mapping[str, Sequence[Effect]]
+    law: Chance
+    noise_degrees: float
+
+    def columns(self, name: str, at: float | None) -> list[int]:
+        """The columns of an effect, with the value of its scan that is nearest."""
+        family = self.families[name]
+        number = 0 if at is None else int(np.argmin([abs((one.at or 0.0) - at) for one in family]))
+        place = {column: i for i, column in enumerate(self.said.names)}
+        return [place[f"{family[number].label}.{parameter}"] for parameter in WAYS[name].names]
+
+    def size(self, name: str, at: float | None, values: Any) -> float:
+        """The signal-to-noise ratio of values of an effect, all 24 parameters being fitted."""
+        columns = self.columns(name, at)
+        information = self.said.total.information[np.ix_(columns, columns)]
+        return float(np.sqrt(values @ information @ values))
+
+    def limits(self, name: str, ratio: float) -> dict[str, float]:
+        """The power at a ratio by this plan's own threshold, and by the textbook's."""
+        number = [one.name for one in self.asked].index(name)
+        degrees = self.law.tails[number].degrees
+        if not degrees:
+            return {"degrees": 0, "limit": 0.0, "textbook": 0.0}
+        price = self.law.price(number, self.noise_degrees)
+        seen = sum(tail.degrees > 0 for tail in self.law.tails)
+        values = self.law.tails[number].trials(price)
+        return {
+            "degrees": degrees,
+            "limit": float(power(ratio, degrees, price)),
+            "textbook": float(power_limit(ratio, degrees, seen, LEVEL, values)),
+        }
+
+    def size_of(self, effect: Effect) -> float:
+        """The signal-to-noise ratio of a course that is known but for its size, which is 1."""
+        return float(np.sqrt(evidence(self.campaign, [effect]).total.information[0, 0]))
+
+
+@cache
+def code() -> str:
+    """A hash of all that an outcome rests on: the stages, the laboratory, and what is drawn."""
+    stages = chain.ORDER[: chain.ORDER.index("extension") + 1]
+    files = {file for stage in stages for file in code_of(stage)}
+    files |= {*(chain.ROOT / "laboratory").rglob("*.py"), chain.ROOT / "config.yaml"}
+    files |= {chain.ROOT / "tests/hidden" / f"hidden_{name}.py" for name in DRAWN_BY}
+    return hash_of(sorted(files))[:16]
+
+
+@cache
+def reference(plan: str) -> Reference:
+    """The reference of a plan; kept on disk for as long as the code is the same."""
+    file = KEPT / f"{plan}-{code()}.pickle"
+    if file.exists():
+        made: Reference = pickle.loads(file.read_bytes())
+        return made
+    made = _made(plan)
+    KEPT.mkdir(parents=True, exist_ok=True)
+    for old in KEPT.glob(f"{plan}-*.pickle"):
+        old.unlink(missing_ok=True)
+    part = file.with_suffix(f".{id(made)}.part")
+    part.write_bytes(pickle.dumps(made))
+    part.replace(file)
+    return made
+
+
+def size(plan: str, name: str, at: float | None, values: Any) -> float:
+    """The signal-to-noise ratio of an effect in a plan."""
+    return reference(plan).size(name, at, values)
+
+
+def _made(plan: str) -> Reference:
+    folder = Path(tempfile.mkdtemp())
+    recording = laboratory.perform(laboratory.specify(PLANS[plan](seed=SEED)))
+    with in_memory.recorded(recording, folder / "raw") as raw:
+        results = chain.run(raw, folder / "derived", "gyroscope", BESIDE)
+    given, levels = known_of(results["plan/known"]), NoiseLevels(results["noise/noise"])
+    stages = ("accelerometer", "gyroscope")
+    tables = [
+        tuple(results[f"{stage}/{table}"] for stage in stages)
+        for table in ("parameters", "positions", "fit")
+    ]
+    campaign = campaign_of(
+        results["segment/blocks"],
+        manoeuvres_of(results["plan/manoeuvres"]),
+        performed_of(results["segment/performed"]),
+        levels,
+        given,
+        solution_of(tables[0], tables[1], given, "", tables[2]),
+        share_a_clock(results["decode/clocks"]),
+    ).without_walk()
+    shutil.rmtree(folder)
+    in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
+    families = {name: tuple(one) for name, one in campaign.candidates(in_blocks).items()}
+    said, asked = said_of(campaign, families, levels.degrees)
+    law = law_of(said, asked, LEVEL)
+    assert law is not None  # the plans show effects
+    return Reference(campaign, said.seen(), asked, families, law, levels.degrees)

@@ -1,0 +1,138 @@
+"""The second part of the challenge: every effect at every ratio, on sufficient statistics.
+
+A campaign whose equations are linear and whose noise is Gaussian says of the effects no more than
+b ~ N(F β, F), F the information of all candidates in the clean reference of a plan. That is drawn
+some hundred times for each effect and ratio and named as criticism does it, which takes
+milliseconds. Decoding, detectors, the fit and what is not linear are left out: those are the
+business of the campaigns. Where something is scanned, the truth is one of the values of the scan.
+"""
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+from hidden_sizes import Reference, code, reference
+from hidden_ways import POSITIVE, WAYS, Array
+
+from stages.inference.least_squares import Reduced
+from stages.inference.naming.causes import causes
+from stages.inference.naming.evidence import Evidence
+from stages.inference.naming.scan import SEEN
+from stages.inference.naming.sought import Sought
+
+TRIALS = {0.0: 2000, 5.0: 300, 6.0: 200, 8.0: 60}  # how often at each ratio; 0: clean
+PARTS = 4  # of the clean draws, so that both cores have work to the end
+CLEAR = ("found", "one_of_class")
+PLANS = ("positions", "stops", "rates")
+
+Job = tuple[str, str, float, int]
+
+
+def every_job() -> list[Job]:
+    """Plan, effect, ratio, trials: each effect in one plan that shows it; each plan clean."""
+    jobs: list[Job] = [
+        (way.plans[0], name, ratio, trials)
+        for name, way in WAYS.items()
+        for ratio, trials in TRIALS.items()
+        if ratio
+    ]
+    share = TRIALS[0.0] // PARTS
+    return jobs + [(plan, f"clean {n}", 0.0, share) for plan in PLANS for n in range(PARTS)]
+
+
+def tried(plan: str, name: str, ratio: float, trials: int) -> dict[str, Any]:
+    """How often an effect of this ratio is named, is in the class, and how well it is estimated."""
+    told = {"plan": plan, "effect": name, "ratio": ratio, "trials": trials, "code": code()}
+    if not ratio:
+        return told | {"power": _false_names(plan, int(name.split()[-1]), trials)}
+    return told | _counted(plan, name, ratio, trials) | reference(plan).limits(name, ratio)
+
+
+def _counted(plan: str, name: str, ratio: float, trials: int) -> dict[str, Any]:
+    """How often.
+
+    `power`: anything is named; `in_class`: the effect is a member; `first`: it is the most
+    probable; `members`: of its classes in all; `covered` of `asked`: parameters whose 95 %
+    interval holds the truth; `curse`: mean of estimated over true signal.
+    """
+    known = reference(plan)
+    random = np.random.default_rng([2028, PLANS.index(plan), list(WAYS).index(name), int(ratio)])
+    told = dict.fromkeys(("power", "in_class", "first", "members", "covered", "asked"), 0)
+    curse = []
+    for _ in range(trials):
+        columns = _columns(known, name, random)
+        beta, values = _truth(known, columns, ratio, name in POSITIVE, random)
+        named = causes(_drawn(plan, beta, random), known.asked, known.law).causes
+        mine = [one for one in named if one.verdict in CLEAR and name in one.members][:1]
+        told["power"] += bool(named)
+        told["in_class"] += len(mine)
+        told["members"] += sum(len(cause.members) for cause in mine)
+        told["first"] += sum(cause.effect == name for cause in mine)
+        for cause in mine:
+            if cause.columns == tuple(columns):  # else the values are of something else
+                sigma = np.sqrt(np.diag(cause.covariance))
+                told["covered"] += int(np.sum(np.abs(cause.values - values) < 1.96 * sigma))
+                told["asked"] += len(columns)
+                block = known.said.total.information[np.ix_(columns, columns)]
+                curse.append(float(np.sqrt(cause.values @ block @ cause.values)) / ratio)
+    return told | {"curse": float(np.mean(curse)) if curse else None}
+
+
+def _false_names(plan: str, part: int, trials: int) -> int:
+    """In how many of so many clean campaigns anything is named."""
+    known = reference(plan)
+    random = np.random.default_rng([2029, PLANS.index(plan), part])
+    nothing = np.zeros(len(known.said.names))
+    return sum(
+        bool(causes(_drawn(plan, nothing, random), known.asked, known.law).causes)
+        for _ in range(trials)
+    )
+
+
+def _columns(known: Reference, name: str, random: np.random.Generator) -> list[int]:
+    """The columns of an effect, of any value of its scan that is seen and not at its ends."""
+    effect: Sought = next(one for one in known.asked if one.name == name)
+    number = len(effect.candidates)
+    place = 0 if number == 1 else int(random.integers(number // 8, number - number // 8))
+    return list(effect.candidates[place])
+
+
+def _truth(
+    known: Reference, columns: list[int], ratio: float, positive: bool, random: np.random.Generator
+) -> tuple[Array, Array]:
+    """β of all columns, and that of the effect, in a random direction, as large as wanted."""
+    direction = random.normal(size=len(columns))
+    direction = np.abs(direction) if positive else direction
+    block = known.said.total.information[np.ix_(columns, columns)]
+    values = direction * ratio / np.sqrt(direction @ block @ direction)
+    beta = np.zeros(len(known.said.names))
+    beta[columns] = values
+    return beta, values
+
+
+@cache
+def _roots(plan: str) -> list[tuple[Array, Array]]:
+    """Of each sensor a root R of its information, F = R Rᵀ, and the inverse of it, (m, k)."""
+    roots = []
+    for sensor in reference(plan).said.sensors:
+        size = np.sqrt(np.maximum(np.diag(sensor.information), np.finfo(float).tiny))
+        size = np.where(np.diag(sensor.information) > 0, size, np.inf)
+        values, vectors = np.linalg.eigh(sensor.information / np.outer(size, size))
+        seen = values > SEEN * 1e-3
+        scale = np.where(np.isfinite(size), size, 0.0)
+        root = scale[:, None] * vectors[:, seen] * np.sqrt(values[seen])
+        roots.append((root, (vectors[:, seen] / np.sqrt(values[seen])).T / size))
+    return roots
+
+
+def _drawn(plan: str, beta: Array, random: np.random.Generator) -> Evidence:
+    """What a campaign of the plan says where β is true."""
+    said = reference(plan).said
+    sensors: list[Reduced] = []
+    for sensor, (root, inverse) in zip(said.sensors, _roots(plan), strict=True):
+        right = sensor.information @ beta + root @ random.standard_normal(root.shape[1])
+        left = random.chisquare(max(sensor.degrees - root.shape[1], 1))
+        explained = float(np.sum((inverse @ right) ** 2))
+        sensors.append(replace(sensor, right=right, chi_squared=float(left + explained)))
+    return replace(said, sensors=tuple(sensors))

@@ -1,0 +1,159 @@
+"""The scores of made-up outcomes: what counts as a false name, and what does not."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hidden_bars import bars
+from hidden_page import write
+from hidden_scores import (
+    class_right,
+    detected,
+    false_names,
+    first_name,
+    gains,
+    pulls,
+    sets,
+    unknown_or_true,
+    warned,
+)
+
+
+def named(cause: str, *members: str, verdict: str = "") -> dict[str, Any]:
+    verdict = verdict or ("one_of_class" if members else "found")
+    return {"cause": cause, "verdict": verdict, "snr": 9.0, "members": [cause, *members]}
+
+
+def gain_of(hidden: str, at_stake: float = 30.0) -> dict[str, Any]:
+    told = {"sensor": "gyro", "effects": hidden, "drop": 36.0}
+    return told | {"at_stake": at_stake, "whole": 36.0}
+
+
+def outcome(hidden: str, *causes: dict[str, Any], **more: Any) -> dict[str, Any]:
+    effects = hidden.split()
+    made: dict[str, Any] = {
+        "number": 0,
+        "plan": "positions",
+        "kind": "single" if effects else "clean",
+        "sort": "ratio" if effects else "plain",
+        "hidden": effects,
+        "ratios": dict.fromkeys(effects, 6.0),
+        "on_disk": True,
+        "samples": 204_000,
+        "simulating": 0.5,
+        "seconds": 7.0,
+        "named": list(causes),
+        "unexplained": [],
+        "quality": [],
+        "pulls": [0.5, -3.0] if effects else [],
+        "curse": dict.fromkeys(effects, 1.0),
+        "gain": [gain_of(hidden)] if effects else [],
+        "limits": {"degrees": 3, "limit": 0.97, "textbook": 0.96},
+    }
+    return made | more
+
+
+def test_a_cause_that_was_not_put_in_is_a_false_name():
+    assert false_names(outcome("", named("lever_arm"))) == ["lever_arm"]
+    beside = outcome("table_tilt", named("table_tilt"), named("lever_arm"))
+    assert false_names(beside) == ["lever_arm"] and not class_right(beside)
+    assert detected(beside, "table_tilt")
+
+
+def test_a_class_mate_of_what_was_put_in_is_none():
+    one = outcome("size_effect", named("lever_arm", "size_effect"))
+    assert false_names(one) == [] and class_right(one)
+    assert first_name(one) == "lever_arm"
+
+
+def test_a_class_without_what_was_put_in_is_one():
+    one = outcome("table_tilt", named("lever_arm", "size_effect"))
+    assert false_names(one) == ["lever_arm"] and not detected(one, "table_tilt")
+
+
+def test_unknown_is_no_name_and_no_detection():
+    one = outcome(
+        "gyro_bias_ramp", named("gyro_drift", "gyro_bias_ramp", verdict="unknown_structure")
+    )
+    assert false_names(one) == [] and not class_right(one)
+    assert warned(one) and unknown_or_true(one) and first_name(one) == "unknown"
+
+
+def test_a_walk_of_unknown_cause_is_the_truth_of_a_walk_alone():
+    walk = named("gyro_random_walk", verdict="unknown_structure")
+    assert detected(outcome("gyro_random_walk", walk), "gyro_random_walk")
+    assert not detected(outcome("gyro_bias_ramp", walk), "gyro_bias_ramp")
+    assert false_names(outcome("", walk)) == []
+    # Found, and not there: that is a name.
+    assert false_names(outcome("", named("gyro_random_walk"))) == ["gyro_random_walk"]
+
+
+def test_silence_is_no_warning_and_no_truth():
+    one = outcome("", kind="outside")
+    assert not warned(one) and not unknown_or_true(one) and first_name(one) == "nothing"
+    seen = outcome("", kind="outside", quality=["gap"])
+    assert warned(seen) and unknown_or_true(seen)
+    told_anyway = outcome("", quality=["temperature_drift"])
+    assert not warned(told_anyway)
+
+
+def test_quality_finds_what_the_samples_show():
+    one = outcome("gyro_saturation", quality=["saturation"])
+    assert detected(one, "gyro_saturation") and not detected(one, "table_tilt")
+
+
+def test_one_of_two_is_not_both():
+    assert not class_right(outcome("table_tilt lever_arm", named("lever_arm")))
+    assert class_right(outcome("table_tilt lever_arm", named("lever_arm"), named("table_tilt")))
+
+
+def test_figures_of_several():
+    right, wrong = (
+        outcome("table_tilt", named("table_tilt")),
+        outcome("table_tilt", named("lever_arm")),
+    )
+    assert pulls([right, wrong]) == (2, 4)
+    alone = right | {"gain": [gain_of("table_tilt", at_stake=12.0)]}
+    assert gains([right, wrong, alone]) == ([pytest.approx(1.0)], 1)
+    assert sets([right, wrong]) == ((1, 2), 1.0)
+
+
+def test_a_bar_is_met_by_its_figures():
+    def verdict(words: str, *outcomes: dict[str, Any]) -> bool | None:
+        return next(bar.met for bar in bars(outcomes, []) if bar.words.startswith(words))
+
+    clean, false = outcome(""), outcome("", named("lever_arm"))
+    assert verdict("clean campaigns", *[clean] * 292, *[false] * 8) is True
+    assert verdict("clean campaigns", *[clean] * 291, *[false] * 9) is False
+    assert verdict("clean campaigns", *[clean] * 9, *[false] * 1) is False  # 0.27 of 10 are allowed
+    right, wrong = outcome("table_tilt", named("table_tilt")), outcome("table_tilt")
+    assert verdict("class right at SNR 6", *[right] * 8, *[wrong] * 2) is True
+    assert verdict("class right at SNR 6", *[right] * 7, *[wrong] * 3) is False
+    assert verdict("class right at SNR 8", right) is None
+    assert verdict("campaigns that end", right, outcome("", error="ValueError: none")) is False
+    assert verdict("CPU time", outcome("", seconds=10.5)) is False
+
+
+def test_the_page_tells_every_bar(tmp_path: Path):
+    rows = [
+        {"plan": "positions", "effect": "table_tilt", "ratio": 6.0, "trials": 10, "power": 9}
+        | {"in_class": 8, "limit": 0.97, "textbook": 0.96, "degrees": 2, "seconds": 1.0},
+        {"plan": "positions", "effect": "clean 0", "ratio": 0.0, "trials": 100, "power": 1},
+    ]
+    outcomes = [
+        outcome(""),
+        outcome("table_tilt", named("table_tilt")),
+        outcome("table_tilt lever_arm", named("table_tilt"), kind="several", sort="2 at 6 to 12"),
+        outcome("gravity_error", kind="decoy", sort="absorbed"),
+        outcome("", named("lever_arm"), kind="outside", sort="gyro_telegraph"),
+        outcome("oscillation", named("oscillation"), sort="elsewhere"),
+    ]
+    page = tmp_path / "page.md"
+    told = write(outcomes, rows, page)
+    text = page.read_text(encoding="utf-8")
+    for bar in bars(outcomes, rows):
+        assert f"| {bar.words} | {bar.wanted} | {bar.measured} | {bar.verdict} |" in text
+        assert bar.words in told
+    assert "| gyro_telegraph | 1 of 1 | 0 of 1 | lever_arm (1) |" in text
+    assert "**0.90 / 0.97 (0.96); 0.80**" in text
+    assert page.with_suffix(".png").stat().st_size > 10_000

@@ -1,0 +1,88 @@
+"""A recording of the simulated laboratory as the stage `decode` reads it, without bytes on disk.
+
+The two readers of logs, `stages.formats.novatel.read` and `stages.formats.columns.read`, hand over
+the laboratory's counts instead; every other line of the stages is the same. What a receiver
+writes, checksums and text, is left out: tests of bytes do that.
+"""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from laboratory.folder import campaign_yaml
+from laboratory.recording import Recording
+from laboratory.records import Records
+from stages.formats import columns, novatel
+from stages.formats.account import DECODED, Account
+
+# As RAWIMUSA sends them, z, −y, x, accelerometers first; the laboratory counts x, y, z.
+SENT, SIGNS = [2, 1, 0, 5, 4, 3], [1, -1, 1, 1, -1, 1]
+LINE_BYTES = 90  # of a line that was never written: only sizes of files follow from it
+ICE_POINT = 273.15  # K
+
+
+@contextmanager
+def recorded(recording: Recording, folder: Path) -> Iterator[Path]:
+    """The folder of a campaign whose logs are empty files, while the readers know their counts."""
+    folder.mkdir(parents=True)
+    (folder / "campaign.yaml").write_bytes(campaign_yaml(recording.campaign))
+    for log in recording.records:
+        (folder / log).touch()
+    kept = novatel.read, columns.read
+    novatel.read = _reader(recording, kept[0], _rawimusa)  # type: ignore[assignment]
+    columns.read = _reader(recording, kept[1], _of_columns)  # type: ignore[assignment]
+    try:
+        yield folder
+    finally:
+        novatel.read, columns.read = kept
+
+
+def _reader(
+    recording: Recording, otherwise: Callable[..., Any], told: Callable[..., Any]
+) -> Callable[..., Any]:
+    def read(path: Path, *layout: Any) -> Iterator[Any]:
+        if path.name not in recording.records or path.stat().st_size:
+            yield from otherwise(path, *layout)
+        else:
+            yield told(recording, recording.records[path.name])
+
+    return read
+
+
+def _rawimusa(recording: Recording, records: Records) -> novatel.Reading:
+    number = np.arange(len(records), dtype=np.int64)
+    increments = novatel.Increments(
+        record=number,
+        offset=number * LINE_BYTES,
+        line=number + 1,
+        stamp=records.stamps,
+        status=np.full(len(records), int(recording.receiver.status, 16), np.uint32),
+        counts=(records.counts[:, SENT] * SIGNS).astype(np.int32),
+    )
+    return novatel.Reading(increments, [], _account(novatel.MESSAGE, len(records)))
+
+
+def _of_columns(recording: Recording, records: Records) -> columns.Reading:
+    number = np.arange(len(records), dtype=np.int64)
+    rows = columns.Rows(
+        record=number,
+        offset=number * LINE_BYTES,
+        line=number + 2,  # behind the header
+        ticks=(records.stamps - recording.start) / 1e9,
+        mean_of=None,
+        accelerometer=records.counts[:, :3].astype(np.float64),
+        gyro=records.counts[:, 3:].astype(np.float64),
+        table_angle=None,
+        temperature=np.array([float(f"{t:.3f}") for t in records.temperature - ICE_POINT]),
+        label=None,
+    )
+    return columns.Reading(rows, [], _account("", len(records)))
+
+
+def _account(name: str, lines: int) -> Account:
+    account = Account()
+    account.add(DECODED, name, lines, lines * LINE_BYTES)
+    return account
