@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from stages.criticising.walking import Walk
-from stages.inference.naming.named import UNKNOWN_STRUCTURE
+from stages.inference.naming.named import ONE_OF_CLASS, UNKNOWN_STRUCTURE
 from stages.model.effect import Effect
 from stages.notation.causes import in_words
 from stages.notation.numbers import decimals_of, with_sigma
@@ -53,7 +53,8 @@ def scores(effects: Sequence[Effect], walk: Walk | None) -> Iterator[Row]:
 def findings(sensor: str, walk: Walk, instead: Sequence[str], suffix: str) -> Iterator[Row]:
     """The random walk of a sensor, `gyro` or `accel`, with the effects that may be it instead.
 
-    It is never certain: what changes without a law, such as telegraph noise, looks much the same.
+    With these it is one of a class. Without them it is never certain: what changes by no law, such
+    as telegraph noise, looks much the same.
     """
     cause = f"{sensor}_random_walk"
     others = [name for name in instead if name.startswith((sensor, *SHARED[sensor]))]
@@ -78,7 +79,7 @@ def findings(sensor: str, walk: Walk, instead: Sequence[str], suffix: str) -> It
         "action": "Record the positions once more, in another order, to tell a walk from others."
         if others
         else "A shorter campaign, or turns there and back, lessen what it does.",
-        "verdict": UNKNOWN_STRUCTURE,
+        "verdict": ONE_OF_CLASS if others else UNKNOWN_STRUCTURE,
         "members": ", ".join([cause, *others]),
         "parameters": f"K = {walk.size:.3g} ± {walk.sigma:.2g} {UNITS[sensor]}",
     }
