@@ -21,7 +21,7 @@ class TableAxisNonOrthogonality(Effect):
     """The level middle axis of the table leans, so faces that it brings up are not level.
 
     The middle axis m carries the body axis `home` from the top to where the plan has it, by the
-    angle φ: m = home × up. It leans upwards by δ; home itself was made level. So the case misses
+    angle φ: m = up × home. It leans upwards by δ; home itself was made level. So the case misses
     its attitude by R(m′, φ′) R(m, φ)ᵀ, m′ the leaning axis, φ′ = φ + ε sin φ. A tumble about m
     turns φ further; about another axis it does not. lean: δ, rad; quarter: ε, rad, by which a
     quarter turn about m is too large; home: unit vector, (3,), body axes.
@@ -40,11 +40,12 @@ class TableAxisNonOrthogonality(Effect):
     def misses(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
         step = manoeuvre.step
         turned = 0.0 if step is None else step.angle
-        start = rotation_about(manoeuvre.about, np.asarray(turned)) @ manoeuvre.up
-        across = np.cross(self.home, start)
+        back = rotation_about(manoeuvre.about, np.asarray(turned))
+        start = back @ manoeuvre.up
+        across = np.cross(start, self.home)
         angle = atan2(float(np.linalg.norm(across)), float(self.home @ start))
-        if sin(angle) < 1e-9:  # home is up or down: about any level axis
-            across = np.cross(start, manoeuvre.mark) if step is None else manoeuvre.about
+        if sin(angle) < 1e-9:  # home is up or down: the axis points away from the zero mark
+            across = -back @ manoeuvre.mark
         middle = across / np.linalg.norm(across)
         about = float(middle @ manoeuvre.about)
         if abs(about) > cos(DEGREE):

@@ -38,7 +38,8 @@ STUDY = {
     "accel_bias_jump": (MICRO_G, 24, 16, 38, 20),
     "lever_arm": (1e-3, 4.6, 3.3, 0.23, NONE),
     "size_effect": (1e-3, 7.6, 5.6, 0.66, NONE),
-    "table_axis_non_orthogonality": (DEGREE / 3600, 5.7, 5.4, np.nan, 3.5),
+    # The study leans the sides alone; a case that hangs upside down leans twice as much.
+    "table_axis_non_orthogonality": (DEGREE / 3600, 5.7, np.nan, np.nan, 3.5),
     "table_wobble": (DEGREE / 3600, 2.4, 1.4, 1.4, np.nan),
     "latitude_error": (DEGREE, 2.5, 2.5, 5.3, 4.7),
     "heading_error": (DEGREE, 3.4, 3.2, 5.6, 5.0),

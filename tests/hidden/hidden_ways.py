@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from hidden_plans import HEADING
 
 G = 9.80665
 DEGREE = np.radians(1.0)
@@ -13,7 +12,6 @@ DEGREE_PER_HOUR = DEGREE / 3600  # rad/s
 ARC_SECOND = DEGREE / 3600
 PPM, MICRO_G = 1e-6, 1e-6 * G
 BOTH = ("positions", "stops", "rates")
-AZIMUTH = HEADING * DEGREE
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -66,14 +64,8 @@ def _products(v: Array) -> dict[str, Any]:
 
 
 def _leaning(v: Array) -> dict[str, Any]:
-    """The middle axis points along the zero mark; an end that rises leans the case away from it."""
-    north, east = v
-    lean = -(north * np.cos(AZIMUTH) + east * np.sin(AZIMUTH))
-    quarter = -north * np.sin(AZIMUTH) + east * np.cos(AZIMUTH)
-    return {
-        "lean_arcsec": float(lean / ARC_SECOND),
-        "quarter_arcsec": float(quarter / ARC_SECOND),
-    }
+    lean, quarter = v / ARC_SECOND
+    return {"lean_arcsec": float(lean), "quarter_arcsec": float(quarter)}
 
 
 TURNS, RATES = ("stops", "rates"), ("rates",)
@@ -107,7 +99,7 @@ WAYS: Mapping[str, Way] = {
     "lever_arm": _three("arm_m", 1.0, "r"),
     "size_effect": _matrix("arms_mm", 1e-3, "r"),
     "table_tilt": _level("north", "east"),
-    "table_axis_non_orthogonality": Way(("north", "east"), _leaning, RATES),
+    "table_axis_non_orthogonality": Way(("lean", "quarter"), _leaning, RATES),
     "table_wobble": _level("north", "east"),
     "latitude_error": _one("error_deg", DEGREE, "dphi", plans=TURNS),
     "heading_error": _one("error_deg", DEGREE, "dpsi", plans=TURNS),

@@ -221,12 +221,12 @@ def test_both_ways_of_a_tumble_share_the_error_of_a_named_position(
 
 @pytest.mark.parametrize(
     ("up", "expected"),
-    [("+z", [0, 0]), ("+x", [1, 0]), ("-x", [-1, 0]), ("+y", [0, -1]), ("-y", [0, 1])],
+    [("+z", [0, 0]), ("+x", [-1, 0]), ("-x", [1, 0]), ("+y", [0, 1]), ("-y", [0, -1])],
 )
 def test_faces_that_a_leaning_axis_brings_up(
     performed: Performed, up: str, expected: list[float]
 ) -> None:
-    """From z to x up it goes about y, which leans up by 30″ and so reads 30″ of gravity."""
+    """From z to x up it goes about −y, which leans up by 30″, so that y reads −30″ of gravity."""
     effects = {"table_axis_non_orthogonality": {"lean_arcsec": 30}}
     mark = "+z" if up != "+z" else "+x"
     truth = truth_of(performed, REST | {"up": up, "mark": mark}, effects)
@@ -238,20 +238,20 @@ def test_faces_that_a_leaning_axis_brings_up(
 
 
 def test_a_quarter_turn_that_is_too_large(performed: Performed) -> None:
-    """From z to x up about y by 90° and 20″: z, which should be level, has gone down 20″."""
+    """From z to x up about −y by 90° and 20″: z, which should be level, has gone down 20″."""
     parameters = {"lean_arcsec": 0, "quarter_arcsec": 20}
     effects = {"table_axis_non_orthogonality": parameters}
     force = truth_of(performed, REST | {"up": "+x", "mark": "+z"}, effects).force.mean(axis=0)
-    assert force[2] / GRAVITY / ARCSECOND == pytest.approx(20, abs=1e-3)
+    assert force[2] / GRAVITY / ARCSECOND == pytest.approx(-20, abs=1e-3)
     assert force[1] == pytest.approx(0, abs=1e-9)
 
 
 def test_a_tumble_about_the_leaning_axis(performed: Performed) -> None:
-    """x, the axis, is level where z is up and leans by 2 × 30″ where z is down: 30″ (1 − cos)."""
+    """−x, the end away from the mark, is level where z is up and rises by 60″ where it is down."""
     effects = {"table_axis_non_orthogonality": {"lean_arcsec": 30}}
     for degrees, force in rests(truth_of(performed, TUMBLE, effects)):
         lean = 30 * (1 - cos(radians(degrees)))
-        assert force[0] / GRAVITY / ARCSECOND == pytest.approx(lean, abs=0.01)
+        assert force[0] / GRAVITY / ARCSECOND == pytest.approx(-lean, abs=0.01)
         assert force[1:] == pytest.approx(on_edge(degrees)[1:], abs=1e-6)  # (60″)² g
 
 
