@@ -32,6 +32,7 @@ from stages.estimation.lines_of_turns import heard
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.solution import solution_of
 from stages.estimation.steady_turns import steady_turns
+from stages.estimation.without_lines import without_lines
 
 Row = dict[str, Any]
 
@@ -86,7 +87,10 @@ def criticism(
             suffix,
             (accelerometer_fit, gyroscope_fit),
         )
-        campaign = campaign_of(blocks, plan, done, levels, given, solution, shared)
+        turns = steady_turns(simulated, plan, solution.gyro, clock, averaged)
+        found = heard(turns, level * (1 - BLOCKS_SHARE), lowest_hz)
+        quiet = without_lines(blocks, turns, found.lines)
+        campaign = campaign_of(quiet, plan, done, levels, given, solution, shared)
         judged = judge(campaign, in_blocks, level * BLOCKS_SHARE, levels.degrees)
         left = tested(judged.campaign, judged.effects, levels.degrees)
         judged = judged.demoted([sensor for sensor in SENSORS if left.of(sensor)])
@@ -95,11 +99,9 @@ def criticism(
             one.name: partial(
                 campaign_of, one.blocks, one.plan, one.performed, levels, given, solution, shared
             )
-            for one in further(plan, done, blocks)
+            for one in further(plan, done, quiet)
         }
         rows = Rows(campaign, judged, Foreseen(judged, more), suffix)
-        turns = steady_turns(simulated, plan, solution.gyro, clock, averaged)
-        found = heard(turns, level * (1 - BLOCKS_SHARE), lowest_hz)
         lines = LinesOfTurns(found, suffix)
         made["scores"] += [*rows.scores(), *lines.scores()]
         made["scores"] += elsewhere.scores(others, walks.get("gyro"))

@@ -157,3 +157,12 @@ def test_a_random_walk_is_no_ramp_and_no_g_sensitivity(tmp_path):
     assert finding["cause"] == "gyro_random_walk" and finding["severity"] == 1
     walk = results["criticism/scores"].set_index("effect").loc["gyro_random_walk", "sentence"]
     assert "walk by 0." in walk and "°/h/√h" in walk
+
+
+def test_an_oscillation_that_beats_with_the_blocks_is_no_structure(tmp_path):
+    """39.6 Hz is 7.9 periods in a block of 0.2 s: what is left of it beats at 2 Hz."""
+    ringing = {"frequency_hz": 39.567, "amplitude_rad_s": 0.0038, "axis": "+y"}
+    campaign = chain.simulate(chain.demo(effects={"oscillation": ringing}, seed=17), tmp_path / "c")
+    results = chain.run(campaign, tmp_path / "derived", "criticism")
+    assert results["criticism/findings"]["cause"].tolist() == ["oscillation"]
+    assert not results["criticism/structures"]["fires"].any()

@@ -33,6 +33,7 @@ class SteadyTurn:
     """The steady part of one turn, the coupling of the gyros by M undone.
 
     name : of the manoeuvre; about : (3,), the table's axis in the case; step : s, of a sample
+    start : s, time of the first sample, NaN where it is not known
     matrix : (3, 3), M of the gyros
     truth : (n, 3), rad/s, residuals of the rates about the axes of the case
     angle : (n,), rad, signed, that the table has turned since its start; NaN where the table has
@@ -49,6 +50,7 @@ class SteadyTurn:
     step: float
     averaged: bool
     tilted: bool
+    start: float = np.nan
 
     @property
     def rate(self) -> float:
@@ -131,6 +133,7 @@ def steady_turns(
         if m.rate is not None and m.acceleration is not None:
             angle = _angle(rows, (rows[GYROS].to_numpy() - gyro.bias) @ inverse.T @ m.axis, step)
         columns = [rows[["time", *RESIDUALS]].to_numpy(np.float64), angle[:, None]]
+        columns.append(rows[["time"]].to_numpy(np.float64))
         residuals, further = unbroken(np.hstack(columns)[steady])
         truth = residuals @ inverse.T
         if len(truth) < FEWEST or not np.isfinite(truth).all():
@@ -138,7 +141,15 @@ def steady_turns(
         tilted = m.up is None or abs(float(m.up @ m.axis)) < UPRIGHT
         found.append(
             SteadyTurn(
-                name, m.axis, gyro.matrix, truth, further[:, 0], step, m.log in averaged, tilted
+                name,
+                m.axis,
+                gyro.matrix,
+                truth,
+                further[:, 0],
+                step,
+                m.log in averaged,
+                tilted,
+                float(further[0, 1]),
             )
         )
     return found
