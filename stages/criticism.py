@@ -106,7 +106,10 @@ def criticism(
         made["scores"] += [*rows.scores(), *lines.scores()]
         made["scores"] += elsewhere.scores(others, walks.get("gyro"))
         for sensor, walk in walks.items():
-            made["findings"] += elsewhere.findings(sensor, walk, judged.instead, suffix)
+            structured = bool(left.of(sensor))
+            made["findings"] += elsewhere.findings(
+                sensor, walk, judged.instead, suffix, structured=structured
+            )
             made["walks"].append(elsewhere.walk_row(f"joint{suffix}", sensor, walk))
         made["structures"] += structures.rows(left, f"joint{suffix}")
         made["structure_points"] += structures.pictures(left, f"joint{suffix}")

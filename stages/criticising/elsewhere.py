@@ -50,11 +50,13 @@ def scores(effects: Sequence[Effect], walk: Walk | None) -> Iterator[Row]:
         }
 
 
-def findings(sensor: str, walk: Walk, instead: Sequence[str], suffix: str) -> Iterator[Row]:
+def findings(
+    sensor: str, walk: Walk, instead: Sequence[str], suffix: str, *, structured: bool
+) -> Iterator[Row]:
     """The random walk of a sensor, `gyro` or `accel`, with the effects that may be it instead.
 
     With these it is one of a class. Without them it is never certain: what changes by no law, such
-    as telegraph noise, looks much the same.
+    as telegraph noise, looks much the same; nor where what is left of the sensor is `structured`.
     """
     cause = f"{sensor}_random_walk"
     others = [name for name in instead if name.startswith((sensor, *SHARED[sensor]))]
@@ -79,7 +81,7 @@ def findings(sensor: str, walk: Walk, instead: Sequence[str], suffix: str) -> It
         "action": "Record the positions once more, in another order, to tell a walk from others."
         if others
         else "A shorter campaign, or turns there and back, lessen what it does.",
-        "verdict": ONE_OF_CLASS if others else UNKNOWN_STRUCTURE,
+        "verdict": ONE_OF_CLASS if others and not structured else UNKNOWN_STRUCTURE,
         "members": ", ".join([cause, *others]),
         "parameters": f"K = {walk.size:.3g} ± {walk.sigma:.2g} {UNITS[sensor]}",
     }

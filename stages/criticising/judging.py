@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stages.criticising.course import course_of, courses
-from stages.criticising.walking import walks_beside
+from stages.criticising.walking import slight, walks_beside
 from stages.estimation.evidence import Campaign, evidence
 from stages.inference.least_squares import LIKELIER
 from stages.inference.naming.causes import causes, law_of
@@ -102,7 +102,7 @@ def judge(
     still = judged((0.0, 0.0))
     walks = campaign.solution.walks
     if not any(walks):
-        walks = _walks_instead(campaign, still.effects)
+        walks = _walks_instead(still)
     if not any(walks):
         return still
     walking = judged(walks)
@@ -122,13 +122,15 @@ def judge(
     return _consistent(replace(found, instead=other))
 
 
-def _walks_instead(campaign: Campaign, effects: Sequence[Effect]) -> tuple[float, float]:
-    """The likeliest random walks that may stand for one of the effects, or for all; 0 for none."""
-    left = [[other for other in effects if other is not one] for one in effects]
-    some = left if len(effects) < 2 else [[], *left]
-    found = [(walks_beside(campaign, others), others) for others in some]
-    tried = [(campaign.walking(w).deviance(others), w) for w, others in found if any(w)]
-    return min(tried)[1] if tried else (0.0, 0.0)
+def _walks_instead(judged: Judged) -> tuple[float, float]:
+    """The likeliest random walks that may stand for effects like them; 0 where none may."""
+    campaign, effects = judged.campaign, judged.effects
+    like = _like_a_walk(campaign.walking(slight(campaign)), judged)
+    if not any(like):
+        return (0.0, 0.0)
+    return walks_beside(
+        campaign, [one for one, walks in zip(effects, like, strict=True) if not walks]
+    )
 
 
 def _members(judged: Judged) -> tuple[str, ...]:
@@ -138,29 +140,32 @@ def _members(judged: Judged) -> tuple[str, ...]:
 
 def _consistent(judged: Judged) -> Judged:
     """The same; of causes that a walk could do as well no more is said than that they may be."""
-    named = judged.effects
-    if not named:
-        return judged
-    walking, still = (
-        evidence(campaign, named) for campaign in (judged.campaign, judged.campaign.without_walk())
-    )
-
-    def like_a_walk(cause: Cause) -> bool:
-        if cause.effect not in judged.families:
-            return False
-        label = judged.effect(cause.effect, cause.value).label
-        own = [i for i, name in enumerate(walking.names) if name.startswith(f"{label}.")]
-        values = np.nan_to_num(cause.values)
-        left, whole = (
-            values @ said.total.information[np.ix_(own, own)] @ values for said in (walking, still)
-        )
-        return bool(left < WALKLIKE * whole)
-
+    like = dict(zip(_clear(judged), _like_a_walk(judged.campaign, judged), strict=True))
     causes = tuple(
-        replace(cause, verdict=UNKNOWN_STRUCTURE) if like_a_walk(cause) else cause
-        for cause in judged.named.causes
+        replace(cause, verdict=UNKNOWN_STRUCTURE) if like.get(place) else cause
+        for place, cause in enumerate(judged.named.causes)
     )
     return replace(judged, named=replace(judged.named, causes=causes))
+
+
+def _clear(judged: Judged) -> list[int]:
+    """Which of the causes are effects, and no courses without a law."""
+    return [i for i, cause in enumerate(judged.named.causes) if cause.effect in judged.families]
+
+
+def _like_a_walk(walking: Campaign, judged: Judged) -> list[bool]:
+    """Of each named effect whether walks leave little of what is known of it."""
+    named = judged.effects
+    if not named:
+        return []
+    said = [evidence(campaign, named).total for campaign in (walking, walking.without_walk())]
+    result = []
+    for place, effect in zip(_clear(judged), named, strict=True):
+        own = [i for i, name in enumerate(said[0].names) if name.startswith(f"{effect.label}.")]
+        values = np.nan_to_num(judged.named.causes[place].values)
+        left, whole = (values @ one.information[np.ix_(own, own)] @ values for one in said)
+        result.append(bool(left < WALKLIKE * whole))
+    return result
 
 
 def _judge(

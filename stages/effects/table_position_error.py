@@ -3,7 +3,7 @@
 import numpy as np
 
 from stages.model.effect import Array, Effect, Parameter, Scan, Truth
-from stages.model.motion import Motion, level_axes
+from stages.model.motion import Motion, all_level_axes
 from stages.model.sizes import of_tables
 from stages.notation.units import ARC_SECOND
 
@@ -28,8 +28,8 @@ class TablePositionError(Effect):
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         lean = np.zeros_like(motion.up)
-        for i in np.flatnonzero(motion.position == self.value(motion)):
-            lean[i] = values @ np.array(level_axes(motion.up[i]))
+        own = motion.position == self.value(motion)
+        lean[own] = values @ all_level_axes(motion.up[own])
         return Truth(
             rate=truth.rate + np.cross(lean, motion.omega),
             force=truth.force + np.cross(lean, truth.force),

@@ -1,6 +1,6 @@
 """What the blocks of a campaign say of every effect of the catalogue."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import accumulate, pairwise
@@ -117,6 +117,13 @@ class Campaign:
     def system(self, sensor: str, effects: Sequence[Effect], wide: float) -> System | None:
         """The equations of one sensor, `gyro` or `accel`; arguments as in `systems`."""
         return self._system(sensor, effects, wide, None, self._told(effects))
+
+    def walked(
+        self, sensor: str, effects: Sequence[Effect], wide: float
+    ) -> Callable[[float], System | None]:
+        """The equations of one sensor as a function of the random walk of its biases."""
+        told = self._told(effects)
+        return lambda walk: self.walking((walk, walk))._system(sensor, effects, wide, None, told)
 
     def _system(
         self,

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
-from stages.inference.level import all_level_axes
 from stages.inference.six_position import Rest, equations
 from stages.inference.triad import UNKNOWNS
+from stages.model.motion import all_level_axes
 
 Array = NDArray[np.float64]
 

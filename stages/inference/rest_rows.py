@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stages.inference.elimination import Name, Part
-from stages.inference.level import all_level_axes, all_turned
+from stages.inference.level import all_turned
 from stages.inference.random_walk import Stretch
 from stages.inference.rests_and_turns import Earth, Position, Steady, Still
 from stages.inference.triad import UNKNOWNS, design_of
-from stages.model.motion import level_axes, turned_all
+from stages.model.motion import all_level_axes, level_axes, turned_all
 
 Array = NDArray[np.float64]
 

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from stages.inference.between_stretches import with_drift
 from stages.inference.elimination import Name, Part, eliminated
 from stages.inference.least_squares import Estimate, Fitted, System
-from stages.inference.level import all_level_axes
 from stages.inference.random_walk import Stretch, drifting, times_of, trend
 from stages.inference.rest_rows import whitened
 from stages.inference.traces import NONE, Traces
 from stages.inference.triad import UNKNOWNS
+from stages.model.motion import all_level_axes
 
 Array = NDArray[np.float64]
 

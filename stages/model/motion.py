@@ -29,6 +29,14 @@ def level_axes(up: Array) -> tuple[Array, Array]:
     return first, np.cross(up, first)
 
 
+def all_level_axes(ups: Array) -> Array:
+    """`level_axes` of many upward directions (n, 3), (n, 2, 3)."""
+    least = np.eye(3)[np.argmin(np.abs(ups), axis=1)]
+    first = np.cross(least, ups)
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    return np.stack([first, np.cross(ups, first)], axis=1)
+
+
 @dataclass(frozen=True)
 class Profile:
     """A turn with constant acceleration at its start and stop: a trapezoid of the rate.

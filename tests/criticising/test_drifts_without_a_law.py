@@ -25,7 +25,9 @@ def test_a_random_walk_beside_an_effect_is_estimated_and_takes_no_name(walking):
     findings = walking["criticism/findings"].set_index("cause")
     assert set(findings.index) == {"gyro_g_sensitivity", "gyro_random_walk"}
     assert findings.loc["gyro_g_sensitivity", "verdict"] == "found"
-    assert findings.loc["gyro_random_walk", "verdict"] == "unknown_structure"
+    # A jump explains about as much of it: so it may be either, and is never certain.
+    assert findings.loc["gyro_random_walk", "verdict"] in ("one_of_class", "unknown_structure")
+    assert findings.loc["gyro_random_walk", "members"].startswith("gyro_random_walk")
     (walk,) = walking["criticism/walks"].itertuples()
     # °/h/√h is per 60 √s; drawn once, so known to a part of itself only.
     true = 0.4 * 4.848e-6 / 60
@@ -38,7 +40,7 @@ def test_telegraph_noise_is_no_jump_and_its_structure_is_shown(tmp_path):
     findings = results["criticism/findings"]
     assert not findings["verdict"].isin(CLEAR).any()
     structure = findings.set_index("cause").loc["unknown_structure"]
-    assert structure["sensor"] == "gyro" and "no more than consistent" in structure["sentence"]
+    assert structure["sensor"] == "gyro" and "is not noise: about x" in structure["sentence"]
     # Only that axis jumps, and there is something to be seen.
     points = results["criticism/structure_points"]
     assert set(points["channel"]) >= {"gyro x"}
