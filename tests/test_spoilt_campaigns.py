@@ -125,7 +125,7 @@ def test_a_position_that_is_off_is_noticed_and_what_it_spoils_is_named(tmp_path)
     believed = {**true.campaign, "plan": told["campaign"]["plan"]}
     folder = tmp_path / "raw"
     laboratory.write(replace(true, campaign=believed), folder)
-    results = chain.run(folder, tmp_path / "derived", "criticism")
+    results = chain.run(folder, tmp_path / "derived", "extension")
     (found,) = results["accelerometer/findings"].to_dict("records")
     assert found["cause"] == "table_position_error"
     assert "y-up" in found["sentence"] and "z-up" not in found["sentence"]
@@ -136,5 +136,11 @@ def test_a_position_that_is_off_is_noticed_and_what_it_spoils_is_named(tmp_path)
     assert "x accelerometer" not in found["consequence"]
     # Criticism names it too, and nothing that would only look like it.
     (cause,) = results["criticism/findings"].to_dict("records")
-    assert cause["cause"] == "table_position_error" and cause["manoeuvre"] == "y-up"
-    assert "at y-up" in cause["sentence"]
+    assert cause["cause"] == "table_position_error" and "y-up" in cause["manoeuvre"]
+    assert f"at {cause['manoeuvre']}" in cause["sentence"] and "z-up" not in cause["manoeuvre"]
+    # Free to lean there, the case gives the parameters back; what it has not seen is foretold.
+    moved = results["extension/moved"].set_index("joint_id")
+    cross = moved.loc["accelerometer/joint/cross_zy"]
+    assert abs(cross["difference"]) == pytest.approx(np.radians(OFF) / 8, rel=0.3)
+    assert cross["extended_sigma"] < cross["joint_sigma"] / 10
+    assert set(results["extension/decision"].set_index("sensor")["result"]) == {"joint", "extended"}

@@ -19,6 +19,7 @@ Row = dict[str, Any]
 
 SENSORS = ("gyro", "accel")
 NAMED = (FOUND, ONE_OF_CLASS)
+ALIKE = 6.0  # drop of chi-squared by which a position must exceed another: 95 % of 2 degrees
 SHARED = {"severity": 2, "count": 1, "unit": "sigma"}
 
 
@@ -119,10 +120,15 @@ class Rows:
             }
 
     def _position(self, effect: Effect | None) -> str:
-        """The name of the position that is scanned; empty where none is."""
+        """The positions that it may be, where positions are scanned; else empty."""
         if effect is None or effect.at is None or effect.scan is None or effect.scan.between:
             return ""
-        return self.campaign.positions[int(effect.at)]
+        said, family = self.judged.said, self.judged.families[effect.name]
+        others = [i for n, c in self.causes.items() if n != effect.name for i in c.columns]
+        asked = next(one for one in self.judged.asked if one.name == effect.name)
+        drops = [said.total.drop([*columns, *others])[0] for columns in asked.candidates]
+        near = [i for i in np.argsort(drops)[::-1] if drops[i] > max(drops) - ALIKE]
+        return " or ".join(self.campaign.positions[int(family[i].at or 0)] for i in near)
 
     def _advice(self, effect: Effect, parameter: str) -> str:
         """S3 turns up at one rate and down at another: what the same rate would bring."""
@@ -159,13 +165,14 @@ class Rows:
             | {"visible": sizes.get(parameter.name)}
             for i, parameter in enumerate(effect.parameters)
         ]
-        if effect.scan is not None and effect.scan.between and effect.name in self.causes:
+        if effect.scan is not None and effect.name in self.causes:
             at = effect.at or 0.0
             apart = [abs((one.at or 0.0) - at) for one in self.judged.families[effect.name]]
             step = min((one for one in apart if one), default=0.0)
             rows.append(
                 self._row(effect, effect.scan.name, effect.scan.unit, effect.scan.meaning)
-                | {"value": effect.at, "sigma": step / 12**0.5, "visible": None}
+                | {"value": at, "visible": None}
+                | {"sigma": step / 12**0.5 if effect.scan.between else None}
             )
         return rows
 
