@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
-from stages.contracts import extension_tables, tables
+from stages.contracts import criticism_tables, extension_tables, tables
 from stages.contracts.code import code_of, hash_of
 from stages.contracts.counting import counting, extended_methods
 from stages.contracts.errors import Refusal
@@ -25,10 +25,12 @@ from stages.notation import numbers
 from stages.reporting import (
     account,
     averaging,
+    before_after,
     comparisons,
     compensation,
     evidence,
     expected,
+    extended,
     findings,
     history,
     lacks,
@@ -38,6 +40,9 @@ from stages.reporting import (
     studies,
     undetermined,
     verdict,
+)
+from stages.reporting import (
+    extended_parameters as extended_parameters_of,
 )
 from stages.reporting import (
     known as taken_as_known,
@@ -52,6 +57,7 @@ from stages.reporting import (
     simulated as over_simulated,
 )
 from stages.reporting.close_ups import close_ups
+from stages.reporting.criticised import Criticised
 from stages.reporting.logs import logs
 from stages.reporting.outline import Report
 from stages.reporting.page import page
@@ -99,8 +105,12 @@ READS: Mapping[str, Table] = {
     "scores": tables.SCORES,
     "effects": tables.EFFECTS,
     "lines": tables.LINES,
+    "blind_spots": tables.BLIND_SPOTS,
+    "structures": criticism_tables.STRUCTURES,
+    "structure_points": criticism_tables.STRUCTURE_POINTS,
     "criticism_findings": tables.CAUSES,
     "extended_parameters": tables.PARAMETERS,
+    "extended_fit": tables.FIT,
     "gain": extension_tables.GAIN,
     "worth": extension_tables.WORTH,
     "decision": extension_tables.DECISION,
@@ -111,7 +121,6 @@ READS: Mapping[str, Table] = {
     "archived": tables.ARCHIVED,
     "earlier": tables.EARLIER,
 }
-GYRO = ("gyroscope", verdict.JOINT)
 STREAMS = ("simulated",)  # too long for memory
 
 
@@ -164,8 +173,12 @@ def report(
     scores: pd.DataFrame,
     effects: pd.DataFrame,
     lines: pd.DataFrame,
+    blind_spots: pd.DataFrame,
+    structures: pd.DataFrame,
+    structure_points: pd.DataFrame,
     criticism_findings: pd.DataFrame,
     extended_parameters: pd.DataFrame,
+    extended_fit: pd.DataFrame,
     gain: pd.DataFrame,
     worth: pd.DataFrame,
     decision: pd.DataFrame,
@@ -191,8 +204,11 @@ def report(
             compensation_findings,
         )
     )
-    sought = sought_of(scores, effects)
-    asked_for = [one.finding for one in sought if one.score["named"]]
+    decided = records(decision)
+    extended_rows = records(extended_parameters)
+    counts = extended.counting(
+        found, extended.estimates(extended_rows, records(extended_fit)), decided
+    )
     drawn = logs(traces, segments, clocks, gaps)
     shown = evidence.evidence(
         worst_first[: findings.MOST_IN_FULL],
@@ -205,18 +221,32 @@ def report(
             performed,
             expected.stated(known, about["rate"]),
         ),
-        evidence.Model(
-            simulated,
-            lines,
-            gain,
-            [row for one in found if (one.stage, one.kind) == GYRO for row in one.determined],
-            lacks.shifts(extended_parameters, found),
-        ),
     )
-    given = verdict.verdict(found, manoeuvres, performed, worst_first, lacks.named(sought))
+    sought = sought_of(scores, effects)
+    model = Criticised(
+        {(one.score["effect"], one.mount): one for one in sought},
+        simulated,
+        before_after.means(simulated, fidelity, manoeuvres),
+        lines,
+        manoeuvres,
+        records(structures),
+        records(structure_points),
+        records(gain),
+        records(worth),
+        decided,
+        [row for row in records(accelerometer_findings) if row["cause"] == "table_position_error"],
+        extended_parameters_of.shifts(extended_rows, found),
+        [
+            row
+            for one in verdict.joint_fits(counts)
+            if one.stage == "gyroscope"
+            for row in one.determined
+        ],
+    )
+    given = verdict.verdict(counts, manoeuvres, performed, worst_first, decided)
     estimated = [*records(accelerometer_parameters), *records(gyroscope_parameters)]
-    replaced = extended_methods(records(decision))
-    better = [row for row in records(extended_parameters) if row["method"] in replaced]
+    replaced = extended_methods(decided)
+    better = [row for row in extended_rows if row["method"] in replaced]
     counted = counting(estimated, better)
     name = numbers.shortened(about["campaign"], 80)
     serial = numbers.shortened(about["serial"], 80)
@@ -228,14 +258,24 @@ def report(
         running=f"{name} · {instrument}" + (" · simulated" if about["simulated"] else ""),
         simulated=bool(about["simulated"]),
         sections=(
-            verdict.section(given, found, about, known, clocks),
+            verdict.section(given, counts, about, known, clocks),
             parameters.section(found, decision),
-            lacks.section(sought, lines, gain, extended_parameters, found, decision, worth),
-            findings.section(worst_first, shown, segments, asked_for),
+            lacks.section(
+                records(criticism_findings),
+                sought,
+                model,
+                records(blind_spots),
+                extended_rows,
+                found,
+                findings.of_model(worst_first, segments),
+            ),
+            findings.section(worst_first, shown, segments),
             undetermined.section(found),
             over_simulated.section(simulated, fidelity, manoeuvres, segments),
             comparisons.section(differences),
-            compensation.section(checks, traces, compensated_traces, segments, manoeuvres),
+            compensation.section(
+                checks, traces, compensated_traces, segments, manoeuvres, decision
+            ),
             history.section(earlier, archived, counted, about["date"]),
             recording.section(manoeuvres, performed),
             raw_data.section(drawn),

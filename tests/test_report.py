@@ -16,7 +16,7 @@ import pytest
 
 from stages import report as stage
 from stages.report import report
-from tests.reporting import made_up
+from tests.reporting import made_up, made_up_lacks
 
 SECTIONS = [
     "Verdict",
@@ -122,7 +122,9 @@ def test_what_is_not_determined_has_its_reason_and_no_value() -> None:
 
 
 def test_the_verdict_says_plainly_that_the_model_does_not_fit() -> None:
-    text = " ".join(made_up.documents().verdict.split())
+    tables = made_up.brief()
+    tables["decision"] = tables["decision"].iloc[:0]  # the joint result counts
+    text = " ".join(report(**tables).verdict.split())
     assert "Verdict: calibrated in part" in text
     assert (
         "Gyroscope: the model does not describe the data within the noise; sigmas are of noise only"
@@ -130,11 +132,29 @@ def test_the_verdict_says_plainly_that_the_model_does_not_fit() -> None:
     )
     assert "SIMULATED" in text
     assert "not complete: z-backward" in text
-    assert "Findings: 4;" in text
+    assert "Findings: 5;" in text
+
+
+def test_where_the_extended_result_counts_its_sigmas_and_its_fit_are_told() -> None:
+    tables = made_up.brief()
+    tables["extended_parameters"]["sigma"] /= 10
+    text = " ".join(report(**tables).verdict.split())
+    assert "Verdict: calibrated All 24 parameters" in text
+    said = "Gyroscope: all 12 parameters are determined, with gyro g-sensitivity in the model."
+    # 2.1e-8 rad/s are 0.0043 °/h, 2.2e-6 are 2.2 ppm
+    assert f"{said} Largest σ: bias 0.00043 °/h; scale error 0.22 ppm" in text
+    assert "Gyroscope: the model describes the data within the noise (p = 0.54)" in text
+
+
+def test_compensation_says_that_it_has_the_joint_result() -> None:
+    said = "The readings are corrected by the joint result, though of the gyros the extended one"
+    assert said in Page(made_up.documents().html).text
+    assert said not in Page(report(**made_up_lacks.without_effects()).html).text
 
 
 def test_a_scatter_that_the_sigmas_allow_for_is_said() -> None:
     tables = made_up.brief()
+    tables["decision"] = tables["decision"].iloc[:0]
     tables["gyroscope_fit"]["scatter"] = 0.5 * np.pi / 180 / 3600
     words = "manoeuvres differ by 0.50 °/h beyond it, which the sigmas allow for"
     assert words in " ".join(report(**tables).verdict.split())
@@ -179,8 +199,8 @@ def test_what_the_model_lacks_is_named_with_its_numbers() -> None:
     documents = made_up.documents()
     page = Page(documents.html)
     assert "The data ask for gyro g-sensitivity and oscillation." in page.text
-    assert "The data ask for gyro g-sensitivity, oscillation:" in " ".join(
-        documents.verdict.split()
+    assert "The data ask for gyro g-sensitivity and oscillation. “What the model lacks”" in (
+        " ".join(documents.verdict.split())
     )
     # 6.92e-7 (rad/s)/(m/s²) is 6.92e-7 · 9.80665 m/s² · 3600 s · 180°/π = 1.3998 °/h/g
     cells = page.rows["criticism/gyro_g_sensitivity/g_xx"]
@@ -193,9 +213,11 @@ def test_what_the_model_lacks_is_named_with_its_numbers() -> None:
 
 def test_blind_spots_say_what_would_have_been_seen() -> None:
     page = Page(made_up.documents().html)
-    assert page.rows["criticism/lever_arm/r_x"][1:3] == ["1.6", "mm"]  # 5 · 0.33 mm
-    assert "Table tilt: This campaign cannot show table tilt. No manoeuvre" in page.text
-    assert "criticism/table_tilt/north" not in page.rows
+    effect, worst, _, best, unit, *_ = page.rows["blind/lever_arm/r_y"]  # the worst of three axes
+    assert [effect, worst, best, unit] == ["Lever arm", "1.6", "0.90", "mm"]
+    assert "blind/table_tilt/north" not in page.rows
+    assert "blind/gyro_g_sensitivity/g_xx" not in page.rows  # it was named
+    assert "No manoeuvre excites it.Table tilt." in page.text
 
 
 def test_a_shift_of_the_extended_model_is_in_sigmas_of_the_joint_fit() -> None:
@@ -211,19 +233,15 @@ def test_which_result_counts_is_said_beside_the_effects_and_the_joint_parameters
     assert "The joint result of the accelerometers counts" not in text  # they show no effect
 
 
-def test_what_it_is_worth_to_a_user_is_told_in_mrad_and_metres_per_second() -> None:
-    text = Page(made_up.documents().html).text
-    after = text[text.index("Errors of free inertial navigation after 60 s") :]
-    row = after[after.index("x-up") : after.index("x-forward")]
-    # 1 °/h for 60 s: 1/60°, and 9.8 · ψ t / 2.
-    assert "at rest0.29" in row and "0.086" in row
+def test_what_it_is_worth_to_a_user_is_told_in_mrad_and_mm_per_second() -> None:
+    text = " ".join(Page(made_up.documents().html).text.split())
+    # 1 °/h for 60 s: 1/60° are 0.291 mrad, and 9.8 · ψ t / 2 are 86 mm/s; a tenth in turns.
+    assert "is off by up to 0.291 ± 0.001 mrad and 85.5 ± 0.3 mm/s at rest, 0.029" in text
 
 
 def test_nothing_is_missing() -> None:
-    tables = made_up.brief()
-    tables["scores"][["named", "degrees"]] = False, 3
-    for name in ("gain", "extended_parameters", "criticism_findings", "worth", "decision"):
-        tables[name] = tables[name].iloc[:0]
+    tables = made_up_lacks.without_effects()
+    tables["scores"]["degrees"] = 3
     documents = report(**tables)
     assert "Nothing is missing: none of the five effects is needed." in Page(documents.html).text
     assert "The data ask" not in documents.verdict
@@ -231,14 +249,19 @@ def test_nothing_is_missing() -> None:
 
 def test_an_effect_of_two_mounts_stands_twice() -> None:
     tables = made_up.brief()
-    for name in ("scores", "effects"):
+    for name in ("scores", "effects", "criticism_findings", "blind_spots"):
         both = [tables[name], tables[name].copy()]
         if name == "effects":
             both[1]["id"] = both[1]["id"].str.replace(r"/(\w+)/", r"/\1@lying/", regex=True)
+        if name == "criticism_findings":
+            both[1]["id"] += "@lying"
+        if name == "blind_spots":
+            both[1]["effect"] += "@lying"
         tables[name] = pd.concat(both, ignore_index=True)
     page = Page(report(**tables).html)
     assert "Oscillation (mount lying)" in page.text
-    assert page.rows["criticism/lever_arm@lying/r_x"] == page.rows["criticism/lever_arm/r_x"]
+    twice = [page.rows[f"blind/lever_arm{mount}/r_y"][1:] for mount in ("@lying", "")]
+    assert twice[0] == twice[1]
 
 
 def test_comparisons_come_worst_first() -> None:
@@ -287,6 +310,11 @@ def test_texts_from_outside_are_harmless() -> None:
     tables["effects"]["meaning"] = HOSTILE
     tables["lines"]["manoeuvre"] = HOSTILE
     tables["gain"]["effects"] = HOSTILE
+    tables["blind_spots"][["sentence", "parameter"]] = HOSTILE
+    tables["decision"]["sentence"] = HOSTILE
+    tables["structures"][["method", "kind", "channel"]] = HOSTILE
+    told = ["sentence", "consequence", "action", "manoeuvre", "members", "parameters"]
+    tables["criticism_findings"][[*told, "split_manoeuvre"]] = HOSTILE
     tables["differences"][["kind", "sentence"]] = HOSTILE
     tables["checks"]["manoeuvre"] = HOSTILE
     tables["archived"]["file"] = HOSTILE
@@ -374,7 +402,7 @@ def test_the_command_writes_page_and_verdict(tmp_path: Path) -> None:
     page, verdict = tmp_path / "reports" / "a.html", tmp_path / "reports" / "a.txt"
     stage.main([*arguments, "--output", str(page), "--verdict", str(verdict)])
     assert page.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
-    assert "Verdict: calibrated in part" in verdict.read_text(encoding="utf-8")
+    assert "Verdict: calibrated\n" in verdict.read_text(encoding="utf-8")
     assert sorted(path.name for path in page.parent.iterdir()) == ["a.html", "a.txt"]
 
 

@@ -49,6 +49,7 @@ NAMES = {
     "table_position_error": "set position that is off",
     "table_speed_error": "wrong speed of the table",
     "time_backwards": "time goes backwards",
+    "unknown_structure": "structure without a name",
     "wrong_day": "another day",
 }
 GRAVITY = {3: "spoils a result", 2: "weakens a result", 1: "good to know"}

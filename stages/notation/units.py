@@ -73,6 +73,10 @@ _BY_UNIT = {
     "1/K": Quantity(Unit("ppm/K", 1e-6), Unit("10⁻⁶ 1/K", 1e-6)),
     "rad/s/K": Quantity(Unit("°/h/K", DEGREE_PER_HOUR), Unit("10⁻⁶ rad/s/K", 1e-6)),
     "m/s²/K": Quantity(Unit("µg/K", 1e-6 * STANDARD_GRAVITY), Unit("10⁻⁶ m/s²/K", 1e-6)),
+    "rad/s/K²": Quantity(Unit("°/h/K²", DEGREE_PER_HOUR), Unit("10⁻⁹ rad/s/K²", 1e-9)),
+    "rad/s/K³": Quantity(Unit("°/h/K³", DEGREE_PER_HOUR), Unit("10⁻⁹ rad/s/K³", 1e-9)),
+    "m/s²/K²": Quantity(Unit("µg/K²", 1e-6 * STANDARD_GRAVITY), Unit("10⁻⁶ m/s²/K²", 1e-6)),
+    "m/s²/K³": Quantity(Unit("µg/K³", 1e-6 * STANDARD_GRAVITY), Unit("10⁻⁶ m/s²/K³", 1e-6)),
     "(m/s²)/(m/s²)³": Quantity(
         Unit("µg/g³", 1e-6 / STANDARD_GRAVITY**2), Unit("10⁻⁶ (m/s²)/(m/s²)³", 1e-6)
     ),

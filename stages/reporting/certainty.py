@@ -19,7 +19,7 @@ CLEAREST_FIRST: tuple[Kind, ...] = (
     "walk",
     "unexplained",
 )
-GRADE: dict[Kind, str] = {
+_GRADE: dict[Kind, str] = {
     "found": "found",
     "class": "one of a class",
     "structure": "a structure without a name",
@@ -42,6 +42,16 @@ def kind_of(row: Record) -> Kind:
         return "structure"
     verdicts: dict[str, Kind] = {"found": "found", "one_of_class": "class"}
     return verdicts.get(row.get("verdict") or "", "consistent")
+
+
+def grade(row: Record) -> str:
+    """The verdict in a few words."""
+    return _GRADE["class" if _walk_of_a_class(row) else kind_of(row)]
+
+
+def _walk_of_a_class(row: Record) -> bool:
+    """Whether effects are known that a walk may be instead."""
+    return kind_of(row) == "walk" and bool(others_of(row))
 
 
 def clearest_first(rows: Sequence[Record]) -> list[Record]:
@@ -85,7 +95,7 @@ def how_sure(row: Record) -> str:
         "consistent": "Consistent with it, and no more: the name is not certain.",
         "walk": "Consistent with it, and no more: what changes without a law looks much the same.",
         "unexplained": "Not explained: no effect of the catalogue does it.",
-    }[kind_of(row)]
+    }["class" if _walk_of_a_class(row) else kind_of(row)]
     told = []
     if row.get("snr"):
         told.append(f"it stands {numbers.significant(row['snr'], 2)} σ out of the noise")
@@ -114,10 +124,16 @@ def in_short(rows: Sequence[Record]) -> Iterator[str]:
         )
     if groups["structure"]:
         yield f"What is left of the {sensors['structure']} has a structure without a name."
-    if groups["consistent"]:
-        yield f"The data are consistent with {names['consistent']}, and no more is said."
-    if groups["walk"]:
-        yield f"The biases of the {sensors['walk']} change as by a random walk."
+    if own := groups["consistent"]:
+        each = [
+            " or ".join([name_of(row), *(in_words(name) for name in others_of(row))]) for row in own
+        ]
+        yield f"The data are consistent with {listed(_once(each))}, and no more is said."
+    for row in groups["walk"]:
+        sensors_of = SENSORS.get(row["sensor"] or "", "readings")
+        walk = f"The biases of the {sensors_of} change as by a random walk"
+        others = " or ".join(in_words(name) for name in others_of(row))
+        yield f"{walk}, or by {others}: they cannot be told apart." if others else f"{walk}."
     if groups["unexplained"]:
         yield (
             f"The residuals of the {sensors['unexplained']} are larger than noise, and nothing "

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from stages.contracts.counting import EXTENDED
 from stages.contracts.tables import AXES, CHANNELS
 from stages.notation import numbers
 from stages.notation.units import (
@@ -24,6 +25,7 @@ from stages.notation.units import (
     SECONDS_OF_ARC,
     Unit,
 )
+from stages.reporting.certainty import SENSORS, listed
 from stages.reporting.drawing import AXIS_COLOUR, QUIET, Margins, panels, shade, style, svg
 from stages.reporting.outline import Column, Figure, Heading, Paragraph, Part, Row, Section, Table
 from stages.reporting.rows import Record, records
@@ -64,13 +66,17 @@ def section(
     after: pd.DataFrame,
     segments: pd.DataFrame,
     manoeuvres: pd.DataFrame,
+    decision: pd.DataFrame,
 ) -> Section:
-    """The checks by quantity, and up to four figures."""
+    """The checks by quantity, and up to four figures; `decision`: whose extended result counts."""
     rows = records(checks)
     by_quantity = {
         quantity: [row for row in rows if row["quantity"] == quantity] for quantity in CHECKED
     }
-    parts: list[Part] = [_summary({q: own for q, own in by_quantity.items() if own})]
+    parts: list[Part] = [
+        *_joint(records(decision)),
+        _summary({q: own for q, own in by_quantity.items() if own}),
+    ]
     parts += [
         Paragraph(numbers.shortened(row["sentence"], 900), "fair")
         for row in rows
@@ -92,6 +98,18 @@ def section(
         "lacks” may say why. In the figures grey is before, colour after.",
         parts,
     )
+
+
+def _joint(decision: Sequence[Record]) -> Iterator[Paragraph]:
+    """That these are not the parameters that count, where they are not."""
+    better = [SENSORS[row["sensor"]] for row in decision if row["result"] == EXTENDED]
+    if better:
+        yield Paragraph(
+            f"The readings are corrected by the joint result, though of the "
+            f"{listed(list(dict.fromkeys(better)))} the extended one counts: what the named "
+            "effects do is still in them.",
+            "fair",
+        )
 
 
 # ---- checks

@@ -1,4 +1,4 @@
-"""What stands beside a finding: the pictures that show it, and what it costs in numbers."""
+"""What stands beside a finding of the recording: the pictures that show it."""
 
 from __future__ import annotations
 
@@ -8,30 +8,23 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from stages.contracts.parquet import Stream
-from stages.notation import numbers
-from stages.notation.causes import in_words
-from stages.reporting import expected, gap, oscillation, pictures
+from stages.reporting import expected, gap, pictures
 from stages.reporting.close_ups import CloseUp, gaps_in
-from stages.reporting.lacks import Shift
 from stages.reporting.logs import Log
 from stages.reporting.outline import Figure, Table
 from stages.reporting.rows import Record, records
 
 MOST_PICTURES = 25
-OSCILLATION = "oscillation"
-CRITICISM = "criticism"  # of its findings the place is the model
+CRITICISM = "criticism/"  # how the identifiers of findings about the model begin
 OF_GAPS = frozenset({"gap", "incomplete_turn"})
 Seen = tuple[str | int, ...]  # log, first and last record, channels
-STAGE = {"gyro": "gyroscope", "accel": "accelerometer"}
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Figures and tables that show a finding, and sentences with numbers."""
+    """Figures and tables that show a finding."""
 
     parts: tuple[Figure | Table, ...] = ()
-    measure: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -47,18 +40,7 @@ class Recording:
     stated: expected.Stated
 
 
-@dataclass(frozen=True)
-class Model:
-    """What the numbers of findings about the model are taken from."""
-
-    simulated: Stream
-    lines: pd.DataFrame
-    gain: pd.DataFrame
-    joint: Sequence[Record]  # parameters of the gyros by the joint fit
-    shifts: Sequence[Shift]
-
-
-def evidence(rows: Sequence[Record], recording: Recording, model: Model) -> dict[str, Evidence]:
+def evidence(rows: Sequence[Record], recording: Recording) -> dict[str, Evidence]:
     """What shows each finding, the worst first until there are enough pictures."""
     plan = {row["manoeuvre"]: row for row in records(recording.manoeuvres)}
     done = {row["manoeuvre"]: row for row in records(recording.performed)}
@@ -68,22 +50,20 @@ def evidence(rows: Sequence[Record], recording: Recording, model: Model) -> dict
     for number, row in enumerate(rows, 1):
         parts: list[Figure | Table] = []
         if drawn < MOST_PICTURES:
-            parts += _parts(row, f"finding-{number}", recording, model, seen)
+            parts += _parts(row, f"finding-{number}", recording, seen)
             if compared := expected.compared(row, plan, done, recording.stated):
                 parts.append(expected.figure(compared, f"finding-{number}-expected"))
             drawn += sum(isinstance(part, Figure) for part in parts)
-        found[row["id"]] = Evidence(tuple(parts), tuple(_measure(row, recording, model)))
+        found[row["id"]] = Evidence(tuple(parts))
     return found
 
 
 def _parts(
-    row: Record, key: str, recording: Recording, model: Model, seen: set[Seen]
+    row: Record, key: str, recording: Recording, seen: set[Seen]
 ) -> Iterator[Figure | Table]:
     """The picture of a finding, unless a worse one has shown the same samples: it leads there."""
-    if row["cause"] == OSCILLATION and row["id"].startswith(CRITICISM):
-        if ringing := oscillation.figure(model.simulated, model.lines, recording.manoeuvres, key):
-            yield ringing
-        return
+    if row["id"].startswith(CRITICISM):
+        return  # “What the model lacks” shows it
     close_up = recording.close_ups.get(row["id"])
     log = recording.logs.get(close_up.log if close_up else row["log"])
     if log is None:
@@ -126,41 +106,3 @@ def _span(
     if not timed:
         return None
     return row["from_s"], row["from_s"] if row["to_s"] is None else row["to_s"]
-
-
-def _measure(row: Record, recording: Recording, model: Model) -> Iterator[str]:
-    """What it costs, where other tables than that of findings tell it."""
-    if not row["id"].startswith(CRITICISM):
-        return
-    if row["cause"] == OSCILLATION:
-        yield from oscillation.harm(model.lines, recording.manoeuvres, model.gain, model.joint)
-        return
-    yield from _gained(row, model)
-
-
-def _gained(row: Record, model: Model) -> Iterator[str]:
-    """How much nearer the model comes with an effect, and how far the parameters move."""
-    own = [
-        line
-        for line in records(model.gain)
-        if row["cause"] in line["effects"].split(", ") and line["sensor"] in STAGE
-    ]
-    for line in own:
-        if line["scope"] == "held-out":
-            names = " and ".join(in_words(name) for name in line["effects"].split(", "))
-            before, after = (
-                numbers.significant(line[name], 3) for name in ("rms_before", "rms_after")
-            )
-            unit = "σ" if line["unit"] == "sigma" else line["unit"]
-            yield (
-                f"With {names} in the model the residuals of manoeuvres that were held out fall "
-                f"from {before} {unit} to {after} {unit} rms."
-            )
-    stage = STAGE.get(row["sensor"] or "")
-    shifts = [one for one in model.shifts if stage in (None, one.stage)]
-    if own and shifts:
-        most = max(shifts, key=lambda one: abs(one.sigmas))
-        yield (
-            f"Of the parameters, {most.name} moves most: by {numbers.fixed(most.sigmas, 1)} σ of "
-            "the joint fit."
-        )

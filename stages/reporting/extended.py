@@ -1,78 +1,67 @@
-"""Which result of a sensor counts, the joint or the extended one, and what that is worth."""
+"""Which result of a sensor counts, the joint or the extended one, in words and as estimates."""
 
 from collections.abc import Iterator, Sequence
 
-import pandas as pd
-
-from stages.notation import numbers, units
-from stages.reporting.outline import Column, Heading, Paragraph, Part, Row, Table, Tone
-from stages.reporting.rows import Record, records
-
-MOST_ROWS = 20
-ATTITUDE, VELOCITY = "Attitude, mrad", "Velocity, m/s"
-MILLI = units.Unit("mrad", 1e-3)
-DEGREES = units.Unit("°/s", units.DEGREE)
+from stages.contracts.counting import EXTENDED, STAGES
+from stages.notation import numbers
+from stages.notation.causes import in_words
+from stages.reporting.gained import effects_of
+from stages.reporting.outline import Paragraph, Tone
+from stages.reporting.parameters import Estimate
+from stages.reporting.rows import Record
 
 
-def parts(decision: pd.DataFrame, worth: pd.DataFrame) -> Iterator[Part]:
-    """The decision of every sensor that shows an effect, and the errors of a user."""
-    asked = [row for row in records(decision) if row["effects"]]
-    if asked:
-        yield Heading("Which result counts")
-    for row in asked:
-        tone: Tone = "good" if row["result"] == "extended" else "fair"
-        yield Paragraph(numbers.shortened(said(row), 900), tone)
-    if rows := records(worth):
-        yield Heading("What it is worth to a user")
-        yield _worth(rows)
+def paragraphs(decision: Sequence[Record]) -> Iterator[Paragraph]:
+    """The decision of every sensor that shows an effect, or beside which something is wrong."""
+    for row in decision:
+        if row["effects"] or row["alarms"]:
+            tone: Tone = "good" if row["result"] == EXTENDED else "fair"
+            yield Paragraph(numbers.shortened(_said(row), 900), tone)
 
 
-def said(row: Record) -> str:
+def _said(row: Record) -> str:
     """The decision in words, with its mount where there are several."""
     return f"Mount {row['mount']}: {row['sentence']}" if row["mount"] else str(row["sentence"])
 
 
-def _worth(rows: Sequence[Record]) -> Table:
-    rows = sorted(rows, key=lambda row: -row["velocity_joint"])
-    shown, more = rows[:MOST_ROWS], len(rows) - MOST_ROWS
-    seconds = numbers.whole(shown[0]["seconds"])
-    return Table(
-        f"Errors of free inertial navigation after {seconds} s, the attitude known at its start: "
-        "of a user who corrects with the joint result and knows nothing of the effects, and what "
-        "the extended result, with the effects, leaves uncertain.",
-        (
-            Column("Manoeuvre"),
-            Column("Motion"),
-            Column("joint", "number", ATTITUDE),
-            Column("± σ", "sigma", ATTITUDE),
-            Column("extended", "number", ATTITUDE),
-            Column("joint", "number", VELOCITY),
-            Column("± σ", "sigma", VELOCITY),
-            Column("extended", "number", VELOCITY),
-        ),
-        tuple(
-            Row(
-                (
-                    numbers.shortened(row["manoeuvre"], 60),
-                    _motion(row),
-                    *_cells(row, "attitude", MILLI),
-                    *_cells(row, "velocity", units.Unit("m/s", 1.0)),
-                )
-            )
-            for row in shown
-        ),
-        note="Each as if the manoeuvre went on so long. Only what the named effects do is in it."
-        + (f" {numbers.whole(more)} more in the table of worth." if more > 0 else ""),
-    )
+def counting(
+    joint: Sequence[Estimate], extended: Sequence[Estimate], decision: Sequence[Record]
+) -> list[Estimate]:
+    """The estimates, those of the joint fit replaced where the extended ones count.
+
+    `extended`: as the extension has them, with the sensor's stage and mount.
+    """
+    counts = {
+        (STAGES[row["sensor"]], row["mount"] or "") for row in decision if row["result"] == EXTENDED
+    }
+    better = {(one.stage, one.mount): one for one in extended}
+    return [
+        better.get((one.stage, one.mount), one)
+        if one.kind == "joint" and (one.stage, one.mount) in counts
+        else one
+        for one in joint
+    ]
 
 
-def _motion(row: Record) -> str:
-    if row["motion"] == "rest":
-        return "at rest"
-    return f"turning, {numbers.significant(DEGREES.of(row['rate']), 2)} °/s"
+def estimates(parameters: Sequence[Record], fit: Sequence[Record]) -> list[Estimate]:
+    """The results of the extension, one for each sensor and mount; its effects left out."""
+    fits = {row["method"]: row for row in fit}
+    found = []
+    for method in dict.fromkeys(row["method"] for row in parameters):
+        stage, _, mount = method.partition("@")
+        own = [row for row in parameters if row["method"] == method and "." not in row["parameter"]]
+        name = f"{EXTENDED}@{mount}" if mount else EXTENDED
+        found.append(Estimate(stage, name, tuple(own), fits.get(method)))
+    return found
 
 
-def _cells(row: Record, what: str, unit: units.Unit) -> tuple[str, str, str]:
-    each = (row[f"{what}_joint"], row[f"{what}_joint_sigma"], row[f"{what}_extended"])
-    joint, sigma, extended = (numbers.significant(unit.of(value), 2) for value in each)
-    return joint, sigma, extended
+def effects_in(estimate: Estimate, decision: Sequence[Record]) -> list[str]:
+    """The effects in the model of an estimate, in words; none of a joint fit."""
+    if estimate.kind != EXTENDED:
+        return []
+    return [
+        in_words(name)
+        for row in decision
+        if (STAGES[row["sensor"]], row["mount"] or "") == (estimate.stage, estimate.mount)
+        for name in effects_of(row)
+    ]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import pandas as pd
 
 from stages.notation import numbers
 from stages.notation.causes import how_grave, in_words, tally
-from stages.reporting.evidence import Evidence
+from stages.reporting.evidence import CRITICISM, Evidence
 from stages.reporting.outline import (
     Column,
     Finding,
@@ -50,12 +50,8 @@ def section(
     rows: Sequence[Record],
     evidence: Mapping[str, Evidence],
     segments: pd.DataFrame,
-    named: Collection[str],
 ) -> Section:
-    """Each finding with its sentence, what shows it, its consequence and the action.
-
-    `named`: places of other sections that tell more, by the identifier of the finding.
-    """
+    """Each finding with its sentence, what shows it, its consequence and the action."""
     full = rows[:MOST_IN_FULL]
     others = related(full, records(segments))
     nothing = Evidence()
@@ -69,9 +65,7 @@ def section(
                 "None: neither the recording, nor its segments, nor the model gave cause.", "good"
             )
         )
-    parts += [
-        _finding(row, evidence.get(row["id"], nothing), _links(row, others, named)) for row in full
-    ]
+    parts += [_finding(row, evidence.get(row["id"], nothing), links(row, others)) for row in full]
     if len(rows) > MOST_IN_FULL:
         rest = Counter(row["cause"] for row in rows[MOST_IN_FULL:])
         parts.append(
@@ -96,20 +90,32 @@ def section(
     )
 
 
-def _links(
-    row: Record, others: Mapping[str, Sequence[Record]], named: Collection[str]
-) -> Iterator[Link]:
+def of_model(rows: Sequence[Record], segments: pd.DataFrame) -> dict[str, list[Link]]:
+    """For each finding about the model the places that speak of the same thing; not its own."""
+    others = related(rows[:MOST_IN_FULL], records(segments))
+    return {
+        row["id"]: [
+            Link(f"Findings: {_title(other)}", f"finding/{other['id']}")
+            for other in others.get(row["id"], ())
+        ]
+        for row in rows
+        if row["id"].startswith(CRITICISM)
+    }
+
+
+def links(row: Record, others: Mapping[str, Sequence[Record]]) -> Iterator[Link]:
+    """To the findings that speak of the same thing, those of the model in their own section."""
+    if row["id"].startswith(CRITICISM):
+        yield Link(f"What the model lacks: {in_words(row['cause'])}", f"lacks/{row['id']}")
     for other in others.get(row["id"], ()):
         yield Link(_title(other), f"finding/{other['id']}")
-    if row["id"] in named:
-        yield Link(f"What the model lacks: {in_words(row['cause'])}", f"lacks/{row['id']}")
 
 
 def _title(row: Record) -> str:
     """What it is and where."""
     cause = in_words(row["cause"])
     where = row["manoeuvre"] or row["log"]
-    if not where and row["id"].startswith("criticism/"):
+    if not where and row["id"].startswith(CRITICISM):
         where = "residuals of the model"
     sensor = SENSOR.get(row["sensor"] or "", row["sensor"])
     concerned = f"{row['axis']} {sensor}" if row["axis"] and sensor else ""
@@ -146,7 +152,6 @@ def _finding(row: Record, evidence: Evidence, links: Iterable[Link]) -> Finding:
         sentence=numbers.shortened(row["sentence"], 600),
         consequence=numbers.shortened(row["consequence"], 600),
         action=numbers.shortened(row["action"], 400),
-        measure=evidence.measure,
         parts=evidence.parts,
         facts=tuple(
             (name, numbers.shortened(str(value), 120)) for name, value in facts.items() if value

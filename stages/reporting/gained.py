@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from stages.notation import numbers, units
 from stages.notation.causes import in_words
 from stages.reporting.certainty import SENSORS, listed
+from stages.reporting.extended_parameters import Shift
 from stages.reporting.rows import Record
 
 TOO_LITTLE = 9.0  # SNR² below which held-out data tell nothing of an effect: three sigma
-MILLIRADIANS = 1e-3
 FITTED, HELD_OUT = "fitted", "held-out"
 
 
@@ -80,11 +80,14 @@ def worth(effects: Sequence[str], rows: Sequence[Record]) -> str:
         own = [row for row in rows if row["motion"] == motion]
         if own:
             errors = [
-                _worst(own, "attitude", MILLIRADIANS, "mrad"),
-                _worst(own, "velocity", 1e-3, "mm/s"),
+                _worst(own, what, 1e-3, unit)
+                for what, unit in (("attitude", "mrad"), ("velocity", "mm/s"))
+                if any(row[f"{what}_joint"] for row in own)
             ]
-            joint, left = zip(*errors, strict=True)
-            told.append((f"{' and '.join(joint)} {where}", f"{' and '.join(left)} {where}"))
+            if not errors:
+                continue
+            both = (" and ".join(each) for each in zip(*errors, strict=True))
+            told.append([f"{each} {where}" for each in both])
     if not told:
         return ""
     joint, left = (", ".join(each) for each in zip(*told, strict=True))
@@ -93,7 +96,7 @@ def worth(effects: Sequence[str], rows: Sequence[Record]) -> str:
     return (
         f"After {seconds} s of free inertial navigation, the attitude known at the start, who "
         f"corrects with the joint result is off by up to {joint}{every}. The extended result "
-        f"leaves {left} uncertain."
+        f"leaves at most {left} uncertain."
     )
 
 
@@ -106,19 +109,18 @@ def _worst(rows: Sequence[Record], what: str, size: float, unit: str) -> tuple[s
     return f"{text} {unit}", f"{numbers.significant(left, 2)} {unit}"
 
 
-def moved(shifted: Sequence[tuple[Record, Record | None, float, str]]) -> str:
-    """Which parameter an effect moves most; each with rows of both fits, sigmas and its name."""
-    if not shifted:
+def moved(shifts: Sequence[Shift]) -> str:
+    """Which parameter of a sensor moves most with the effects in the model; or nothing."""
+    if not shifts:
         return ""
-    row, before, sigmas, name = max(shifted, key=lambda each: abs(each[2]))
-    unit = units.quantity(row["parameter"], row["unit"]).laboratory
-    values = []
-    for each in (before, row):
-        assert each is not None  # else it has not moved
-        sigma = unit.of(each["sigma"])
-        pair = numbers.with_sigma(unit.of(each["value"]), sigma, numbers.decimals_of(sigma))
-        values.append(" ± ".join(pair))
+    most = max(shifts, key=lambda one: abs(one.sigmas))
+    unit = units.quantity(most.joint["parameter"], most.joint["unit"]).laboratory
+    before, after = (
+        " ± ".join(numbers.with_sigma(unit.of(row["value"]), sigma, numbers.decimals_of(sigma)))
+        for row in (most.joint, most.extended)
+        for sigma in [unit.of(row["sigma"])]
+    )
     return (
-        f"{name} moves most: from {values[0]} to {values[1]} {unit.name}, by "
-        f"{numbers.fixed(sigmas, 1)} σ of the joint fit."
+        f"{most.name} moves most of its parameters: from {before} to {after} {unit.name}, by "
+        f"{numbers.fixed(most.sigmas, 1)} σ of the joint fit."
     )

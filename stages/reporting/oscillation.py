@@ -52,7 +52,7 @@ def views(lines: Sequence[Record], manoeuvres: Sequence[Record]) -> list[View]:
 
     Between these the gyro of the other axis, in the turn about it: whether it rings by itself.
     """
-    about = {row["manoeuvre"]: axis for row in manoeuvres if (axis := _axis(row))}
+    about = turns_about(manoeuvres)
     own = [View(row, about[row["manoeuvre"]]) for row in lines if row["manoeuvre"] in about]
     heard = [view for view in own if view.line["p_value"] < LOUD]
     if not heard:
@@ -69,6 +69,11 @@ def views(lines: Sequence[Record], manoeuvres: Sequence[Record]) -> list[View]:
     return chosen
 
 
+def turns_about(manoeuvres: Sequence[Record]) -> dict[str, str]:
+    """The turns, each with the axis of the case that is nearest to its own."""
+    return {row["manoeuvre"]: axis for row in manoeuvres if (axis := _axis(row))}
+
+
 def _axis(row: Record) -> str:
     parts = [row[f"about_{axis}"] for axis in AXES]
     if row["do"] != "turn" or None in parts:
@@ -76,11 +81,21 @@ def _axis(row: Record) -> str:
     return AXES[int(np.argmax(np.abs(parts)))]
 
 
+def of_effect(lines: pd.DataFrame, effect: str) -> list[Record]:
+    """Of each gyro and turn the line that is taken for an effect; else one taken for none."""
+    rows = [row for row in records(lines) if row["effect"] in (None, effect)]
+    rows.sort(key=lambda row: row["effect"] is None)
+    best: dict[tuple[str, str], Record] = {}
+    for row in rows:
+        best.setdefault((row["manoeuvre"], row["axis"]), row)
+    return [best[place] for place in dict.fromkeys((r["manoeuvre"], r["axis"]) for r in rows)]
+
+
 def figure(
-    simulated: Stream, lines: pd.DataFrame, manoeuvres: pd.DataFrame, key: str
+    simulated: Stream, lines: pd.DataFrame, manoeuvres: pd.DataFrame, effect: str, key: str
 ) -> Figure | None:
     """A second of the steady part of each turn, the samples as they were read; or none."""
-    shown = views(records(lines), records(manoeuvres))
+    shown = views(of_effect(lines, effect), records(manoeuvres))
     samples = _samples(simulated, {view.line["manoeuvre"] for view in shown})
     there = [view for view in shown if view.line["manoeuvre"] in samples]
     if not there:
@@ -126,7 +141,9 @@ def _samples(simulated: Stream, turns: set[str]) -> dict[str, dict[str, Array]]:
 
 def _draw(shown: Sequence[tuple[View, dict[str, Array]]], key: str) -> str:
     with style():
-        drawn, panels = side_by_side([1.0] * len(shown), 1.0, Margins(top=0.34, across=0.4))
+        drawn, panels = side_by_side(
+            [1.0] * len(shown), 1.0, Margins(top=0.34, left=0.55, across=0.4)
+        )
         for panel, (view, samples) in zip(panels, shown, strict=True):
             _curve(panel, view, samples)
         largest = max(max(map(abs, panel.get_ylim())) for panel in panels)
@@ -163,10 +180,10 @@ def _curve(panel: Axes, view: View, samples: dict[str, Array]) -> None:
 
 
 def harm(
-    lines: pd.DataFrame, manoeuvres: pd.DataFrame, gain: pd.DataFrame, joint: Sequence[Record]
+    lines: pd.DataFrame, manoeuvres: pd.DataFrame, effect: str, gyro: Sequence[Record]
 ) -> Iterator[str]:
-    """The angle of the oscillation against that of the turn, and what is left without it."""
-    shown = views(records(lines), records(manoeuvres))
+    """The angle of the oscillation against that of the turn; `gyro`: the parameters that count."""
+    shown = views(of_effect(lines, effect), records(manoeuvres))
     if not shown:
         return
     line, axis = shown[0].line, shown[0].gyro
@@ -183,21 +200,10 @@ def harm(
             f": {share} ppm of {numbers.fixed(degrees(whole), 0)}°, were the turn cut off in "
             "mid-swing"
         )
-        sigma = next((row["sigma"] for row in joint if row["parameter"] == f"scale_{axis}"), None)
+        sigma = next((row["sigma"] for row in gyro if row["parameter"] == f"scale_{axis}"), None)
         if sigma:
             said += (
                 f"; the σ of the scale factor of the {axis} gyro is "
                 f"{numbers.significant(PPM.of(sigma), 2)} ppm"
             )
     yield said + "."
-    for row in records(gain):
-        if row["effects"] == "oscillation" and row["scope"] == "held-out":
-            before, after = (numbers.significant(row[name], 3) for name in RMS)
-            yield (
-                f"Taken out, it lets the residuals of the {row['sensor'].partition(' ')[2]} gyro "
-                f"fall from {before} {row['unit']} to {after} {row['unit']} rms, on turns that "
-                "were held out."
-            )
-
-
-RMS = ("rms_before", "rms_after")

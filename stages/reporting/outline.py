@@ -162,14 +162,41 @@ class Finding:
     consequence: str
     action: str
     facts: tuple[tuple[str, str], ...]
-    measure: tuple[str, ...] = ()  # what it costs, in numbers
+    parts: tuple[Figure | Table, ...] = ()
+    links: tuple[Link, ...] = ()
+    tone: Tone = ""
+
+
+Answers = tuple[tuple[str, str], ...]  # each to a question of one or two words
+
+
+@dataclass(frozen=True)
+class Cause:
+    """What the model lacks: a sentence, the answers to what a reader asks, and what shows it."""
+
+    kind: ClassVar[str] = "cause"
+    anchor: str
+    title: str
+    grade: str  # how sure it is, in words
+    sentence: str
+    answers: Answers
     parts: tuple[Figure | Table, ...] = ()
     links: tuple[Link, ...] = ()
     tone: Tone = ""
 
 
 Part = (
-    Table | Figure | Paragraph | Heading | Sentences | Facts | Equation | Matrices | Level | Finding
+    Table
+    | Figure
+    | Paragraph
+    | Heading
+    | Sentences
+    | Facts
+    | Equation
+    | Matrices
+    | Level
+    | Finding
+    | Cause
 )
 
 

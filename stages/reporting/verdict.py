@@ -10,9 +10,13 @@ from math import degrees
 
 import pandas as pd
 
+from stages.contracts.counting import EXTENDED
 from stages.contracts.tables import AXES
 from stages.notation import numbers, units
 from stages.notation.causes import in_words
+from stages.reporting.certainty import in_short, listed
+from stages.reporting.evidence import CRITICISM
+from stages.reporting.extended import effects_in
 from stages.reporting.outline import (
     Column,
     Facts,
@@ -37,6 +41,7 @@ WANTED = frozenset(
 SIMULATED = (
     "SIMULATED: recorded by the simulated laboratory. No instrument of this serial was calibrated."
 )
+WAYS = {FREE: "unknown attitudes", EXTENDED: "with effects"}
 KINDS = {"bias": "bias", "scale": "scale error", "cross": "cross-axis term"}
 TONE: dict[str, Tone] = {
     "calibrated": "good",
@@ -63,11 +68,11 @@ def verdict(
     manoeuvres: pd.DataFrame,
     performed: pd.DataFrame,
     findings: Sequence[Record],
-    lacking: Sequence[str] = (),
+    decision: Sequence[Record] = (),
 ) -> Verdict:
-    """The level and its reasons; `lacking` are the effects that the data ask for.
+    """The level and its reasons; `found`: the results, those that count in place of the joint fit.
 
-    Calibrated: the joint fits determine all twelve parameters of both sensors and
+    Calibrated: the results that count determine all twelve parameters of both sensors and
     describe their data (p ≥ 0.01), and no finding spoils a result. Not calibrated: they
     determine none. In part: everything between.
     """
@@ -80,13 +85,13 @@ def verdict(
         spoiled = any(finding["severity"] == 3 for finding in findings)
         good = whole and not misfit and not spoiled
         level = "calibrated" if good else "calibrated in part"
-    reasons = [_sentence(estimate) for estimate in joint]
+    reasons = [_sentence(estimate, effects_in(estimate, decision)) for estimate in joint]
     for estimate in joint:
         words, _ = fit_in_words(estimate)
         reasons += [f"{estimate.sensor}: {words}."] if words else []
+    lacking = [*in_short([row for row in findings if row["id"].startswith(CRITICISM)])]
     if lacking:
-        names = ", ".join(lacking)
-        reasons.append(f"The data ask for {names}: “What the model lacks” says how much.")
+        reasons.append(f"{' '.join(lacking)} “What the model lacks” says how much, and what to do.")
     reasons += _left_out(joint)
     reasons.append(_performed(manoeuvres, performed))
     reasons.append(_findings(findings))
@@ -94,11 +99,12 @@ def verdict(
 
 
 def joint_fits(found: Sequence[Estimate]) -> list[Estimate]:
-    """The joint fits of both sensors, one per mount; an empty one where there is none.
+    """The results that count of both sensors, one per mount; an empty one where there is none.
 
-    Where no attitude is known, the fit to rests of unknown attitude stands in its place.
+    They are of the joint fits, or of those with effects in the model. Where no attitude is known,
+    the fit to rests of unknown attitude stands in its place.
     """
-    joint = [estimate for estimate in found if estimate.kind == JOINT]
+    joint = [estimate for estimate in found if estimate.kind in (JOINT, EXTENDED)]
     free = {(e.stage, e.mount): e for e in found if e.kind == FREE}
     joint = [e if e.determined else free.get((e.stage, e.mount), e) for e in joint]
     missing = [stage for stage in SENSOR if all(estimate.stage != stage for estimate in joint)]
@@ -110,8 +116,8 @@ def _determined(estimate: Estimate) -> dict[str, Record]:
     return {row["parameter"]: row for row in estimate.determined}
 
 
-def _sentence(estimate: Estimate) -> str:
-    """What is determined of a sensor, and its worst sigma by kind."""
+def _sentence(estimate: Estimate, effects: Sequence[str]) -> str:
+    """What is determined of a sensor, with effects in the model, and its worst sigma by kind."""
     have = _determined(estimate)
     count = len(WANTED & have.keys())
     if not count:
@@ -119,6 +125,7 @@ def _sentence(estimate: Estimate) -> str:
     whole = "all 12 parameters are determined"
     amount = whole if count == len(WANTED) else f"{count} of 12 parameters are determined"
     amount += ", by rests of unknown attitude" * (estimate.kind == FREE)
+    amount += f", with {listed(effects)} in the model" if effects else ""
     worst = "; ".join(f"{KINDS[kind]} {text}" for kind, text in _worst(have).items())
     return f"{estimate.sensor}: {amount}." + (f" Largest σ: {worst}." if worst else "")
 
@@ -231,14 +238,15 @@ def section(
         Level(given.level, TONE[given.level], MEANING[given.level]),
         Sentences(given.reasons),
         Table(
-            "The joint fits at a glance: parameters determined, and the largest σ of each kind.",
+            "The results that count at a glance: parameters determined, largest σ of each kind.",
             (
                 Column("Sensor"),
+                Column("Fit"),
                 Column("Determined", "number"),
                 Column("Bias σ", "number"),
                 Column("Scale σ", "number"),
                 Column("Cross-axis σ", "number"),
-                Column("Fit, p", "number"),
+                Column("p of the fit", "number"),
             ),
             tuple(_glance(estimate) for estimate in joint_fits(found)),
         ),
@@ -248,9 +256,9 @@ def section(
         "verdict",
         "Verdict",
         "Whether this calibration can be used, and why.",
-        "Calibrated: the joint fits determine all 24 parameters and describe their data "
-        "(p ≥ 0.01). In part: some are not determined, or a model does not describe its data. "
-        "Not calibrated: none is determined.",
+        "Calibrated: the fits that count, joint or with effects in the model, determine all 24 "
+        "parameters and describe their data (p ≥ 0.01). In part: some are not determined, or a "
+        "model does not describe its data. Not calibrated: none is determined.",
         parts,
     )
 
@@ -262,6 +270,7 @@ def _glance(estimate: Estimate) -> Row:
     return Row(
         (
             estimate.sensor,
+            WAYS.get(estimate.kind, "joint"),
             f"{len(WANTED & have.keys())} of 12",
             *(worst.get(kind, "—") for kind in KINDS),
             numbers.probability(fit["p_value"]) if fit else "—",

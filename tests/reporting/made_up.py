@@ -12,9 +12,10 @@ import numpy.typing as npt
 import pandas as pd
 import pyarrow as pa
 
-from stages.contracts import extension_tables, tables
+from stages.contracts import criticism_tables, extension_tables, tables
 from stages.report import Documents, report
 from stages.studies import WRITES as STUDIES
+from tests.reporting import made_up_causes
 from tests.reporting.made_up_studies import studies
 
 GRAVITY = 9.7936174
@@ -91,6 +92,7 @@ def campaign(logs: Collection[str] | None = None) -> dict[str, Any]:
         made[f"{stage}_averaging"] = rows_as(tables.AVERAGING, _averaging(parameters, generator))
         made[f"{stage}_wanted"] = rows_as(tables.WANTED, _wanted(stage, other))
     made |= _of_the_model(manoeuvres, made["gyroscope_parameters"], generator)
+    made |= _criticised()
     for name, rows in studies(np.random.default_rng(1)).items():
         made[name] = rows_as(STUDIES[name], rows)
     made["checks"] = rows_as(tables.CHECKS, _checks(manoeuvres))
@@ -603,7 +605,7 @@ def _of_the_model(
         "worth": rows_as(extension_tables.WORTH, _worth()),
         "decision": rows_as(extension_tables.DECISION, _decision()),
         "extended_parameters": rows_as(tables.PARAMETERS, _extended(parameters)),
-        "criticism_findings": rows_as(tables.CAUSES, _criticism_findings()),
+        "extended_fit": rows_as(tables.FIT, _extended_fit()),
         "accelerometer_findings": tables.FINDINGS.empty(),
         "compensation_findings": tables.FINDINGS.empty(),
     }
@@ -756,9 +758,13 @@ def _gain() -> Rows:
         | {"rms_before": 1.969, "rms_after": 0.9703},
         g
         | {"scope": "held-out", "before": 12897.4, "after": 827.6, "drop": 12069.8}
+        | {"snr_squared": 12191.7, "folds": 12, "counted": 12}
         | {"rms_before": 2.652, "rms_after": 0.9766},
         channel | {"scope": "held-out", "rms_before": 1.1, "rms_after": 0.98},
-        line | after | {"scope": "fitted", "rms_before": 0.006615, "rms_after": 3.5e-5},
+        *(
+            line | after | {"scope": scope, "rms_before": 0.006615, "rms_after": 3.5e-5}
+            for scope in ("fitted", "held-out")
+        ),
     ]
 
 
@@ -801,6 +807,20 @@ def _worth() -> Rows:
     ]
 
 
+def _criticised() -> dict[str, Any]:
+    return {
+        "criticism_findings": rows_as(tables.CAUSES, made_up_causes.findings()),
+        "blind_spots": rows_as(tables.BLIND_SPOTS, made_up_causes.blind_spots()),
+        "structures": rows_as(criticism_tables.STRUCTURES, made_up_causes.structures()),
+        "structure_points": criticism_tables.STRUCTURE_POINTS.empty(),
+    }
+
+
+def _extended_fit() -> Rows:
+    row = _fit("gyroscope", "turns")[0]
+    return [row | {"method": "gyroscope", "chi_squared": 590.0, "p_value": 0.54}]
+
+
 def _extended(parameters: pd.DataFrame) -> Rows:
     """The gyro's twelve, the first bias moved by four sigma."""
     rows: Rows = []
@@ -811,26 +831,6 @@ def _extended(parameters: pd.DataFrame) -> Rows:
             own = {"id": identifier, "stage": "extension", "method": "gyroscope"}
             rows.append({str(k): v for k, v in row.items()} | own | {"value": row["value"] + moved})
     return rows
-
-
-def _criticism_findings() -> Rows:
-    return [
-        {
-            "id": "criticism/gyro_g_sensitivity",
-            "cause": "gyro_g_sensitivity",
-            "sensor": "gyro",
-            "count": 1,
-            "unit": "1",
-            "p_value": 0.0,
-            "severity": 2,
-            "consequence": "The model without it is not the whole truth.",
-            "action": "It is added to the model by the extension.",
-            "sentence": "The data ask for gyro g sensitivity.",
-            "verdict": "found",
-            "members": "gyro_g_sensitivity",
-            "snr": 77.0,
-        }
-    ]
 
 
 # ---- comparison, compensation, history

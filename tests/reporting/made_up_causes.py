@@ -1,0 +1,103 @@
+"""What criticism says of the made-up campaign, row by row: causes, structures, blind spots."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+Rows = list[dict[str, Any]]
+KINDS = ("time", "angle", "rate", "attitude", "temperature", "change")
+NAMED = {"count": 1, "unit": "sigma", "severity": 2, "p_value": 0.0, "sensor": "gyro"}
+DEGREE_PER_HOUR = np.pi / 180 / 3600
+
+
+def findings() -> Rows:
+    """An effect that is found, and an oscillation."""
+    return [
+        NAMED
+        | {
+            "id": "criticism/gyro_g_sensitivity",
+            "cause": "gyro_g_sensitivity",
+            "unit": "1",
+            "consequence": "The model without it is not the whole truth.",
+            "action": "It is added to the model by the extension.",
+            "sentence": "The data ask for gyro g sensitivity.",
+            "verdict": "found",
+            "members": "gyro_g_sensitivity",
+            "snr": 77.0,
+        },
+        NAMED
+        | {
+            "id": "criticism/oscillation",
+            "cause": "oscillation",
+            "consequence": "It does no harm.",
+            "action": "It is added to the model by the extension.",
+            "sentence": "The case oscillates about x while the table turns.",
+            "verdict": "found",
+            "members": "oscillation",
+            "snr": 60.0,
+        },
+    ]
+
+
+def blind_spots() -> Rows:
+    """An effect that is seen on three axes, one that is not, and one that was named."""
+
+    def spot(effect: str, parameter: str, visible: float | None, unit: str) -> dict[str, Any]:
+        told = "seen from 1.6 mm on." if visible else "not seen, for no manoeuvre excites it."
+        return {
+            "effect": effect,
+            "parameter": parameter,
+            "visible": visible,
+            "best": visible,
+            "worst": visible,
+            "unit": unit,
+            "reason": "visible" if visible else "not_excited",
+            "sentence": f"{effect}, {parameter}: {told}",
+        }
+
+    sizes = {"x": 1.1e-3, "y": 1.65e-3, "z": 0.9e-3}
+    return [
+        spot("gyro_g_sensitivity", "g_xx", 6.9e-8, "(rad/s)/(m/s²)"),
+        *(spot("lever_arm", f"r_{axis}", size, "m") for axis, size in sizes.items()),
+        spot("table_tilt", "north", None, "rad"),
+        spot("table_tilt", "east", None, "rad"),
+    ]
+
+
+def structures(*firing: str) -> Rows:
+    """The six tests, silent but for the kinds in `firing`; no temperature was recorded."""
+    return [
+        {
+            "method": "joint",
+            "kind": kind,
+            "channel": "" if kind == "temperature" else "gyro x",
+            "place": 1200.0 if kind == "change" else None,
+            "statistic": 75.0 if kind in firing else 9.0,
+            "degrees": 0 if kind == "temperature" else 6,
+            "p_value": 1e-9 if kind in firing else 0.09 + 0.1 * KINDS.index(kind),
+            "fires": kind in firing,
+        }
+        for kind in KINDS
+    ]
+
+
+def points(*kinds: str) -> Rows:
+    """What is left of the x gyro: 2 °/h from 20 minutes, or beyond half a turn."""
+    units = {"time": ("s", 2400.0), "change": ("s", 2400.0), "angle": ("rad", 2 * np.pi)}
+    return [
+        {
+            "method": "joint",
+            "kind": kind,
+            "channel": "gyro x",
+            "x": share * units[kind][1],
+            "x_unit": units[kind][0],
+            "left": 2 * DEGREE_PER_HOUR * (share > 0.5),
+            "sigma": 0.3 * DEGREE_PER_HOUR,
+            "structure": 1.9 * DEGREE_PER_HOUR * (share > 0.5),
+            "unit": "rad/s",
+        }
+        for kind in kinds
+        for share in np.linspace(0, 1, 40).tolist()
+    ]
