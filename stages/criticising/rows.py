@@ -101,8 +101,8 @@ class Rows:
                 "size": cause.snr,
                 "p_value": cause.p_value,
                 "sentence": told,
-                "consequence": "The model without it is not the whole truth; see what the"
-                " extension gains."
+                "consequence": "Without it bias, scale factors and cross terms take up a part of it"
+                " and do not hold in other motions; the extension tells how much that is."
                 if clear
                 else "The joint estimate holds it as a random walk or as a scatter.",
                 "action": "It is added to the model by the extension." + words.of_split(split)

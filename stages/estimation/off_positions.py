@@ -42,10 +42,12 @@ def findings(off: OffPosition, sigma: Array, suffix: str) -> Iterator[Finding]:
         size=off.tilt,
         unit="rad",
         p_value=off.p_value,
-        severity=3,
+        severity=2,
         sentence=f"The position {names} stands off by {size} ± {fixed(degrees(off.sigma), 4)}°,"
         f" mostly about {AXES[axis]}, against all others."
-        + (" The readings do not tell which of these it is." if several else ""),
+        + (" The readings do not tell which of these it is." if several else "")
+        + " Or the accelerometers have an error that the twelve parameters lack: criticism weighs"
+        " the two.",
         consequence=(
             f"With it left free, {'; '.join(spoilt)}. The joint estimate holds it as a scatter"
             " between positions."

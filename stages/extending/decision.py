@@ -66,6 +66,11 @@ def _against(
     name = SENSORS[sensor]
     if not any(row["value"] is not None for row in joint):
         return f"There is no joint result of the {name}."
+    if alarms and not effects:
+        return (
+            f"The joint result of the {name} counts, and its sigmas with a doubt: something is not"
+            f" understood ({_listed(alarms)})."
+        )
     if solution is None or found is None or not effects:
         return f"The joint result of the {name} counts: they show no effect that was named."
     said = f"The joint result of the {name} counts, though {_listed(effects)} was named: "
