@@ -25,8 +25,8 @@ def of_oscillation(one: Bound, turns: Sequence[SteadyTurn]) -> str:
     heard = one.oscillating
     arc = degrees(heard.amplitude / (2 * pi * heard.frequency)) * 3600
     about = "the table's axis" if one.axis == TABLE else one.axis
-    hertz = f"{heard.frequency:.3f} ± {significant(heard.frequency_sigma, 1)} Hz"
-    size = f"{significant(heard.amplitude)} ± {significant(heard.amplitude_sigma, 1)} rad/s"
+    hertz = f"{_told(heard.frequency, heard.frequency_sigma)} Hz"
+    size = f"{_told(heard.amplitude, heard.amplitude_sigma)} rad/s"
     told = (
         f"The case oscillates about {about} while the table turns: {hertz}, {size} ({arc:.1f}″), in"
         f" {', '.join(heard.manoeuvres)}."
@@ -35,6 +35,10 @@ def of_oscillation(one: Bound, turns: Sequence[SteadyTurn]) -> str:
         told += f" It is bound to the table's angle: {_order(one.ripple)} in a turn."
     told += _through(one.through) + _instead(one, turns)
     return f"{told} Over a whole turn it adds no angle."
+
+
+def _told(value: float, sigma: float) -> str:
+    return " ± ".join(with_sigma(value, sigma, decimals_of(sigma, 1)))
 
 
 def of_ripple(one: Bound, ripple: Ripple, turns: Sequence[SteadyTurn]) -> str:
