@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from stages.contracts import criticism_tables, tables
+from stages.contracts import tables
 from stages.contracts.parquet import Stream
 from stages.contracts.records import (
     clocks_of,
@@ -43,9 +43,9 @@ WRITES = {
     "effects": tables.EFFECTS,
     "blind_spots": tables.BLIND_SPOTS,
     "lines": tables.LINES,
-    "walks": criticism_tables.WALKS,
-    "structures": criticism_tables.STRUCTURES,
-    "structure_points": criticism_tables.STRUCTURE_POINTS,
+    "walks": tables.WALKS,
+    "structures": tables.STRUCTURES,
+    "structure_points": tables.STRUCTURE_POINTS,
     "findings": tables.CAUSES,
 }
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import pandas as pd
 
-from stages.contracts import extension_tables, tables
+from stages.contracts import tables
 from stages.contracts.code import code_of, hash_of, hash_of_file
 from stages.contracts.counting import extended_methods
 from stages.contracts.errors import Refusal
@@ -57,7 +57,7 @@ READS: Mapping[str, Table] = {
     "extension_parameters": tables.PARAMETERS,
     "extension_covariance": tables.COVARIANCE,
     "extension_fit": tables.FIT,
-    "decision": extension_tables.DECISION,
+    "decision": tables.DECISION,
 }
 STREAMS = ("samples",)  # too long for memory
 

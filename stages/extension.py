@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from stages.contracts import criticism_tables, extension_tables, tables
+from stages.contracts import tables
 from stages.contracts.parquet import Stream
 from stages.contracts.records import (
     Manoeuvre,
@@ -43,10 +43,10 @@ WRITES = {
     "parameters": tables.PARAMETERS,
     "covariance": tables.COVARIANCE,
     "fit": tables.FIT,
-    "gain": extension_tables.GAIN,
-    "moved": extension_tables.MOVED,
-    "worth": extension_tables.WORTH,
-    "decision": extension_tables.DECISION,
+    "gain": tables.GAIN,
+    "moved": tables.MOVED,
+    "worth": tables.WORTH,
+    "decision": tables.DECISION,
     "result": tables.PARAMETERS,
 }
 
@@ -170,7 +170,7 @@ STAGE = Stage(
         "simulated": tables.SIMULATED,
         "criticism_findings": tables.CAUSES,
         "effects": tables.EFFECTS,
-        "walks": criticism_tables.WALKS,
+        "walks": tables.WALKS,
         "blocks": tables.BLOCKS,
         "manoeuvres": tables.MANOEUVRES,
         "performed": tables.PERFORMED,

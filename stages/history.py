@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 
 from stages.archiving.archive import Archive, Entry
-from stages.contracts import extension_tables, tables
+from stages.contracts import tables
 from stages.contracts.code import hash_of_file
 from stages.contracts.counting import counting, extended_methods
 from stages.contracts.records import Row, rows_of
@@ -110,7 +110,7 @@ STAGE = Stage(
         "gyroscope_covariance": tables.COVARIANCE,
         "extension_parameters": tables.PARAMETERS,
         "extension_covariance": tables.COVARIANCE,
-        "decision": extension_tables.DECISION,
+        "decision": tables.DECISION,
     },
     files=("archive",),
     writes={"archived": tables.ARCHIVED, "earlier": tables.EARLIER},

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
-from stages.contracts import criticism_tables, extension_tables, tables
+from stages.contracts import tables
 from stages.contracts.code import code_of, hash_of
 from stages.contracts.counting import counting, extended_methods
 from stages.contracts.errors import Refusal
@@ -106,14 +106,14 @@ READS: Mapping[str, Table] = {
     "effects": tables.EFFECTS,
     "lines": tables.LINES,
     "blind_spots": tables.BLIND_SPOTS,
-    "structures": criticism_tables.STRUCTURES,
-    "structure_points": criticism_tables.STRUCTURE_POINTS,
+    "structures": tables.STRUCTURES,
+    "structure_points": tables.STRUCTURE_POINTS,
     "criticism_findings": tables.CAUSES,
     "extended_parameters": tables.PARAMETERS,
     "extended_fit": tables.FIT,
-    "gain": extension_tables.GAIN,
-    "worth": extension_tables.WORTH,
-    "decision": extension_tables.DECISION,
+    "gain": tables.GAIN,
+    "worth": tables.WORTH,
+    "decision": tables.DECISION,
     "differences": tables.DIFFERENCES,
     "checks": tables.CHECKS,
     "compensated_traces": tables.TRACES,

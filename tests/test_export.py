@@ -15,7 +15,7 @@ import yaml
 
 from stages import export as stage
 from stages.compensating.correction import truth_of
-from stages.contracts import extension_tables, tables
+from stages.contracts import tables
 from stages.contracts.code import hash_of_file
 from stages.contracts.parquet import Writer
 from stages.estimation.solution import triad_of
@@ -47,7 +47,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> chain.Results:
 def write_nothing_extended(folder: Path) -> None:
     """The tables of an extension that had no effect to add."""
     writes = {name: EXTENSION.writes[name] for name in ("parameters", "covariance", "fit")}
-    writes["decision"] = extension_tables.DECISION
+    writes["decision"] = tables.DECISION
     made_by = {"stage": "extension", "settings": {}, "code": "c0", "inputs": {}}
     with Writer(folder / "extension", writes, made_by) as writer:
         for name, table in writes.items():
@@ -255,10 +255,7 @@ def extended(results: chain.Results) -> dict[str, pd.DataFrame]:
     )
     ids = list(rows["id"])
     spread = np.diag(rows["sigma"].to_numpy() ** 2)
-    decided = {
-        column.name: [None if column.nullable else ""]
-        for column in extension_tables.DECISION.columns
-    }
+    decided = {column.name: [None if column.nullable else ""] for column in tables.DECISION.columns}
     return {
         "extension_parameters": pd.concat([rows, effect]).assign(stage="extension"),
         "extension_covariance": pd.DataFrame(

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 from stages.archiving.archive import Archive
 from stages.archiving.names import file_name
-from stages.contracts import extension_tables, tables
+from stages.contracts import tables
 from stages.contracts.errors import Refusal
 from stages.contracts.parquet import Table, Writer, provenance
 from stages.history import STAGE
@@ -122,7 +122,7 @@ def run(
     nothing = dict.fromkeys(("drop", "snr_squared", "folds", "counted"))
     decision = decided | nothing | {"alarms": "", "sentence": "It counts."}
     some = [decision] if rows else [decision | {"result": "joint"}]
-    write(derived / "extension", "decision", extension_tables.DECISION, some, by_extension)
+    write(derived / "extension", "decision", tables.DECISION, some, by_extension)
     paths = {
         "campaign": derived / "plan/campaign.parquet",
         "inputs": derived / "plan/inputs.parquet",

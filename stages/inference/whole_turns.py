@@ -144,7 +144,8 @@ def around_of(estimate: Estimate, earth: Earth) -> Around:
 def _first_bias(stills: Sequence[Still]) -> Array:
     if not stills:
         return np.zeros(3)
-    return np.asarray(np.nan_to_num(np.nanmedian([s.mean for s in stills], axis=0)))
+    known = [column[np.isfinite(column)] for column in np.array([s.mean for s in stills]).T]
+    return np.array([np.median(readings) if len(readings) else 0.0 for readings in known])
 
 
 @dataclass(frozen=True)

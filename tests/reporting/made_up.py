@@ -12,7 +12,7 @@ import numpy.typing as npt
 import pandas as pd
 import pyarrow as pa
 
-from stages.contracts import criticism_tables, extension_tables, tables
+from stages.contracts import tables
 from stages.report import Documents, report
 from stages.studies import WRITES as STUDIES
 from tests.reporting import made_up_causes
@@ -601,9 +601,9 @@ def _of_the_model(
         "scores": rows_as(tables.SCORES, _scores()),
         "effects": rows_as(tables.EFFECTS, _effects()),
         "lines": rows_as(tables.LINES, _lines(turns)),
-        "gain": rows_as(extension_tables.GAIN, _gain()),
-        "worth": rows_as(extension_tables.WORTH, _worth()),
-        "decision": rows_as(extension_tables.DECISION, _decision()),
+        "gain": rows_as(tables.GAIN, _gain()),
+        "worth": rows_as(tables.WORTH, _worth()),
+        "decision": rows_as(tables.DECISION, _decision()),
         "extended_parameters": rows_as(tables.PARAMETERS, _extended(parameters)),
         "extended_fit": rows_as(tables.FIT, _extended_fit()),
         "accelerometer_findings": tables.FINDINGS.empty(),
@@ -811,8 +811,8 @@ def _criticised() -> dict[str, Any]:
     return {
         "criticism_findings": rows_as(tables.CAUSES, made_up_causes.findings()),
         "blind_spots": rows_as(tables.BLIND_SPOTS, made_up_causes.blind_spots()),
-        "structures": rows_as(criticism_tables.STRUCTURES, made_up_causes.structures()),
-        "structure_points": criticism_tables.STRUCTURE_POINTS.empty(),
+        "structures": rows_as(tables.STRUCTURES, made_up_causes.structures()),
+        "structure_points": tables.STRUCTURE_POINTS.empty(),
     }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from stages.contracts import criticism_tables, tables
+from stages.contracts import tables
 from tests.reporting import made_up, made_up_causes
 
 
@@ -89,8 +89,8 @@ def of_no_name(*firing: str) -> dict[str, Any]:
     )
     tests, points = made_up_causes.structures(*firing), made_up_causes.points(*firing)
     return made | {
-        "structures": made_up.rows_as(criticism_tables.STRUCTURES, tests),
-        "structure_points": made_up.rows_as(criticism_tables.STRUCTURE_POINTS, points),
+        "structures": made_up.rows_as(tables.STRUCTURES, tests),
+        "structure_points": made_up.rows_as(tables.STRUCTURE_POINTS, points),
     }
 
 

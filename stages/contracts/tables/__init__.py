@@ -1,0 +1,118 @@
+"""The tables that pass between stages, each column with its unit, frame and meaning."""
+
+from stages.contracts.tables.archive import ARCHIVED, CALIBRATION, EARLIER
+from stages.contracts.tables.causes import (
+    BLIND_SPOTS,
+    CAUSES,
+    EFFECTS,
+    LINES,
+    SCORES,
+    STRUCTURE_POINTS,
+    STRUCTURES,
+    WALKS,
+)
+from stages.contracts.tables.compensated import CHECKS, COMPENSATED
+from stages.contracts.tables.differences import DIFFERENCES
+from stages.contracts.tables.estimates import (
+    AVERAGING,
+    COVARIANCE,
+    FIT,
+    NOISE,
+    PARAMETERS,
+    POSITIONS,
+    WANTED,
+)
+from stages.contracts.tables.extension import DECISION, GAIN, MOVED, WORTH
+from stages.contracts.tables.plan import (
+    CAMPAIGN,
+    COUNT_SIZES,
+    INPUTS,
+    KNOWN,
+    LOGS,
+    MANOEUVRES,
+    PUBLISHED,
+    RANGES,
+    SENSORS,
+)
+from stages.contracts.tables.recording import (
+    BLOCKS,
+    CLOSE_UPS,
+    FINDINGS,
+    GAPS,
+    MASKS,
+    PERFORMED,
+    SEGMENTS,
+    TRACES,
+)
+from stages.contracts.tables.samples import ACCOUNTS, CLOCKS, REFUSED, SAMPLES
+from stages.contracts.tables.shared import AXES, BODY, CHANNELS, UNITS
+from stages.contracts.tables.simulated import FIDELITY, SIMULATED
+from stages.contracts.tables.studies import (
+    EPOCHS,
+    MOTIONS,
+    NOT_STUDIED,
+    SPREADS,
+    TIME_ANGLE,
+    WINDOWS,
+)
+
+__all__ = [
+    "ACCOUNTS",
+    "ARCHIVED",
+    "AVERAGING",
+    "AXES",
+    "BLIND_SPOTS",
+    "BLOCKS",
+    "BODY",
+    "CALIBRATION",
+    "CAMPAIGN",
+    "CAUSES",
+    "CHANNELS",
+    "CHECKS",
+    "CLOCKS",
+    "CLOSE_UPS",
+    "COMPENSATED",
+    "COUNT_SIZES",
+    "COVARIANCE",
+    "DECISION",
+    "DIFFERENCES",
+    "EARLIER",
+    "EFFECTS",
+    "EPOCHS",
+    "FIDELITY",
+    "FINDINGS",
+    "FIT",
+    "GAIN",
+    "GAPS",
+    "INPUTS",
+    "KNOWN",
+    "LINES",
+    "LOGS",
+    "MANOEUVRES",
+    "MASKS",
+    "MOTIONS",
+    "MOVED",
+    "NOISE",
+    "NOT_STUDIED",
+    "PARAMETERS",
+    "PERFORMED",
+    "POSITIONS",
+    "PUBLISHED",
+    "RANGES",
+    "REFUSED",
+    "SAMPLES",
+    "SCORES",
+    "SEGMENTS",
+    "SENSORS",
+    "SIMULATED",
+    "SPREADS",
+    "STRUCTURES",
+    "STRUCTURE_POINTS",
+    "TIME_ANGLE",
+    "TRACES",
+    "UNITS",
+    "WALKS",
+    "WANTED",
+    "WINDOWS",
+    "WORTH",
+]

@@ -1,0 +1,42 @@
+"""What many tables share: types, axes, channels, and columns that come together."""
+
+import pyarrow as pa
+
+from stages.contracts.parquet import Column
+
+AXES = ("x", "y", "z")
+CHANNELS = tuple(f"{sensor}_{axis}" for sensor in ("accel", "gyro") for axis in AXES)
+UNITS = {"accel": "m/s²", "gyro": "rad/s"}
+PHASES = (
+    "rest; for a turn rest-before, spin-up, steady, spin-down, rest-after; by hand: turning;"
+    " from one rest of unknown attitude to the next: between"
+)
+BODY = "body"  # axes x, y, z of the IMU's case, right-handed
+
+DOUBLE, TEXT, INTEGER, TRUTH = pa.float64(), pa.string(), pa.int64(), pa.bool_()
+LABEL = pa.dictionary(pa.int32(), pa.string())
+
+
+def vector(stem: str, unit: str, meaning: str, *, nullable: bool = True) -> list[Column]:
+    return [
+        Column(f"{stem}_{axis}", DOUBLE, unit, f"{meaning}, {axis}", BODY, nullable)
+        for axis in AXES
+    ]
+
+
+def channels(meaning: str, *, prefix: str = "") -> list[Column]:
+    return [
+        Column(
+            f"{prefix}{channel}", DOUBLE, UNITS[channel[:-2]], f"{meaning}, {channel}", BODY, True
+        )
+        for channel in CHANNELS
+    ]
+
+
+LOG = Column(
+    "log", TEXT, "", "file name; with ':' and the format's name where it is read in several"
+)
+RECORDS = (
+    Column("from_record", INTEGER, "1", "first record"),
+    Column("to_record", INTEGER, "1", "record after the last"),
+)
