@@ -168,7 +168,7 @@ def test_a_changed_setting_reruns_its_stage_and_what_follows(
         ("stages/inference/spectrum.py", {"noise", *ESTIMATION}),
         ("stages/inference/whole_turns.py", ESTIMATION),
         ("stages/notation/numbers.py", AFTER_DECODE),
-        ("stages/notation/causes.py", {"criticism", "extension", "report"}),
+        ("stages/notation/causes.py", {"criticism", "extension", "history", "report"}),
         ("stages/reporting/report.css", {"report"}),
         ("laboratory/counts.py", {"laboratory_short", "plan", "decode", *AFTER_DECODE}),
     ],
