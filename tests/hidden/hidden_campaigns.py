@@ -128,14 +128,14 @@ def _gain(results: chain.Results) -> list[Mapping[str, Any]]:
     """
     table = results["extension/gain"]
     own = table[table["sensor"].isin(["gyro", "accel"])]
-    whole = own[own["scope"] == "fitted"].set_index("sensor")["snr_squared"]
+    whole = own[own["scope"] == "fitted"].set_index(["sensor", "effects"])["snr_squared"]
     return [
         {
             "sensor": str(row["sensor"]),
             "effects": str(row["effects"]),
             "drop": float(row["drop"]),
             "at_stake": float(row["snr_squared"]),
-            "whole": float(whole[row["sensor"]]),
+            "whole": float(whole[row["sensor"], row["effects"]]),
         }
         for row in own[own["scope"] == "held-out"].to_dict("records")
         if np.isfinite(row["drop"])
