@@ -1,5 +1,6 @@
 """Which physical effects the simulation lacks, by name."""
 
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
@@ -8,6 +9,7 @@ import pandas as pd
 from stages.contracts import tables
 from stages.contracts.parquet import Stream
 from stages.contracts.records import (
+    Known,
     clocks_of,
     known_of,
     manoeuvres_of,
@@ -17,7 +19,7 @@ from stages.contracts.records import (
 )
 from stages.contracts.stage import Stage, Tables
 from stages.criticising import elsewhere, structures, warmth
-from stages.criticising.further import further
+from stages.criticising.further import Further, further
 from stages.criticising.judging import SENSORS, judge
 from stages.criticising.lines_of_turns import LinesOfTurns
 from stages.criticising.rows import Rows
@@ -27,10 +29,10 @@ from stages.criticising.unexplained import unexplained
 from stages.criticising.walking import walks_with_sigmas
 from stages.effects import CATALOGUE
 from stages.estimation.estimates import by_mount
-from stages.estimation.evidence import campaign_of
+from stages.estimation.evidence import Campaign, campaign_of
 from stages.estimation.lines_of_turns import heard
 from stages.estimation.noise_levels import NoiseLevels
-from stages.estimation.solution import solution_of
+from stages.estimation.solution import Solution, solution_of
 from stages.estimation.steady_turns import steady_turns
 from stages.estimation.without_lines import without_lines
 
@@ -96,10 +98,8 @@ def criticism(
         judged = judged.demoted([sensor for sensor in SENSORS if left.of(sensor)])
         walks = walks_with_sigmas(judged.campaign, judged.effects)
         more = {
-            one.name: partial(
-                campaign_of, one.blocks, one.plan, one.performed, levels, given, solution, shared
-            )
-            for one in further(plan, done, quiet)
+            name: partial(_with, make, (levels, given, solution, shared))
+            for name, make in further(plan, done, quiet).items()
         }
         rows = Rows(campaign, judged, Foreseen(judged, more), suffix)
         lines = LinesOfTurns(found, suffix)
@@ -127,6 +127,15 @@ def criticism(
         else table.empty()
         for (name, table), rows in zip(WRITES.items(), made.values(), strict=True)
     }
+
+
+def _with(
+    make: Callable[[], Further],
+    equal: tuple[NoiseLevels, Mapping[str, Known], Solution, bool],
+) -> Campaign:
+    """The campaign with a further manoeuvre, all else equal."""
+    one = make()
+    return campaign_of(one.blocks, one.plan, one.performed, *equal)
 
 
 STAGE = Stage(

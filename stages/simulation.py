@@ -62,9 +62,11 @@ def simulation(
             given,
             suffix,
         )
-        for frame in _rests(blocks, plan, done, levels, given, solution):
-            yield "simulated", frame
-            yield "fidelity", _fidelity(frame, levels, "at rest", blocks)
+        rests = list(_rests(blocks, plan, done, levels, given, solution))
+        fidelity = [_fidelity(frame, levels, "at rest", blocks) for frame in rests]
+        if rests:
+            yield "simulated", pd.concat(rests, ignore_index=True)
+            yield "fidelity", pd.concat(fidelity, ignore_index=True)
         if solution.gyro is None:
             continue
         whole = [m for m in plan if _whole(m, done)]
@@ -203,14 +205,14 @@ def _fidelity(
     """How large the residuals are beside what white noise alone would leave."""
     name = str(frame["manoeuvre"].iloc[0])
     rows = []
+    seconds = step
+    if blocks is not None:
+        own = blocks[(blocks["manoeuvre"] == name) & blocks["phase"].isin(frame["phase"])]
+        seconds = float(own["seconds"].median())
     for channel in tables.CHANNELS:
         residual = frame[f"residual_{channel}"].to_numpy(np.float64)
         there = residual[np.isfinite(residual)]
         level = float(levels.of(name, "rest", [channel])[0])
-        seconds = step
-        if blocks is not None:
-            own = blocks[(blocks["manoeuvre"] == name) & blocks["phase"].isin(frame["phase"])]
-            seconds = float(own["seconds"].median())
         if len(there) and np.isfinite(level):
             rows.append(
                 {

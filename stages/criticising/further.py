@@ -4,8 +4,9 @@ Only their information counts, which depends on attitude, rate and noise; the re
 of the originals and mean nothing.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations
 
 import numpy as np
@@ -26,7 +27,6 @@ ONCE_MORE = "do the rests once more, in the reverse order"
 class Further:
     """A campaign with some manoeuvres more: its plan, what was performed, and its blocks."""
 
-    name: str
     plan: list[Manoeuvre]
     performed: dict[str, Performed]
     blocks: pd.DataFrame
@@ -34,13 +34,13 @@ class Further:
 
 def further(
     plan: Sequence[Manoeuvre], performed: Mapping[str, Performed], blocks: pd.DataFrame
-) -> Iterator[Further]:
-    """What might be added to a campaign."""
+) -> dict[str, Callable[[], Further]]:
+    """What might be added to a campaign, by its name; made when it is asked for."""
     whole = [m for m in plan if m.up is not None and performed[m.name].complete]
     turns = [m for m in whole if m.do == "turn" and m.recorded == "whole" and m.rate is not None]
     rests = [m for m in whole if m.do == "rest"]
 
-    def added(name: str, pairs: Sequence[tuple[Manoeuvre, Manoeuvre, float]]) -> Further:
+    def added(pairs: Sequence[tuple[Manoeuvre, Manoeuvre, float]]) -> Further:
         start = float(blocks["time"].max())
         own, done = [blocks], dict(performed)
         for original, copy, faster in pairs:
@@ -55,11 +55,12 @@ def further(
             own.append(part)
             done[copy.name] = replace(performed[original.name], manoeuvre=copy.name)
         manoeuvres = [*plan, *(copy for _, copy, _ in pairs)]
-        return Further(name, manoeuvres, done, pd.concat(own, ignore_index=True))
+        return Further(manoeuvres, done, pd.concat(own, ignore_index=True))
 
+    found: dict[str, Callable[[], Further]] = {}
     if turns:
-        yield added(TURNED_OVER, [(m, _turned_over(m), 1.0) for m in turns])
-        yield added(FASTER, [(m, _named(m, "faster"), 2.0) for m in turns])
+        found[TURNED_OVER] = partial(added, [(m, _turned_over(m), 1.0) for m in turns])
+        found[FASTER] = partial(added, [(m, _named(m, "faster"), 2.0) for m in turns])
     if rests:
         like = rests[0]
         ups = [
@@ -71,8 +72,10 @@ def further(
             replace(_named(like, f"at 45° {number}"), up=up, mark=None)
             for number, up in enumerate(ups, 1)
         ]
-        yield added(BETWEEN_AXES, [(like, copy, 1.0) for copy in diagonal])
-        yield added(ONCE_MORE, [(m, _named(m, "once more"), 1.0) for m in reversed(rests)])
+        found[BETWEEN_AXES] = partial(added, [(like, copy, 1.0) for copy in diagonal])
+        again = [(m, _named(m, "once more"), 1.0) for m in reversed(rests)]
+        found[ONCE_MORE] = partial(added, again)
+    return found
 
 
 def _named(m: Manoeuvre, what: str) -> Manoeuvre:

@@ -105,7 +105,7 @@ class Rows:
                 " and do not hold in other motions; the extension tells how much that is."
                 if clear
                 else "The joint estimate holds it as a random walk or as a scatter.",
-                "action": "It is added to the model by the extension." + words.of_split(split)
+                "action": words.ACTION + words.of_split(split)
                 if clear
                 else "Look at the residuals against time; record again, the IMU switched on long"
                 " before.",

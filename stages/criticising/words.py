@@ -20,6 +20,7 @@ from stages.notation.units import quantity
 
 Row = Mapping[str, Any]
 
+ACTION = "Take the extended model's parameters where they foretell unseen data."
 CLEAR = 3.0  # sigmas from which a parameter is told
 REASONS = {
     NOT_EXCITED: "no manoeuvre of this plan changes a reading by it",

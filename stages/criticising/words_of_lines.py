@@ -98,7 +98,7 @@ def action(one: Bound) -> str:
         return f"To tell them apart, {SPLIT}: bound to the angle its frequency doubles."
     if one.bound == ANGLE:
         return "Turn by whole turns; look at the table's gear, motor, bearing and encoder."
-    return "It is added to the model by the extension."
+    return "Turn by whole turns; look for what vibrates: the drive, a loose screw, the mounting."
 
 
 def _order(ripple: Ripple) -> str:

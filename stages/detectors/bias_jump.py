@@ -51,8 +51,8 @@ class BiasJump(Detector):
     severity = 2
 
     def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
-        resting = Resting(piece, log)
-        own = [one for one in jumps(piece, log, resting) if not one.moved]
+        resting, every = jumps(piece, log)
+        own = [one for one in every if not one.moved]
         for i in range(len(CHANNELS)):
             yield from _events(piece, log, resting, [one for one in own if one.channel == i])
 

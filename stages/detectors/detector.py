@@ -57,7 +57,7 @@ class Windows:
     temperature: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Log:
     """What is known of a log before its records are looked at one by one.
 
@@ -96,7 +96,7 @@ class Log:
         return Event(0, self.records, 1, *ends, size, **more)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Piece:
     """n consecutive records of a log.
 

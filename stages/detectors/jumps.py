@@ -1,6 +1,7 @@
 """Channels that jump within a rest, and whether the IMU was moved then."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -24,10 +25,12 @@ class Jump:
     moved: bool
 
 
-def jumps(piece: Piece, log: Log, resting: Resting) -> list[Jump]:
-    """All jumps of a rest, channel by channel."""
+@lru_cache(maxsize=1)  # two detectors ask for it, one rest after another
+def jumps(piece: Piece, log: Log) -> tuple[Resting, list[Jump]]:
+    """A rest, and all its jumps, channel by channel."""
+    resting = Resting(piece, log)
     if not np.isfinite(log.interval):
-        return []
+        return resting, []
     found: list[tuple[int, Step]] = []
     for i in range(len(CHANNELS)):
         there, read = piece.channel(i)
@@ -39,7 +42,7 @@ def jumps(piece: Piece, log: Log, resting: Resting) -> list[Jump]:
             found.append((i, _in_records(step, there)))
     knocked = np.repeat(shaken(resting), _length(resting))
     found = [(i, step) for i, step in found if not knocked[step.place - 1 : step.place + 1].any()]
-    return [_judged(i, step, found, resting) for i, step in found]
+    return resting, [_judged(i, step, found, resting) for i, step in found]
 
 
 def shaken(resting: Resting) -> Booleans:

@@ -14,6 +14,7 @@ SHORTEST = 0.2  # s that a level has to last: what is shorter is a knock or a sp
 FEWEST = 4  # readings that a level has to last
 APART = 16  # windows that fit into a record, at least, for its own scatter to tell their noise
 SURE = 128  # and as many for the noise to be known well: about 30 degrees of freedom
+SHARED = 8  # differences that are looked at in each width
 CLIPPED = 5.0  # sigmas from the running median: a spike is no step
 PLACE = 7.35  # fall of twice the log likelihood about a change, 95 %: Hansen, Econometrica 68, 2000
 ABRUPT = 60.0  # chi-squared by which a ramp of the width that is excluded fits worse on average
@@ -126,7 +127,8 @@ class _Noise:
         whole: list[float] = []  # as single, the drift not taken off
         width = 1
         while width <= min(longest, len(readings) // APART):
-            change = differences(readings, width)
+            # Neighbours share nearly all their readings: some tell the scatter as well as all.
+            change = differences(readings, width)[:: max(width // SHARED, 1)]
             trend = float(np.median(change))
             self.widths.append(width)
             self.trend.append(trend)

@@ -77,13 +77,12 @@ class TableMoving(Detector):
     severity = 2
 
     def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
-        resting = Resting(piece, log)
+        resting, own = jumps(piece, log)
         if not np.isfinite(log.interval):
             return
         position = log.given.position_sigma
         motions = list(_knocks(resting))
         if resting.recorded("accel"):
-            own = jumps(piece, log, resting)
             motions += _sudden(resting, [one for one in own if one.moved], position)
             motions += _creep(resting, own, position)
         for motion in _joined(motions, round(BLOCK / log.interval)):

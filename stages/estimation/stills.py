@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 
 UNTIMED = Stretch("")
 IN_BLOCKS = ("means", "counts", "seconds", "time", "temperature")
+OF_BLOCKS = ("count", "seconds", "time", "temperature")
 
 
 @dataclass(frozen=True)
@@ -111,16 +112,20 @@ def stills(
     left: list[str] = []
     channels = [f"{sensor}_{axis}" for axis in AXES]
     at_rest = blocks[blocks["phase"].str.startswith("rest") & (blocks["count"] > 0)]
-    groups = dict(list(at_rest.groupby(["manoeuvre", "phase"])))
+    read = at_rest[channels].to_numpy(np.float64)
+    each = {name: at_rest[name].to_numpy(np.float64) for name in OF_BLOCKS}
+    logs = at_rest["log"].to_numpy()
+    rows = at_rest.groupby(["manoeuvre", "phase"]).indices
     for m in plan:
         if m.do == "positions":
             left.append(f"{m.name}: the attitudes of its rests are not known")
         if m.do == "rest" and not performed[m.name].found:
             left.append(f"{m.name}: not found in its log")
         for phase in ("rest", "rest-before", "rest-after"):
-            part = groups.get((m.name, phase))
-            if part is None or part[channels].isna().all(axis=None):
+            part = rows.get((m.name, phase))
+            if part is None or np.isnan(read[part]).all():
                 continue
+            count, seconds, time, temperature = (each[name][part] for name in OF_BLOCKS)
             density = noise.of(m.name, "rest", channels)
             label = m.name if phase == "rest" else f"{m.name} ({phase})"
             after, whole = phase == "rest-after", performed[m.name].complete
@@ -128,7 +133,7 @@ def stills(
                 left.append(f"{label}: which way is up is not known")
             elif after and (not (whole or performed[m.name].bridged) or m.angle is None):
                 left.append(f"{label}: its attitude is not known, for the turn is not whole")
-            elif part["seconds"].isna().any() or np.isnan(density).all():
+            elif np.isnan(seconds).any() or np.isnan(density).all():
                 left.append(f"{label}: its noise is not known, for it has no time or is too short")
             else:
                 found.append(
@@ -138,13 +143,13 @@ def stills(
                         m.up,
                         m.up if m.about is None else m.about,
                         (m.angle or 0.0) if after else 0.0,
-                        part[channels].to_numpy(np.float64),
-                        part["count"].to_numpy(np.float64),
-                        part["seconds"].to_numpy(np.float64),
-                        part["time"].to_numpy(np.float64),
-                        part["temperature"].to_numpy(np.float64),
+                        read[part],
+                        count,
+                        seconds,
+                        time,
+                        temperature,
                         density,
-                        stretch_of(label, part, shared_clock),
+                        _stretch(label, str(logs[part[0]]), time, seconds, shared_clock),
                     )
                 )
     return found, left
@@ -152,9 +157,13 @@ def stills(
 
 def stretch_of(name: str, part: pd.DataFrame, shared_clock: bool) -> Stretch:
     """The stretch of time of some blocks in their order."""
-    start, end = _ends(part["time"].to_numpy(np.float64), part["seconds"].to_numpy(np.float64))
-    clock = COMMON if shared_clock else str(part["log"].iloc[0])
-    return Stretch(name, clock, start, end - start)
+    time, seconds = (part[column].to_numpy(np.float64) for column in ("time", "seconds"))
+    return _stretch(name, str(part["log"].iloc[0]), time, seconds, shared_clock)
+
+
+def _stretch(name: str, log: str, time: Array, seconds: Array, shared_clock: bool) -> Stretch:
+    start, end = _ends(time, seconds)
+    return Stretch(name, COMMON if shared_clock else log, start, end - start)
 
 
 def _ends(time: Array, seconds: Array) -> tuple[float, float]:

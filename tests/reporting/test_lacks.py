@@ -45,7 +45,7 @@ def test_what_is_found_says_how_sure_it_is_what_it_gains_and_what_to_do() -> Non
     assert "It stands 77 σ out of the noise, by noise alone p &lt; 10⁻³⁰⁰." in html
     assert "falls by 12 070 of 12 897 on data that were not fitted, 99 % of what" in html
     assert "mass unbalance" not in html.partition("How sure")[0]  # the sentence is criticism's own
-    assert "<dt>What to do</dt><dd>It is added to the model by the extension.</dd>" in html
+    assert "<dt>What to do</dt><dd>Look at it.</dd>" in html
 
 
 def test_what_moves_most_is_told_in_the_units_of_the_laboratory() -> None:
