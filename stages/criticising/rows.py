@@ -8,7 +8,7 @@ import numpy as np
 from stages.criticising import words
 from stages.criticising.further import TURNED_OVER
 from stages.criticising.judging import Judged
-from stages.criticising.splitting import LIKE, Foreseen
+from stages.criticising.splitting import Foreseen
 from stages.effects import CATALOGUE
 from stages.estimation.evidence import Campaign
 from stages.inference.naming.named import FOUND, ONE_OF_CLASS, Asked
@@ -135,7 +135,7 @@ class Rows:
         if effect.name != "gyro_scale_g_dependence" or parameter != effect.parameters[0].name:
             return ""
         shares = self.foreseen.mimicry(effect.name, "gyro_scale_quadratic", TURNED_OVER)
-        if shares is None or shares[0] < LIKE:
+        if shares is None:
             return ""
         return words.of_same_rate(*shares)
 

@@ -35,14 +35,12 @@ class Foreseen:
 
     def __init__(self, judged: Judged, further: Mapping[str, Callable[[], Campaign]]) -> None:
         self._judged, self._further = judged, further
-        self._made: dict[str, Reduced] = {}
+        self._made: dict[str, Campaign] = {}
 
-    def with_(self, manoeuvre: str) -> Reduced:
-        """The information of all sensors."""
+    def with_(self, manoeuvre: str) -> Campaign:
+        """The campaign with a manoeuvre more."""
         if manoeuvre not in self._made:
-            campaign = self._further[manoeuvre]()
-            said, _ = said_of(campaign, self._judged.families, np.inf)
-            self._made[manoeuvre] = said.total
+            self._made[manoeuvre] = self._further[manoeuvre]()
         return self._made[manoeuvre]
 
     def splitting(self, number: int) -> Splitting | None:
@@ -50,18 +48,29 @@ class Foreseen:
         causes = self._judged.named.causes
         if len(causes[number].members) < 2 or not self._further:
             return None
-        every = {manoeuvre: self.with_(manoeuvre) for manoeuvre in self._further}
-        found = split(self._judged.said.total, every, self._judged.asked, causes, number)
+        concerned = {*causes[number].members, *(cause.effect for cause in causes)}
+        families = {n: one for n, one in self._judged.families.items() if n in concerned}
+        every = {}
+        for manoeuvre in self._further:
+            said, asked = said_of(self.with_(manoeuvre), families, np.inf)
+            every[manoeuvre] = said.total
+            now = self._judged.said.total.of(said.names)
+        found = split(now, every, asked, causes, number)
         return Splitting(found[0].manoeuvre, found[0].separation) if found else None
 
     def mimicry(self, effect: str, other: str, manoeuvre: str) -> tuple[float, float] | None:
-        """Which share of an effect another can mimic, now and with a manoeuvre; None: unseen."""
+        """Which share of an effect another can mimic, now and with a manoeuvre.
+
+        None: unseen, or less than nearly all of it now.
+        """
         if manoeuvre not in self._further or not self._judged.said.sensors:
             return None
         two = [self._judged.effect(name, 0) for name in (effect, other)]
-        campaigns = (self._judged.campaign, self._further[manoeuvre]())
-        shares = [_mimicked(evidence(one, two).total, *two) for one in campaigns]
-        return None if None in shares else (shares[0] or 0.0, shares[1] or 0.0)
+        now = _mimicked(self._judged.said.total, *two)
+        if now is None or now < LIKE:
+            return None
+        then = _mimicked(evidence(self.with_(manoeuvre), two).total, *two)
+        return None if then is None else (now, then)
 
 
 def _mimicked(reduced: Reduced, effect: Effect, other: Effect) -> float | None:

@@ -5,7 +5,7 @@ do the equations leave, all else fitted? So tilts, gravity and random walks coun
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from stages.estimation.evidence import Campaign
 from stages.inference.naming.structure import Answer, Structure, structures
 from stages.inference.naming.structure_columns import TESTS, Where
-from stages.model.effect import Array, Effect, Parameter, Reading, Truth
+from stages.model.effect import Array, Effect, Parameter, Reading
 from stages.model.motion import Motion
 
 Integers = NDArray[np.int64]
@@ -41,10 +41,10 @@ class Functions(Effect):
             Parameter(str(i), "", 1.0, "") for i in range(count)
         )
 
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        changed = getattr(reading, self.sensor).copy()
-        changed[:, self.axis] += self.functions @ values
-        return replace(reading, **{self.sensor: changed})
+    def signature(self, motion: Motion) -> Reading:
+        traces = {name: np.zeros((len(motion.rate), 3, len(self.parameters))) for name in SOLVED}
+        traces[self.sensor][:, self.axis] = self.functions
+        return Reading(**traces)
 
 
 @dataclass(frozen=True)

@@ -40,14 +40,20 @@ class CampaignMotions:
         names = positions_of(plan)
         self._places = {m.name: float(names.index(m.position)) for m in plan}
         self._levels, self._solution, self._heading = levels, solution, heading
+        self._at_rest: dict[tuple[str, float], Motion] = {}
 
     def at_rest(self, still: Still) -> Motion:
         """A rest as one stretch."""
         name, time = still.manoeuvre.name, still.mean_of(still.time)
         time = time if self._shared_clock else np.nan
         later = AFTER if still.label.endswith("(rest-after)") else 0.0
+        place = (name, still.angle)  # all pieces of a rest stand alike
+        if place not in self._at_rest:
+            self._at_rest[place] = at_rest(still, self._solution, self._heading, time)
         return replace(
-            at_rest(still, self._solution, self._heading, time),
+            self._at_rest[place],
+            time=np.array([time]),
+            seconds=np.array([still.seconds.sum()]),
             visit=np.array([self._visits[name] + later]),
             position=np.array([self._places[name]]),
             temperature=np.array([still.mean_of(still.temperature)]),

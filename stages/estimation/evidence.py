@@ -122,8 +122,8 @@ class Campaign:
         self, sensor: str, effects: Sequence[Effect], wide: float
     ) -> Callable[[float], System | None]:
         """The equations of one sensor as a function of the random walk of its biases."""
-        told = self._told(effects)
-        return lambda walk: self.walking((walk, walk))._system(sensor, effects, wide, None, told)
+        traces, widths = self._asked(sensor, effects, wide, self._told(effects))
+        return lambda walk: self.walking((walk, walk))._equations(sensor, traces, widths, None)
 
     def _system(
         self,
@@ -133,15 +133,28 @@ class Campaign:
         only: set[str] | None,
         told: Sequence[Reading],
     ) -> System | None:
+        return self._equations(sensor, *self._asked(sensor, effects, wide, told), only)
+
+    def _asked(
+        self, sensor: str, effects: Sequence[Effect], wide: float, told: Sequence[Reading]
+    ) -> tuple[list[Traces], dict[str, float]]:
+        """The traces of the effects in each stretch, and the sigmas of their parameters."""
         widths = {
             f"{effect.label}.{parameter.name}": wide * parameter.typical
             for effect in effects
             for parameter in effect.parameters
         }
-        traces = self._traces(sensor, effects, told)
-        if sensor == "gyro":
-            return self._gyro(traces, widths, only)
-        return self._accelerometer(traces, widths, only)
+        return self._traces(sensor, effects, told), widths
+
+    def _equations(
+        self,
+        sensor: str,
+        traces: list[Traces],
+        widths: Mapping[str, float],
+        only: set[str] | None,
+    ) -> System | None:
+        make = self._gyro if sensor == "gyro" else self._accelerometer
+        return make(traces, widths, only)
 
     def _gyro(
         self, traces: list[Traces], widths: Mapping[str, float], only: set[str] | None

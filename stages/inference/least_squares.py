@@ -240,6 +240,13 @@ class Reduced:
             self.degrees + other.degrees,
         )
 
+    def of(self, names: Sequence[str]) -> "Reduced":
+        """The same of some of the effects, the others being none."""
+        place = {name: i for i, name in enumerate(self.names)}
+        some = [place[name] for name in names]
+        information = self.information[np.ix_(some, some)]
+        return replace(self, names=tuple(names), information=information, right=self.right[some])
+
     def drop(self, chosen: Sequence[int]) -> tuple[float, int]:
         """By how much chi-squared drops with the chosen columns, and on how many degrees."""
         values, directions, _ = self._modes(chosen)

@@ -99,6 +99,13 @@ class Effect(ABC):
         """The reading with this effect in it; `values` follow `parameters`."""
         return reading
 
+    def signature(self, motion: Motion) -> Reading | None:
+        """How the readings change per unit of each parameter, where no model is needed to tell.
+
+        gyro and accel, (n, 3, number of parameters) each.
+        """
+        return None
+
     def blind(self, motion: Motion) -> str:
         """Why the effect cannot be seen on this motion, in a sentence; empty where it may be."""
         return ""

@@ -89,6 +89,8 @@ def signatures(
         return effect.reads(before, moved, motion, values)
 
     def signature(effect: Effect) -> Reading:
+        if (known := effect.signature(motion)) is not None:
+            return known
         traces = np.zeros((2, len(motion.rate), 3, len(effect.parameters)))
         for i, parameter in enumerate(effect.parameters if not effect.blind(motion) else ()):
             step = np.zeros(len(effect.parameters))
