@@ -16,7 +16,7 @@ from benchmarks.campaign import RATE, document
 from benchmarks.processes import Answer, in_own, in_peers
 from benchmarks.tables import Table, told
 from benchmarks.timing import HEADS, REMARK, Seconds
-from laboratory.rawimusa import Samples, log_bytes
+from laboratory.rawimu import Samples, log_bytes
 
 LINES = 100_000  # of the log that are written at a time
 LONG = 300  # MB above which one round is enough
@@ -100,7 +100,7 @@ def write_log(path: Path, size: int) -> int:
             stamps = first + step * np.arange(LINES)
             first += step * LINES
             counts = chance.normal(0, 300, (2, LINES, 3)).astype(np.int64)
-            written += file.write(log_bytes(Samples(stamps, *counts), "00000077", b"\r\n"))
+            written += file.write(log_bytes(Samples(stamps, *counts), "RAWIMUSA", "00000077"))
     return written
 
 

@@ -15,7 +15,7 @@ from laboratory.layout import Stretch, lay_out, logs_of
 from laboratory.motion import Turning, move
 from laboratory.placement import place
 from laboratory.profiles import Profile, Standing
-from laboratory.rawimusa import Samples
+from laboratory.rawimu import Samples
 from laboratory.recording import LogTruth, Recording, Spoiled
 from laboratory.records import Records
 from laboratory.sensor import Reading, Sensors, nothing, read

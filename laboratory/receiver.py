@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from laboratory import columns, rawimusa
+from laboratory import columns, rawimu
 from laboratory.arrays import Array
 from laboratory.gps_time import NANOSECONDS
-from laboratory.rawimusa import Samples
+from laboratory.rawimu import Samples
 from laboratory.records import Records
 
 COLUMNS = "columns"  # the message that is a table of text
@@ -25,6 +25,7 @@ class Receiver:
     accelerometer_count: float  # m/s
     status: str
     line_end: bytes
+    imu_type: int  # by NovAtel's list; the messages with X tell it
 
     @classmethod
     def specified(cls, written: Mapping[str, Any]) -> "Receiver":
@@ -36,6 +37,7 @@ class Receiver:
             written["accelerometer_count_m_s"],
             written["status"],
             {"crlf": b"\r\n", "lf": b"\n"}[written["line_end"]],
+            written.get("imu_type", 0),
         )
 
     @property
@@ -58,7 +60,8 @@ class Receiver:
         """A log as it is written; start: ns since the start of GPS time, the campaign's first."""
         if self.message == COLUMNS:
             return columns.log_bytes(records, start, self.line_end)
-        return rawimusa.log_bytes(records.samples, self.status, self.line_end)
+        told = (self.message, self.status, self.line_end, self.imu_type)
+        return rawimu.log_bytes(records.samples, *told)
 
     @property
     def format(self) -> dict[str, Any] | None:

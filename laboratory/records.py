@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from laboratory.arrays import Array, Counts
-from laboratory.rawimusa import Samples
+from laboratory.rawimu import Samples
 
 
 class Touch(NamedTuple):

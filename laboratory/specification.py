@@ -25,7 +25,7 @@ from laboratory.gps_time import NANOSECONDS, gps_nanoseconds
 from laboratory.layout import Handling, length, logs_of
 from laboratory.manoeuvre import Manoeuvre, PlanError
 from laboratory.plan import written_out
-from laboratory.rawimusa import Samples
+from laboratory.rawimu import Samples
 from laboratory.receiver import Receiver
 from laboratory.records import Records
 from laboratory.rehearsal import rehearse

@@ -22,6 +22,7 @@ from stages.contracts.stage import Stage
 from stages.contracts.tables import ACCOUNTS, AXES, CLOCKS, LOGS, REFUSED, SAMPLES
 from stages.formats import columns, novatel
 from stages.formats.account import Account, RefusedLine
+from stages.formats.ahead import ahead
 from stages.formats.arrow_arrays import (
     array_of_numbers,
     array_of_texts,
@@ -55,7 +56,9 @@ def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
     stamps = [log.first for log in opened if isinstance(log, ReceiverLog) and log.first is not None]
     origin = min(stamps, default=0)
     for log in opened:
+        size = log.path.stat().st_size
         yield from _pieces_of(log, origin)
+        _refuse_grown(log.path, size)
 
 
 @dataclass(frozen=True)
@@ -65,6 +68,7 @@ class Decoded:
     samples: dict[str, Any]  # columns of the table samples by name, (n,) each, SI
     refused: list[RefusedLine]
     account: Account
+    imu_types: frozenset[int] = frozenset()  # that the messages tell, by NovAtel's list
 
 
 class ReceiverLog:
@@ -74,7 +78,7 @@ class ReceiverLog:
 
     def __init__(self, name: str, path: Path, layout: Mapping[str, Any]) -> None:
         self.name = name
-        self._path = path
+        self.path = path
         self._axes: list[str] = layout["axes"]  # such as z, -y, x: the order and sign of the fields
         self._counts = {
             "accel": float(layout["accelerometer_count"]),  # m/s
@@ -90,7 +94,7 @@ class ReceiverLog:
 
     def decoded(self, origin: int) -> Iterator[Decoded]:
         """The log, piece by piece, with time since `origin`, ns of GPS time."""
-        for reading in novatel.read(self._path):
+        for reading in novatel.read(self.path):
             records = reading.records
             samples = {
                 "record": records.record,
@@ -101,7 +105,8 @@ class ReceiverLog:
                 "status": records.status,
                 **self._rates(records.counts),
             }
-            yield Decoded(samples, reading.refused, reading.account)
+            told = frozenset(np.unique(records.imu[records.imu > 0]).tolist())
+            yield Decoded(samples, reading.refused, reading.account, told)
 
     def _rates(self, counts: NDArray[np.int32]) -> dict[str, Reals]:
         if self.interval is None:
@@ -129,7 +134,7 @@ class ColumnLog:
 
     def __init__(self, name: str, path: Path, layout: Mapping[str, Any]) -> None:
         self.name = name
-        self._path = path
+        self.path = path
         self._layout = layout
         time = layout.get("time")
         self.clock = "none" if time is None else "own"
@@ -143,7 +148,7 @@ class ColumnLog:
             return 0.0, None, None
         if time.get("column") is None:  # rows are counted from the first, though it be refused
             return 0.0, 1 / self._ticks, 1 / self._ticks
-        readings = columns.read(self._path, self._layout)
+        readings = columns.read(self.path, self._layout)
         first, median, mean = _look_ahead(self._ticks_of_one_sensor(readings))
         if median is None or mean is None:
             return first or 0.0, None, None
@@ -159,7 +164,7 @@ class ColumnLog:
 
     def decoded(self, origin: int) -> Iterator[Decoded]:
         """The log, piece by piece; `origin` is none of its business."""
-        for reading in columns.read(self._path, self._layout):
+        for reading in columns.read(self.path, self._layout):
             rows = reading.records
             samples = {
                 "record": rows.record,
@@ -208,6 +213,18 @@ def _open(row: Mapping[str, str], raw: list[Path]) -> ReceiverLog | ColumnLog:
     return kind(row["log"], paths[row["file"]], layout)
 
 
+def _refuse_grown(path: Path, size: int) -> None:
+    """A log that is still written to would be another one in every run."""
+    if (now := path.stat().st_size) != size:
+        raise Refusal(
+            path.name,
+            "",
+            f"{now} bytes, {now - size} more than when it was opened",
+            "a log that is finished",
+            "copy it when the recording has ended, and run again",
+        )
+
+
 def _look_ahead(
     times: Iterable[NDArray[np.int64] | Reals],
 ) -> tuple[float | None, float | None, float | None]:
@@ -235,8 +252,10 @@ def _pieces_of(log: ReceiverLog | ColumnLog, origin: int) -> Pieces:
     account = Account()
     records = 0
     ends: list[float | None] = []
-    for decoded in log.decoded(origin):
+    imu_types: frozenset[int] = frozenset()
+    for decoded in ahead(log.decoded(origin)):
         account.add_account(decoded.account)
+        imu_types |= decoded.imu_types
         if decoded.refused:
             lines = [{"log": log.name, **asdict(line)} for line in decoded.refused]
             yield "refused", batch_of_rows(lines, REFUSED.schema)
@@ -260,6 +279,7 @@ def _pieces_of(log: ReceiverLog | ColumnLog, origin: int) -> Pieces:
         "records": records,
         "interval": log.interval,
         "step": log.step,
+        "imu_types": " ".join(map(str, sorted(imu_types))) or None,
     }
     yield "clocks", batch_of_rows([clock], CLOCKS.schema)
 

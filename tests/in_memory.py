@@ -61,8 +61,9 @@ def _rawimusa(recording: Recording, records: Records) -> novatel.Reading:
         stamp=records.stamps,
         status=np.full(len(records), int(recording.receiver.status, 16), np.uint32),
         counts=(records.counts[:, SENT] * SIGNS).astype(np.int32),
+        imu=np.full(len(records), -1, np.int16),
     )
-    return novatel.Reading(increments, [], _account(novatel.MESSAGE, len(records)))
+    return novatel.Reading(increments, [], _account("RAWIMUSA", len(records)))
 
 
 def _of_columns(recording: Recording, records: Records) -> columns.Reading:

@@ -13,6 +13,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from laboratory.rawimu import Samples, log_bytes
 from stages.contracts.errors import Refusal
 from stages.contracts.parquet import Writer
 from stages.contracts.tables import ACCOUNTS, CHANNELS, CLOCKS, LOGS, REFUSED, SAMPLES
@@ -102,6 +103,7 @@ def test_the_printed_lines_in_metres_degrees_and_seconds(tmp_path):  # T2
         "records": [7],
         "interval": [pytest.approx(0.01, abs=1e-9)],
         "step": [pytest.approx(0.01, abs=1e-9)],
+        "imu_types": [None],
     }
 
 
@@ -234,6 +236,7 @@ def test_without_time_there_is_no_clock(tmp_path):
         "records": 2,
         "interval": None,
         "step": None,
+        "imu_types": None,
     }
 
 
@@ -411,7 +414,30 @@ def test_the_stage_runs_without_pandas(tmp_path):
     assert samples["log"].to_pylist() == ["z.asc", "z.asc", "columns.txt", "columns.txt"]
     assert samples["label"].to_pylist() == [None, None, "1=a", "1=b"]
     assert pq.read_table(output / "refused.parquet")["reason"].to_pylist() == [
-        "begins with 'j', expected '%' or '#'",
+        "begins with 'j', expected '%', '#' or a binary message's AA 44",
         "column 2 is 'x', expected a finite number",
     ]
     assert pq.read_table(output / "clocks.parquet")["records"].to_pylist() == [2, 2]
+
+
+def test_a_log_that_grows_while_it_is_read_is_refused(tmp_path):
+    path = tmp_path / "log.asc"
+    path.write_bytes(at(2283, 0) + at(2283, 0.01))
+    layout = {"log": "log", "file": path.name, "layout": json.dumps(SPAN_CPT)}
+    pieces = decode([pa.RecordBatch.from_pylist([layout], LOGS.schema)], [path])
+    assert next(pieces)[0] == "samples"
+    with path.open("ab") as file:
+        file.write(at(2283, 0.02))
+    with pytest.raises(Refusal, match="204 bytes, 68 more than when it was opened"):
+        list(pieces)
+
+
+def test_the_types_of_imu_that_a_log_tells(tmp_path):
+    path = tmp_path / "log.bin"
+    sent = Samples(np.arange(3) * 10_000_000, *np.zeros((2, 3, 3), np.int64))
+    path.write_bytes(
+        log_bytes(sent, "RAWIMUSXB", "00000077", imu_type=33)
+        + log_bytes(sent, "RAWIMUSXB", "00000077", imu_type=13)
+        + log_bytes(sent, "RAWIMUSXB", "00000077", imu_type=0)  # unknown
+    )
+    assert one(path, SPAN_CPT)["clocks"]["imu_types"] == ["13 33"]

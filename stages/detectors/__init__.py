@@ -35,6 +35,7 @@ from stages.detectors.time_backwards import TimeBackwards
 from stages.detectors.time_stands_still import TimeStandsStill
 from stages.detectors.wrong_day import WrongDay
 from stages.detectors.wrong_direction import WrongDirection
+from stages.detectors.wrong_imu_type import WrongImuType
 from stages.detectors.wrong_rate import WrongRate
 from stages.detectors.wrong_scale_factor import WrongScaleFactor
 from stages.detectors.wrong_scale_of_turns import WrongScaleOfTurns
@@ -52,6 +53,7 @@ OF_RECORDS: tuple[Detector, ...] = (
     ClockScale(),
     RateOff(),
     WrongDay(),
+    WrongImuType(),
     # readings: what stands at its limit or stands still would look like a spike
     Saturation(),
     DeadAxis(),

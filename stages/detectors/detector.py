@@ -70,7 +70,7 @@ class Log:
     limit: (6,), how far the channel reaches, infinite where not stated.
     count: (6,), what one count is by the campaign, m/s² and rad/s, NaN where not stated.
     records: how many. increments: readings are increments over `step`, and what a count leaves
-    over goes into the next.
+    over goes into the next. imu: the types of IMU that its messages tell, by NovAtel's list.
     """
 
     name: str
@@ -88,6 +88,7 @@ class Log:
     records: int
     step: float = np.nan
     increments: bool = False
+    imu: tuple[int, ...] = ()
 
     def event(self, size: float, **more: Any) -> "Event":
         """An event that concerns the log as a whole."""

@@ -1,28 +1,20 @@
-"""A text log of a NovAtel receiver: RAWIMUSA lines, the increments of the IMU in counts.
+"""A log of a NovAtel receiver: the increments of its IMU among any other messages, text and binary.
 
-    %RAWIMUSA,2283,42699.880;2283,42699.879998762,00000077,64188,-64,465,-16100,-2,873*3928684b
+Which of the eight IMU messages the log is read by, its first ones tell; a receiver may send the
+same samples as several, and those count as other messages. No message is used whose checksum
+is not right. Which axis a count stands for and how large it is belongs to the instrument, not to
+this format.
 
-Header: week, seconds to the millisecond. Body: GPS week, seconds of the week to the nanosecond,
-status word (hexadecimal), six counts: acceleration of z, −y, x, then rate of z, −y, x (the count
-sizes and what stands for which axis belong to the instrument, not to this format). Every line,
-whatever its message, ends with '*' and the checksum of what stands between its first character
-and the '*': CRC-32 with reflected polynomial 0xEDB88320, start 0, not inverted at the end, as eight
-hexadecimal digits in lower case. No line is used whose checksum is not right.
-
-Source: NovAtel OEM6 Family Firmware Reference Manual (OM-20000129), "RAWIMUS", "32-Bit CRC".
+A receiver that counts weeks in ten bits begins anew after week 1023; within a log they go on.
 """
 
-import re
-import zlib
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
 from numpy.typing import NDArray
-from pyarrow import csv
 
 from stages.formats.account import (
     BLANK,
@@ -32,44 +24,42 @@ from stages.formats.account import (
     Account,
     RefusedLine,
     quoted,
-    refused_line,
 )
-from stages.formats.arrow_arrays import numbers_of
-from stages.formats.gps_time import NANOSECONDS, WEEK
-from stages.formats.pieces import LONGEST_LINE, PIECE_BYTES, Integers, Piece, pieces
+from stages.formats.novatel_items import (
+    COUNTS,
+    DAMAGE,
+    EMPTY,
+    GOES_ON,
+    IMU,
+    OTHER_BINARY,
+    OTHER_TEXT,
+    STAMP,
+    STATUS,
+    TYPE,
+    UNSURE,
+    WEEK_NS,
+)
+from stages.formats.novatel_messages import IMU_MESSAGES, SYNC
+from stages.formats.novatel_scan import LENGTH, START, WHAT, WHICH, Scan, scan
+from stages.formats.novatel_words import fields_of, why_refused, why_unsure
+from stages.formats.pieces import LONGEST_LINE, PIECE_BYTES, Integers
 
-MESSAGE = "RAWIMUSA"
-LAST_WEEK = 9999  # the year 2171: what claims a later one is no week
+ROLL = 1024 * WEEK_NS  # the weeks that ten bits count
 
-_PREFIX = b"%" + MESSAGE.encode()
-_DIGITS = 8  # of the checksum
-_CHECKED = len("%") + len("*") + _DIGITS  # characters of a line outside its checksum
-_ONES = 0xFFFFFFFF
-_HEXADECIMAL = re.compile("[0-9a-fA-F]{1,8}")
-_COUNTS = tuple(f"{sensor} {place}" for sensor in ("accelerometer", "gyro") for place in "123")
-_COLUMNS = ("message", "header week", "header seconds", "week", "seconds", "status", *_COUNTS)
-_TYPES = {
-    "week": pa.int32(),
-    "seconds": pa.float64(),
-    "status": pa.dictionary(pa.int32(), pa.string()),
-    **dict.fromkeys(_COUNTS, pa.int32()),
-}
-_COMMAS = bytes.maketrans(b";*", b",,")  # header, body and checksum become fields like the others
-_NO_DIGIT = 255
-_DIGIT = np.full(256, _NO_DIGIT, np.uint8)
-_DIGIT[list(b"0123456789abcdef")] = range(16)
+Truths = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
 class Increments:
-    """What n RAWIMUSA lines say."""
+    """What n messages of the IMU say."""
 
-    record: Integers  # number among the RAWIMUSA lines of the log, refused ones counted, (n,)
-    offset: Integers  # byte in the file where the line begins, (n,)
-    line: Integers  # number of the line, from 1, (n,)
+    record: Integers  # number among the IMU's messages of the log, refused ones counted, (n,)
+    offset: Integers  # byte in the file where the message begins, (n,)
+    line: Integers  # number of the line or binary message, from 1, (n,)
     stamp: Integers  # ns since the start of GPS time, (n,)
     status: NDArray[np.uint32]  # (n,)
     counts: NDArray[np.int32]  # as sent: accelerometer z, −y, x, gyro z, −y, x; (n, 6)
+    imu: NDArray[np.int16]  # type of the IMU, −1 where the message does not tell, (n,)
 
 
 @dataclass(frozen=True)
@@ -81,221 +71,187 @@ class Reading:
     account: Account
 
 
-@dataclass(frozen=True)
-class _Fields:
-    """The fields of lines in which everything can be read."""
-
-    stamp: Integers
-    status: NDArray[np.uint32]
-    counts: NDArray[np.int32]
-
-
 def read(path: Path, piece_bytes: int = PIECE_BYTES) -> Iterator[Reading]:
     """The log at `path`, piece by piece."""
-    records = 0
-    for piece in pieces(path, piece_bytes):
-        reading, more = _read_piece(piece, records)
-        records += more
-        yield reading
+    log = _Log()
+    with path.open("rb") as file:
+        rest = b""
+        while more := file.read(piece_bytes):
+            data = rest + more
+            consumed = yield from _items_of(log, data, last=False)
+            rest = data[consumed:]
+        yield from _items_of(log, rest, last=True)
+    if log.going_on is not None:
+        yield log.end()
 
 
-def checksum(text: bytes) -> int:
-    """NovAtel's CRC-32 of what stands between the first character of a line and its '*'."""
-    return zlib.crc32(text, _ONES) ^ _ONES  # zlib inverts at both ends, NovAtel at neither
+def _items_of(log: "_Log", data: bytes, *, last: bool) -> Generator[Reading, None, int]:
+    """All items of some bytes; returns the byte after the last."""
+    start = 0
+    while len((found := scan(data, start, last=last)).items):
+        yield log.reading(data, found)
+        start = found.consumed
+    log.offset += start
+    return start
 
 
-def _read_piece(piece: Piece, records: int) -> tuple[Reading, int]:
-    """What `piece` holds, `records` records being before it, and how many it counts itself."""
-    right = _right_checksums(piece)
-    named, ours = _rawimusa_lines(piece)
-    ours &= right
-    reasons: dict[int, str] = {}
+class _Log:
+    """How far a log is read.
 
-    fields = _read_at_once(piece, ours)
-    if fields is None:
-        fields, reasons = _read_one_by_one(piece, ours)
-
-    account = Account()
-    for index in np.flatnonzero(~right).tolist():
-        if reason := _why_refused(piece, index):
-            reasons[index] = reason
-        else:
-            account.add(BLANK, "", 1, int(piece.lengths[index]))
-    for name, (lines, size) in _other_messages(piece, right & ~ours).items():
-        account.add(OTHER_MESSAGE, name, lines, size)
-    lost = np.array(sorted(reasons), np.int64)
-    counted = ours | (named & ~right)
-    ours[lost] = False
-    account.add_all(DECODED, MESSAGE, piece.lengths[ours])
-    account.add_all(REFUSED, "", piece.lengths[lost])
-
-    number = records + np.cumsum(counted) - 1
-    increments = Increments(
-        number[ours],
-        piece.offsets[ours],
-        piece.lines[ours],
-        fields.stamp,
-        fields.status,
-        fields.counts,
-    )
-    refused = [refused_line(piece, index, reasons[index]) for index in lost.tolist()]
-    return Reading(increments, refused, account), int(counted.sum())
-
-
-# ---- which lines are whole
-
-
-def _right_checksums(piece: Piece) -> NDArray[np.bool_]:
-    """Which lines of `piece` begin as a message does and end with the checksum of their text."""
-    characters = np.frombuffer(piece.data, np.uint8)
-    first = characters[piece.starts]
-    tail = np.take(characters, piece.ends[:, np.newaxis] + np.arange(-1 - _DIGITS, 0), mode="clip")
-    digits = _DIGIT[tail[:, 1:]]
-    stated = digits.astype(np.int64) @ (16 ** np.arange(_DIGITS - 1, -1, -1))
-    right: NDArray[np.bool_] = (
-        ((first == ord("%")) | (first == ord("#")))
-        & (piece.ends - piece.starts >= _CHECKED)
-        & (piece.lengths <= LONGEST_LINE)
-        & (tail[:, 0] == ord("*"))
-        & (digits != _NO_DIGIT).all(axis=1)
-    )
-    text, crc32 = piece.data, zlib.crc32
-    begins = (piece.starts[right] + 1).tolist()
-    stops = (piece.ends[right] - 1 - _DIGITS).tolist()
-    computed = [crc32(text[a:b], _ONES) for a, b in zip(begins, stops, strict=True)]
-    right[right] = (np.array(computed, np.int64) ^ _ONES) == stated[right]
-    return right
-
-
-def _rawimusa_lines(piece: Piece) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Which lines begin with %RAWIMUSA, and in which of them that is the whole name."""
-    characters = np.frombuffer(piece.data, np.uint8)
-    places = piece.starts[:, np.newaxis] + np.arange(len(_PREFIX) + 1)
-    head = np.take(characters, places, mode="clip")
-    long_enough = piece.ends - piece.starts >= len(_PREFIX)
-    named = long_enough & (head[:, :-1] == np.frombuffer(_PREFIX, np.uint8)).all(axis=1)
-    return named, named & (head[:, -1] == ord(","))
-
-
-def _why_refused(piece: Piece, index: int) -> str:
-    """Why a line without right checksum cannot be used; empty for a blank line."""
-    text = piece.text(index)
-    if piece.lengths[index] > LONGEST_LINE:
-        return f"{piece.lengths[index]} bytes without a line end, expected at most {LONGEST_LINE}"
-    if not text.strip():
-        return ""
-    if text[:1] not in (b"%", b"#"):
-        return f"begins with '{quoted(text[:1])}', expected '%' or '#'"
-    body, star, stated = text[1:].partition(b"*")
-    if not star:
-        return f"no checksum, expected '*' and {_DIGITS} hexadecimal digits at the end"
-    return f"checksum '{quoted(stated)}', computed '{checksum(body):08x}'"
-
-
-def _other_messages(piece: Piece, others: NDArray[np.bool_]) -> dict[str, tuple[int, int]]:
-    """Number of lines and bytes of each other message."""
-    lines: Counter[str] = Counter()
-    sizes: Counter[str] = Counter()
-    for index in np.flatnonzero(others).tolist():
-        name = quoted(re.split(rb"[,;*]", piece.text(index)[1:], maxsplit=1)[0])
-        lines[name] += 1
-        sizes[name] += int(piece.lengths[index])
-    return {name: (lines[name], sizes[name]) for name in lines}
-
-
-# ---- what their fields say
-
-
-def _read_at_once(piece: Piece, lines: NDArray[np.bool_]) -> _Fields | None:
-    """The fields of all `lines` of the piece, or None where one of them cannot be read."""
-    if not lines.any():
-        return _fields([], [], [], [])
-    text = piece.data
-    if not lines.all():
-        stops = piece.starts + piece.lengths
-        picked = zip(piece.starts[lines].tolist(), stops[lines].tolist(), strict=True)
-        text = b"".join([text[start:stop] for start, stop in picked])
-    try:
-        table = csv.read_csv(
-            pa.BufferReader(text.translate(_COMMAS)),
-            csv.ReadOptions(column_names=[*_COLUMNS, "checksum"], block_size=2 * LONGEST_LINE),
-            csv.ParseOptions(quote_char=False, double_quote=False),
-            csv.ConvertOptions(column_types=_TYPES, include_columns=list(_TYPES), null_values=[]),
-        )
-    except pa.ArrowInvalid:
-        return None
-    if len(table) != np.count_nonzero(lines):
-        return None
-    status = table["status"].unify_dictionaries().combine_chunks()
-    words = status.dictionary.to_pylist()
-    week, seconds = numbers_of(table["week"]), numbers_of(table["seconds"])
-    if (
-        not all(_HEXADECIMAL.fullmatch(word) for word in words)
-        or not ((week >= 0) & (week <= LAST_WEEK)).all()
-        or not ((seconds >= 0) & (seconds < WEEK)).all()
-    ):
-        return None
-    values = np.array([int(word, 16) for word in words], np.uint32)
-    counts = np.column_stack([numbers_of(table[name]) for name in _COUNTS])
-    return _fields(week, seconds, values[np.from_dlpack(status.indices)], counts)
-
-
-def _read_one_by_one(piece: Piece, lines: NDArray[np.bool_]) -> tuple[_Fields, dict[int, str]]:
-    """The fields of those `lines` that can be read, and why each of the others cannot."""
-    rows: list[tuple[int, float, int, list[int]]] = []
-    reasons = {}
-    for index in np.flatnonzero(lines).tolist():
-        try:
-            rows.append(_read_line(piece.text(index)))
-        except ValueError as error:
-            reasons[index] = f"right checksum, but {error}"
-    week, seconds, status, counts = zip(*rows, strict=True) if rows else ([], [], [], [])
-    return _fields(week, seconds, status, counts), reasons
-
-
-def _read_line(text: bytes) -> tuple[int, float, int, list[int]]:
-    """Week, seconds, status and the six counts of a RAWIMUSA line.
-
-    Raises
-    ------
-    ValueError
-        where a field is missing or cannot be read, with the field and what was expected
+    `offset`: byte in the file where the data begin; `going_on`: what is refused and goes on.
     """
-    values = text.translate(_COMMAS).decode("ascii", "backslashreplace").split(",")[:-1]
-    if len(values) != len(_COLUMNS):
-        raise ValueError(f"{len(values)} fields, expected {len(_COLUMNS)}")
-    fields = dict(zip(_COLUMNS, values, strict=True))
-    week = _number(fields, "week", int, 0, LAST_WEEK)
-    seconds = _number(fields, "seconds", float, 0, WEEK)
-    if seconds == WEEK:
-        raise ValueError(f"seconds is {WEEK}, expected the next week")
-    if not _HEXADECIMAL.fullmatch(fields["status"]):
-        raise ValueError(f"status is '{fields['status']}', expected up to 8 hexadecimal digits")
-    counts = [int(_number(fields, name, int, -(2**31), 2**31 - 1)) for name in _COUNTS]
-    return int(week), seconds, int(fields["status"], 16), counts
+
+    def __init__(self) -> None:
+        self.offset = 0
+        self.going_on: RefusedLine | None = None
+        self._line, self._records, self._rolled = 1, 0, 0
+        self._message: int | None = None  # the IMU message that is read
+        self._stamp: int | None = None  # of the last record
+
+    def reading(self, data: bytes, found: Scan) -> Reading:
+        """What some items hold."""
+        what, start, length, which = found.items.T
+        self._choose(which[what == IMU])
+        ours = (which == self._message) & (what == IMU)
+        unsure = (which == self._message) & (what == UNSURE)
+        lines = self._lines(what)
+
+        account, reasons = Account(), {}
+        for index in np.flatnonzero(unsure).tolist():
+            text = data[start[index] : start[index] + length[index]]
+            if told := fields_of(text):
+                found.fields[STAMP][index], found.fields[STATUS][index] = told.stamp, told.status
+                found.fields[COUNTS][index], found.fields[TYPE][index] = told.counts, told.imu
+                ours[index] = True
+            else:
+                reasons[index] = why_unsure(text)
+        refused_as_ours = self._refused_as_ours(data, found.items)
+        for index in np.flatnonzero((what == DAMAGE) | (what == GOES_ON)).tolist():
+            reasons[index] = why_refused(data[start[index] : start[index] + length[index]])
+        refused = list(self._refused(data, found.items, lines, reasons))
+
+        counted = ours | unsure | refused_as_ours
+        record = self._records + np.cumsum(counted) - 1
+        self._records += int(counted.sum())
+        if self._message is not None:
+            account.add_all(DECODED, IMU_MESSAGES[self._message].name, length[ours])
+        account.add_all(BLANK, "", length[what == EMPTY])
+        for line in refused:
+            account.add(REFUSED, "", 1, line.bytes)
+        _add_others(account, data, found.items, ours | unsure)
+        increments = Increments(
+            record[ours],
+            self.offset + start[ours],
+            lines[ours],
+            self._unrolled(found.fields[STAMP][ours]),
+            found.fields[STATUS][ours],
+            found.fields[COUNTS][ours],
+            found.fields[TYPE][ours],
+        )
+        return Reading(increments, refused, account)
+
+    def end(self) -> Reading:
+        """What was refused up to the end of the file."""
+        ended, self.going_on = self.going_on, None
+        assert ended is not None
+        account = Account()
+        account.add(REFUSED, "", 1, ended.bytes)
+        return Reading(_none(), [ended], account)
+
+    def _choose(self, which: Integers) -> None:
+        """The IMU message that comes most often where the first ones are."""
+        if self._message is None and len(which):
+            self._message = int(np.bincount(which).argmax())
+
+    def _lines(self, what: Integers) -> Integers:
+        """Number of each item, what goes on counted once."""
+        before = np.append(self.going_on is not None, what[:-1] == GOES_ON)
+        goes_on = before & ((what == DAMAGE) | (what == GOES_ON))
+        lines = self._line - 1 + np.cumsum(~goes_on)
+        self._line = int(lines[-1]) + 1
+        return np.asarray(lines)
+
+    def _refused_as_ours(self, data: bytes, items: Integers) -> Truths:
+        """Which refused items would have been records, as far as their beginning tells."""
+        as_ours = np.zeros(len(items), bool)
+        if self._message is None:
+            return as_ours
+        message = IMU_MESSAGES[self._message]
+        begins = bytes(SYNC) if not message.text else b"%#"[not message.short : 2 - message.short]
+        begins += message.name.encode() if message.text else b""
+        for index in np.flatnonzero(items[:, WHAT] == DAMAGE).tolist():
+            numbered = message.text or items[index, WHICH] == message.number
+            as_ours[index] = numbered and data.startswith(begins, items[index, START])
+        return as_ours
+
+    def _refused(
+        self, data: bytes, items: Integers, lines: Integers, reasons: dict[int, str]
+    ) -> Iterator[RefusedLine]:
+        """The refused items; what goes on is told when it has ended."""
+        for index in sorted(reasons):
+            start, length = items[index, START], int(items[index, LENGTH])
+            if self.going_on is not None and lines[index] != self.going_on.line:
+                yield self.going_on
+                self.going_on = None
+            if self.going_on is None:
+                text = quoted(data[start : start + length].rstrip(b"\r\n"))
+                one = RefusedLine(
+                    int(lines[index]), self.offset + int(start), length, reasons[index], text
+                )
+            else:
+                size = self.going_on.bytes + length
+                one = replace(self.going_on, bytes=size, reason=_endless(size))
+            if items[index, WHAT] == GOES_ON:
+                self.going_on = replace(one, reason=_endless(one.bytes))
+            else:
+                self.going_on = None
+                yield one
+
+    def _unrolled(self, stamps: Integers) -> Integers:
+        """The times, weeks that began anew going on."""
+        if not len(stamps):
+            return stamps
+        before = stamps[0] if self._stamp is None else self._stamp
+        steps = np.diff(stamps, prepend=before)
+        rolls = np.rint(steps / ROLL) * (np.abs(np.abs(steps) - ROLL) < WEEK_NS)
+        self._stamp = int(stamps[-1])
+        rolled = self._rolled - np.cumsum(rolls).astype(np.int64)
+        self._rolled = int(rolled[-1])
+        return np.asarray(stamps + rolled * ROLL)
 
 
-def _number(
-    fields: dict[str, str], name: str, kind: type[int] | type[float], least: int, most: int
-) -> float:
-    """The value of the field `name`, which must lie between `least` and `most`."""
-    what = "a whole number" if kind is int else "a number"
-    expected = f"{name} is '{fields[name]}', expected {what} from {least} to {most}"
-    try:
-        value = kind(fields[name])
-    except ValueError:
-        raise ValueError(expected) from None
-    if not least <= value <= most:
-        raise ValueError(expected)
-    return value
+def _add_others(account: Account, data: bytes, items: Integers, ours: Truths) -> None:
+    """Count all other messages, by name."""
+    what, start, length, which = items.T
+    others = ((what == IMU) | (what == UNSURE)) & ~ours
+    for number in np.unique(which[others]).tolist():
+        same = others & (which == number)
+        account.add_all(OTHER_MESSAGE, IMU_MESSAGES[number].name, length[same])
+    for number in np.unique(which[what == OTHER_BINARY]).tolist():
+        same = (what == OTHER_BINARY) & (which == number)
+        account.add_all(OTHER_MESSAGE, f"binary {number}", length[same])
+    lines: Counter[bytes] = Counter()
+    sizes: Counter[bytes] = Counter()
+    for row in np.flatnonzero(what == OTHER_TEXT).tolist():
+        name = data[start[row] + 1 : start[row] + 1 + which[row]]
+        lines[name] += 1
+        sizes[name] += int(length[row])
+    for name, count in lines.items():
+        account.add(OTHER_MESSAGE, quoted(name), count, sizes[name])
 
 
-def _fields(week: object, seconds: object, status: object, counts: object) -> _Fields:
-    """The fields as arrays; time as whole nanoseconds, for a double would lose them."""
-    whole = np.asarray(week, np.int64) * (WEEK * NANOSECONDS)
-    part = np.rint(np.asarray(seconds, np.float64) * NANOSECONDS).astype(np.int64)
-    return _Fields(
-        whole + part,
-        np.asarray(status, np.uint32),
-        np.asarray(counts, np.int32).reshape(-1, len(_COUNTS)),
+def _endless(size: int) -> str:
+    return f"{size} bytes without a line end, expected at most {LONGEST_LINE}"
+
+
+def _none() -> Increments:
+    empty = np.zeros(0, np.int64)
+    return Increments(
+        empty,
+        empty,
+        empty,
+        empty,
+        np.zeros(0, np.uint32),
+        np.zeros((0, 6), np.int32),
+        np.zeros(0, np.int16),
     )

@@ -51,6 +51,7 @@ NAMES = {
     "time_backwards": "time goes backwards",
     "unknown_structure": "structure without a name",
     "wrong_day": "another day",
+    "wrong_imu_type": "another type of IMU",
 }
 GRAVITY = {3: "spoils a result", 2: "weakens a result", 1: "good to know"}
 

@@ -56,6 +56,7 @@ OF_NO_SAMPLE = frozenset(
         "rate_off",
         "temperature_drift",
         "wrong_day",
+        "wrong_imu_type",
         "wrong_scale_factor",
     }
 )

@@ -64,6 +64,7 @@ def logs(
     """Every log that has records; `ranges`: what a count is and how far each channel reaches."""
     clock, ends = clocks_of(clocks), extents(samples)
     recorded_on = {row["log"]: row["recorded_on"] for row in rows_of(clocks)}
+    imu = {row["log"]: row["imu_types"] or "" for row in rows_of(clocks)}
     cuts = {log: regular(end, round(WINDOW / clock[log].step)) for log, end in ends.items()}
     windows = sums_over(samples, cuts)
     totals: dict[str, _Total] = {}
@@ -95,6 +96,7 @@ def logs(
             records=total.records,
             step=clock[name].duration or np.nan,
             increments=any(stated.get((name, c), {}).get("increments") for c in CHANNELS),
+            imu=tuple(int(number) for number in imu[name].split()),
         )
         for name, total in totals.items()
         for sums in [windows[name]]

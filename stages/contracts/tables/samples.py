@@ -13,7 +13,7 @@ SAMPLES = Table(
         Column("record", INTEGER, "1", "number of the record in its log, refused ones counted"),
         Column("offset", INTEGER, "byte", "where its line begins in the file"),
         Column("line", INTEGER, "1", "number of its line, from 1"),
-        Column("time", DOUBLE, "s", "since the start of its clock", "", True),
+        Column("time", DOUBLE, "s", "since the start of its clock", "", True, even=True),
         Column("status", pa.uint32(), "", "status word of the instrument", nullable=True),
         Column(
             "mean_of",
@@ -53,7 +53,7 @@ ACCOUNTS = Table(
 )
 CLOCKS = Table(
     "clocks",
-    1,
+    2,
     (
         LOG,
         Column(
@@ -66,5 +66,12 @@ CLOCKS = Table(
         Column("records", INTEGER, "1", "number of decoded records"),
         Column("interval", DOUBLE, "s", "median sample interval", nullable=True),
         Column("step", DOUBLE, "s", "what a sample counts for in a sum over time", nullable=True),
+        Column(
+            "imu_types",
+            TEXT,
+            "",
+            "types of IMU that its messages tell, by NovAtel's list",
+            nullable=True,
+        ),
     ),
 )

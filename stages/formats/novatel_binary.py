@@ -1,0 +1,128 @@
+"""A binary message of a NovAtel receiver; layouts in `novatel_messages`."""
+
+import numpy as np
+
+from stages.formats.compiled import compiled
+from stages.formats.crc32 import crc32
+from stages.formats.gps_time import NANOSECONDS, WEEK
+from stages.formats.novatel_items import (
+    COUNTS,
+    DAMAGE,
+    IMU,
+    LAST_WEEK,
+    MORE,
+    NOTHING,
+    OTHER_BINARY,
+    STAMP,
+    STATUS,
+    TYPE,
+    UNSURE,
+    WEEK_NS,
+    Bytes,
+    Fields,
+)
+from stages.formats.novatel_messages import (
+    BODY_BYTES,
+    CRC_BYTES,
+    EXTENDED,
+    LONG_BYTES,
+    LONG_SYNC,
+    NUMBER,
+    SHORT,
+    SHORT_BYTES,
+    SHORT_SYNC,
+    SYNC,
+    TEXT,
+    WANTED,
+)
+
+_ANSWER = 0x80  # this bit of the long header's type: the answer to a command, no log
+
+
+@compiled
+def binary_begins(data: Bytes, place: int) -> bool:
+    """Whether a binary message may begin at `place`, as far as the bytes go."""
+    left = len(data) - place
+    if data[place] != SYNC[0] or (left > 1 and data[place + 1] != SYNC[1]):
+        return False
+    return left < 3 or data[place + 2] == LONG_SYNC or data[place + 2] == SHORT_SYNC
+
+
+@compiled
+def binary(data: Bytes, place: int, last: bool, n: int, into: Fields) -> tuple[int, int, int]:
+    """The binary message at `place`; if of the IMU, its fields become number `n` of `into`.
+
+    `last`: nothing follows the data in the file.
+
+    Returns
+    -------
+    what it is; which of the IMU messages, or its number; the byte after it, or what `novatel_items`
+    has instead
+    """
+    left = len(data) - place
+    if not binary_begins(data, place):
+        return DAMAGE, 0, NOTHING
+    if left < SHORT_BYTES:
+        return DAMAGE, 0, NOTHING if last else MORE
+    long = data[place + 2] == LONG_SYNC
+    header, body = SHORT_BYTES, int(data[place + 3])
+    if long:
+        header, body = body, _two(data, place + 8)
+        if header != LONG_BYTES:
+            return DAMAGE, 0, NOTHING
+    number = _two(data, place + 4)
+    total = header + body + CRC_BYTES
+    if left < total:
+        return DAMAGE, number, -left if last else MORE
+    end, after = place + header + body, place + total
+    if crc32(data, place, end) != _four(data, end):
+        return DAMAGE, number, -total
+    which = -1 if long and data[place + 6] & _ANSWER else _numbered(number, not long)
+    if which < 0:
+        return OTHER_BINARY, number, after
+    extended = WANTED[which, EXTENDED] != 0
+    read = body == BODY_BYTES and _body(data, end - BODY_BYTES, extended, n, into)
+    return IMU if read else UNSURE, which, after
+
+
+@compiled
+def _numbered(number: int, short: bool) -> int:
+    """Which of the IMU messages has this number and such a header; −1: none."""
+    for which in range(len(WANTED)):
+        wanted = WANTED[which]
+        if not wanted[TEXT] and wanted[NUMBER] == number and (wanted[SHORT] != 0) == short:
+            return which
+    return -1
+
+
+@compiled
+def _body(data: Bytes, first: int, extended: bool, n: int, into: Fields) -> bool:
+    """Whether the body that begins at `first` has a time; its fields become number `n`."""
+    week = _two(data, first + 2) if extended else int(_four(data, first))
+    eight = np.empty(1, np.uint64)
+    eight[0] = np.uint64(_four(data, first + 4)) | np.uint64(_four(data, first + 8)) << np.uint64(
+        32
+    )
+    seconds = eight.view(np.float64)[0]
+    if not (week <= LAST_WEEK and 0.0 <= seconds < WEEK):
+        return False
+    whole = int(seconds)
+    part = round((seconds - whole) * NANOSECONDS)
+    into[STAMP][n] = week * WEEK_NS + whole * NANOSECONDS + part
+    into[STATUS][n] = _four(data, first + 12)
+    for field in range(6):
+        into[COUNTS][n, field] = np.int32(_four(data, first + 16 + 4 * field))
+    into[TYPE][n] = data[first + 1] if extended else -1
+    return True
+
+
+@compiled
+def _two(data: Bytes, place: int) -> int:
+    """Two bytes, the lower first."""
+    return int(data[place]) | int(data[place + 1]) << 8
+
+
+@compiled
+def _four(data: Bytes, place: int) -> np.uint32:
+    """Four bytes, the lowest first."""
+    return np.uint32(_two(data, place) | _two(data, place + 2) << 16)

@@ -1,0 +1,193 @@
+"""A text message of a NovAtel receiver: header; body * checksum, and a line end.
+
+    %RAWIMUSA,2283,42699.880;2283,42699.879998762,00000077,64188,-64,465,-16100,-2,873*3928684b
+
+The checksum is over what stands between the first character and the '*'.
+"""
+
+import numpy as np
+
+from stages.formats.compiled import compiled
+from stages.formats.crc32 import crc32
+from stages.formats.novatel_items import (
+    COUNTS,
+    IMU,
+    LAST_WEEK,
+    MORE,
+    NOTHING,
+    OTHER_TEXT,
+    STAMP,
+    STATUS,
+    TYPE,
+    UNSURE,
+    WEEK_NS,
+    Bytes,
+    Fields,
+)
+from stages.formats.novatel_messages import (
+    EXTENDED,
+    LONG_FIELDS,
+    NAME_BYTES,
+    NAME_LENGTH,
+    SHORT,
+    SHORT_FIELDS,
+    TEXT,
+    WANTED,
+)
+from stages.formats.pieces import LONGEST_LINE
+
+DIGITS = 8  # of the checksum, hexadecimal in lower case
+
+FEED, RETURN, SPACE, TAB = 10, 13, 32, 9
+PERCENT, HASH, STAR = ord("%"), ord("#"), ord("*")
+_COMMA, _SEMICOLON, _MINUS, _POINT, _ZERO, _NINE = (ord(character) for character in ",;-.09")
+_NO_DIGIT = 255
+_DIGIT = np.full(256, _NO_DIGIT, np.uint8)
+_DIGIT[list(b"0123456789abcdef")] = range(16)
+_LONGEST_NUMBER = 10  # digits
+_DECIMALS = 9
+
+
+@compiled
+def text(data: Bytes, place: int, last: bool, n: int, into: Fields) -> tuple[int, int, int]:
+    """The text message at `place`; arguments and what is returned as for `binary`.
+
+    Of a message that is not of the IMU, the length of its name is told.
+    """
+    stop = place + 1
+    while stop < len(data) and data[stop] != FEED:
+        stop += 1
+    if stop - place >= LONGEST_LINE:
+        return OTHER_TEXT, 0, NOTHING
+    if stop == len(data) and not last:
+        return OTHER_TEXT, 0, MORE
+    end = stop - 1 if data[stop - 1] == RETURN else stop
+    star = end - DIGITS - 1
+    if not right(data, place, star, end):  # then the message may end before the line does
+        star = place + 1
+        while star < end and data[star] != STAR:
+            star += 1
+        if not right(data, place, star, end):
+            return OTHER_TEXT, 0, NOTHING
+    after = star + 1 + DIGITS
+    rest = after
+    while rest < stop and (data[rest] == RETURN or data[rest] == SPACE or data[rest] == TAB):
+        rest += 1
+    if rest == stop:  # nothing but the line end follows
+        after = min(stop + 1, len(data))
+    what, which = _fields(data, place, star, n, into)
+    return what, which, after
+
+
+@compiled
+def right(data: Bytes, place: int, star: int, stop: int) -> bool:
+    """Whether the text from `place` to its '*' has the checksum that follows, before `stop`."""
+    if star <= place or star + DIGITS >= stop or data[star] != STAR:
+        return False
+    stated = np.uint32(0)
+    for k in range(star + 1, star + 1 + DIGITS):
+        digit = _DIGIT[data[k]]
+        if digit == _NO_DIGIT:
+            return False
+        stated = stated << np.uint32(4) | np.uint32(digit)
+    return bool(crc32(data, place + 1, star) == stated)
+
+
+@compiled
+def _fields(data: Bytes, place: int, star: int, n: int, into: Fields) -> tuple[int, int]:
+    """What the text from `place` to `star` is, and which; its fields, where it is of the IMU."""
+    i = place + 1
+    while i < star and data[i] != _COMMA and data[i] != _SEMICOLON:
+        i += 1
+    which = _named(data, place, i - place - 1)
+    if which < 0:
+        return OTHER_TEXT, i - place - 1
+    header = 1
+    while i < star and data[i] != _SEMICOLON:
+        header += data[i] == _COMMA
+        i += 1
+    wanted = WANTED[which]
+    if i == star or header != (SHORT_FIELDS if wanted[SHORT] else LONG_FIELDS):
+        return UNSURE, which
+    read = _body(data, i, star, wanted[EXTENDED] != 0, n, into)
+    return IMU if read else UNSURE, which
+
+
+@compiled
+def _body(data: Bytes, i: int, star: int, extended: bool, n: int, into: Fields) -> bool:
+    """Whether the fields behind the ';' at `i` are as they should be; they become number `n`."""
+    kind, good = -1, True
+    if extended:
+        i += 1
+        while i < star and data[i] != _COMMA:  # what the IMU says of itself
+            i += 1
+        kind, i, good = _whole(data, i + 1, star)
+        good = good and 0 <= kind <= 255
+    week, i, good_week = _whole(data, i + 1, star)
+    seconds, i, good_seconds = _nanoseconds(data, i + 1, star)
+    word, i, good_word = _word(data, i + 1, star)
+    good = good and good_week and good_seconds and good_word
+    if not (good and 0 <= week <= LAST_WEEK and seconds < WEEK_NS):
+        return False
+    for field in range(6):
+        value, i, good = _whole(data, i + 1, star)
+        if not good or (i == star) != (field == 5) or not -(2**31) <= value < 2**31:
+            return False
+        into[COUNTS][n, field] = value
+    into[STAMP][n], into[STATUS][n], into[TYPE][n] = week * WEEK_NS + seconds, word, kind
+    return True
+
+
+@compiled
+def _named(data: Bytes, place: int, length: int) -> int:
+    """Which of the IMU messages begins at `place` and has a name of this length; −1: none."""
+    short = data[place] == PERCENT
+    for which in range(len(WANTED)):
+        wanted = WANTED[which]
+        if wanted[TEXT] and wanted[NAME_LENGTH] == length and (wanted[SHORT] != 0) == short:
+            same = True
+            for k in range(length):
+                same = same and NAME_BYTES[which, k] == data[place + 1 + k]
+            if same:
+                return which
+    return -1
+
+
+@compiled
+def _whole(data: Bytes, i: int, stop: int) -> tuple[int, int, bool]:
+    """The whole number at `i`, where it ends, and whether it is one."""
+    negative = i < stop and data[i] == _MINUS
+    i += 1 if negative else 0
+    value, first = 0, i
+    while i < stop and _ZERO <= data[i] <= _NINE:
+        value = 10 * value + (int(data[i]) - _ZERO)
+        i += 1
+    good = first < i <= first + _LONGEST_NUMBER and (i == stop or data[i] == _COMMA)
+    return -value if negative else value, i, good
+
+
+@compiled
+def _word(data: Bytes, i: int, stop: int) -> tuple[np.uint32, int, bool]:
+    """The hexadecimal number at `i`, where it ends, and whether it is one of at most 8 digits."""
+    value, first = np.uint32(0), i
+    while i < stop and _DIGIT[data[i]] != _NO_DIGIT:
+        value = value << np.uint32(4) | np.uint32(_DIGIT[data[i]])
+        i += 1
+    return value, i, first < i <= first + DIGITS and i < stop and data[i] == _COMMA
+
+
+@compiled
+def _nanoseconds(data: Bytes, i: int, stop: int) -> tuple[int, int, bool]:
+    """The seconds at `i`, of at most nine decimals, in ns, where they end, if they are such."""
+    value, i, _ = _whole(data, i, stop)
+    good = value >= 0
+    decimals = 0
+    if i < stop and data[i] == _POINT:
+        i += 1
+        while i < stop and _ZERO <= data[i] <= _NINE and decimals <= _DECIMALS:
+            value = 10 * value + (int(data[i]) - _ZERO)
+            decimals += 1
+            i += 1
+    for _ in range(decimals, _DECIMALS):
+        value *= 10
+    return value, i, good and decimals <= _DECIMALS and i < stop and data[i] == _COMMA
