@@ -1,0 +1,148 @@
+"""The data rows of a log of columns, whatever the file is: what they say, and why one is refused."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stages.formats.account import Account, RefusedLine, quoted
+from stages.formats.column_layout import Column, ColumnLayout, Triad
+from stages.formats.fields import Field, Reals
+from stages.formats.pieces import Integers
+
+Truths = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Rows:
+    """What n data rows say; NaN where a value is not recorded, None where none ever is."""
+
+    record: Integers  # number among the data rows of the log, refused ones counted, (n,)
+    offset: Integers  # byte in the file where the line begins; 0 where rows are no lines, (n,)
+    line: Integers  # number of the line, or of the row where rows are no lines, from 1, (n,)
+    ticks: Reals | None  # time; `ticks_per_second` of the layout tells the unit, (n,)
+    mean_of: Reals | None  # number of samples that the row is the mean of, (n,)
+    accelerometer: Reals  # x, y, z, as they stand in the file, (n, 3)
+    gyro: Reals  # likewise
+    table_angle: Reals | None  # as it stands in the file, (n,)
+    temperature: Reals | None  # likewise
+    label: list[str] | None  # "column=value; …" of the columns that the plan selects by, (n,)
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a piece of the log holds."""
+
+    records: Rows
+    refused: list[RefusedLine]
+    account: Account
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where n data rows stand in the log; as in `Rows`, (n,) each."""
+
+    record: Integers
+    offset: Integers
+    line: Integers
+
+
+@dataclass(frozen=True)
+class Sorted:
+    """n data rows, told apart."""
+
+    rows: Rows  # the m ones that hold a sample
+    taken: Truths  # which these are, (n,)
+    not_selected: Truths  # rows that hold none of the sensors, (n,)
+    reasons: dict[int, str]  # why the others are refused, by their place among the n
+
+
+def sort_rows(
+    columns: ColumnLayout,
+    fields: Mapping[int, Field],
+    place: Place,
+    lost: Mapping[int, str] | None = None,
+) -> Sorted:
+    """The rows whose wanted columns, by index, are `fields`; those `lost` are refused anyway.
+
+    A row is refused where the layout wants a number and there is no finite one.
+    """
+    count = len(place.record)
+    reasons = dict(lost or {})
+    whole = np.ones(count, bool)
+    whole[list(reasons)] = False
+    held = [_held(triad, fields, count) for triad in columns.triads]
+    selected = _selected(columns, held)
+    wanted = [(column, selected) for column in columns.of_every_row]
+    for triad, holds in zip(columns.triads, held, strict=True):
+        wanted += [(column, holds) for column in triad.columns if column]
+    numbers = {column: fields[column.index].numbers() for column, _ in wanted}
+
+    for column, needed in wanted:
+        for row in np.flatnonzero(whole & needed & ~np.isfinite(numbers[column])).tolist():
+            value = quoted(fields[column.index].text(row).encode())
+            reasons[row] = f"column {column.name} is '{value}', expected a finite number"
+            whole[row] = False
+    taken = whole & selected
+
+    def of(column: Column | None) -> Reals | None:
+        return None if column is None else numbers[column][taken]
+
+    record = place.record[taken]
+    accelerometer, gyro = (
+        _axes(triad, numbers, holds)[taken]
+        for triad, holds in zip(columns.triads, held, strict=True)
+    )
+    rows = Rows(
+        record=record,
+        offset=place.offset[taken],
+        line=place.line[taken],
+        ticks=record.astype(np.float64) if columns.counts_rows else of(columns.time),
+        mean_of=of(columns.mean_of),
+        accelerometer=accelerometer,
+        gyro=gyro,
+        table_angle=of(columns.table_angle),
+        temperature=of(columns.temperature),
+        label=_label(columns.label, fields, taken),
+    )
+    return Sorted(rows, taken, whole & ~selected, reasons)
+
+
+def _held(triad: Triad, fields: Mapping[int, Field], count: int) -> Truths:
+    """Which rows hold the triad, (n,)."""
+    holds = np.ones(count, bool)
+    for column, value in triad.rows:
+        holds &= np.array([text == value for text in fields[column.index].texts()], bool)
+    return holds
+
+
+def _selected(columns: ColumnLayout, held: Sequence[Truths]) -> Truths:
+    """Which rows hold anything: all of them, unless every triad has rows of its own, (n,)."""
+    recorded = [
+        holds for triad, holds in zip(columns.triads, held, strict=True) if any(triad.columns)
+    ]
+    return np.logical_or.reduce(recorded) if recorded else held[0]
+
+
+def _axes(triad: Triad, numbers: Mapping[Column, Reals], holds: Truths) -> Reals:
+    """The three axes of a triad; NaN where it is not recorded, (n, 3)."""
+    axes = np.full((len(holds), 3), np.nan)
+    for axis, column in enumerate(triad.columns):
+        if column is not None:
+            recorded = holds & (numbers[column] != triad.missing)
+            axes[recorded, axis] = numbers[column][recorded]
+    return axes
+
+
+def _label(
+    columns: Sequence[Column], fields: Mapping[int, Field], taken: Truths
+) -> list[str] | None:
+    """The text "column=value" of each column, joined with "; ", (n,)."""
+    if not columns:
+        return None
+    parts = [
+        [f"{column.name}={text}" for text in fields[column.index].texts()] for column in columns
+    ]
+    labels = ["; ".join(each) for each in zip(*parts, strict=True)]
+    return [labels[row] for row in np.flatnonzero(taken).tolist()]
