@@ -22,6 +22,7 @@ from stages.contracts.errors import Refusal
 from stages.contracts.masks import Masks
 from stages.contracts.parquet import Stream, Table, provenance
 from stages.contracts.records import Row, manoeuvres_of, rows_of
+from stages.contracts.whole_files import write_whole
 from stages.exporting.ardupilot import ardupilot
 from stages.exporting.calibration import (
     COMPENSATED,
@@ -167,16 +168,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
             for name, table in READS.items()
         }
         texts = export(**read, made_by=makers(paths))
+        beginning = given.output
+        write_whole(
+            {
+                beginning.with_name(f"{beginning.name}.{ending}"): text.encode()
+                for ending, text in texts.items()
+            }
+        )
     except Refusal as refusal:
         sys.exit(f"export: {refusal}")
-    given.output.parent.mkdir(parents=True, exist_ok=True)
-    parts = {}
-    for ending, text in texts.items():
-        path = given.output.with_name(f"{given.output.name}.{ending}")
-        parts[path] = path.with_name(f"{path.name}.part")
-        parts[path].write_text(text, encoding="utf-8", newline="\n")
-    for path, part in parts.items():
-        part.replace(path)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ from pathlib import Path
 from types import ModuleType
 
 from stages.contracts.errors import Refusal
+from stages.contracts.whole_files import write_whole
 
 PACKAGES = "libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
 
@@ -53,13 +54,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--output", type=Path, required=True, help="the PDF")
     given = parser.parse_args(arguments)
     try:
-        written = pdf(given.html.read_text(encoding="utf-8"))
+        write_whole({given.output: pdf(given.html.read_text(encoding="utf-8"))})
     except Refusal as refusal:
         sys.exit(f"pdf: {refusal}\nThe report is there as a page: {given.html}")
-    given.output.parent.mkdir(parents=True, exist_ok=True)
-    part = given.output.with_name(f"{given.output.name}.part")
-    part.write_bytes(written)
-    part.replace(given.output)
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ from stages.campaign.recording import (
 from stages.contracts import tables
 from stages.contracts.code import hash_of_file
 from stages.contracts.stage import Stage, Tables
-from stages.contracts.yaml_file import YamlFile
+from stages.contracts.yaml_file import Key, YamlFile
 
 Row = dict[str, Any]
 
@@ -62,6 +62,7 @@ def plan(
                 f"a log in {campaign[0].parent}",
                 "put the log there, or correct its name",
             )
+        _stays_inside(file, row["key"], present[row["file"]])
     others = [row for path in published for row in published_values(YamlFile(path))]
     used = sorted({present[row["file"]] for row in manoeuvres})
     return {
@@ -78,6 +79,17 @@ def plan(
         "published": pd.DataFrame(others) if others else tables.PUBLISHED.empty(),
         "manoeuvres": pd.DataFrame(manoeuvres)[[c.name for c in tables.MANOEUVRES.columns]],
     }
+
+
+def _stays_inside(file: YamlFile, key: Key, log: Path) -> None:
+    """A campaign from elsewhere reads nothing but what lies in its own folder."""
+    if (target := log.resolve()).parent != file.path.resolve().parent:
+        raise file.refuse(
+            key,
+            f"{log.name}, a link to {target}",
+            f"a log in {file.path.parent}",
+            "copy the log there instead of the link",
+        )
 
 
 def _campaign(file: YamlFile, folder: str, entry: dict[str, Any]) -> Row:

@@ -21,6 +21,7 @@ from stages.contracts.counting import counting, extended_methods
 from stages.contracts.errors import Refusal
 from stages.contracts.parquet import Stream, Table
 from stages.contracts.parquet import provenance as made_by
+from stages.contracts.whole_files import write_whole
 from stages.notation import numbers
 from stages.reporting import (
     account,
@@ -316,13 +317,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
         makers = {name: made_by(path) for name, path in paths.items()}
         makers["report"] = {"stage": "report", "settings": {}, "code": hash_of(code_of("report"))}
         documents = report(**read, provenance=makers)
+        texts = {given.output: documents.html, given.verdict: documents.verdict}
+        write_whole({path: text.encode() for path, text in texts.items()})
     except Refusal as refusal:
         sys.exit(f"report: {refusal}")
-    for path, text in ((given.output, documents.html), (given.verdict, documents.verdict)):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part = path.with_name(f"{path.name}.part")
-        part.write_text(text, encoding="utf-8", newline="\n")
-        part.replace(path)
 
 
 if __name__ == "__main__":

@@ -199,10 +199,14 @@ class Writer:
 
     def __enter__(self) -> Self:
         self._folder.mkdir(parents=True, exist_ok=True)
-        for name, table in self._tables.items():
-            schema = table.schema.with_metadata({**table.schema.metadata, **self._made_by})
-            writer = pq.ParquetWriter(self._part(name), schema, **table.packing)
-            self._files[name] = self._open.enter_context(writer)
+        try:
+            for name, table in self._tables.items():
+                schema = table.schema.with_metadata({**table.schema.metadata, **self._made_by})
+                writer = pq.ParquetWriter(self._part(name), schema, **table.packing)
+                self._files[name] = self._open.enter_context(writer)
+        except OSError:
+            self._remove_parts()
+            raise
         return self
 
     def write(self, name: str, rows: pd.DataFrame | pa.RecordBatch) -> None:
@@ -215,12 +219,17 @@ class Writer:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._open.close()
-        for name in self._tables:
+        try:
+            self._open.close()
             if kind is None:
-                self._part(name).replace(self._folder / f"{name}.parquet")
-            else:
-                self._part(name).unlink(missing_ok=True)
+                for name in self._tables:
+                    self._part(name).replace(self._folder / f"{name}.parquet")
+        finally:
+            self._remove_parts()
+
+    def _remove_parts(self) -> None:
+        for name in self._tables:
+            self._part(name).unlink(missing_ok=True)
 
     def _part(self, name: str) -> Path:
         return self._folder / f"{name}.parquet.part"

@@ -17,6 +17,7 @@ import pyarrow as pa
 from stages.contracts.code import code_of, hash_of, hash_of_file
 from stages.contracts.errors import Refusal
 from stages.contracts.parquet import Table, Writer, provenance
+from stages.contracts.whole_files import room_for
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -78,7 +79,7 @@ class Stage:
                 if path.is_file()
             },
         }
-        with Writer(output, self.writes, made_by) as writer:
+        with room_for(output), Writer(output, self.writes, made_by) as writer:
             result = self.function(**inputs, **files, **settings)
             for name, rows in result.items() if isinstance(result, Mapping) else result:
                 writer.write(name, rows)

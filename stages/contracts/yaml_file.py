@@ -16,12 +16,13 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.resolver import VersionedResolver
 from ruamel.yaml.scalarbool import ScalarBoolean
-from ruamel.yaml.scalarint import ScalarInt
 
 from stages.contracts.errors import Refusal
 
 Key = Sequence[str | int]
 LARGEST = 4_000_000  # bytes; a campaign file of a person is a thousand times smaller
+MOST, DEEPEST = 100_000, 40  # values, and levels of them: a few lines of aliases make billions
+ABSURD = 1e15  # nothing that a laboratory writes down is larger, in whichever unit
 FOLDER = Path(__file__).parent
 
 
@@ -45,6 +46,7 @@ class YamlFile:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._lines: dict[tuple[str | int, ...], int] = {}
+        self._values = 0
         self.content = self._plain(self._load(), ())
 
     def place(self, key: Key) -> str:
@@ -127,25 +129,46 @@ class YamlFile:
             ) from None
         except (YAMLError, ValueError) as error:
             raise Refusal(str(self.path), "", str(error), "YAML 1.2", "correct the file") from None
+        except RecursionError:
+            raise self._too_much("levels without end", f"at most {DEEPEST} levels") from None
+
+    def _too_much(self, found: str, expected: str) -> Refusal:
+        return Refusal(str(self.path), "", found, expected, "write it out without aliases")
 
     def _plain(self, node: Any, key: tuple[str | int, ...]) -> Any:
+        self._values += 1
+        if self._values > MOST:
+            raise self._too_much(f"more than {MOST} values, aliases written out", "fewer")
+        if len(key) > DEEPEST:
+            raise self._too_much("more levels", f"at most {DEEPEST} levels")
+        if getattr(getattr(node, "tag", None), "value", None):
+            raise self.refuse(key, str(node), "text, a number, a list or keys", "remove its tag")
         if isinstance(node, CommentedMap):
             for name in node:
+                if not isinstance(name, str | int):
+                    raise self.refuse(key, name, "a key of text", "put the key in quotes")
                 self._lines[(*key, name)] = node.lc.key(name)[0] + 1
             return {name: self._plain(value, (*key, name)) for name, value in node.items()}
         if isinstance(node, CommentedSeq):
             for number in range(len(node)):
                 self._lines[(*key, number)] = node.lc.item(number)[0] + 1
             return [self._plain(value, (*key, number)) for number, value in enumerate(node)]
-        if isinstance(node, ScalarBoolean):
+        return self._scalar(node, key)
+
+    def _scalar(self, node: Any, key: Key) -> str | int | float | None:
+        if isinstance(node, str):
+            return str(node)
+        if isinstance(node, ScalarBoolean | bool):
             return bool(node)
-        if isinstance(node, ScalarInt):
-            return int(node)
-        if isinstance(node, float):
+        if isinstance(node, int | float):
             if not isfinite(node):
                 raise self.refuse(key, float(node), "a finite number", "correct the value")
-            return float(node)
-        return str(node) if isinstance(node, str) else node
+            if abs(node) > ABSURD:
+                raise self.refuse(key, node, f"at most {ABSURD:g}", "correct the value")
+            return int(node) if isinstance(node, int) else float(node)
+        if node is None:
+            return None
+        raise self.refuse(key, str(node), "text or a number", "put it in quotes")
 
 
 @cache
