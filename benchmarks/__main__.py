@@ -1,6 +1,6 @@
 """The command line of `make bench`: all parts, or those that are named.
 
-    python -m benchmarks [bounds calibration faults cost noise decoding]
+    python -m benchmarks [bounds calibration faults cost noise decoding kills]
 
 Prints the tables; a run of all parts also writes them to benchmarks/results.md. BENCH_LOG_MB is the
 size of the log in `decoding`, in units of 10⁶ byte.
@@ -13,7 +13,7 @@ from pathlib import Path
 
 from benchmarks.machine import described
 
-PARTS = ("bounds", "calibration", "faults", "cost", "noise", "decoding")
+PARTS = ("bounds", "calibration", "faults", "cost", "noise", "decoding", "kills")
 RESULTS = Path(__file__).parent / "results.md"
 
 
