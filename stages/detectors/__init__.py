@@ -11,6 +11,7 @@ from stages.detectors.axis_swap_against_plan import AxisSwapAgainstPlan
 from stages.detectors.bias_jump import BiasJump
 from stages.detectors.clock_jitter import ClockJitter
 from stages.detectors.clock_scale import ClockScale
+from stages.detectors.clock_step import ClockStep
 from stages.detectors.dead_axis import DeadAxis
 from stages.detectors.detector import Detector
 from stages.detectors.duplicate import Duplicate
@@ -50,6 +51,7 @@ OF_RECORDS: tuple[Detector, ...] = (
     StatusInvalid(),
     TimeStandsStill(),
     ClockJitter(),
+    ClockStep(),
     ClockScale(),
     RateOff(),
     WrongDay(),

@@ -21,14 +21,21 @@ Array = NDArray[np.float64]
 def without_lines(
     blocks: pd.DataFrame, turns: Sequence[SteadyTurn], lines: Sequence[Bound]
 ) -> pd.DataFrame:
-    """The same blocks, each line taken out of the steady ones with its own phase in each turn."""
+    """The same blocks, each line taken out of the steady ones with its own phase in each turn.
+
+    The angle of a turn stays as it was: from rest to rest what rings comes back, and so does a
+    ripple of a whole order. What it adds while the turn is steady it takes away while the table
+    speeds up and slows down.
+    """
     if not lines:
         return blocks
     quiet = blocks.copy()
     for turn in turns:
         own = (blocks["manoeuvre"] == turn.name) & (blocks["phase"] == "steady")
         if own.any() and np.isfinite(turn.start):
-            quiet.loc[own, GYRO] -= _ringing(turn, lines, blocks[own]) @ turn.matrix.T
+            ringing = _ringing(turn, lines, blocks[own])
+            ringing -= np.average(ringing, axis=0, weights=blocks.loc[own, "seconds"])
+            quiet.loc[own, GYRO] -= ringing @ turn.matrix.T
     return quiet
 
 

@@ -1,9 +1,10 @@
-"""Which column of a log of text holds what: the campaign's layout, applied to the file's header.
+"""Which column of a log holds what: the campaign's layout, applied to the names in the file.
 
-The layout is the JSON of the campaign's format (kind `columns`). Columns go by name, as the
-header's last line gives them, or by number from 1.
+The layout is the JSON of the campaign's format (kind `columns`). Columns go by name, as the last
+header line of a text or the container gives them, or by number from 1.
 """
 
+import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from typing import Any
 from stages.contracts.errors import Refusal
 
 _TICKS = {"s": 1.0, "ms": 1e3, "us": 1e6}  # in a second
+_NAMES_SHOWN = 60  # of a container, that may have thousands
 
 
 @dataclass(frozen=True)
@@ -76,15 +78,19 @@ def ticks_per_second(layout: Mapping[str, Any]) -> float:
     return _TICKS[time["unit"]]
 
 
-def column_layout(layout: Mapping[str, Any], names: Sequence[str], file: str) -> ColumnLayout:
-    """The layout applied to a file whose header gives its columns these names.
+def column_layout(
+    layout: Mapping[str, Any], names: Sequence[str], file: str, *, container: bool = False
+) -> ColumnLayout:
+    """The layout applied to a file that gives its columns these names.
+
+    A `container` names every column that it has; the header of a text may name none.
 
     Raises
     ------
     Refusal
-        where the layout names a column that the header has not, or has twice
+        where the layout names a column that the file has not, or has twice
     """
-    finder = _Finder(names, file)
+    finder = _Finder(names, file, container)
     time = layout.get("time")
     return ColumnLayout(
         accelerometer=finder.triad("accelerometer", layout.get("accelerometer")),
@@ -102,9 +108,10 @@ def column_layout(layout: Mapping[str, Any], names: Sequence[str], file: str) ->
 class _Finder:
     """Finds the columns that the keys of the layout ask for."""
 
-    def __init__(self, names: Sequence[str], file: str) -> None:
+    def __init__(self, names: Sequence[str], file: str, container: bool) -> None:
         self._names = names
         self._file = file
+        self._container = container
         self.by_name = False
 
     def triad(self, key: str, told: Mapping[str, Any] | None) -> Triad:
@@ -128,21 +135,29 @@ class _Finder:
     def known(self, key: str, name: str | int) -> Column:
         if isinstance(name, str) and (times := Counter(self._names)[name]):
             if times > 1:
-                raise self._refusal(key, f"the header has {times} columns '{name}'", "one")
+                holder = "file" if self._container else "header"
+                raise self._refusal(key, f"the {holder} has {times} columns '{name}'", "one")
             self.by_name = True
             return Column(name, self._names.index(name))
         # A key of a JSON object is always text, so a number may come as text too.
-        if str(name).isdecimal() and int(name) >= 1:
+        if str(name).isdecimal() and 1 <= int(name) <= self._most:
             return Column(str(name), int(name) - 1)
-        there = f"one of {', '.join(self._names)}" if self._names else "a number, from 1"
+        shown = list(self._names[:_NAMES_SHOWN])
+        if len(self._names) > len(shown):
+            shown.append(f"and {len(self._names) - len(shown)} more")
+        there = f"one of {', '.join(shown)}" if shown else "a number, from 1"
         raise self._refusal(key, f"no column '{name}'", there)
 
+    @property
+    def _most(self) -> float:
+        """The largest number that a column may have."""
+        return len(self._names) if self._container else math.inf
+
     def _refusal(self, key: str, found: str, expected: str) -> Refusal:
-        return Refusal(
-            self._file,
-            key,
-            found,
-            expected,
-            "name the column as the last header line does, or by its number from 1; "
-            "header_lines tells how many lines come before the data",
+        cure = (
+            "name the column as the file does, or by its number from 1"
+            if self._container
+            else "name the column as the last header line does, or by its number from 1; "
+            "header_lines tells how many lines come before the data"
         )
+        return Refusal(self._file, key, found, expected, cure)

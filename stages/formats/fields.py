@@ -14,6 +14,8 @@ from stages.formats.arrow_arrays import numbers_of
 Reals = NDArray[np.float64]
 
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+# Of a buffer, for to make a scalar of a number the library imports pandas.
+_NAN = pa.Array.from_buffers(pa.float64(), 1, [None, pa.py_buffer(np.array([np.nan]))])[0]
 
 
 class Field(Protocol):
@@ -100,7 +102,7 @@ def field_of_arrow(column: pa.ChunkedArray) -> Field:
         return NumberField(numbers_of(column))
     if pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_decimal(kind):
         reals = pc.cast(column, pa.float64(), safe=False)  # beyond 2⁵³ an integer is rounded
-        return NumberField(numbers_of(pc.fill_null(reals, np.nan)))
+        return NumberField(numbers_of(pc.fill_null(reals, _NAN)))
     return WordField(column.to_pylist())
 
 

@@ -1,4 +1,4 @@
-"""The data rows of a log of columns, whatever the file is: what they say, and why one is refused."""
+"""The data rows of a log of columns, in text or not: what they say, and why one is refused."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -130,7 +130,9 @@ def _axes(triad: Triad, numbers: Mapping[Column, Reals], holds: Truths) -> Reals
     axes = np.full((len(holds), 3), np.nan)
     for axis, column in enumerate(triad.columns):
         if column is not None:
-            recorded = holds & (numbers[column] != triad.missing)
+            recorded = holds
+            if triad.missing is not None:
+                recorded = holds & (numbers[column] != triad.missing)
             axes[recorded, axis] = numbers[column][recorded]
     return axes
 

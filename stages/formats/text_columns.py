@@ -156,9 +156,7 @@ def _read_rows(
     piece: Piece, lines: _Lines, columns: ColumnLayout, fields: int, records: int
 ) -> Reading:
     """The data rows of `piece`, `records` rows being before it."""
-    place = Place(
-        records + lines.numbers, piece.offsets[lines.indices], piece.lines[lines.indices]
-    )
+    place = Place(records + lines.numbers, piece.offsets[lines.indices], piece.lines[lines.indices])
     found = sort_rows(columns, _fields(lines.rows, columns.all, fields), place)
     indices = lines.indices
     reasons = dict(lines.reasons)

@@ -24,6 +24,7 @@ NAMES = {
     "accel_quadratic": "accelerometer quadratic term",
     "already_compensated": "compensated already",
     "clock_jitter": "jitter of the clock",
+    "clock_step": "clock that was set",
     "clock_scale": "clock too fast or too slow",
     "duplicate": "repeated record",
     "earth_rate_omitted": "earth rate left out",

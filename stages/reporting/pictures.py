@@ -47,7 +47,9 @@ DOTTED = 160  # records up to which each has a dot
 SMALL_RATE = 0.2 * DEGREES_PER_SECOND.size
 SECONDS_OF_OSCILLATION = 1.0  # as S0 shows its 20 Hz
 # What is wrong is the time: the steps from record to record are shown instead of readings.
-OF_TIME = frozenset({"duplicate", "time_backwards", "time_stands_still", "clock_jitter"})
+OF_TIME = frozenset(
+    {"duplicate", "time_backwards", "time_stands_still", "clock_jitter", "clock_step"}
+)
 # What no sample shows: it is about the log as a whole, or about what the campaign says.
 OF_NO_SAMPLE = frozenset(
     {

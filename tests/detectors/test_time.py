@@ -17,6 +17,7 @@ from recorded_by_hand import (
 
 from stages.detectors.clock_jitter import ClockJitter
 from stages.detectors.clock_scale import ClockScale
+from stages.detectors.clock_step import ClockStep
 from stages.detectors.duplicate import Duplicate
 from stages.detectors.gap import Gap
 from stages.detectors.held_record import HeldRecord
@@ -34,6 +35,7 @@ OF_TIME = (
     StatusInvalid(),
     TimeStandsStill(),
     ClockJitter(),
+    ClockStep(),
     ClockScale(),
     RateOff(),
     WrongDay(),
@@ -404,3 +406,30 @@ def test_another_day_is_named(recorded, stated, days):
     assert [event.size for event in events] == [days] * (days is not None)
     if days == 7168:
         assert "1024 weeks" in WrongDay().tells(events[0], "log").sentence
+
+
+# ---- a clock that is set
+
+
+@pytest.mark.parametrize("step", [2e-3, -2e-3, 4.4e-3, -9e-3, 0.3e-3])
+def test_a_clock_that_is_set_is_named_with_its_step(step):
+    time = stamps(2000)
+    time[700:] += step
+    found = causes(piece(rest(2000), time))
+    assert set(found) == {"clock_step"}
+    (event,) = found["clock_step"]
+    assert event.size == pytest.approx(abs(step), abs=1e-7)
+    assert event.facts == (step > 0)
+    assert event.line == 701
+
+
+def test_a_stamp_that_is_late_by_itself_sets_no_clock():
+    time = stamps(2000)
+    time[700] += 4e-3
+    assert not causes(piece(rest(2000), time))
+
+
+def test_scattered_and_rounded_stamps_set_no_clock():
+    scatter = np.random.default_rng(5).normal(0, 1e-3, 2000)
+    for time in (stamps(2000) + scatter, np.round(np.arange(2000) * 11.888e-3, 3)):
+        assert "clock_step" not in causes(piece(rest(2000), np.sort(time)))

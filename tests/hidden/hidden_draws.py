@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 from hidden_elsewhere import ELSEWHERE, HARD, Random
-from hidden_outside import OUTSIDE, course_size
+from hidden_outside import OUTSIDE, course_size, recorded
 from hidden_plans import PLANS, SPANS, sensors
+from hidden_sizes import apart
 from hidden_ways import ABSORBED, MATES, POSITIVE, WAYS
 
 from stages.effects import CATALOGUE
@@ -144,11 +145,14 @@ def _several(turn: int, random: Random, size: Size, number: int) -> dict[str, An
     band = list(BANDS)[turn // 2 % 2]
     plan = COMMON[turn // 4 % len(COMMON)]
     shown = [name for name, way in WAYS.items() if plan in way.plans]
-    chosen = [str(name) for name in random.choice(shown, count, replace=False)]
-    wanted = {
-        name: ("ratio", float(np.exp(random.uniform(*np.log(BANDS[band]))))) for name in chosen
-    }
-    return {"plan": plan, "sort": f"{count} at {band}"} | _hide(wanted, plan, random, size)
+    while True:  # what does for another one is the business of the decoys
+        chosen = [str(name) for name in random.choice(shown, count, replace=False)]
+        wanted = {
+            name: ("ratio", float(np.exp(random.uniform(*np.log(BANDS[band]))))) for name in chosen
+        }
+        hidden = _hide(wanted, plan, random, size)
+        if apart(plan, hidden["truth"], hidden["at"]):
+            return {"plan": plan, "sort": f"{count} at {band}"} | hidden
 
 
 def _outside(turn: int, random: Random, size: Size, number: int) -> dict[str, Any]:
@@ -161,6 +165,10 @@ def _outside(turn: int, random: Random, size: Size, number: int) -> dict[str, An
         unit = course_size(Draw(number, plan, "outside", one.name, effects=effects).document())
         effects = one.scaled(effects, ratio / unit(plan))
         ratios = {one.name: ratio}
+    if "clock_step" in effects:
+        document = Draw(number, plan, "outside", one.name).document()
+        at = recorded(document, effects["clock_step"]["at_s"])
+        effects = {"clock_step": effects["clock_step"] | {"at_s": at}}
     return {
         "plan": plan,
         "sort": one.name,

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from hidden_courses import known_course
 from hidden_elsewhere import Random, between, direction
 from hidden_sizes import reference
@@ -61,8 +62,8 @@ OUTSIDE: tuple[Outside, ...] = (
         "clock_step",
         (),
         lambda r, s, span: {
-            "clock_step": {
-                "at_s": float(r.uniform(0.1, 0.9) * span),
+            "clock_step": {  # a share of what is recorded: between two logs nobody could see it
+                "at_s": float(r.uniform(0.1, 0.9)),
                 "step_ms": float(r.choice([-1, 1])) * between(r, 2, 50),
             }
         },
@@ -78,6 +79,13 @@ OUTSIDE: tuple[Outside, ...] = (
         },
     ),
 )
+
+
+def recorded(document: Document, share: float) -> float:
+    """When so large a share of a campaign's samples is recorded, s since its first."""
+    recording = laboratory.perform(laboratory.specify(document | {"effects": {}}))
+    stamps = np.concatenate([records.stamps for records in recording.records.values()])
+    return float(np.sort(stamps)[int(share * len(stamps))] - recording.start) / 1e9
 
 
 def course_size(document: Document) -> Callable[[str], float]:

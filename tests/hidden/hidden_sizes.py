@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import permutations
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,7 @@ from stages.inference.naming.sought import Sought
 from stages.model.effect import Effect
 
 SEED = 9_999
+APART = 0.25  # of the square of its ratio, that another effect must leave
 KEPT = chain.ROOT / "data/derived/challenge"
 DRAWN_BY = ("campaigns", "courses", "draws", "elsewhere", "outside", "plans", "sizes")
 DRAWN_BY += ("statistics", "ways")
@@ -66,6 +68,17 @@ class Reference:
         columns = self.columns(name, at)
         information = self.said.total.information[np.ix_(columns, columns)]
         return float(np.sqrt(values @ information @ values))
+
+    def left(self, name: str, at: float | None, values: Any, other: str) -> float:
+        """Which share of the square of its ratio another effect leaves, whatever its size is."""
+        information = self.said.total.information
+        signal = information[:, self.columns(name, at)] @ values
+        candidates = next(one.candidates for one in self.asked if one.name == other)
+        taken = [
+            signal[list(own)] @ np.linalg.pinv(information[np.ix_(own, own)]) @ signal[list(own)]
+            for own in candidates
+        ]
+        return 1.0 - max(taken) / self.size(name, at, values) ** 2
 
     def limits(self, name: str, ratio: float) -> dict[str, float]:
         """The power at a ratio by this plan's own threshold, and by the textbook's."""
@@ -117,6 +130,15 @@ def reference(plan: str) -> Reference:
 def size(plan: str, name: str, at: float | None, values: Any) -> float:
     """The signal-to-noise ratio of an effect in a plan."""
     return reference(plan).size(name, at, values)
+
+
+def apart(plan: str, truth: Mapping[str, Mapping[str, float]], at: Mapping[str, float]) -> bool:
+    """Whether no effect that is hidden would do for another one: else one name is enough."""
+    known = reference(plan)
+    return all(
+        known.left(one, at.get(one), list(truth[one].values()), other) > APART
+        for one, other in permutations(truth, 2)
+    )
 
 
 def _made(plan: str) -> Reference:
