@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
@@ -20,7 +20,7 @@ from stages.contracts.errors import Refusal
 from stages.contracts.parquet import BATCH_ROWS
 from stages.contracts.stage import Stage
 from stages.contracts.tables import ACCOUNTS, AXES, CLOCKS, LOGS, REFUSED, SAMPLES
-from stages.formats import columns, novatel
+from stages.formats import columns
 from stages.formats.account import Account, RefusedLine
 from stages.formats.ahead import ahead
 from stages.formats.arrow_arrays import (
@@ -30,7 +30,11 @@ from stages.formats.arrow_arrays import (
     repeated_text,
 )
 from stages.formats.column_layout import ticks_per_second
+from stages.formats.content import Content, content_of, refuse_compressed
 from stages.formats.gps_time import NANOSECONDS, utc
+
+if TYPE_CHECKING:
+    from stages.formats import novatel
 
 ICE_POINT = 273.15  # K
 ANGLE_UNITS = {"deg": math.radians(1), "rad": 1.0}
@@ -72,11 +76,18 @@ class Decoded:
 
 
 class ReceiverLog:
-    """A log of a NovAtel receiver: GPS time, and increments in counts."""
+    """A log of a NovAtel receiver: GPS time, and increments in counts.
+
+    Raises
+    ------
+    Refusal
+        where the file is something else, such as a compressed log
+    """
 
     clock = "GPS"
 
     def __init__(self, name: str, path: Path, layout: Mapping[str, Any]) -> None:
+        _refuse_other_than_messages(path)
         self.name = name
         self.path = path
         self._axes: list[str] = layout["axes"]  # such as z, -y, x: the order and sign of the fields
@@ -84,7 +95,7 @@ class ReceiverLog:
             "accel": float(layout["accelerometer_count"]),  # m/s
             "gyro": float(layout["gyro_count"]),  # rad
         }
-        stamps = (reading.records.stamp for reading in novatel.read(path))
+        stamps = (reading.records.stamp for reading in _messages(path))
         first, median, _ = _look_ahead(stamps)
         # ns since the start of GPS time
         self.first = None if first is None else int(first)
@@ -94,7 +105,7 @@ class ReceiverLog:
 
     def decoded(self, origin: int) -> Iterator[Decoded]:
         """The log, piece by piece, with time since `origin`, ns of GPS time."""
-        for reading in novatel.read(self.path):
+        for reading in _messages(self.path):
             records = reading.records
             samples = {
                 "record": records.record,
@@ -130,7 +141,7 @@ class ReceiverLog:
 
 
 class ColumnLog:
-    """A log of columns of text: its own time or none, and values in units or counts."""
+    """A log of columns, text or not: its own time or none, and values in units or counts."""
 
     def __init__(self, name: str, path: Path, layout: Mapping[str, Any]) -> None:
         self.name = name
@@ -211,6 +222,25 @@ def _open(row: Mapping[str, str], raw: list[Path]) -> ReceiverLog | ColumnLog:
     layout = json.loads(row["layout"])
     kind = ReceiverLog if layout["kind"] == "rawimus" else ColumnLog
     return kind(row["log"], paths[row["file"]], layout)
+
+
+def _messages(path: Path) -> "Iterator[novatel.Reading]":
+    """The messages of a receiver; what reads them is loaded only where there are any."""
+    from stages.formats import novatel
+
+    return novatel.read(path)
+
+
+def _refuse_other_than_messages(path: Path) -> None:
+    refuse_compressed(path)
+    if (content := content_of(path)) is not Content.TEXT:
+        raise Refusal(
+            path.name,
+            "",
+            f"a file of {content.value}",
+            "messages of a NovAtel receiver, text or binary, as the instrument's format says",
+            "name the right log, or give its manoeuvres a format of kind columns",
+        )
 
 
 def _refuse_grown(path: Path, size: int) -> None:

@@ -1,5 +1,6 @@
 """From logs to samples: units, axes, rates and clocks, against numbers that are known."""
 
+import gzip
 import json
 import math
 import subprocess
@@ -441,3 +442,18 @@ def test_the_types_of_imu_that_a_log_tells(tmp_path):
         + log_bytes(sent, "RAWIMUSXB", "00000077", imu_type=0)  # unknown
     )
     assert one(path, SPAN_CPT)["clocks"]["imu_types"] == ["13 33"]
+
+
+@pytest.mark.parametrize(
+    ("content", "found"),
+    [
+        (gzip.compress(at(2283, 0)), "packed with gzip"),
+        (b"PAR1" + bytes(100), "a file of Parquet"),
+        (b"SQLite format 3\x00" + bytes(100), "a file of ROS 2 bag"),
+    ],
+)
+def test_what_is_no_receiver_s_log_is_refused_by_name(tmp_path, content, found):
+    path = tmp_path / "log.asc"
+    path.write_bytes(content)
+    with pytest.raises(Refusal, match=found):
+        one(path, SPAN_CPT)

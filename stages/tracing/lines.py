@@ -33,6 +33,11 @@ class Lines:
     to_s: float
     decoded: int
 
+    @property
+    def of_text(self) -> bool:
+        """Whether they stand in the file as lines; rows of a container begin at no byte."""
+        return self.to_byte > 0 or self.to_line == 1
+
 
 def lines_of(samples: Stream, stretches: Sequence[Stretch]) -> dict[Stretch, Lines]:
     """The lines of each stretch, in one pass over the samples; none where all were refused."""

@@ -13,6 +13,7 @@ from stages.contracts import tables
 from stages.contracts.errors import Refusal
 from stages.contracts.parquet import Table
 from stages.contracts.records import Row, rows_of
+from stages.notation.numbers import visible
 from stages.tracing.lines import Lines, Stretch, lines_of
 from stages.tracing.number import Number, number
 from stages.tracing.origins import Campaign, Origin, Origins
@@ -223,6 +224,10 @@ def _blocks(part: Used) -> str:
 
 
 def _place(log: Path, where: Lines) -> str:
+    if not where.of_text:
+        return (
+            f"  {log}, rows {where.from_line} to {where.to_line}, {where.decoded} of them decoded"
+        )
     return (
         f"  {log}, line {where.from_line} (from byte {where.from_byte}) "
         f"to line {where.to_line} (from byte {where.to_byte}), {where.decoded} of them decoded"
@@ -245,13 +250,13 @@ def _when(where: Lines, clock: Row) -> str:
 def _texts(log: Path, where: Lines) -> list[str]:
     """The first and the last line, as they stand in the log."""
     ends = {where.from_line: where.from_byte, where.to_line: where.to_byte}
-    if not log.is_file():
+    if not log.is_file() or not where.of_text:
         return []
     with log.open("rb") as file:
         told = []
         for line, byte in ends.items():
             file.seek(byte)
-            text = file.readline(SHOWN).rstrip(b"\r\n").decode("utf-8", "backslashreplace")
+            text = visible(file.readline(SHOWN).decode("utf-8", "backslashreplace").rstrip("\r\n"))
             told.append(f"  line {line}: {text}")
     return told
 
