@@ -10,6 +10,7 @@ from typing import Any
 
 import pandas as pd
 
+from stages.campaign.encoder import encoder
 from stages.campaign.known import known
 from stages.campaign.manoeuvres import expanded
 from stages.campaign.published import published_values
@@ -52,24 +53,26 @@ def plan(
     file.check("campaign")
     entry = instrument(file, instruments[0])
     taken_as_known = list(known(file))
-    manoeuvres = _manoeuvres(file, entry)
+    manoeuvres, table = _manoeuvres(file, entry), encoder(file)
     present = {path.name: path for path in raw}
-    for row in manoeuvres:
-        if row["file"] not in present:
+    named = [(row["key"], row["file"]) for row in manoeuvres]
+    named += [] if table is None else [(["encoder", "log"], table["file"])]
+    for key, log in named:
+        if log not in present:
             raise file.refuse(
-                row["key"],
-                row["file"],
+                key,
+                log,
                 f"a log in {campaign[0].parent}",
                 "put the log there, or correct its name",
             )
-        _stays_inside(file, row["key"], present[row["file"]])
+        _stays_inside(file, key, present[log])
     others = [row for path in published for row in published_values(YamlFile(path))]
-    used = sorted({present[row["file"]] for row in manoeuvres})
+    used = sorted({present[log] for _, log in named})
     return {
         "campaign": pd.DataFrame([_campaign(file, campaign[0].parent.name, entry)]),
         "known": pd.DataFrame(taken_as_known),
         "sensors": pd.DataFrame(sensors(entry)),
-        "logs": pd.DataFrame(logs(manoeuvres, entry)),
+        "logs": pd.DataFrame(logs(manoeuvres, entry, table)),
         "ranges": pd.DataFrame(ranges(manoeuvres, entry)),
         "count_sizes": pd.DataFrame(count_sizes(instruments[0])),
         "inputs": pd.DataFrame(

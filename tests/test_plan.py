@@ -188,3 +188,32 @@ def test_the_schemas_give_a_description_with_every_number():
     for name in ("campaign", "config", "published"):
         missing = [path for path, rule in numbers(schema_of(name), "") if "description" not in rule]
         assert missing == []
+
+
+ENCODER = """\
+encoder: {log: table.txt, format: table}
+formats: {table: {kind: columns, time: {column: 1, unit: s}, table_angle: {column: 2, unit: deg}}}
+"""
+
+
+def test_the_encoder_s_log_goes_with_every_log_and_is_listed(tmp_path):
+    made = planned(tmp_path, BY_TABLE + ENCODER)
+    (layout,) = made["logs"]["layout"]
+    assert '"encoder": {"file": "table.txt"' in layout
+    assert set(made["inputs"]["file"]) == {"campaign.yaml", "session.asc", "table.txt"}
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "found"),
+    [
+        ("format: table}", "format: tabel}", "tabel"),
+        ("time: {column: 1, unit: s}, ", "", "no time"),
+        ("log: table.txt", "log: ../table.txt", "table.txt"),
+        (", format: table}", "}", "no key 'format'"),
+    ],
+)
+def test_a_mistake_about_the_encoder_is_refused_by_name(tmp_path, before, after, found):
+    text = ENCODER.replace(before, after, 1)
+    assert text != ENCODER
+    with pytest.raises(Refusal, match=found):
+        planned(tmp_path, BY_TABLE + text)

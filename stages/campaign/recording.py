@@ -168,8 +168,13 @@ def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[
             )
 
 
-def logs(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
-    """Every log with the layout of its bytes, complete with what the instrument says of it."""
+def logs(
+    manoeuvres: list[Row], entry: dict[str, Any], encoder: dict[str, Any] | None
+) -> Iterator[Row]:
+    """Every log with the layout of its bytes, complete with what the instrument says of it.
+
+    `encoder`: the log of the table's encoder, if there is one.
+    """
     for log, rows in by_log(manoeuvres).items():
         layout = dict(rows[0]["layout"])
         if layout["kind"] == "rawimus":
@@ -180,6 +185,8 @@ def logs(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
             }
         elif labels := sorted({column for row in rows for column in row["label_columns"]}):
             layout["label"] = labels
+        if encoder is not None:
+            layout["encoder"] = encoder
         yield {"log": log, "file": rows[0]["file"], "layout": json.dumps(layout, sort_keys=True)}
 
 

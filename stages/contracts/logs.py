@@ -28,4 +28,6 @@ def logs_of(path: Path) -> list[str]:
         return []
     named = [item.get("log") for item in content["plan"] if isinstance(item, dict)]
     logs = [content.get("log") if log is None else log for log in named]
+    if isinstance(content.get("encoder"), dict):
+        logs.append(content["encoder"].get("log"))
     return sorted({log for log in logs if isinstance(log, str) and Path(log).name == log})
