@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from stages.detectors.detector import Array
 
@@ -47,8 +47,10 @@ def _scatter(blocks: Array) -> float:
     kept = max(len(squares) - KINKS, 1)
     # What is left of the variance of Gaussian values without those beyond the bound.
     share = kept / len(squares)
-    bound = norm.ppf((1 + share) / 2)
-    left = 1 - 2 * bound * norm.pdf(bound) / share if share < 1 else 1.0
+    bound = float(ndtri((1 + share) / 2))
+    left = (
+        1 - 2 * bound * np.exp(-(bound**2) / 2) / np.sqrt(2 * np.pi) / share if share < 1 else 1.0
+    )
     return float(np.sqrt(squares[:kept].mean() / 2 / left))
 
 

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import f as f_distribution
+
+from stages.inference.tails import ratio_beyond
 
 Array = NDArray[np.float64]
 
@@ -73,6 +74,6 @@ def added_columns(design: Array, columns: Array, observed: Array, sigma: Array) 
         statistic=statistic,
         columns=int(new.sum()),
         degrees=free,
-        p_value=float(f_distribution.sf(statistic, int(new.sum()), free)),
+        p_value=float(ratio_beyond(statistic, int(new.sum()), free)),
         scatter=float(np.sqrt(remains)),
     )

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import t as t_distribution
+
+from stages.inference.tails import student_beyond
 
 
 def chance_of(in_sigmas: float, degrees: float = np.inf) -> float:
@@ -12,7 +13,7 @@ def chance_of(in_sigmas: float, degrees: float = np.inf) -> float:
 
     `degrees`: of freedom, where sigma is estimated (Student's t).
     """
-    return float(2 * t_distribution.sf(abs(in_sigmas), degrees))
+    return float(2 * student_beyond(abs(in_sigmas), degrees))
 
 
 def beyond_chance(p_values: Sequence[float], level: float) -> NDArray[np.bool_]:

@@ -11,9 +11,9 @@ turn.
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
-from scipy.stats import chi2
 
 from stages.inference.orders import Orders
+from stages.inference.tails import chi_squared_bound
 
 Array = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ def log_chance(said: Orders, turned: float) -> Array:
     each = said.drop + said.apart
     turns = np.maximum(said.turns, 1)
     level = median_filter(each / (2 * turns), AROUND, mode="nearest")
-    level /= chi2.median(2 * turns) / (2 * turns)
+    level /= chi_squared_bound(0.5, 2 * turns) / (2 * turns)
     chance = -said.drop / 2 / np.maximum(level, 1.0)
     for i in np.flatnonzero(said.hertz < WHITE_FROM).tolist():
         degrees, left = _told_by_turns(said, i, turned)

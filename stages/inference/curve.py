@@ -15,9 +15,9 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import f as f_distribution
 
 from stages.inference.ratio_of_squares import chance_of_ratio
+from stages.inference.tails import ratio_beyond
 
 Array = NDArray[np.float64]
 
@@ -74,7 +74,7 @@ class Curve:
         if not degrees:
             return 1.0
         count = len(degrees)
-        return float(f_distribution.sf(self.drop(degrees) / count, count, self.freedom))
+        return float(ratio_beyond(self.drop(degrees) / count, count, self.freedom))
 
     def left(self, degree: int) -> float:
         """What the polynomial of this degree leaves, root of the mean square per freedom."""

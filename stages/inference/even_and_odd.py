@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+
+from stages.inference.tails import chi_squared_beyond
 
 Array = NDArray[np.float64]
 
@@ -26,7 +27,7 @@ class EvenAndOdd:
 
     def p_value(self, part: Array) -> float:
         """Chance of so much in all axes together, of `even` or `odd`, by the sigmas alone."""
-        return float(chi2.sf(np.sum((part / self.sigma) ** 2), len(part)))
+        return float(chi_squared_beyond(np.sum((part / self.sigma) ** 2), len(part)))
 
 
 def even_and_odd(up: Array, down: Array, size: float, sigma: tuple[Array, Array]) -> EvenAndOdd:

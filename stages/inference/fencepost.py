@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
 
 from stages.inference.agreement import chance_of
 from stages.inference.shared_cause import SharedCause, shared_cause
+from stages.inference.tails import chi_squared_beyond
 
 Array = NDArray[np.float64]
 
@@ -36,7 +36,7 @@ class Fencepost:
     @property
     def p_whole(self) -> float:
         """Chance of such scale factors if just so many samples too many were summed."""
-        return float(chi2.sf(self.whole_chi_squared, self.cause.k))
+        return float(chi_squared_beyond(self.whole_chi_squared, self.cause.k))
 
     def told(self, level: float) -> bool:
         """Whether it is a fencepost.

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import f as f_distribution
+
+from stages.inference.tails import ratio_bound
 
 Array = NDArray[np.float64]
 
@@ -49,7 +50,7 @@ def knee_of(at: Array, readings: Array) -> Knee | None:
     best = int(np.argmin(squares))
     freedom = len(at) - UNKNOWNS
     variance = squares[best] / freedom
-    bar = squares[best] + variance * f_distribution.isf(1 - CONFIDENCE, 1, freedom)
+    bar = squares[best] + variance * ratio_bound(1 - CONFIDENCE, 1, freedom)
     inside = places[squares <= bar]
     knee = float(places[best])
     lines = _lines(at, knee)

@@ -15,10 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.optimize import minimize_scalar
-from scipy.stats import chi2
-from scipy.stats import f as f_distribution
 
 from stages.inference.elimination import Apart
+from stages.inference.tails import chi_squared_beyond, ratio_beyond
 
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
@@ -60,9 +59,9 @@ class Estimate:
         if not self.degrees:
             return 1.0
         if np.isinf(noise_degrees):
-            return float(chi2.sf(self.chi_squared, self.degrees))
+            return float(chi_squared_beyond(self.chi_squared, self.degrees))
         ratio = self.chi_squared / self.degrees
-        return float(f_distribution.sf(ratio, self.degrees, noise_degrees))
+        return float(ratio_beyond(ratio, self.degrees, noise_degrees))
 
 
 def solve(

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
 
 from stages.inference.six_position import Rest, equations
+from stages.inference.tails import chi_squared_beyond
 from stages.inference.triad import UNKNOWNS
 from stages.model.motion import all_level_axes
 
@@ -64,7 +64,7 @@ def off_position(
     tilts = [[len(known) + 2 * i + k for k in (0, 1)] for i in range(len(positions))]
     drops = np.array([reduced.drop([*further, *pair])[0] - base for pair in tilts])
     best = int(np.argmax(drops))
-    p_value = min(float(chi2.sf(drops[best], 2)) * len(positions), 1.0)
+    p_value = min(float(chi_squared_beyond(drops[best], 2)) * len(positions), 1.0)
     if p_value >= LEVEL:
         return None
     alike = [positions[i] for i in np.argsort(-drops) if drops[i] > drops[best] - ALIKE]

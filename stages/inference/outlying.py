@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import t as t_distribution
 
 from stages.inference.added_columns import basis
+from stages.inference.tails import student_beyond
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def most_outlying(design: Array, observed: Array, sigma: Array) -> Outlying | No
     without = np.maximum(rest @ rest - share, np.finfo(float).tiny) / degrees
     t = np.sign(rest) * np.sqrt(share / without)
     row = int(np.argmax(np.abs(t)))
-    chance = 2 * float(t_distribution.sf(abs(t[row]), degrees))
+    chance = 2 * float(student_beyond(abs(t[row]), degrees))
     return Outlying(row, float(t[row]), min(chance * int(judged.sum()), 1.0))
 
 

@@ -10,7 +10,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import czt
-from scipy.stats import chi2
+
+from stages.inference.tails import chi_squared_beyond
 
 Array = NDArray[np.float64]
 
@@ -45,4 +46,4 @@ def pooled(
         power = np.abs(summed) ** 2
         drop += power * 2 * np.log(2) / np.median(power)
     degrees = 2 * len(records)
-    return frequency, drop, np.asarray(chi2.logsf(drop, degrees))
+    return frequency, drop, np.asarray(np.log(chi_squared_beyond(drop, degrees)))

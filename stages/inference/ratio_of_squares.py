@@ -9,7 +9,8 @@ The two sums may share readings. The chance is that of the saddlepoint (Lugannan
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
-from scipy.stats import norm
+
+from stages.inference.tails import normal_beyond
 
 Array = NDArray[np.float64]
 
@@ -34,4 +35,4 @@ def chance_of_ratio(above: Array, below: Array, ratio: float) -> float:
     cumulant = -0.5 * float(np.sum(np.log1p(-2 * at * weights)))
     root = np.sqrt(-2 * cumulant)
     steep = at * np.sqrt(2 * float(np.sum(share(at) ** 2)))
-    return float(norm.sf(root + np.log(steep / root) / root))
+    return float(normal_beyond(root + np.log(steep / root) / root))

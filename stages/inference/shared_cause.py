@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
+
+from stages.inference.tails import chi_squared_beyond
 
 Array = NDArray[np.float64]
 
@@ -27,12 +28,12 @@ class SharedCause:
     @property
     def p_without(self) -> float:
         """Chance of such differences if there is no cause at all."""
-        return float(chi2.sf(self.without, self.k))
+        return float(chi_squared_beyond(self.without, self.k))
 
     @property
     def p_remaining(self) -> float:
         """Chance of what remains if this is the only cause; 1 where nothing can remain."""
-        return float(chi2.sf(self.remaining, self.k - 1)) if self.k > 1 else 1.0
+        return float(chi_squared_beyond(self.remaining, self.k - 1)) if self.k > 1 else 1.0
 
 
 def shared_cause(differences: Array, sigma: Array, shape: Array | None = None) -> SharedCause:

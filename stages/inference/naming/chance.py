@@ -12,11 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import gammaln
-from scipy.stats import chi2
-from scipy.stats import f as f_distribution
 
 from stages.inference.naming.scan import Candidates
 from stages.inference.naming.sought import Sought
+from stages.inference.tails import chi_squared_beyond, chi_squared_bound, ratio_beyond, ratio_bound
 
 Array = NDArray[np.float64]
 
@@ -40,19 +39,19 @@ class Tail:
 
     def __call__(self, x: Array | float) -> Array:
         """Chance of a larger drop, after the search over the values of the scan."""
-        alone = chi2.sf(x, self.degrees)
+        alone = chi_squared_beyond(x, self.degrees)
         searched = alone + self.crossings * _density(x, self.degrees)
         return np.asarray(np.minimum(np.minimum(searched, self.values * alone), 1.0))
 
     def trials(self, x: float) -> float:
         """How many independent values would bring such a drop as often as the scan does."""
-        alone = float(chi2.sf(x, self.degrees))
+        alone = float(chi_squared_beyond(x, self.degrees))
         return float(self(x)) / alone if alone > 0 else float(self.values)
 
     def bound(self, chance: float) -> float:
         """The drop that noise exceeds with this chance."""
-        low = float(chi2.isf(chance, self.degrees))
-        high = float(chi2.isf(chance / self.values, self.degrees))
+        low = float(chi_squared_bound(chance, self.degrees))
+        high = float(chi_squared_bound(chance / self.values, self.degrees))
 
         def above(x: float) -> float:
             return float(self(x)) - chance
@@ -77,7 +76,7 @@ def tail(degrees: int, values: int, largest: Array) -> Tail:
         return Tail(degrees, 1, 0.0)
     rare = np.sort(largest)[::-1][: max(int(TAIL * len(largest)), 1)]
     chance = (np.arange(len(rare)) + 0.5) / len(largest)
-    beyond = np.sum(chance - chi2.sf(rare, degrees)) / np.sum(_density(rare, degrees))
+    beyond = np.sum(chance - chi_squared_beyond(rare, degrees)) / np.sum(_density(rare, degrees))
     return Tail(degrees, values, max(float(beyond), 0.0))
 
 
@@ -105,10 +104,10 @@ class Chance:
         if not degrees or not law.degrees:
             return 1.0
         if np.isinf(known_from):
-            alone = float(chi2.sf(drop, degrees))
+            alone = float(chi_squared_beyond(drop, degrees))
         else:
-            alone = float(f_distribution.sf(drop / degrees, degrees, known_from))
-        return float(law(chi2.isf(alone, law.degrees)))
+            alone = float(ratio_beyond(drop / degrees, degrees, known_from))
+        return float(law(chi_squared_bound(alone, law.degrees)))
 
     def after_search(self, p_value: float) -> float:
         """Chance that any effect of the catalogue reaches such a p-value."""
@@ -125,8 +124,8 @@ class Chance:
         bound = self.bounds[effect]
         if np.isinf(known_from):
             return bound
-        alone = float(chi2.sf(bound, law.degrees))
-        return law.degrees * float(f_distribution.isf(alone, law.degrees, known_from))
+        alone = float(chi_squared_beyond(bound, law.degrees))
+        return law.degrees * float(ratio_bound(alone, law.degrees, known_from))
 
 
 def chance(

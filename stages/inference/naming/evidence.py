@@ -7,10 +7,9 @@ from operator import add
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
-from scipy.stats import f as f_distribution
 
 from stages.inference.least_squares import INCONSISTENT, SEEN, Reduced
+from stages.inference.tails import chi_squared_beyond, ratio_beyond
 
 Array = NDArray[np.float64]
 
@@ -61,8 +60,8 @@ class Evidence:
         rest, degrees = sensor.chi_squared - dropped, max(sensor.degrees - used, 1)
         noise = self.known_from(next(i for i, s in enumerate(self.sensors) if s is sensor))
         if np.isinf(noise):
-            return rest, degrees, float(chi2.sf(rest, degrees))
-        return rest, degrees, float(f_distribution.sf(rest / degrees, degrees, noise))
+            return rest, degrees, float(chi_squared_beyond(rest, degrees))
+        return rest, degrees, float(ratio_beyond(rest / degrees, degrees, noise))
 
     def known_from(self, number: int) -> float:
         """Degrees of freedom of the noise of a sensor."""

@@ -2,7 +2,8 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2, ncx2
+
+from stages.inference.tails import chi_squared_bound, noncentral_beyond
 
 Array = NDArray[np.float64]
 
@@ -16,10 +17,10 @@ def power_limit(
     the share of the level of one effect among `effects` and of one value among the `values` of
     its own scan (the number of independent ones; their count is a lower bound of the power).
     """
-    bound = chi2.isf(level / effects / values, degrees)
-    return np.asarray(ncx2.sf(bound, degrees, np.asarray(snr) ** 2))
+    bound = chi_squared_bound(level / effects / values, degrees)
+    return np.asarray(noncentral_beyond(bound, degrees, np.asarray(snr) ** 2))
 
 
 def power(snr: Array | float, degrees: int, price: float) -> Array:
     """The same where the drop from which on the effect is named is known, see `Chance.price`."""
-    return np.asarray(ncx2.sf(price, degrees, np.asarray(snr) ** 2))
+    return np.asarray(noncentral_beyond(price, degrees, np.asarray(snr) ** 2))

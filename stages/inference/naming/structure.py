@@ -11,13 +11,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import chi2
-from scipy.stats import f as f_distribution
 
 from stages.inference.naming.chance import chance
 from stages.inference.naming.scan import SEEN, Candidates
 from stages.inference.naming.sought import sought
 from stages.inference.naming.structure_columns import TESTS, Question
+from stages.inference.tails import chi_squared_beyond, chi_squared_bound, ratio_beyond
 
 Array = NDArray[np.float64]
 
@@ -108,7 +107,7 @@ def _tested(answer: Answer, seed: int) -> Structure | None:
     searched = min(alone * int(np.sum(degrees > 0)), 1.0)
     if len(question.groups) > 1 and not question.independent:
         law = chance(answer.information, [one], LEVEL, DRAWS, seed).tails[0]
-        searched = float(law(chi2.isf(alone, law.degrees)))
+        searched = float(law(chi_squared_bound(alone, law.degrees)))
     where = float(question.where[best])
     return Structure(
         answer.kind, answer.channel, where, drop, count, searched, True, False, answer, best
@@ -118,10 +117,10 @@ def _tested(answer: Answer, seed: int) -> Structure | None:
 def _alone(drop: float, count: int, answer: Answer) -> float:
     """Chance of such a drop, the sigma known beforehand and from what is left over."""
     if np.isinf(answer.noise_degrees):
-        return float(chi2.sf(drop, count))
+        return float(chi_squared_beyond(drop, count))
     left = max(answer.degrees - count, 0)
     degrees = left + answer.noise_degrees
     rest = max(answer.chi_squared - drop, 0.0)
     # Residuals that are larger than the noise all over are no structure.
     variance = max((rest + answer.noise_degrees) / degrees, rest / left if left else 0.0)
-    return float(f_distribution.sf(drop / count / variance, count, degrees))
+    return float(ratio_beyond(drop / count / variance, count, degrees))
