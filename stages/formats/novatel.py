@@ -39,7 +39,7 @@ from stages.formats.novatel_items import (
     UNSURE,
     WEEK_NS,
 )
-from stages.formats.novatel_messages import IMU_MESSAGES, SYNC
+from stages.formats.novatel_messages import IMU_MESSAGES
 from stages.formats.novatel_scan import LENGTH, START, WHAT, WHICH, Scan, scan
 from stages.formats.novatel_words import fields_of, why_refused, why_unsure
 from stages.formats.pieces import LONGEST_LINE, PIECE_BYTES, Integers
@@ -177,11 +177,9 @@ class _Log:
         if self._message is None:
             return as_ours
         message = IMU_MESSAGES[self._message]
-        begins = bytes(SYNC) if not message.text else b"%#"[not message.short : 2 - message.short]
-        begins += message.name.encode() if message.text else b""
         for index in np.flatnonzero(items[:, WHAT] == DAMAGE).tolist():
             numbered = message.text or items[index, WHICH] == message.number
-            as_ours[index] = numbered and data.startswith(begins, items[index, START])
+            as_ours[index] = numbered and data.startswith(message.begins, items[index, START])
         return as_ours
 
     def _refused(

@@ -20,7 +20,6 @@ import numpy as np
 SYNC, LONG_SYNC, SHORT_SYNC = (0xAA, 0x44), 0x12, 0x13  # the first three bytes
 LONG_BYTES, SHORT_BYTES, BODY_BYTES, CRC_BYTES = 28, 12, 40, 4
 LONG_FIELDS, SHORT_FIELDS = 10, 3  # of a text header, the name among them
-FIELDS, EXTENDED_FIELDS = 9, 11  # of a text body
 
 
 @dataclass(frozen=True)
@@ -34,10 +33,11 @@ class ImuMessage:
     text: bool
 
     @property
-    def fields(self) -> int:
-        """Of its text: header and body."""
-        header = SHORT_FIELDS if self.short else LONG_FIELDS
-        return header + (EXTENDED_FIELDS if self.extended else FIELDS)
+    def begins(self) -> bytes:
+        """What each of them begins with; all binary ones with one kind of header begin alike."""
+        if self.text:
+            return (b"%" if self.short else b"#") + self.name.encode()
+        return bytes([*SYNC, SHORT_SYNC if self.short else LONG_SYNC])
 
 
 _NUMBERS = {"RAWIMU": 268, "RAWIMUS": 325, "RAWIMUX": 1461, "RAWIMUSX": 1462}
@@ -46,7 +46,6 @@ IMU_MESSAGES = tuple(
     for text in (True, False)
     for name, number in _NUMBERS.items()
 )
-NAMES = {message.name: place for place, message in enumerate(IMU_MESSAGES)}
 
 # The same for compiled loops.
 NAME_LENGTH, NUMBER, EXTENDED, SHORT, TEXT = range(5)  # columns of WANTED

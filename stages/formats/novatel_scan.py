@@ -23,7 +23,18 @@ from stages.formats.novatel_items import (
     Fields,
 )
 from stages.formats.novatel_messages import SYNC
-from stages.formats.novatel_text import FEED, HASH, PERCENT, RETURN, SPACE, STAR, TAB, right, text
+from stages.formats.novatel_text import (
+    DIGITS,
+    FEED,
+    HASH,
+    PERCENT,
+    RETURN,
+    SPACE,
+    STAR,
+    TAB,
+    right,
+    text,
+)
 from stages.formats.pieces import LONGEST_LINE, Integers
 
 MOST = 1 << 16  # items of one scan
@@ -84,6 +95,8 @@ def _damage(data: Bytes, place: int, last: bool, length: int) -> tuple[int, int]
     `length`: of a damaged binary message, in which line ends mean nothing; 0: it is text.
     """
     stop = place + length if length else len(data)
+    if length and not last and stop + len(SYNC) > len(data):
+        return DAMAGE, MORE  # the next message may begin with the last of these bytes
     found, end, unfinished = _message_among(data, place, stop, length == 0)
     if found > 0:
         return DAMAGE, min(found, stop)
@@ -120,6 +133,8 @@ def _message_among(data: Bytes, place: int, stop: int, lines: bool) -> tuple[int
             elif byte == STAR and start > 0:
                 if right(data, start, i, len(data)):
                     return start, i, False
+                if i + DIGITS >= len(data):  # its checksum may be in what follows
+                    return -1, len(data), True
                 start = -1
         i += 1
     return -1, i, start > 0

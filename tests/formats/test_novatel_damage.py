@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from laboratory.rawimu import MESSAGES, Samples, log_bytes
@@ -102,6 +102,12 @@ def everything(path: Path, content: bytes, size: int):
 
 
 @pytest.mark.parametrize("message", MESSAGES)
+@example(  # the checksum of a whole message lies behind what a false header claims
+    damages=[("take out", 157, 140), ("put in", 36, b"\xaaD\x13\xff")], size=50, mixed=False
+)
+@example(  # the next message begins with the last bytes of what was read
+    damages=[("take out", 340, 113), ("exchange", 0, 242)], size=50, mixed=False
+)
 @given(
     damages=st.lists(DAMAGE, max_size=4),
     size=st.sampled_from([50, 333, 1 << 22]),
