@@ -87,7 +87,7 @@ def plan(
 def _stays_inside(file: YamlFile, key: Key, log: Path) -> None:
     """A campaign from elsewhere reads nothing but what lies in its own folder."""
     if (target := log.resolve()).parent != file.path.resolve().parent:
-        raise file.refuse(
+        raise file.refuse_text(
             key,
             f"{log.name}, a link to {target}",
             f"a log in {file.path.parent}",

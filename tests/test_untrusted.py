@@ -144,8 +144,8 @@ def grown(levels: int) -> str:
         (grown(9), "more than 100000 values"),
         ("a: &a [*a]", "campaign: 1"),
         ("a: &a {b: *a}", "campaign: 1"),
-        ("[" * 5000 + "]" * 5000, "levels"),
-        ("{a: " * 5000 + "1" + "}" * 5000, "levels"),
+        ("[" * 1000 + "]" * 1000, "levels"),
+        ("{a: " * 1000 + "1" + "}" * 1000, "levels"),
         (b"serial: \xff\xfe", "no UTF-8"),
         ("serial: a\x00b", "YAML"),
         ("? [a, b]\n: 1", "a key of text"),
@@ -203,7 +203,7 @@ def loaded() -> Any:
 
 
 @given(st.lists(st.tuples(st.sampled_from(places(loaded())), VALUES), min_size=1, max_size=3))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 def test_any_value_anywhere_is_understood_or_refused_by_name(tmp_path_factory, changes):
     content = loaded()
     for key, value in changes:

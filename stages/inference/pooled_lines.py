@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import czt
 
-from stages.inference.tails import chi_squared_beyond
+from stages.inference.tails import log_chi_squared_beyond
 
 Array = NDArray[np.float64]
 
@@ -46,4 +46,4 @@ def pooled(
         power = np.abs(summed) ** 2
         drop += power * 2 * np.log(2) / np.median(power)
     degrees = 2 * len(records)
-    return frequency, drop, np.asarray(np.log(chi_squared_beyond(drop, degrees)))
+    return frequency, drop, log_chi_squared_beyond(drop, degrees)

@@ -21,6 +21,12 @@ def chi_squared_beyond(value: ArrayLike, degrees: ArrayLike) -> Array:
     return np.asarray(special.chdtrc(n, np.maximum(v, 0.0)))
 
 
+def log_chi_squared_beyond(value: ArrayLike, degrees: ArrayLike) -> Array:
+    """Its natural logarithm; −∞ where the chance is below what a number can tell."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.log(chi_squared_beyond(value, degrees)))
+
+
 def chi_squared_bound(chance: ArrayLike, degrees: ArrayLike) -> Array:
     """The chi-squared that is exceeded with this chance."""
     p, n = _reals(chance, degrees)
