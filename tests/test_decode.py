@@ -451,6 +451,7 @@ def test_the_types_of_imu_that_a_log_tells(tmp_path):
         (b"PAR1" + bytes(100), "a file of Parquet"),
         (b"SQLite format 3\x00" + bytes(100), "a file of ROS 2 bag"),
     ],
+    ids=["gzip", "Parquet", "SQLite"],  # gzip writes down the time
 )
 def test_what_is_no_receiver_s_log_is_refused_by_name(tmp_path, content, found):
     path = tmp_path / "log.asc"
