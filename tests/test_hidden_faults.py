@@ -3,6 +3,7 @@
 from typing import Any
 
 import chain
+import in_memory
 import numpy as np
 import pandas as pd
 import pytest
@@ -175,9 +176,10 @@ def hard(number: int) -> dict[str, Any]:
     return document
 
 
-def test_thirty_clean_campaigns_raise_no_finding(tmp_path):
-    for number in range(30):
+def test_a_hundred_clean_campaigns_raise_no_finding(tmp_path):
+    for number in range(100):
+        recording = laboratory.perform(laboratory.specify(hard(number)))
         folder = tmp_path / str(number)
-        campaign = chain.simulate(hard(number), folder / "campaign")
-        found = findings(chain.run(campaign, folder / "derived", "segment"))
+        with in_memory.recorded(recording, folder / "campaign") as campaign:
+            found = findings(chain.run(campaign, folder / "derived", "segment"))
         assert found.empty, (number, found[["cause", "sentence"]].to_dict("records"))

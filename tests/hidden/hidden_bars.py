@@ -66,7 +66,7 @@ def bars(outcomes: Sequence[Outcome], statistics: Sequence[dict[str, Any]]) -> I
     for sort, wanted in TOGETHER.items():
         number, _, band = sort.partition(" at ")
         words = f"{number} effects at once at SNR {band} each, all classes right"
-        yield _right(words, of(outcomes, "several", sort), wanted)
+        yield _told_apart(_right(words, of(outcomes, "several", sort), wanted), outcomes, sort)
     yield from _of_estimates(outcomes)
     outside = of(outcomes, "outside")
     yield _least("outside the catalogue: a warning", tally(outside, warned), 0.95)
@@ -197,6 +197,13 @@ def _right(words: str, outcomes: Sequence[Outcome], wanted: float) -> Bar:
     allowed = tally(outcomes, consistent)[0]
     more = f"; {allowed} with classes that are called uncertain" if outcomes else ""
     return replace(bar, measured=bar.measured + more)
+
+
+def _told_apart(bar: Bar, outcomes: Sequence[Outcome], sort: str) -> Bar:
+    """And where no effect would do for another one, so that all are needed."""
+    own = [one for one in of(outcomes, "several", sort) if one["apart"]]
+    count, number = tally(own, class_right)
+    return replace(bar, measured=f"{bar.measured}; {count} of {number} where none does for another")
 
 
 def _least(words: str, counted: Tally, wanted: float) -> Bar:

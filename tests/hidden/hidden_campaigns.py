@@ -12,7 +12,7 @@ import in_memory
 import numpy as np
 import pandas as pd
 from hidden_draws import Draw
-from hidden_sizes import BESIDE, code, reference
+from hidden_sizes import BESIDE, apart, code, reference
 
 import laboratory
 
@@ -45,6 +45,8 @@ def run(draw: Draw) -> Outcome:
     }
     if draw.kind == "single" and draw.sort == "ratio":
         told["limits"] = reference(draw.plan).limits(*next(iter(draw.ratios.items())))
+    if draw.kind == "several":
+        told["apart"] = apart(draw.plan, draw.truth, draw.at)
     try:
         return told | _found(draw)
     except Exception as error:  # it is counted, and the others go on

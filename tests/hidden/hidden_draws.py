@@ -14,7 +14,6 @@ import numpy as np
 from hidden_elsewhere import ELSEWHERE, HARD, Random
 from hidden_outside import OUTSIDE, course_size, recorded
 from hidden_plans import PLANS, SPANS, sensors
-from hidden_sizes import apart
 from hidden_ways import ABSORBED, MATES, POSITIVE, WAYS
 
 from stages.effects import CATALOGUE
@@ -145,14 +144,11 @@ def _several(turn: int, random: Random, size: Size, number: int) -> dict[str, An
     band = list(BANDS)[turn // 2 % 2]
     plan = COMMON[turn // 4 % len(COMMON)]
     shown = [name for name, way in WAYS.items() if plan in way.plans]
-    while True:  # what does for another one is the business of the decoys
-        chosen = [str(name) for name in random.choice(shown, count, replace=False)]
-        wanted = {
-            name: ("ratio", float(np.exp(random.uniform(*np.log(BANDS[band]))))) for name in chosen
-        }
-        hidden = _hide(wanted, plan, random, size)
-        if apart(plan, hidden["truth"], hidden["at"]):
-            return {"plan": plan, "sort": f"{count} at {band}"} | hidden
+    chosen = [str(name) for name in random.choice(shown, count, replace=False)]
+    wanted = {
+        name: ("ratio", float(np.exp(random.uniform(*np.log(BANDS[band]))))) for name in chosen
+    }
+    return {"plan": plan, "sort": f"{count} at {band}"} | _hide(wanted, plan, random, size)
 
 
 def _outside(turn: int, random: Random, size: Size, number: int) -> dict[str, Any]:
