@@ -134,6 +134,18 @@ def test_a_bar_is_met_by_its_figures():
     assert verdict("CPU time", outcome("", seconds=10.5)) is False
 
 
+def test_several_are_judged_on_all_and_counted_where_none_does_for_another():
+    one = outcome("table_tilt lever_arm", named("table_tilt"), named("lever_arm"))
+    two = outcome("table_tilt lever_arm", named("table_tilt"))
+    rows = [
+        row | {"kind": "several", "sort": "2 at 6 to 12", "apart": apart}
+        for row, apart in ((one, True), (two, False))
+    ]
+    bar = next(bar for bar in bars(rows, []) if bar.words.startswith("2 effects at once at SNR 6"))
+    assert bar.met is False and "(1 of 2)" in bar.measured
+    assert bar.measured.endswith("; 1 of 1 where none does for another")
+
+
 def test_the_page_tells_every_bar(tmp_path: Path):
     rows = [
         {"plan": "positions", "effect": "table_tilt", "ratio": 6.0, "trials": 10, "power": 9}
@@ -143,7 +155,8 @@ def test_the_page_tells_every_bar(tmp_path: Path):
     outcomes = [
         outcome(""),
         outcome("table_tilt", named("table_tilt")),
-        outcome("table_tilt lever_arm", named("table_tilt"), kind="several", sort="2 at 6 to 12"),
+        outcome("table_tilt lever_arm", named("table_tilt"), kind="several", sort="2 at 6 to 12")
+        | {"apart": True},
         outcome("gravity_error", kind="decoy", sort="absorbed"),
         outcome("", named("lever_arm"), kind="outside", sort="gyro_telegraph"),
         outcome("oscillation", named("oscillation"), sort="elsewhere"),
