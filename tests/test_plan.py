@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from campaign_by_table import BY_TABLE
 
 from stages.contracts import tables
 from stages.contracts.errors import Refusal
@@ -17,19 +18,6 @@ from stages.plan import plan
 
 ROOT = Path(__file__).parent.parent
 EXAMPLES = sorted((Path(__file__).parent / "campaigns").glob("*.yaml"))
-
-BY_TABLE = """\
-campaign: 1
-instrument: span-cpt
-serial: "A-017"
-date: "2026-11-02"
-site: {latitude_deg: 30.5278, height_m: 24, gravity_m_s2: 9.7936174, gravity_sigma_m_s2: 5.0e-5}
-table: {name: three-axis, position_sigma_arcsec: 2, angle_sigma_arcsec: 2}
-log: session.asc
-plan:
-  - {id: x-up, do: rest, up: +x, seconds: 300}
-  - {id: x-forward, do: turn, up: +x, degrees: 360, rate_deg_s: 10, accel_deg_s2: 5}
-"""
 
 
 def planned(folder: Path, text: str, *, logs: bool = True) -> dict[str, pd.DataFrame]:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from campaign_by_table import BY_TABLE
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ruamel.yaml import YAML
@@ -16,19 +17,9 @@ from stages.plan import plan
 
 ROOT = Path(__file__).parent.parent
 INSTRUMENTS = ROOT / "data/instruments.yaml"
-CAMPAIGN = """\
-campaign: 1
-instrument: span-cpt
-serial: "A-017"
-date: "2026-11-02"
-site: {latitude_deg: 30.5278, height_m: 24, gravity_m_s2: 9.7936174, gravity_sigma_m_s2: 5.0e-5}
-table: {name: three-axis, position_sigma_arcsec: 2, angle_sigma_arcsec: 2}
-log: session.asc
-plan:
-  - {id: x-up, do: rest, up: +x, seconds: 300}
-  - {id: x-forward, do: turn, up: +x, degrees: 360, rate_deg_s: 10, accel_deg_s2: 5}
-  - {id: all, do: tumble, up: +x, about: +y, step_degrees: 45, steps: 8, seconds: 60}
-  - {id: more, do: rest, up: [0, 0, 1], rows: [0, 100], seconds: 20}
+CAMPAIGN = f"""{BY_TABLE}\
+  - {{id: all, do: tumble, up: +x, about: +y, step_degrees: 45, steps: 8, seconds: 60}}
+  - {{id: more, do: rest, up: [0, 0, 1], rows: [0, 100], seconds: 20}}
 """
 
 

@@ -99,10 +99,9 @@ def _numbered(number: int, short: bool) -> int:
 def _body(data: Bytes, first: int, extended: bool, n: int, into: Fields) -> bool:
     """Whether the body that begins at `first` has a time; its fields become number `n`."""
     week = _two(data, first + 2) if extended else int(_four(data, first))
+    low, high = np.uint64(_four(data, first + 4)), np.uint64(_four(data, first + 8))
     eight = np.empty(1, np.uint64)
-    eight[0] = np.uint64(_four(data, first + 4)) | np.uint64(_four(data, first + 8)) << np.uint64(
-        32
-    )
+    eight[0] = low | high << np.uint64(32)
     seconds = eight.view(np.float64)[0]
     if not (week <= LAST_WEEK and 0.0 <= seconds < WEEK):
         return False
