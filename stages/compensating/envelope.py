@@ -5,7 +5,7 @@ import pandas as pd
 
 from stages.compensating.stream import CompensatedStream
 from stages.contracts import tables
-from stages.contracts.samples import sums_over
+from stages.contracts.sums import sums_over
 
 
 def envelope(samples: CompensatedStream, traces: pd.DataFrame) -> pd.DataFrame:

@@ -6,7 +6,8 @@ from numpy.typing import NDArray
 
 from stages.contracts.parquet import Stream
 from stages.contracts.records import clocks_of, known_of, rows_of
-from stages.contracts.samples import extents, pieces, regular, sums_over
+from stages.contracts.samples import extents, pieces, regular
+from stages.contracts.sums import sums_over
 from stages.contracts.tables import CHANNELS
 from stages.detectors.detector import Array, Given, Log, Windows
 from stages.model.site import normal_gravity

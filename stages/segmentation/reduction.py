@@ -10,7 +10,8 @@ from stages.contracts import tables
 from stages.contracts.masks import Masks
 from stages.contracts.parquet import Stream
 from stages.contracts.records import Clock
-from stages.contracts.samples import Integers, Sums, pieces, regular, sums_over
+from stages.contracts.samples import Integers, pieces, regular
+from stages.contracts.sums import Sums, sums_over
 from stages.segmentation.matching import BETWEEN, Part
 
 Floats = NDArray[np.float64]

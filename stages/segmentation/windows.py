@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from stages.contracts.masks import Masks
 from stages.contracts.parquet import Stream
 from stages.contracts.records import Clock, Manoeuvre
-from stages.contracts.samples import Integers, pieces, regular, sums_over
+from stages.contracts.samples import Integers, pieces, regular
+from stages.contracts.sums import means_over
 
 Array = NDArray[np.float64]
 
@@ -117,13 +118,13 @@ def binned(
         log: (np.concatenate([f for f, _ in cuts]), np.concatenate([a for _, a in cuts]))
         for log, cuts in cut.items()
     }
-    sums = sums_over(samples, stretches, masks)
+    means = means_over(samples, stretches, masks)
     used = dict.fromkeys(cut, 0)
     for window in found:
         first, after = cut[window.log].pop(0)
         part = slice(used[window.log], used[window.log] + len(first))
         used[window.log] += len(first)
-        total = sums[window.log]
+        total = means[window.log]
         yield Binned(
             window,
             np.append(first, after[-1:]),

@@ -1,0 +1,76 @@
+"""The campaign of the benchmarks with rests of any length, in binary logs; written piece by piece.
+
+The laboratory performs the short one. Each rest then goes on as it was: the mean of its readings,
+white noise of the same size, counted as the receiver counts. What is recorded after it is later by
+as much.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.campaign import RATE, RESTS, document, log_of, performed
+from laboratory.folder import campaign_yaml
+from laboratory.rawimu import Samples, log_bytes
+from laboratory.recording import LogTruth, Recording
+
+PIECE = 200_000  # samples that are drawn and written at a time
+STEP = round(1e9 / RATE)  # ns
+
+Counts = NDArray[np.int64]
+
+
+def record(folder: Path, samples: int) -> tuple[int, int]:
+    """A campaign of at least so many samples into its folder; its samples and the logs' bytes."""
+    told = document(1)
+    short = performed(told)
+    there = sum(len(truth.time) for truth in short.truth.values())
+    more = -(-max(0, samples - there) // len(RESTS))  # of every rest
+    folder.mkdir(parents=True)
+    written, later = 0, 0
+    for log, truth in short.truth.items():
+        longer = more if log in map(log_of, RESTS) else 0
+        with (folder / log).open("wb") as file:
+            for piece in _pieces(short, log, truth, longer, later):
+                written += file.write(log_bytes(piece, "RAWIMUSXB", "00000077"))
+        later += longer * STEP
+    plan = [
+        {**one, "seconds": one["seconds"] + more / RATE} if one["do"] == "rest" else one
+        for one in told["campaign"]["plan"]
+    ]
+    (folder / "campaign.yaml").write_bytes(campaign_yaml({**told["campaign"], "plan": plan}))
+    return there + more * len(RESTS), written
+
+
+def _pieces(
+    short: Recording, log: str, truth: LogTruth, longer: int, later: int
+) -> Iterator[Samples]:
+    """A log, so many samples longer at its end, and so many ns later."""
+    stamps = short.records[log].stamps + later
+    yield Samples(stamps, truth.accelerometer, truth.gyro)
+    chance = np.random.default_rng([1, list(short.truth).index(log)])
+    means, sigmas = _increments(short, truth)
+    over = np.zeros(6)  # what was felt and not yet counted
+    for first in range(0, longer, PIECE):
+        size = min(PIECE, longer - first)
+        felt = over + np.cumsum(chance.normal(means, sigmas, (size, 6)), axis=0)
+        counted = np.rint(felt).astype(np.int64)
+        over = felt[-1] - counted[-1]
+        counts = np.diff(counted, axis=0, prepend=0)
+        after = stamps[-1] + STEP * (first + 1 + np.arange(size))
+        yield Samples(after, counts[:, :3], counts[:, 3:])
+
+
+def _increments(short: Recording, truth: LogTruth) -> tuple[NDArray[np.float64], ...]:
+    """Mean and standard deviation of the increments in counts, (6,): accelerometers, gyros."""
+    receiver = short.receiver
+    felt = np.hstack(
+        [
+            truth.noisy.accelerometer / receiver.accelerometer_count,
+            truth.noisy.gyro / receiver.gyro_count,
+        ]
+    )
+    increments = np.diff(felt, axis=0)
+    return increments.mean(axis=0), increments.std(axis=0)
