@@ -1,11 +1,14 @@
 """Which files of the project a stage rests on: what reruns it, and what its hash covers."""
 
-import ast
 import hashlib
+import re
 from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent.parent
+# `from stages.model import site`, with parentheses over several lines, or `import stages.model`; the
+# text is searched, for to parse it took longer than many a stage works.
+IMPORT = re.compile(r"^[ \t]*(?:from|import) (stages[\w.]*)(?: import (\([^)]*\)|.*))?", re.MULTILINE)
 DATA = {".yaml", ".html", ".css"}  # schemas and templates lie beside the module that reads them
 
 
@@ -16,19 +19,15 @@ def code_of(stage: str) -> list[Path]:
     schemas and templates that lie in its folder.
     """
     reached: set[Path] = set()
-    waiting = ["stages", f"stages.{stage}"]
+    waiting, seen = ["stages", f"stages.{stage}"], set[str]()
     while waiting:
-        module = ROOT.joinpath(*waiting.pop().split("."))
-        for file in (module.with_suffix(".py"), module / "__init__.py"):
-            if file.is_file() and file not in reached:
+        if (module := waiting.pop()) not in seen:
+            seen.add(module)
+            for file in _files(ROOT, module):
                 reached.add(file)
                 waiting += _imports(file)
-    beside = {
-        file
-        for folder in {module.parent for module in reached} - {ROOT / "stages"}
-        for file in folder.iterdir()
-        if file.suffix in DATA
-    }
+    folders = {file.parent for file in reached} - {ROOT / "stages"}
+    beside = {file for folder in folders for file in _data(folder)}
     return sorted(reached | beside | {ROOT / "requirements.lock"})
 
 
@@ -47,13 +46,21 @@ def hash_of_file(path: Path) -> str:
 
 
 @cache
+def _files(root: Path, module: str) -> list[Path]:
+    path = root.joinpath(*module.split("."))
+    return [file for file in (path.with_suffix(".py"), path / "__init__.py") if file.is_file()]
+
+
+@cache
+def _data(folder: Path) -> list[Path]:
+    return [file for file in folder.iterdir() if file.suffix in DATA]
+
+
+@cache
 def _imports(file: Path) -> list[str]:
     names = []
-    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            names += [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and node.module:
-            names += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
-    parts = [name.split(".") for name in names if name.partition(".")[0] == "stages"]
+    for module, told in IMPORT.findall(file.read_text(encoding="utf-8")):
+        names += [module, *(f"{module}.{name}" for name in re.findall(r"\w+", told))]
+    parts = [name.split(".") for name in names]
     # With a module come the packages that it lies in.
     return sorted({".".join(part[:end]) for part in parts for end in range(1, len(part) + 1)})
