@@ -43,7 +43,7 @@ SNAKEMAKE := flock Snakefile $(BIN)/snakemake --nolock --cores 2 --quiet host re
 
 report: campaign setup
 	kinds=(html)
-	if $(BIN)/python -c "import weasyprint" 2> /dev/null; then kinds+=(pdf); fi
+	if [[ -e .venv/pango ]]; then kinds+=(pdf); fi
 	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
 	$(SNAKEMAKE) "$${kinds[@]/#/reports/$$CAMPAIGN.}" "reports/$$CAMPAIGN.calibration.json"
 	echo
@@ -124,13 +124,14 @@ benchmarks/.venv/complete: benchmarks/requirements.lock .venv/complete
 	touch $@
 
 # WeasyPrint sets the PDF with Pango, which pip cannot install. Where this may not either, only the
-# PDF is missing.
+# PDF is missing. That it is there is seen once: to try takes a second.
 pango: .venv/complete
-	if $(BIN)/python -c "import weasyprint" 2> /dev/null; then exit; fi
+	if [[ -e .venv/pango ]]; then exit; fi
+	if $(BIN)/python -c "import weasyprint" 2> /dev/null; then touch .venv/pango; exit; fi
 	if [[ $$(id -u) == 0 ]]; then may=(env); else may=(sudo -n); fi
 	apt=("$${may[@]}" DEBIAN_FRONTEND=noninteractive apt-get -qq)
 	{ "$${apt[@]}" update && "$${apt[@]}" install --no-install-recommends $(PANGO); } &> /dev/null || true
-	if ! $(BIN)/python -c "import weasyprint" 2> /dev/null; then
+	if $(BIN)/python -c "import weasyprint" 2> /dev/null; then touch .venv/pango; else
 		echo "Pango is missing, so reports are made as HTML and not as PDF. On Debian:"
 		echo "    sudo apt-get install $(PANGO)"
 	fi

@@ -17,6 +17,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"  # two stages run at a time, on small m
 
 from stages.contracts.code import code_of
 from stages.contracts.logs import campaigns, logs_of
+from stages.starting import prepared
 
 
 configfile: HOME / "config.yaml"
@@ -33,10 +34,15 @@ LABORATORY = sorted(
     str(p) for p in (HOME / "laboratory").rglob("*") if p.suffix in {".py", ".yaml"}
 )
 
+# A stage is asked for where its packages are loaded already; that process ends with this one.
+ASK = str(HOME / "stages/starting/ask.py")
+SOCKET = f".snakemake/prepared-{os.getpid()}"
+PREPARED = []
+RUN = "{PYTHON:q} -I -S {ASK:q} {SOCKET:q} {rule}"
+
 # Every stage is run alike: `--name=path` for each input, quoted for the shell.
-STAGE = (
-    "{PYTHON:q} -m stages.{rule} --settings {params.settings:q} {params.reads:q}"
-    " --output {params.output:q} 2> {log:q}"
+STAGE = RUN + (
+    " --settings {params.settings:q} {params.reads:q} --output {params.output:q} 2> {log:q}"
 )
 
 
@@ -73,6 +79,11 @@ def published(wildcards):
     """What others published of the IMU, where the laboratory has put it beside its campaign."""
     file = f"{RAW}/published.yaml".format(**wildcards)
     return [file] if Path(file).is_file() else []
+
+
+onstart:
+    if sys.platform == "linux":  # elsewhere a process that has loaded so much may not fork
+        PREPARED.append(prepared.begin(Path(SOCKET)))
 
 
 wildcard_constraints:
@@ -135,8 +146,6 @@ rule plan:
         ),
     log:
         f"{DERIVED}/plan/stage.log",
-    benchmark:
-        f"{DERIVED}/plan/benchmark.tsv"
     params:
         settings=settings("plan"),
         reads=reads,
@@ -162,8 +171,6 @@ rule decode:
         ),
     log:
         f"{DERIVED}/decode/stage.log",
-    benchmark:
-        f"{DERIVED}/decode/benchmark.tsv"
     params:
         settings=settings("decode"),
         reads=reads,
@@ -193,8 +200,6 @@ rule quality:
         ),
     log:
         f"{DERIVED}/quality/stage.log",
-    benchmark:
-        f"{DERIVED}/quality/benchmark.tsv"
     params:
         settings=settings("quality"),
         reads=reads,
@@ -229,8 +234,6 @@ rule segment:
         ),
     log:
         f"{DERIVED}/segment/stage.log",
-    benchmark:
-        f"{DERIVED}/segment/benchmark.tsv"
     params:
         settings=settings("segment"),
         reads=reads,
@@ -254,8 +257,6 @@ rule noise:
         f"{DERIVED}/noise/noise.parquet",
     log:
         f"{DERIVED}/noise/stage.log",
-    benchmark:
-        f"{DERIVED}/noise/benchmark.tsv"
     params:
         settings=settings("noise"),
         reads=reads,
@@ -288,8 +289,6 @@ rule accelerometer:
         ),
     log:
         f"{DERIVED}/accelerometer/stage.log",
-    benchmark:
-        f"{DERIVED}/accelerometer/benchmark.tsv"
     params:
         settings=settings("accelerometer"),
         reads=reads,
@@ -321,8 +320,6 @@ rule gyroscope:
         ),
     log:
         f"{DERIVED}/gyroscope/stage.log",
-    benchmark:
-        f"{DERIVED}/gyroscope/benchmark.tsv"
     params:
         settings=settings("gyroscope"),
         reads=reads,
@@ -361,8 +358,6 @@ rule studies:
         ),
     log:
         f"{DERIVED}/studies/stage.log",
-    benchmark:
-        f"{DERIVED}/studies/benchmark.tsv"
     params:
         settings=settings("studies"),
         reads=reads,
@@ -391,8 +386,6 @@ rule comparison:
         f"{DERIVED}/comparison/differences.parquet",
     log:
         f"{DERIVED}/comparison/stage.log",
-    benchmark:
-        f"{DERIVED}/comparison/benchmark.tsv"
     params:
         settings=settings("comparison"),
         reads=reads,
@@ -428,8 +421,6 @@ rule compensation:
         ),
     log:
         f"{DERIVED}/compensation/stage.log",
-    benchmark:
-        f"{DERIVED}/compensation/benchmark.tsv"
     params:
         settings=settings("compensation"),
         reads=reads,
@@ -463,8 +454,7 @@ rule simulation:
         ),
     log:
         f"{DERIVED}/simulation/stage.log",
-    benchmark:
-        f"{DERIVED}/simulation/benchmark.tsv"
+    priority: 1  # the longest way to the report leads here
     params:
         settings=settings("simulation"),
         reads=reads,
@@ -505,8 +495,7 @@ rule criticism:
         ),
     log:
         f"{DERIVED}/criticism/stage.log",
-    benchmark:
-        f"{DERIVED}/criticism/benchmark.tsv"
+    priority: 1  # the longest way to the report leads here
     params:
         settings=settings("criticism"),
         reads=reads,
@@ -550,8 +539,7 @@ rule extension:
         ),
     log:
         f"{DERIVED}/extension/stage.log",
-    benchmark:
-        f"{DERIVED}/extension/benchmark.tsv"
+    priority: 1  # the longest way to the report leads here
     params:
         settings=settings("extension"),
         reads=reads,
@@ -578,8 +566,6 @@ rule history:
         multiext(f"{DERIVED}/history/", "archived.parquet", "earlier.parquet"),
     log:
         f"{DERIVED}/history/stage.log",
-    benchmark:
-        f"{DERIVED}/history/benchmark.tsv"
     params:
         settings=settings("history"),
         # The archive is no input: what other campaigns add to it must not make this one run again.
@@ -624,15 +610,13 @@ rule export:
         ),
     log:
         f"{DERIVED}/export/stage.log",
-    benchmark:
-        f"{DERIVED}/export/benchmark.tsv"
     params:
         reads=reads,
         output="reports/{campaign}",
     message:
         "{wildcards.campaign}: the calibration for other programs"
     shell:
-        "{PYTHON:q} -m stages.export {params.reads:q} --output {params.output:q} 2> {log:q}"
+        RUN + " {params.reads:q} --output {params.output:q} 2> {log:q}"
 
 
 rule report:
@@ -698,14 +682,12 @@ rule report:
         verdict="reports/{campaign}.txt",
     log:
         f"{DERIVED}/report/stage.log",
-    benchmark:
-        f"{DERIVED}/report/benchmark.tsv"
     params:
         reads=reads,
     message:
         "{wildcards.campaign}: the report"
     shell:
-        "{PYTHON:q} -m stages.report {params.reads:q}"
+        RUN + " {params.reads:q}"
         " --output {output.page:q} --verdict {output.verdict:q} 2> {log:q}"
 
 
@@ -717,9 +699,7 @@ rule pdf:
         "reports/{campaign}.pdf",
     log:
         f"{DERIVED}/pdf/stage.log",
-    benchmark:
-        f"{DERIVED}/pdf/benchmark.tsv"
     message:
         "{wildcards.campaign}: the report as PDF"
     shell:
-        "{PYTHON:q} -m stages.pdf --html {input.html:q} --output {output:q} 2> {log:q}"
+        RUN + " --html {input.html:q} --output {output:q} 2> {log:q}"

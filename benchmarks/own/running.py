@@ -9,7 +9,7 @@ import sys
 import time
 from pathlib import Path
 
-import pandas as pd
+import numpy as np
 import psutil
 
 from benchmarks.answering import answer
@@ -29,8 +29,8 @@ def main(folder: str, campaign: str) -> None:
         together=together,
         largest=used.ru_maxrss * 1024,
         stages={
-            path.parent.name: float(pd.read_csv(path, sep="\t")["s"].iloc[0])
-            for path in Path(folder, "data/derived", campaign).glob("*/benchmark.tsv")
+            path.parent.name: _seconds(path)
+            for path in Path(folder, "data/derived", campaign).glob("*/stage.log")
         },
     )
 
@@ -47,6 +47,12 @@ def _watched(targets: list[str], folder: Path) -> int:
     if run.returncode:
         sys.exit(run.returncode)
     return most
+
+
+def _seconds(log: Path) -> float:
+    """From the begin of a stage, when its log was made, to its last table; s."""
+    tables = [table.stat().st_mtime for table in log.parent.glob("*.parquet")]
+    return max(tables, default=np.nan) - log.stat().st_mtime
 
 
 def _memory(process: psutil.Process) -> int:

@@ -6,9 +6,11 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent.parent
-# `from stages.model import site`, with parentheses over several lines, or `import stages.model`; the
-# text is searched, for to parse it took longer than many a stage works.
-IMPORT = re.compile(r"^[ \t]*(?:from|import) (stages[\w.]*)(?: import (\([^)]*\)|.*))?", re.MULTILINE)
+# `from stages.model import site`, over several lines too, or `import stages.model`. The text is
+# searched, for to parse it took longer than many a stage works.
+IMPORT = re.compile(
+    r"^[ \t]*(?:from|import) (stages[\w.]*)(?: import (\([^)]*\)|.*))?", re.MULTILINE
+)
 DATA = {".yaml", ".html", ".css"}  # schemas and templates lie beside the module that reads them
 
 
