@@ -8,7 +8,6 @@ a random identifier enters.
 from __future__ import annotations
 
 import io
-import re
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -19,6 +18,8 @@ import matplotlib as mpl
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
+from stages.reporting.light_svg import light
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -156,69 +157,7 @@ def svg(figure: Figure, key: str) -> str:
     with mpl.rc_context({"svg.hashsalt": key}):
         nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
         figure.savefig(text, format="svg", metadata=nothing, transparent=True)
-    return _light(text.getvalue(), key)
-
-
-def _light(drawn: str, key: str) -> str:
-    """The svg element alone, without comments, with short numbers and identifiers of its own."""
-    element = drawn[drawn.index("<svg") :]
-    for left_out in (r"<!--.*?-->", r"<metadata>.*?</metadata>", r"<style.*?</style>"):
-        element = re.sub(left_out, "", element, flags=re.DOTALL)
-    element = element.replace("'DejaVu Sans'", "Report").replace("rotate(-0 ", "rotate(0 ")
-    element = re.sub(r' transform="rotate\(0 [^"]*"', "", element)
-    used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', element))
-    element = re.sub(
-        r' id="([^"]+)"', lambda m: f' id="{key}-{m[1]}"' if m[1] in used else "", element
-    )
-    element = re.sub(r'(href="#|url\(#)', rf"\1{key}-", element)
-    element = _without_idle_groups(element).replace("<defs>\n</defs>", "")
-    element = _styled_once(element)
-    return re.sub(r"\n\s*", "\n", _rounded(element)).strip()
-
-
-def _without_idle_groups(element: str) -> str:
-    """Groups that say nothing about what is in them left out; they are most of the elements."""
-    open_groups: list[bool] = []
-
-    def tag(match: re.Match[str]) -> str:
-        if match[0].startswith("</"):
-            return match[0] if open_groups.pop() else ""
-        open_groups.append(match[0] != "<g>")
-        return match[0] if open_groups[-1] else ""
-
-    return re.sub(r"<g( [^>]*)?>|</g>", tag, element)
-
-
-def _styled_once(element: str) -> str:
-    """The style of a mark told where it is defined, not wherever it is used, if it is but one."""
-    styles: dict[str, set[str]] = {}
-    for mark, style in re.findall(r'<use xlink:href="#([^"]+)"[^>]* style="([^"]*)"/>', element):
-        styles.setdefault(mark, set()).add(style)
-    told: set[str] = set()
-
-    def definition(match: re.Match[str]) -> str:
-        own = styles.get(match[2], set())
-        if len(own) != 1:
-            return match[0]
-        told.add(match[2])
-        # What the definition says itself counts for more, as it did.
-        return f'{match[1]}{own.pop()}; {match[3]}"'
-
-    def use(match: re.Match[str]) -> str:
-        return f"{match[1]}/>" if match[2] in told else match[0]
-
-    element = re.sub(r'(<path id="([^"]+)"[^>]* style=")([^"]*)"', definition, element)
-    return re.sub(r'(<use xlink:href="#([^"]+)"[^>]*?) style="[^"]*"/>', use, element)
-
-
-def _rounded(element: str) -> str:
-    """Coordinates to a hundredth of a point, finer than any printer, with no needless space."""
-
-    def path(match: re.Match[str]) -> str:
-        short = re.sub(r"-?\d+\.\d{3,}", lambda n: f"{float(n[0]):.2f}", match[2])
-        return match[1] + re.sub(r"\s*\n\s*", "", short) + '"'
-
-    return re.sub(r'( (?:d|x|y)=")([^"]*)"', path, element)
+    return light(text.getvalue(), key)
 
 
 def shade(axes: Axes, phase: str, start: float, end: float) -> None:
