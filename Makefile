@@ -114,6 +114,8 @@ setup: .venv/complete pango
 	echo "Making .venv from requirements.lock, once; it takes a minute or two."
 	$(PYTHON) -m venv --clear .venv
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
+	# What reads logs is compiled now, so that the first log need not wait for it.
+	$(BIN)/python -c "from stages.formats.novatel_scan import scan; scan(b'', 0, last=True)"
 	touch $@
 
 # The peers have needs of their own, so they live in an environment of their own.

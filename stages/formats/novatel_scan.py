@@ -70,7 +70,7 @@ def scan(data: bytes, start: int, *, last: bool) -> Scan:
 @compiled
 def _scan(data: Bytes, start: int, last: bool, items: Integers, into: Fields) -> tuple[int, int]:
     """Fill in items and their fields; return the byte after the last, and their number."""
-    place, n = start, 0
+    place, n = start, int(np.int64(0))  # a bare 0 is a type of its own: all compiled twice
     while place < len(data) and n < len(into[STAMP]):
         what, which, after = DAMAGE, 0, NOTHING
         if data[place] == SYNC[0]:
