@@ -1,5 +1,7 @@
 """A binary message of a NovAtel receiver; layouts in `novatel_messages`."""
 
+from math import ldexp
+
 import numpy as np
 
 from stages.formats.compiled import compiled
@@ -99,10 +101,7 @@ def _numbered(number: int, short: bool) -> int:
 def _body(data: Bytes, first: int, extended: bool, n: int, into: Fields) -> bool:
     """Whether the body that begins at `first` has a time; its fields become number `n`."""
     week = _two(data, first + 2) if extended else int(_four(data, first))
-    low, high = np.uint64(_four(data, first + 4)), np.uint64(_four(data, first + 8))
-    eight = np.empty(1, np.uint64)
-    eight[0] = low | high << np.uint64(32)
-    seconds = eight.view(np.float64)[0]
+    seconds = _double(_four(data, first + 4), _four(data, first + 8))
     if not (week <= LAST_WEEK and 0.0 <= seconds < WEEK):
         return False
     whole = int(seconds)
@@ -113,6 +112,16 @@ def _body(data: Bytes, first: int, extended: bool, n: int, into: Fields) -> bool
         into[COUNTS][n, field] = np.int32(_four(data, first + 16 + 4 * field))
     into[TYPE][n] = data[first + 1] if extended else -1
     return True
+
+
+@compiled
+def _double(low: np.uint32, high: np.uint32) -> float:
+    """The number of IEEE 754 whose two halves these are; −1 for what is negative or no number."""
+    exponent = int(high >> np.uint32(20))
+    if exponent >= 0x7FF:
+        return -1.0
+    fraction = int(low) | (int(high) & 0xFFFFF | (0x100000 if exponent else 0)) << 32
+    return ldexp(float(fraction), max(exponent, 1) - 1075)
 
 
 @compiled
