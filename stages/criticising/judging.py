@@ -87,8 +87,21 @@ class Judged:
         return found
 
     def deviance(self) -> float:
-        """−2 log of the likelihood with what is named, and what the walks cost beforehand."""
-        return self.campaign.deviance(self.effects) + LIKELIER * sum(map(bool, self.walks))
+        """−2 log of the likelihood with what is named, and what each size costs beforehand.
+
+        An effect is as large as it was found, in its typical sizes: an effect of nine numbers has
+        one size, as a walk has one.
+        """
+        sizes = [self._size(place) for place in _clear(self)]
+        asked = len(sizes) + sum(map(bool, self.walks))
+        return self.campaign.deviance(self.effects, sizes) + LIKELIER * asked
+
+    def _size(self, place: int) -> float:
+        """How large a named effect is, in its typical sizes."""
+        cause = self.named.causes[place]
+        effect = self.effect(cause.effect, cause.value)
+        typical = np.array([parameter.typical for parameter in effect.parameters])
+        return float(np.sqrt(np.mean(np.nan_to_num(np.array(cause.values) / typical) ** 2))) or 1.0
 
 
 def judge(
@@ -106,12 +119,7 @@ def judge(
     if not any(walks):
         return still
     walking = judged(walks)
-    if still.effects and still.deviance() < walking.deviance() - LIKELIER:
-        found = still
-    elif still.effects and still.deviance() < walking.deviance() + OCCAM:
-        found = replace(walking, instead=_members(still))
-    else:
-        found = walking
+    found = _likelier(still, walking)
     if found.effects:
         walks = walks_beside(found.campaign, found.effects)
         if walks != found.walks:
@@ -120,6 +128,16 @@ def judge(
         return found
     other = tuple(member for member in found.instead if member not in _members(found))
     return _consistent(replace(found, instead=other))
+
+
+def _likelier(still: Judged, walking: Judged) -> Judged:
+    """Effects without walks, or with them, or with the others as what may stand for the walks."""
+    if not still.effects:
+        return walking
+    more = still.deviance() - walking.deviance()
+    if more < -LIKELIER:
+        return still
+    return replace(walking, instead=_members(still)) if more < OCCAM else walking
 
 
 def _walks_instead(judged: Judged) -> tuple[float, float]:

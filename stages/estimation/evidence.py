@@ -35,6 +35,7 @@ NOTHING = "Nothing is simulated, for the joint estimate determines no sensor who
 CLEAR = 5.0  # sigmas of an effect that is seen
 PIECE = 30.0  # s of a rest that count as one
 MOST = 100  # pieces of all rests together
+SENSORS = ("gyro", "accel")
 MERGED = 5  # blocks of a turn that make one of the accelerometers, whose truth changes slowly
 
 
@@ -97,9 +98,17 @@ class Campaign:
         """The same, the biases not walking."""
         return self.walking((0.0, 0.0))
 
-    def deviance(self, effects: Sequence[Effect]) -> float:
-        """−2 log of the likelihood with some effects, each within ten of its typical sizes."""
-        systems = self.systems(effects, USUAL)
+    def deviance(self, effects: Sequence[Effect], sizes: Sequence[float]) -> float:
+        """−2 log of the likelihood with some effects, each about so many of its typical sizes."""
+        told = self._told(effects)
+        sigmas = {
+            f"{effect.label}.{parameter.name}": size * parameter.typical
+            for effect, size in zip(effects, sizes, strict=True)
+            for parameter in effect.parameters
+        }
+        systems = (
+            self._equations(s, self._traces(s, effects, told), sigmas, None) for s in SENSORS
+        )
         return sum(system.solve_shared().deviance for system in systems if system is not None)
 
     def systems(
