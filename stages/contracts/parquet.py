@@ -74,7 +74,7 @@ class Table:
         packed = {c.name: "DELTA_BINARY_PACKED" for c in self.columns if c.type == pa.int64()}
         packed |= {c.name: "BYTE_STREAM_SPLIT" for c in self.columns if c.even}
         return {
-            "compression": "zstd",
+            "compression": "lz4",
             "use_dictionary": [c.name for c in self.columns if c.name not in packed],
             "column_encoding": packed,
             "write_statistics": False,  # nobody here skips parts of a table by them

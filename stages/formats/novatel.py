@@ -139,14 +139,16 @@ class _Log:
         for line in refused:
             account.add(REFUSED, "", 1, line.bytes)
         _add_others(account, data, found.items, ours | unsure)
+        kept = slice(None) if ours.all() else ours  # what need not be picked out is not copied
+        stamp, status, counts, imu = found.fields
         increments = Increments(
-            record[ours],
-            self.offset + start[ours],
-            lines[ours],
-            self._unrolled(found.fields[STAMP][ours]),
-            found.fields[STATUS][ours],
-            found.fields[COUNTS][ours],
-            found.fields[TYPE][ours],
+            record[kept],
+            self.offset + start[kept],
+            lines[kept],
+            self._unrolled(stamp[kept]),
+            status[kept],
+            counts[kept],
+            imu[kept],
         )
         return Reading(increments, refused, account)
 
@@ -211,6 +213,9 @@ class _Log:
             return stamps
         before = stamps[0] if self._stamp is None else self._stamp
         steps = np.diff(stamps, prepend=before)
+        if not self._rolled and np.abs(steps).max() < ROLL - WEEK_NS:
+            self._stamp = int(stamps[-1])
+            return stamps
         rolls = np.rint(steps / ROLL) * (np.abs(np.abs(steps) - ROLL) < WEEK_NS)
         self._stamp = int(stamps[-1])
         rolled = self._rolled - np.cumsum(rolls).astype(np.int64)

@@ -38,6 +38,12 @@ from stages.formats.novatel_messages import (
     WANTED,
 )
 
+# Which of the IMU messages has a long header (0) or a short one (1), and this number; −1: none.
+_NUMBERED = np.full((2, 1 << 16), -1, np.int8)
+for _which, _wanted in enumerate(WANTED):
+    if not _wanted[TEXT]:
+        _NUMBERED[_wanted[SHORT], _wanted[NUMBER]] = _which
+
 _ANSWER = 0x80  # this bit of the long header's type: the answer to a command, no log
 
 
@@ -79,22 +85,12 @@ def binary(data: Bytes, place: int, last: bool, n: int, into: Fields) -> tuple[i
     end, after = place + header + body, place + total
     if crc32(data, place, end) != _four(data, end):
         return DAMAGE, number, -total
-    which = -1 if long and data[place + 6] & _ANSWER else _numbered(number, not long)
+    which = -1 if long and data[place + 6] & _ANSWER else int(_NUMBERED[int(not long), number])
     if which < 0:
         return OTHER_BINARY, number, after
     extended = WANTED[which, EXTENDED] != 0
     read = body == BODY_BYTES and _body(data, end - BODY_BYTES, extended, n, into)
     return IMU if read else UNSURE, which, after
-
-
-@compiled
-def _numbered(number: int, short: bool) -> int:
-    """Which of the IMU messages has this number and such a header; −1: none."""
-    for which in range(len(WANTED)):
-        wanted = WANTED[which]
-        if not wanted[TEXT] and wanted[NUMBER] == number and (wanted[SHORT] != 0) == short:
-            return which
-    return -1
 
 
 @compiled
