@@ -49,7 +49,7 @@ def write_nothing_extended(folder: Path) -> None:
     writes = {name: EXTENSION.writes[name] for name in ("parameters", "covariance", "fit")}
     writes["decision"] = tables.DECISION
     made_by = {"stage": "extension", "settings": {}, "code": "c0", "inputs": {}}
-    with Writer(folder / "extension", writes, made_by) as writer:
+    with Writer(folder / "extension", writes, lambda: made_by) as writer:
         for name, table in writes.items():
             writer.write(name, table.empty())
 

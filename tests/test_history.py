@@ -81,7 +81,7 @@ def files(root: Path) -> set[str]:
 
 
 def write(folder: Path, name: str, table: Table, rows: Sequence[Row], made_by: Row) -> None:
-    with Writer(folder, {name: table}, made_by) as writer:
+    with Writer(folder, {name: table}, lambda: made_by) as writer:
         writer.write(name, pd.DataFrame(list(rows)) if rows else table.empty())
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import secrets
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -163,7 +163,7 @@ class Stream:
 def provenance(path: Path) -> dict[str, Any]:
     """What made the table at `path`: stage, settings, hash of its code, hashes of its inputs."""
     with _readable(path):
-        metadata = pq.read_schema(path).metadata or {}
+        metadata = pq.read_metadata(path).metadata or {}
     if b"made_by" not in metadata:
         raise Refusal(str(path), "", "no word of what made it", "a table of a stage", AGAIN)
     return dict(json.loads(metadata[b"made_by"]))
@@ -187,13 +187,15 @@ class Writer:
     """The tables of one stage, written beside their place and moved there all at the end.
 
     A stage that fails or is killed leaves no table under a final name; the parts
-    it may leave are overwritten by its next run.
+    it may leave are overwritten by its next run. `made_by` is asked at the end.
     """
 
-    def __init__(self, folder: Path, tables: Mapping[str, Table], made_by: dict[str, Any]) -> None:
+    def __init__(
+        self, folder: Path, tables: Mapping[str, Table], made_by: Callable[[], Mapping[str, Any]]
+    ) -> None:
         self._folder = folder
         self._tables = tables
-        self._made_by = {b"made_by": json.dumps(made_by, sort_keys=True).encode()}
+        self._made_by = made_by
         self._files: dict[str, pq.ParquetWriter] = {}
         self._open = ExitStack()
 
@@ -201,8 +203,7 @@ class Writer:
         self._folder.mkdir(parents=True, exist_ok=True)
         try:
             for name, table in self._tables.items():
-                schema = table.schema.with_metadata({**table.schema.metadata, **self._made_by})
-                writer = pq.ParquetWriter(self._part(name), schema, **table.packing)
+                writer = pq.ParquetWriter(self._part(name), table.schema, **table.packing)
                 self._files[name] = self._open.enter_context(writer)
         except OSError:
             self._remove_parts()
@@ -220,7 +221,11 @@ class Writer:
         trace: TracebackType | None,
     ) -> None:
         try:
-            self._open.close()
+            with self._open:
+                if kind is None:
+                    made_by = json.dumps(self._made_by(), sort_keys=True).encode()
+                    for file in self._files.values():
+                        file.add_key_value_metadata({b"made_by": made_by})
             if kind is None:
                 for name in self._tables:
                     self._part(name).replace(self._folder / f"{name}.parquet")

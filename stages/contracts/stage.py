@@ -7,6 +7,7 @@ import inspect
 import json
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
@@ -73,16 +74,15 @@ class Stage:
             "stage": self.name,
             "settings": dict(settings),
             "code": hash_of(code_of(self.name)),
-            "inputs": {
-                f"{path.parent.name}/{path.name}": hash_of_file(path)
-                for path in made_from
-                if path.is_file()
-            },
         }
-        with room_for(output), Writer(output, self.writes, made_by) as writer:
-            result = self.function(**inputs, **files, **settings)
-            for name, rows in result.items() if isinstance(result, Mapping) else result:
-                writer.write(name, rows)
+        with ThreadPoolExecutor(1) as beside, room_for(output):
+            hashes = beside.submit(_hashes, made_from)  # a long log while it is read
+            with Writer(
+                output, self.writes, lambda: made_by | {"inputs": hashes.result()}
+            ) as writer:
+                result = self.function(**inputs, **files, **settings)
+                for name, rows in result.items() if isinstance(result, Mapping) else result:
+                    writer.write(name, rows)
 
     def command_line(self, arguments: Sequence[str] | None = None) -> None:
         """`--NAME PATH` for each input, `--output FOLDER`, `--settings JSON`."""
@@ -99,3 +99,10 @@ class Stage:
             self.run(given, files, given["output"], given["settings"])
         except Refusal as refusal:
             sys.exit(f"{self.name}: {refusal}")
+
+
+def _hashes(files: Sequence[Path]) -> dict[str, str]:
+    """SHA-256 of each file, by its folder and name."""
+    return {
+        f"{path.parent.name}/{path.name}": hash_of_file(path) for path in files if path.is_file()
+    }

@@ -41,7 +41,7 @@ def test_the_stage_runs_without_pandas(tmp_path):
         {"log": log.name, "file": log.name, "layout": json.dumps(layout)}
         for log, layout in zip(logs, (SPAN_CPT, columns), strict=True)
     ]
-    with Writer(tmp_path / "plan", {"logs": LOGS}, {}) as writer:
+    with Writer(tmp_path / "plan", {"logs": LOGS}, dict) as writer:
         writer.write("logs", pa.RecordBatch.from_pylist(rows, LOGS.schema))
     raw = [part for log in logs for part in ("--raw", str(log))]
     program = (
