@@ -40,7 +40,7 @@ _TABLES = _tables()
 @compiled
 def crc32(data: NDArray[np.uint8], first: int, after: int) -> np.uint32:
     """The checksum of data[first:after]."""
-    if first < 0:  # never; but knowing it the compiler counts no index from the end: half as long
+    if first < 0:
         return np.uint32(0)
     low, eight, sixteen = np.uint32(0xFF), np.uint32(8), np.uint32(16)
     crc = np.uint32(0)

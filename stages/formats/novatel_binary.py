@@ -67,6 +67,8 @@ def binary(data: Bytes, place: int, last: bool, n: int, into: Fields) -> tuple[i
     what it is; which of the IMU messages, or its number; the byte after it, or what `novatel_items`
     has instead
     """
+    if place < 0:
+        return DAMAGE, 0, NOTHING
     left = len(data) - place
     if not binary_begins(data, place):
         return DAMAGE, 0, NOTHING
@@ -96,6 +98,8 @@ def binary(data: Bytes, place: int, last: bool, n: int, into: Fields) -> tuple[i
 @compiled
 def _body(data: Bytes, first: int, extended: bool, n: int, into: Fields) -> bool:
     """Whether the body that begins at `first` has a time; its fields become number `n`."""
+    if first < 0:
+        return False
     week = _two(data, first + 2) if extended else int(_four(data, first))
     seconds = _double(_four(data, first + 4), _four(data, first + 8))
     if not (week <= LAST_WEEK and 0.0 <= seconds < WEEK):

@@ -59,9 +59,9 @@ class Scan:
 
 def scan(data: bytes, start: int, *, last: bool) -> Scan:
     """The items of `data` from `start` on; `last`: nothing follows it in the file."""
-    items = np.zeros((MOST, 4), np.int64)
-    stamp, status = np.zeros(MOST, np.int64), np.zeros(MOST, np.uint32)
-    fields = (stamp, status, np.zeros((MOST, 6), np.int32), np.full(MOST, -1, np.int16))
+    items = np.empty((MOST, 4), np.int64)
+    stamp, status = np.empty(MOST, np.int64), np.empty(MOST, np.uint32)
+    fields = (stamp, status, np.empty((MOST, 6), np.int32), np.empty(MOST, np.int16))
     consumed, n = _scan(np.frombuffer(data, np.uint8), start, last, items, fields)
     some: tuple[NDArray[np.generic], ...] = tuple(part[:n] for part in fields)
     return Scan(items[:n], some, consumed)  # type: ignore[arg-type]

@@ -54,9 +54,9 @@ def text(data: Bytes, place: int, last: bool, n: int, into: Fields) -> tuple[int
 
     Of a message that is not of the IMU, the length of its name is told.
     """
-    stop = place + 1
-    while stop < len(data) and data[stop] != FEED:
-        stop += 1
+    if place < 0:
+        return OTHER_TEXT, 0, NOTHING
+    stop = _line_end(data, place)
     if stop - place >= LONGEST_LINE:
         return OTHER_TEXT, 0, NOTHING
     if stop == len(data) and not last:
@@ -80,9 +80,24 @@ def text(data: Bytes, place: int, last: bool, n: int, into: Fields) -> tuple[int
 
 
 @compiled
+def _line_end(data: Bytes, place: int) -> int:
+    """The next line end, or the end of the data; sixteen bytes at a time, which is one step."""
+    if place < 0:
+        return 0
+    found = False
+    while not found and place + 16 <= len(data):
+        for k in range(16):
+            found |= data[place + k] == FEED
+        place += 0 if found else 16
+    while place < len(data) and data[place] != FEED:
+        place += 1
+    return place
+
+
+@compiled
 def right(data: Bytes, place: int, star: int, stop: int) -> bool:
     """Whether the text from `place` to its '*' has the checksum that follows, before `stop`."""
-    if star <= place or star + DIGITS >= stop or data[star] != STAR:
+    if place < 0 or star <= place or star + DIGITS >= stop or data[star] != STAR:
         return False
     stated = np.uint32(0)
     for k in range(star + 1, star + 1 + DIGITS):
@@ -96,6 +111,8 @@ def right(data: Bytes, place: int, star: int, stop: int) -> bool:
 @compiled
 def _fields(data: Bytes, place: int, star: int, n: int, into: Fields) -> tuple[int, int]:
     """What the text from `place` to `star` is, and which; its fields, where it is of the IMU."""
+    if place < 0:
+        return OTHER_TEXT, 0
     i = place + 1
     while i < star and data[i] != _COMMA and data[i] != _SEMICOLON:
         i += 1
@@ -116,6 +133,8 @@ def _fields(data: Bytes, place: int, star: int, n: int, into: Fields) -> tuple[i
 @compiled
 def _body(data: Bytes, i: int, star: int, extended: bool, n: int, into: Fields) -> bool:
     """Whether the fields behind the ';' at `i` are as they should be; they become number `n`."""
+    if i < 0:
+        return False
     kind, good = -1, True
     if extended:
         i += 1
@@ -156,6 +175,8 @@ def _named(data: Bytes, place: int, length: int) -> int:
 @compiled
 def _whole(data: Bytes, i: int, stop: int) -> tuple[int, int, bool]:
     """The whole number at `i`, where it ends, and whether it is one."""
+    if i < 0:
+        return 0, 0, False
     negative = i < stop and data[i] == _MINUS
     i += 1 if negative else 0
     value, first = 0, i
@@ -169,6 +190,8 @@ def _whole(data: Bytes, i: int, stop: int) -> tuple[int, int, bool]:
 @compiled
 def _word(data: Bytes, i: int, stop: int) -> tuple[np.uint32, int, bool]:
     """The hexadecimal number at `i`, where it ends, and whether it is one of at most 8 digits."""
+    if i < 0:
+        return np.uint32(0), 0, False
     value, first = np.uint32(0), i
     while i < stop and _DIGIT[data[i]] != _NO_DIGIT:
         value = value << np.uint32(4) | np.uint32(_DIGIT[data[i]])
@@ -179,6 +202,8 @@ def _word(data: Bytes, i: int, stop: int) -> tuple[np.uint32, int, bool]:
 @compiled
 def _nanoseconds(data: Bytes, i: int, stop: int) -> tuple[int, int, bool]:
     """The seconds at `i`, of at most nine decimals, in ns, where they end, if they are such."""
+    if i < 0:
+        return 0, 0, False
     value, i, _ = _whole(data, i, stop)
     good = value >= 0
     decimals = 0
