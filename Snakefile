@@ -682,6 +682,7 @@ rule report:
         verdict="reports/{campaign}.txt",
     log:
         f"{DERIVED}/report/stage.log",
+    threads: 2
     params:
         reads=reads,
     message:

@@ -57,6 +57,7 @@ from stages.reporting import (
 from stages.reporting import (
     simulated as over_simulated,
 )
+from stages.reporting.at_once import at_once
 from stages.reporting.close_ups import close_ups
 from stages.reporting.criticised import Criticised
 from stages.reporting.logs import logs
@@ -211,18 +212,6 @@ def report(
         found, extended.estimates(extended_rows, records(extended_fit)), decided
     )
     drawn = logs(traces, segments, clocks, gaps)
-    shown = evidence.evidence(
-        worst_first[: findings.MOST_IN_FULL],
-        evidence.Recording(
-            {log.name: log for log in drawn},
-            close_ups((quality_close_ups, segment_close_ups)),
-            gaps,
-            masks,
-            manoeuvres,
-            performed,
-            expected.stated(known, about["rate"]),
-        ),
-    )
     sought = sought_of(scores, effects)
     model = Criticised(
         {(one.score["effect"], one.mount): one for one in sought},
@@ -252,16 +241,11 @@ def report(
     name = numbers.shortened(about["campaign"], 80)
     serial = numbers.shortened(about["serial"], 80)
     instrument = f"{numbers.shortened(about['instrument'], 80)} · serial {serial}"
-    outline = Report(
-        title=f"Calibration report: {name} · {instrument}",
-        campaign=name,
-        instrument=instrument,
-        running=f"{name} · {instrument}" + (" · simulated" if about["simulated"] else ""),
-        simulated=bool(about["simulated"]),
-        sections=(
-            verdict.section(given, counts, about, known, clocks),
-            parameters.section(found, decision),
-            lacks.section(
+    sections = at_once(
+        [
+            lambda: verdict.section(given, counts, about, known, clocks),
+            lambda: parameters.section(found, decision),
+            lambda: lacks.section(
                 records(criticism_findings),
                 sought,
                 model,
@@ -270,30 +254,53 @@ def report(
                 found,
                 findings.of_model(worst_first, segments),
             ),
-            findings.section(worst_first, shown, segments),
-            undetermined.section(found),
-            over_simulated.section(simulated, fidelity, manoeuvres, segments),
-            comparisons.section(differences),
-            compensation.section(
+            lambda: findings.section(
+                worst_first,
+                evidence.evidence(
+                    worst_first[: findings.MOST_IN_FULL],
+                    evidence.Recording(
+                        {log.name: log for log in drawn},
+                        close_ups((quality_close_ups, segment_close_ups)),
+                        gaps,
+                        masks,
+                        manoeuvres,
+                        performed,
+                        expected.stated(known, about["rate"]),
+                    ),
+                ),
+                segments,
+            ),
+            lambda: undetermined.section(found),
+            lambda: over_simulated.section(simulated, fidelity, manoeuvres, segments),
+            lambda: comparisons.section(differences),
+            lambda: compensation.section(
                 checks, traces, compensated_traces, segments, manoeuvres, decision
             ),
-            history.section(earlier, archived, counted, about["date"]),
-            recording.section(manoeuvres, performed),
-            raw_data.section(drawn),
-            noise_of_channels.section(noise, sensors),
-            averaging.section(
+            lambda: history.section(earlier, archived, counted, about["date"]),
+            lambda: recording.section(manoeuvres, performed),
+            lambda: raw_data.section(drawn),
+            lambda: noise_of_channels.section(noise, sensors),
+            lambda: averaging.section(
                 accelerometer_averaging,
                 gyroscope_averaging,
                 [*records(accelerometer_wanted), *records(gyroscope_wanted)],
                 estimated,
             ),
-            studies.section(
+            lambda: studies.section(
                 epochs, spreads, windows, growing, middles, time_angle, motions, not_studied
             ),
-            taken_as_known.section(known),
-            account.section(accounts, refused, inputs),
-            origin.section(inputs, provenance),
-        ),
+            lambda: taken_as_known.section(known),
+            lambda: account.section(accounts, refused, inputs),
+            lambda: origin.section(inputs, provenance),
+        ]
+    )
+    outline = Report(
+        title=f"Calibration report: {name} · {instrument}",
+        campaign=name,
+        instrument=instrument,
+        running=f"{name} · {instrument}" + (" · simulated" if about["simulated"] else ""),
+        simulated=bool(about["simulated"]),
+        sections=tuple(sections),
     )
     return Documents(page(outline), verdict.as_text(given, campaign, known, clocks))
 

@@ -22,10 +22,21 @@ def test_every_mark_keeps_its_style() -> None:
     text = drawn()
     defined = dict(re.findall(r'<path id="([^"]+)"[^>]*? style="([^"]*)"', text))
     uses = re.findall(r'<use xlink:href="#([^"]+)"([^>]*)/>', text)
-    assert len(uses) > 10
+    assert len(uses) == 9  # six points, a wedge, two areas
     for mark, more in uses:
         assert "fill: " in more or "fill: " in defined[mark]
     assert "opacity: 0.2" in text
+
+
+def test_grid_and_marks_of_an_axis_are_one_line_each_with_all_their_parts() -> None:
+    text = drawn()
+    names = re.findall(r'text-anchor: middle[^>]* x="([^"]+)" y="([^"]+)"', text)
+    assert len(names) >= 6
+    for colour in ("#d5dbe2", "#5f6c7b"):  # grid; marks
+        lines = re.findall(rf'<path d="([^"]*)"[^>]*stroke: {colour}', text)
+        assert len(lines) <= 6
+        begins = {x for line in lines for x in re.findall(r"M ([\d.]+)", line)}
+        assert {x for x, _ in names} <= begins
 
 
 def test_curves_hold_no_needless_space() -> None:
