@@ -111,20 +111,19 @@ class _Log:
     def reading(self, data: bytes, found: Scan) -> Reading:
         """What some items hold."""
         what, start, length, which = found.items.T
+        for index in np.flatnonzero(self._may_be_ours(what == UNSURE, which)).tolist():
+            if told := fields_of(data[start[index] : start[index] + length[index]]):
+                found.fields[STAMP][index], found.fields[STATUS][index] = told.stamp, told.status
+                found.fields[COUNTS][index], found.fields[TYPE][index] = told.counts, told.imu
+                what[index] = IMU
         self._choose(which[what == IMU])
         ours = (which == self._message) & (what == IMU)
-        unsure = (which == self._message) & (what == UNSURE)
+        unsure = self._may_be_ours(what == UNSURE, which)
         lines = self._lines(what)
 
         account, reasons = Account(), {}
         for index in np.flatnonzero(unsure).tolist():
-            text = data[start[index] : start[index] + length[index]]
-            if told := fields_of(text):
-                found.fields[STAMP][index], found.fields[STATUS][index] = told.stamp, told.status
-                found.fields[COUNTS][index], found.fields[TYPE][index] = told.counts, told.imu
-                ours[index] = True
-            else:
-                reasons[index] = why_unsure(text)
+            reasons[index] = why_unsure(data[start[index] : start[index] + length[index]])
         refused_as_ours = self._refused_as_ours(data, found.items)
         for index in np.flatnonzero((what == DAMAGE) | (what == GOES_ON)).tolist():
             reasons[index] = why_refused(data[start[index] : start[index] + length[index]])
@@ -159,6 +158,10 @@ class _Log:
         account = Account()
         account.add(REFUSED, "", 1, ended.bytes)
         return Reading(_none(), [ended], account)
+
+    def _may_be_ours(self, some: Truths, which: Integers) -> Truths:
+        """Which of some IMU messages are those that are read, as far as that is known yet."""
+        return some if self._message is None else some & (which == self._message)
 
     def _choose(self, which: Integers) -> None:
         """The IMU message that comes most often where the first ones are."""

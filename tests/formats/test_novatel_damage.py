@@ -8,6 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from laboratory.rawimu import MESSAGES, Samples, log_bytes
+from stages.formats.crc32 import checksum
 from stages.formats.novatel import read
 from stages.formats.pieces import LONGEST_LINE
 
@@ -154,6 +155,16 @@ def test_half_a_megabyte_and_more_without_a_line_end(tmp_path, fill, length):
     assert list(record) == [0, 1]
     if fill != b"\xaaD\x13":  # else each may be the beginning of a message
         assert [(one.offset, one.bytes) for one in refused] == [(len(first), len(junk) + 1)]
+
+
+@pytest.mark.parametrize("size", [50, 1 << 22])
+def test_a_message_without_fields_is_refused_before_the_first_whole_one_too(tmp_path, size):
+    damaged = b"#RAWIMUXA,COM1,0,68.5,FINESTEERING,2283,42699.890"
+    damaged += b"*%08x\r\n" % checksum(damaged[1:])
+    whole = PARTS["RAWIMUXA"][0]
+    (record, offset, *_), refused = everything(tmp_path / "log", damaged + whole, size)
+    assert [(one.line, one.bytes) for one in refused] == [(1, len(damaged))]
+    assert (list(record), list(offset)) == ([1], [len(damaged)])
 
 
 def test_a_message_behind_a_megabyte_of_zeros_in_its_line_is_read(tmp_path):
