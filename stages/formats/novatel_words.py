@@ -13,28 +13,18 @@ from stages.formats.novatel_messages import (
     CRC_BYTES,
     IMU_MESSAGES,
     LONG_BYTES,
+    LONG_FIELDS,
     LONG_SYNC,
     SHORT_BYTES,
+    SHORT_FIELDS,
     SHORT_SYNC,
     SYNC,
-    ImuMessage,
 )
 from stages.formats.novatel_text import DIGITS
 from stages.formats.pieces import LONGEST_LINE
 
 _HEXADECIMAL = re.compile("[0-9a-fA-F]{1,8}")
 _COUNTS = tuple(f"{sensor} {place}" for sensor in ("accelerometer", "gyro") for place in "123")
-_SHORT_HEADER: tuple[str, ...] = ("message", "header week", "header seconds")
-_LONG_HEADER: tuple[str, ...] = (
-    "message",
-    "port",
-    "sequence",
-    "idle time",
-    "time status",
-    "header week",
-)
-_LONG_HEADER += ("header seconds", "receiver status", "reserved", "software version")
-_COMMAS = bytes.maketrans(b";*", b",,")  # header, body and checksum become fields like the others
 
 
 @dataclass(frozen=True)
@@ -123,14 +113,17 @@ def _read_binary(text: bytes) -> Fields:
 
 
 def _read_text(text: bytes) -> Fields:
-    values = text.rstrip().translate(_COMMAS).decode("ascii", "backslashreplace").split(",")[:-1]
-    message = _message(values[0])
-    header = _SHORT_HEADER if message.short else _LONG_HEADER
+    told = text[1:].partition(b"*")[0].decode("ascii", "backslashreplace")
+    header, body = (part.split(",") for part in told.partition(";")[::2])
+    message = next(message for message in IMU_MESSAGES if message.name == header[0])
+    expected = SHORT_FIELDS if message.short else LONG_FIELDS
+    if len(header) != expected:
+        raise ValueError(f"{len(header)} fields before the ';', expected {expected}")
     extended = ("information", "type") if message.extended else ()
-    columns = (*header, *extended, "week", "seconds", "status", *_COUNTS)
-    if len(values) != len(columns):
-        raise ValueError(f"{len(values)} fields, expected {len(columns)}")
-    fields = dict(zip(columns, values, strict=True))
+    columns = (*extended, "week", "seconds", "status", *_COUNTS)
+    if len(body) != len(columns):
+        raise ValueError(f"{len(body)} fields behind the ';', expected {len(columns)}")
+    fields = dict(zip(columns, body, strict=True))
     imu = int(_number(fields, "type", int, 0, 255)) if message.extended else -1
     week = int(_number(fields, "week", int, 0, LAST_WEEK))
     seconds = _number(fields, "seconds", float, 0, WEEK)
@@ -141,10 +134,6 @@ def _read_text(text: bytes) -> Fields:
     counts = [int(_number(fields, name, int, -(2**31), 2**31 - 1)) for name in _COUNTS]
     stamp = week * WEEK * NANOSECONDS + round(seconds * NANOSECONDS)
     return Fields(stamp, int(fields["status"], 16), counts, imu)
-
-
-def _message(name: str) -> ImuMessage:
-    return next(message for message in IMU_MESSAGES if message.name == name[1:])
 
 
 def _number(

@@ -163,12 +163,14 @@ def test_every_digit_of_the_checksum_counts(log):
         (b"RAWIMUSA,2283,1.0;2283,-1.0,00000077,1,2,3,4,5,6", "seconds is '-1.0', expected a n"),
         (b"RAWIMUSA,2283,1.0;2283,604800,00000077,1,2,3,4,5,6", "seconds is 604800, expected t"),
         (b"RAWIMUSA,2283,1.0;2283,1.0,0000g077,1,2,3,4,5,6", "status is '0000g077', expected u"),
-        (b"RAWIMUSA,2283,1.0;2283,1.0,00000077,1,2,3,4,5", "11 fields, expected 12"),
-        (b"RAWIMUSA,2283,1.0;2283,1.0,00000077,1,2,3,4,5,6,7", "13 fields, expected 12"),
+        (b"RAWIMUSA,2283,1.0;2283,1.0,00000077,1,2,3,4,5", "8 fields behind the ';', expected 9"),
+        (b"RAWIMUSA,2283,1.0;2283,1.0,00000077,1,2,3,4,5,6,7", "10 fields behind the ';'"),
         (b"RAWIMUSA,2283,1.0;2283,1.0,00000077,1,2,3,4,5,", "gyro 3 is '', expected a whole nu"),
         (b"RAWIMUSA,2283,1.0;2283,1.0,00000077,1,2,3,4,5,3000000000", "gyro 3 is '3000000000'"),
         (b"RAWIMUSA,2283,1.0;2283,1.0,00000077,1,2\r,3,4,5,", "gyro 3 is ''"),
-        (b"RAWIMUSA,", "2 fields, expected 12"),
+        # a field too few before the ';' and one too many behind: none takes another's place
+        (b"RAWIMUSA,2283;1.0,2283,1.0,00000077,1,2,3,4,5,6", "2 fields before the ';', expected 3"),
+        (b"RAWIMUSA,", "2 fields before the ';', expected 3"),
     ],
 )
 def test_a_right_checksum_over_wrong_fields_costs_that_line_only(log, text, reason):
