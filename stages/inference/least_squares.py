@@ -276,6 +276,8 @@ class Reduced:
 
 
 LIKELIER = 6.6  # drop of the deviance that a scatter must bring: 1 % of chi-squared of 1 degree
+STEP = 4.0  # ratio of one scatter to the next, where the likeliest is looked for
+WORSE = 20.0  # of the deviance, above the least so far: where the search ends
 INCONSISTENT = 0.01  # p-value below which the residuals are larger than the noise
 
 
@@ -291,6 +293,29 @@ class Fitted:
     p_value: float
     walk: float = 0.0
     walk_sigma: float = 0.0
+
+
+def _scatter(deviance: Callable[[float], float], between: tuple[float, float]) -> float:
+    """The least scatter than which neither less nor more is likelier.
+
+    There may be another, so large that nothing is left of what the manoeuvres have in common: then
+    any parameters would do.
+    """
+    low, high = np.log(between)
+    sizes = np.linspace(low, high, int(np.ceil((high - low) / np.log(STEP))) + 1)
+    found: list[float] = []
+    for size in sizes:
+        found.append(deviance(float(np.exp(size))))
+        if found[-1] > min(found) + WORSE:
+            break
+    best = int(np.argmin(found))
+    near = minimize_scalar(
+        lambda logarithm: deviance(float(np.exp(logarithm))),
+        bounds=(sizes[max(best - 1, 0)], sizes[min(best + 1, len(sizes) - 1)]),
+        method="bounded",
+        options={"xatol": 0.05},
+    )
+    return float(np.exp(near.x))
 
 
 def with_scatter(
@@ -313,14 +338,7 @@ def with_scatter(
     p_value = alone.p_value(noise_degrees)
     if p_value >= INCONSISTENT:
         return Fitted(alone, 0.0, p_value)
-    low, high = np.log(between)
-    best = minimize_scalar(
-        lambda logarithm: fit(float(np.exp(logarithm))).deviance,
-        bounds=(low, high),
-        method="bounded",
-        options={"xatol": 0.05},
-    )
-    scatter = float(np.exp(best.x))
+    scatter = _scatter(lambda size: fit(size).deviance, between)
     scattered = fit(scatter)
     if alone.deviance - scattered.deviance < LIKELIER:
         return Fitted(alone, 0.0, p_value)
