@@ -260,7 +260,8 @@ def test_a_changed_number_in_a_table_is_noticed(
         place = content.schema.get_field_index(column)
         field = content.schema.field(column)
         changed = content.set_column(place, field, pa.array(values, field.type))
-        pq.write_table(changed, path)
+        told = {b"made_by": pq.read_metadata(path).metadata[b"made_by"]}
+        pq.write_table(changed.replace_schema_metadata(content.schema.metadata | told), path)
         said = trace()
     assert said.code == 1
     assert f"{path} has changed since" in said.text
@@ -284,6 +285,14 @@ def test_where_no_table_says_what_was_used_the_chain_does_not_hold(trace, data: 
         said = trace()
     assert said.code == 1
     assert f"No table says what {BIAS} was estimated from." in said.text
+
+
+def test_a_table_that_another_program_wrote_is_noticed(trace, data: Path) -> None:
+    with put_back(data / "derived/short/gyroscope/parameters.parquet") as path:
+        pq.write_table(pq.read_table(path), path)
+        said = trace()
+    assert said.code == 1
+    assert f"{path} does not tell what made it" in said.text
 
 
 def test_a_table_of_another_run_is_noticed(trace, data: Path) -> None:

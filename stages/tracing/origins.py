@@ -68,6 +68,7 @@ class Origins:
         self._by_stage: dict[str, Origin] = {}
         self._finished: list[str] = []
         self._seen: set[str] = set()
+        self._untold: list[str] = []
         for table in tables:
             if table not in self._seen:
                 self._visit(table)
@@ -82,7 +83,7 @@ class Origins:
     @property
     def broken(self) -> list[str]:
         """What does not hold, in sentences, from the number up the pipeline."""
-        return [sentence for origin in self.stages for sentence in origin.broken]
+        return [*self._untold, *(told for origin in self.stages for told in origin.broken)]
 
     def files(self) -> dict[str, tuple[str, str | None]]:
         """The files that no stage made: SHA-256 when they were read, and now."""
@@ -100,7 +101,9 @@ class Origins:
         try:
             made_by = provenance(path)
         except Refusal:
-            return  # whoever read it says what has become of it
+            if path.is_file():  # else whoever read it says what has become of it
+                self._untold.append(f"{path} does not tell what made it: no stage wrote it so.")
+            return
         settings, code, inputs = (made_by[key] for key in ("settings", "code", "inputs"))
         known = self._by_stage.get(stage)
         if known is not None:
