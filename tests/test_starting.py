@@ -95,6 +95,17 @@ def test_where_none_is_prepared_the_stage_runs_all_the_same(house):
     assert (asked.returncode, asked.stderr) == (1, "refused: the key rate_hz\n")
 
 
+def test_code_that_has_changed_since_it_was_loaded_is_not_run(house):
+    part = house / "stages/part.py"
+    part.write_text("WORD = 'loaded'\n")
+    told = "from stages.part import WORD\nif __name__ == '__main__':\n    print(WORD, end='')\n"
+    (house / "stages/said.py").write_text(told)
+    with prepared.begin(Path("socket")):
+        assert ask("said").stdout == "loaded"
+        part.write_text("WORD = 'changed since'\n")
+        assert ask("said").stdout == "changed since"
+
+
 def test_it_ends_with_who_began_it_and_leaves_nothing(house):
     with prepared.begin(Path("socket")) as process:
         ask("well")

@@ -22,7 +22,7 @@ def convert(path, made):
     table["week"] = both[1].astype(int)
     last = table.pop("gyro x and checksum").str.split("*", expand=True)
     table["gyro x"] = last[0].astype(int)
-    table.drop(columns=["message", "header week"]).to_parquet(made, compression="zstd")
+    table.drop(columns=["message", "header week"]).to_parquet(made, compression="lz4")
 
 
 def main(path, made):

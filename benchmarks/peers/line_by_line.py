@@ -37,7 +37,7 @@ def convert(path, made):
         csv.ReadOptions(column_names=COLUMNS),
         convert_options=csv.ConvertOptions(column_types=TYPES, include_columns=COLUMNS[3:-1]),
     )
-    pq.write_table(table, made, compression="zstd")
+    pq.write_table(table, made, compression="lz4")
 
 
 def main(path, made):

@@ -33,6 +33,7 @@ def begin(place: Path) -> subprocess.Popen[bytes]:
 def serve(door: socket.socket) -> None:
     """Fork a process for every request, until the standard input ends."""
     with door, selectors.DefaultSelector() as ready:
+        code = _code()
         _load()
         ready.register(sys.stdin, selectors.EVENT_READ)
         ready.register(door, selectors.EVENT_READ)
@@ -42,11 +43,21 @@ def serve(door: socket.socket) -> None:
                     return Path(door.getsockname()).unlink(missing_ok=True)
                 if key.fileobj is door:
                     caller, _ = door.accept()
+                    # A table is marked with the code as it is now; if that is not what was loaded,
+                    # the caller is left to run the stage by itself.
+                    if _code() != code:
+                        caller.close()
+                        continue
                     child, ended = _forked(caller)
                     ready.register(ended, selectors.EVENT_READ, (child, caller))
                 else:
                     ready.unregister(key.fileobj)
                     _tell(key.fd, *key.data)
+
+
+def _code() -> dict[Path, int]:
+    """When each file of the stages was last changed, ns."""
+    return {path: path.stat().st_mtime_ns for path in (ROOT / "stages").rglob("*.py")}
 
 
 def _load() -> None:
