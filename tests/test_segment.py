@@ -6,6 +6,8 @@ import chain
 import numpy as np
 import pytest
 
+from stages.segmentation import windows
+
 
 def performed(results: chain.Results):
     return results["segment/performed"].set_index("manoeuvre")
@@ -69,6 +71,28 @@ def test_blocks_keep_every_increment(clean):
     assert inside["gyro_y"].sum() * interval / count == pytest.approx(
         round(inside["gyro_y"].sum() * interval / count), abs=1e-4
     )
+
+
+def test_the_bins_of_a_long_campaign_are_longer_and_find_the_same(clean, monkeypatch):
+    fine = clean[0]["segment/segments"]
+    monkeypatch.setattr(windows, "MOST", 8000)
+    binned = windows.binned
+    bins = []
+
+    def counted(*arguments):
+        for one in binned(*arguments):
+            bins.append(one.bins)
+            yield one
+
+    monkeypatch.setattr("stages.segment.binned", counted)
+    coarse = chain.again(clean[0], "segment")
+    assert sum(bins) <= 8000 + len(bins)  # each window may begin another one
+    assert coarse["performed"]["complete"].all()
+    assert list(coarse["segments"]["phase"]) == list(fine["phase"])
+    length = clean[0]["decode/clocks"]["records"].sum() * 0.01 / 8000
+    for end in ("from_s", "to_s"):
+        np.testing.assert_allclose(coarse["segments"][end], fine[end], atol=3 * length)
+    assert coarse["findings"].empty
 
 
 def test_a_turn_the_wrong_way_is_found_and_refused(tmp_path):

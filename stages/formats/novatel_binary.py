@@ -4,7 +4,7 @@ from math import ldexp
 
 import numpy as np
 
-from stages.formats.compiled import compiled
+from stages.formats.compiled import compiled, inlined
 from stages.formats.crc32 import crc32
 from stages.formats.gps_time import NANOSECONDS, WEEK
 from stages.formats.novatel_items import (
@@ -95,7 +95,7 @@ def binary(data: Bytes, place: int, last: bool, n: int, into: Fields) -> tuple[i
     return IMU if read else UNSURE, which, after
 
 
-@compiled
+@inlined
 def _body(data: Bytes, first: int, extended: bool, n: int, into: Fields) -> bool:
     """Whether the body that begins at `first` has a time; its fields become number `n`."""
     if first < 0:

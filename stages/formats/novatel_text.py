@@ -7,7 +7,7 @@ The checksum is over what stands between the first character and the '*'.
 
 import numpy as np
 
-from stages.formats.compiled import compiled
+from stages.formats.compiled import compiled, inlined
 from stages.formats.crc32 import crc32
 from stages.formats.novatel_items import (
     COUNTS,
@@ -79,7 +79,7 @@ def text(data: Bytes, place: int, last: bool, n: int, into: Fields) -> tuple[int
     return what, which, after
 
 
-@compiled
+@inlined
 def _line_end(data: Bytes, place: int) -> int:
     """The next line end, or the end of the data; sixteen bytes at a time, which is one step."""
     if place < 0:
@@ -108,7 +108,7 @@ def right(data: Bytes, place: int, star: int, stop: int) -> bool:
     return bool(crc32(data, place + 1, star) == stated)
 
 
-@compiled
+@inlined
 def _fields(data: Bytes, place: int, star: int, n: int, into: Fields) -> tuple[int, int]:
     """What the text from `place` to `star` is, and which; its fields, where it is of the IMU."""
     if place < 0:
@@ -130,7 +130,7 @@ def _fields(data: Bytes, place: int, star: int, n: int, into: Fields) -> tuple[i
     return IMU if read else UNSURE, which
 
 
-@compiled
+@inlined
 def _body(data: Bytes, i: int, star: int, extended: bool, n: int, into: Fields) -> bool:
     """Whether the fields behind the ';' at `i` are as they should be; they become number `n`."""
     if i < 0:
@@ -157,7 +157,7 @@ def _body(data: Bytes, i: int, star: int, extended: bool, n: int, into: Fields) 
     return True
 
 
-@compiled
+@inlined
 def _named(data: Bytes, place: int, length: int) -> int:
     """Which of the IMU messages begins at `place` and has a name of this length; −1: none."""
     short = data[place] == PERCENT
@@ -172,7 +172,7 @@ def _named(data: Bytes, place: int, length: int) -> int:
     return -1
 
 
-@compiled
+@inlined
 def _whole(data: Bytes, i: int, stop: int) -> tuple[int, int, bool]:
     """The whole number at `i`, where it ends, and whether it is one."""
     if i < 0:
@@ -187,7 +187,7 @@ def _whole(data: Bytes, i: int, stop: int) -> tuple[int, int, bool]:
     return -value if negative else value, i, good
 
 
-@compiled
+@inlined
 def _word(data: Bytes, i: int, stop: int) -> tuple[np.uint32, int, bool]:
     """The hexadecimal number at `i`, where it ends, and whether it is one of at most 8 digits."""
     if i < 0:
@@ -199,7 +199,7 @@ def _word(data: Bytes, i: int, stop: int) -> tuple[np.uint32, int, bool]:
     return value, i, first < i <= first + DIGITS and i < stop and data[i] == _COMMA
 
 
-@compiled
+@inlined
 def _nanoseconds(data: Bytes, i: int, stop: int) -> tuple[int, int, bool]:
     """The seconds at `i`, of at most nine decimals, in ns, where they end, if they are such."""
     if i < 0:

@@ -14,7 +14,7 @@ from stages.segmentation.explaining import Explained
 from stages.segmentation.matching import motion
 from stages.segmentation.missing import missing_of
 from stages.segmentation.motion import Stretch
-from stages.segmentation.windows import BIN, Binned
+from stages.segmentation.windows import Binned
 
 Array = NDArray[np.float64]
 
@@ -146,7 +146,7 @@ def _cut_off(
     edges = [("begins", about[0])] if first == 0 else []
     edges += [("ends", about[-1])] if after == one.bins else []
     for what, edge in edges:
-        if abs(edge) * BIN / 2 < (m.angle_sigma or 0.0):
+        if abs(edge) * one.bin_seconds / 2 < (m.angle_sigma or 0.0):
             remark += f"; the log {what} at {degrees(abs(edge)):.0f} °/s, which its sigma covers"
         else:
             reasons.append(f"the log {what} while it turns")

@@ -15,6 +15,7 @@ from stages.contracts.sums import means_over
 Array = NDArray[np.float64]
 
 BIN = 0.1  # s, of the short means in which motion is looked for
+MOST = 2_000_000  # of them in a campaign; one of more than two days has longer ones
 
 
 @dataclass(frozen=True)
@@ -110,8 +111,10 @@ def binned(
 ) -> Iterator[Binned]:
     """Every window in bins, all in one pass over the samples; windows ascend within a log."""
     cut: dict[str, list[tuple[Integers, Integers]]] = {}
+    shortest = -(-sum(window.after - window.first for window in found) // MOST)
     for window in found:
-        length = max(1, round(BIN / clocks[window.log].step)) if window.log in clocks else 1
+        short = round(BIN / clocks[window.log].step) if window.log in clocks else 1
+        length = max(1, short, shortest)
         first, after = regular(window.after - window.first, length)
         cut.setdefault(window.log, []).append((window.first + first, window.first + after))
     stretches = {
