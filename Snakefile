@@ -10,6 +10,9 @@ from snakemake.utils import min_version, validate
 
 min_version("9.0")
 
+# Snakemake would load it, for half a second, to ask of each parameter whether it is a table.
+sys.modules["pandas"] = None
+
 HOME = Path(workflow.basedir)
 sys.path.insert(0, str(HOME))
 os.environ["PYTHONPATH"] = str(HOME)  # the data may lie elsewhere (--directory)
