@@ -8,6 +8,7 @@ import numpy as np
 
 from stages.detectors.detector import SENSORS, Array, Event, Integers, Log, Piece, Words
 from stages.detectors.roughness import SCATTER
+from stages.model.vectors import cross
 from stages.notation.numbers import significant, whole
 
 AXES = "xyz"
@@ -212,5 +213,5 @@ def _turned(piece: Piece, log: Log, places: Integers, k: int, before: Array, aft
     known = rates[np.isfinite(rates).all(axis=1)]
     if not len(known) or not np.isfinite(log.interval):
         return False
-    turned = np.cross(known.mean(axis=0), before) * log.interval
+    turned = cross(known.mean(axis=0), before) * log.interval
     return bool(np.linalg.norm(turned) > TURNED * np.abs(after - before).max())

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from stages.detectors.detector import SENSORS, Array, Booleans, Log, Piece
+from stages.model.vectors import cross
 
 RECORDED = 0.2  # of the records of a rest that a channel must be in
 SCATTER = 1.4826  # sigma of Gaussian values in units of the median of their absolute values
@@ -84,7 +85,7 @@ class Resting:
 
     def tilt(self, change: Array) -> Array:
         """The level part of the turn, (…, 3), rad, that changes the force by `change`, m/s²."""
-        return np.asarray(np.cross(change, self.up) / np.linalg.norm(self._mean_force))
+        return np.asarray(cross(change, self.up) / np.linalg.norm(self._mean_force))
 
     def level(self, turn: Array) -> Array:
         """A turn, (…, 3), without its part about the vertical."""

@@ -2,12 +2,11 @@
 
 from dataclasses import replace
 
-import numpy as np
-
 from stages.model.earth import known_earth
 from stages.model.effect import Array, Effect, Parameter, Truth
 from stages.model.motion import Motion
 from stages.model.sizes import by_grade
+from stages.model.vectors import cross
 
 
 class GyroAccelMisalignment(Effect):
@@ -30,4 +29,4 @@ class GyroAccelMisalignment(Effect):
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         upward, level = known_earth(truth, motion)
-        return replace(truth, rate=truth.rate + np.cross(motion.omega + upward + level, values))
+        return replace(truth, rate=truth.rate + cross(motion.omega + upward + level, values))

@@ -2,12 +2,11 @@
 
 from dataclasses import replace
 
-import numpy as np
-
 from stages.model.earth import known_earth
 from stages.model.effect import Array, Effect, Parameter, Truth
 from stages.model.motion import Motion
 from stages.model.sizes import usually
+from stages.model.vectors import cross
 from stages.notation.units import DEGREE
 
 
@@ -27,7 +26,7 @@ class HeadingError(Effect):
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         _, level = known_earth(truth, motion)
-        return replace(truth, rate=truth.rate + values[0] * np.cross(motion.up, level))
+        return replace(truth, rate=truth.rate + values[0] * cross(motion.up, level))
 
     def blind(self, motion: Motion) -> str:
         return "" if motion.surveyed.any() else "No heading of the table is stated."

@@ -2,11 +2,10 @@
 
 from dataclasses import replace
 
-import numpy as np
-
 from stages.model.effect import Array, Effect, Parameter, Truth
 from stages.model.motion import Motion
 from stages.model.sizes import by_grade
+from stages.model.vectors import cross
 
 
 class LeverArm(Effect):
@@ -26,6 +25,6 @@ class LeverArm(Effect):
     sizes = by_grade(1e-3, 30, 30, 30, 30)
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
-        swing = np.cross(motion.alpha, values)
-        pull = np.cross(motion.omega, np.cross(motion.omega, values))
+        swing = cross(motion.alpha, values)
+        pull = cross(motion.omega, cross(motion.omega, values))
         return replace(truth, force=truth.force + swing + pull)

@@ -7,6 +7,7 @@ import numpy as np
 from stages.model.effect import Array, Effect, Parameter, Reading, Truth
 from stages.model.motion import Motion
 from stages.model.sizes import by_grade
+from stages.model.vectors import cross
 
 
 class SizeEffect(Effect):
@@ -29,6 +30,6 @@ class SizeEffect(Effect):
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         felt = []
         for i, arm in enumerate(values.reshape(3, 3)):
-            pull = np.cross(motion.omega, np.cross(motion.omega, arm))
-            felt.append((np.cross(motion.alpha, arm) + pull)[:, i])
+            pull = cross(motion.omega, cross(motion.omega, arm))
+            felt.append((cross(motion.alpha, arm) + pull)[:, i])
         return replace(reading, accel=reading.accel + np.column_stack(felt))

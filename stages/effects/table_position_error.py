@@ -5,6 +5,7 @@ import numpy as np
 from stages.model.effect import Array, Effect, Parameter, Scan, Truth
 from stages.model.motion import Motion, all_level_axes
 from stages.model.sizes import of_tables
+from stages.model.vectors import cross
 from stages.notation.units import ARC_SECOND
 
 
@@ -31,8 +32,8 @@ class TablePositionError(Effect):
         own = motion.position == self.value(motion)
         lean[own] = values @ all_level_axes(motion.up[own])
         return Truth(
-            rate=truth.rate + np.cross(lean, motion.omega),
-            force=truth.force + np.cross(lean, truth.force),
+            rate=truth.rate + cross(lean, motion.omega),
+            force=truth.force + cross(lean, truth.force),
         )
 
     def grid(self, motion: Motion) -> Array:

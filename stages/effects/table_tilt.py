@@ -7,6 +7,7 @@ import numpy as np
 from stages.model.effect import Array, Effect, Parameter, Truth
 from stages.model.motion import Motion, without_north
 from stages.model.sizes import of_tables
+from stages.model.vectors import cross
 from stages.notation.units import ARC_SECOND
 
 
@@ -28,9 +29,9 @@ class TableTilt(Effect):
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         north = np.nan_to_num(motion.north)
-        leant = values[0] * north + values[1] * np.cross(north, motion.up)
-        lean = np.cross(motion.up, leant)
-        return replace(truth, force=truth.force - np.cross(lean, truth.force))
+        leant = values[0] * north + values[1] * cross(north, motion.up)
+        lean = cross(motion.up, leant)
+        return replace(truth, force=truth.force - cross(lean, truth.force))
 
     def blind(self, motion: Motion) -> str:
         return without_north(motion)

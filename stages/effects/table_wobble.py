@@ -7,6 +7,7 @@ import numpy as np
 from stages.model.effect import Array, Effect, Parameter, Truth
 from stages.model.motion import Motion, turned_all, without_north
 from stages.model.sizes import of_tables
+from stages.model.vectors import cross
 from stages.notation.units import ARC_SECOND
 
 
@@ -30,13 +31,13 @@ class TableWobble(Effect):
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         north = np.nan_to_num(motion.north_at_start)
-        east = np.cross(north, motion.up_at_start)
-        first = np.cross(motion.up_at_start, values[0] * north + values[1] * east)
+        east = cross(north, motion.up_at_start)
+        first = cross(motion.up_at_start, values[0] * north + values[1] * east)
         lean = turned_all(first, motion.about, -motion.angle)
         return replace(
             truth,
-            rate=truth.rate + 2 * np.cross(motion.omega, lean),
-            force=truth.force - np.cross(lean, truth.force),
+            rate=truth.rate + 2 * cross(motion.omega, lean),
+            force=truth.force - cross(lean, truth.force),
         )
 
     def blind(self, motion: Motion) -> str:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from stages.contracts.tables import AXES
 from stages.estimation.steady_turns import SteadyTurn
 from stages.inference.lines import phasor
+from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 
@@ -92,7 +93,7 @@ def _sigma(turn: SteadyTurn, i: int) -> float:
 
 def _tipping(turn: SteadyTurn, size: complex, frequency: float, source: int, i: int) -> float:
     """The case tips by size/(2πf), and so has a share of the table's rate about a third axis."""
-    across = np.cross(np.eye(3)[source], turn.about)[i]
+    across = cross(np.eye(3)[source], turn.about)[i]
     rate = 0.0 if np.isnan(turn.rate) else turn.rate
     return float(abs(size) / (2 * np.pi * frequency) * abs(rate * across))
 

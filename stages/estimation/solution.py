@@ -13,6 +13,7 @@ from stages.inference.triad import BIAS, linear_names
 from stages.inference.whole_turns import Position
 from stages.model.forward import Site, Triad
 from stages.model.motion import level_axes
+from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 
@@ -37,7 +38,7 @@ class Solution:
         lean = np.zeros(3)
         for i, axis in enumerate(level_axes(m.up)):
             lean = lean + self.found.get((m.position, f"tilt {i}"), 0.0) * axis
-        return np.asarray(m.up + np.cross(lean, m.up))
+        return np.asarray(m.up + cross(lean, m.up))
 
     def north(self, position: Position) -> Array:
         """The direction of the level earth rate in body axes, times its size over the known one.
@@ -48,7 +49,7 @@ class Solution:
             return position.north
         axes, name = level_axes(position.up), position.name
         if position.mark is not None:
-            axes, name = (position.mark, np.cross(position.up, position.mark)), "the table"
+            axes, name = (position.mark, cross(position.up, position.mark)), "the table"
         parts = [self.found.get((name, f"level {i}"), np.nan) for i in (0, 1)]
         return np.asarray((parts[0] * axes[0] + parts[1] * axes[1]) / self.site.earth_level)
 

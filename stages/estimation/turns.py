@@ -15,6 +15,7 @@ from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import Still, stills, stretch_of
 from stages.inference import whole_turns
 from stages.inference.whole_turns import Angle, Earth, Position, Steady, Turn
+from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 
@@ -149,7 +150,7 @@ def position_of(m: Manoeuvre, heading: float | None) -> Position:
     if heading is None:
         return Position(m.position, up, mark=mark)
     # The azimuth counts clockwise, so north lies counter-clockwise of the mark, seen from above.
-    return Position(m.position, up, north=cos(heading) * mark + sin(heading) * np.cross(up, mark))
+    return Position(m.position, up, north=cos(heading) * mark + sin(heading) * cross(up, mark))
 
 
 def still_of(still: Still, heading: float | None, seconds: float = np.inf) -> whole_turns.Still:

@@ -20,6 +20,7 @@ from stages.inference.ripple import ripple_angle, ripple_window
 from stages.inference.time_angle import Errors, TimeAngle, tied
 from stages.inference.triad import linear_names
 from stages.model.forward import Site, Triad
+from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 
@@ -178,7 +179,7 @@ def motion_of(
 
     earth = inputs.earth
     north = position_of(m, inputs.heading).north
-    lying = float(np.linalg.norm(np.cross(m.up, about)))  # 0 where the axis is upright
+    lying = float(np.linalg.norm(cross(m.up, about)))  # 0 where the axis is upright
     sensed = np.where(np.isfinite(increments), increments, gyros.triad.bias * step)
     seen = angles_seen(
         sensed,

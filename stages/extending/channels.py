@@ -26,6 +26,7 @@ from stages.inference.rests_and_turns import Position, Turn
 from stages.model.effect import Effect, Truth
 from stages.model.forward import Triad, signatures, truth_of
 from stages.model.motion import Motion, level_axes, turned_all
+from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 Errors = dict[tuple[str, str], tuple[Array, float]]  # what the readings change by (3,), and sigma
@@ -126,7 +127,7 @@ class Channels:
             float(np.hypot(turn.angle_sigma, turn.bridged_sigma)),
         )
         for i, axis in enumerate(level_axes(turn.about)):
-            leant = self._gyro.matrix @ np.cross(axis, turn.about) * (turn.angle / total)
+            leant = self._gyro.matrix @ cross(axis, turn.about) * (turn.angle / total)
             errors[f"tilt {i}", turn.position.name] = (leant, self.campaign.position_sigma)
         of_effects = np.einsum("n,nck->ck", share, traces)
         time = float(share @ motion.time)
@@ -151,7 +152,7 @@ class Channels:
             force = gravity.number * rest.up
             errors: Errors = {("gravity", ""): (triad.matrix @ rest.up, gravity.scatter)}
             for i, axis in enumerate(level_axes(rest.up / np.linalg.norm(rest.up))):
-                leant = triad.matrix @ np.cross(axis, force)
+                leant = triad.matrix @ cross(axis, force)
                 errors[f"tilt {i}", rest.position] = (leant, campaign.position_sigma)
             residual = rest.mean - triad.matrix @ force - triad.bias
             found.append(

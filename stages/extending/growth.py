@@ -16,6 +16,8 @@ times; Groves, Principles of GNSS, Inertial, and Multisensor Integrated Navigati
 import numpy as np
 from numpy.typing import NDArray
 
+from stages.model.vectors import cross
+
 Array = NDArray[np.float64]
 
 SECONDS = 60.0
@@ -31,5 +33,5 @@ def grown(rate: Array, force: Array, lift: Array, seconds: float = SECONDS) -> t
     """
     attitude = rate * seconds
     # The attitude as computed has turned too far by ψ, so the specific force is turned by ψ.
-    velocity = force * seconds + np.cross(attitude, lift) * (seconds / 2)
+    velocity = force * seconds + cross(attitude, lift) * (seconds / 2)
     return attitude, velocity

@@ -33,6 +33,7 @@ from stages.inference.least_squares import Estimate, System
 from stages.inference.settled import settled
 from stages.inference.triad import UNKNOWNS, design_of
 from stages.inference.whole_turns import PRIOR, PRIOR_SIGMA, Earth
+from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 Rows = tuple[Array, Array, Array]  # coefficients (m, p), residuals (m,), their sigma (m,)
@@ -230,7 +231,7 @@ def _level(up: Array, about: Array) -> Array:
     """Two level directions, (2, 3), the first as near as can be to `about`."""
     first = about - (about @ up) * up
     first = first / np.linalg.norm(first)
-    return np.array([first, np.cross(up, first)])
+    return np.array([first, cross(up, first)])
 
 
 @dataclass(frozen=True)
@@ -319,7 +320,7 @@ class _Here:
         across = self.recorded.up.across[i + 1]  # (2, 3)
         arrived = turned @ self.ups[i]
         # A rotation φ of the body takes a direction v to v + v × φ.
-        lean = np.cross(across, arrived)  # across · (v × φ) = (across × v) · φ
+        lean = cross(across, arrived)  # across · (v × φ) = (across × v) · φ
         direction = self.recorded.directions.start + 2 * i
         design = np.zeros((2, self.recorded.size))
         design[:, :UNKNOWNS] = -lean @ moved.slope

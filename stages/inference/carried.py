@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from stages.model.vectors import cross
+
 Array = NDArray[np.float64]
 
 
@@ -47,7 +49,7 @@ def carried(rates: Array, seconds: Array) -> Carried:
 
 def coned(angles: Array) -> Array:
     """The rotation vector of each stretch from the integrals of the rate, (k, 3), rad."""
-    pairs = np.cross(angles[:-1], angles[1:]) / 24
+    pairs = cross(angles[:-1], angles[1:]) / 24
     result = angles.copy()
     result[1:] += pairs
     result[:-1] += pairs

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from stages.inference.whole_turns import Earth, Position
 from stages.model.motion import level_axes, turned_all
+from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 
@@ -54,7 +55,7 @@ def earth_seen(
         return EarthSeen(earth.up * up + earth.level * summed(position.north), up, {})
     axes, name = level_axes(position.up), position.name
     if position.mark is not None:
-        axes, name = (position.mark, np.cross(position.up, position.mark)), "the table"
+        axes, name = (position.mark, cross(position.up, position.mark)), "the table"
     sigma = earth.level / np.sqrt(2)
     level = {(f"level {i}", name): sigma * summed(axis) for i, axis in enumerate(axes)}
     return EarthSeen(earth.up * up, up, level)

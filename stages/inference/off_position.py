@@ -16,6 +16,7 @@ from stages.inference.six_position import Rest, equations
 from stages.inference.tails import chi_squared_beyond
 from stages.inference.triad import UNKNOWNS
 from stages.model.motion import all_level_axes
+from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 
@@ -93,7 +94,7 @@ def _traced(rests: Sequence[Rest], gravity: float, matrix: Array) -> list[Rest]:
     found = []
     for rest in rests:
         level = all_level_axes(rest.up[None])[0]
-        leans = np.cross(level, gravity * rest.up) @ matrix.T
+        leans = cross(level, gravity * rest.up) @ matrix.T
         own = [f"{rest.position}/{i}" for i in range(2)]
         found.append(replace(rest, traces=rest.traces.and_of(own, leans.T)))
     return found

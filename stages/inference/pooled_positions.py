@@ -16,6 +16,7 @@ from stages.inference.linear_formula import Readings, Solution
 from stages.inference.six_position import Rest
 from stages.inference.spanned import spanned
 from stages.model.motion import level_axes
+from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 
@@ -62,6 +63,6 @@ def pooled_positions(
     for j, rest in enumerate(rests):
         readings.suffer("gravity", "", j, matrix @ rest.up * gravity_sigma)
         for i, axis in enumerate(level_axes(rest.up)):
-            lean = gravity * np.cross(axis, rest.up) * position_sigma
+            lean = gravity * cross(axis, rest.up) * position_sigma
             readings.suffer(f"tilt {i}", rest.position, j, matrix @ lean)
     return readings.solution(weights, np.ones((3, 4), dtype=np.bool_))

@@ -20,6 +20,7 @@ from stages.inference.spanned import spanned
 from stages.inference.triad import AXES, linear_names
 from stages.inference.whole_turns import Earth, Steady
 from stages.model.motion import level_axes
+from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -116,7 +117,7 @@ def rate_table(
         for (kind, name), size in one.level.items():
             readings.suffer(kind, name, j, matrix @ size)
         for i, axis in enumerate(level_axes(run.about)):
-            lean = run.rate * np.cross(axis, run.about) * position_sigma
+            lean = run.rate * cross(axis, run.about) * position_sigma
             readings.suffer(f"tilt {i}", run.position.name, j, matrix @ lean)
     return RateTable(
         readings.solution(weights, determined),

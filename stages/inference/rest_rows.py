@@ -11,6 +11,7 @@ from stages.inference.random_walk import Stretch
 from stages.inference.rests_and_turns import Earth, Position, Steady, Still
 from stages.inference.triad import UNKNOWNS, design_of
 from stages.model.motion import all_level_axes, level_axes, turned_all
+from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 
@@ -26,7 +27,7 @@ def level_names(position: Position) -> tuple[Name, ...]:
 def level_of(position: Position) -> Array:
     """The directions of the unknown parts of the level earth rate, (2, 3)."""
     if position.mark is not None:
-        return np.array([position.mark, np.cross(position.up, position.mark)])
+        return np.array([position.mark, cross(position.up, position.mark)])
     return np.array(level_axes(position.up))
 
 
@@ -115,7 +116,7 @@ def of_steady(
     for i, axis in enumerate(level_axes(steady.about)):
         tilt = (f"tilt {i}", steady.position.name)
         sigma[tilt], names = position_sigma, (*names, tilt)
-        columns.append((steady.rate * (matrix @ np.cross(axis, steady.about)))[:, None])
+        columns.append((steady.rate * (matrix @ cross(axis, steady.about)))[:, None])
     rate = ("rate", name)
     sigma[rate], names = steady.rate_sigma, (*names, rate)
     columns.append((matrix @ steady.about)[:, None])

@@ -20,6 +20,7 @@ from stages.inference.rest_rows import whitened
 from stages.inference.traces import NONE, Traces
 from stages.inference.triad import UNKNOWNS
 from stages.model.motion import all_level_axes
+from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 
@@ -170,7 +171,7 @@ def _rows(
     rows[:, :, UNKNOWNS + 1 : s] = [rest.traces.of(effects) for rest in rests]
     level = all_level_axes(ups)
     for axis in (0, 1):
-        rows[:, :, s + axis] = np.cross(level[:, axis], gravity * ups) @ matrix.T
+        rows[:, :, s + axis] = cross(level[:, axis], gravity * ups) @ matrix.T
     rows[:, :, -1] = np.array([rest.mean for rest in rests]) + gravity * along
     rows[:, :, -1] -= rows[:, :, :s] @ prior
     return rows

@@ -28,6 +28,7 @@ from stages.inference.pooled_positions import pooling
 from stages.inference.spanned import spanned
 from stages.inference.whole_turns import Earth, Still, Turn
 from stages.model.motion import level_axes, turned
+from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 
@@ -150,7 +151,7 @@ def turn_and_stop(
     for j, turn in enumerate(turns):
         readings.suffer("angle", str(j), j, matrix @ turn.about * turn.angle_sigma)
         for i, level in enumerate(level_axes(turn.about)):
-            lean = turn.angle * np.cross(level, turn.about) * position_sigma
+            lean = turn.angle * cross(level, turn.about) * position_sigma
             readings.suffer(f"tilt {i}", turn.position.name, j, matrix @ lean)
 
     def solution(of_bias: Array) -> Solution:

@@ -11,6 +11,7 @@ from stages.inference.rest_rows import level_names, level_of
 from stages.inference.rests_and_turns import Earth, Turn
 from stages.inference.triad import UNKNOWNS
 from stages.model.motion import level_axes, turned_all
+from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 
@@ -148,7 +149,7 @@ class _Blocks:
                 seen[:, :, column] = level * seconds[:, None]
                 column += 1
         for axis in level_axes(turn.about):
-            seen[:, :, column] = np.outer(angle, matrix @ np.cross(axis, turn.about))
+            seen[:, :, column] = np.outer(angle, matrix @ cross(axis, turn.about))
             column += 1
         observed = self.sums[some] + seen[:, :, UNKNOWNS] * earth.up
         seen[:, :, -1] = observed - seen[:, :, :s] @ self.prior

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from stages.model.vectors import cross
+
 Array = NDArray[np.float64]
 
 
@@ -24,17 +26,17 @@ def turned(direction: Array, about: Array, angle: float) -> Array:
 def level_axes(up: Array) -> tuple[Array, Array]:
     """Two level directions in body axes that make, with `up`, a right-handed triad."""
     least = np.eye(3)[np.argmin(np.abs(up))]
-    first = np.cross(least, up)
+    first = cross(least, up)
     first /= np.linalg.norm(first)
-    return first, np.cross(up, first)
+    return first, cross(up, first)
 
 
 def all_level_axes(ups: Array) -> Array:
     """`level_axes` of many upward directions (n, 3), (n, 2, 3)."""
     least = np.eye(3)[np.argmin(np.abs(ups), axis=1)]
-    first = np.cross(least, ups)
+    first = cross(least, ups)
     first /= np.linalg.norm(first, axis=1)[:, None]
-    return np.stack([first, np.cross(ups, first)], axis=1)
+    return np.stack([first, cross(ups, first)], axis=1)
 
 
 @dataclass(frozen=True)
@@ -199,7 +201,7 @@ def turned_all(direction: Array, about: Array, angles: Array) -> Array:
     """
     along = about * np.sum(about * direction, axis=-1, keepdims=True)
     across = np.cos(angles)[:, None] * (direction - along)
-    return np.asarray(along + across - np.sin(angles)[:, None] * np.cross(about, direction))
+    return np.asarray(along + across - np.sin(angles)[:, None] * cross(about, direction))
 
 
 def mean_turned(direction: Array, about: Array, middle: Array, angle: Array) -> Array:
