@@ -7,6 +7,7 @@ import numpy as np
 from stages.model.effect import Array, Effect, Parameter, Truth
 from stages.model.motion import Motion, without_north
 from stages.model.sizes import of_tables
+from stages.model.vectors import cross
 from stages.notation.units import ARC_SECOND
 
 HOME = np.array([0.0, 0.0, 1.0])  # of the case: up where the middle axis is at zero
@@ -36,12 +37,12 @@ class TableAxisNonOrthogonality(Effect):
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         up = motion.up_at_start
         middle, sine = _middle(up, np.nan_to_num(motion.north_at_start))
-        error = values[0] * (1 - up @ HOME)[:, None] * np.cross(middle, up)
+        error = values[0] * (1 - up @ HOME)[:, None] * cross(middle, up)
         error += values[1] * sine[:, None] * middle
         return replace(
             truth,
-            rate=truth.rate - np.cross(error, motion.omega),
-            force=truth.force - np.cross(error, truth.force),
+            rate=truth.rate - cross(error, motion.omega),
+            force=truth.force - cross(error, truth.force),
         )
 
     def blind(self, motion: Motion) -> str:
@@ -51,14 +52,14 @@ class TableAxisNonOrthogonality(Effect):
 def _middle(up: Array, north: Array) -> tuple[Array, Array]:
     """The middle axis in body axes, (n, 3), and the sine of its angle, (n,).
 
-    It is one line in the laboratory, told by the first side; a tumble that goes on beyond down
-    turns about it still.
+    It is one line in the laboratory, told by the first side whose azimuth is known; a tumble that
+    goes on beyond down turns about it still.
     """
-    across = np.cross(up, HOME)
+    across = cross(up, HOME)
     size = np.linalg.norm(across, axis=1)
-    level = np.stack([north, np.cross(north, up)], axis=1)  # (n, 2, 3), north and east
+    level = np.stack([north, cross(north, up)], axis=1)  # (n, 2, 3), north and east
     azimuth = np.einsum("nij,nj->ni", level, across)
-    sides = np.flatnonzero(size > UPRIGHT)
+    sides = np.flatnonzero((size > UPRIGHT) & azimuth.any(axis=1))
     if not len(sides):
         return np.zeros_like(up), size
     first = azimuth[sides[0]] / np.linalg.norm(azimuth[sides[0]])

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from stages.effects import CATALOGUE
 from stages.effects.accel_hysteresis import remembered
 from stages.model.forward import Site, Triad, predict, truth_of
-from stages.model.motion import Motion, Profile, turning
+from stages.model.motion import Motion, Profile, joined, turning
 from stages.model.site import earth_rate
 
 DEGREE = np.radians(1)
@@ -114,6 +114,17 @@ def test_a_middle_axis_that_leans_by_exact_rotations(lean, quarter):
 def test_axes_at_other_than_right_angles_leave_a_case_upright_alone():
     flat = replace(on_a_turn(ANGLES), up=np.tile(VERTICAL, (len(ANGLES), 1)), about=VERTICAL)
     assert not acted("table_axis_non_orthogonality", [1e-4, 1e-4], flat)[1].any()
+
+
+def test_a_side_whose_azimuth_is_not_known_does_not_tell_the_middle_axis():
+    side = on_a_turn(ANGLES)
+    unknown = replace(side, north=np.full_like(side.north, np.nan))
+    flat = replace(side, up=np.tile(-VERTICAL, (len(ANGLES), 1)), about=VERTICAL)
+    alone = acted("table_axis_non_orthogonality", [1e-4, 1e-4], joined([side, flat]))
+    beside = acted("table_axis_non_orthogonality", [1e-4, 1e-4], joined([unknown, side, flat]))
+    for sensor, other in zip(beside, alone, strict=True):
+        assert other[len(ANGLES) :].any()
+        np.testing.assert_allclose(sensor[len(ANGLES) :], other, atol=1e-15)
 
 
 @pytest.mark.parametrize("name", ["lever_arm", "size_effect"])
