@@ -29,9 +29,10 @@ from stages.formats.account import (
 from stages.formats.column_layout import Column, ColumnLayout, column_layout
 from stages.formats.fields import Field, TextField
 from stages.formats.pieces import LONGEST_LINE, PIECE_BYTES, Integers, Piece, pieces
+from stages.formats.plain_rows import BETWEEN, plain_rows
 from stages.formats.rows import Place, Reading, sort_rows
 
-_BETWEEN = b"\x1f"  # put between the fields of every row: ASCII's own unit separator
+FIRST = 1000  # rows by which the number of fields is told
 
 
 def read(
@@ -67,7 +68,7 @@ class _Lines:
     """The lines of a piece, told apart."""
 
     data: int  # number of data rows, refused ones counted
-    rows: list[bytes]  # the whole ones, cut into fields
+    rows: bytes  # the n whole ones, cut into fields, each a line
     indices: Integers  # which lines of the piece these are, (n,)
     numbers: Integers  # which data rows of the piece, (n,)
     reasons: dict[int, str]  # why the others are refused, by index
@@ -81,12 +82,15 @@ def _beginning(
     names: list[str] = []
     lengths: Counter[int] = Counter()
     for piece in pieces(path, piece_bytes):
-        for line, text in enumerate(piece.texts(), start=piece.first_line):
+        for index, line in enumerate(piece.lines.tolist()):
+            text = piece.text(index)
             if line == header_lines:
                 header = _cut(text, delimiter).decode("utf-8-sig", "backslashreplace")
-                names = [name.strip() for name in header.split(_BETWEEN.decode())]
+                names = [name.strip() for name in header.split(BETWEEN.decode())]
             elif line > header_lines and text.strip():
                 lengths[_length(_cut(text, delimiter))] += 1
+                if lengths.total() == FIRST:
+                    return names, lengths
         if lengths:
             break
     return names, lengths
@@ -100,37 +104,42 @@ def _usual_length(columns: ColumnLayout, lengths: Mapping[int, int]) -> int:
 
 
 def _sort_lines(piece: Piece, delimiter: bytes | None, header_lines: int, fields: int) -> _Lines:
-    account = Account()
-    data, rows, indices, numbers, reasons = 0, [], [], [], {}
-    lengths = piece.lengths.tolist()
-    for index, text in enumerate(piece.texts()):
-        if piece.first_line + index <= header_lines:
-            account.add(HEADER, "", 1, lengths[index])
-            continue
-        if not text.strip() and lengths[index] <= LONGEST_LINE:
-            account.add(BLANK, "", 1, lengths[index])
-            continue
-        row = _cut(text, delimiter)
-        if reason := _why_no_row(text, row, lengths[index], fields):
-            reasons[index] = reason
+    """All lines of a piece; those that are not plain rows are looked at one by one."""
+    header = min(max(header_lines + 1 - piece.first_line, 0), len(piece.starts))
+    is_row, rows = plain_rows(piece, header, delimiter, fields)
+    is_data = is_row.copy()
+    others: dict[int, bytes] = {}
+    account, reasons = Account(), {}
+    for index in np.flatnonzero(~is_row).tolist():
+        text, length = piece.text(index), int(piece.lengths[index])
+        if index < header:
+            account.add(HEADER, "", 1, length)
+        elif not text.strip() and length <= LONGEST_LINE:
+            account.add(BLANK, "", 1, length)
         else:
-            rows.append(row)
-            indices.append(index)
-            numbers.append(data)
-        data += 1
-    return _Lines(
-        data, rows, np.array(indices, np.int64), np.array(numbers, np.int64), reasons, account
-    )
+            is_data[index] = True
+            row = _cut(text, delimiter)
+            if reason := _why_no_row(text, row, length, fields):
+                reasons[index] = reason
+            else:
+                others[index] = row
+    if others:
+        plain = zip(np.flatnonzero(is_row).tolist(), rows.split(b"\n"), strict=False)
+        rows = b"\n".join(row for _, row in sorted([*plain, *others.items()]))
+        is_row[list(others)] = True
+    indices = np.flatnonzero(is_row)
+    numbers = np.cumsum(is_data)[indices] - 1
+    return _Lines(int(is_data.sum()), rows, indices, numbers, reasons, account)
 
 
 def _cut(text: bytes, delimiter: bytes | None) -> bytes:
     if delimiter is None:
-        return _BETWEEN.join(text.split())
-    return text.replace(delimiter, _BETWEEN)
+        return BETWEEN.join(text.split())
+    return text.replace(delimiter, BETWEEN)
 
 
 def _length(row: bytes) -> int:
-    return row.count(_BETWEEN) + 1
+    return row.count(BETWEEN) + 1
 
 
 def _why_no_row(text: bytes, row: bytes, length: int, fields: int) -> str:
@@ -170,18 +179,18 @@ def _read_rows(
     return Reading(found.rows, refused, account)
 
 
-def _fields(rows: list[bytes], columns: Sequence[Column], fields: int) -> dict[int, Field]:
+def _fields(rows: bytes, columns: Sequence[Column], fields: int) -> dict[int, Field]:
     """The columns by index, blanks around the texts left out."""
     indices = sorted({column.index for column in columns})
     if not rows or not indices:
         return {index: TextField(pa.chunked_array([], pa.string())) for index in indices}
     table = csv.read_csv(
-        pa.BufferReader(b"\n".join(rows)),
+        pa.BufferReader(rows),
         csv.ReadOptions(
             column_names=[str(index) for index in range(fields)], block_size=2 * LONGEST_LINE
         ),
         csv.ParseOptions(
-            delimiter=_BETWEEN.decode(),
+            delimiter=BETWEEN.decode(),
             quote_char=False,
             double_quote=False,
             ignore_empty_lines=False,
