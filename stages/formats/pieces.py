@@ -47,12 +47,6 @@ class Piece:
         """The line `index` of the piece without its line end."""
         return self.data[self.starts[index] : self.ends[index]]
 
-    def texts(self) -> list[bytes]:
-        """All lines without their line ends."""
-        data = self.data
-        places = zip(self.starts.tolist(), self.ends.tolist(), strict=True)
-        return [data[start:end] for start, end in places]
-
 
 def pieces(path: Path, size: int = PIECE_BYTES) -> Iterator[Piece]:
     """The lines of the file at `path`, about `size` bytes at a time.
