@@ -51,8 +51,8 @@ def measured() -> list[Table]:
         )
         before, largest = (samples, cpu), max(largest, memory)
     table.remarks.append(
-        "Binary logs, two processors. Memory: of all processes of a run together, Snakemake among"
-        " them, looked at five times a second; what two of them share counts twice. Bar:"
+        "Binary logs, two processors. Processor and memory: of all processes of a run, Snakemake"
+        " among them, looked at five times a second; what some of them share counts once. Bar:"
         f" {BAR:,.0f} MB, {'kept' if largest < BAR else 'MISSED'}."
     )
     return [table]

@@ -151,12 +151,12 @@ class Stream:
     path: Path
 
     def __iter__(self) -> Iterator[pa.RecordBatch]:
-        with _readable(self.path), pq.ParquetFile(self.path) as file:
-            yield from file.iter_batches(batch_size=BATCH_ROWS)
+        yield from self.columns(None)
 
-    def columns(self, names: list[str]) -> Iterator[pa.RecordBatch]:
-        """The same, of some columns only."""
-        with _readable(self.path), pq.ParquetFile(self.path) as file:
+    def columns(self, names: list[str] | None) -> Iterator[pa.RecordBatch]:
+        """The same, of some columns only; None for all."""
+        # Without pre_buffer, which would hold all that it has read up to the end.
+        with _readable(self.path), pq.ParquetFile(self.path, pre_buffer=False) as file:
             yield from file.iter_batches(batch_size=BATCH_ROWS, columns=names)
 
 

@@ -1,6 +1,7 @@
 """The samples reduced to what later stages use: segments, blocks of means, traces for figures."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 
 import numpy as np
 import pandas as pd
@@ -17,26 +18,15 @@ from stages.segmentation.matching import BETWEEN, Part
 Floats = NDArray[np.float64]
 
 TRACE_POINTS = 1200  # per log, what a figure shows
-Span = tuple[str, int, int]  # log, first record, record after the last
 
 
 def segments(samples: Stream, parts: Sequence[Part]) -> pd.DataFrame:
     """The phases of all manoeuvres with their records and times."""
-    rows = [
-        {
-            "manoeuvre": part.manoeuvre,
-            "phase": part.phase,
-            "log": part.log,
-            "from_record": part.first,
-            "to_record": part.after,
-            "from_s": float(total.first[k]),
-            "to_s": float(total.last[k]),
-        }
-        for part, (total, k) in zip(
-            parts, _over(samples, [(p.log, p.first, p.after) for p in parts]), strict=True
-        )
-    ]
-    return pd.DataFrame(rows) if rows else tables.SEGMENTS.empty()
+    if not parts:
+        return tables.SEGMENTS.empty()
+    table = _spans(parts, [(np.array([p.first]), np.array([p.after])) for p in parts])
+    total = _over(samples, table)
+    return table.assign(from_s=total["first"], to_s=total["last"])
 
 
 def blocks(
@@ -52,53 +42,46 @@ def blocks(
 
     A turn has no blocks where its gyros are masked: what is missing stands in the block behind.
     """
-    spans: list[Span] = []
-    owners: list[Part] = []
     hidden = _hidden(parts, masks)
     of_means = _of_means(samples, clocks)
+    edges: list[tuple[Integers, Integers]] = []
     for part in parts:
         seconds = rest_block if part.phase.startswith("rest") else turn_block
         length = max(1, round(seconds / clocks[part.log].step))
         # A hand turns about ever other axes; of records that are means already, each is a block.
         if part.phase == BETWEEN or part.log in of_means:
             length = 1
-        cuts = {*range(part.first, part.after, length)}
-        cuts |= {*gaps.loc[gaps["log"] == part.log, "record"].tolist()}
         unseen = hidden.get(part.manoeuvre, np.array([], np.int64))
-        cuts |= {*unseen[np.diff(unseen, prepend=-2) > 1].tolist()}
-        cuts |= {*(unseen[np.diff(unseen, append=np.iinfo(np.int64).max) > 1] + 1).tolist()}
-        starts = sorted(cut for cut in cuts if part.first <= cut < part.after)
-        kept = ~np.isin(starts, unseen)
-        ends = [*starts[1:], part.after]
-        edges = zip(starts, ends, kept, strict=True)
-        new: list[Span] = [(part.log, first, after) for first, after, seen in edges if seen]
-        spans += new
-        owners += [part] * len(new)
-    sums = _over(samples, spans, masks)
-    rows = [
-        {
-            "manoeuvre": owner.manoeuvre,
-            "phase": owner.phase,
-            "log": log,
-            "from_record": first,
-            "to_record": after,
-            "time": total.time[k],
-            "seconds": total.count[k] * (clocks[log].duration or np.nan),
-            "count": total.count[k],
-            "missing_s": 0.0,
-            **dict(zip(tables.CHANNELS, total.mean[k], strict=True)),
-            "table_angle": total.table_angle[k],
-            "temperature": total.temperature[k],
-            "mask_share": total.masked[k] / max(total.records[k], 1),
-            "first": total.first[k],
-            "last": total.last[k],
-        }
-        for owner, (log, first, after), (total, k) in zip(owners, spans, sums, strict=True)
-        if total.records[k] or owner.phase.startswith("rest")
-    ]
-    if not rows:
+        cuts = (
+            np.arange(part.first, part.after, length),
+            gaps.loc[gaps["log"] == part.log, "record"].to_numpy(np.int64),
+            unseen[np.diff(unseen, prepend=-2) > 1],
+            unseen[np.diff(unseen, append=np.iinfo(np.int64).max) > 1] + 1,
+        )
+        starts = np.unique(np.concatenate(cuts))
+        starts = starts[(part.first <= starts) & (starts < part.after)]
+        ends = np.append(starts[1:], part.after)
+        seen = ~np.isin(starts, unseen)
+        edges.append((starts[seen], ends[seen]))
+    table = _spans(parts, edges)
+    if table.empty:
         return tables.BLOCKS.empty()
-    table = pd.DataFrame(rows)
+    total = _over(samples, table, masks)
+    duration = table["log"].map({log: clock.duration or np.nan for log, clock in clocks.items()})
+    table = table.assign(
+        time=total["time"],
+        seconds=total["count"] * duration.to_numpy(np.float64),
+        count=total["count"],
+        missing_s=0.0,
+        **dict(zip(tables.CHANNELS, total["mean"].T, strict=True)),
+        table_angle=total["table_angle"],
+        temperature=total["temperature"],
+        mask_share=total["masked"] / np.maximum(total["records"], 1),
+        first=total["first"],
+        last=total["last"],
+    )
+    table = table[(total["records"] > 0) | table["phase"].str.startswith("rest")]
+    table = table.reset_index(drop=True)
     for _, turn in table[~table["phase"].str.startswith("rest")].groupby("manoeuvre"):
         log = turn["log"].iloc[0]
         after_gap = turn["from_record"].isin(gaps.loc[gaps["log"] == log, "record"])
@@ -175,20 +158,31 @@ def traces(samples: Stream, ends: Mapping[str, int]) -> pd.DataFrame:
     return pd.concat(frames) if frames else tables.TRACES.empty()
 
 
-def _over(
-    samples: Stream,
-    spans: Sequence[Span],
-    masks: Masks | None = None,
-) -> list[tuple[Sums, int]]:
-    """For each span the sums of its log, and its place in them."""
-    order: dict[str, list[int]] = {}
-    for number, (log, _, _) in enumerate(spans):
-        order.setdefault(log, []).append(number)
-    stretches: dict[str, tuple[Integers, Integers]] = {}
-    for log, numbers in order.items():
-        numbers.sort(key=lambda number: spans[number][1])
-        edges = np.array([spans[number][1:] for number in numbers], np.int64)
-        stretches[log] = (edges[:, 0], edges[:, 1])
-    sums = sums_over(samples, stretches, masks)
-    places = {n: (sums[log], k) for log, numbers in order.items() for k, n in enumerate(numbers)}
-    return [places[number] for number in range(len(spans))]
+def _spans(parts: Sequence[Part], edges: Sequence[tuple[Integers, Integers]]) -> pd.DataFrame:
+    """The spans of each part, from their first records up to those after the last."""
+    lengths = [len(starts) for starts, _ in edges]
+    names = {
+        name: np.repeat(np.array([getattr(part, name) for part in parts], object), lengths)
+        for name in ("manoeuvre", "phase", "log")
+    }
+    none = np.empty(0, np.int64)
+    first = np.concatenate([none, *(starts for starts, _ in edges)])
+    after = np.concatenate([none, *(ends for _, ends in edges)])
+    return pd.DataFrame({**names, "from_record": first, "to_record": after})
+
+
+def _over(samples: Stream, spans: pd.DataFrame, masks: Masks | None = None) -> dict[str, Floats]:
+    """What `Sums` tells of each of n spans, (n,) or (n, 6)."""
+    first, after = (spans[name].to_numpy() for name in ("from_record", "to_record"))
+    places = {
+        str(log): place[np.argsort(first[place], kind="stable")]
+        for log, place in spans.groupby("log", sort=False).indices.items()
+    }
+    stretches = {log: (first[place], after[place]) for log, place in places.items()}
+    told: dict[str, Floats] = {}
+    for log, sums in sums_over(samples, stretches, masks).items():
+        for field in fields(Sums):
+            values = getattr(sums, field.name)
+            whole = told.setdefault(field.name, np.empty((len(spans), *values.shape[1:])))
+            whole[places[log]] = values
+    return told
