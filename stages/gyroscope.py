@@ -46,13 +46,13 @@ def gyroscope(
             estimates.add_nothing(f"joint{suffix}", "; ".join(inputs.left_out))
             continue
         moving = (inputs.turns, inputs.steadies, inputs.earth, inputs.position_sigma)
-        fitted = whole_turns.fitted(inputs.rests(), *moving, levels.degrees)
+        fitted = whole_turns.fitted(inputs.rests, *moving, levels.degrees)
         why = reasons(fitted.estimate.determined, _channels(inputs), "gyro", CURES)
         estimates.add_triad(f"joint{suffix}", fitted.estimate, why)
         estimates.add_fit(f"joint{suffix}", fitted, inputs.used, inputs.left_out)
         linear = whole_turns.about(whole_turns.around_of(fitted.estimate, inputs.earth), *moving)
         for seconds in averaging_times(inputs.stills, averaging_steps):
-            shorter = linear.system(inputs.rests(seconds), fitted.scatter, fitted.walk)
+            shorter = linear.system(inputs.first_of_rests(seconds), fitted.scatter, fitted.walk)
             estimates.add_averaging(f"joint{suffix}", seconds, shorter.solve_shared())
         add_formulas(estimates, suffix, inputs, levels, fitted, wanted_bias)
         if stops_between_turns(plan):
@@ -62,7 +62,7 @@ def gyroscope(
 
 def _channels(inputs: GyroInputs) -> NDArray[np.bool_]:
     """Which gyros are in the logs, (3,)."""
-    readings = [rest.mean for rest in inputs.rests()]
+    readings = [rest.mean for rest in inputs.rests]
     readings += [steady.mean for steady in inputs.steadies]
     readings += [turn.sums.sum(axis=0) for turn in inputs.turns]
     return np.asarray(np.isfinite(np.array(readings)).any(axis=0))

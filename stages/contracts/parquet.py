@@ -151,11 +151,14 @@ class Stream:
     path: Path
 
     def __iter__(self) -> Iterator[pa.RecordBatch]:
-        yield from self.columns(None)
+        return self._batches(None)
 
-    def columns(self, names: list[str] | None) -> Iterator[pa.RecordBatch]:
-        """The same, of some columns only; None for all."""
-        # Without pre_buffer, which would hold all that it has read up to the end.
+    def columns(self, names: list[str]) -> Iterator[pa.RecordBatch]:
+        """The same, of some columns only."""
+        return self._batches(names)
+
+    def _batches(self, names: list[str] | None) -> Iterator[pa.RecordBatch]:
+        # A buffer beforehand would hold all that is read, up to the end.
         with _readable(self.path), pq.ParquetFile(self.path, pre_buffer=False) as file:
             yield from file.iter_batches(batch_size=BATCH_ROWS, columns=names)
 

@@ -76,7 +76,7 @@ def _times(campaign: Campaign, sensor: str) -> Times | None:
     parts: Sequence[Still | Turn | Rest]
     if sensor == "gyro":
         solved, largest = campaign.solution.gyro, LARGEST_OF_GYROS
-        rests: Sequence[Still | Rest] = campaign.inputs.rests()
+        rests: Sequence[Still | Rest] = campaign.inputs.rests
         parts = [*rests, *campaign.inputs.turns]
     else:
         solved, largest = campaign.solution.accelerometer, LARGEST_OF_ACCELEROMETERS

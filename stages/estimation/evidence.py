@@ -172,9 +172,7 @@ class Campaign:
             return None
         rests, turns = [], []
         of_stills, of_turns = traces[: len(self.still_motions)], traces[len(self.still_motions) :]
-        for still, rest, told in zip(
-            self.inputs.stills, self.inputs.rests(), of_stills, strict=True
-        ):
+        for still, rest, told in zip(self.inputs.stills, self.inputs.rests, of_stills, strict=True):
             if only is None or still.manoeuvre.name in only:
                 rests.append(replace(rest, traces=Traces(told.names, told.values[0])))
         for recorded, turn, told in zip(self._whole, self.inputs.turns, of_turns, strict=True):

@@ -112,9 +112,7 @@ def add_turn_and_stop(
     estimates: Estimates, suffix: str, inputs: GyroInputs, scatter: float
 ) -> None:
     """S3's formulas, for plans that turn both ways and stop at positions in common."""
-    found = turn_and_stop(
-        inputs.turns, inputs.rests(), inputs.earth, inputs.position_sigma, scatter
-    )
+    found = turn_and_stop(inputs.turns, inputs.rests, inputs.earth, inputs.position_sigma, scatter)
     if not found.pairs or found.by_turns is None:
         return
     _add(estimates, f"turn_and_stop{suffix}", found.by_turns, _untold(found.by_turns))

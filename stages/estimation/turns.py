@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import cos, degrees, sin
 
 import numpy as np
@@ -66,8 +67,13 @@ class GyroInputs:
         """Whether there is neither a rest nor a turn."""
         return not (self.stills or self.turns or self.steadies)
 
-    def rests(self, seconds: float = np.inf) -> list[whole_turns.Still]:
-        """The rests, or the first seconds of each."""
+    @cached_property
+    def rests(self) -> list[whole_turns.Still]:
+        """The rests as the equations have them."""
+        return self.first_of_rests(np.inf)
+
+    def first_of_rests(self, seconds: float) -> list[whole_turns.Still]:
+        """The same of the first seconds of each."""
         return [still_of(still, self.heading, seconds) for still in self.stills]
 
 
@@ -153,7 +159,7 @@ def position_of(m: Manoeuvre, heading: float | None) -> Position:
     return Position(m.position, up, north=cos(heading) * mark + sin(heading) * cross(up, mark))
 
 
-def still_of(still: Still, heading: float | None, seconds: float = np.inf) -> whole_turns.Still:
+def still_of(still: Still, heading: float | None, seconds: float) -> whole_turns.Still:
     """A rest, or its first seconds."""
     position = position_of(still.manoeuvre, heading)
     mean, sigma = still.over(seconds)

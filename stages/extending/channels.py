@@ -91,7 +91,7 @@ class Channels:
         campaign, inputs = self.campaign, self.campaign.inputs
         stills, turns = len(campaign.still_motions), len(campaign.turn_motions)
         found = []
-        rests = zip(inputs.stills, inputs.rests(), self._traces[:stills], strict=True)
+        rests = zip(inputs.stills, inputs.rests, self._traces[:stills], strict=True)
         for still, rest, (motion, truth, traces, _) in rests:
             known = _known_rate(motion, truth, rest.position)[0]
             errors = self._earth(rest.position, motion, np.ones(1))
