@@ -42,7 +42,8 @@ def measured() -> list[Table]:
             try:
                 run.wait(chance.uniform(0, seconds))
                 completed += 1
-                shutil.rmtree(killed / "data/derived")
+                shutil.rmtree(killed)
+                _prepare(killed)
             except subprocess.TimeoutExpired:
                 os.killpg(run.pid, signal.SIGKILL)
                 run.wait()
