@@ -56,8 +56,8 @@ def measured() -> list[Table]:
         "Runs killed (-9) at random moments",
         ("kills", "tables that cannot be read", "parts left", "the next run", "tables that differ"),
     )
-    ended = "completes" if last == 0 else f"ends with {last}"
-    table.add(str(moments), str(len(damaged)), str(parts), ended, str(len(different)))
+    how = "completes" if last == 0 else f"ends with {last}"
+    table.add(str(moments), str(len(damaged)), str(parts), how, str(len(different)))
     table.remarks.append(
         f"An undisturbed run takes {told(seconds)} s; {completed} runs ended before they could be"
         " killed and were begun anew. Parts are what a stage writes beside a table until it is"
