@@ -11,7 +11,7 @@ from stages.formats.pieces import LONGEST_LINE
 LAYOUT = {
     "time": {"column": 1, "unit": "s"},
     "accelerometer": {"columns": [2, None, 3], "unit": "m/s2"},
-    "label": ["4"],
+    "label": [4],
 }
 FIELD = st.sampled_from(["1", "-2.5e3", " 3", "4 ", "x", "", "é", "\x1f", "5\r6", "\0", "\v", "·"])
 LINE = st.lists(FIELD, min_size=3, max_size=5)
