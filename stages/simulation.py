@@ -1,6 +1,8 @@
 """What the IMU should have read, by the forward model with the solved parameters."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ from stages.contracts.records import (
     Known,
     Manoeuvre,
     Performed,
+    Row,
     clocks_of,
     known_of,
     manoeuvres_of,
@@ -23,18 +26,19 @@ from stages.contracts.records import (
 )
 from stages.contracts.samples import pieces
 from stages.contracts.stage import Pieces, Stage
+from stages.contracts.tables import GYRO
 from stages.estimation.estimates import by_mount
 from stages.estimation.motions import at_rest, in_samples
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.solution import Solution, solution_of
 from stages.estimation.stills import stills
-from stages.estimation.turns import GYRO
 from stages.model.effect import Reading
 from stages.model.forward import Triad, predict
 from stages.model.motion import Motion
 
 Array = NDArray[np.float64]
 
+OF_CHANNELS = ("said", "residual")
 NOTHING = Triad(np.full((3, 3), np.nan), np.full(3, np.nan))  # of a triad that is not determined
 
 
@@ -63,25 +67,46 @@ def simulation(
             suffix,
         )
         rests = list(_rests(blocks, plan, done, levels, given, solution))
-        fidelity = [_fidelity(frame, levels, "at rest", blocks) for frame in rests]
         if rests:
-            yield "simulated", pd.concat(rests, ignore_index=True)
-            yield "fidelity", pd.concat(fidelity, ignore_index=True)
+            yield "simulated", _frame([part for part, _ in rests])
+            rows = [row for part, s in rests for row in _fidelity(part, levels, "at rest", s)]
+            yield "fidelity", _table(rows)
         if solution.gyro is None:
             continue
         whole = [m for m in plan if _whole(m, done)]
         for m, parts in _samples_of(samples, segments, whole):
             heading = given["heading"].value
             used = blocks[blocks["manoeuvre"] == m.name]
-            frame, how = _turn(m, parts, segments, used, clock[m.log], solution, heading)
-            yield "simulated", frame
-            yield "fidelity", _fidelity(frame, levels, how, None, clock[m.log].step)
+            part, how = _turn(m, parts, segments, used, clock[m.log], solution, heading)
+            yield "simulated", _frame([part])
+            yield "fidelity", _table(_fidelity(part, levels, how, clock[m.log].step))
 
 
 def _whole(m: Manoeuvre, done: Mapping[str, Performed]) -> bool:
     known = m.up is not None and m.angle is not None
     recorded = done[m.name].complete or done[m.name].bridged
     return m.do == "turn" and m.recorded == "whole" and known and recorded
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """n samples of a turn or blocks of a rest: what the six channels should have read, and did.
+
+    `phase`, `record`, `time`, s: (n,); `said`, `read`: m/s² and rad/s, (n, 6).
+    """
+
+    manoeuvre: str
+    log: str
+    phase: NDArray[Any]
+    record: NDArray[Any]
+    time: Array
+    said: Array
+    read: Array
+
+    @cached_property
+    def residual(self) -> Array:
+        """What is left of the reading, (n, 6)."""
+        return self.read - self.said
 
 
 def _rests(
@@ -91,30 +116,25 @@ def _rests(
     levels: NoiseLevels,
     known: Mapping[str, Known],
     solution: Solution,
-) -> Iterator[pd.DataFrame]:
-    """The blocks of every rest less what the model says of its attitude."""
+) -> Iterator[tuple[Simulated, float]]:
+    """Every rest in its blocks, each with how long a block lasts, s."""
     found = {
         still.label: still
         for sensor in ("gyro", "accel")
         for still in stills(blocks, plan, done, levels, sensor)[0]
     }
-    groups = dict(list(blocks.groupby(["manoeuvre", "phase"])))
+    rows = blocks.groupby(["manoeuvre", "phase"]).indices
+    log, phase, record = (blocks[name].to_numpy() for name in ("log", "phase", "from_record"))
+    time, seconds = (blocks[name].to_numpy(np.float64) for name in ("time", "seconds"))
+    read = blocks[list(tables.CHANNELS)].to_numpy(np.float64)
     for label, still in found.items():
-        phase = "rest" if label == still.manoeuvre.name else label.rpartition("(")[2][:-1]
-        part = groups[still.manoeuvre.name, phase]
-        motion = at_rest(still, solution, known["heading"].value, 0.0)
-        said = _predicted(motion, solution)
-        read = part[list(tables.CHANNELS)].to_numpy(np.float64)
+        name = still.manoeuvre.name
+        own = rows[name, "rest" if label == name else label.rpartition("(")[2][:-1]]
+        said = _predicted(at_rest(still, solution, known["heading"].value, 0.0), solution)
         row = np.concatenate([said.accel[0], said.gyro[0]])
-        yield _frame(
-            still.manoeuvre.name,
-            part["phase"].to_numpy(),
-            part["log"].iloc[0],
-            part["from_record"].to_numpy(),
-            part["time"].to_numpy(np.float64),
-            np.tile(row, (len(part), 1)),
-            read,
-        )
+        every = np.tile(row, (len(own), 1))
+        part = Simulated(name, log[own[0]], phase[own], record[own], time[own], every, read[own])
+        yield part, float(np.median(seconds[own]))
 
 
 def _predicted(motion: Motion, solution: Solution) -> Reading:
@@ -154,7 +174,7 @@ def _turn(
     clock: Clock,
     solution: Solution,
     heading: float | None,
-) -> tuple[pd.DataFrame, str]:
+) -> tuple[Simulated, str]:
     """A turn sample by sample; what is in none of its blocks is masked, and not compared."""
     record = parts["record"]
     own = [row for row in rows_of(segments) if row["manoeuvre"] == m.name]
@@ -168,63 +188,45 @@ def _turn(
     steady = phase == "steady"
     motion, how = in_samples(m, increments, clock.step, steady, parts["time"], solution, heading)
     said = _predicted(motion, solution)
-    simulated = np.hstack([said.accel, said.gyro])
-    return _frame(m.name, phase, m.log, record, parts["time"], simulated, read), how
+    both = np.hstack([said.accel, said.gyro])
+    return Simulated(m.name, m.log, phase, record, parts["time"], both, read), how
 
 
-def _frame(
-    name: str,
-    phase: NDArray[Any],
-    log: str,
-    record: NDArray[Any],
-    time: Array,
-    simulated: Array,
-    read: Array,
-) -> pd.DataFrame:
-    residual = read - simulated
+def _frame(parts: Sequence[Simulated]) -> pd.DataFrame:
+    counts = [len(part.record) for part in parts]
+    said, residual = (np.concatenate([getattr(p, name) for p in parts]) for name in OF_CHANNELS)
     return pd.DataFrame(
         {
-            "manoeuvre": name,
-            "phase": phase,
-            "log": log,
-            "record": record,
-            "time": time,
-            **{channel: simulated[:, i] for i, channel in enumerate(tables.CHANNELS)},
-            **{f"residual_{c}": residual[:, i] for i, c in enumerate(tables.CHANNELS)},
+            "manoeuvre": np.repeat([part.manoeuvre for part in parts], counts),
+            "phase": np.concatenate([part.phase for part in parts]),
+            "log": np.repeat([part.log for part in parts], counts),
+            "record": np.concatenate([part.record for part in parts]),
+            "time": np.concatenate([part.time for part in parts]),
+            **dict(zip(tables.CHANNELS, said.T, strict=True)),
+            **{f"residual_{c}": left for c, left in zip(tables.CHANNELS, residual.T, strict=True)},
         }
     )
 
 
-def _fidelity(
-    frame: pd.DataFrame,
-    levels: NoiseLevels,
-    how: str,
-    blocks: pd.DataFrame | None,
-    step: float = 1.0,
-) -> pd.DataFrame:
-    """How large the residuals are beside what white noise alone would leave."""
-    name = str(frame["manoeuvre"].iloc[0])
-    rows = []
-    seconds = step
-    if blocks is not None:
-        own = blocks[(blocks["manoeuvre"] == name) & blocks["phase"].isin(frame["phase"])]
-        seconds = float(own["seconds"].median())
-    for channel in tables.CHANNELS:
-        residual = frame[f"residual_{channel}"].to_numpy(np.float64)
+def _fidelity(part: Simulated, levels: NoiseLevels, how: str, seconds: float) -> Iterator[Row]:
+    """How large the residuals are beside what white noise alone would leave of means so long."""
+    white = levels.of(part.manoeuvre, "rest", tables.CHANNELS)
+    for channel, residual, level in zip(tables.CHANNELS, part.residual.T, white, strict=True):
         there = residual[np.isfinite(residual)]
-        level = float(levels.of(name, "rest", [channel])[0])
         if len(there) and np.isfinite(level):
-            rows.append(
-                {
-                    "manoeuvre": name,
-                    "channel": channel,
-                    "profile": how,
-                    "residual_rms": float(np.sqrt(np.mean(there**2))),
-                    "noise_rms": level / np.sqrt(seconds),
-                    "samples": len(there),
-                }
-            )
-    return pd.DataFrame(rows) if rows else tables.FIDELITY.empty()
+            yield {
+                "manoeuvre": part.manoeuvre,
+                "channel": channel,
+                "profile": how,
+                "residual_rms": float(np.sqrt(np.mean(there**2))),
+                "noise_rms": float(level) / np.sqrt(seconds),
+                "samples": len(there),
+            }
+
+
+def _table(rows: Iterable[Row]) -> pd.DataFrame:
+    found = list(rows)
+    return pd.DataFrame(found) if found else tables.FIDELITY.empty()
 
 
 STAGE = Stage(

@@ -490,8 +490,8 @@ def test_an_assumed_angle_is_wrong_by_far_more_than_its_sigma(gapped):
     scale, bias = truth["matrix"][2][2] - 1, truth["bias_rad_s"][2]
     inputs = inputs_of(gapped)
     forward, backward = inputs.recorded
-    sums = [float((r.blocks["gyro_z"] * r.blocks["seconds"]).sum()) for r in (forward, backward)]
-    seconds = [float(r.blocks["seconds"].sum()) for r in (forward, backward)]
+    sums = [float(r.blocks.gyro[:, 2] @ r.blocks.seconds) for r in (forward, backward)]
+    seconds = [float(r.blocks.seconds.sum()) for r in (forward, backward)]
     up = inputs.earth.up
 
     # S0 (3-9), (3-10) as printed, both turns over the same time: a sixth of the scale factor.

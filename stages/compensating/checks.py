@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from stages.compensating.correction import Correction, truth_of
 from stages.contracts import tables
 from stages.contracts.records import Known, Manoeuvre, Performed, Row, rows_of
+from stages.contracts.tables import GYRO
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import Still, stills
-from stages.estimation.turns import GYRO, Recorded, gyro_inputs, position_of
+from stages.estimation.turns import Recorded, gyro_inputs, position_of
 from stages.inference.whole_turns import Position
 from stages.model.forward import Triad
 from stages.notation.numbers import decimals_of, fixed, with_sigma
@@ -200,10 +201,10 @@ def _angle(
     The axis stands still in body and laboratory, so the earth's rate along it is the same all the
     time: ω_e sinφ for an upright axis.
     """
-    m, seconds = one.plan, one.blocks["seconds"].to_numpy(np.float64)
+    m, seconds = one.plan, one.blocks.seconds
     assert m.angle is not None and m.angle_sigma is not None  # else it is refused
     time = float(seconds.sum())
-    summed = (one.blocks[GYRO].to_numpy(np.float64) * seconds[:, None]).sum(axis=0)
+    summed = (one.blocks.gyro * seconds[:, None]).sum(axis=0)
     earth, sigma = _earth_along(m.axis, position_of(m, known["heading"].value), known)
     after = float(truth_of(summed, triad, time) @ m.axis) - earth * time
     if not np.isfinite(after):

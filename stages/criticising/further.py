@@ -13,9 +13,8 @@ import numpy as np
 import pandas as pd
 
 from stages.contracts.records import Manoeuvre, Performed
-from stages.contracts.tables import AXES
+from stages.contracts.tables import GYRO
 
-GYRO = [f"gyro_{axis}" for axis in AXES]
 PAUSE = 60.0  # s, before a manoeuvre that is added
 TURNED_OVER = "turn also at the same rate with the axis down"
 FASTER = "turn also at twice the rate"
@@ -36,26 +35,31 @@ def further(
     plan: Sequence[Manoeuvre], performed: Mapping[str, Performed], blocks: pd.DataFrame
 ) -> dict[str, Callable[[], Further]]:
     """What might be added to a campaign, by its name; made when it is asked for."""
-    whole = [m for m in plan if m.up is not None and performed[m.name].complete]
+    rows = blocks.groupby("manoeuvre").indices
+    complete = [m for m in plan if performed[m.name].complete]
+    whole = [m for m in complete if m.up is not None and m.name in rows]
     turns = [m for m in whole if m.do == "turn" and m.recorded == "whole" and m.rate is not None]
     rests = [m for m in whole if m.do == "rest"]
 
     def added(pairs: Sequence[tuple[Manoeuvre, Manoeuvre, float]]) -> Further:
-        start = float(blocks["time"].max())
-        own, done = [blocks], dict(performed)
+        done, times, start = dict(performed), [], float(blocks["time"].max())
         for original, copy, faster in pairs:
-            part = blocks[blocks["manoeuvre"] == original.name].copy()
-            part["manoeuvre"] = copy.name
-            part["time"] = start + PAUSE + (part["time"] - part["time"].min()) / faster
-            part["seconds"] /= faster
-            part["count"] /= faster
-            moving = ~part["phase"].str.startswith("rest")
-            part.loc[moving, GYRO] *= faster
-            start = float(part["time"].max())
-            own.append(part)
+            own = blocks["time"].to_numpy()[rows[original.name]]
+            times.append(start + PAUSE + (own - np.fmin.reduce(own)) / faster)
+            start = float(np.fmax.reduce(times[-1]))
             done[copy.name] = replace(performed[original.name], manoeuvre=copy.name)
+        parts = [rows[original.name] for original, _, _ in pairs]
+        each = np.repeat(np.arange(len(pairs)), [len(part) for part in parts])
+        more = blocks.iloc[np.concatenate(parts)].copy()
+        more["manoeuvre"] = np.array([copy.name for _, copy, _ in pairs])[each]
+        more["time"] = np.concatenate(times)
+        factor = np.array([faster for _, _, faster in pairs])[each]
+        more["seconds"] /= factor
+        more["count"] /= factor
+        moving = ~more["phase"].str.startswith("rest").to_numpy(bool)
+        more[GYRO] *= np.where(moving, factor, 1.0)[:, None]
         manoeuvres = [*plan, *(copy for _, copy, _ in pairs)]
-        return Further(manoeuvres, done, pd.concat(own, ignore_index=True))
+        return Further(manoeuvres, done, pd.concat([blocks, more], ignore_index=True))
 
     found: dict[str, Callable[[], Further]] = {}
     if turns:

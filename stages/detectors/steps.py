@@ -114,6 +114,11 @@ def differences(readings: Array, width: int) -> Array:
     return np.asarray((after - 2 * here + before) / width)
 
 
+def _white(change: Array, width: int) -> float:
+    """Scatter of white readings whose neighbouring means of so many would differ so."""
+    return float(1.4826 * np.median(np.abs(change)) * np.sqrt(width / 2))
+
+
 class _Noise:
     """What differences of neighbouring means scatter by, at every length of the mean."""
 
@@ -124,7 +129,7 @@ class _Noise:
         self.widths: list[int] = []
         self.single: list[float] = []  # what a reading would scatter by if the noise were white
         self.trend: list[float] = []  # of an even drift, usual change from mean to mean
-        whole: list[float] = []  # as single, the drift not taken off
+        changes: list[Array] = []
         width = 1
         while width <= min(longest, len(readings) // APART):
             # Neighbours share nearly all their readings: some tell the scatter as well as all.
@@ -132,11 +137,12 @@ class _Noise:
             trend = float(np.median(change))
             self.widths.append(width)
             self.trend.append(trend)
-            for scatters, about in ((self.single, trend), (whole, 0.0)):
-                scatter = 1.4826 * float(np.median(np.abs(change - about)))
-                scatters.append(scatter * np.sqrt(width / 2))
+            self.single.append(_white(change - trend, width))
+            changes.append(change)
             width *= 2
-        self.coloured = whole[-1] > COLOURED * min(whole[-4:])
+        # The drift not taken off.
+        whole = [_white(*each) for each in zip(changes[-4:], self.widths[-4:], strict=True)]
+        self.coloured = whole[-1] > COLOURED * min(whole)
         # How drift and noise that grows go on beyond the lengths they were seen at, nobody knows.
         self.longest = min(longest, self.widths[-1]) if self.coloured else longest
 

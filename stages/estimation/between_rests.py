@@ -14,8 +14,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from stages.contracts.records import Known, Manoeuvre
+from stages.contracts.tables import GYRO
 from stages.estimation.estimates import Estimates, reasons
-from stages.estimation.free_positions import GYRO, METHOD, FreeStill, fitted_to, free_stills
+from stages.estimation.free_positions import METHOD, FreeStill, fitted_to, free_stills
 from stages.estimation.noise_levels import NoiseLevels
 from stages.inference.between_rests import Given, Passage, Stop, between_rests
 from stages.inference.least_squares import with_scatter

@@ -16,27 +16,23 @@ the angle may be wrong by:
 from collections.abc import Sequence
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
-from stages.contracts.tables import AXES
+from stages.contracts.tables import GYRO
+from stages.estimation.blocks import Blocks
 from stages.estimation.noise_levels import NoiseLevels
 from stages.inference.steadiness import strays
 from stages.inference.whole_turns import Bridge
 
 Array = NDArray[np.float64]
 
-GYRO = [f"gyro_{axis}" for axis in AXES]
 
-
-def bridges(part: pd.DataFrame) -> list[Bridge]:
+def bridges(part: Blocks) -> list[Bridge]:
     """What is missing between the k blocks of a turn, each bridged by the blocks about it."""
-    seconds = part["seconds"].to_numpy(np.float64)
-    missing = part["missing_s"].to_numpy(np.float64)
-    steady = (part["phase"] == "steady").to_numpy(bool)
+    seconds, steady = part.seconds, part.steady
     found = []
-    for i in np.flatnonzero(missing).tolist():
-        gone = float(missing[i])
+    for i in np.flatnonzero(part.missing).tolist():
+        gone = float(part.missing[i])
         shares = np.zeros(len(part))
         if steady[i - 1] and steady[i]:
             shares[steady] = gone / seconds[steady].sum()
@@ -49,7 +45,7 @@ def bridges(part: pd.DataFrame) -> list[Bridge]:
 
 
 def sigma_of(
-    part: pd.DataFrame,
+    part: Blocks,
     found: Sequence[Bridge],
     about: Array,
     name: str,
@@ -65,13 +61,11 @@ def sigma_of(
     """
     if not found:
         return 0.0
-    seconds = part["seconds"].to_numpy(np.float64)
-    rate = np.nan_to_num(part[GYRO].to_numpy(np.float64)) @ about
-    ends = np.cumsum(seconds + part["missing_s"].to_numpy(np.float64))
-    elapsed = ends - seconds / 2
-    steady = (part["phase"] == "steady").to_numpy(bool)
+    seconds, steady = part.seconds, part.steady
+    rate = np.nan_to_num(part.gyro) @ about
+    elapsed = np.cumsum(seconds + part.missing) - seconds / 2
     density = np.nan_to_num(noise.of(name, "steady", GYRO))
-    rings = _oscillation(name, noise, about, float(seconds.sum() / part["count"].sum()))
+    rings = _oscillation(name, noise, about, float(seconds.sum() / part.counts.sum()))
     # An oscillation slower than one period in a block shows in the blocks.
     longest = float(np.median(seconds)) / (2 * np.pi)
     variance = sum(2 * (rings * min(one.seconds, longest)) ** 2 for one in found)

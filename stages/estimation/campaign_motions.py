@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.contracts import tables
 from stages.contracts.records import Manoeuvre
+from stages.contracts.tables import ACCEL
 from stages.estimation.motions import at_rest, in_blocks
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.solution import Solution
@@ -19,7 +19,6 @@ from stages.model.motion import Motion
 
 Array = NDArray[np.float64]
 
-ACCEL = [f"accel_{axis}" for axis in tables.AXES]
 MOVING, AFTER = 1 / 3, 2 / 3  # of a visit: the turn, and the rest behind it
 UPRIGHT = 1 - 1e-6  # cosine of an axis to the vertical
 
@@ -63,8 +62,8 @@ class CampaignMotions:
     def turning(self, one: Recorded, turn: Turn) -> Motion:
         """A turn in its blocks; about an axis that is not upright gravity hides how it shakes."""
         name = one.plan.name
-        time, temperature = one.blocks[["time", "temperature"]].to_numpy(np.float64).T
-        time = time if self._shared_clock else np.full(len(time), np.nan)
+        blocks = one.blocks
+        time = blocks.time if self._shared_clock else np.full(len(blocks), np.nan)
         motion = in_blocks(one.plan, turn, self._solution, self._heading, time)
         upright = abs(float(turn.position.up @ turn.about)) > UPRIGHT
         shaken = self._levels.of_samples(name, "steady", ACCEL) if upright else np.full(3, np.nan)
@@ -72,7 +71,7 @@ class CampaignMotions:
             motion,
             visit=np.full(len(time), self._visits[name] + MOVING),
             position=np.full(len(time), self._places[name]),
-            temperature=temperature,
+            temperature=blocks.temperature,
             vibration=np.tile(shaken, (len(time), 1)),
         )
 

@@ -9,8 +9,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from stages.contracts import tables
 from stages.contracts.records import Known, Manoeuvre, Performed
+from stages.contracts.tables import ACCEL
+from stages.estimation.blocks import Blocks
 from stages.estimation.campaign_motions import CampaignMotions, mean_motion, positions_of
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.solution import Solution
@@ -29,7 +30,6 @@ from stages.model.motion import Motion, joined, mean_turned
 
 Array = NDArray[np.float64]
 
-ACCEL = [f"accel_{axis}" for axis in tables.AXES]
 USUAL = 10.0  # times its typical size: what an effect may be before the data are seen
 NOTHING = "Nothing is simulated, for the joint estimate determines no sensor wholly."
 CLEAR = 5.0  # sigmas of an effect that is seen
@@ -300,11 +300,10 @@ def _rest(still: Still) -> Rest:
 
 
 def _turning(
-    m: Manoeuvre, blocks: pd.DataFrame, motion: Motion, density: Array, edges: Sequence[int]
+    m: Manoeuvre, blocks: Blocks, motion: Motion, density: Array, edges: Sequence[int]
 ) -> list[tuple[str, Rest, Motion]]:
     """The accelerometers during a turn, some blocks at a time, none across the `edges`."""
-    read = blocks[ACCEL].to_numpy(np.float64)
-    seconds = blocks["seconds"].to_numpy(np.float64)
+    read, seconds = blocks.accel, blocks.seconds
     assert m.up is not None  # else the turn is refused
     ups = mean_turned(m.up, m.axis, motion.angle, motion.rate * seconds)
     parts = []

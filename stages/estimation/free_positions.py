@@ -13,7 +13,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from stages.contracts.records import Known, Manoeuvre
-from stages.contracts.tables import AXES
+from stages.contracts.tables import ACCEL, AXES, GYRO
 from stages.estimation.estimates import NAMES as LINEAR
 from stages.estimation.estimates import Estimates
 from stages.estimation.noise_levels import NoiseLevels
@@ -26,8 +26,6 @@ from stages.inference.unseen import Unseen, unseen
 Array = NDArray[np.float64]
 
 METHOD = "free_positions"
-ACCEL = [f"accel_{axis}" for axis in AXES]
-GYRO = [f"gyro_{axis}" for axis in AXES]
 SCATTER = (1e-7, 1.0)  # m/s²: how much rests may differ beyond the noise
 UNKNOWN = np.full(3, np.nan)  # an attitude
 UNTOLD = (

@@ -1,6 +1,7 @@
 """Which white noise each mean and each sum carries."""
 
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 import pandas as pd
@@ -62,14 +63,22 @@ class NoiseLevels:
         return any(self._ringing(manoeuvre, channel) for channel in channels)
 
     def _ringing(self, manoeuvre: str, channel: str) -> bool:
-        def scatter(key: tuple[str, str, str]) -> float:
-            return self._samples[key] / self._own[key][0]
-
         turn = (manoeuvre, "steady", channel)
-        rests = [key for key in self._own if key[1:] == ("rest", channel)]
-        if turn not in self._own or not rests:
+        if turn not in self._own or channel not in self._at_rest:
             return False
-        return bool(scatter(turn) > LOUD * np.median([scatter(key) for key in rests]))
+        return self._scatter(turn) > LOUD * self._at_rest[channel]
+
+    @cached_property
+    def _at_rest(self) -> dict[str, float]:
+        """What the samples of each channel usually scatter at rest, in its white noise per √s."""
+        rests: dict[str, list[float]] = {}
+        for key in self._own:
+            if key[1] == "rest":
+                rests.setdefault(key[2], []).append(self._scatter(key))
+        return {channel: float(np.median(scatters)) for channel, scatters in rests.items()}
+
+    def _scatter(self, key: tuple[str, str, str]) -> float:
+        return self._samples[key] / self._own[key][0]
 
     def _one(self, manoeuvre: str, phase: str, channel: str) -> float:
         common = self._common.get(channel, np.nan)

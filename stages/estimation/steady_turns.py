@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from stages.contracts.parquet import Stream
 from stages.contracts.records import Clock, Manoeuvre
-from stages.contracts.tables import AXES
+from stages.contracts.tables import AXES, GYRO
 from stages.inference.lines import Line
 from stages.inference.orders import Course
 from stages.inference.spectrum import band_levels, white_level
@@ -18,8 +18,7 @@ from stages.model.forward import Triad
 
 Array = NDArray[np.float64]
 
-GYROS = [f"gyro_{axis}" for axis in AXES]
-RESIDUALS = [f"residual_{name}" for name in GYROS]
+RESIDUALS = [f"residual_{name}" for name in GYRO]
 RESTS = ("rest-before", "rest-after")
 FEW = 3  # samples in a row without which an oscillation is still the same
 FEWEST = 64  # samples of a steady part
@@ -123,7 +122,7 @@ def steady_turns(
     planned = {m.name: m for m in plan if m.do == "turn"}
     inverse = np.linalg.inv(gyro.matrix)
     found = []
-    for name, rows in by_turn(simulated, ["time", *GYROS, *RESIDUALS]):
+    for name, rows in by_turn(simulated, ["time", *GYRO, *RESIDUALS]):
         steady = (rows["phase"] == "steady").to_numpy()
         if name not in planned or not steady.any():
             continue
@@ -131,7 +130,7 @@ def steady_turns(
         step = clocks[m.log].step
         angle = np.full(len(rows), np.nan)
         if m.rate is not None and m.acceleration is not None:
-            angle = _angle(rows, (rows[GYROS].to_numpy() - gyro.bias) @ inverse.T @ m.axis, step)
+            angle = _angle(rows, (rows[GYRO].to_numpy() - gyro.bias) @ inverse.T @ m.axis, step)
         columns = [rows[["time", *RESIDUALS]].to_numpy(np.float64), angle[:, None]]
         columns.append(rows[["time"]].to_numpy(np.float64))
         residuals, further = unbroken(np.hstack(columns)[steady])

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from stages.contracts.records import Manoeuvre, Performed
 from stages.contracts.tables import AXES
+from stages.estimation.blocks import Blocks
 from stages.estimation.noise_levels import NoiseLevels
 from stages.inference.random_walk import COMMON, Stretch
 from stages.model.motion import turned
@@ -155,10 +156,9 @@ def stills(
     return found, left
 
 
-def stretch_of(name: str, part: pd.DataFrame, shared_clock: bool) -> Stretch:
+def stretch_of(name: str, part: Blocks, shared_clock: bool) -> Stretch:
     """The stretch of time of some blocks in their order."""
-    time, seconds = (part[column].to_numpy(np.float64) for column in ("time", "seconds"))
-    return _stretch(name, str(part["log"].iloc[0]), time, seconds, shared_clock)
+    return _stretch(name, str(part.log[0]), part.time, part.seconds, shared_clock)
 
 
 def _stretch(name: str, log: str, time: Array, seconds: Array, shared_clock: bool) -> Stretch:

@@ -14,17 +14,17 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from stages.contracts.records import Manoeuvre, Performed
-from stages.contracts.tables import AXES
+from stages.contracts.tables import ACCEL, AXES
+from stages.estimation.blocks import Blocks, by_manoeuvre
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import stretch_of
-from stages.estimation.turns import GYRO, refusal_of
+from stages.estimation.turns import refusal_of
 from stages.inference.six_position import Rest
 from stages.inference.traces import Traces
 from stages.model.motion import mean_turned
 
 Array = NDArray[np.float64]
 
-ACCEL = [f"accel_{axis}" for axis in AXES]
 LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU stands farther off
 ALIKE = np.radians(5)  # by how much the vertical may turn in the case within one mean
 
@@ -41,19 +41,17 @@ def turning_rests(
     `shared_clock`: whether times of different logs are comparable. The `traces` of each are those
     of LEVER_ARM.
     """
-    moving = dict(list(blocks[~blocks["phase"].str.startswith("rest")].groupby("manoeuvre")))
-    at_rest = blocks[blocks["phase"].isin(["rest-before", "rest-after"])]
-    quiet = dict(list(at_rest.groupby("manoeuvre")))
+    moving = by_manoeuvre(blocks[~blocks["phase"].str.startswith("rest")])
+    quiet = by_manoeuvre(blocks[blocks["phase"].isin(["rest-before", "rest-after"])])
     found: list[tuple[str, Rest]] = []
     for m in plan:
         if m.do != "turn" or m.recorded != "whole" or m.name not in moving:
             continue
         part = moving[m.name]
         usable = performed[m.name].complete and not refusal_of(m, performed[m.name], part)
-        if usable and m.name in quiet and bool((part["phase"] == "steady").any()):
+        if usable and m.name in quiet and bool(part.steady.any()):
             density = noise.of(m.name, "steady", ACCEL)
-            steady = part[part["phase"] == "steady"]
-            stretch = stretch_of(m.name, steady, shared_clock)
+            stretch = stretch_of(m.name, part.those(part.steady), shared_clock)
             found += [
                 (f"{m.name} (steady)", replace(rest, stretch=stretch))
                 for rest in _steady(m, part, quiet[m.name], density)
@@ -61,16 +59,15 @@ def turning_rests(
     return found
 
 
-def _steady(m: Manoeuvre, part: pd.DataFrame, quiet: pd.DataFrame, density: Array) -> list[Rest]:
+def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[Rest]:
     """The blocks of the steady part, as many in one mean as see the same attitude."""
     assert m.up is not None and m.angle is not None  # else the turn is refused
-    seconds = part["seconds"].to_numpy(np.float64)
+    read, seconds = part.accel, part.seconds
     angle = _angles(m, part, quiet)
-    steady = np.flatnonzero((part["phase"] == "steady").to_numpy())
+    steady = np.flatnonzero(part.steady)
     middle = np.cumsum(angle) - angle / 2
     ups = mean_turned(m.up, m.axis, middle, angle)
     level = np.linalg.norm(m.up - (m.up @ m.axis) * m.axis)
-    read = part[ACCEL].to_numpy(np.float64)
     rate = angle / seconds
     turns = abs(float(angle[steady].sum())) * float(level)
     pieces = np.array_split(steady, max(1, int(np.ceil(turns / ALIKE))))
@@ -91,10 +88,10 @@ def _steady(m: Manoeuvre, part: pd.DataFrame, quiet: pd.DataFrame, density: Arra
     return rests
 
 
-def _angles(m: Manoeuvre, part: pd.DataFrame, quiet: pd.DataFrame) -> Array:
+def _angles(m: Manoeuvre, part: Blocks, quiet: Blocks) -> Array:
     """The angle of each block, (k,), rad: as the gyros along the axis share out the known whole."""
     assert m.angle is not None  # else the turn is refused
-    along = np.nan_to_num(part[GYRO].to_numpy(np.float64)) @ m.axis
-    still = float(np.nan_to_num(quiet[GYRO].to_numpy(np.float64) @ m.axis).mean())
-    own = (along - still) * part["seconds"].to_numpy(np.float64)
+    along = np.nan_to_num(part.gyro) @ m.axis
+    still = float(np.nan_to_num(quiet.gyro @ m.axis).mean())
+    own = (along - still) * part.seconds
     return np.asarray(own * (m.angle / own.sum()))

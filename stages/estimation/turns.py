@@ -9,8 +9,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from stages.contracts import tables
 from stages.contracts.records import Known, Manoeuvre, Performed
+from stages.contracts.tables import GYRO
+from stages.estimation.blocks import NONE, Blocks, by_manoeuvre
 from stages.estimation.bridging import bridges, sigma_of
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stills import Still, stills, stretch_of
@@ -20,7 +21,6 @@ from stages.model.vectors import cross
 
 Array = NDArray[np.float64]
 
-GYRO = [f"gyro_{axis}" for axis in tables.AXES]
 TURNING = ("spin-up", "steady", "spin-down", "turning")
 
 
@@ -30,13 +30,13 @@ class Recorded:
 
     plan: Manoeuvre
     done: Performed
-    blocks: pd.DataFrame
+    blocks: Blocks
     refusal: str  # empty where it can be used
 
     @property
-    def steady(self) -> pd.DataFrame:
+    def steady(self) -> Blocks:
         """Its blocks at the steady rate."""
-        return self.blocks[self.blocks["phase"] == "steady"]
+        return self.blocks.those(self.blocks.steady)
 
 
 @dataclass(frozen=True)
@@ -117,25 +117,25 @@ def recorded_turns(
     blocks: pd.DataFrame, plan: Sequence[Manoeuvre], done: Mapping[str, Performed]
 ) -> list[Recorded]:
     """Every turn of the plan."""
-    moving = dict(list(blocks[blocks["phase"].isin(TURNING)].groupby("manoeuvre")))
+    moving = by_manoeuvre(blocks[blocks["phase"].isin(TURNING)])
     result = []
     for m in plan:
         if m.do == "turn":
-            part = moving.get(m.name, blocks.iloc[:0])
+            part = moving.get(m.name, NONE)
             result.append(Recorded(m, done[m.name], part, refusal_of(m, done[m.name], part)))
     return result
 
 
-def refusal_of(m: Manoeuvre, done: Performed, part: pd.DataFrame) -> str:
+def refusal_of(m: Manoeuvre, done: Performed, part: Blocks) -> str:
     """Why a turn cannot be used; empty where it can."""
     if not done.found:
         return "not found in its log"
     if m.up is None:
         return "which way is up is not known"
-    if part.empty or part["seconds"].isna().any() or bool((part["count"] == 0).any()):
+    if not len(part) or np.isnan(part.seconds).any() or bool((part.counts == 0).any()):
         return "it has no time, so no angle can be summed"
     if m.recorded == "steady":
-        return "" if bool((part["phase"] == "steady").any()) else "no steady rate was found"
+        return "" if bool(part.steady.any()) else "no steady rate was found"
     if not (done.complete or done.bridged):
         return f"the angle method needs the whole turn, and {done.sentence}"
     if m.angle is None or m.angle_sigma is None:
@@ -175,22 +175,19 @@ def turn_of(one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma
     m, part = one.plan, one.blocks
     missing = bridges(part)
     assert m.angle is not None and m.angle_sigma is not None  # else it is refused
-    seconds = part["seconds"].to_numpy(np.float64)
     return Turn(
         position=position_of(m, heading),
         about=m.axis,
         angle=m.angle,
         angle_sigma=m.angle_sigma,
-        sums=part[GYRO].to_numpy(np.float64) * seconds[:, None],
-        seconds=seconds,
+        sums=part.gyro * part.seconds[:, None],
+        seconds=part.seconds,
         density=noise.of(m.name, "steady", GYRO),
         quiet_density=noise.of(m.name, "rest", GYRO),
-        by_hand=bool((part["phase"] == "turning").any()),
+        by_hand=bool((part.phase == "turning").any()),
         bridges=missing,
         bridged_sigma=sigma_of(part, missing, m.axis, m.name, noise, rate_sigma),
-        unsteady=np.flatnonzero(part["phase"] != "steady").tolist()
-        if noise.rings(m.name, GYRO)
-        else (),
+        unsteady=np.flatnonzero(~part.steady).tolist() if noise.rings(m.name, GYRO) else (),
     )
 
 
@@ -199,18 +196,16 @@ def steady_of(
 ) -> Steady:
     m, part = one.plan, one.steady
     assert m.rate is not None  # the plan wants a rate of such a turn
-    seconds = part["seconds"].to_numpy(np.float64)
-    missing = part["missing_s"].to_numpy(np.float64)
-    ends = np.cumsum(seconds + missing) - missing[0]
+    ends = np.cumsum(part.seconds + part.missing) - part.missing[0]
     return Steady(
         position=position_of(m, heading),
         about=m.axis,
         rate=m.rate,
         rate_sigma=abs(m.rate) * rate_sigma,
-        seconds=seconds,
-        elapsed=ends - seconds / 2,
-        mean=np.average(part[GYRO].to_numpy(np.float64), weights=part["count"], axis=0),
-        sigma=noise.of(m.name, "steady", GYRO) / np.sqrt(seconds.sum()),
+        seconds=part.seconds,
+        elapsed=ends - part.seconds / 2,
+        mean=np.average(part.gyro, weights=part.counts, axis=0),
+        sigma=noise.of(m.name, "steady", GYRO) / np.sqrt(part.seconds.sum()),
     )
 
 
@@ -235,10 +230,10 @@ def _angle(one: Recorded, i: int, noise: NoiseLevels) -> Angle:
     m, part = one.plan, one.blocks
     assert m.up is not None and m.angle is not None and m.angle_sigma is not None  # else refused
     return Angle(
-        summed=float((part[GYRO[i]] * part["seconds"]).sum()),
+        summed=float((part.gyro[:, i] * part.seconds).sum()),
         angle=m.angle * float(m.axis[i]),
         angle_sigma=m.angle_sigma,
-        seconds=float(part["seconds"].sum()),
+        seconds=float(part.seconds.sum()),
         up=float(m.up[i]),
         density=float(noise.of(m.name, "rest", GYRO)[i]),
     )

@@ -10,11 +10,11 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from stages.contracts.records import Manoeuvre, rows_of
-from stages.contracts.tables import AXES
+from stages.contracts.tables import AXES, GYRO
 from stages.estimation.motions import angles_seen
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.stretches import Samples, Stretch
-from stages.estimation.turns import GYRO, GyroInputs, Recorded, position_of
+from stages.estimation.turns import GyroInputs, Recorded, position_of
 from stages.inference.lines import strongest
 from stages.inference.ripple import ripple_angle, ripple_window
 from stages.inference.time_angle import Errors, TimeAngle, tied
@@ -142,7 +142,7 @@ def why_not(one: Recorded) -> str:
         return "only its steady part was planned, so no whole angle ties it"
     if not one.done.complete:
         return one.done.sentence
-    return "" if (one.blocks["phase"] == "steady").any() else "it has no steady part"
+    return "" if one.blocks.steady.any() else "it has no steady part"
 
 
 def motion_of(

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.contracts.tables import AXES
+from stages.contracts.tables import AXES, GYRO
 from stages.estimation.noise_levels import NoiseLevels
-from stages.estimation.turns import GYRO, GyroInputs, angles_about
+from stages.estimation.turns import GyroInputs, angles_about
 from stages.estimation.whole_motions import Gyros, WholeMotion
 from stages.inference.time_angle import Valued, plateau
 from stages.inference.whole_turns import known_angle

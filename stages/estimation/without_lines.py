@@ -10,9 +10,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from stages.contracts.tables import GYRO
 from stages.estimation.bound import Bound
 from stages.estimation.steady_turns import SteadyTurn
-from stages.estimation.turns import GYRO
 from stages.inference.lines import phasor
 
 Array = NDArray[np.float64]

@@ -1,10 +1,11 @@
 """Least squares of many unknowns, most of which are errors of one position, turn or stretch.
 
-Equations are taken in their order. When an error has been seen for the last time, the rows that
-hold it are made triangular: some of them then tell the error once all else is known, and are laid
-aside; the others hold it no more and go on. So time and memory grow as the number of stretches, and
-what is left are rows of the unknowns that all stretches share (Bierman 1977, square-root
-information; George & Heath 1980, orthogonal factors of sparse least squares).
+Equations are taken in their order. When errors have been seen for the last time, the rows that hold
+them are made triangular: the first of them then tell these errors once all else is known, and are
+laid aside; the next hold errors that come again, and wait; the others hold none. So time and memory
+grow as the number of stretches, and what is left are rows of the unknowns that all stretches share
+(Bierman 1977, square-root information; George & Heath 1980, orthogonal factors of sparse least
+squares).
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,10 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
+from scipy.linalg.lapack import dgeqrf, dormqr
 
 Array = NDArray[np.float64]
 Name = tuple[str, str]  # kind and name of an unknown
 
+LAPACK_BLOCK = 64  # columns that are turned at once
+MANY = 4  # rows for each column: with more of them those that are left are made fewer
 TOGETHER = 100  # rows that are made triangular at once: fewer cost calls, more cost zeros
 
 
@@ -33,16 +37,25 @@ class Part:
     count: int
     deviance: float
 
-    def shorter(self) -> "Part":
-        """The same in the fewest rows."""
-        if len(self.rows) <= 2 * self.rows.shape[1]:  # then little is gained
-            return self
-        return Part(triangle(self.rows), self.own, self.count, self.deviance)
-
 
 def triangle(rows: Array) -> Array:
     """The fewest rows that say the same in the sense of least squares."""
     return np.asarray(np.linalg.qr(rows, mode="r"), dtype=np.float64)
+
+
+def led(rows: Array, first: int) -> Array:
+    """The same with the first columns triangular alone: what is below says nothing of them."""
+    if not first:
+        return rows
+    reflectors, sizes, *_ = dgeqrf(rows[:, :first])
+    others = rows[:, first:]
+    turned, *_ = dormqr("L", "T", reflectors, sizes, others, LAPACK_BLOCK * others.shape[1])
+    return np.hstack([np.triu(reflectors), turned])
+
+
+def shorter(rows: Array) -> Array:
+    """The same in fewer rows, where much is gained by it."""
+    return triangle(rows) if len(rows) > 2 * rows.shape[1] else rows
 
 
 @dataclass(frozen=True)
@@ -130,23 +143,22 @@ def eliminated(
         keys = dict.fromkeys(key for own, _ in waiting for key in own)
         ready = [key for key in keys if last[key] <= i]
         later = tuple(key for key in keys if last[key] > i)
-        upper = triangle(_stacked(waiting, (*ready, *later), ready, shared, sigma))
         own, every = len(ready), len(keys)
+        stacked = _stacked(waiting, (*ready, *later), ready, shared, sigma)
+        tall = len(stacked) > stacked.shape[1]
+        upper = triangle(stacked) if tall else led(stacked, every)
         if own:
             others = upper[:own, own:-1]
             told.append(_Told((*ready, *later), upper[:own, :own], others, upper[:own, -1]))
-        rest = np.hstack([upper[own:, every:-1], upper[own:, own:every], upper[own:, -1:]])
-        if later:
-            waiting = [(later, rest)]
-        else:
-            free.append(rest)
-            waiting = []
+        rest = upper[own:every]
+        waiting = [(later, np.hstack([rest[:, every:-1], rest[:, own:every], rest[:, -1:]]))]
+        free.append(upper[every:, every:])
+        if sum(map(len, free)) > MANY * (shared + 1):
+            free = [triangle(np.vstack(free))]
         rows = 0
     of_errors = sum(2 * float(np.sum(np.log(np.abs(np.diag(step.upper))))) for step in told)
     count, deviance = sum(part.count for part in parts), sum(part.deviance for part in parts)
-    left = np.vstack(free)
-    left = triangle(left) if len(left) > TOGETHER else left
-    return left, Apart(told, sigma, count, of_errors + deviance)
+    return np.vstack(free), Apart(told, sigma, count, of_errors + deviance)
 
 
 def _stacked(

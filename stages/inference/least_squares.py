@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.optimize import minimize_scalar
 
-from stages.inference.elimination import Apart
+from stages.inference.elimination import Apart, led
 from stages.inference.tails import chi_squared_beyond, ratio_beyond
 
 Array = NDArray[np.float64]
@@ -202,8 +202,7 @@ class System:
         stacked = np.zeros((len(rest) + len(others), len(others) + len(effects) + 1))
         stacked[: len(rest)] = np.column_stack([base, scaled[:, effects], rest])
         stacked[len(rest) :, : len(others)] = np.eye(len(others))
-        triangle: Array = np.linalg.qr(stacked, mode="r")  # type: ignore[assignment]
-        corner = triangle[len(others) :, len(others) :]
+        corner = led(stacked, len(others))[len(others) :, len(others) :]
         columns, right = corner[:, :-1], corner[:, -1]
         return Reduced(
             tuple(self.names[i][1] for i in effects),

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stages.inference.between_stretches import with_drift
-from stages.inference.elimination import Name, Part, eliminated
+from stages.inference.elimination import Name, Part, eliminated, shorter
 from stages.inference.least_squares import Estimate, Fitted, System
 from stages.inference.random_walk import Stretch, drifting, times_of, trend
 from stages.inference.rest_rows import whitened
@@ -141,7 +141,8 @@ def equations(
         tilts = tuple((f"tilt {axis}", position) for axis in (0, 1))
         sigma |= dict.fromkeys(tilts, position_sigma)
         part = whitened(rows[some].reshape(-1, rows.shape[-1]), noise[some].ravel(), tilts)
-        parts.append((part.shorter(), stretch or Stretch(f"rest {number}")))
+        part = replace(part, rows=shorter(part.rows))
+        parts.append((part, stretch or Stretch(f"rest {number}")))
     every, of_drifts = drifting(parts, len(prior), BIAS, scatter if drifts else 0.0, walk)
     left, apart = eliminated(every, len(prior), sigma | of_drifts)
     return System(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.inference.elimination import Name, Part, triangle
+from stages.inference.elimination import Name, Part, shorter
 from stages.inference.rest_rows import level_names, level_of
 from stages.inference.rests_and_turns import Earth, Turn
 from stages.inference.triad import UNKNOWNS
@@ -81,7 +81,7 @@ def of_turn(
         alone = turn.alone[some]
         noise = np.sqrt(turn.seconds[some][alone])
         pairs = np.einsum("dr,krc->kdc", across, seen[alone]) / noise[:, None, None]
-        rows.append(triangle(pairs.reshape(-1, pairs.shape[-1])))
+        rows.append(shorter(pairs.reshape(-1, pairs.shape[-1])))
         count += len(across) * int(alone.sum())
     if turn.by_hand:
         rows.append(across @ plain / np.sqrt(turn.seconds.sum()))
@@ -90,7 +90,7 @@ def of_turn(
     stacked = np.vstack(rows)
     if not np.isfinite(stacked[-1]).all():
         stacked, count = stacked[:-1], count - 1
-    return Part(stacked, tuple(own), count, 0.0).shorter()
+    return Part(shorter(stacked), tuple(own), count, 0.0)
 
 
 def _angles(

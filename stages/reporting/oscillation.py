@@ -14,7 +14,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from stages.contracts.parquet import Stream
-from stages.contracts.tables import AXES
+from stages.contracts.tables import AXES, GYRO
 from stages.notation import numbers
 from stages.notation.units import PPM, SECONDS_OF_ARC
 from stages.reporting.drawing import AXIS_COLOUR, QUIET, Margins, side_by_side, style, svg
@@ -115,8 +115,7 @@ def _samples(simulated: Stream, turns: set[str]) -> dict[str, dict[str, Array]]:
     if not turns:
         return {}
     found: dict[str, list[pd.DataFrame]] = {}
-    gyros = [f"gyro_{axis}" for axis in AXES]
-    for batch in simulated.columns([*COLUMNS, *gyros, *(f"residual_{name}" for name in gyros)]):
+    for batch in simulated.columns([*COLUMNS, *GYRO, *(f"residual_{name}" for name in GYRO)]):
         names = pa.compute.unique(batch.column("manoeuvre")).to_pylist()
         if turns.isdisjoint(names):
             continue

@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from stages.contracts.parquet import Stream
-from stages.contracts.tables import AXES, CHANNELS
+from stages.contracts.tables import AXES, CHANNELS, GYRO
 from stages.notation import numbers
 from stages.notation.units import (
     DEGREES_PER_HOUR,
@@ -154,8 +154,7 @@ def envelopes(simulated: Stream, turns: Sequence[Turn]) -> list[Envelope]:
     found = {turn.name: Envelope(turn) for turn in turns}
     if not found:
         return []
-    gyros = [f"gyro_{axis}" for axis in AXES]
-    for batch in simulated.columns(["manoeuvre", "record", "time", *gyros, *RESIDUALS]):
+    for batch in simulated.columns(["manoeuvre", "record", "time", *GYRO, *RESIDUALS]):
         names = batch.column("manoeuvre").dictionary_encode()
         index = names.indices.to_numpy(zero_copy_only=False)
         record = batch.column("record").to_numpy(zero_copy_only=False)

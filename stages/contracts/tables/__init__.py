@@ -45,7 +45,7 @@ from stages.contracts.tables.recording import (
     TRACES,
 )
 from stages.contracts.tables.samples import ACCOUNTS, CLOCKS, REFUSED, SAMPLES
-from stages.contracts.tables.shared import AXES, BODY, CHANNELS, UNITS
+from stages.contracts.tables.shared import ACCEL, AXES, BODY, CHANNELS, GYRO, UNITS
 from stages.contracts.tables.simulated import FIDELITY, SIMULATED
 from stages.contracts.tables.studies import (
     EPOCHS,
@@ -57,6 +57,7 @@ from stages.contracts.tables.studies import (
 )
 
 __all__ = [
+    "ACCEL",
     "ACCOUNTS",
     "ARCHIVED",
     "AVERAGING",
@@ -84,6 +85,7 @@ __all__ = [
     "FIT",
     "GAIN",
     "GAPS",
+    "GYRO",
     "INPUTS",
     "KNOWN",
     "LINES",

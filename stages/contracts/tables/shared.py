@@ -5,7 +5,9 @@ import pyarrow as pa
 from stages.contracts.parquet import Column
 
 AXES = ("x", "y", "z")
-CHANNELS = tuple(f"{sensor}_{axis}" for sensor in ("accel", "gyro") for axis in AXES)
+# Lists, for pandas takes a tuple as one name.
+ACCEL, GYRO = ([f"{sensor}_{axis}" for axis in AXES] for sensor in ("accel", "gyro"))
+CHANNELS = (*ACCEL, *GYRO)
 UNITS = {"accel": "m/s²", "gyro": "rad/s"}
 PHASES = (
     "rest; for a turn rest-before, spin-up, steady, spin-down, rest-after; by hand: turning;"
