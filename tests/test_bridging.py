@@ -17,10 +17,11 @@ from stages.contracts.records import (
     performed_of,
 )
 from stages.contracts.tables import CHANNELS
+from stages.estimation.blocks import Blocks
 from stages.estimation.evidence import campaign_of
 from stages.estimation.noise_levels import NoiseLevels
 from stages.estimation.solution import solution_of
-from stages.estimation.turns import GYRO, GyroInputs, Recorded, gyro_inputs, turn_of
+from stages.estimation.turns import GyroInputs, Recorded, gyro_inputs, turn_of
 from stages.inference.triad import errors_of, linear_names
 from stages.inference.whole_turns import (
     Angle,
@@ -92,14 +93,22 @@ def turn(
     truth = np.add.reduceat(np.outer(angle, m.axis) + STEP * earth, starts)
     sums = truth @ MATRIX.T + np.outer(seconds, BIAS)
     sums += NOISE * np.sqrt(seconds)[:, None] * rng.standard_normal(sums.shape)
-    table = pd.DataFrame(sums / seconds[:, None], columns=GYRO)
     begins = STEP * starts
-    table["phase"] = np.select([begins < 2.4, begins < 35.4], ["spin-up", "steady"], "spin-down")
-    table["seconds"], table["count"] = seconds, seconds / STEP
-    kept = table[~lost[starts]].reset_index(drop=True)
-    ends = (begins + seconds)[~lost[starts]]
-    kept["missing_s"] = np.append(0.0, (begins[~lost[starts]])[1:] - ends[:-1]).round(6)
-    return turn_of(Recorded(m, Performed(m.name, ""), kept, ""), levels(), None, rate_sigma)
+    phase = np.select([begins < 2.4, begins < 35.4], ["spin-up", "steady"], "spin-down")
+    kept, ends = ~lost[starts], begins + seconds
+    missing = np.append(0.0, begins[kept][1:] - ends[kept][:-1]).round(6)
+    blocks = Blocks(
+        log=np.full(kept.sum(), "log"),
+        phase=phase[kept],
+        counts=seconds[kept] / STEP,
+        seconds=seconds[kept],
+        missing=missing,
+        time=(begins + seconds / 2)[kept],
+        temperature=np.full(kept.sum(), np.nan),
+        gyro=(sums / seconds[:, None])[kept],
+        accel=np.full((kept.sum(), 3), np.nan),
+    )
+    return turn_of(Recorded(m, Performed(m.name, ""), blocks, ""), levels(), None, rate_sigma)
 
 
 def rests(rng: np.random.Generator) -> list[Still]:

@@ -45,6 +45,7 @@ def triangle(rows: Array) -> Array:
 
 def led(rows: Array, first: int) -> Array:
     """The same with the first columns triangular alone: what is below says nothing of them."""
+    first = min(first, len(rows))
     if not first:
         return rows
     reflectors, sizes, *_ = dgeqrf(rows[:, :first])

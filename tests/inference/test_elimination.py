@@ -1,68 +1,81 @@
 """Errors that are eliminated where they occur: the same estimate as with all unknowns at once."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from stages.inference.elimination import Part, eliminated
+from stages.inference.elimination import MANY, TOGETHER, Part, eliminated, shorter
 from stages.inference.least_squares import System, solve
 
-SHARED, SIGMA = 3, 0.5
-PRIOR, WIDTH = np.array([1.0, 0.0, -1.0]), np.full(3, 100.0)
+SIGMA = 0.5
+ROUND = 60  # parts after which errors come again
 
 
-def made_up(stretches: int, rng: np.random.Generator) -> tuple[list[Part], list[np.ndarray]]:
-    """Parts with an error of their own, one that the next part shares, and one of them all."""
-    parts, rows = [], []
+def made_up(stretches: int, shared: int, rng: np.random.Generator) -> list[Part]:
+    """Parts with an error of their own, one that the next part shares, six that come again, and
+    one of them all."""
+    parts = []
     for i in range(stretches):
-        own = (("own", str(i)), ("near", str(i // 2)), ("common", ""))
-        design = rng.standard_normal((int(rng.integers(3, 12)), SHARED + 3))
+        again = tuple((f"again {j}", str(i % ROUND)) for j in range(6))
+        own = (("own", str(i)), ("near", str(i // 2)), *again, ("common", ""))
+        design = rng.standard_normal((int(rng.integers(3, 7)), shared + len(own)))
         observed = rng.standard_normal(len(design))
         parts.append(Part(np.column_stack([design, observed]), own, len(design), 0.0))
-        rows.append(design)
-    return parts, rows
+    return parts
 
 
-def all_at_once(parts: list[Part], names: list[tuple[str, str]]):
-    design = np.zeros((sum(len(part.rows) for part in parts), SHARED + len(names)))
+def all_at_once(parts: list[Part], names: list[tuple[str, str]], prior, width):
+    shared = len(prior)
+    design = np.zeros((sum(len(part.rows) for part in parts), shared + len(names)))
     row = 0
     for part in parts:
         some = slice(row, row + len(part.rows))
-        design[some, :SHARED] = part.rows[:, :SHARED]
-        for column, name in enumerate(part.own, SHARED):
-            design[some, SHARED + names.index(name)] = part.rows[:, column]
+        design[some, :shared] = part.rows[:, :shared]
+        for column, name in enumerate(part.own, shared):
+            design[some, shared + names.index(name)] = part.rows[:, column]
         row += len(part.rows)
-    observed = np.concatenate([part.rows[:, -1] for part in parts]) + design[:, :SHARED] @ PRIOR
-    prior = np.append(PRIOR, np.zeros(len(names)))
-    width = np.append(WIDTH, np.full(len(names), SIGMA))
-    return solve(design, observed, np.ones(len(observed)), prior, width, SHARED)
+    observed = np.concatenate([part.rows[:, -1] for part in parts]) + design[:, :shared] @ prior
+    prior = np.append(prior, np.zeros(len(names)))
+    width = np.append(width, np.full(len(names), SIGMA))
+    return solve(design, observed, np.ones(len(observed)), prior, width, shared)
 
 
-@pytest.mark.parametrize("stretches", [1, 2, 41])
-def test_the_estimate_is_that_of_all_unknowns_at_once(stretches):
-    parts, _ = made_up(stretches, np.random.default_rng(stretches))
-    parts = [part.shorter() for part in parts]
+@pytest.mark.parametrize(("stretches", "shared"), [(1, 3), (2, 3), (41, 3), (150, 3), (150, 200)])
+def test_the_estimate_is_that_of_all_unknowns_at_once(stretches, shared):
+    parts = made_up(stretches, shared, np.random.default_rng(stretches))
+    parts = [replace(part, rows=shorter(part.rows)) for part in parts]
+    prior, width = np.linspace(-1, 1, shared), np.full(shared, 100.0)
     names = list(dict.fromkeys(name for part in parts for name in part.own))
-    rows, apart = eliminated(parts, SHARED, dict.fromkeys(names, SIGMA))
-    shared = tuple(("parameter", str(i)) for i in range(SHARED))
-    observed = rows[:, -1] + rows[:, :-1] @ PRIOR
-    system = System(rows[:, :-1], observed, np.ones(len(rows)), PRIOR, WIDTH, SHARED, shared, apart)
-    found, expected = system.solve(), all_at_once(parts, names)
-    order = [*range(SHARED), *(system.column(*name) for name in names)]
+    rows, apart = eliminated(parts, shared, dict.fromkeys(names, SIGMA))
+    own = tuple(("parameter", str(i)) for i in range(shared))
+    observed = rows[:, -1] + rows[:, :-1] @ prior
+    system = System(rows[:, :-1], observed, np.ones(len(rows)), prior, width, shared, own, apart)
+    found, expected = system.solve(), all_at_once(parts, names, prior, width)
+    order = [*range(shared), *(system.column(*name) for name in names)]
     np.testing.assert_allclose(found.values[order], expected.values, atol=1e-9)
     np.testing.assert_allclose(found.sigma[order], expected.sigma, rtol=1e-9)
-    np.testing.assert_allclose(found.covariance, expected.covariance[:SHARED, :SHARED], rtol=1e-8)
-    assert [found.names[i] for i in order[SHARED:]] == names
+    covariance = expected.covariance[:shared, :shared]
+    np.testing.assert_allclose(found.covariance, covariance, rtol=1e-8, atol=1e-12)
+    assert [found.names[i] for i in order[shared:]] == names
     assert found.chi_squared == pytest.approx(expected.chi_squared)
     assert found.deviance == pytest.approx(expected.deviance)
-    assert (found.degrees, found.rows) == (system.apart.count - SHARED, system.apart.count)
+    assert found.rows == apart.count
+    assert found.degrees == expected.degrees
+
+
+def test_rows_that_are_left_are_made_fewer():
+    parts = made_up(400, 3, np.random.default_rng(0))
+    rows, _ = eliminated(parts, 3, {name: SIGMA for part in parts for name in part.own})
+    assert len(rows) <= MANY * 4 + TOGETHER
 
 
 def test_the_work_grows_as_the_stretches():
     """Rows and columns that are triangular at once do not grow with their number."""
     sizes = []
-    for stretches in (50, 400):
-        parts, _ = made_up(stretches, np.random.default_rng(0))
+    for stretches in (150, 600):
+        parts = made_up(stretches, 3, np.random.default_rng(0))
         names = {name for part in parts for name in part.own}
-        _, apart = eliminated(parts, SHARED, dict.fromkeys(names, SIGMA))
+        _, apart = eliminated(parts, 3, dict.fromkeys(names, SIGMA))
         sizes.append(max(len(step.keys) for step in apart.told))
     assert sizes[1] == pytest.approx(sizes[0], rel=0.3)
