@@ -17,6 +17,7 @@ import pytest
 from stages import report as stage
 from stages.report import report
 from tests.reporting import made_up, made_up_lacks
+from tests.reporting.made_up_values import Held
 
 SECTIONS = [
     "Verdict",
@@ -304,7 +305,7 @@ def test_texts_from_outside_are_harmless() -> None:
     whole = made_up.campaign(logs=("x-up.asc",))
     tables["noise"] = whole["noise"].assign(manoeuvre=HOSTILE)
     tables["fidelity"] = whole["fidelity"].assign(manoeuvre=HOSTILE, profile=HOSTILE)
-    tables["simulated"] = made_up.Held(whole["simulated"].frame.assign(manoeuvre=HOSTILE))
+    tables["simulated"] = Held(whole["simulated"].frame.assign(manoeuvre=HOSTILE))
     tables["compensated_traces"] = whole["compensated_traces"].assign(log=HOSTILE)
     tables["scores"][["cause", "sentence"]] = HOSTILE
     tables["effects"]["meaning"] = HOSTILE

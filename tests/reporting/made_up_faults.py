@@ -10,7 +10,9 @@ import numpy as np
 import pandas as pd
 
 from stages.contracts import tables
-from tests.reporting.made_up import INTERVAL, brief, close_up, rows_as
+from tests.reporting.made_up import brief
+from tests.reporting.made_up_recording import close_up
+from tests.reporting.made_up_values import INTERVAL, rows_as
 
 Frame = pd.DataFrame
 FIRST, COUNT = 1900, 400  # the records of a close-up

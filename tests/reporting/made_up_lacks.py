@@ -6,6 +6,7 @@ from typing import Any
 
 from stages.contracts import tables
 from tests.reporting import made_up, made_up_causes
+from tests.reporting.made_up_values import rows_as
 
 
 def without_effects() -> dict[str, Any]:
@@ -20,7 +21,7 @@ def without_effects() -> dict[str, Any]:
 def with_findings(*rows: dict[str, Any]) -> dict[str, Any]:
     """The same with these findings of criticism alone."""
     made = without_effects()
-    return made | {"criticism_findings": made_up.rows_as(tables.CAUSES, list(rows))}
+    return made | {"criticism_findings": rows_as(tables.CAUSES, list(rows))}
 
 
 def of_a_class() -> dict[str, Any]:
@@ -89,8 +90,8 @@ def of_no_name(*firing: str) -> dict[str, Any]:
     )
     tests, points = made_up_causes.structures(*firing), made_up_causes.points(*firing)
     return made | {
-        "structures": made_up.rows_as(tables.STRUCTURES, tests),
-        "structure_points": made_up.rows_as(tables.STRUCTURE_POINTS, points),
+        "structures": rows_as(tables.STRUCTURES, tests),
+        "structure_points": rows_as(tables.STRUCTURE_POINTS, points),
     }
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from stages.contracts import tables
 from stages.reporting.before_after import PIECES, means
-from tests.reporting.made_up import Held
+from tests.reporting.made_up_values import Held
 
 BLOCKS, SAMPLES, NOISE = 20, 2000, 3e-6  # batches are shorter than the turn
 

@@ -9,10 +9,11 @@ import pytest
 from stages.contracts import tables
 from stages.reporting.close_ups import CloseUp, axis, close_ups, gaps_in, masked_in
 from tests.reporting import made_up
+from tests.reporting.made_up_values import GAP, GAP_FINDING
 
 
 def around_the_gap() -> CloseUp:
-    return close_ups([made_up.campaign(logs=())["quality_close_ups"]])[made_up.GAP_FINDING]
+    return close_ups([made_up.campaign(logs=())["quality_close_ups"]])[GAP_FINDING]
 
 
 def test_a_long_gap_leaves_room_for_the_samples_beside_it() -> None:
@@ -21,8 +22,8 @@ def test_a_long_gap_leaves_room_for_the_samples_beside_it() -> None:
     assert steps.min() > 0
     assert steps.max() < 0.3 * np.ptp(along.places)  # 11.98 s against 0.6 s on each side
     times = [float(label) for label in along.labels]
-    assert min(times) < made_up.GAP[0] < made_up.GAP[1] < max(times)
-    assert not [time for time in times if made_up.GAP[0] < time < made_up.GAP[1]]
+    assert min(times) < GAP[0] < GAP[1] < max(times)
+    assert not [time for time in times if GAP[0] < time < GAP[1]]
 
 
 def test_ticks_stand_at_the_times_they_tell() -> None:

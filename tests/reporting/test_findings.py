@@ -12,6 +12,7 @@ import pytest
 from stages.report import report
 from stages.reporting import evidence
 from tests.reporting import made_up, made_up_faults
+from tests.reporting.made_up_values import GAP_FINDING, RINGING_FINDING
 
 FINDING = re.compile(r'<article class="finding[^"]*" id="finding/([^"]+)">(.*?)</article>', re.S)
 
@@ -66,7 +67,7 @@ def test_a_number_stands_beside_what_was_expected(identifier: str, said: str) ->
 
 
 def test_a_gap_is_shown_by_its_two_lines() -> None:
-    html = faulty()[made_up.GAP_FINDING]
+    html = faulty()[GAP_FINDING]
     rows = re.findall(r"<tr><td[^>]*>(before|after)</td>(.*?)</tr>", html)
     cells = {side: re.findall(r"<td[^>]*>([^<]*)</td>", row) for side, row in rows}
     assert cells["before"][:2] == ["2\u202f192", "21.890"]
@@ -78,20 +79,20 @@ def test_a_gap_is_shown_by_its_two_lines() -> None:
 
 def test_a_gap_and_the_turn_it_is_in_lead_to_each_other() -> None:
     turn = "segment/incomplete/z-backward"
-    assert f'href="#finding/{turn}"' in faulty()[made_up.GAP_FINDING]
-    assert f'href="#finding/{made_up.GAP_FINDING}"' in faulty()[turn]
+    assert f'href="#finding/{turn}"' in faulty()[GAP_FINDING]
+    assert f'href="#finding/{GAP_FINDING}"' in faulty()[turn]
 
 
 def test_samples_that_a_worse_finding_has_shown_are_not_shown_again() -> None:
     made = made_up.brief("z-backward.asc")
     turn = made["segment_findings"]["id"].iloc[0]
-    close_ups = made["quality_close_ups"].query("finding == @made_up.GAP_FINDING")
+    close_ups = made["quality_close_ups"].query("finding == @GAP_FINDING")
     made["segment_close_ups"] = close_ups.assign(finding=turn)
     found = articles(made)
     assert "11.980 s apart" in found[turn]
     assert "The record before the gap" in found[turn]
-    assert "<svg" not in found[made_up.GAP_FINDING]
-    assert f'href="#finding/{turn}"' in found[made_up.GAP_FINDING]
+    assert "<svg" not in found[GAP_FINDING]
+    assert f'href="#finding/{turn}"' in found[GAP_FINDING]
 
 
 def test_an_oscillation_of_recording_and_model_leads_to_both_and_to_what_the_model_lacks() -> None:
@@ -103,7 +104,7 @@ def test_an_oscillation_of_recording_and_model_leads_to_both_and_to_what_the_mod
     assert "<svg" not in model
 
 
-RINGING = made_up.RINGING_FINDING
+RINGING = RINGING_FINDING
 
 
 def test_every_link_leads_somewhere() -> None:

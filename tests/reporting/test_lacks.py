@@ -7,8 +7,12 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
+import pandas as pd
+
+from stages.contracts import tables
 from stages.report import Documents, report
 from tests.reporting import made_up, made_up_lacks
+from tests.reporting.made_up_values import RINGING_FINDING, Held, rows_as
 
 CAUSE = re.compile(r'<article class="finding cause[^"]*" id="lacks/([^"]+)">(.*?)</article>', re.S)
 
@@ -80,7 +84,7 @@ def test_an_oscillation_says_in_numbers_what_it_costs() -> None:
 
 def test_the_clearest_comes_first_and_leads_to_what_the_recording_shows() -> None:
     assert [*demo()] == ["criticism/gyro_g_sensitivity", "criticism/oscillation"]
-    assert f'href="#finding/{made_up.RINGING_FINDING}"' in demo()["criticism/oscillation"]
+    assert f'href="#finding/{RINGING_FINDING}"' in demo()["criticism/oscillation"]
 
 
 def test_a_class_names_its_members_and_the_manoeuvre_that_would_split_it() -> None:
@@ -99,11 +103,11 @@ def test_a_class_names_its_members_and_the_manoeuvre_that_would_split_it() -> No
 def test_an_effect_that_was_taken_for_a_position_that_is_off_says_so() -> None:
     made = made_up_lacks.of_a_class()
     score = made["scores"].iloc[1:2].assign(effect="table_position_error", p_value=0.44)
-    made["scores"] = made_up.pd.concat([made["scores"], score])
+    made["scores"] = pd.concat([made["scores"], score])
     off = {"id": "accelerometer/table_position_error/z-down", "cause": "table_position_error"}
     off |= {"sensor": "accel", "unit": "rad", "manoeuvre": "z-down", "count": 1, "severity": 3}
     off |= {"sentence": "It is off.", "consequence": "It matters.", "action": "Set it again."}
-    made["accelerometer_findings"] = made_up.rows_as(made_up.tables.FINDINGS, [off])
+    made["accelerometer_findings"] = rows_as(tables.FINDINGS, [off])
     html = blocks(report(**made))["criticism/accel_quadratic"]
     assert "a position that is off (z-down); beside it none is needed (p = 0.44)" in html
     assert f'href="#finding/{off["id"]}"' in html
@@ -170,7 +174,7 @@ def test_a_manoeuvre_that_would_not_split_a_class_is_not_recommended() -> None:
 def test_a_ripple_is_shown_against_the_angle_of_the_table() -> None:
     made = made_up.brief()
     turn = made["simulated"].frame["manoeuvre"].str.contains("forward")
-    made["simulated"] = made_up.Held(made["simulated"].frame[turn])
+    made["simulated"] = Held(made["simulated"].frame[turn])
     findings = made["criticism_findings"]
     findings[["id", "cause"]] = findings[["id", "cause"]].replace(
         "oscillation", "table_ripple", regex=True

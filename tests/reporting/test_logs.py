@@ -10,6 +10,7 @@ import numpy as np
 from stages.reporting import raw_data
 from stages.reporting.logs import MOST_MISSING, envelope, logs
 from tests.reporting import made_up
+from tests.reporting.made_up_values import GAP
 
 
 def drawn(tables: dict[str, Any]) -> list[Any]:
@@ -28,11 +29,11 @@ def test_a_single_spike_survives_every_reduction() -> None:
 
 def test_the_curve_breaks_off_where_samples_are_missing() -> None:
     [log] = drawn(made_up.campaign(logs=("z-backward.asc",)))
-    assert log.missing == (made_up.GAP,)
+    assert log.missing == (GAP,)
     time, low, _ = envelope(log, "gyro_z", 60)
     [broken] = np.flatnonzero(np.isnan(low))
-    assert time[broken - 1] <= made_up.GAP[0]
-    assert time[broken + 1] >= made_up.GAP[1]
+    assert time[broken - 1] <= GAP[0]
+    assert time[broken + 1] >= GAP[1]
 
 
 def test_a_missing_stretch_that_no_gap_tells_is_seen_in_the_envelope() -> None:

@@ -8,8 +8,8 @@ from stages.contracts import tables
 from stages.reporting import comparisons, studies
 from stages.reporting.outline import Figure, Paragraph, Section, Sentences, Table
 from stages.studies import WRITES
-from tests.reporting.made_up import rows_as
 from tests.reporting.made_up_studies import studies as made_up
+from tests.reporting.made_up_values import rows_as
 
 
 @pytest.fixture
