@@ -40,8 +40,11 @@ class Blocks:
         return np.asarray(self.phase == "steady", bool)
 
     def those(self, which: NDArray[Any]) -> "Blocks":
-        """Some of them, by number or truth value."""
+        """Some of them, by number or truth value; the readings of a channel stay side by side."""
         return Blocks(*(getattr(self, field.name).T[..., which].T for field in fields(self)))
+
+
+NONE = Blocks(*(np.empty(0) for _ in range(7)), *(np.empty((0, 3)) for _ in range(2)))
 
 
 def by_manoeuvre(table: pd.DataFrame) -> dict[str, Blocks]:
@@ -49,9 +52,6 @@ def by_manoeuvre(table: pd.DataFrame) -> dict[str, Blocks]:
     every = _blocks(table)
     rows = table.groupby("manoeuvre").indices
     return {str(name): every.those(np.asarray(some)) for name, some in rows.items()}
-
-
-NONE = Blocks(*(np.empty(0) for _ in range(7)), *(np.empty((0, 3)) for _ in range(2)))
 
 
 def _blocks(table: pd.DataFrame) -> Blocks:

@@ -70,29 +70,37 @@ def sensors() -> Rows:
 
 
 def manoeuvres() -> Rows:
-    rows: Rows = []
-    common = {"mount": "as mounted", "recorded": "whole"}
-    for i, axis in enumerate(AXES):
-        for name, sign in (("up", 1.0), ("down", -1.0)):
-            identifier = f"{axis}-{name}"
-            rows.append(
-                common
-                | {"manoeuvre": identifier, "position": identifier, "log": f"{identifier}.asc"}
-                | {"do": "rest", "seconds": REST_S}
-                | {f"up_{a}": sign * (i == j) for j, a in enumerate(AXES)}
-            )
-    for i, axis in enumerate(AXES):
-        for name, sign in (("forward", 1.0), ("backward", -1.0)):
-            identifier = f"{axis}-{name}"
-            rows.append(
-                common
-                | {"manoeuvre": identifier, "position": identifier, "log": f"{identifier}.asc"}
-                | {"do": "turn", "seconds": 38.0, "angle": sign * 2 * np.pi}
-                | {"angle_sigma": 1e-5, "rate": sign * 10 * DEGREE, "acceleration": 5 * DEGREE}
-                | {f"up_{a}": 1.0 * (i == j) for j, a in enumerate(AXES)}
-                | {f"about_{a}": 1.0 * (i == j) for j, a in enumerate(AXES)}
-            )
-    return rows
+    rests = [
+        _manoeuvre(f"{AXES[i]}-{name}", i, sign, {"do": "rest", "seconds": REST_S})
+        for i in range(3)
+        for name, sign in (("up", 1.0), ("down", -1.0))
+    ]
+    turns = [
+        _manoeuvre(
+            f"{AXES[i]}-{name}",
+            i,
+            1.0,
+            {"do": "turn", "seconds": 38.0, "angle": sign * 2 * np.pi, "angle_sigma": 1e-5}
+            | {"rate": sign * 10 * DEGREE, "acceleration": 5 * DEGREE}
+            | {f"about_{axis}": 1.0 * (i == j) for j, axis in enumerate(AXES)},
+        )
+        for i in range(3)
+        for name, sign in (("forward", 1.0), ("backward", -1.0))
+    ]
+    return rests + turns
+
+
+def _manoeuvre(name: str, axis: int, sign: float, what: dict[str, Any]) -> dict[str, Any]:
+    """One whose log is named after it, with an axis up or down."""
+    return {
+        "manoeuvre": name,
+        "position": name,
+        "log": f"{name}.asc",
+        "mount": "as mounted",
+        "recorded": "whole",
+        **{f"up_{a}": sign * (axis == j) for j, a in enumerate(AXES)},
+        **what,
+    }
 
 
 def seconds_of(row: dict[str, Any]) -> float:
