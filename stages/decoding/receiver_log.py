@@ -57,7 +57,8 @@ class ReceiverLog:
                 "status": records.status,
                 **self._rates(records.counts),
             }
-            told = frozenset(np.unique(records.imu[records.imu > 0]).tolist())
+            types = np.bincount(records.imu[records.imu > 0])
+            told = frozenset(np.flatnonzero(types).tolist())
             yield Decoded(samples, reading.refused, reading.account, told)
 
     def _rates(self, counts: NDArray[np.int32]) -> dict[str, Reals]:

@@ -19,8 +19,8 @@ def numbers_of(values: pa.ChunkedArray) -> NDArray[Any]:
 
 def array_of_numbers(values: NDArray[Any]) -> pa.Array:
     """An Arrow array of `values`, of their type; null where one is NaN, (n,)."""
-    known = ~np.isnan(values) if values.dtype.kind == "f" else np.ones(len(values), bool)
-    return _array(values, known)
+    unknown = np.isnan(values) if values.dtype.kind == "f" else np.zeros(0, bool)
+    return _array(values, unknown)
 
 
 def array_of_texts(texts: Sequence[str | None]) -> pa.Array:
@@ -28,7 +28,7 @@ def array_of_texts(texts: Sequence[str | None]) -> pa.Array:
     encoded = [(text or "").encode() for text in texts]
     offsets = np.zeros(len(encoded) + 1, np.int32)
     np.cumsum([len(text) for text in encoded], out=offsets[1:])
-    validity = _validity(np.array([text is not None for text in texts], bool))
+    validity = _validity(np.array([text is None for text in texts], bool))
     buffers = [validity, pa.py_buffer(offsets), pa.py_buffer(b"".join(encoded))]
     return pa.Array.from_buffers(pa.string(), len(encoded), buffers)
 
@@ -48,17 +48,17 @@ def batch_of_rows(rows: Sequence[Mapping[str, Any]], schema: pa.Schema) -> pa.Re
         if field.type == pa.string():
             arrays.append(array_of_texts(values))
         else:
-            known = np.array([value is not None for value in values], bool)
+            unknown = np.array([value is None for value in values], bool)
             filled = [0 if value is None else value for value in values]
-            arrays.append(_array(np.array(filled, field.type.to_pandas_dtype()), known))
+            arrays.append(_array(np.array(filled, field.type.to_pandas_dtype()), unknown))
     return pa.RecordBatch.from_arrays(arrays, schema=schema)
 
 
-def _array(values: NDArray[Any], known: NDArray[np.bool_]) -> pa.Array:
-    buffers = [_validity(known), pa.py_buffer(np.ascontiguousarray(values))]
+def _array(values: NDArray[Any], unknown: NDArray[np.bool_]) -> pa.Array:
+    buffers = [_validity(unknown), pa.py_buffer(np.ascontiguousarray(values))]
     return pa.Array.from_buffers(pa.from_numpy_dtype(values.dtype), len(values), buffers)
 
 
-def _validity(known: NDArray[np.bool_]) -> pa.Buffer | None:
+def _validity(unknown: NDArray[np.bool_]) -> pa.Buffer | None:
     """Arrow's bitmap of what is not null; None where nothing is."""
-    return None if known.all() else pa.py_buffer(np.packbits(known, bitorder="little"))
+    return pa.py_buffer(np.packbits(~unknown, bitorder="little")) if unknown.any() else None

@@ -59,9 +59,10 @@ class Scan:
 
 def scan(data: bytes, start: int, *, last: bool) -> Scan:
     """The items of `data` from `start` on; `last`: nothing follows it in the file."""
-    items = np.empty((MOST, 4), np.int64)
+    items = np.empty((MOST, 4), np.int64, order="F")  # what works on columns takes a third
     stamp, status = np.empty(MOST, np.int64), np.empty(MOST, np.uint32)
-    fields = (stamp, status, np.empty((MOST, 6), np.int32), np.empty(MOST, np.int16))
+    counts = np.empty((MOST, 6), np.int32, order="F")
+    fields = (stamp, status, counts, np.empty(MOST, np.int16))
     consumed, n = _scan(np.frombuffer(data, np.uint8), start, last, items, fields)
     some: tuple[NDArray[np.generic], ...] = tuple(part[:n] for part in fields)
     return Scan(items[:n], some, consumed)  # type: ignore[arg-type]

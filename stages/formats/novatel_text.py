@@ -9,6 +9,8 @@ import numpy as np
 
 from stages.formats.compiled import compiled, inlined
 from stages.formats.crc32 import crc32
+from stages.formats.eight import TENS, digits, first_of
+from stages.formats.gps_time import NANOSECONDS, WEEK
 from stages.formats.novatel_items import (
     COUNTS,
     IMU,
@@ -40,12 +42,17 @@ DIGITS = 8  # of the checksum, hexadecimal in lower case
 
 FEED, RETURN, SPACE, TAB = 10, 13, 32, 9
 PERCENT, HASH, STAR = ord("%"), ord("#"), ord("*")
-_COMMA, _SEMICOLON, _MINUS, _POINT, _ZERO, _NINE = (ord(character) for character in ",;-.09")
+_COMMA, _SEMICOLON, _MINUS, _POINT = (ord(character) for character in ",;-.")
 _NO_DIGIT = 255
 _DIGIT = np.full(256, _NO_DIGIT, np.uint8)
 _DIGIT[list(b"0123456789abcdef")] = range(16)
 _LONGEST_NUMBER = 10  # digits
 _DECIMALS = 9
+# Which of the IMU messages has a long header (0) or a short one (1), and a name of this length.
+_SPELT = np.full((2, 1 + WANTED[:, NAME_LENGTH].max()), -1)
+for _which, _wanted in enumerate(WANTED):
+    if _wanted[TEXT]:
+        _SPELT[_wanted[SHORT], _wanted[NAME_LENGTH]] = _which
 
 
 @compiled
@@ -56,7 +63,7 @@ def text(data: Bytes, place: int, last: bool, n: int, into: Fields) -> tuple[int
     """
     if place < 0:
         return OTHER_TEXT, 0, NOTHING
-    stop = _line_end(data, place)
+    stop = first_of(FEED, data, place)
     if stop - place >= LONGEST_LINE:
         return OTHER_TEXT, 0, NOTHING
     if stop == len(data) and not last:
@@ -77,21 +84,6 @@ def text(data: Bytes, place: int, last: bool, n: int, into: Fields) -> tuple[int
         after = min(stop + 1, len(data))
     what, which = _fields(data, place, star, n, into)
     return what, which, after
-
-
-@inlined
-def _line_end(data: Bytes, place: int) -> int:
-    """The next line end, or the end of the data; sixteen bytes at a time, which is one step."""
-    if place < 0:
-        return 0
-    found = False
-    while not found and place + 16 <= len(data):
-        for k in range(16):
-            found |= data[place + k] == FEED
-        place += 0 if found else 16
-    while place < len(data) and data[place] != FEED:
-        place += 1
-    return place
 
 
 @compiled
@@ -146,7 +138,7 @@ def _body(data: Bytes, i: int, star: int, extended: bool, n: int, into: Fields) 
     seconds, i, good_seconds = _nanoseconds(data, i + 1, star)
     word, i, good_word = _word(data, i + 1, star)
     good = good and good_week and good_seconds and good_word
-    if not (good and 0 <= week <= LAST_WEEK and seconds < WEEK_NS):
+    if not (good and 0 <= week <= LAST_WEEK):
         return False
     for field in range(6):
         value, i, good = _whole(data, i + 1, star)
@@ -160,29 +152,23 @@ def _body(data: Bytes, i: int, star: int, extended: bool, n: int, into: Fields) 
 @inlined
 def _named(data: Bytes, place: int, length: int) -> int:
     """Which of the IMU messages begins at `place` and has a name of this length; −1: none."""
-    short = data[place] == PERCENT
-    for which in range(len(WANTED)):
-        wanted = WANTED[which]
-        if wanted[TEXT] and wanted[NAME_LENGTH] == length and (wanted[SHORT] != 0) == short:
-            same = True
-            for k in range(length):
-                same = same and NAME_BYTES[which, k] == data[place + 1 + k]
-            if same:
-                return which
-    return -1
+    if length >= _SPELT.shape[1]:
+        return -1
+    which = int(_SPELT[int(data[place] == PERCENT), length])
+    for k in range(length if which >= 0 else 0):
+        if NAME_BYTES[which, k] != data[place + 1 + k]:
+            return -1
+    return which
 
 
 @inlined
 def _whole(data: Bytes, i: int, stop: int) -> tuple[int, int, bool]:
-    """The whole number at `i`, where it ends, and whether it is one."""
-    if i < 0:
-        return 0, 0, False
-    negative = i < stop and data[i] == _MINUS
-    i += 1 if negative else 0
-    value, first = 0, i
-    while i < stop and _ZERO <= data[i] <= _NINE:
-        value = 10 * value + (int(data[i]) - _ZERO)
-        i += 1
+    """The whole number at `i`, where it ends, and whether it is one; at `stop` is no digit."""
+    if i < 0 or i >= stop:
+        return 0, stop, False
+    negative = data[i] == _MINUS
+    first = i + 1 if negative else i
+    value, i = digits(data, first)
     good = first < i <= first + _LONGEST_NUMBER and (i == stop or data[i] == _COMMA)
     return -value if negative else value, i, good
 
@@ -202,17 +188,15 @@ def _word(data: Bytes, i: int, stop: int) -> tuple[np.uint32, int, bool]:
 @inlined
 def _nanoseconds(data: Bytes, i: int, stop: int) -> tuple[int, int, bool]:
     """The seconds at `i`, of at most nine decimals, in ns, where they end, if they are such."""
-    if i < 0:
-        return 0, 0, False
-    value, i, _ = _whole(data, i, stop)
-    good = value >= 0
-    decimals = 0
-    if i < stop and data[i] == _POINT:
-        i += 1
-        while i < stop and _ZERO <= data[i] <= _NINE and decimals <= _DECIMALS:
-            value = 10 * value + (int(data[i]) - _ZERO)
-            decimals += 1
-            i += 1
-    for _ in range(decimals, _DECIMALS):
-        value *= 10
-    return value, i, good and decimals <= _DECIMALS and i < stop and data[i] == _COMMA
+    if i < 0 or i >= stop:
+        return 0, stop, False
+    first = i
+    value, i = digits(data, first)
+    good = 0 < i - first <= _LONGEST_NUMBER and value < WEEK
+    decimals, missing = 0, _DECIMALS
+    if data[i] == _POINT:
+        first = i + 1
+        decimals, i = digits(data, first)
+        missing -= i - first
+    value = value * NANOSECONDS + decimals * TENS[max(missing, 0)]
+    return value, i, good and missing >= 0 and i < stop and data[i] == _COMMA

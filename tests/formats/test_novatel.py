@@ -162,6 +162,11 @@ def test_every_digit_of_the_checksum_counts(log):
         (b"RAWIMUSA,2283,1.0;2283,nan,00000077,1,2,3,4,5,6", "seconds is 'nan', expected a num"),
         (b"RAWIMUSA,2283,1.0;2283,-1.0,00000077,1,2,3,4,5,6", "seconds is '-1.0', expected a n"),
         (b"RAWIMUSA,2283,1.0;2283,604800,00000077,1,2,3,4,5,6", "seconds is 604800, expected t"),
+        (b"RAWIMUSA,2283,1.0;2283,,00000077,1,2,3,4,5,6", "seconds is '', expected a number"),
+        (b"RAWIMUSA,2283,1.0;2283,-.5,00000077,1,2,3,4,5,6", "seconds is '-.5', expected a num"),
+        # more nanoseconds than 64 bits hold
+        (b"RAWIMUSA,2283,1.0;2283,9300000000.0,00000077,1,2,3,4,5,6", "seconds is '9300000000"),
+        (b"RAWIMUSA,2283,1.0;2283,18446744073709594315.8,00000077,1,2,3,4,5,6", "seconds is '184"),
         (b"RAWIMUSA,2283,1.0;2283,1.0,0000g077,1,2,3,4,5,6", "status is '0000g077', expected u"),
         (b"RAWIMUSA,2283,1.0;2283,1.0,00000077,1,2,3,4,5", "8 fields behind the ';', expected 9"),
         (b"RAWIMUSA,2283,1.0;2283,1.0,00000077,1,2,3,4,5,6,7", "10 fields behind the ';'"),
