@@ -24,6 +24,7 @@ LONG = 300  # MB above which one round is enough
 START = 1_477_530_018_009_998_762  # ns of GPS time
 UNIX = 2_000_000  # byte of the log with line ends LF: enough to see that nothing is found in it
 COPY = "copy in memory"
+OURS = "this project, decode"
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,7 @@ def _of_text(folder: Path) -> list[Reader]:
         unix.write_bytes(file.read(UNIX).replace(b"\r\n", b"\n"))
     size = log.stat().st_size
     return [
-        _ours(folder, log),
+        *_ours(folder, log),
         Reader("novatel-edie, to an array", size, lambda: in_peers("edie", log)),
         Reader("novatel-edie, line ends LF", UNIX, lambda: in_peers("edie", unix)),
         Reader("zlib line by line, pyarrow", size, lambda: in_peers("line_by_line", log, parquet)),
@@ -71,21 +72,21 @@ def _of_binary(folder: Path) -> list[Reader]:
     log = folder / "binary.bin"
     size = log.stat().st_size
     return [
-        _ours(folder, log),
+        *_ours(folder, log),
         Reader("novatel-edie, to an array", size, lambda: in_peers("edie", log)),
         Reader(COPY, size, lambda: in_own("copying", log)),
     ]
 
 
-def _ours(folder: Path, log: Path) -> Reader:
+def _ours(folder: Path, log: Path) -> list[Reader]:
     campaign, plan, tables = (folder / f"{log.stem}{end}" for end in (".yaml", "-plan", "-tables"))
     write_campaign(campaign, log.name)
     in_own("planning", campaign, log, plan)
-    return Reader(
-        "this project, decode",
-        log.stat().st_size,
-        lambda: in_own("decoding", plan / "logs.parquet", log, tables),
-    )
+    logs, size = plan / "logs.parquet", log.stat().st_size
+    return [
+        Reader(OURS, size, lambda: in_own("decoding", logs, log, tables, "2")),
+        Reader(f"{OURS}, one processor", size, lambda: in_own("decoding", logs, log, tables, "1")),
+    ]
 
 
 def _table(readers: list[Reader], of: str, rounds: int) -> Table:

@@ -1,8 +1,11 @@
 """The stage `decode` on one log: bytes to Parquet, checksums verified, every byte accounted for.
 
-python -m benchmarks.own.decoding <logs.parquet of the plan> <log> <folder for the tables>
+python -m benchmarks.own.decoding <logs.parquet of the plan> <log> <folder for the tables> <n>
+
+on the first n processors that it may have.
 """
 
+import os
 import sys
 from pathlib import Path
 
@@ -11,11 +14,13 @@ import pyarrow.parquet as pq
 from benchmarks.answering import answer
 from benchmarks.timing import timed
 from stages.decode import STAGE as DECODE
-from stages.formats import novatel  # noqa: F401  loaded before the clock starts, as by the peers
+from stages.formats.novatel_scan import scan
 
 
-def main(logs: str, log: str, folder: str) -> None:
+def main(logs: str, log: str, folder: str, processors: str) -> None:
     """Answer with the number of records and the seconds that the stage took."""
+    os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: int(processors)])
+    scan(b"", 0, last=True)  # what is compiled is loaded before the clock starts, as by the peers
     made, read = Path(folder), {"logs": Path(logs)}
     seconds = timed(lambda: DECODE.run(read, {"raw": [Path(log)]}, made, {}), 1)
     records = pq.read_metadata(made / "samples.parquet").num_rows
