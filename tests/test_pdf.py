@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
+import time
 import zlib
 from functools import cache
 from pathlib import Path
@@ -72,8 +73,23 @@ def test_it_holds_text(tmp_path: Path) -> None:
 
 
 @needs_pango
+def test_a_figure_says_in_words_what_it_shows() -> None:
+    (words,) = re.findall(r'role="img" aria-label="([^"]*)"', page())
+    assert f"/Alt ({words})".encode() in unpacked(printed())
+
+
+@needs_pango
 def test_the_same_page_gives_the_same_bytes() -> None:
     assert pdf(page()) == printed()
+
+
+@needs_pango
+def test_also_where_fonttools_makes_the_subsets_of_fonts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It marks them with the time; so it does where the system lacks HarfBuzz's."""
+    monkeypatch.setattr(weasyprint.pdf.fonts, "harfbuzz_subset", None)
+    today = pdf(page())
+    monkeypatch.setattr(time, "time", lambda: 2e9)
+    assert pdf(page()) == today
 
 
 @needs_pango

@@ -4,6 +4,7 @@ To load pandas, scipy and matplotlib takes most stages longer than their work do
 once for a run, and not for every stage. Who asks, and how: `ask.py`, beside this file.
 """
 
+import gc
 import json
 import os
 import runpy
@@ -67,6 +68,7 @@ def _load() -> None:
         del sys.modules[f"stages.{path.stem}"]
     with suppress(OSError):  # without Pango
         import_module("weasyprint")
+    gc.freeze()  # what is loaded stays, so no stage need look for garbage in it
 
 
 def _forked(caller: socket.socket) -> tuple[int, int]:
