@@ -24,6 +24,7 @@ from stages.formats.novatel_text import DIGITS
 from stages.formats.pieces import LONGEST_LINE
 
 _HEXADECIMAL = re.compile("[0-9a-fA-F]{1,8}")
+_NUMBER = re.compile(r"\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)  # no 1_000
 _COUNTS = tuple(f"{sensor} {place}" for sensor in ("accelerometer", "gyro") for place in "123")
 
 
@@ -144,6 +145,8 @@ def _number(
     expected = (
         f"{name} is '{quoted(fields[name].encode())}', expected {what} from {least} to {most}"
     )
+    if not _NUMBER.fullmatch(fields[name]):
+        raise ValueError(expected)
     try:
         value = kind(fields[name])
     except ValueError:

@@ -11,6 +11,9 @@ from hypothesis import strategies as st
 from stages.formats import novatel
 from stages.formats.crc32 import checksum
 from stages.formats.novatel import read
+from stages.formats.novatel_items import IMU, UNSURE
+from stages.formats.novatel_scan import WHAT, scan
+from stages.formats.novatel_words import Fields, fields_of
 
 # Lines 2192 and 2193 of the z counter-clockwise log of the Wuhan report, as printed there.
 S0 = (
@@ -155,6 +158,28 @@ def test_every_digit_of_the_checksum_counts(log):
             )
 
 
+WILD = st.one_of(
+    st.integers(-(10**22), 10**22).map(str),
+    st.floats(-1, 1e20).map("{:.9f}".format),
+    st.text("0123456789-+. e_abcdefABCDEFg", max_size=12),
+)
+
+
+@settings(deadline=None, max_examples=500)
+@given(place=st.integers(0, 9), wild=WILD)
+def test_what_the_loop_reads_of_a_line_is_what_a_second_look_reads(place, wild):
+    """The second look is Python's own, field by field; the loop may leave a line to it."""
+    fields = ["2283", "42699.879998762", "00000077", "64188", "-64", "465", "-16100", "-2", "873"]
+    fields[place : place + 1] = [wild]
+    line = signed(f"RAWIMUSA,2283,42699.880;{','.join(fields)}".encode())
+    found = scan(line + b"\r\n", 0, last=True)
+    if found.items[0, WHAT] == IMU:
+        stamp, status, counts, imu = (part[0] for part in found.fields)
+        assert fields_of(line) == Fields(stamp, status, counts.tolist(), imu)
+    else:
+        assert found.items[0, WHAT] == UNSURE
+
+
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
@@ -164,6 +189,7 @@ def test_every_digit_of_the_checksum_counts(log):
         (b"RAWIMUSA,2283,1.0;2283,604800,00000077,1,2,3,4,5,6", "seconds is 604800, expected t"),
         (b"RAWIMUSA,2283,1.0;2283,,00000077,1,2,3,4,5,6", "seconds is '', expected a number"),
         (b"RAWIMUSA,2283,1.0;2283,-.5,00000077,1,2,3,4,5,6", "seconds is '-.5', expected a num"),
+        (b"RAWIMUSA,2283,1.0;2283,1.0,00000077,1_0,2,3,4,5,6", "accelerometer 1 is '1_0', expec"),
         # more nanoseconds than 64 bits hold
         (b"RAWIMUSA,2283,1.0;2283,9300000000.0,00000077,1,2,3,4,5,6", "seconds is '9300000000"),
         (b"RAWIMUSA,2283,1.0;2283,18446744073709594315.8,00000077,1,2,3,4,5,6", "seconds is '184"),
