@@ -13,7 +13,7 @@ SAMPLES = Table(
         Column("record", INTEGER, "1", "number of the record in its log, refused ones counted"),
         Column("offset", INTEGER, "byte", "where its line begins in the file"),
         Column("line", INTEGER, "1", "number of its line, from 1"),
-        Column("time", DOUBLE, "s", "since the start of its clock", "", True, even=True),
+        Column("time", DOUBLE, "s", "since the start of its clock", nullable=True),
         Column("status", pa.uint32(), "", "status word of the instrument", nullable=True),
         Column(
             "mean_of",
