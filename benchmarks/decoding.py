@@ -83,10 +83,13 @@ def _ours(folder: Path, log: Path) -> list[Reader]:
     write_campaign(campaign, log.name)
     in_own("planning", campaign, log, plan)
     logs, size = plan / "logs.parquet", log.stat().st_size
-    return [
-        Reader(OURS, size, lambda: in_own("decoding", logs, log, tables, "2")),
-        Reader(f"{OURS}, one processor", size, lambda: in_own("decoding", logs, log, tables, "1")),
-    ]
+    ours = [Reader(OURS, size, lambda: in_own("decoding", logs, log, tables))]
+    if hasattr(os, "sched_setaffinity"):  # Linux
+        one = Reader(
+            f"{OURS}, one processor", size, lambda: in_own("decoding", logs, log, tables, "one")
+        )
+        ours.append(one)
+    return ours
 
 
 def _table(readers: list[Reader], of: str, rounds: int) -> Table:

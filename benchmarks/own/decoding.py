@@ -1,8 +1,8 @@
 """The stage `decode` on one log: bytes to Parquet, checksums verified, every byte accounted for.
 
-python -m benchmarks.own.decoding <logs.parquet of the plan> <log> <folder for the tables> <n>
+python -m benchmarks.own.decoding <logs.parquet of the plan> <log> <folder for the tables> [one]
 
-on the first n processors that it may have.
+"one": on one processor, where the system can be told so.
 """
 
 import os
@@ -17,9 +17,10 @@ from stages.decode import STAGE as DECODE
 from stages.formats.novatel_scan import scan
 
 
-def main(logs: str, log: str, folder: str, processors: str) -> None:
+def main(logs: str, log: str, folder: str, processors: str = "all") -> None:
     """Answer with the number of records and the seconds that the stage took."""
-    os.sched_setaffinity(0, sorted(os.sched_getaffinity(0))[: int(processors)])
+    if processors == "one":
+        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     scan(b"", 0, last=True)  # what is compiled is loaded before the clock starts, as by the peers
     made, read = Path(folder), {"logs": Path(logs)}
     seconds = timed(lambda: DECODE.run(read, {"raw": [Path(log)]}, made, {}), 1)

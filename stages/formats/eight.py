@@ -1,7 +1,7 @@
 """Eight bytes of a log at a time as one number, the first byte the lowest: line ends and digits.
 
-To look at one byte after another takes twice the time, most of it for guesses, where a number ends,
-that prove wrong. Source: Warren, "Hacker's Delight", 2nd edition (2013), chapter 6, "Searching
+Byte after byte, a processor guesses where a number ends, and a wrong guess takes it longer than the
+number. Source: Warren, "Hacker's Delight", 2nd edition (2013), chapter 6, "Searching
 Words".
 """
 

@@ -59,7 +59,7 @@ class Scan:
 
 def scan(data: bytes, start: int, *, last: bool) -> Scan:
     """The items of `data` from `start` on; `last`: nothing follows it in the file."""
-    items = np.empty((MOST, 4), np.int64, order="F")  # what works on columns takes a third
+    items = np.empty((MOST, 4), np.int64, order="F")  # by columns, as it is used
     stamp, status = np.empty(MOST, np.int64), np.empty(MOST, np.uint32)
     counts = np.empty((MOST, 6), np.int32, order="F")
     fields = (stamp, status, counts, np.empty(MOST, np.int16))
