@@ -9,6 +9,7 @@ import os
 import sys
 from pathlib import Path
 
+import numpy as np
 import pyarrow.parquet as pq
 
 from benchmarks.answering import answer
@@ -21,7 +22,9 @@ def main(logs: str, log: str, folder: str, processors: str = "all") -> None:
     """Answer with the number of records and the seconds that the stage took."""
     if processors == "one":
         os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
-    scan(b"", 0, last=True)  # what is compiled is loaded before the clock starts, as by the peers
+    scan(
+        np.frombuffer(b"", np.uint8), 0, last=True
+    )  # what is compiled is loaded before the clock starts, as by the peers
     made, read = Path(folder), {"logs": Path(logs)}
     seconds = timed(lambda: DECODE.run(read, {"raw": [Path(log)]}, made, {}), 1)
     records = pq.read_metadata(made / "samples.parquet").num_rows

@@ -38,9 +38,10 @@ from stages.formats.novatel_items import (
     TYPE,
     UNSURE,
     WEEK_NS,
+    Bytes,
 )
 from stages.formats.novatel_messages import IMU_MESSAGES
-from stages.formats.novatel_scan import LENGTH, START, WHAT, WHICH, Scan, scan
+from stages.formats.novatel_scan import Scan, scan
 from stages.formats.novatel_words import fields_of, why_refused, why_unsure
 from stages.formats.pieces import LONGEST_LINE, PIECE_BYTES, Integers
 
@@ -74,21 +75,26 @@ class Reading:
 def read(path: Path, piece_bytes: int = PIECE_BYTES) -> Iterator[Reading]:
     """The log at `path`, piece by piece."""
     log = _Log()
+    buffer, held = np.empty(2 * piece_bytes, np.uint8), 0
     with path.open("rb") as file:
-        rest = b""
-        while more := file.read(piece_bytes):
-            data = rest + more
-            consumed = yield from _items_of(log, data, last=False)
-            rest = data[consumed:]
-        yield from _items_of(log, rest, last=True)
+        while more := file.readinto(buffer.data[held : held + piece_bytes]):
+            held += more
+            consumed = yield from _items_of(log, buffer[:held], last=False)
+            rest = buffer[consumed:held]
+            if len(rest) + piece_bytes > len(buffer):
+                buffer = np.empty(2 * len(buffer), np.uint8)
+            held = len(rest)
+            buffer[:held] = rest
+    yield from _items_of(log, buffer[:held], last=True)
     if log.going_on is not None:
         yield log.end()
 
 
-def _items_of(log: "_Log", data: bytes, *, last: bool) -> Generator[Reading, None, int]:
+def _items_of(log: "_Log", data: Bytes, *, last: bool) -> Generator[Reading, None, int]:
     """All items of some bytes; returns the byte after the last."""
+    data.flags.writeable = False
     start = 0
-    while len((found := scan(data, start, last=last)).items):
+    while len((found := scan(data, start, last=last)).what):
         yield log.reading(data, found)
         start = found.consumed
     log.offset += start
@@ -108,41 +114,41 @@ class _Log:
         self._message: int | None = None  # the IMU message that is read
         self._stamp: int | None = None  # of the last record
 
-    def reading(self, data: bytes, found: Scan) -> Reading:
+    def reading(self, data: Bytes, found: Scan) -> Reading:
         """What some items hold."""
-        what, start, length, which = found.items.T
+        what, which = found.what, found.which
         for index in np.flatnonzero(self._may_be_ours(what == UNSURE, which)).tolist():
-            if told := fields_of(data[start[index] : start[index] + length[index]]):
+            if told := fields_of(_text(data, found, index)):
                 found.fields[STAMP][index], found.fields[STATUS][index] = told.stamp, told.status
                 found.fields[COUNTS][index], found.fields[TYPE][index] = told.counts, told.imu
                 what[index] = IMU
-        self._choose(which[what == IMU])
+        if self._message is None:
+            self._choose(which[what == IMU])
         ours = (which == self._message) & (what == IMU)
         unsure = self._may_be_ours(what == UNSURE, which)
+        damaged = np.flatnonzero((what == DAMAGE) | (what == GOES_ON)).tolist()
         lines = self._lines(what)
 
-        account, reasons = Account(), {}
-        for index in np.flatnonzero(unsure).tolist():
-            reasons[index] = why_unsure(data[start[index] : start[index] + length[index]])
-        refused_as_ours = self._refused_as_ours(data, found.items)
-        for index in np.flatnonzero((what == DAMAGE) | (what == GOES_ON)).tolist():
-            reasons[index] = why_refused(data[start[index] : start[index] + length[index]])
-        refused = list(self._refused(data, found.items, lines, reasons))
+        reasons = {
+            index: why_unsure(_text(data, found, index))
+            for index in np.flatnonzero(unsure).tolist()
+        } | {index: why_refused(_text(data, found, index)) for index in damaged}
+        refused_as_ours = self._refused_as_ours(data, found, damaged)
+        refused = list(self._refused(data, found, lines, reasons))
 
         counted = ours | unsure | refused_as_ours
-        record = self._records + np.cumsum(counted) - 1
-        self._records += int(counted.sum())
+        kept = slice(None) if ours.all() else ours  # what need not be picked out is not copied
+        account = Account()
         if self._message is not None:
-            account.add_all(DECODED, IMU_MESSAGES[self._message].name, length[ours])
-        account.add_all(BLANK, "", length[what == EMPTY])
+            account.add_all(DECODED, IMU_MESSAGES[self._message].name, found.length[kept])
+        account.add_all(BLANK, "", found.length[what == EMPTY])
         for line in refused:
             account.add(REFUSED, "", 1, line.bytes)
-        _add_others(account, data, found.items, ours | unsure)
-        kept = slice(None) if ours.all() else ours  # what need not be picked out is not copied
+        _add_others(account, data, found, ours | unsure)
         stamp, status, counts, imu = found.fields
         increments = Increments(
-            record[kept],
-            self.offset + start[kept],
+            self._numbers(counted)[kept],
+            self.offset + found.start[kept],
             lines[kept],
             self._unrolled(stamp[kept]),
             status[kept],
@@ -159,52 +165,58 @@ class _Log:
         account.add(REFUSED, "", 1, ended.bytes)
         return Reading(_none(), [ended], account)
 
-    def _may_be_ours(self, some: Truths, which: Integers) -> Truths:
+    def _may_be_ours(self, some: Truths, which: NDArray[np.int32]) -> Truths:
         """Which of some IMU messages are those that are read, as far as that is known yet."""
         return some if self._message is None else some & (which == self._message)
 
-    def _choose(self, which: Integers) -> None:
+    def _choose(self, which: NDArray[np.int32]) -> None:
         """The IMU message that comes most often where the first ones are."""
-        if self._message is None and len(which):
+        if len(which):
             self._message = int(np.bincount(which).argmax())
 
-    def _lines(self, what: Integers) -> Integers:
+    def _numbers(self, counted: Truths) -> Integers:
+        """Number of each record among those of the log; anything where it is none."""
+        numbers = self._records - 1 + _count(counted)
+        self._records = int(numbers[-1]) + 1
+        return numbers
+
+    def _lines(self, what: NDArray[np.int8]) -> Integers:
         """Number of each item, what goes on counted once."""
         before = np.append(self.going_on is not None, what[:-1] == GOES_ON)
         goes_on = before & ((what == DAMAGE) | (what == GOES_ON))
-        lines = self._line - 1 + np.cumsum(~goes_on)
+        lines = self._line - 1 + _count(~goes_on)
         self._line = int(lines[-1]) + 1
-        return np.asarray(lines)
+        return lines
 
-    def _refused_as_ours(self, data: bytes, items: Integers) -> Truths:
+    def _refused_as_ours(self, data: Bytes, found: Scan, damaged: list[int]) -> Truths:
         """Which refused items would have been records, as far as their beginning tells."""
-        as_ours = np.zeros(len(items), bool)
+        as_ours = np.zeros(len(found.what), bool)
         if self._message is None:
             return as_ours
         message = IMU_MESSAGES[self._message]
-        for index in np.flatnonzero(items[:, WHAT] == DAMAGE).tolist():
-            numbered = message.text or items[index, WHICH] == message.number
-            as_ours[index] = numbered and data.startswith(message.begins, items[index, START])
+        for index in damaged:
+            numbered = message.text or found.which[index] == message.number
+            begins = _text(data, found, index, len(message.begins)) == message.begins
+            as_ours[index] = found.what[index] == DAMAGE and numbered and begins
         return as_ours
 
     def _refused(
-        self, data: bytes, items: Integers, lines: Integers, reasons: dict[int, str]
+        self, data: Bytes, found: Scan, lines: Integers, reasons: dict[int, str]
     ) -> Iterator[RefusedLine]:
         """The refused items; what goes on is told when it has ended."""
         for index in sorted(reasons):
-            start, length = items[index, START], int(items[index, LENGTH])
+            length = int(found.length[index])
             if self.going_on is not None and lines[index] != self.going_on.line:
                 yield self.going_on
                 self.going_on = None
             if self.going_on is None:
-                text = quoted(data[start : start + length].rstrip(b"\r\n"))
-                one = RefusedLine(
-                    int(lines[index]), self.offset + int(start), length, reasons[index], text
-                )
+                text = quoted(_text(data, found, index).rstrip(b"\r\n"))
+                offset = self.offset + int(found.start[index])
+                one = RefusedLine(int(lines[index]), offset, length, reasons[index], text)
             else:
                 size = self.going_on.bytes + length
                 one = replace(self.going_on, bytes=size, reason=_endless(size))
-            if items[index, WHAT] == GOES_ON:
+            if found.what[index] == GOES_ON:
                 self.going_on = replace(one, reason=_endless(one.bytes))
             else:
                 self.going_on = None
@@ -215,33 +227,46 @@ class _Log:
         if not len(stamps):
             return stamps
         before = stamps[0] if self._stamp is None else self._stamp
-        steps = np.diff(stamps, prepend=before)
-        if not self._rolled and np.abs(steps).max() < ROLL - WEEK_NS:
-            self._stamp = int(stamps[-1])
-            return stamps
-        rolls = np.rint(steps / ROLL) * (np.abs(np.abs(steps) - ROLL) < WEEK_NS)
         self._stamp = int(stamps[-1])
+        earliest, latest = min(before, stamps.min()), max(before, stamps.max())
+        if not self._rolled and latest - earliest < ROLL - WEEK_NS:
+            return stamps
+        steps = np.diff(stamps, prepend=before)
+        rolls = np.rint(steps / ROLL) * (np.abs(np.abs(steps) - ROLL) < WEEK_NS)
         rolled = self._rolled - np.cumsum(rolls).astype(np.int64)
         self._rolled = int(rolled[-1])
         return np.asarray(stamps + rolled * ROLL)
 
 
-def _add_others(account: Account, data: bytes, items: Integers, ours: Truths) -> None:
+def _text(data: Bytes, found: Scan, index: int, most: int | None = None) -> bytes:
+    """The bytes of an item, or the first ones of them."""
+    start, length = found.start[index], found.length[index]
+    return data[start : start + (length if most is None else min(length, most))].tobytes()
+
+
+def _count(some: Truths) -> Integers:
+    """How many there are up to and with each, (n,)."""
+    if some.all():
+        return np.arange(1, len(some) + 1)
+    return np.asarray(np.cumsum(some))
+
+
+def _add_others(account: Account, data: Bytes, found: Scan, ours: Truths) -> None:
     """Count all other messages, by name."""
-    what, start, length, which = items.T
+    what, which = found.what, found.which
     others = ((what == IMU) | (what == UNSURE)) & ~ours
     for number in np.unique(which[others]).tolist():
         same = others & (which == number)
-        account.add_all(OTHER_MESSAGE, IMU_MESSAGES[number].name, length[same])
+        account.add_all(OTHER_MESSAGE, IMU_MESSAGES[number].name, found.length[same])
     for number in np.unique(which[what == OTHER_BINARY]).tolist():
         same = (what == OTHER_BINARY) & (which == number)
-        account.add_all(OTHER_MESSAGE, f"binary {number}", length[same])
+        account.add_all(OTHER_MESSAGE, f"binary {number}", found.length[same])
     lines: Counter[bytes] = Counter()
     sizes: Counter[bytes] = Counter()
-    for row in np.flatnonzero(what == OTHER_TEXT).tolist():
-        name = data[start[row] + 1 : start[row] + 1 + which[row]]
+    for index in np.flatnonzero(what == OTHER_TEXT).tolist():
+        name = _text(data, found, index, 1 + int(which[index]))[1:]
         lines[name] += 1
-        sizes[name] += int(length[row])
+        sizes[name] += int(found.length[index])
     for name, count in lines.items():
         account.add(OTHER_MESSAGE, quoted(name), count, sizes[name])
 

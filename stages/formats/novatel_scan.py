@@ -40,38 +40,48 @@ from stages.formats.pieces import LONGEST_LINE, Integers
 MOST = 1 << 16  # items of one scan
 KEPT = 4096  # bytes at the end of an endless line that may be the beginning of a message
 
-WHAT, START, LENGTH, WHICH = range(4)  # columns of the items
+# What the items are, which, and where each begins and the last one ends: (n,), (n,), (n + 1,).
+_Items = tuple[NDArray[np.int8], NDArray[np.int32], Integers]
 
 
 @dataclass(frozen=True)
 class Scan:
-    """The n items of some bytes, one behind the other.
+    """The n items of some bytes, one behind the other; the arrays have one entry each, (n,)."""
 
-    `items`: (n, 4): what it is, the byte where it begins, its length, and which: of the IMU
-    messages, of the numbers, or the length of the name; `fields`: of items of the IMU, else
-    anything; `consumed`: the byte after the last.
-    """
-
-    items: Integers
-    fields: Fields
-    consumed: int
+    what: NDArray[np.int8]  # as in `novatel_items`
+    start: Integers  # byte where it begins
+    length: Integers  # byte
+    which: NDArray[np.int32]  # of the IMU messages, of the numbers, or the length of the name
+    fields: Fields  # of items of the IMU, else anything
+    consumed: int  # the byte after the last
 
 
-def scan(data: bytes, start: int, *, last: bool) -> Scan:
+def scan(data: Bytes, start: int, *, last: bool) -> Scan:
     """The items of `data` from `start` on; `last`: nothing follows it in the file."""
-    items = np.empty((MOST, 4), np.int64, order="F")  # by columns, as it is used
+    what, which = np.empty(MOST, np.int8), np.empty(MOST, np.int32)
+    bounds = np.empty(MOST + 1, np.int64)
     stamp, status = np.empty(MOST, np.int64), np.empty(MOST, np.uint32)
-    counts = np.empty((MOST, 6), np.int32, order="F")
+    counts = np.empty((MOST, 6), np.int32, order="F")  # by columns, as it is used
     fields = (stamp, status, counts, np.empty(MOST, np.int16))
-    consumed, n = _scan(np.frombuffer(data, np.uint8), start, last, items, fields)
+    n = _scan(data, start, last, (what, which, bounds), fields)
+    bounds = bounds[: n + 1]
     some: tuple[NDArray[np.generic], ...] = tuple(part[:n] for part in fields)
-    return Scan(items[:n], some, consumed)  # type: ignore[arg-type]
+    return Scan(
+        what[:n],
+        bounds[:-1],
+        np.diff(bounds),
+        which[:n],
+        some,  # type: ignore[arg-type]
+        int(bounds[-1]),
+    )
 
 
 @compiled
-def _scan(data: Bytes, start: int, last: bool, items: Integers, into: Fields) -> tuple[int, int]:
-    """Fill in items and their fields; return the byte after the last, and their number."""
+def _scan(data: Bytes, start: int, last: bool, items: _Items, into: Fields) -> int:
+    """Fill in items and their fields; return how many there are."""
+    items_what, items_which, bounds = items
     place, n = start, int(np.int64(0))  # a bare 0 is a type of its own: all compiled twice
+    bounds[0] = place
     while place < len(data) and n < len(into[STAMP]):
         what, which, after = DAMAGE, 0, NOTHING
         if data[place] == SYNC[0]:
@@ -82,11 +92,10 @@ def _scan(data: Bytes, start: int, last: bool, items: Integers, into: Fields) ->
             what, after = _damage(data, place, last, 0 if after == NOTHING else -after)
         if after == MORE:
             break
-        items[n, WHAT], items[n, START], items[n, LENGTH] = what, place, after - place
-        items[n, WHICH] = which
+        items_what[n], items_which[n], bounds[n + 1] = what, which, after
         place = after
         n += 1
-    return place, n
+    return n
 
 
 @compiled

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-PIECE_BYTES = 4 << 20
+PIECE_BYTES = 7 << 19  # of the shortest messages of an IMU as many as rows of a batch
 LONGEST_LINE = 1 << 20  # byte; what is longer is no line of a log, such as the zeros after a crash
 
 Integers = NDArray[np.int64]

@@ -12,7 +12,7 @@ from stages.formats import novatel
 from stages.formats.crc32 import checksum
 from stages.formats.novatel import read
 from stages.formats.novatel_items import IMU, UNSURE
-from stages.formats.novatel_scan import WHAT, scan
+from stages.formats.novatel_scan import scan
 from stages.formats.novatel_words import Fields, fields_of
 
 # Lines 2192 and 2193 of the z counter-clockwise log of the Wuhan report, as printed there.
@@ -172,12 +172,12 @@ def test_what_the_loop_reads_of_a_line_is_what_a_second_look_reads(place, wild):
     fields = ["2283", "42699.879998762", "00000077", "64188", "-64", "465", "-16100", "-2", "873"]
     fields[place : place + 1] = [wild]
     line = signed(f"RAWIMUSA,2283,42699.880;{','.join(fields)}".encode())
-    found = scan(line + b"\r\n", 0, last=True)
-    if found.items[0, WHAT] == IMU:
+    found = scan(np.frombuffer(line + b"\r\n", np.uint8), 0, last=True)
+    if found.what[0] == IMU:
         stamp, status, counts, imu = (part[0] for part in found.fields)
         assert fields_of(line) == Fields(stamp, status, counts.tolist(), imu)
     else:
-        assert found.items[0, WHAT] == UNSURE
+        assert found.what[0] == UNSURE
 
 
 @pytest.mark.parametrize(
