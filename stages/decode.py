@@ -5,7 +5,7 @@ themselves are worth is the business of `quality`.
 """
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 import pyarrow as pa
@@ -14,6 +14,7 @@ from stages.contracts.parquet import BATCH_ROWS
 from stages.contracts.stage import Stage
 from stages.contracts.tables import ACCOUNTS, CLOCKS, LOGS, REFUSED, SAMPLES
 from stages.decoding.column_log import ColumnLog
+from stages.decoding.decoded import Decoded
 from stages.decoding.files import path_of, refuse_grown
 from stages.decoding.receiver_log import ReceiverLog
 from stages.decoding.rows import Pieces, account_of, refused_rows, sample_rows
@@ -61,14 +62,10 @@ def _pieces_of(log: ReceiverLog | ColumnLog, origin: int, table: TableAngle | No
     records = 0
     ends: list[float | None] = []
     imu_types: frozenset[int] = frozenset()
-    for decoded in ahead(log.decoded(origin)):
+    for decoded, samples in ahead(_decoded(log, origin, table)):
         account.add_account(decoded.account)
         imu_types |= decoded.imu_types
         yield from refused_rows(log.name, decoded.refused)
-        if table is not None and "time" in decoded.samples:
-            began = log.began(origin, absolute=table.absolute)
-            decoded.samples["table_angle"] = table.at(decoded.samples["time"] + began)
-        samples = sample_rows(log.name, decoded.samples)
         for start in range(0, len(samples), BATCH_ROWS):
             yield "samples", samples.slice(start, BATCH_ROWS)
         if len(samples):
@@ -87,6 +84,17 @@ def _pieces_of(log: ReceiverLog | ColumnLog, origin: int, table: TableAngle | No
         "imu_types": " ".join(map(str, sorted(imu_types))) or None,
     }
     yield "clocks", batch_of_rows([clock], CLOCKS.schema)
+
+
+def _decoded(
+    log: ReceiverLog | ColumnLog, origin: int, table: TableAngle | None
+) -> Iterator[tuple[Decoded, pa.RecordBatch]]:
+    """A log, piece by piece, and the rows of the table samples."""
+    for decoded in log.decoded(origin):
+        if table is not None and "time" in decoded.samples:
+            began = log.began(origin, absolute=table.absolute)
+            decoded.samples["table_angle"] = table.at(decoded.samples["time"] + began)
+        yield decoded, sample_rows(log.name, decoded.samples)
 
 
 STAGE = Stage(

@@ -66,16 +66,17 @@ class Table:
 
     @property
     def packing(self) -> dict[str, Any]:
-        """How Parquet writes the columns: what counts by differences, reals byte by byte.
+        """How Parquet writes the columns: numbers byte by byte, the first of each, the second, …
 
         The rest, texts among them, as a dictionary of the values that there are.
         """
-        ways = {pa.int64(): "DELTA_BINARY_PACKED", pa.float64(): "BYTE_STREAM_SPLIT"}
-        packed = {c.name: ways[c.type] for c in self.columns if c.type in ways}
+        numbers = {
+            c.name for c in self.columns if pa.types.is_primitive(c.type) and c.type != pa.bool_()
+        }
         return {
             "compression": "lz4",
-            "use_dictionary": [c.name for c in self.columns if c.name not in packed],
-            "column_encoding": packed,
+            "use_dictionary": [c.name for c in self.columns if c.name not in numbers],
+            "column_encoding": dict.fromkeys(numbers, "BYTE_STREAM_SPLIT"),
             "write_statistics": False,  # nobody here skips parts of a table by them
         }
 

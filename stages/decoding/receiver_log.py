@@ -68,8 +68,8 @@ class ReceiverLog:
         fields = [(sensor, axis) for sensor in ("accel", "gyro") for axis in self._axes]
         for field, (sensor, axis) in enumerate(fields):
             sign = -1 if axis.startswith("-") else 1
-            increment = (sign * self._counts[sensor]) * counts[:, field].astype(np.float64)
-            rates[f"{sensor}_{axis[-1]}"] = increment / self.interval
+            rate_of_count = sign * self._counts[sensor] / self.interval
+            rates[f"{sensor}_{axis[-1]}"] = counts[:, field] * rate_of_count
         return rates
 
     def began(self, origin: int, *, absolute: bool) -> float:

@@ -10,7 +10,9 @@ import zlib
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.formats.compiled import compiled
+from stages.formats.compiled import compiled, inlined
+from stages.formats.little_endian import four
+from stages.formats.novatel_items import Bytes
 
 POLYNOMIAL = 0xEDB88320
 _ONES = 0xFFFFFFFF
@@ -35,35 +37,31 @@ def _tables() -> NDArray[np.uint32]:
 
 
 _TABLES = _tables()
+_LOW, _EIGHT, _SIXTEEN, _TOP = np.uint32(0xFF), np.uint32(8), np.uint32(16), np.uint32(24)
 
 
 @compiled
-def crc32(data: NDArray[np.uint8], first: int, after: int) -> np.uint32:
+def crc32(data: Bytes, first: int, after: int) -> np.uint32:
     """The checksum of data[first:after]."""
     if first < 0:
         return np.uint32(0)
-    low, eight, sixteen = np.uint32(0xFF), np.uint32(8), np.uint32(16)
     crc = np.uint32(0)
     place = first
     while place + 8 <= after:
-        crc ^= (
-            np.uint32(data[place])
-            | np.uint32(data[place + 1]) << eight
-            | np.uint32(data[place + 2]) << sixteen
-            | np.uint32(data[place + 3]) << np.uint32(24)
-        )
-        crc = (
-            _TABLES[7, crc & low]
-            ^ _TABLES[6, crc >> eight & low]
-            ^ _TABLES[5, crc >> sixteen & low]
-            ^ _TABLES[4, crc >> np.uint32(24)]
-            ^ _TABLES[3, data[place + 4]]
-            ^ _TABLES[2, data[place + 5]]
-            ^ _TABLES[1, data[place + 6]]
-            ^ _TABLES[0, data[place + 7]]
-        )
+        crc = _followed(four(data, place) ^ crc, 4) ^ _followed(four(data, place + 4), 0)
         place += 8
+    if place + 4 <= after:
+        crc = _followed(four(data, place) ^ crc, 0)
+        place += 4
     while place < after:
-        crc = _TABLES[0, (crc ^ np.uint32(data[place])) & low] ^ crc >> eight
+        crc = _TABLES[0, (crc ^ np.uint32(data[place])) & _LOW] ^ crc >> _EIGHT
         place += 1
     return crc
+
+
+@inlined
+def _followed(word: np.uint32, k: int) -> np.uint32:
+    """What four bytes do to the checksum when k more follow."""
+    first = _TABLES[k + 3, word & _LOW] ^ _TABLES[k + 2, word >> _EIGHT & _LOW]
+    second = _TABLES[k + 1, word >> _SIXTEEN & _LOW] ^ _TABLES[k, word >> _TOP]
+    return np.uint32(first ^ second)

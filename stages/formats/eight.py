@@ -8,6 +8,7 @@ Words".
 import numpy as np
 
 from stages.formats.compiled import inlined
+from stages.formats.little_endian import eight
 from stages.formats.novatel_items import Bytes
 
 _LOWS, _HIGHS = np.uint64(0x0101010101010101), np.uint64(0x8080808080808080)
@@ -24,7 +25,7 @@ def first_of(byte: int, data: Bytes, place: int) -> int:
     """Where the byte comes first from `place` on, or the end of the data."""
     sought = _LOWS * np.uint64(byte)
     while place + 8 <= len(data):
-        differs = _eight(data, place) ^ sought
+        differs = eight(data, place) ^ sought
         found = (differs - _LOWS) & ~differs & _HIGHS  # the lowest bit is right, others may be not
         if found:
             return place + _before(found)
@@ -39,7 +40,7 @@ def digits(data: Bytes, place: int) -> tuple[int, int]:
     """The number whose digits begin at `place`, right up to 18 of them, and where they end."""
     value, ended = int(np.int64(0)), False
     while not ended and place + 8 <= len(data):
-        word = _eight(data, place) ^ _ZEROS
+        word = eight(data, place) ^ _ZEROS
         others = ((word + _BEYOND_NINE) | word) & _HIGHS
         if others:
             n = _before(others)
@@ -53,15 +54,6 @@ def digits(data: Bytes, place: int) -> tuple[int, int]:
         value = 10 * value + (int(data[place]) - ord("0"))
         place += 1
     return value, place
-
-
-@inlined
-def _eight(data: Bytes, place: int) -> np.uint64:
-    """The eight bytes from `place` on."""
-    word = np.uint64(0)
-    for k in range(8):
-        word |= np.uint64(data[place + k]) << np.uint64(8 * k)
-    return word
 
 
 @inlined

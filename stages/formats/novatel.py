@@ -176,7 +176,7 @@ class _Log:
 
     def _numbers(self, counted: Truths) -> Integers:
         """Number of each record among those of the log; anything where it is none."""
-        numbers = self._records - 1 + _count(counted)
+        numbers = _count(counted, self._records)
         self._records = int(numbers[-1]) + 1
         return numbers
 
@@ -184,7 +184,7 @@ class _Log:
         """Number of each item, what goes on counted once."""
         before = np.append(self.going_on is not None, what[:-1] == GOES_ON)
         goes_on = before & ((what == DAMAGE) | (what == GOES_ON))
-        lines = self._line - 1 + _count(~goes_on)
+        lines = _count(~goes_on, self._line)
         self._line = int(lines[-1]) + 1
         return lines
 
@@ -244,11 +244,11 @@ def _text(data: Bytes, found: Scan, index: int, most: int | None = None) -> byte
     return data[start : start + (length if most is None else min(length, most))].tobytes()
 
 
-def _count(some: Truths) -> Integers:
-    """How many there are up to and with each, (n,)."""
+def _count(some: Truths, first: int) -> Integers:
+    """The number of each, if the first of them is number `first`, (n,)."""
     if some.all():
-        return np.arange(1, len(some) + 1)
-    return np.asarray(np.cumsum(some))
+        return np.arange(first, first + len(some))
+    return np.asarray(np.cumsum(some) + (first - 1))
 
 
 def _add_others(account: Account, data: Bytes, found: Scan, ours: Truths) -> None:

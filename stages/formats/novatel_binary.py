@@ -5,6 +5,7 @@ import numpy as np
 from stages.formats.compiled import compiled, inlined
 from stages.formats.crc32 import crc32
 from stages.formats.gps_time import NANOSECONDS, WEEK
+from stages.formats.little_endian import four, two
 from stages.formats.novatel_items import (
     COUNTS,
     DAMAGE,
@@ -77,15 +78,15 @@ def binary(data: Bytes, place: int, last: bool, n: int, into: Fields) -> tuple[i
     long = data[place + 2] == LONG_SYNC
     header, body = SHORT_BYTES, int(data[place + 3])
     if long:
-        header, body = body, _two(data, place + 8)
+        header, body = body, two(data, place + 8)
         if header != LONG_BYTES:
             return DAMAGE, 0, NOTHING
-    number = _two(data, place + 4)
+    number = two(data, place + 4)
     total = header + body + CRC_BYTES
     if left < total:
         return DAMAGE, number, -left if last else MORE
     end, after = place + header + body, place + total
-    if crc32(data, place, end) != _four(data, end):
+    if crc32(data, place, end) != four(data, end):
         return DAMAGE, number, -total
     which = -1 if long and data[place + 6] & _ANSWER else int(_NUMBERED[int(not long), number])
     if which < 0:
@@ -100,16 +101,16 @@ def _body(data: Bytes, first: int, extended: bool, n: int, into: Fields) -> bool
     """Whether the body that begins at `first` has a time; its fields become number `n`."""
     if first < 0:
         return False
-    week = _two(data, first + 2) if extended else int(_four(data, first))
-    seconds = _double(_four(data, first + 4), _four(data, first + 8))
+    week = two(data, first + 2) if extended else int(four(data, first))
+    seconds = _double(four(data, first + 4), four(data, first + 8))
     if not (week <= LAST_WEEK and 0.0 <= seconds < WEEK):
         return False
     whole = int(seconds)
     part = round((seconds - whole) * NANOSECONDS)
     into[STAMP][n] = week * WEEK_NS + whole * NANOSECONDS + part
-    into[STATUS][n] = _four(data, first + 12)
+    into[STATUS][n] = four(data, first + 12)
     for field in range(6):
-        into[COUNTS][n, field] = np.int32(_four(data, first + 16 + 4 * field))
+        into[COUNTS][n, field] = np.int32(four(data, first + 16 + 4 * field))
     into[TYPE][n] = data[first + 1] if extended else -1
     return True
 
@@ -122,15 +123,3 @@ def _double(low: np.uint32, high: np.uint32) -> float:
         return -1.0
     fraction = int(low) | (int(high) & 0xFFFFF | (0x100000 if exponent else 0)) << 32
     return float(fraction) * _POWERS[max(exponent, 1)]
-
-
-@compiled
-def _two(data: Bytes, place: int) -> int:
-    """Two bytes, the lower first."""
-    return int(data[place]) | int(data[place + 1]) << 8
-
-
-@compiled
-def _four(data: Bytes, place: int) -> np.uint32:
-    """Four bytes, the lowest first."""
-    return np.uint32(_two(data, place) | _two(data, place + 2) << 16)
