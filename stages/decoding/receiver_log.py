@@ -69,7 +69,7 @@ class ReceiverLog:
         for field, (sensor, axis) in enumerate(fields):
             sign = -1 if axis.startswith("-") else 1
             rate_of_count = sign * self._counts[sensor] / self.interval
-            rates[f"{sensor}_{axis[-1]}"] = counts[:, field] * rate_of_count
+            rates[f"{sensor}_{axis[-1]}"] = counts[:, field].astype(np.float64) * rate_of_count
         return rates
 
     def began(self, origin: int, *, absolute: bool) -> float:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
+from functools import lru_cache
 from typing import Any
 
 import pyarrow as pa
@@ -38,14 +39,19 @@ def refused_rows(log: str, refused: list[RefusedLine]) -> Pieces:
 def sample_rows(log: str, samples: Mapping[str, Any]) -> pa.RecordBatch:
     """The samples in the columns of the table; what the log does not record is null."""
     rows = len(samples["record"])
-    filled: dict[str, pa.Array] = {"log": repeated_text(log, rows)}
+    filled = {"log": repeated_text(log, rows)}
     for name, values in samples.items():
         if isinstance(values, list):
             filled[name] = array_of_texts(values).dictionary_encode()
         elif values is not None:
             filled[name] = array_of_numbers(values)
     arrays = [
-        filled[column.name] if column.name in filled else pa.nulls(rows, column.type)
+        filled[column.name] if column.name in filled else _nulls(rows, column.type)
         for column in SAMPLES.columns
     ]
     return pa.RecordBatch.from_arrays(arrays, schema=SAMPLES.schema)
+
+
+@lru_cache(4)  # most pieces have as many rows
+def _nulls(rows: int, of: pa.DataType) -> pa.Array:
+    return pa.nulls(rows, of)

@@ -43,7 +43,7 @@ for _which, _wanted in enumerate(WANTED):
     if not _wanted[TEXT]:
         _NUMBERED[_wanted[SHORT], _wanted[NUMBER]] = _which
 
-_POWERS = 2.0 ** (np.arange(0x7FF) - 1075)  # what the exponents of IEEE 754 stand for
+_POWERS = 2.0 ** (np.arange(0x7FF) - 1075.0)  # what the exponents of IEEE 754 stand for
 
 _ANSWER = 0x80  # this bit of the long header's type: the answer to a command, no log
 
@@ -118,8 +118,8 @@ def _body(data: Bytes, first: int, extended: bool, n: int, into: Fields) -> bool
 @compiled
 def _double(low: np.uint32, high: np.uint32) -> float:
     """The number of IEEE 754 whose two halves these are; −1 for what is negative or no number."""
-    exponent = np.int64(high >> np.uint32(20))
+    exponent = int(np.int64(high >> np.uint32(20)))
     if exponent >= 0x7FF:
         return -1.0
     fraction = int(low) | (int(high) & 0xFFFFF | (0x100000 if exponent else 0)) << 32
-    return float(fraction) * _POWERS[max(exponent, 1)]
+    return float(fraction * _POWERS[max(exponent, 1)])

@@ -29,7 +29,13 @@ def vector(stem: str, unit: str, meaning: str, *, nullable: bool = True) -> list
 def channels(meaning: str, *, prefix: str = "") -> list[Column]:
     return [
         Column(
-            f"{prefix}{channel}", DOUBLE, UNITS[channel[:-2]], f"{meaning}, {channel}", BODY, True
+            f"{prefix}{channel}",
+            DOUBLE,
+            UNITS[channel[:-2]],
+            f"{meaning}, {channel}",
+            BODY,
+            nullable=True,
+            noisy=True,
         )
         for channel in CHANNELS
     ]
