@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from stages.segmentation import windows
+from stages.segmentation.matching import rest_part
+from stages.segmentation.motion import Stretch
 
 
 def performed(results: chain.Results):
@@ -177,3 +179,18 @@ def test_a_manoeuvre_that_was_not_done_is_a_finding_and_the_rest_are_still_align
     assert not done.loc["extra", "found"]
     assert done.drop("extra")["complete"].all()
     assert list(results["segment/findings"]["cause"]) == ["manoeuvre_missing"]
+
+
+@pytest.mark.parametrize(
+    ("bin_seconds", "margin", "first", "after"),
+    [(0.1, 0.5, 35, 85), (1.2, 0.5, 31, 89), (1.2, 0.0, 30, 90)],
+)
+def test_a_rest_keeps_clear_of_motion_however_long_the_bins_are(bin_seconds, margin, first, after):
+    """A campaign of more than 23 days has bins longer than its margins."""
+    window, nothing = windows.Window("log", 0, 120, []), np.zeros((120, 3))
+    time = bin_seconds * np.arange(120)
+    one = windows.Binned(
+        window, np.arange(121), nothing, nothing, np.full(120, bin_seconds), time, time
+    )
+    part = rest_part(one, Stretch(moves=False, first=30, after=90), "rest", margin)
+    assert (part.first, part.after) == (first, after)

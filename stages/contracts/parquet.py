@@ -35,7 +35,7 @@ class Column:
     meaning: str
     frame: str = ""
     nullable: bool = False
-    noisy: bool = False  # packed it takes hardly less room, and the packing longer than the rest
+    noisy: bool = False  # not packed: to do so takes longer than the room is worth
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from stages.contracts.records import Manoeuvre
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
-ACCEL, GYRO, SCALE = "accel", "gyro", "scale"
+ACCELEROMETERS, GYROS, SCALE = "accel", "gyro", "scale"
 SPAN = 5.0  # K, from which a sweep of temperatures is one
 FEWEST = 6  # temperatures, of which a parabola leaves enough to see the noise
 POOR = 0.01  # of the median number of samples: what holds fewer is left out
@@ -25,7 +25,7 @@ PARALLEL = 0.999  # cosine from which two attitudes are one
 class Sweep:
     """Readings of three sensors at n temperatures in one manoeuvre.
 
-    `kind`: ACCEL, m/s², or GYRO, rad/s, at rest; SCALE, scale factor errors of gyros, 1;
+    `kind`: ACCELEROMETERS, m/s², or GYROS, rad/s, at rest; SCALE, scale factor errors of gyros, 1;
     `temperature`: (n,), K; `readings`: (n, 3), NaN where there are none; `poor`: how many means
     were left out for they hold fewer than `least` samples; `unbiased`: whether of a turn the
     readings at rest were taken off.
@@ -42,7 +42,7 @@ class Sweep:
     @property
     def sensor(self) -> str:
         """As findings call it."""
-        return ACCEL if self.kind == ACCEL else GYRO
+        return ACCELEROMETERS if self.kind == ACCELEROMETERS else GYROS
 
     def along(self, axis: str) -> float:
         """Cosine between an axis and the vertical; NaN where that is unknown."""
@@ -66,10 +66,10 @@ def sweeps(blocks: pd.DataFrame, plan: Sequence[Manoeuvre]) -> list[Sweep]:
         sweep
         for m in plan
         if m.do == "rest" and m.name in of
-        for sweep in (_sweep(m, kind, of[m.name]) for kind in (ACCEL, GYRO))
+        for sweep in (_sweep(m, kind, of[m.name]) for kind in (ACCELEROMETERS, GYROS))
     ]
     turns = [
-        _of_turn(_sweep(m, GYRO, of[m.name]), rests)
+        _of_turn(_sweep(m, GYROS, of[m.name]), rests)
         for m in plan
         if m.do == "turn" and m.name in of and m.recorded == "steady" and m.rate
     ]
@@ -106,7 +106,7 @@ def _of_turn(turn: Sweep, rests: Sequence[Sweep]) -> Sweep:
     A turn without a rest in its attitude keeps the bias in it.
     """
     m = turn.manoeuvre
-    rest = next((one for one in rests if one.kind == GYRO and _alike(one.manoeuvre, m)), None)
+    rest = next((one for one in rests if one.kind == GYROS and _alike(one.manoeuvre, m)), None)
     level = np.zeros_like(turn.readings)
     if rest is not None:
         level = np.column_stack([_at(turn, rest, i) for i in range(3)])

@@ -14,7 +14,7 @@ import pandas as pd
 
 from stages.contracts.records import Manoeuvre
 from stages.criticising import words_of_warmth as words
-from stages.criticising.sweeps import ACCEL, SCALE, sweeps
+from stages.criticising.sweeps import ACCELEROMETERS, SCALE, sweeps
 from stages.criticising.with_temperature import SHOWS, Moving, moving
 from stages.effects import CATALOGUE
 from stages.inference.naming.named import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE
@@ -77,7 +77,7 @@ def members(told: Moving) -> dict[str, list[str]]:
     if sweep.kind == SCALE:
         able = {"gyro_scale_temperature": axes, "table_speed_error": axes}
         return able if sweep.unbiased else able | {"gyro_bias_temperature": axes}
-    if sweep.kind != ACCEL:
+    if sweep.kind != ACCELEROMETERS:
         return {"gyro_bias_temperature": axes}
     able = {"accel_bias_temperature": axes}
     if upright := [axis for axis in axes if not sweep.along(axis) < SHOWS]:

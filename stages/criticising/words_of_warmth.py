@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import acos, degrees, sin, sqrt
 
-from stages.criticising.sweeps import ACCEL, GYRO, SCALE
+from stages.criticising.sweeps import ACCELEROMETERS, GYROS, SCALE
 from stages.criticising.with_temperature import ICE_POINT, Channel, Moving
 from stages.notation.causes import in_words
 from stages.notation.numbers import counted, decimals_of, fixed, p_is, significant, with_sigma
@@ -35,8 +35,8 @@ class Kind:
 
 
 UNITS = {
-    ACCEL: Kind("the accelerometers", "m/s²", "mg", STANDARD_GRAVITY * 1e-3),
-    GYRO: Kind("the gyros at rest", "rad/s", "°/s", DEGREE),
+    ACCELEROMETERS: Kind("the accelerometers", "m/s²", "mg", STANDARD_GRAVITY * 1e-3),
+    GYROS: Kind("the gyros at rest", "rad/s", "°/s", DEGREE),
     SCALE: Kind("the scale factors of the gyros", "1", "ppm", 1e-6),
 }
 
@@ -112,9 +112,9 @@ def _causes(told: Moving, able: Mapping[str, Sequence[str]]) -> str:
 
 def _no_tilt(told: Moving) -> Iterator[str]:
     """Why the accelerometer along the vertical is not moved by a tilt."""
-    if told.sweep.kind != ACCEL:
+    if told.sweep.kind != ACCELEROMETERS:
         return
-    kind = UNITS[ACCEL]
+    kind = UNITS[ACCELEROMETERS]
     moved = max((one.change for one in told.channels if one.axis in told.leaning), default=0.0)
     for one in told.channels:
         if told.sweep.along(one.axis) >= UPRIGHT and one.change < STANDARD_GRAVITY:
@@ -156,7 +156,7 @@ def split(told: Moving) -> str:
     if told.sweep.kind == SCALE:
         more = "" if told.sweep.unbiased else "with rests of the same attitude, and "
         return f"record the sweep {more}with the table's angle or the time of whole turns"
-    if told.sweep.kind == GYRO:
+    if told.sweep.kind == GYROS:
         return again
     return (
         "record the same sweep upside down and with another axis up: a bias stays, what goes with"

@@ -54,4 +54,5 @@ def sample_rows(log: str, samples: Mapping[str, Any]) -> pa.RecordBatch:
 
 @lru_cache(4)  # most pieces have as many rows
 def _nulls(rows: int, of: pa.DataType) -> pa.Array:
+    """What is not recorded, (rows,)."""
     return pa.nulls(rows, of)

@@ -99,7 +99,7 @@ def motion(one: Binned, found: Sequence[Stretch], place: int) -> tuple[int, int]
 
 def rest_part(one: Binned, stretch: Stretch, name: str, margin: float) -> Part:
     """A rest without the margin beside a motion."""
-    room = round(margin / one.bin_seconds)
+    room = one.bins_in(margin)
     first = stretch.first + (room if stretch.first > 0 else 0)
     after = stretch.after - (room if stretch.after < one.bins else 0)
     first, after = (first, after) if after > first else (stretch.first, stretch.after)
@@ -157,7 +157,7 @@ def turn_parts(
     place = matched[m.name]
     assert place is not None  # only a turn that was found has phases
     first, after = motion(one, found, place)
-    room = round(margin / one.bin_seconds)
+    room = one.bins_in(margin)
     start, stop = max(first - room, 0), min(after + room, one.bins)
     taken = set(matched.values())
     free = [place + side not in taken for side in (-1, 1)]

@@ -61,6 +61,10 @@ class Binned:
         there = self.seconds[self.seconds > 0]
         return float(np.median(there)) if len(there) else BIN
 
+    def bins_in(self, seconds: float) -> int:
+        """How many bins a stretch of time is; at least one, however long a bin is."""
+        return max(round(seconds / self.bin_seconds), 1 if seconds > 0 else 0)
+
     def about(self, axis: Array, level: Array) -> Array:
         """Rate about an axis, (k,), rad/s; `level` is what the gyros read at rest."""
         rates = self.rates - level

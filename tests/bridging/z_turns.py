@@ -1,0 +1,57 @@
+"""The demo's turns about z, of which the backward one has lost what S0's has."""
+
+from math import radians
+from pathlib import Path
+
+import chain
+import pandas as pd
+
+from stages.contracts.records import known_of, manoeuvres_of, performed_of
+from stages.estimation.noise_levels import NoiseLevels
+from stages.estimation.turns import GyroInputs, gyro_inputs
+
+NOISE = radians(0.012 / 60)  # rad/√s, of the demo
+STEP = 0.01  # s
+ANGLE = radians(2 / 3600)  # sigma of the table
+Z_SCALE = 8  # place of M_zz among the unknowns
+
+
+def z_turns(**changes) -> dict:
+    """Two rests and the two turns about z, with S0's gap in the backward one."""
+    document = chain.demo(**{"faults": lose((2193, 1197)), **changes})
+    wanted = ("z-up", "z-down", "z-forward", "z-backward")
+    plan = [entry for entry in document["campaign"]["plan"] if entry["id"] in wanted]
+    document["campaign"]["plan"] = [
+        entry | ({"seconds": 60} if entry["do"] == "rest" else {}) for entry in plan
+    ]
+    return document
+
+
+def lose(*stretches: tuple[int, int]) -> list[dict]:
+    """Faults of the laboratory: from a line of the backward turn's log so many samples are lost."""
+    return [
+        {"lose": {"log": "z-backward.asc", "line": line, "samples": samples}}
+        for line, samples in stretches
+    ]
+
+
+def recorded(folder: Path, until: str = "segment", **changes) -> chain.Results:
+    """These turns through the chain."""
+    return chain.run(chain.simulate(z_turns(**changes), folder / "raw"), folder / "derived", until)
+
+
+def inputs_of(results: chain.Results, tables: dict[str, pd.DataFrame] | None = None) -> GyroInputs:
+    """What the gyros' estimate takes; `tables`: other blocks and performed manoeuvres."""
+    tables = tables or {name: results[f"segment/{name}"] for name in ("blocks", "performed")}
+    return gyro_inputs(
+        tables["blocks"],
+        manoeuvres_of(results["plan/manoeuvres"]),
+        performed_of(tables["performed"]),
+        NoiseLevels(results["noise/noise"]),
+        known_of(results["plan/known"]),
+    )
+
+
+def of_z(results_or_tables, key: str = "performed") -> pd.Series:
+    """What was performed of the backward turn."""
+    return results_or_tables[key].set_index("manoeuvre").loc["z-backward"]
