@@ -39,8 +39,9 @@ def section(known: pd.DataFrame) -> Section:
         "known",
         "What was taken as known",
         "The quantities that the estimation did not solve for.",
-        "Each has a σ, which the σ of the parameters contain. Stated: by the campaign file; "
-        "computed: from what is stated; assumed: by the pipeline, for want of a statement.",
+        "The σ of the parameters contain these; what has none is taken as exact. Stated: by the "
+        "campaign file; computed: from what is stated; assumed: by the pipeline, for want of a "
+        "statement.",
         (
             Table(
                 "Taken as known.",

@@ -42,7 +42,7 @@ def section(inputs: pd.DataFrame, made_by: Mapping[str, Mapping[str, Any]]) -> S
             Table(
                 "Stages.",
                 (
-                    Column("Stage"),
+                    Column("Stage", "name"),
                     Column("Tables in this report"),
                     Column("Settings"),
                     Column("SHA-256 of its code", "code"),
