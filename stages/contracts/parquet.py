@@ -80,6 +80,7 @@ class Table:
             "column_encoding": dict.fromkeys(numbers, "BYTE_STREAM_SPLIT"),
             "write_statistics": False,  # nobody here skips parts of a table by them
             "max_rows_per_page": BATCH_ROWS,
+            "write_batch_size": BATCH_ROWS,
         }
 
     def read(self, path: Path) -> pd.DataFrame:
