@@ -73,7 +73,7 @@ class Table:
         the values that there are.
         """
         noisy = {c.name for c in self.columns if c.noisy}
-        numbers = {c.name for c in self.columns if _fixed(c.type)} - noisy
+        numbers = {c.name for c in self.columns if _is_number(c.type)} - noisy
         return {
             "compression": {c.name: "none" if c.name in noisy else "lz4" for c in self.columns},
             "use_dictionary": [c.name for c in self.columns if c.name not in numbers | noisy],
@@ -147,8 +147,7 @@ class Table:
             raise Refusal(str(path), "", found, expected, AGAIN)
 
 
-def _fixed(of: pa.DataType) -> bool:
-    """Whether it is a number of some bytes."""
+def _is_number(of: pa.DataType) -> bool:
     return bool(pa.types.is_integer(of) or pa.types.is_floating(of))
 
 

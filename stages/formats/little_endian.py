@@ -24,7 +24,4 @@ def four(data: Bytes, place: int) -> np.uint32:
 @inlined
 def eight(data: Bytes, place: int) -> np.uint64:
     """The number of the eight bytes from `place` on."""
-    word = np.uint64(0)
-    for k in range(8):
-        word |= np.uint64(data[place + k]) << np.uint64(8 * k)
-    return word
+    return np.uint64(four(data, place)) | np.uint64(four(data, place + 4)) << np.uint64(32)

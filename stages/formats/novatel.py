@@ -129,10 +129,9 @@ class _Log:
         damaged = np.flatnonzero((what == DAMAGE) | (what == GOES_ON)).tolist()
         lines = self._lines(what)
 
-        reasons = {
-            index: why_unsure(_text(data, found, index))
-            for index in np.flatnonzero(unsure).tolist()
-        } | {index: why_refused(_text(data, found, index)) for index in damaged}
+        reasons = {index: why_refused(_text(data, found, index)) for index in damaged}
+        for index in np.flatnonzero(unsure).tolist():
+            reasons[index] = why_unsure(_text(data, found, index))
         refused_as_ours = self._refused_as_ours(data, found, damaged)
         refused = list(self._refused(data, found, lines, reasons))
 

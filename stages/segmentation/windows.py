@@ -62,8 +62,8 @@ class Binned:
         return float(np.median(there)) if len(there) else BIN
 
     def bins_in(self, seconds: float) -> int:
-        """How many bins a stretch of time is; at least one, however long a bin is."""
-        return max(round(seconds / self.bin_seconds), 1 if seconds > 0 else 0)
+        """How many bins some time is; where it is any, at least one, however long a bin is."""
+        return max(round(seconds / self.bin_seconds), int(seconds > 0))
 
     def about(self, axis: Array, level: Array) -> Array:
         """Rate about an axis, (k,), rad/s; `level` is what the gyros read at rest."""

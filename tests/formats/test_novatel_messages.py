@@ -6,10 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 
 from laboratory.rawimu import MESSAGES, Samples, log_bytes
 from stages.formats.crc32 import checksum
 from stages.formats.novatel import read
+from stages.formats.novatel_items import IMU, UNSURE
+from stages.formats.novatel_scan import scan
 
 WEEK = 604_800 * 10**9  # ns
 START = 2283 * WEEK + 42_699_879_998_762
@@ -136,6 +140,28 @@ def test_a_binary_message_of_nonsense_says_why(body, reason, tmp_path):
     assert list(records["record"]) == [0, 2]
     assert refused[0].reason.startswith(reason)
     assert (refused[0].line, refused[0].offset) == (2, 56)
+
+
+@settings(deadline=None, max_examples=300)
+@given(
+    seconds=st.one_of(st.floats(), st.floats(0, 604_800)),
+    week=st.integers(0, 12_000),
+    counts=st.lists(st.integers(-(2**31), 2**31 - 1), min_size=6, max_size=6),
+)
+@example(seconds=5e-324, week=0, counts=[0] * 6)
+@example(seconds=-0.0, week=9999, counts=[0] * 6)
+@example(seconds=604_800.0, week=1, counts=[0] * 6)
+@example(seconds=float("inf"), week=1, counts=[0] * 6)
+def test_what_the_loop_reads_of_a_binary_message_is_what_was_packed(seconds, week, counts):
+    sent = binary(325, struct.pack("<IdI6i", week, seconds, 0x77, *counts))
+    found = scan(np.frombuffer(sent, np.uint8), 0, last=True)
+    good = week <= 9999 and 0 <= seconds < 604_800 and not str(seconds).startswith("-")
+    assert found.what.tolist() == [IMU if good else UNSURE]
+    if good:
+        stamp, status, read_counts, _ = (part[0] for part in found.fields)
+        whole = int(seconds)
+        assert stamp == week * WEEK + whole * 10**9 + round((seconds - whole) * 1e9)
+        assert (status, read_counts.tolist()) == (0x77, counts)
 
 
 def test_a_new_week_begins_inside_a_log(tmp_path):
