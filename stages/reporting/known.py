@@ -39,9 +39,9 @@ def section(known: pd.DataFrame) -> Section:
         "known",
         "What was taken as known",
         "The quantities that the estimation did not solve for.",
-        "The σ of the parameters contain these; what has none is taken as exact. Stated: by the "
-        "campaign file; computed: from what is stated; assumed: by the pipeline, for want of a "
-        "statement.",
+        "The σ of the parameters contain these; what is known without one is taken as exact. "
+        "Stated: by the campaign file; computed: from what is stated; assumed: by the pipeline, "
+        "for want of a statement.",
         (
             Table(
                 "Taken as known.",
