@@ -30,7 +30,7 @@ class Log:
     most: dict[str, Array]
     phases: tuple[Record, ...]
     missing: tuple[Stretch, ...]  # the longest of them
-    lost: float  # s that are missing in all
+    lost: float  # s, of all gaps, from the record before to the one after
     timed: bool
     records: int
 

@@ -82,7 +82,7 @@ def _figure(log: Log, key: str, points: int, small: bool) -> Figure:
         f"{numbers.counted(log.records, 'sample')}{lasting}; {view}."
     )
     if log.missing:
-        caption += f" {numbers.fixed(log.lost, 2)} s are missing."
+        caption += f" Gaps of {numbers.fixed(log.lost, 2)} s in all, from record to record."
     drawn = _draw(log, key, points, about_middle=log.static, small=small)
     words = f"Six curves over time: rates and specific forces of x, y and z of the log {log.name}."
     return Figure(caption, drawn, words, "fair" if log.missing else "")
