@@ -18,15 +18,15 @@ sys.path.insert(0, str(HOME))
 os.environ["PYTHONPATH"] = str(HOME)  # the data may lie elsewhere (--directory)
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # two stages run at a time, on small matrices
 
-from stages.contracts.code import code_of
-from stages.contracts.logs import campaigns, logs_of
+from inertial.tables.code import code_of
+from inertial.tables.campaign_files import campaigns, logs_of
 from stages.starting import prepared
 
 
 configfile: HOME / "config.yaml"
 
 
-validate(config, str(HOME / "stages/contracts/config.schema.yaml"))
+validate(config, str(HOME / "inertial/tables/config.schema.yaml"))
 
 PYTHON = sys.executable
 DERIVED = "data/derived/{campaign}"

@@ -15,14 +15,14 @@ from typing import Any
 
 import pandas as pd
 
-from stages.contracts import tables
-from stages.contracts.code import code_of, hash_of, hash_of_file
-from stages.contracts.counting import extended_methods
-from stages.contracts.errors import Refusal
-from stages.contracts.masks import Masks
-from stages.contracts.parquet import Stream, Table, provenance
-from stages.contracts.records import Row, manoeuvres_of, rows_of
-from stages.contracts.whole_files import write_whole
+from inertial import tables
+from inertial.campaign.final_result import extended_methods
+from inertial.campaign.masked_samples import Masks
+from inertial.campaign.records import Row, manoeuvres_of, rows_of
+from inertial.tables.code import code_of, hash_of, hash_of_file
+from inertial.tables.errors import Refusal
+from inertial.tables.parquet import Stream, Table, provenance
+from inertial.tables.whole_files import write_whole
 from stages.exporting.ardupilot import ardupilot
 from stages.exporting.calibration import (
     COMPENSATED,

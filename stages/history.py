@@ -7,12 +7,12 @@ from typing import Any
 
 import pandas as pd
 
+from inertial import tables
+from inertial.campaign.final_result import counting, extended_methods
+from inertial.campaign.records import Row, rows_of
+from inertial.tables.code import hash_of_file
+from inertial.tables.stage import Stage, Tables
 from stages.archiving.archive import Archive, Entry
-from stages.contracts import tables
-from stages.contracts.code import hash_of_file
-from stages.contracts.counting import counting, extended_methods
-from stages.contracts.records import Row, rows_of
-from stages.contracts.stage import Stage, Tables
 
 
 def history(

@@ -17,8 +17,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 
-from stages.contracts.errors import Refusal
-from stages.contracts.whole_files import write_whole
+from inertial.tables.errors import Refusal
+from inertial.tables.whole_files import write_whole
 
 FIGURE = re.compile(r'<div role="img" aria-label=("[^"]*")>(<svg .*?</svg>)</div>', re.DOTALL)
 PACKAGES = "libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"

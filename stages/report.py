@@ -15,14 +15,14 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
-from stages.contracts import tables
-from stages.contracts.code import code_of, hash_of
-from stages.contracts.counting import counting, extended_methods
-from stages.contracts.errors import Refusal
-from stages.contracts.parquet import Stream, Table
-from stages.contracts.parquet import provenance as made_by
-from stages.contracts.whole_files import write_whole
-from stages.notation import numbers
+from inertial import tables
+from inertial.campaign.final_result import counting, extended_methods
+from inertial.tables.code import code_of, hash_of
+from inertial.tables.errors import Refusal
+from inertial.tables.parquet import Stream, Table
+from inertial.tables.parquet import provenance as made_by
+from inertial.tables.whole_files import write_whole
+from inertial.text import numbers
 from stages.reporting import (
     account,
     averaging,

@@ -10,7 +10,7 @@ import pandas as pd
 from ruamel.yaml import YAML
 
 import laboratory
-from stages.contracts.parquet import provenance
+from inertial.tables.parquet import provenance
 
 ROOT = Path(__file__).parent.parent
 ORDER = (
@@ -67,7 +67,7 @@ def run(
     for name in ORDER[: ORDER.index(until) + 1]:
         if name in without:
             continue
-        stage = import_module(f"stages.{name}").STAGE
+        stage = import_module(f"stages.{name}.stage").STAGE
         files = {file: sources.get(file, []) for file in stage.files}
         stage.run(made, files, derived / name, SETTINGS.get(name, {}))
         for table in stage.writes:  # by its own name, and by that of its stage where two write one
@@ -79,10 +79,10 @@ def again(results: Results, name: str, **changes: Any) -> dict[str, pd.DataFrame
     """The tables of a stage, run once more on those of an earlier run, some of them changed."""
     made: dict[str, Path] = {}
     for earlier in ORDER[: ORDER.index(name)]:
-        for table in import_module(f"stages.{earlier}").STAGE.writes:
+        for table in import_module(f"stages.{earlier}.stage").STAGE.writes:
             path = results.folder / earlier / f"{table}.parquet"
             made[table] = made[f"{earlier}_{table}"] = path
-    stage = import_module(f"stages.{name}").STAGE
+    stage = import_module(f"stages.{name}.stage").STAGE
     inputs: dict[str, Any] = {
         table: contract.stream(made[table])
         if table in stage.streams

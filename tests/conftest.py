@@ -13,7 +13,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import chain
 import pytest
 
-from stages.contracts.logs import logs_of
+from inertial.tables.campaign_files import logs_of
 
 CAMPAIGNS = Path(__file__).parent / "campaigns"
 

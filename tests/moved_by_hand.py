@@ -6,10 +6,10 @@ from itertools import combinations, product
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from stages.inference.between_rests import Given, Passage, Stop
-from stages.inference.free_positions import PAIRS, FreeRest
-from stages.inference.whole_turns import Earth
-from stages.model.site import EARTH_RATE
+from inertial.estimation.between_positions import Given, Passage, Stop
+from inertial.estimation.gyroscopes import Earth
+from inertial.estimation.multi_position import PAIRS, FreeRest
+from inertial.physics.site import EARTH_RATE
 
 FACES = np.array([sign * axis for axis in np.eye(3) for sign in (1, -1)])
 EDGES = np.array(

@@ -13,9 +13,9 @@ import pyarrow.parquet as pq
 import pytest
 from chain import ROOT, Results
 
+from inertial import tables
 from stages.checking.__main__ import main
 from stages.checking.verdict import WIDTH
-from stages.contracts import tables
 
 NAME = "demo"
 READ = ("quality/findings", "segment/findings", "segment/performed", "decode/accounts")

@@ -4,7 +4,7 @@ import chain
 import numpy as np
 import pytest
 
-from stages.inference.triad import linear_names
+from inertial.estimation.triad import linear_names
 
 TRUTH = {"accelerometer": ("accelerometer", "bias_m_s2"), "gyroscope": ("gyro", "bias_rad_s")}
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import grimp
 import pytest
 
-from stages.contracts import code
-from stages.contracts.code import ROOT, code_of, hash_of
+from inertial.tables import code
+from inertial.tables.code import ROOT, code_of, hash_of
 
 PROJECT = {
     "requirements.lock": "numpy==2",

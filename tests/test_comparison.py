@@ -5,15 +5,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.campaign.published import published_values
-from stages.contracts import tables
-from stages.contracts.errors import Refusal
-from stages.contracts.yaml_file import YamlFile
-from stages.inference.agreement import beyond_chance, chance_of
-from stages.inference.both_ways import both_ways
-from stages.inference.two_positions import Upright, two_positions
-from stages.inference.whole_turns import Angle, Earth, Position, known_angle
-from stages.model.site import earth_rate
+from inertial import tables
+from inertial.estimation.consistency import beyond_chance, chance_of
+from inertial.estimation.gyroscope_formulas import Upright, both_ways, two_positions
+from inertial.estimation.gyroscopes import Angle, Earth, Position, known_angle
+from inertial.physics.site import earth_rate
+from inertial.tables.errors import Refusal
+from inertial.tables.yaml_file import YamlFile
+from stages.plan.published import published_values
 
 DEGREE_PER_HOUR = np.radians(1 / 3600)  # rad/s
 UP, LEVEL = earth_rate(np.radians(30.5278))

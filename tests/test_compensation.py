@@ -7,12 +7,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.compensating.correction import ALL, Correction, mounted, truth_of
-from stages.contracts import parquet
-from stages.contracts.errors import Refusal
-from stages.contracts.records import manoeuvres_of
-from stages.contracts.tables import CHANNELS
-from stages.model.forward import Triad
+from inertial.campaign.records import manoeuvres_of
+from inertial.physics.forward import Triad
+from inertial.tables import CHANNELS, parquet
+from inertial.tables.errors import Refusal
+from stages.compensation.correction import ALL, Correction, mounted, truth_of
 
 QUANTITIES = ["gravity", "force_up", "rate_up", "angle"]
 ACCEL, GYRO = list(CHANNELS[:3]), list(CHANNELS[3:])
@@ -186,7 +185,7 @@ def test_samples_that_a_compensation_made_are_refused(clean):
 
 def test_compensated_must_be_true_or_false(tmp_path):
     text = (Path(__file__).parent / "campaigns/s0.yaml").read_text(encoding="utf-8")
-    from stages.contracts.yaml_file import YamlFile
+    from inertial.tables.yaml_file import YamlFile
 
     file = tmp_path / "campaign.yaml"
     file.write_text(f"compensated: yes\n{text}", encoding="utf-8")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import laboratory
-from stages.effects import CATALOGUE
+from inertial.effects import CATALOGUE
 
 G = 9.80665
 DEGREE_PER_HOUR = np.radians(1 / 3600)  # rad/s

@@ -13,14 +13,14 @@ import pandas as pd
 import pytest
 import yaml
 
+from inertial import tables
+from inertial.campaign.solution import triad_of
+from inertial.tables.code import hash_of_file
+from inertial.tables.parquet import Writer
 from stages import export as stage
-from stages.compensating.correction import truth_of
-from stages.contracts import tables
-from stages.contracts.code import hash_of_file
-from stages.contracts.parquet import Writer
-from stages.estimation.solution import triad_of
+from stages.compensation.correction import truth_of
 from stages.export import READS, STREAMS, export, main
-from stages.extension import STAGE as EXTENSION
+from stages.extension.stage import STAGE as EXTENSION
 from tests.exporting.readers import mavproxy, qgroundcontrol
 
 ENDINGS = (

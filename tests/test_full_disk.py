@@ -8,10 +8,10 @@ from pathlib import Path
 import chain
 import pytest
 
-from stages.contracts.errors import Refusal
-from stages.contracts.whole_files import write_whole
+from inertial.tables.errors import Refusal
+from inertial.tables.whole_files import write_whole
 
-DECODE = [sys.executable, "-m", "stages.decode"]
+DECODE = [sys.executable, "-m", "stages.decode.stage"]
 
 
 def limited(size: int):

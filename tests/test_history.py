@@ -18,11 +18,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from inertial import tables
+from inertial.tables.errors import Refusal
+from inertial.tables.parquet import Table, Writer, provenance
 from stages.archiving.archive import Archive
 from stages.archiving.names import file_name
-from stages.contracts import tables
-from stages.contracts.errors import Refusal
-from stages.contracts.parquet import Table, Writer, provenance
 from stages.history import STAGE
 
 Row = dict[str, Any]

@@ -9,12 +9,12 @@ import pandas as pd
 import pytest
 from campaign_by_table import BY_TABLE
 
-from stages.contracts import tables
-from stages.contracts.errors import Refusal
-from stages.contracts.logs import logs_of
-from stages.contracts.records import known_of, manoeuvres_of
-from stages.model.site import normal_gravity
-from stages.plan import plan
+from inertial import tables
+from inertial.campaign.records import known_of, manoeuvres_of
+from inertial.physics.site import normal_gravity
+from inertial.tables.campaign_files import logs_of
+from inertial.tables.errors import Refusal
+from stages.plan.stage import plan
 
 ROOT = Path(__file__).parent.parent
 EXAMPLES = sorted((Path(__file__).parent / "campaigns").glob("*.yaml"))
@@ -164,7 +164,7 @@ def test_a_mistake_in_the_list_of_instruments_is_refused(tmp_path):
 
 
 def test_the_schemas_give_a_description_with_every_number():
-    from stages.contracts.yaml_file import schema_of
+    from inertial.tables.yaml_file import schema_of
 
     def numbers(rule: object, path: str):
         if isinstance(rule, dict):

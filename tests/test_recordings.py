@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.inference.triad import linear_names
+from inertial.estimation.triad import linear_names
 
 ARC_HOUR = np.radians(1 / 3600)  # rad/s in °/h
 

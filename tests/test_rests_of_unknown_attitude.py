@@ -16,13 +16,13 @@ from moved_by_hand import (
     handled,
 )
 
-from stages.contracts.records import Known, Manoeuvre
-from stages.contracts.tables import CHANNELS
-from stages.estimation.between_rests import add_free_gyros
-from stages.estimation.estimates import Estimates
-from stages.estimation.free_positions import add_free_accelerometers, free_stills, in_words
-from stages.estimation.noise_levels import NoiseLevels
-from stages.inference.unseen import Unseen
+from inertial.campaign.estimates import Estimates
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import Known, Manoeuvre
+from inertial.campaign.unknown_attitude import add_free_accelerometers, free_stills, in_words
+from inertial.estimation.multi_position import Unseen
+from inertial.tables import CHANNELS
+from stages.gyroscope.free_positions import add_free_gyros
 
 KNOWN = {
     "gravity": Known(GIVEN.gravity, GIVEN.gravity_sigma),

@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.contracts.tables import CHANNELS
+from inertial.tables import CHANNELS
 
 COUNTS = {"accel": 0.05 / 2**15 / 0.01, "gyro": 0.1 / (3600 * 256) / 0.01}  # m/s², rad/s
 

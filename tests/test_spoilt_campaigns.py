@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import laboratory
-from stages.inference.triad import linear_names
+from inertial.estimation.triad import linear_names
 
 RATE = 200  # Hz
 REST, STILL = 120, 6.5  # s

@@ -5,10 +5,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.campaign.published import published_values
-from stages.contracts import tables
-from stages.contracts.yaml_file import YamlFile
-from stages.model.motion import Profile
+from inertial import tables
+from inertial.physics.motion import Profile
+from inertial.tables.yaml_file import YamlFile
+from stages.plan.published import published_values
 
 TRUTH = np.diag(np.array(chain.demo()["truth"]["gyro"]["matrix"])) - 1
 WINDOW = 300  # samples of 180° at 60 °/s and 100 Hz

@@ -17,10 +17,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from stages import extension, history
-from stages.contracts import tables
-from stages.contracts.code import code_of, hash_of, hash_of_file
-from stages.contracts.parquet import Writer
+from inertial import tables
+from inertial.tables.code import code_of, hash_of, hash_of_file
+from inertial.tables.parquet import Writer
+from stages import history
+from stages.extension import stage
 from stages.tracing import origins
 from stages.tracing.__main__ import main
 
@@ -56,9 +57,7 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
     chain.run(raw, derived, until="gyroscope")
     paths = {name: derived / f"{name.replace('_', '/')}.parquet" for name in history.STAGE.reads}
     paths |= {name: derived / f"plan/{name}.parquet" for name in ("campaign", "inputs")}
-    nothing = {
-        name: extension.STAGE.writes[name] for name in ("parameters", "covariance", "decision")
-    }
+    nothing = {name: stage.STAGE.writes[name] for name in ("parameters", "covariance", "decision")}
     with Writer(derived / "extension", nothing, made_by_extension) as writer:
         for name, table in nothing.items():
             writer.write(name, table.empty())

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from ruamel.yaml import YAML
 
-from stages.contracts.errors import Refusal
-from stages.contracts.logs import logs_of
-from stages.contracts.yaml_file import YamlFile
-from stages.plan import plan
+from inertial.tables.campaign_files import logs_of
+from inertial.tables.errors import Refusal
+from inertial.tables.yaml_file import YamlFile
+from stages.plan.stage import plan
 
 ROOT = Path(__file__).parent.parent
 INSTRUMENTS = ROOT / "data/instruments.yaml"

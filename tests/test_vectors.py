@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.model.vectors import cross
+from inertial.physics.vectors import cross
 
 
 @pytest.mark.parametrize(

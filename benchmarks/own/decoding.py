@@ -16,7 +16,7 @@ import pyarrow.parquet as pq
 
 from benchmarks.answering import answer
 from benchmarks.timing import timed
-from stages.decode import STAGE as DECODE
+from stages.decode.stage import STAGE as DECODE
 from stages.formats.novatel_scan import scan
 
 

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from benchmarks.answering import answer
-from stages.plan import STAGE as PLAN
+from stages.plan.stage import STAGE as PLAN
 
 INSTRUMENTS = Path(__file__).parents[2] / "data" / "instruments.yaml"
 

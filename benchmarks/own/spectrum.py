@@ -9,8 +9,8 @@ import numpy as np
 
 from benchmarks.answering import answer
 from benchmarks.timing import timed
-from stages.inference.spectrum import band_levels, white_level
-from stages.noise import LONGEST
+from inertial.estimation.spectrum import band_levels, white_level
+from stages.noise.stage import LONGEST
 
 BAND = (0.5, 5.0)  # Hz, as in config.yaml
 

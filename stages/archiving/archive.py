@@ -16,11 +16,11 @@ from pathlib import Path
 
 import pandas as pd
 
+from inertial.campaign.records import Row
+from inertial.tables import CALIBRATION
+from inertial.tables.errors import Refusal
 from stages.archiving.content import content_of
 from stages.archiving.names import SIMULATED, file_name
-from stages.contracts.errors import Refusal
-from stages.contracts.records import Row
-from stages.contracts.tables import CALIBRATION
 
 HEX = 12  # digits of the hash in the name of a file
 ALIKE = ("instrument", "serial", "compensated")  # what calibrations that can be compared share

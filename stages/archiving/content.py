@@ -3,7 +3,7 @@
 import hashlib
 import json
 
-from stages.contracts.records import Row
+from inertial.campaign.records import Row
 
 
 def content_of(calibration: Row) -> str:

@@ -12,10 +12,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from inertial.tables.errors import Refusal
+from inertial.text.numbers import visible
 from stages.checking.recording import recording
 from stages.checking.verdict import as_text, spoiled
-from stages.contracts.errors import Refusal
-from stages.notation.numbers import visible
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

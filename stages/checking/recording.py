@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from stages.contracts import tables
-from stages.contracts.records import Performed, Row, performed_of, rows_of
+from inertial import tables
+from inertial.campaign.records import Performed, Row, performed_of, rows_of
 
 STAGES = ("quality", "segment")
 

@@ -6,10 +6,10 @@ import textwrap
 from collections import Counter
 from collections.abc import Iterator
 
+from inertial.campaign.records import Row
+from inertial.text.cause_names import how_grave, in_words, tally
+from inertial.text.numbers import counted, shortened
 from stages.checking.recording import Recording
-from stages.contracts.records import Row
-from stages.notation.causes import how_grave, in_words, tally
-from stages.notation.numbers import counted, shortened
 
 WIDTH = 100
 IN_FULL = 20  # findings; of further ones only the causes are told

@@ -14,11 +14,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from stages.contracts.records import Manoeuvre, Row, rows_of
-from stages.contracts.tables import CHANNELS
-from stages.estimation.estimates import UNIT, by_mount
+from inertial.campaign.estimates import UNIT, by_mount
+from inertial.campaign.records import Manoeuvre, Row, rows_of
+from inertial.estimation.triad import linear_names
+from inertial.tables import CHANNELS
 from stages.exporting.worked import Worked
-from stages.inference.triad import linear_names
 
 Array = NDArray[np.float64]
 

@@ -3,7 +3,7 @@
 import json
 import re
 
-from stages.contracts.records import Row
+from inertial.campaign.records import Row
 
 # A list of numbers alone, as json.dumps breaks it over lines. A text holds no raw line break, and
 # so is never taken for one.

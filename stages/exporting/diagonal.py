@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.contracts.tables import AXES
+from inertial.tables import AXES
 from stages.exporting.calibration import Sensors
 
 Array = NDArray[np.float64]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.contracts.records import Row
+from inertial.campaign.records import Row
 from stages.exporting.calibration import NAMES, Calibration, Mount, Sensors
 from stages.exporting.worked import Worked
 

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable, Iterator
 
+from inertial.text.cause_names import in_words
 from stages.exporting.calibration import Sensors
-from stages.notation.causes import in_words
 
 
 def told(chosen: Iterable[Sensors]) -> Iterator[str]:

@@ -12,7 +12,7 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.contracts.tables import AXES
+from inertial.tables import AXES
 from stages.exporting.calibration import NAMES, Sensors
 
 Array = NDArray[np.float64]

@@ -11,11 +11,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from stages.contracts.masks import Masks
-from stages.contracts.parquet import Stream
-from stages.contracts.records import Manoeuvre
-from stages.contracts.samples import pieces
-from stages.contracts.tables import CHANNELS
+from inertial.campaign.masked_samples import Masks, pieces
+from inertial.campaign.records import Manoeuvre
+from inertial.tables import CHANNELS
+from inertial.tables.parquet import Stream
 
 Array = NDArray[np.float64]
 

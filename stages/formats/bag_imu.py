@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 from stages.formats.account import OTHER_MESSAGE, Account
 from stages.formats.containers import PORTION_ROWS, Portion, Table
 from stages.formats.fields import NumberField

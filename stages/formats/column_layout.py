@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 
 _TICKS = {"s": 1.0, "ms": 1e3, "us": 1e6}  # in a second
 _NAMES_SHOWN = 60  # of a container, that may have thousands

@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 from stages.formats.account import (
     DECODED,
     HEADER,

@@ -3,7 +3,7 @@
 from enum import Enum
 from pathlib import Path
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 
 
 class Content(Enum):

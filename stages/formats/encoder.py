@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 from stages.formats import columns
 from stages.formats.account import Account, RefusedLine
 from stages.formats.column_layout import ticks_per_second

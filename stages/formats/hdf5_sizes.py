@@ -10,7 +10,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 from stages.formats.limits import LARGEST_GROWTH, LARGEST_PIECE, refuse_growth, refuse_piece
 
 _DEFLATE, _SHUFFLE, _CHECKSUM = 1, 2, 3  # the library's own numbers of what it does to a chunk

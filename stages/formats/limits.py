@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 
 LARGEST_PIECE = 1 << 30  # byte, of what is unpacked at once
 # Deflate makes no more than 1032 bytes of one; no log has rows of less than a byte each before it.

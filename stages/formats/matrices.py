@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 
 MOST_COLUMNS = 1000  # of a matrix; what has more is no matrix of samples
 DEEPEST = 4  # structures within structures

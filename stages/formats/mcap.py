@@ -16,7 +16,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 from stages.formats.bag_chunks import unpacked
 from stages.formats.bag_imu import Bag, Gap, Message, Topic, imu_table
 from stages.formats.containers import Table

@@ -20,7 +20,7 @@ from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.msg import normalize_msgtype
 from rosbags.typesys.store import Typestore
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 from stages.formats.bag_chunks import unpacked
 from stages.formats.bag_imu import IMU, Bag, Gap, Message, Topic, imu_table
 from stages.formats.containers import Table

@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 from stages.formats.bag_imu import Bag, Gap, Message, Topic, imu_table
 from stages.formats.containers import Table
 from stages.formats.ros2_messages import understood

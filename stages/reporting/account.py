@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pandas as pd
 
-from stages.notation import numbers
+from inertial.text import numbers
 from stages.reporting.outline import Column, Heading, Paragraph, Part, Row, Section, Table
 from stages.reporting.rows import Record, records
 

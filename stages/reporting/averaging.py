@@ -8,8 +8,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from stages.notation import numbers
-from stages.notation.units import RANDOM_WALK, Quantity, quantity
+from inertial.text import numbers
+from inertial.text.units import RANDOM_WALK, Quantity, quantity
 from stages.reporting.drawing import AXIS_COLOUR, INK, Margins, panels, plain_numbers, style, svg
 from stages.reporting.outline import (
     Column,

@@ -11,10 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from stages.contracts.parquet import Stream
-from stages.contracts.tables import AXES
-from stages.notation import numbers
-from stages.notation.units import DEGREES_PER_HOUR, MICRO_G
+from inertial.tables import AXES
+from inertial.tables.parquet import Stream
+from inertial.text import numbers
+from inertial.text.units import DEGREES_PER_HOUR, MICRO_G
 from stages.reporting.drawing import (
     AXIS_COLOUR,
     AXIS_MARK,

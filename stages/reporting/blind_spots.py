@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from stages.notation import numbers, units
-from stages.notation.causes import in_words
+from inertial.text import numbers, units
+from inertial.text.cause_names import in_words
 from stages.reporting.outline import Column, Row, Table
 from stages.reporting.parameters import symbol
 from stages.reporting.rows import Record

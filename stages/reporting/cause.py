@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from stages.contracts.counting import STAGES
-from stages.notation import numbers
-from stages.notation.causes import in_words
+from inertial.campaign.final_result import STAGES
+from inertial.text import numbers
+from inertial.text.cause_names import in_words
 from stages.reporting import cause_shown, gained, oscillation
 from stages.reporting.certainty import grade, how_sure, kind_of, name_of, others_of
 from stages.reporting.criticised import Criticised

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Literal
 
-from stages.notation import numbers
-from stages.notation.causes import in_words
+from inertial.text import numbers
+from inertial.text.cause_names import in_words
 from stages.reporting.mounts import mount_of
 from stages.reporting.rows import Record
 

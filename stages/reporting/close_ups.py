@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from stages.contracts.tables import CHANNELS
+from inertial.tables import CHANNELS
 
 Array = NDArray[np.float64]
 Span = tuple[int, int]

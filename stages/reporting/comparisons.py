@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from stages.notation import numbers, units
+from inertial.text import numbers, units
 from stages.reporting.outline import Column, Paragraph, Part, Row, Section, Table
 from stages.reporting.rows import Record, records
 

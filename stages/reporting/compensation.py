@@ -8,16 +8,9 @@ from math import sqrt
 
 import pandas as pd
 
-from stages.contracts.counting import EXTENDED
-from stages.notation import numbers
-from stages.notation.units import (
-    DEGREES,
-    DEGREES_PER_HOUR,
-    METRES,
-    MICRO_G,
-    SECONDS_OF_ARC,
-    Unit,
-)
+from inertial.campaign.final_result import EXTENDED
+from inertial.text import numbers
+from inertial.text.units import DEGREES, DEGREES_PER_HOUR, METRES, MICRO_G, SECONDS_OF_ARC, Unit
 from stages.reporting import compensated
 from stages.reporting.certainty import SENSORS, listed
 from stages.reporting.outline import Column, Heading, Paragraph, Part, Row, Section, Table

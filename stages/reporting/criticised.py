@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from stages.contracts.parquet import Stream
+from inertial.tables.parquet import Stream
 from stages.reporting import before_after
 from stages.reporting.extended_parameters import Shift
 from stages.reporting.mounts import mount_of

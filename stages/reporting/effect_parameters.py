@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 
-from stages.notation import numbers, units
+from inertial.text import numbers, units
 from stages.reporting.outline import Column, Row, Table
 from stages.reporting.parameters import symbol, written
 from stages.reporting.rows import Record

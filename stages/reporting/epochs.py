@@ -10,8 +10,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from stages.notation import numbers
-from stages.notation.units import Quantity, quantity
+from inertial.text import numbers
+from inertial.text.units import Quantity, quantity
 from stages.reporting.drawing import (
     AXIS_COLOUR,
     INK,

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import pandas as pd
 from matplotlib.axes import Axes
 
-from stages.notation import numbers
-from stages.notation.units import DEGREES, DEGREES_PER_SECOND
+from inertial.text import numbers
+from inertial.text.units import DEGREES, DEGREES_PER_SECOND
 from stages.reporting.drawing import (
     INK,
     MISSING,

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 
-from stages.contracts.counting import EXTENDED, STAGES
-from stages.notation import numbers
-from stages.notation.causes import in_words
+from inertial.campaign.final_result import EXTENDED, STAGES
+from inertial.text import numbers
+from inertial.text.cause_names import in_words
 from stages.reporting.gained import effects_of
 from stages.reporting.outline import Paragraph, Tone
 from stages.reporting.parameters import Estimate

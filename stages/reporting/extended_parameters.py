@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from stages.notation import numbers, units
+from inertial.text import numbers, units
 from stages.reporting.outline import Column, Heading, Part, Row, Table
 from stages.reporting.parameters import (
     KIND,

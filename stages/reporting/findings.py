@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import pandas as pd
 
-from stages.notation import numbers
-from stages.notation.causes import how_grave, in_words, tally
+from inertial.text import numbers
+from inertial.text.cause_names import how_grave, in_words, tally
 from stages.reporting.evidence import CRITICISM, Evidence
 from stages.reporting.outline import (
     Column,

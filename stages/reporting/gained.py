@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from stages.notation import numbers, units
-from stages.notation.causes import in_words
+from inertial.text import numbers, units
+from inertial.text.cause_names import in_words
 from stages.reporting.certainty import SENSORS, listed
 from stages.reporting.extended_parameters import Shift
 from stages.reporting.rows import Record

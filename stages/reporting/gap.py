@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from stages.contracts.tables import AXES
-from stages.notation import numbers
-from stages.notation.units import DEGREES_PER_SECOND, METRES
+from inertial.tables import AXES
+from inertial.text import numbers
+from inertial.text.units import DEGREES_PER_SECOND, METRES
 from stages.reporting.close_ups import CloseUp, gaps_in
 from stages.reporting.outline import Column, Row, Table
 

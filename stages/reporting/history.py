@@ -9,9 +9,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from stages.contracts.tables import AXES
-from stages.notation import numbers
-from stages.notation.units import quantity
+from inertial.tables import AXES
+from inertial.text import numbers
+from inertial.text.units import quantity
 from stages.reporting.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg
 from stages.reporting.outline import Column, Figure, Paragraph, Part, Row, Section, Table
 from stages.reporting.parameters import KIND, SENSOR

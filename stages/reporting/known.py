@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import pandas as pd
 
-from stages.notation import numbers
-from stages.notation.units import DEGREES, DEGREES_PER_HOUR, PPM, SECONDS_OF_ARC, Unit
+from inertial.text import numbers
+from inertial.text.units import DEGREES, DEGREES_PER_HOUR, PPM, SECONDS_OF_ARC, Unit
 from stages.reporting.outline import Column, Row, Section, Table
 from stages.reporting.rows import Record, records
 

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from stages.contracts.tables import CHANNELS
+from inertial.tables import CHANNELS
 from stages.reporting.rows import Record, records
 
 Array = NDArray[np.float64]

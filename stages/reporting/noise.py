@@ -7,9 +7,9 @@ from statistics import median
 
 import pandas as pd
 
-from stages.contracts.tables import AXES, CHANNELS
-from stages.notation import numbers
-from stages.notation.units import RANDOM_WALK
+from inertial.tables import AXES, CHANNELS
+from inertial.text import numbers
+from inertial.text.units import RANDOM_WALK
 from stages.reporting.drawing import (
     AXIS_COLOUR,
     AXIS_MARK,

@@ -13,10 +13,10 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from stages.contracts.parquet import Stream
-from stages.contracts.tables import AXES, GYRO
-from stages.notation import numbers
-from stages.notation.units import PPM, SECONDS_OF_ARC
+from inertial.tables import AXES, GYRO
+from inertial.tables.parquet import Stream
+from inertial.text import numbers
+from inertial.text.units import PPM, SECONDS_OF_ARC
 from stages.reporting.drawing import AXIS_COLOUR, QUIET, Margins, side_by_side, style, svg
 from stages.reporting.outline import Figure
 from stages.reporting.rows import Record, records

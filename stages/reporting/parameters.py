@@ -11,9 +11,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from stages.contracts.counting import extended_methods
-from stages.contracts.tables import AXES
-from stages.notation import numbers, units
+from inertial.campaign.final_result import extended_methods
+from inertial.tables import AXES
+from inertial.text import numbers, units
 from stages.reporting.outline import (
     Column,
     Equation,

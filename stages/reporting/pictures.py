@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from stages.contracts.tables import AXES, CHANNELS
-from stages.notation import numbers
-from stages.notation.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, MILLIMETRES, Unit
+from inertial.tables import AXES, CHANNELS
+from inertial.text import numbers
+from inertial.text.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, MILLIMETRES, Unit
 from stages.reporting.close_ups import Axis, CloseUp, axis, gaps_in, masked_in
 from stages.reporting.drawing import (
     AXIS_COLOUR,

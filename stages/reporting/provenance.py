@@ -8,7 +8,7 @@ from typing import Any
 
 import pandas as pd
 
-from stages.notation import numbers
+from inertial.text import numbers
 from stages.reporting.outline import Column, Row, Section, Table
 from stages.reporting.rows import records
 

@@ -8,15 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from stages.contracts.tables import AXES
-from stages.notation import numbers
-from stages.notation.units import (
-    DEGREES_PER_HOUR,
-    DEGREES_PER_SECOND,
-    METRES,
-    MILLIMETRES,
-    Unit,
-)
+from inertial.tables import AXES
+from inertial.text import numbers
+from inertial.text.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, MILLIMETRES, Unit
 from stages.reporting.drawing import (
     AXIS_COLOUR,
     QUIET,

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 import pandas as pd
 
-from stages.contracts.tables import AXES
-from stages.notation import numbers
-from stages.notation.units import DEGREES, DEGREES_PER_SECOND
+from inertial.tables import AXES
+from inertial.text import numbers
+from inertial.text.units import DEGREES, DEGREES_PER_SECOND
 from stages.reporting.outline import Column, Row, Section, Table, Tone
 from stages.reporting.rows import Record, records
 

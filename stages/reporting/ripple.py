@@ -10,10 +10,10 @@ import pandas as pd
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from stages.contracts.parquet import Stream
-from stages.contracts.tables import AXES
-from stages.notation import numbers
-from stages.notation.units import DEGREE, DEGREES_PER_HOUR
+from inertial.tables import AXES
+from inertial.tables.parquet import Stream
+from inertial.text import numbers
+from inertial.text.units import DEGREE, DEGREES_PER_HOUR
 from stages.reporting.drawing import AXIS_COLOUR, QUIET, Margins, side_by_side, style, svg
 from stages.reporting.oscillation import turns_about
 from stages.reporting.outline import Figure

@@ -12,16 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from stages.contracts.parquet import Stream
-from stages.contracts.tables import AXES, CHANNELS, GYRO
-from stages.notation import numbers
-from stages.notation.units import (
-    DEGREES_PER_HOUR,
-    DEGREES_PER_SECOND,
-    METRES,
-    MILLIMETRES,
-    Unit,
-)
+from inertial.tables import AXES, CHANNELS, GYRO
+from inertial.tables.parquet import Stream
+from inertial.text import numbers
+from inertial.text.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, MILLIMETRES, Unit
 from stages.reporting.drawing import AXIS_COLOUR, INK, Margins, panels, shade, style, svg
 from stages.reporting.outline import Column, Figure, Heading, Paragraph, Part, Row, Section, Table
 from stages.reporting.rows import Record, records

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from stages.notation import numbers
-from stages.notation.causes import in_words
+from inertial.text import numbers
+from inertial.text.cause_names import in_words
 from stages.reporting.rows import Record, records
 
 LABORATORY, SI = "Laboratory", "SI"  # heads of columns

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from stages.notation import numbers
-from stages.notation.units import DEGREE, DEGREES_PER_HOUR, MICRO_G, Unit
+from inertial.text import numbers
+from inertial.text.units import DEGREE, DEGREES_PER_HOUR, MICRO_G, Unit
 from stages.reporting.certainty import listed
 from stages.reporting.drawing import AXIS_COLOUR, INK, QUIET, Margins, side_by_side, style, svg
 from stages.reporting.outline import Column, Figure, Paragraph, Part, Row, Table

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from stages.notation import numbers
+from inertial.text import numbers
 from stages.reporting import epochs as of_epochs
 from stages.reporting import time_angle as of_time_angle
 from stages.reporting import windows as of_windows

@@ -9,8 +9,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from stages.notation import numbers
-from stages.notation.units import DEGREE, PPM, SECONDS_OF_ARC
+from inertial.text import numbers
+from inertial.text.units import DEGREE, PPM, SECONDS_OF_ARC
 from stages.reporting.drawing import INK, QUIET, Margins, panels, style, svg
 from stages.reporting.outline import Column, Equation, Figure, Paragraph, Part, Row, Table
 from stages.reporting.rows import Record, records

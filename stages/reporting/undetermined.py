@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from stages.notation import numbers
+from inertial.text import numbers
 from stages.reporting.outline import Column, Paragraph, Part, Row, Section, Table
 from stages.reporting.parameters import Estimate, symbol
 

@@ -10,10 +10,10 @@ from math import degrees
 
 import pandas as pd
 
-from stages.contracts.counting import EXTENDED
-from stages.contracts.tables import AXES
-from stages.notation import numbers, units
-from stages.notation.causes import in_words
+from inertial.campaign.final_result import EXTENDED
+from inertial.tables import AXES
+from inertial.text import numbers, units
+from inertial.text.cause_names import in_words
 from stages.reporting.certainty import in_short, listed
 from stages.reporting.evidence import CRITICISM
 from stages.reporting.extended import effects_in

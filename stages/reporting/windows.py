@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from stages.notation import numbers
-from stages.notation.units import DEGREES_PER_HOUR, PPM, Unit
+from inertial.text import numbers
+from inertial.text.units import DEGREES_PER_HOUR, PPM, Unit
 from stages.reporting.drawing import AXIS_COLOUR, INK, QUIET, Margins, panels, style, svg
 from stages.reporting.outline import Column, Figure, Paragraph, Part, Row, Table
 from stages.reporting.rows import Record, records

@@ -12,9 +12,9 @@ import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 
-from stages.contracts.code import ROOT
-from stages.contracts.errors import Refusal
-from stages.contracts.yaml_file import YamlFile
+from inertial.tables.code import ROOT
+from inertial.tables.errors import Refusal
+from inertial.tables.yaml_file import YamlFile
 from stages.tracing.origins import Campaign
 from stages.tracing.walk import Walk, walk
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stages.contracts.parquet import Stream
-from stages.contracts.samples import Columns, pieces
+from inertial.campaign.masked_samples import Columns, pieces
+from inertial.tables.parquet import Stream
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,9 @@
 import difflib
 from dataclasses import dataclass
 
-from stages.contracts.errors import Refusal
-from stages.contracts.records import Row, rows_of
-from stages.contracts.tables import PARAMETERS
+from inertial.campaign.records import Row, rows_of
+from inertial.tables import PARAMETERS
+from inertial.tables.errors import Refusal
 from stages.tracing.origins import Campaign
 
 NEAR = 6  # identifiers that are offered where one is not known

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from stages.contracts.code import ROOT, code_of, hash_of, hash_of_file
-from stages.contracts.errors import Refusal
-from stages.contracts.parquet import provenance
+from inertial.tables.code import ROOT, code_of, hash_of, hash_of_file
+from inertial.tables.errors import Refusal
+from inertial.tables.parquet import provenance
 
 INSTRUMENTS = "data/instruments.yaml"  # the one input that lies beside the code, not the data
 

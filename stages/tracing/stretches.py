@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from stages.contracts.records import rows_of
+from inertial.campaign.records import rows_of
 from stages.tracing.lines import Stretch
 
 BESIDE = ("rest-before", "rest-after")  # phases that a fit names with their turn: `turn (phase)`

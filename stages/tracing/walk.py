@@ -9,11 +9,11 @@ from typing import Any
 
 import pandas as pd
 
-from stages.contracts import tables
-from stages.contracts.errors import Refusal
-from stages.contracts.parquet import Table
-from stages.contracts.records import Row, rows_of
-from stages.notation.numbers import visible
+from inertial import tables
+from inertial.campaign.records import Row, rows_of
+from inertial.tables.errors import Refusal
+from inertial.tables.parquet import Table
+from inertial.text.numbers import visible
 from stages.tracing.lines import Lines, Stretch, lines_of
 from stages.tracing.number import Number, number
 from stages.tracing.origins import Campaign, Origin, Origins

@@ -14,10 +14,10 @@ from block_statistics import Layout, pieces
 from cramer_rao import bound, densities
 from ruamel.yaml import YAML
 
-from stages.accelerometer import accelerometer
-from stages.contracts import tables
-from stages.gyroscope import gyroscope
-from stages.inference.triad import linear_names
+from inertial import tables
+from inertial.estimation.triad import linear_names
+from stages.accelerometer.stage import accelerometer
+from stages.gyroscope.stage import gyroscope
 
 NAMES = [f"{s}/{n}" for s in ("accelerometer", "gyroscope") for n in linear_names()]
 RATE = 100.0  # samples per second

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from z_turns import ANGLE, NOISE, Z_SCALE, inputs_of, lose
 
-from stages.contracts.records import known_of, manoeuvres_of, performed_of
-from stages.estimation.evidence import campaign_of
-from stages.estimation.noise_levels import NoiseLevels
-from stages.estimation.solution import solution_of
-from stages.inference.triad import errors_of, linear_names
-from stages.inference.whole_turns import Angle, Turn, joint, known_angle
+from inertial.campaign.equations import campaign_of
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import known_of, manoeuvres_of, performed_of
+from inertial.campaign.solution import solution_of
+from inertial.estimation.gyroscopes import Angle, Turn, joint, known_angle
+from inertial.estimation.triad import errors_of, linear_names
 
 
 def test_an_assumed_angle_is_wrong_by_far_more_than_its_sigma(gapped):

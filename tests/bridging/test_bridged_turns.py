@@ -8,14 +8,14 @@ import pandas as pd
 import pytest
 from z_turns import ANGLE, NOISE, STEP, Z_SCALE
 
-from stages.contracts.records import Manoeuvre, Performed
-from stages.contracts.tables import CHANNELS
-from stages.estimation.blocks import Blocks
-from stages.estimation.noise_levels import NoiseLevels
-from stages.estimation.turns import Recorded, turn_of
-from stages.inference.whole_turns import Earth, Position, Still, Turn, joint
-from stages.model.motion import turned_all
-from stages.model.site import earth_rate
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.rate_segments import Recorded, turn_of
+from inertial.campaign.records import Manoeuvre, Performed
+from inertial.campaign.static_positions import Blocks
+from inertial.estimation.gyroscopes import Earth, Position, Still, Turn, joint
+from inertial.physics.motion import turned_all
+from inertial.physics.site import earth_rate
+from inertial.tables import CHANNELS
 
 UP, LEVEL = earth_rate(radians(30.5278))
 EARTH = Earth(UP, 1e-12, LEVEL)

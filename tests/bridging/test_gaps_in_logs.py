@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from z_turns import inputs_of, lose, of_z, recorded
 
-from stages.model.site import earth_rate
+from inertial.physics.site import earth_rate
 
 UP, _ = earth_rate(radians(30.5278))
 BIAS_Z = 0.9e-6  # rad/s, of the demo

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from z_turns import STEP
 
-from stages.segmentation.missing import ENOUGH, FEW, missing_of
+from stages.segment.completeness import ENOUGH, FEW, missing_of
 
 
 def blocks(*stretches: tuple[str, float, float, bool]) -> tuple[pd.DataFrame, pd.DataFrame]:

@@ -6,9 +6,9 @@ from pathlib import Path
 import chain
 import pandas as pd
 
-from stages.contracts.records import known_of, manoeuvres_of, performed_of
-from stages.estimation.noise_levels import NoiseLevels
-from stages.estimation.turns import GyroInputs, gyro_inputs
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.rate_segments import GyroInputs, gyro_inputs
+from inertial.campaign.records import known_of, manoeuvres_of, performed_of
 
 NOISE = radians(0.012 / 60)  # rad/√s, of the demo
 STEP = 0.01  # s

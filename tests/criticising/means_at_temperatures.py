@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from stages.contracts import tables
-from stages.contracts.records import Manoeuvre
+from inertial import tables
+from inertial.campaign.records import Manoeuvre
 
 ICE_POINT = 273.15  # K
 NOISE = {"accel": 3e-3, "gyro": 5e-5}  # m/s² and rad/s, of a mean

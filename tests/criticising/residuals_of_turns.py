@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from stages.estimation.steady_turns import SteadyTurn
+from inertial.campaign.steady_residuals import SteadyTurn
 
 NOISE = 3.5e-5  # rad/s of a sample at 100 Hz: 0.012 °/√h
 STEP = 0.01  # s

@@ -10,10 +10,10 @@ import pandas as pd
 import pytest
 from residuals_of_turns import ARC_SECOND, MATRIX, NOISE, locked, turns
 
-from stages.contracts import tables
-from stages.criticising.lines_of_turns import LinesOfTurns
-from stages.estimation.lines_of_turns import heard
-from stages.estimation.steady_turns import SteadyTurn
+from inertial import tables
+from inertial.campaign.steady_residuals import SteadyTurn
+from stages.criticism.oscillation_search import heard
+from stages.criticism.oscillations import LinesOfTurns
 
 LEVEL = 1e-3  # of the spectrum: a tenth of the accepted one in a hundred
 LOWEST = 2.0  # Hz

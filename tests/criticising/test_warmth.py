@@ -6,10 +6,9 @@ import pandas as pd
 import pytest
 from means_at_temperatures import ICE_POINT, RATE, blocks, manoeuvre, temperatures
 
-from stages.contracts import tables
-from stages.criticising.warmth import findings
-from stages.inference.curve import curve_of
-from stages.inference.knee import knee_of
+from inertial import tables
+from inertial.estimation.regression import curve_of, knee_of
+from stages.criticism.temperature_findings import findings
 
 LEVEL = 0.01
 MIDDLE = ICE_POINT + 33  # about which the numbers of the law are told

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from stages.contracts.tables import ACCOUNTS, CHANNELS, CLOCKS, LOGS, REFUSED, SAMPLES
-from stages.decode import decode
+from inertial.tables import ACCOUNTS, CHANNELS, CLOCKS, LOGS, REFUSED, SAMPLES
+from stages.decode.stage import decode
 
 S0_FIRST = b"2283,42699.880;2283,42699.879998762,00000077,64188,-64,465,-16100,-2,873"
 S0_SECOND = b"2283,42711.860;2283,42711.859998756,00000077,64186,-1,432,-16100,4,-1037"

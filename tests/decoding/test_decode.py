@@ -12,11 +12,11 @@ import pyarrow.parquet as pq
 import pytest
 from decoded_logs import S0_FIRST, S0_SECOND, SPAN_CPT, at, decoded, one, signed
 
+from inertial.tables import LOGS
+from inertial.tables.errors import Refusal
+from inertial.tables.parquet import Writer
 from laboratory.rawimu import Samples, log_bytes
-from stages.contracts.errors import Refusal
-from stages.contracts.parquet import Writer
-from stages.contracts.tables import LOGS
-from stages.decode import decode
+from stages.decode.stage import decode
 
 
 def test_a_missing_log_is_refused_by_name(tmp_path):
@@ -46,7 +46,7 @@ def test_the_stage_runs_without_pandas(tmp_path):
     raw = [part for log in logs for part in ("--raw", str(log))]
     program = (
         "import runpy, sys\n"
-        "runpy.run_module('stages.decode', run_name='__main__')\n"
+        "runpy.run_module('stages.decode.stage', run_name='__main__')\n"
         "assert 'pandas' not in sys.modules, 'pandas was imported'\n"
     )
     plan, output = tmp_path / "plan" / "logs.parquet", tmp_path / "decode"

@@ -8,8 +8,8 @@ import pyarrow as pa
 import pytest
 from decoded_logs import SPAN_CPT, at
 
-from stages.contracts.tables import LOGS
-from stages.decode import decode
+from inertial.tables import LOGS
+from stages.decode.stage import decode
 
 ENCODER = {
     "kind": "columns",

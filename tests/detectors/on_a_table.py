@@ -3,7 +3,7 @@
 import numpy as np
 from recorded_by_hand import COUNT, GRAVITY, INTERVAL, NOISE, log, piece, stamps
 
-from stages.detectors.detector import Log, Piece
+from inertial.signal.detector import Log, Piece
 
 BIAS = np.array([0.0693, 0.005, -0.0419, 1.3e-6, -2.1e-6, 0.9e-6])  # m/s², rad/s
 RATE = np.radians(10)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from stages.detectors.detector import Detector, Event, Given, Log, Piece, Windows
+from inertial.signal.detector import Detector, Event, Given, Log, Piece, Windows
 
 INTERVAL = 0.01  # s
 GRAVITY = 9.7936174  # m/s²

@@ -5,9 +5,9 @@ import pytest
 from on_a_table import recorded, rest, turn
 from recorded_by_hand import COUNT, INTERVAL, NOISE
 
-from stages.detectors import OF_RECORDS
-from stages.screening.telling import tell
-from stages.screening.watch import watch
+from inertial.campaign.detection import watch
+from inertial.campaign.events import tell
+from inertial.detectors import OF_RECORDS
 
 LENGTH, BESIDE = 6000, 2000
 ROWS = ("record", "line", "time", "values", "status", "temperature")

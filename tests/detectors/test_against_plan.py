@@ -11,9 +11,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.detectors.exchanges import EVERY, Permutation
-from stages.detectors.misread_axes import determinant
-from stages.detectors.standing import read_as_other_axes
+from inertial.signal.axis_permutations import EVERY, Permutation, read_as_other_axes
+from inertial.signal.misread_axes import determinant
 
 Fault = dict[str, dict[str, Any]]
 

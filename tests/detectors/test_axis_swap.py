@@ -5,9 +5,9 @@ import pytest
 from on_a_table import askew, recorded, rest, tumble, turn
 from recorded_by_hand import NOISE, assert_told
 
-from stages.detectors.axis_swap import AxisSwap, AxisSwapOfGyros
-from stages.detectors.exchanges import EVERY
-from stages.detectors.sign_flip import SignFlip, SignFlipOfGyros
+from inertial.detectors.axis_swap import AxisSwap, AxisSwapOfGyros
+from inertial.detectors.sign_flip import SignFlip, SignFlipOfGyros
+from inertial.signal.axis_permutations import EVERY
 
 EACH = (AxisSwap(), AxisSwapOfGyros(), SignFlip(), SignFlipOfGyros())
 

@@ -5,7 +5,7 @@ import pytest
 from on_a_table import carried, recorded, rest, tumble, turn
 from recorded_by_hand import COUNT, NOISE, assert_told
 
-from stages.detectors.dead_axis import DeadAxis
+from inertial.detectors.dead_axis import DeadAxis
 
 
 def found(values, **of_log):

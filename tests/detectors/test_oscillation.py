@@ -5,8 +5,8 @@ import pytest
 from on_a_table import carried, recorded, rest, tumble, turn
 from recorded_by_hand import COUNT, INTERVAL, NOISE, assert_told
 
-from stages.detectors.oscillation import Oscillation
-from stages.detectors.spectral_lines import in_windows, lines, windows
+from inertial.detectors.oscillation import Oscillation
+from inertial.signal.spectral_lines import in_windows, lines, windows
 
 
 def found(values, **of_log):

@@ -5,8 +5,8 @@ import pytest
 from on_a_table import carried, recorded, rest, tumble, turn
 from recorded_by_hand import COUNT, NOISE, assert_told
 
-from stages.detectors.quantisation import Quantisation
-from stages.detectors.roughness import roughness
+from inertial.detectors.quantisation import Quantisation
+from inertial.signal.roughness import roughness
 
 
 def found(values, **of_log):

@@ -5,9 +5,9 @@ import pytest
 from recorded_by_hand import GRAVITY, INTERVAL, NOISE, given, log, piece, rest, stamps
 from scipy.signal import lfilter
 
-from stages.detectors.bias_jump import BiasJump
-from stages.detectors.detector import CHANNELS, Event
-from stages.detectors.table_moving import TableMoving
+from inertial.detectors.bias_jump import BiasJump
+from inertial.detectors.table_moving import TableMoving
+from inertial.signal.detector import CHANNELS, Event
 
 ARC_SECOND = np.radians(1 / 3600)
 N = 3000  # records: half a minute

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stages.detectors.running_median import running_median
-from stages.detectors.runs import joined, runs
+from inertial.signal.outliers import running_median
+from inertial.signal.runs import joined, runs
 
 
 @given(st.lists(st.integers(-5, 5), min_size=9, max_size=60))

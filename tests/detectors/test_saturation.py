@@ -5,7 +5,7 @@ import pytest
 from on_a_table import RATE, recorded, rest, tumble, turn
 from recorded_by_hand import COUNT, INTERVAL, NOISE, assert_told
 
-from stages.detectors.saturation import Saturation
+from inertial.detectors.saturation import Saturation
 
 
 def found(values, **of_log):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from recorded_by_hand import COUNTS, GRAVITY, assert_told, given, log, piece, rest, seen, stamps
 
-from stages.detectors.gravity_error import GravityError
-from stages.detectors.temperature_drift import TemperatureDrift
-from stages.detectors.wrong_scale_factor import WrongScaleFactor, explanations
+from inertial.detectors.gravity_error import GravityError
+from inertial.detectors.temperature_drift import TemperatureDrift
+from inertial.detectors.wrong_scale_factor import WrongScaleFactor, explanations
 
 
 def up(reading: float) -> np.ndarray:

@@ -5,7 +5,7 @@ import pytest
 from on_a_table import recorded, rest, tumble, turn
 from recorded_by_hand import GRAVITY, INTERVAL, NOISE, assert_told, log, piece
 
-from stages.detectors.spike import Spikes, chance
+from inertial.detectors.spike import Spikes, chance
 
 
 def found(values, **of_log):

@@ -15,17 +15,17 @@ from recorded_by_hand import (
     stamps,
 )
 
-from stages.detectors.clock_jitter import ClockJitter
-from stages.detectors.clock_scale import ClockScale
-from stages.detectors.clock_step import ClockStep
-from stages.detectors.duplicate import Duplicate
-from stages.detectors.gap import Gap
-from stages.detectors.held_record import HeldRecord
-from stages.detectors.rate_off import RateOff
-from stages.detectors.status_invalid import StatusInvalid
-from stages.detectors.time_backwards import TimeBackwards
-from stages.detectors.time_stands_still import TimeStandsStill
-from stages.detectors.wrong_day import WrongDay
+from inertial.detectors.clock_jitter import ClockJitter
+from inertial.detectors.clock_scale import ClockScale
+from inertial.detectors.clock_step import ClockStep
+from inertial.detectors.duplicate import Duplicate
+from inertial.detectors.gap import Gap
+from inertial.detectors.held_record import HeldRecord
+from inertial.detectors.rate_off import RateOff
+from inertial.detectors.status_invalid import StatusInvalid
+from inertial.detectors.time_backwards import TimeBackwards
+from inertial.detectors.time_stands_still import TimeStandsStill
+from inertial.detectors.wrong_day import WrongDay
 
 OF_TIME = (
     Duplicate(),

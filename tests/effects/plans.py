@@ -11,14 +11,14 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from stages.contracts.records import Known, Manoeuvre, Performed
-from stages.contracts.tables import CHANNELS
-from stages.estimation.evidence import Campaign, campaign_of
-from stages.estimation.noise_levels import NoiseLevels
-from stages.estimation.solution import Solution
-from stages.model.forward import Site, Triad, predict
-from stages.model.motion import Profile, turning
-from stages.model.site import earth_rate
+from inertial.campaign.equations import Campaign, campaign_of
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import Known, Manoeuvre, Performed
+from inertial.campaign.solution import Solution
+from inertial.physics.forward import Site, Triad, predict
+from inertial.physics.motion import Profile, turning
+from inertial.physics.site import earth_rate
+from inertial.tables import CHANNELS
 
 Array = NDArray[np.float64]
 

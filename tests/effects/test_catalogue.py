@@ -6,10 +6,10 @@ import numpy as np
 import plans
 import pytest
 
-from stages.effects import CATALOGUE
-from stages.model.effect import Effect
-from stages.model.forward import predict, signatures
-from stages.model.motion import Motion
+from inertial.effects import CATALOGUE
+from inertial.physics.effect import Effect
+from inertial.physics.forward import predict, signatures
+from inertial.physics.motion import Motion
 
 SENSOR_GRADES = {"fog", "tactical", "mti", "consumer"}
 OTHER_SIZES = ({"good table", "poor table"}, {"usual"})

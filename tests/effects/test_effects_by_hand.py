@@ -7,11 +7,11 @@ import pytest
 from scipy.integrate import quad
 from scipy.spatial.transform import Rotation
 
-from stages.effects import CATALOGUE
-from stages.effects.accel_hysteresis import remembered
-from stages.model.forward import Site, Triad, predict, truth_of
-from stages.model.motion import Motion, Profile, joined, turning
-from stages.model.site import earth_rate
+from inertial.effects import CATALOGUE
+from inertial.effects.accel_hysteresis import remembered
+from inertial.physics.forward import Site, Triad, predict, truth_of
+from inertial.physics.motion import Motion, Profile, joined, turning
+from inertial.physics.site import earth_rate
 
 DEGREE = np.radians(1)
 GRAVITY = 9.79

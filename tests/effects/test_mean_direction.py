@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.model.motion import mean_turned, turned_all
+from inertial.physics.motion import mean_turned, turned_all
 
 
 def test_it_is_the_mean_of_many_directions():

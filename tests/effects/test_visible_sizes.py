@@ -9,10 +9,10 @@ import numpy as np
 import plans
 import pytest
 
-from stages.effects import CATALOGUE
-from stages.estimation.evidence import evidence
-from stages.model.forward import signatures
-from stages.model.motion import joined
+from inertial.campaign.equations import evidence
+from inertial.effects import CATALOGUE
+from inertial.physics.forward import signatures
+from inertial.physics.motion import joined
 
 DEGREE = np.radians(1)
 PER_HOUR = np.radians(1 / 3600)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.extending.channel_system import system_of
-from stages.extending.channels import Mean
+from stages.extension.channel_equations import system_of
+from stages.extension.channels import Mean
 
 NAMES = ["effect.k"]
 TILT = 3e-4

@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from stages.extending.decision import decision, result
-from stages.extending.folds import Fold
-from stages.extending.held_out import HeldOut
-from stages.extending.models import Told
-from stages.extending.named import Named
-from stages.extending.solved import Solved
-from stages.inference.least_squares import Estimate, Reduced
-from stages.inference.triad import linear_names
+from inertial.estimation.least_squares import Estimate, Reduced
+from inertial.estimation.triad import linear_names
+from stages.extension.decision import decision, result
+from stages.extension.folds import Fold
+from stages.extension.held_out import HeldOut
+from stages.extension.models import Told
+from stages.extension.named import Named
+from stages.extension.solved import Solved
 
 Row = dict[str, Any]
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.extending.folds import KEPT, fold, groups, snr_squared
-from stages.inference.least_squares import Reduced, System
+from inertial.estimation.least_squares import Reduced, System
+from stages.extension.folds import KEPT, fold, groups, snr_squared
 
 NAMES = tuple("abcdef")
 TRUTH = np.array([3.0, -2.0])  # of the effects

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.extending.growth import grown
+from stages.extension.navigation_error import grown
 
 G = 9.8
 UP = np.array([0.0, 0.0, G])

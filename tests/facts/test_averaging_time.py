@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import s0
 
-from stages.inference.averaging_time import averaging_time, per_root_second
-from stages.model.site import earth_rate
+from inertial.estimation.averaging_time import averaging_time, per_root_second
+from inertial.physics.site import earth_rate
 
 RW = per_root_second(s0.VELOCITY_RANDOM_WALK)  # m/s/√s
 MILLIGAL = 1e-5  # m/s²

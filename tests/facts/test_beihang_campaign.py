@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import s4
 
-from stages.inference.rate_table import AXES
+from inertial.estimation.rate_table import AXES
 
 RATE_HZ, SECONDS = 50, 12
 # What the program of S4 makes of its permuted inputs (test_beihang_rates, T17).

@@ -5,10 +5,10 @@ import pytest
 import s4
 from scipy.stats import f as f_distribution
 
-from stages.inference.outlying import most_outlying, outliers
-from stages.inference.rate_nonlinearity import columns_of, nonlinearities, own_axis
-from stages.inference.rate_table import rate_table
-from stages.inference.whole_turns import Earth, Position, Steady
+from inertial.estimation.consistency import most_outlying, outliers
+from inertial.estimation.gyroscopes import Earth, Position, Steady
+from inertial.estimation.rate_linearity import columns_of, nonlinearities, own_axis
+from inertial.estimation.rate_table import rate_table
 
 NO_EARTH = Earth(0.0, 0.0, 0.0)  # the program knows of none; 15 °/h are 0.004 °/s
 DEGREE = np.radians(1)

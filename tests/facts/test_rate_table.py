@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from stages.inference.rate_nonlinearity import nonlinearities, own_axis
-from stages.inference.rate_table import rate_table
-from stages.inference.whole_turns import Earth, Position, Steady
-from stages.model.motion import turned_all
-from stages.model.site import earth_rate
+from inertial.estimation.gyroscopes import Earth, Position, Steady
+from inertial.estimation.rate_linearity import nonlinearities, own_axis
+from inertial.estimation.rate_table import rate_table
+from inertial.physics.motion import turned_all
+from inertial.physics.site import earth_rate
 
 UP, LEVEL = earth_rate(np.radians(39.98))
 BEIJING = Earth(UP, 1e-9, LEVEL)

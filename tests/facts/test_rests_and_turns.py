@@ -5,11 +5,11 @@ import pytest
 import s0
 from scipy.stats import chi2
 
-from stages.inference.averaging_time import per_root_second
-from stages.inference.shared_cause import shared_cause
-from stages.inference.two_positions import Upright, two_positions
-from stages.inference.whole_turns import Angle, Earth, Position, known_angle
-from stages.model.site import earth_rate
+from inertial.estimation.averaging_time import per_root_second
+from inertial.estimation.consistency import shared_cause
+from inertial.estimation.gyroscope_formulas import Upright, two_positions
+from inertial.estimation.gyroscopes import Angle, Earth, Position, known_angle
+from inertial.physics.site import earth_rate
 
 UP, LEVEL = earth_rate(s0.LATITUDE)
 WUHAN = Earth(UP, 0.0, LEVEL)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import s0
 
-from stages.inference.averaging_time import per_root_second
-from stages.inference.triad import mounting_and_rest
-from stages.model.site import normal_gravity
+from inertial.estimation.averaging_time import per_root_second
+from inertial.estimation.triad import mounting_and_rest
+from inertial.physics.site import normal_gravity
 
 N = s0.ACCELEROMETER - np.eye(3)
 PAIRS = ([0, 0, 1], [1, 2, 2])  # xy, xz, yz

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import s0
 
-from stages.inference.averaging_time import per_root_second
-from stages.inference.even_and_odd import even_and_odd, square_behind
-from stages.inference.six_position import Rest, formula
-from stages.model.site import STANDARD_GRAVITY
+from inertial.estimation.accelerometers import Rest, formula
+from inertial.estimation.averaging_time import per_root_second
+from inertial.estimation.even_and_odd import even_and_odd, square_behind
+from inertial.physics.site import STANDARD_GRAVITY
 
 SIGMA = np.full(3, per_root_second(s0.VELOCITY_RANDOM_WALK) / np.sqrt(300))  # T is not printed
 SPLIT = even_and_odd(s0.COMPENSATED_UP, s0.COMPENSATED_DOWN, s0.GRAVITY, (SIGMA, SIGMA))

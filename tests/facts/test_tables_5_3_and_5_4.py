@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import s0
 
-from stages.inference.position_noise import bias_variance, position_noise
-from stages.inference.six_position import Rest, formula, weighted
+from inertial.estimation.accelerometers import Rest, formula, weighted
+from inertial.estimation.position_noise import bias_variance, position_noise
 
 NOISE = position_noise(s0.SINGLE_EPOCHS, s0.GRAVITY)  # m/s² per sample
 

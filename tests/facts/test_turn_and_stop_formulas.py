@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from stages.inference.pooled_positions import pooled_positions
-from stages.inference.six_position import Rest, formula
-from stages.inference.turn_and_stop import both_turns, pairs_of, turn_and_stop
-from stages.inference.whole_turns import Bridge, Earth, Position, Still, Turn
-from stages.model.motion import Profile, level_axes, turned_all
-from stages.model.site import earth_rate
+from inertial.estimation.accelerometer_formulas import pooled_positions
+from inertial.estimation.accelerometers import Rest, formula
+from inertial.estimation.gyroscopes import Bridge, Earth, Position, Still, Turn
+from inertial.estimation.turn_and_stop import both_turns, pairs_of, turn_and_stop
+from inertial.physics.motion import Profile, level_axes, turned_all
+from inertial.physics.site import earth_rate
 
 DEGREE_PER_HOUR = np.radians(1 / 3600)
 UP, LEVEL = earth_rate(np.radians(30.5278))

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 import s0
 
-from stages.inference.agreement import beyond_chance, chance_of
-from stages.inference.averaging_time import per_root_second
-from stages.inference.fencepost import fencepost
-from stages.inference.rate_table import rate_table
-from stages.inference.ripple import ripple_angle, ripple_scale
-from stages.inference.table_speed import table_speed
-from stages.inference.whole_turns import Earth, Position, Steady
-from stages.model.site import earth_rate
+from inertial.estimation.angle_windows import fencepost
+from inertial.estimation.averaging_time import per_root_second
+from inertial.estimation.consistency import beyond_chance, chance_of
+from inertial.estimation.gyroscopes import Earth, Position, Steady
+from inertial.estimation.rate_table import rate_table
+from inertial.estimation.table_speed import table_speed
+from inertial.estimation.time_angle import ripple_angle, ripple_scale
+from inertial.physics.site import earth_rate
 
 UP, LEVEL = earth_rate(s0.LATITUDE)
 WUHAN = Earth(UP, 0.0, LEVEL)

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 from stages.formats import columns
 from stages.formats.bag_chunks import unpacked
 from tests.formats import written

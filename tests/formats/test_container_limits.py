@@ -9,7 +9,7 @@ import pytest
 from pyarrow import ipc, parquet
 from scipy.io import savemat
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 from stages.formats import columns, hdf5_sizes, limits, matlab5_sizes
 from stages.formats.arrow_claims import claimed_bytes
 from tests.formats import written

@@ -12,7 +12,7 @@ import pytest
 from pyarrow import parquet
 from scipy.io import savemat
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 from stages.formats import columns
 from stages.formats.account import Account
 from tests.formats import written

@@ -11,7 +11,7 @@ import lz4.frame
 import pyarrow as pa
 import pytest
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 from stages.formats import columns
 from stages.formats.content import Content, content_of, refuse_compressed
 from tests.formats import written

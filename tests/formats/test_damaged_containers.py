@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stages.contracts.errors import Refusal
+from inertial.tables.errors import Refusal
 from stages.formats import columns
 from tests.formats import written
 

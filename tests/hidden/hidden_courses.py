@@ -7,9 +7,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.physics.effect import Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
 from laboratory import Recording
-from stages.model.effect import Effect, Parameter, Reading, Truth
-from stages.model.motion import Motion
 
 Array = NDArray[np.float64]
 

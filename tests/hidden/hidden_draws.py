@@ -16,7 +16,7 @@ from hidden_outside import OUTSIDE, course_size, recorded
 from hidden_plans import PLANS, SPANS, sensors
 from hidden_ways import ABSORBED, MATES, POSITIVE, WAYS
 
-from stages.effects import CATALOGUE
+from inertial.effects import CATALOGUE
 
 RATIOS = (5.0, 6.0, 8.0, 10.0, 15.0)
 BANDS = {"6 to 12": (6.0, 12.0), "12 to 40": (12.0, 40.0)}

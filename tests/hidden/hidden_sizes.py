@@ -17,20 +17,18 @@ from hidden_plans import PLANS
 from hidden_ways import WAYS
 
 import laboratory
-from stages.contracts.code import code_of, hash_of
-from stages.contracts.records import known_of, manoeuvres_of, performed_of, share_a_clock
-from stages.criticising.judging import said_of
-from stages.criticism import BLOCKS_SHARE
-from stages.effects import CATALOGUE
-from stages.estimation.evidence import Campaign, campaign_of, evidence
-from stages.estimation.noise_levels import NoiseLevels
-from stages.estimation.solution import solution_of
-from stages.inference.naming.causes import law_of
-from stages.inference.naming.chance import Chance
-from stages.inference.naming.evidence import Evidence
-from stages.inference.naming.limits import power, power_limit
-from stages.inference.naming.sought import Sought
-from stages.model.effect import Effect
+from inertial.campaign.equations import Campaign, campaign_of, evidence
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import known_of, manoeuvres_of, performed_of, share_a_clock
+from inertial.campaign.solution import solution_of
+from inertial.effects import CATALOGUE
+from inertial.model_selection.evidence import Evidence, Sought
+from inertial.model_selection.naming import law_of
+from inertial.model_selection.null_simulation import Chance, power, power_limit
+from inertial.physics.effect import Effect
+from inertial.tables.code import code_of, hash_of
+from stages.criticism.judging import said_of
+from stages.criticism.stage import BLOCKS_SHARE
 
 SEED = 9_999
 APART = 0.25  # of the square of its ratio, that another effect must leave

@@ -15,11 +15,10 @@ import numpy as np
 from hidden_sizes import Reference, code, reference
 from hidden_ways import POSITIVE, WAYS, Array
 
-from stages.inference.least_squares import Reduced
-from stages.inference.naming.causes import causes
-from stages.inference.naming.evidence import Evidence
-from stages.inference.naming.scan import SEEN
-from stages.inference.naming.sought import Sought
+from inertial.estimation.least_squares import Reduced
+from inertial.model_selection.evidence import Evidence, Sought
+from inertial.model_selection.naming import causes
+from inertial.model_selection.scan import SEEN
 
 TRIALS = {0.0: 2000, 5.0: 300, 6.0: 200, 8.0: 60}  # how often at each ratio; 0: clean
 PARTS = 4  # of the clean draws, so that both cores have work to the end

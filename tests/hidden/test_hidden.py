@@ -15,7 +15,7 @@ from hidden_statistics import tried
 from hidden_ways import ABSORBED, WAYS
 
 import laboratory
-from stages.effects import CATALOGUE
+from inertial.effects import CATALOGUE
 
 # One of each kind, each at a size at which it must be found.
 CLEAN, OF_A_CLASS, SHOWN_BY_ONE_PLAN, DECOY, TOGETHER = 13, 9, 32, 5, 24

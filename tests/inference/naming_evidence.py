@@ -9,12 +9,10 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.inference.least_squares import Reduced
-from stages.inference.naming.evidence import Evidence
-from stages.inference.naming.scan import Candidates
-from stages.inference.naming.sought import Sought, sought
-from stages.inference.naming.structure import Answer
-from stages.inference.naming.structure_columns import TESTS, Where
+from inertial.estimation.least_squares import Reduced
+from inertial.model_selection.evidence import Evidence, Sought, sought
+from inertial.model_selection.scan import Candidates
+from inertial.model_selection.structure_tests import TESTS, Answer, Where
 from tests.inference.naming_plans import (
     GRAVITY,
     Rows,

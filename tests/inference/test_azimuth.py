@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from inference.walking import EARTH, LEVEL, NOISE, REST, TILT, campaign
 
-from stages.inference import azimuth
-from stages.inference.whole_turns import joint
+from inertial.estimation import horizontal_earth_rate
+from inertial.estimation.gyroscopes import joint
 
 
 def test_the_size_is_said_where_the_azimuth_is_told_and_the_bias_gains(monkeypatch):
@@ -24,7 +24,7 @@ def test_the_size_is_said_where_the_azimuth_is_told_and_the_bias_gains(monkeypat
     # Each azimuth is fitted: chi-squared has the mean of its degrees, within its own scatter.
     excess = [fit.chi_squared - fit.degrees for fit in fits]
     assert abs(np.mean(excess)) < 4 * np.sqrt(2 * fits[0].degrees / len(fits))
-    monkeypatch.setattr(azimuth, "KNOWN", 0.0)
+    monkeypatch.setattr(horizontal_earth_rate, "KNOWN", 0.0)
     without = joint(runs[0].stills, runs[0].turns, [], EARTH, TILT)
     assert fits[0].sigma[9:12].max() < 0.9 * without.sigma[9:12].min()
 
@@ -32,4 +32,4 @@ def test_the_size_is_said_where_the_azimuth_is_told_and_the_bias_gains(monkeypat
 def test_an_azimuth_that_the_data_do_not_tell_keeps_both_parts():
     sigma = {("level 0", "poor"): 0.3 * LEVEL, ("level 1", "poor"): NOISE / np.sqrt(REST)}
     sigma |= {("level 0", "good"): 0.1 * LEVEL, ("level 1", "good"): 0.1 * LEVEL}
-    assert azimuth.known_azimuths(sigma, EARTH) == {"good"}
+    assert horizontal_earth_rate.known_azimuths(sigma, EARTH) == {"good"}

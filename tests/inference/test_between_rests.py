@@ -15,13 +15,13 @@ from moved_by_hand import (
 )
 from scipy.spatial.transform import Rotation
 
-from stages.inference.between_rests import Given, Passage, Stop, between_rests
-from stages.inference.carried import carried, running_product
-from stages.inference.free_positions import FREE, FreeRest
-from stages.inference.least_squares import with_scatter
-from stages.inference.triad import UNKNOWNS
-from stages.inference.whole_turns import Earth
-from stages.model.site import earth_rate
+from inertial.estimation.attitude import carried, running_product
+from inertial.estimation.between_positions import Given, Passage, Stop, between_rests
+from inertial.estimation.gyroscopes import Earth
+from inertial.estimation.least_squares import with_scatter
+from inertial.estimation.multi_position import FREE, FreeRest
+from inertial.estimation.triad import UNKNOWNS
+from inertial.physics.site import earth_rate
 
 # ---- an attitude carried on
 

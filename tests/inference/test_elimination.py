@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from stages.inference.elimination import MANY, TOGETHER, Part, eliminated, shorter
-from stages.inference.least_squares import System, solve
+from inertial.estimation.elimination import MANY, TOGETHER, Part, eliminated, shorter
+from inertial.estimation.least_squares import System, solve
 
 SIGMA = 0.5
 ROUND = 60  # parts after which errors come again

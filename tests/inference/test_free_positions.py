@@ -15,7 +15,8 @@ from moved_by_hand import (
     rests,
 )
 
-from stages.inference.free_positions import (
+from inertial.estimation.least_squares import with_scatter
+from inertial.estimation.multi_position import (
     FREE,
     NAMES,
     PAIRS,
@@ -23,11 +24,10 @@ from stages.inference.free_positions import (
     FreeRest,
     free_positions,
     matrix_of,
+    unseen,
     upper_triangular,
 )
-from stages.inference.least_squares import with_scatter
-from stages.inference.triad import mounting_and_rest
-from stages.inference.unseen import unseen
+from inertial.estimation.triad import mounting_and_rest
 
 A_TENTH = np.radians(0.1)
 

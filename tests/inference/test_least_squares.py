@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.inference.least_squares import solve, with_scatter
+from inertial.estimation.least_squares import solve, with_scatter
 
 VAGUE = 1e6
 # NIST StRD, linear regression, Norris: the data.

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from stages.inference.lines import strongest, without_line
+from inertial.estimation.periodic_in_time import strongest, without_line
 
 
 def test_frequency_and_amplitude_come_back_within_their_sigmas():

@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from stages.inference.least_squares import Reduced
-from stages.inference.naming.causes import causes, name_causes
-from stages.inference.naming.chance import Chance, chance
-from stages.inference.naming.evidence import Evidence
-from stages.inference.naming.limits import power_limit
-from stages.inference.naming.named import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Named
-from stages.inference.naming.refining import finer, to_refine
-from stages.inference.naming.scan import Candidates
-from stages.inference.naming.sought import sought
+from inertial.estimation.least_squares import Reduced
+from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Named
+from inertial.model_selection.evidence import Evidence, sought
+from inertial.model_selection.naming import causes, name_causes
+from inertial.model_selection.null_simulation import Chance, chance, power_limit
+from inertial.model_selection.scan import Candidates
+from inertial.model_selection.scan_refinement import finer, to_refine
 from tests.inference.naming_evidence import Plan, plan_of, whitened
 from tests.inference.naming_plans import catalogue, times_of_jumps
 

@@ -3,13 +3,18 @@
 import numpy as np
 import pytest
 
-from stages.inference.least_squares import Reduced
-from stages.inference.naming.causes import causes
-from stages.inference.naming.chance import chance
-from stages.inference.naming.evidence import Evidence
-from stages.inference.naming.sought import sought
-from stages.inference.naming.splitting import split
-from stages.inference.naming.visible import ABSORBED, NOT_EXCITED, ONLY_TOGETHER, VISIBLE, visible
+from inertial.estimation.least_squares import Reduced
+from inertial.model_selection.detection_limits import (
+    ABSORBED,
+    NOT_EXCITED,
+    ONLY_TOGETHER,
+    VISIBLE,
+    visible,
+)
+from inertial.model_selection.evidence import Evidence, sought
+from inertial.model_selection.naming import causes
+from inertial.model_selection.null_simulation import chance
+from inertial.model_selection.splitting import split
 from tests.inference.naming_evidence import plan_of, whitened
 from tests.inference.naming_plans import catalogue, times_of_jumps
 

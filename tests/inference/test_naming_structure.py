@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from stages.inference.naming.structure import Structure, structures
+from inertial.model_selection.structure_tests import Structure, structures
 from tests.inference.naming_evidence import Residuals, fits, whitened
 from tests.inference.naming_plans import rows_of
 

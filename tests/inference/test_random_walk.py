@@ -7,12 +7,12 @@ import pytest
 from inference.walking import DEGREE_PER_HOUR, EARTH, TILT, UNIT, campaign
 from scipy.stats import chi2
 
-from stages.inference import six_position
-from stages.inference.elimination import Part, eliminated
-from stages.inference.random_walk import Stretch, drifting
-from stages.inference.six_position import Rest
-from stages.inference.traces import Traces
-from stages.inference.whole_turns import around_of, equations, fitted, joint
+from inertial.estimation import accelerometers
+from inertial.estimation.accelerometers import Rest
+from inertial.estimation.elimination import Part, eliminated
+from inertial.estimation.gyroscopes import around_of, equations, fitted, joint
+from inertial.estimation.random_walk import Stretch, drifting
+from inertial.estimation.sensitivities import Traces
 
 G, GRAVITY_SIGMA = 9.7936174, 1e-6
 NOISE = 0.0064 / 60  # m/s/√s
@@ -165,7 +165,7 @@ def test_a_walk_of_the_accelerometers_comes_back():
             rests.append(Rest(f"{number}", up, mean, sigma, stretch=stretch))
             time += 360.0
             drift = drift + size * np.sqrt(60.0) * rng.standard_normal(3)
-        found.append(six_position.fitted(rests, G, GRAVITY_SIGMA, 1e-7))
+        found.append(accelerometers.fitted(rests, G, GRAVITY_SIGMA, 1e-7))
     walks = np.array([fit.walk for fit in found])
     assert np.all(walks > 0)
     pulls = np.array([(fit.walk - size) / fit.walk_sigma for fit in found])

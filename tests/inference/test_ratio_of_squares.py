@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import f as f_distribution
 
-from stages.inference.ratio_of_squares import chance_of_ratio
+from inertial.estimation.probability import chance_of_ratio
 
 
 @pytest.mark.parametrize("chance", [0.2, 1e-2, 1e-4, 1e-8])

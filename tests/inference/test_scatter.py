@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.inference.least_squares import Estimate, with_scatter
+from inertial.estimation.least_squares import Estimate, with_scatter
 
 
 def fit_of(deviance):

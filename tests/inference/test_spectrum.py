@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.inference.spectrum import band_levels, white_level
+from inertial.estimation.spectrum import band_levels, white_level
 
 BAND = (0.5, 5.0)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from stages.inference.tails import (
+from inertial.estimation.probability import (
     chi_squared_beyond,
     chi_squared_bound,
     noncentral_beyond,

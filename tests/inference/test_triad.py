@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.inference.triad import design_of, jacobian_of_mounting, mounting_and_rest
+from inertial.estimation.triad import design_of, jacobian_of_mounting, mounting_and_rest
 
 # S0, table 5-1; γ_yx, the x axis senses the y force, in row x, column y.
 S0_ACCELEROMETER = np.eye(3) + np.array(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.inference.up_and_down import Upright, up_and_down
+from inertial.estimation.accelerometer_formulas import Upright, up_and_down
 
 G = 9.7936
 NOISE = 1e-5  # m/s²

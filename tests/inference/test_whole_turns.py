@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stages.inference.whole_turns import Angle, Earth, Position, Still, Turn, joint, known_angle
-from stages.model.site import earth_rate
+from inertial.estimation.gyroscopes import Angle, Earth, Position, Still, Turn, joint, known_angle
+from inertial.physics.site import earth_rate
 
 UP, LEVEL = earth_rate(np.radians(30.5278))
 EARTH = Earth(UP, 1e-12, LEVEL)

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from stages.inference.epochs import Formula, in_epochs, spread
-from stages.inference.ripple import ripple_window
-from stages.inference.time_angle import Errors, plateau, spin_down, spin_up, tied
-from stages.inference.windows import at_set_rate, by_angles, edges_of, noise_of, solved
-from stages.model.motion import Profile
+from inertial.estimation.angle_windows import at_set_rate, by_angles, edges_of, noise_of, solved
+from inertial.estimation.averaging_epochs import Formula, in_epochs, spread
+from inertial.estimation.time_angle import Errors, plateau, ripple_window, spin_down, spin_up, tied
+from inertial.physics.motion import Profile
 
 STEP = 0.01
 RATE, ACCELERATION = np.radians(10), np.radians(5)

@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from stages.inference.random_walk import COMMON, Stretch
-from stages.inference.whole_turns import Earth, Position, Still, Turn
-from stages.model.site import earth_rate
+from inertial.estimation.gyroscopes import Earth, Position, Still, Turn
+from inertial.estimation.random_walk import COMMON, Stretch
+from inertial.physics.site import earth_rate
 
 UP, LEVEL = earth_rate(np.radians(30.5278))
 EARTH = Earth(UP, 1e-12, LEVEL)

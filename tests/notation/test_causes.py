@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from stages.notation.causes import in_words, tally
+from inertial.text.cause_names import in_words, tally
 
 
 @pytest.mark.parametrize(

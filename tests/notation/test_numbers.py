@@ -2,9 +2,9 @@
 
 import pytest
 
-from stages.notation import numbers
-from stages.notation.numbers import FIGURE_SPACE, POINT_SPACE
-from stages.notation.units import quantity
+from inertial.text import numbers
+from inertial.text.numbers import FIGURE_SPACE, POINT_SPACE
+from inertial.text.units import quantity
 
 
 @pytest.mark.parametrize(

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from stages.contracts import tables
+from inertial import tables
 from stages.report import Documents, report
-from stages.studies import WRITES as STUDIES
+from stages.studies.stage import WRITES as STUDIES
 from tests.reporting import made_up_estimates as estimates
 from tests.reporting import made_up_model as model
 from tests.reporting import made_up_plan as plan

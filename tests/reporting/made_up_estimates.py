@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from stages.contracts import tables
+from inertial import tables
 from tests.reporting.made_up_values import AXES, BIAS, CROSS, GRAVITY, PAIRS, REST_S, SCALE, Rows
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from stages.contracts import tables
+from inertial import tables
 from tests.reporting.made_up import brief
 from tests.reporting.made_up_recording import close_up
 from tests.reporting.made_up_values import INTERVAL, rows_as

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from stages.contracts import tables
+from inertial import tables
 from tests.reporting import made_up, made_up_causes
 from tests.reporting.made_up_values import rows_as
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from stages.contracts import tables
+from inertial import tables
 from tests.reporting import made_up_causes
 from tests.reporting import made_up_estimates as estimates
 from tests.reporting.made_up_recording import rate_of

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from stages.contracts import tables
+from inertial import tables
 from tests.reporting.made_up_values import AXES, DEGREE, GRAVITY, INTERVAL, REST_S, TURN_S, Rows
 
 

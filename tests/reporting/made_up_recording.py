@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
-from stages.contracts import tables
+from inertial import tables
 from tests.reporting import made_up_plan as plan
 from tests.reporting.made_up_values import (
     AXES,

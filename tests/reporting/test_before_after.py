@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.contracts import tables
+from inertial import tables
 from stages.reporting.before_after import PIECES, means
 from tests.reporting.made_up_values import Held
 

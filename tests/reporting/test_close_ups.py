@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.contracts import tables
+from inertial import tables
 from stages.reporting.close_ups import CloseUp, axis, close_ups, gaps_in, masked_in
 from tests.reporting import made_up
 from tests.reporting.made_up_values import GAP, GAP_FINDING

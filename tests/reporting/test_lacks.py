@@ -9,7 +9,7 @@ from typing import Any
 
 import pandas as pd
 
-from stages.contracts import tables
+from inertial import tables
 from stages.report import Documents, report
 from tests.reporting import made_up, made_up_lacks
 from tests.reporting.made_up_values import RINGING_FINDING, Held, rows_as

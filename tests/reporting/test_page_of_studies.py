@@ -4,10 +4,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from stages.contracts import tables
+from inertial import tables
 from stages.reporting import comparisons, studies
 from stages.reporting.outline import Figure, Paragraph, Section, Sentences, Table
-from stages.studies import WRITES
+from stages.studies.stage import WRITES
 from tests.reporting.made_up_studies import studies as made_up
 from tests.reporting.made_up_values import rows_as
 

@@ -1,0 +1,257 @@
+"""Rows of the tables that every method of estimation writes: parameters, covariance, fit."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial import tables
+from inertial.campaign.records import Manoeuvre
+from inertial.estimation import triad
+from inertial.estimation.least_squares import Estimate, Fitted
+from inertial.tables.parquet import Table
+
+# ---- How long the rests must last for a bias of a wanted sigma, by S0's formulas.
+#
+# S0 (5-1), (5-2) ask for T ≥ (3 N/b)² with a bias b that is not known yet. What a laboratory
+# wants is a sigma: of the means by which a formula makes the bias,
+#
+#     σ² = a / T + floor²,   T = a / (σ² − floor²),
+#
+# where a is what white noise does and the floor what no time averages out: tilts of the positions,
+# gravity, the azimuth.
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """The sigma of a bias by rests of so many seconds each, and its floor; SI."""
+
+    sigma: float
+    floor: float
+    seconds: float
+
+    def row(self, wanted: float) -> dict[str, Any]:
+        """The time for a `wanted` sigma; null where the floor is too high for any."""
+        noise = (self.sigma**2 - self.floor**2) * self.seconds
+        room = wanted**2 - self.floor**2
+        return {
+            "seconds": self.seconds,
+            "sigma": self.sigma,
+            "floor": self.floor,
+            "random_walk": float(np.sqrt(max(noise, 0.0))),
+            "wanted": wanted,
+            "wanted_seconds": noise / room if room > 0 else None,
+        }
+
+
+# ---- Rows of the tables that every method of estimation writes: parameters, covariance, fit.
+
+Array = NDArray[np.float64]
+
+Booleans = NDArray[np.bool_]
+
+NAMES = triad.linear_names()
+SENSED = {"accelerometer": "specific force", "gyroscope": "angular rate"}
+SET = {"tilt": "rad", "level": "rad/s"}  # what is estimated of a position, and its unit
+UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
+
+
+@dataclass
+class Estimates:
+    """What the methods of one stage found, collected as rows of the common tables."""
+
+    stage: str
+    _parameters: list[dict[str, Any]] = field(default_factory=list)
+    _covariance: list[pd.DataFrame] = field(default_factory=list)
+    _fit: list[dict[str, Any]] = field(default_factory=list)
+    _averaging: list[dict[str, Any]] = field(default_factory=list)
+    _positions: list[dict[str, Any]] = field(default_factory=list)
+    _wanted: list[dict[str, Any]] = field(default_factory=list)
+
+    def add(
+        self,
+        method: str,
+        names: tuple[str, ...],
+        values: Array,
+        covariance: Array,
+        reasons: dict[str, str],
+    ) -> None:
+        """The result of one method; a name in `reasons` is not determined, for that reason."""
+        ids = [f"{self.stage}/{method}/{name}" for name in names]
+        sigma = np.sqrt(np.diag(covariance))
+        for i, name in enumerate(names):
+            unit, frame, meaning = described(self.stage, name)
+            missing = name in reasons
+            self._parameters.append(
+                {
+                    "id": ids[i],
+                    "stage": self.stage,
+                    "method": method,
+                    "parameter": name,
+                    "value": None if missing else float(values[i]),
+                    "sigma": None if missing else float(sigma[i]),
+                    "unit": unit,
+                    "frame": frame,
+                    "meaning": meaning,
+                    "reason": reasons.get(name, ""),
+                }
+            )
+        there = [i for i, name in enumerate(names) if name not in reasons]
+        kept = [ids[i] for i in there]
+        self._covariance.append(
+            pd.DataFrame(
+                {
+                    "first": np.repeat(kept, len(kept)),
+                    "second": np.tile(kept, len(kept)),
+                    "covariance": covariance[np.ix_(there, there)].ravel(),
+                }
+            )
+        )
+
+    def add_triad(self, method: str, estimate: Estimate, reasons: dict[str, str]) -> None:
+        """The twelve unknowns of three sensors, and what M falls into by polar decomposition."""
+        unknowns, covariance = estimate.values[:12], estimate.covariance[:12, :12]
+        matrix = unknowns[:9].reshape(3, 3)
+        jacobian = np.zeros((21, 12))
+        jacobian[:12] = np.eye(12)
+        derived = triad.MOUNTING + triad.SYMMETRIC
+        values = np.append(triad.errors_of(unknowns), np.zeros(len(derived)))
+        if np.linalg.det(matrix) > 0:
+            jacobian[12:, :9] = triad.jacobian_of_mounting(matrix)
+            values[12:] = triad.mounting_and_rest(matrix)
+        else:  # two axes are taken for each other, or a sign is wrong: the findings say so
+            reasons = reasons | {name: "M is left-handed: it is no mounting" for name in derived}
+        if any(name.startswith(("scale", "cross")) for name in reasons):
+            reasons = reasons | {name: "it needs all nine elements of M" for name in derived}
+        self.add(method, NAMES + derived, values, jacobian @ covariance @ jacobian.T, reasons)
+
+    def add_nothing(self, method: str, reason: str) -> None:
+        """None of the twelve parameters is determined, for one reason."""
+        reason = reason or "there is no rest whose upward direction is known, and no turn"
+        nothing = (np.zeros(len(NAMES)), np.zeros((len(NAMES), len(NAMES))))
+        self.add(method, NAMES, *nothing, dict.fromkeys(NAMES, reason))
+
+    def add_fit(
+        self,
+        method: str,
+        fitted: Fitted,
+        used: list[str],
+        left: list[str],
+    ) -> None:
+        """How well the method's model describes the data, from which manoeuvres, set how."""
+        for column, (kind, position) in enumerate(fitted.estimate.names):
+            if kind.partition(" ")[0] in SET:
+                self._positions.append(
+                    {
+                        "method": method,
+                        "position": position,
+                        "quantity": kind,
+                        "value": float(fitted.estimate.values[column]),
+                        "sigma": float(fitted.estimate.sigma[column]),
+                        "unit": SET[kind.partition(" ")[0]],
+                    }
+                )
+        self._fit.append(
+            {
+                "method": method,
+                "chi_squared": fitted.estimate.chi_squared,
+                "degrees": fitted.estimate.degrees,
+                "p_value": fitted.p_value,
+                "scatter": fitted.scatter,
+                "unit": UNIT[self.stage],
+                "used": ", ".join(used),
+                "left_out": "; ".join(left),
+                "random_walk": fitted.walk,
+                "random_walk_sigma": fitted.walk_sigma,
+            }
+        )
+
+    def add_averaging(self, method: str, seconds: float, estimate: Estimate) -> None:
+        """What the method finds from so many seconds of each rest."""
+        values = triad.errors_of(estimate.values[:12])
+        self._averaging += [
+            {
+                "parameter": f"{self.stage}/{method}/{name}",
+                "seconds": seconds,
+                "value": float(values[i]),
+                "sigma": float(estimate.sigma[i]),
+            }
+            for i, name in enumerate(NAMES)
+            if estimate.determined[i]
+        ]
+
+    def add_wanted(self, method: str, axis: str, told: Wanted, wanted: float) -> None:
+        """How long the rests must last for a bias with the sigma `wanted`."""
+        self._wanted.append({"parameter": f"{self.stage}/{method}/bias_{axis}"} | told.row(wanted))
+
+    def tables(self) -> dict[str, pd.DataFrame]:
+        """The six tables, with their columns even where there are no rows."""
+
+        def frame(rows: list[dict[str, Any]], empty: Table) -> pd.DataFrame:
+            return pd.DataFrame(rows) if rows else empty.empty()
+
+        covariance = pd.concat(self._covariance) if self._covariance else tables.COVARIANCE.empty()
+        return {
+            "parameters": frame(self._parameters, tables.PARAMETERS),
+            "covariance": covariance,
+            "fit": frame(self._fit, tables.FIT),
+            "averaging": frame(self._averaging, tables.AVERAGING),
+            "positions": frame(self._positions, tables.POSITIONS),
+            "wanted": frame(self._wanted, tables.WANTED),
+        }
+
+
+def by_mount(plan: list[Manoeuvre]) -> list[tuple[str, list[Manoeuvre]]]:
+    """The manoeuvres of each mount, and what its methods' names end with where there are several.
+
+    Each mount has parameters of its own, for its mounting rotation is one of them.
+    """
+    mounts = list(dict.fromkeys(m.mount for m in plan))
+    return [
+        ("" if len(mounts) == 1 else f"@{mount}", [m for m in plan if m.mount == mount])
+        for mount in mounts
+    ]
+
+
+def stops_between_turns(plan: list[Manoeuvre]) -> bool:
+    """Whether several manoeuvres stand at one set position, as S3 turns and stops."""
+    return len({m.position for m in plan}) < len(plan)
+
+
+def reasons(
+    determined: Booleans, recorded: Booleans, sensor: str, cures: dict[str, str]
+) -> dict[str, str]:
+    """Why a parameter is not determined, and the manoeuvre that would determine it.
+
+    Parameters
+    ----------
+    determined : (12,); recorded : (3,), which sensors are in the logs
+    cures : what to do for `bias` and for `matrix`, where {axis} is the axis of the input
+    """
+    result = {}
+    for i, name in enumerate(NAMES):
+        row, column = name.partition("_")[2][0], name[-1]
+        if not recorded["xyz".index(row)]:
+            result[name] = f"the {row} {sensor} is not recorded"
+        elif not determined[i]:
+            kind = "bias" if name.startswith("bias") else "matrix"
+            result[name] = cures[kind].format(axis=column)
+    return result
+
+
+def described(stage: str, name: str) -> tuple[str, str, str]:
+    """Unit, frame and meaning of a parameter."""
+    kind, _, axes = name.partition("_")
+    sensed, unit = SENSED[stage], UNIT[stage]
+    sensor = "accelerometer" if stage == "accelerometer" else "gyro"
+    if kind == "bias":
+        return unit, "body", f"reading of the {axes} {sensor} without input"
+    if kind == "scale":
+        return "1", "body", f"scale factor error of the {axes} {sensor}: M_{axes}{axes} − 1"
+    if kind == "cross":
+        return "1", "body", f"the {axes[0]} {sensor}'s response to {sensed} along {axes[1]}"
+    if kind == "mounting":
+        return "rad", "body", f"rotation of the {sensor} triad against the case, about {axes}"
+    return "1", "sensor triad", f"symmetric rest of M without the mounting rotation, P_{axes} − I"

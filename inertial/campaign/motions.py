@@ -1,0 +1,244 @@
+"""The motion of the table in each static position and rate segment."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.rate_segments import Recorded, position_of
+from inertial.campaign.records import Manoeuvre
+from inertial.campaign.solution import Solution
+from inertial.campaign.static_positions import Still
+from inertial.estimation.gyroscopes import Turn
+from inertial.physics.forward import Site, Triad
+from inertial.physics.motion import Motion, Profile, turned_all, turning
+from inertial.tables import ACCEL
+
+# ---- How the table moved: in every rest, in the blocks of a turn, and sample by sample.
+
+Array = NDArray[np.float64]
+
+
+def at_rest(still: Still, solution: Solution, heading: float | None, time: float) -> Motion:
+    """A rest as one stretch of time, about its middle `time`, s."""
+    m = still.manoeuvre
+    position = position_of(m, heading)
+    up, north = solution.upright(m), solution.north(position)
+    zero = np.zeros(1)
+    rest = turning(
+        still.about,
+        up,
+        north,
+        np.array([still.angle]),
+        zero,
+        zero,
+        np.array([time]),
+        np.array([still.seconds.sum()]),
+    )
+    return replace(rest, surveyed=np.array([position.north is not None]))
+
+
+def in_blocks(
+    m: Manoeuvre, turn: Turn, solution: Solution, heading: float | None, time: Array
+) -> Motion:
+    """A turn in the k blocks of its sums; the angle of each is what the gyros saw of it."""
+    position = position_of(m, heading)
+    up, north = solution.upright(m), solution.north(position)
+    gyro, site = solution.gyro, solution.site
+    assert gyro is not None  # else nothing is simulated
+    angle = angles_seen(turn.sums, turn.seconds, m.axis, up, north, gyro, site, turn.turned)
+    rate = angle / turn.seconds
+    # It rests before and after, so that the acceleration adds up to nothing.
+    edges = np.concatenate([[0.0], (rate[1:] + rate[:-1]) / 2, [0.0]])
+    acceleration = np.diff(edges) / turn.seconds
+    blocks = turning(m.axis, up, north, turn.turned(angle), rate, acceleration, time, turn.seconds)
+    return replace(blocks, surveyed=np.full(len(time), position.north is not None))
+
+
+def angles_seen(
+    sums: Array,
+    seconds: Array,
+    about: Array,
+    up: Array,
+    north: Array,
+    gyro: Triad,
+    site: Site,
+    at_middle: Callable[[Array], Array],
+) -> Array:
+    """The angle that the table turned in each stretch, by the gyros, (k,), rad.
+
+    The earth's rate is taken out in the direction that the angle so far gives it; `at_middle`
+    makes of the angles of the stretches that of the table at the middle of each.
+    """
+    inverse = np.linalg.inv(gyro.matrix)
+    truth = (sums - np.outer(seconds, gyro.bias)) @ inverse.T
+    level = site.earth_level * np.nan_to_num(north)
+    angle = truth @ about
+    for _ in range(2):
+        middle = at_middle(angle)
+        earth = site.earth_up * turned_all(up, about, middle) + turned_all(level, about, middle)
+        angle = truth @ about - earth @ about * seconds
+    return np.asarray(angle)
+
+
+def in_samples(
+    m: Manoeuvre,
+    increments: Array,
+    step: float,
+    steady: NDArray[np.bool_],
+    time: Array,
+    solution: Solution,
+    heading: float | None,
+) -> tuple[Motion, str]:
+    """A turn from rest to rest, sample by sample, and how its profile was had.
+
+    A table with a stated rate and acceleration turns by a trapezoid of the rate, whose
+    middle in time is taken from the steady part of the gyros' angle. Else the angle is that
+    of the gyros, made the stated one as a whole.
+
+    Parameters
+    ----------
+    increments : (n, 3), rad, of the gyros, NaN where they are masked; `step`, s, of each
+    steady : (n,), which samples are at the steady rate
+    time : (n,), s; where it jumps at the steady rate, samples were lost
+    """
+    up, north = solution.upright(m), solution.north(position_of(m, heading))
+    assert solution.gyro is not None and m.angle is not None  # else it is not simulated
+    passed = np.round(np.diff(time, prepend=time[0] - step) / step)  # samples, 0 where one repeats
+    counts, lost = np.minimum(passed, 1.0), np.maximum(passed - 1.0, 0.0)
+    increments = _filled(increments) * counts[:, None]
+    ends = step * np.cumsum(passed)
+
+    def so_far(angle: Array) -> Array:
+        """The angle of the table at the end of each sample, what was lost at the mean rate."""
+        rate = float(angle[steady].mean()) if steady.any() else 0.0
+        return np.asarray(np.cumsum(angle + lost * rate))
+
+    seen = angles_seen(
+        increments,
+        step * counts,
+        m.axis,
+        up,
+        north,
+        solution.gyro,
+        solution.site,
+        lambda angle: so_far(angle) - angle / 2,
+    )
+    if m.rate is not None and m.acceleration is not None and steady.any():
+        after = so_far(seen)
+        middle = float(np.mean(ends[steady] - (after[steady] - m.angle / 2) / m.rate))
+        profile = Profile(abs(m.angle), abs(m.rate), m.acceleration)
+        sign, start = np.sign(m.angle), middle - profile.seconds / 2
+        edges = [sign * np.stack(profile.at(edge - start)) for edge in (ends - step, ends)]
+        (first, after), (rate, rate_after) = zip(*edges, strict=True)
+        how = "trapezoid"
+    else:
+        angles = np.append(0.0, np.cumsum(seen)) * (m.angle / float(seen.sum()))
+        rates = np.gradient(angles, step)
+        first, after, rate, rate_after = angles[:-1], angles[1:], rates[:-1], rates[1:]
+        how = "as the gyros have it"
+    motion = turning(
+        m.axis,
+        up,
+        north,
+        (first + after) / 2,
+        (after - first) / step,
+        (rate_after - rate) / step,
+        time,
+        np.full(len(time), step),
+    )
+    return motion, how
+
+
+def _filled(values: Array) -> Array:
+    """Values (n, 3) with those that are NaN taken from a straight line between their neighbours."""
+    place = np.arange(len(values))
+    known = np.isfinite(values)
+    return np.column_stack(
+        [
+            np.interp(place, place[there], column[there]) if there.any() else column
+            for column, there in zip(values.T, known.T, strict=True)
+        ]
+    )
+
+
+# ---- How each stretch of a campaign moved, and when, how warm and how shaken it was.
+
+MOVING, AFTER = 1 / 3, 2 / 3  # of a visit: the turn, and the rest behind it
+UPRIGHT = 1 - 1e-6  # cosine of an axis to the vertical
+
+
+class CampaignMotions:
+    """The stretches of one mount; without a clock that the logs share, no time is given."""
+
+    def __init__(
+        self,
+        plan: Sequence[Manoeuvre],
+        levels: NoiseLevels,
+        solution: Solution,
+        heading: float | None,
+        shared_clock: bool,
+    ) -> None:
+        self._shared_clock = shared_clock
+        self._visits = {m.name: float(place) for place, m in enumerate(plan)}
+        names = positions_of(plan)
+        self._places = {m.name: float(names.index(m.position)) for m in plan}
+        self._levels, self._solution, self._heading = levels, solution, heading
+        self._at_rest: dict[tuple[str, float], Motion] = {}
+
+    def at_rest(self, still: Still) -> Motion:
+        """A rest as one stretch."""
+        name, time = still.manoeuvre.name, still.mean_of(still.time)
+        time = time if self._shared_clock else np.nan
+        later = AFTER if still.label.endswith("(rest-after)") else 0.0
+        place = (name, still.angle)  # all pieces of a rest stand alike
+        if place not in self._at_rest:
+            self._at_rest[place] = at_rest(still, self._solution, self._heading, time)
+        return replace(
+            self._at_rest[place],
+            time=np.array([time]),
+            seconds=np.array([still.seconds.sum()]),
+            visit=np.array([self._visits[name] + later]),
+            position=np.array([self._places[name]]),
+            temperature=np.array([still.mean_of(still.temperature)]),
+            vibration=self._levels.of_samples(name, "rest", ACCEL)[None],
+        )
+
+    def turning(self, one: Recorded, turn: Turn) -> Motion:
+        """A turn in its blocks; about an axis that is not upright gravity hides how it shakes."""
+        name = one.plan.name
+        blocks = one.blocks
+        time = blocks.time if self._shared_clock else np.full(len(blocks), np.nan)
+        motion = in_blocks(one.plan, turn, self._solution, self._heading, time)
+        upright = abs(float(turn.position.up @ turn.about)) > UPRIGHT
+        shaken = self._levels.of_samples(name, "steady", ACCEL) if upright else np.full(3, np.nan)
+        return replace(
+            motion,
+            visit=np.full(len(time), self._visits[name] + MOVING),
+            position=np.full(len(time), self._places[name]),
+            temperature=blocks.temperature,
+            vibration=np.tile(shaken, (len(time), 1)),
+        )
+
+
+def positions_of(plan: Sequence[Manoeuvre]) -> list[str]:
+    """The positions of a plan in their order."""
+    return list(dict.fromkeys(m.position for m in plan))
+
+
+def mean_motion(motion: Motion, some: slice, share: Array) -> Motion:
+    """Some stretches as one; `share`: what each of them counts for."""
+
+    def mean(values: Array) -> Array:
+        return np.asarray([share @ values[some]])
+
+    names = [field.name for field in fields(Motion) if field.name != "about"]
+    means: dict[str, Any] = {name: mean(getattr(motion, name)) for name in names}
+    # The pull of a lever arm goes with the square of the rate, so its mean is the root of that.
+    means["rate"] = np.sign(means["rate"]) * np.sqrt(mean(motion.rate**2))
+    means["seconds"] = np.array([motion.seconds[some].sum()])
+    means["surveyed"], means["position"] = motion.surveyed[some][:1], motion.position[some][:1]
+    return Motion(about=motion.about, **means)

@@ -1,0 +1,327 @@
+"""The rate segments of a campaign as the equations of the gyros take them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import cos, degrees, sin
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import Known, Manoeuvre, Performed
+from inertial.campaign.static_positions import NONE, Blocks, Still, by_manoeuvre, stills, stretch_of
+from inertial.estimation import gyroscopes
+from inertial.estimation.gyroscopes import Angle, Bridge, Earth, Position, Steady, Turn
+from inertial.estimation.spectrum import strays
+from inertial.physics.vectors import cross
+from inertial.tables import GYRO
+
+# ---- What is missing of a turn, bridged by the blocks about it, and how sure the angle is.
+#
+# In the steady part the table turned by the mean rate of what is recorded of it, in a ramp by the
+# rate between the blocks beside. The noise of these blocks is in the equations; here is what else
+# the angle may be wrong by:
+#
+# - the mean rate over what is missing may be off the recorded one: by as much as the table's rate
+#   is stated to be known, or by as much as the data show that it strays, if that is more. Nothing
+#   is counted on to average out, and all that is missing in a turn is off alike;
+# - an oscillation of the case that is faster than a block is seen in the scatter of the samples
+#   alone: the recorded part may break off at any phase of it;
+# - a rate that changes may change its acceleration between the blocks beside: then a straight line
+#   is off by up to a quarter of the change of rate between them.
+
+Array = NDArray[np.float64]
+
+
+def bridges(part: Blocks) -> list[Bridge]:
+    """What is missing between the k blocks of a turn, each bridged by the blocks about it."""
+    seconds, steady = part.seconds, part.steady
+    found = []
+    for i in np.flatnonzero(part.missing).tolist():
+        gone = float(part.missing[i])
+        shares = np.zeros(len(part))
+        if steady[i - 1] and steady[i]:
+            shares[steady] = gone / seconds[steady].sum()
+        else:
+            # The straight line through the means of both blocks, at the middle of what is missing.
+            nearer = (seconds[i - 1] + gone) / (seconds[i - 1] + 2 * gone + seconds[i])
+            shares[i - 1 : i + 1] = gone * np.array([1 - nearer, nearer]) / seconds[i - 1 : i + 1]
+        found.append(Bridge(i, gone, shares))
+    return found
+
+
+def sigma_of(
+    part: Blocks,
+    found: Sequence[Bridge],
+    about: Array,
+    name: str,
+    noise: NoiseLevels,
+    rate_sigma: float,
+) -> float:
+    """The sigma of the angle that the table turned in all that is missing, rad, but for noise.
+
+    Parameters
+    ----------
+    about : (3,), axis of the turn; `name` of its manoeuvre
+    rate_sigma : relative, of the table's rate
+    """
+    if not found:
+        return 0.0
+    seconds, steady = part.seconds, part.steady
+    rate = np.nan_to_num(part.gyro) @ about
+    elapsed = np.cumsum(seconds + part.missing) - seconds / 2
+    density = np.nan_to_num(noise.of(name, "steady", GYRO))
+    rings = _oscillation(name, noise, about, float(seconds.sum() / part.counts.sum()))
+    # An oscillation slower than one period in a block shows in the blocks.
+    longest = float(np.median(seconds)) / (2 * np.pi)
+    variance = sum(2 * (rings * min(one.seconds, longest)) ** 2 for one in found)
+
+    level = [one for one in found if steady[one.before - 1] and steady[one.before]]
+    if level:
+        longer = max(level, key=lambda one: one.seconds)
+        strayed = strays(
+            rate[steady],
+            seconds[steady],
+            elapsed[steady],
+            np.flatnonzero(steady) < longer.before,
+            longer.seconds,
+            float(np.linalg.norm(about * density)),
+        )
+        stated = rate_sigma * abs(float(np.average(rate[steady], weights=seconds[steady])))
+        variance += (max(strayed, stated) * sum(one.seconds for one in level)) ** 2
+    change = np.abs(np.diff(rate)) / np.diff(elapsed)  # rad/s², from block to block
+    for one in found:
+        if not any(one is other for other in level):
+            near = change[max(one.before - 2, 0) : one.before + 1].max()
+            apart = elapsed[one.before] - elapsed[one.before - 1]
+            variance += (near * apart / 4 * one.seconds) ** 2
+    return float(np.sqrt(variance))
+
+
+def _oscillation(name: str, noise: NoiseLevels, about: Array, step: float) -> float:
+    """What the samples of the steady part scatter about the axis beyond white noise, rad/s."""
+    white = noise.of(name, "steady", GYRO) ** 2 / step
+    beyond = np.maximum(np.nan_to_num(noise.of_samples(name, "steady", GYRO) ** 2 - white), 0.0)
+    return float(np.sqrt(about**2 @ beyond))
+
+
+# ---- Rests and turns as the equations of the gyros take them, and which turns are refused.
+
+TURNING = ("spin-up", "steady", "spin-down", "turning")
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A turn of the plan, what was recorded of it, its blocks in motion, and why it is refused."""
+
+    plan: Manoeuvre
+    done: Performed
+    blocks: Blocks
+    refusal: str  # empty where it can be used
+
+    @property
+    def steady(self) -> Blocks:
+        """Its blocks at the steady rate."""
+        return self.blocks.those(self.blocks.steady)
+
+
+@dataclass(frozen=True)
+class GyroInputs:
+    """All that a campaign gives the equations of the gyros, of one mount."""
+
+    stills: list[Still]
+    recorded: list[Recorded]
+    turns: list[Turn]  # from rest to rest, with their angle known
+    steadies: list[Steady]  # at a known rate
+    earth: Earth
+    position_sigma: float
+    heading: float | None
+    left_out: list[str]  # manoeuvres, each with the reason
+
+    @property
+    def usable(self) -> list[Recorded]:
+        """The turns that are not refused."""
+        return [one for one in self.recorded if not one.refusal]
+
+    @property
+    def used(self) -> list[str]:
+        """Names of all that is used."""
+        return [s.label for s in self.stills] + [one.plan.name for one in self.usable]
+
+    @property
+    def nothing(self) -> bool:
+        """Whether there is neither a rest nor a turn."""
+        return not (self.stills or self.turns or self.steadies)
+
+    @cached_property
+    def rests(self) -> list[gyroscopes.Still]:
+        """The rests as the equations have them."""
+        return self.first_of_rests(np.inf)
+
+    def first_of_rests(self, seconds: float) -> list[gyroscopes.Still]:
+        """The same of the first seconds of each."""
+        return [still_of(still, self.heading, seconds) for still in self.stills]
+
+
+def gyro_inputs(
+    blocks: pd.DataFrame,
+    plan: Sequence[Manoeuvre],
+    done: Mapping[str, Performed],
+    levels: NoiseLevels,
+    known: Mapping[str, Known],
+    shared_clock: bool = False,
+) -> GyroInputs:
+    """Gather the rests and turns of one mount; `shared_clock` as in `stills`."""
+    found, left = stills(blocks, plan, done, levels, "gyro", shared_clock)
+    recorded = recorded_turns(blocks, plan, done)
+    left += [f"{one.plan.name}: {one.refusal}" for one in recorded if one.refusal]
+    heading, rate_sigma = known["heading"].value, known["turn_rate"].scatter
+    usable = [one for one in recorded if not one.refusal]
+    up, level = known["earth_rate_up"], known["earth_rate_level"]
+    given = (levels, heading, rate_sigma)
+    return GyroInputs(
+        found,
+        recorded,
+        [
+            replace(turn_of(r, *given), stretch=stretch_of(r.plan.name, r.blocks, shared_clock))
+            for r in usable
+            if r.plan.recorded == "whole"
+        ],
+        [
+            replace(steady_of(r, *given), stretch=stretch_of(r.plan.name, r.steady, shared_clock))
+            for r in usable
+            if r.plan.recorded == "steady"
+        ],
+        Earth(up.number, up.scatter, level.number),
+        known["position"].scatter,
+        heading,
+        left,
+    )
+
+
+def recorded_turns(
+    blocks: pd.DataFrame, plan: Sequence[Manoeuvre], done: Mapping[str, Performed]
+) -> list[Recorded]:
+    """Every turn of the plan."""
+    moving = by_manoeuvre(blocks[blocks["phase"].isin(TURNING)])
+    result = []
+    for m in plan:
+        if m.do == "turn":
+            part = moving.get(m.name, NONE)
+            result.append(Recorded(m, done[m.name], part, refusal_of(m, done[m.name], part)))
+    return result
+
+
+def refusal_of(m: Manoeuvre, done: Performed, part: Blocks) -> str:
+    """Why a turn cannot be used; empty where it can."""
+    if not done.found:
+        return "not found in its log"
+    if m.up is None:
+        return "which way is up is not known"
+    if not len(part) or np.isnan(part.seconds).any() or bool((part.counts == 0).any()):
+        return "it has no time, so no angle can be summed"
+    if m.recorded == "steady":
+        return "" if bool(part.steady.any()) else "no steady rate was found"
+    if not (done.complete or done.bridged):
+        return f"the angle method needs the whole turn, and {done.sentence}"
+    if m.angle is None or m.angle_sigma is None:
+        return "its angle is not stated"
+    if done.angle is None or done.angle * m.angle < 0:
+        return f"it turned by {degrees(done.angle or 0.0):.1f}°, against the plan"
+    return ""
+
+
+def position_of(m: Manoeuvre, heading: float | None) -> Position:
+    """The set position of a manoeuvre; north is known where mark and heading are."""
+    up = m.up
+    assert up is not None  # else it is refused
+    if m.mark is None:
+        return Position(m.position, up)
+    mark = m.mark - up * (up @ m.mark)
+    mark = mark / np.linalg.norm(mark)
+    if heading is None:
+        return Position(m.position, up, mark=mark)
+    # The azimuth counts clockwise, so north lies counter-clockwise of the mark, seen from above.
+    return Position(m.position, up, north=cos(heading) * mark + sin(heading) * cross(up, mark))
+
+
+def still_of(still: Still, heading: float | None, seconds: float) -> gyroscopes.Still:
+    """A rest, or its first seconds."""
+    position = position_of(still.manoeuvre, heading)
+    mean, sigma = still.over(seconds)
+    stretch = still.during(seconds)
+    return gyroscopes.Still(position, mean, sigma, still.about, still.angle, stretch=stretch)
+
+
+def turn_of(one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float) -> Turn:
+    """A turn from rest to rest with its blocks in motion; what is missing of it is bridged.
+
+    `rate_sigma`: relative, of the table's rate.
+    """
+    m, part = one.plan, one.blocks
+    missing = bridges(part)
+    assert m.angle is not None and m.angle_sigma is not None  # else it is refused
+    return Turn(
+        position=position_of(m, heading),
+        about=m.axis,
+        angle=m.angle,
+        angle_sigma=m.angle_sigma,
+        sums=part.gyro * part.seconds[:, None],
+        seconds=part.seconds,
+        density=noise.of(m.name, "steady", GYRO),
+        quiet_density=noise.of(m.name, "rest", GYRO),
+        by_hand=bool((part.phase == "turning").any()),
+        bridges=missing,
+        bridged_sigma=sigma_of(part, missing, m.axis, m.name, noise, rate_sigma),
+        unsteady=np.flatnonzero(~part.steady).tolist() if noise.rings(m.name, GYRO) else (),
+    )
+
+
+def steady_of(
+    one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float
+) -> Steady:
+    m, part = one.plan, one.steady
+    assert m.rate is not None  # the plan wants a rate of such a turn
+    ends = np.cumsum(part.seconds + part.missing) - part.missing[0]
+    return Steady(
+        position=position_of(m, heading),
+        about=m.axis,
+        rate=m.rate,
+        rate_sigma=abs(m.rate) * rate_sigma,
+        seconds=part.seconds,
+        elapsed=ends - part.seconds / 2,
+        mean=np.average(part.gyro, weights=part.counts, axis=0),
+        sigma=noise.of(m.name, "steady", GYRO) / np.sqrt(part.seconds.sum()),
+    )
+
+
+def angles_about(inputs: GyroInputs, i: int, noise: NoiseLevels) -> list[tuple[str, Angle]]:
+    """The whole turns about body axis i while it points up or down, as their own gyro saw them.
+
+    Each with the name of its manoeuvre. A turn that is bridged is not whole.
+    """
+    recorded = [r for r in inputs.usable if r.plan.recorded == "whole" and r.done.complete]
+    whole = [r for r in recorded if _upright(r.plan, i)]
+    angles = [(r.plan.name, _angle(r, i, noise)) for r in whole]
+    return [(name, angle) for name, angle in angles if np.isfinite(angle.summed)]
+
+
+def _upright(m: Manoeuvre, i: int) -> bool:
+    """Whether a turn is about body axis i, and that axis points up or down."""
+    up = m.up is not None and abs(float(m.up[i])) > 1 - 1e-9
+    return up and abs(float(m.axis[i])) > 1 - 1e-9
+
+
+def _angle(one: Recorded, i: int, noise: NoiseLevels) -> Angle:
+    m, part = one.plan, one.blocks
+    assert m.up is not None and m.angle is not None and m.angle_sigma is not None  # else refused
+    return Angle(
+        summed=float((part.gyro[:, i] * part.seconds).sum()),
+        angle=m.angle * float(m.axis[i]),
+        angle_sigma=m.angle_sigma,
+        seconds=float(part.seconds.sum()),
+        up=float(m.up[i]),
+        density=float(noise.of(m.name, "rest", GYRO)[i]),
+    )

@@ -1,0 +1,149 @@
+"""Rows of the small tables as records with types: manoeuvres, what was performed, what is known."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.tables import AXES
+
+Array = NDArray[np.float64]
+Row = dict[str, Any]
+
+
+def rows_of(table: pd.DataFrame) -> list[Row]:
+    """The rows of a table, None for what is empty."""
+    names = list(table.columns)
+    rows = zip(*(table[name].to_numpy(dtype=object) for name in names), strict=True)
+    return [
+        {name: None if pd.isna(value) else value for name, value in zip(names, row, strict=True)}
+        for row in rows
+    ]
+
+
+@dataclass(frozen=True)
+class Manoeuvre:
+    """One manoeuvre of the plan; vectors (3,) in body axes, SI and radians, None where unknown."""
+
+    name: str
+    do: str
+    log: str
+    position: str
+    mount: str
+    up: Array | None
+    mark: Array | None
+    about: Array | None
+    angle: float | None
+    angle_sigma: float | None
+    rate: float | None
+    acceleration: float | None
+    seconds: float | None
+    recorded: str
+    from_s: float | None
+    to_s: float | None
+    from_row: int | None
+    to_row: int | None
+    label: str | None
+
+    @property
+    def selected(self) -> bool:
+        """Whether the plan says which stretch of the log it is."""
+        return (self.from_s, self.from_row, self.label) != (None, None, None)
+
+    @property
+    def axis(self) -> Array:
+        """The axis of a turn; the plan refuses a turn without one."""
+        assert self.about is not None
+        return self.about
+
+
+def manoeuvres_of(table: pd.DataFrame) -> list[Manoeuvre]:
+    """The manoeuvres of the plan in their order."""
+    return [
+        Manoeuvre(
+            row["manoeuvre"],
+            *(row[key] for key in ("do", "log", "position", "mount")),
+            *(_vector(row, stem) for stem in ("up", "mark", "about")),
+            *(row[key] for key in ("angle", "angle_sigma", "rate")),
+            *(row[key] for key in ("acceleration", "seconds", "recorded")),
+            *(row[key] for key in ("from_s", "to_s", "from_row", "to_row", "label")),
+        )
+        for row in rows_of(table)
+    ]
+
+
+def _vector(row: Row, stem: str) -> Array | None:
+    components = [row[f"{stem}_{axis}"] for axis in AXES]
+    return None if None in components else np.array(components, dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class Performed:
+    """What was recorded of a manoeuvre; rad, rad/s about its axis, s."""
+
+    manoeuvre: str
+    sentence: str
+    found: bool = True
+    complete: bool = True
+    angle: float | None = None
+    missing_angle: float | None = None
+    missing_s: float = 0.0
+    rate: float | None = None
+    seconds: float = 0.0
+    bridged: bool = False
+
+
+def performed_of(table: pd.DataFrame) -> dict[str, Performed]:
+    """What was recorded, by the name of the manoeuvre."""
+    return {row["manoeuvre"]: Performed(**row) for row in rows_of(table)}
+
+
+@dataclass(frozen=True)
+class Known:
+    """A quantity that is taken as known, and its sigma; None where it is not known."""
+
+    value: float | None
+    sigma: float | None
+
+    @property
+    def number(self) -> float:
+        """The value of a quantity that every campaign has."""
+        assert self.value is not None
+        return self.value
+
+    @property
+    def scatter(self) -> float:
+        """The sigma of a quantity that always has one."""
+        assert self.sigma is not None
+        return self.sigma
+
+
+def known_of(table: pd.DataFrame) -> dict[str, Known]:
+    """What is taken as known, by its name."""
+    return {row["quantity"]: Known(row["value"], row["sigma"]) for row in rows_of(table)}
+
+
+@dataclass(frozen=True)
+class Clock:
+    """The clock of a log, s: median interval, and what a sample counts for in a sum over time."""
+
+    interval: float | None
+    duration: float | None  # None without time
+
+    @property
+    def step(self) -> float:
+        """The duration of a sample; 1 where there is no time, so that records stand for seconds."""
+        return self.duration or 1.0
+
+
+def clocks_of(table: pd.DataFrame) -> dict[str, Clock]:
+    """The clocks by the name of the log."""
+    return {row["log"]: Clock(row["interval"], row["step"]) for row in rows_of(table)}
+
+
+def share_a_clock(table: pd.DataFrame) -> bool:
+    """Whether times of all logs count from one start: GPS time, or a single log of its own."""
+    clocks = [row["clock"] for row in rows_of(table)]
+    return set(clocks) == {"GPS"} or clocks == ["own"]

@@ -1,0 +1,237 @@
+"""The static positions of a campaign: means of blocks, with their noise."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import Manoeuvre, Performed
+from inertial.estimation.random_walk import COMMON, Stretch
+from inertial.physics.motion import turned
+from inertial.tables import ACCEL, AXES, GYRO
+
+# ---- The blocks of one manoeuvre as arrays.
+
+Array = NDArray[np.float64]
+Truths = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """k blocks of one manoeuvre in their order, all of one log.
+
+    `log`, `phase`, `counts` of samples, `seconds`, `missing` before each, s, `time` of the middle,
+    s, `temperature`, K: (k,); `gyro`, rad/s, and `accel`, m/s²: (k, 3), NaN where not recorded.
+    """
+
+    log: NDArray[Any]
+    phase: NDArray[Any]
+    counts: Array
+    seconds: Array
+    missing: Array
+    time: Array
+    temperature: Array
+    gyro: Array
+    accel: Array
+
+    def __len__(self) -> int:
+        return len(self.phase)
+
+    @property
+    def steady(self) -> Truths:
+        """Which of them are at the steady rate, (k,)."""
+        return np.asarray(self.phase == "steady", bool)
+
+    def those(self, which: NDArray[Any]) -> "Blocks":
+        """Some of them, by number or truth value; the readings of a channel stay side by side."""
+        return Blocks(*(getattr(self, field.name).T[..., which].T for field in fields(self)))
+
+
+NONE = Blocks(*(np.empty(0) for _ in range(7)), *(np.empty((0, 3)) for _ in range(2)))
+
+
+def by_manoeuvre(table: pd.DataFrame) -> dict[str, Blocks]:
+    """The blocks of each manoeuvre, by its name."""
+    every = _blocks(table)
+    rows = table.groupby("manoeuvre").indices
+    return {str(name): every.those(np.asarray(some)) for name, some in rows.items()}
+
+
+def _blocks(table: pd.DataFrame) -> Blocks:
+    names = ("count", "seconds", "missing_s", "time", "temperature")
+    return Blocks(
+        table["log"].to_numpy(),
+        table["phase"].to_numpy(),
+        *(table[name].to_numpy(np.float64) for name in names),
+        *(table[names].to_numpy(np.float64) for names in (GYRO, ACCEL)),
+    )
+
+
+# ---- The stretches of a campaign in which the IMU stands still, each with its attitude.
+
+UNTIMED = Stretch("")
+IN_BLOCKS = ("means", "counts", "seconds", "time", "temperature")
+OF_BLOCKS = ("count", "seconds", "time", "temperature")
+
+
+@dataclass(frozen=True)
+class Still:
+    """One stretch at rest in k blocks.
+
+    `up`, `about`: (3,), body axes at the start of its manoeuvre; `angle`: rad, by which
+    it has turned about `about` since; `means`: (k, 3), rad/s or m/s², NaN where not
+    recorded; `counts`, `seconds`, `time` of the middle, s, `temperature`, K: (k,); `density`: (3,),
+    white noise per √s; `stretch`: of time.
+    """
+
+    label: str
+    manoeuvre: Manoeuvre
+    up: Array
+    about: Array
+    angle: float
+    means: Array
+    counts: Array
+    seconds: Array
+    time: Array
+    temperature: Array
+    density: Array
+    stretch: Stretch = UNTIMED
+
+    @cached_property
+    def up_now(self) -> Array:
+        """The direction that points up in this stretch, (3,)."""
+        return turned(self.up, self.about, self.angle)
+
+    def over(self, seconds: float = np.inf) -> tuple[Array, Array]:
+        """Mean reading over the first so many seconds, and the sigma that white noise leaves."""
+        count = int(np.searchsorted(self._starts, seconds))
+        with np.errstate(invalid="ignore", divide="ignore"):  # a channel that is not recorded
+            summed, samples, lasted = self._so_far[:, count - 1]
+            return summed / samples, self.density / np.sqrt(lasted)
+
+    def mean_of(self, values: Array) -> float:
+        """The mean of something over all samples, from its means in the blocks, (k,)."""
+        return float(np.average(values, weights=self.counts))
+
+    def pieces(self, seconds: float) -> list["Still"]:
+        """The same in pieces of about so many seconds, each a stretch of its own."""
+        count = max(round(float(self.seconds.sum()) / seconds), 1)
+        edges = np.linspace(0, len(self.seconds), min(count, len(self.seconds)) + 1).round()
+        return [
+            self._piece(slice(int(first), int(after)), number)
+            for number, (first, after) in enumerate(pairwise(edges))
+        ]
+
+    def _piece(self, some: slice, number: int) -> "Still":
+        start, end = _ends(self.time[some], self.seconds[some])
+        stretch = Stretch(f"{self.label} {number}", self.stretch.clock, start, end - start)
+        each = {name: getattr(self, name)[some] for name in IN_BLOCKS}
+        return replace(self, stretch=stretch, **each)
+
+    def during(self, seconds: float = np.inf) -> Stretch:
+        """The stretch of time of the first so many seconds."""
+        return replace(self.stretch, seconds=min(self.stretch.seconds, seconds))
+
+    @cached_property
+    def _starts(self) -> Array:
+        """When each block starts, were there no pauses, (k,), s."""
+        return np.cumsum(self.seconds) - self.seconds
+
+    @cached_property
+    def _so_far(self) -> Array:
+        """Sums of readings, samples and seconds to the end of each block, (3, k, 3)."""
+        there = np.isfinite(self.means)
+        samples, lasted = there * self.counts[:, None], there * self.seconds[:, None]
+        return np.cumsum([samples * np.nan_to_num(self.means), samples, lasted], axis=1)
+
+
+def stills(
+    blocks: pd.DataFrame,
+    plan: Sequence[Manoeuvre],
+    performed: Mapping[str, Performed],
+    noise: NoiseLevels,
+    sensor: str,
+    shared_clock: bool = False,
+) -> tuple[list[Still], list[str]]:
+    """The stretches at rest with a known attitude, and what is left out with the reason.
+
+    After a turn the IMU stands where the turn has brought it, so that stretch counts
+    where the turn was recorded from rest to rest. `sensor` is accel or gyro; `shared_clock`: the
+    times of different logs are comparable.
+    """
+    found: list[Still] = []
+    left: list[str] = []
+    channels = [f"{sensor}_{axis}" for axis in AXES]
+    at_rest = blocks[blocks["phase"].str.startswith("rest") & (blocks["count"] > 0)]
+    read = at_rest[channels].to_numpy(np.float64)
+    each = {name: at_rest[name].to_numpy(np.float64) for name in OF_BLOCKS}
+    logs = at_rest["log"].to_numpy()
+    rows = at_rest.groupby(["manoeuvre", "phase"]).indices
+    for m in plan:
+        if m.do == "positions":
+            left.append(f"{m.name}: the attitudes of its rests are not known")
+        if m.do == "rest" and not performed[m.name].found:
+            left.append(f"{m.name}: not found in its log")
+        for phase in ("rest", "rest-before", "rest-after"):
+            part = rows.get((m.name, phase))
+            if part is None or np.isnan(read[part]).all():
+                continue
+            count, seconds, time, temperature = (each[name][part] for name in OF_BLOCKS)
+            density = noise.of(m.name, "rest", channels)
+            label = m.name if phase == "rest" else f"{m.name} ({phase})"
+            after, whole = phase == "rest-after", performed[m.name].complete
+            if m.up is None:
+                left.append(f"{label}: which way is up is not known")
+            elif after and (not (whole or performed[m.name].bridged) or m.angle is None):
+                left.append(f"{label}: its attitude is not known, for the turn is not whole")
+            elif np.isnan(seconds).any() or np.isnan(density).all():
+                left.append(f"{label}: its noise is not known, for it has no time or is too short")
+            else:
+                found.append(
+                    Still(
+                        label,
+                        m,
+                        m.up,
+                        m.up if m.about is None else m.about,
+                        (m.angle or 0.0) if after else 0.0,
+                        read[part],
+                        count,
+                        seconds,
+                        time,
+                        temperature,
+                        density,
+                        _stretch(label, str(logs[part[0]]), time, seconds, shared_clock),
+                    )
+                )
+    return found, left
+
+
+def stretch_of(name: str, part: Blocks, shared_clock: bool) -> Stretch:
+    """The stretch of time of some blocks in their order."""
+    return _stretch(name, str(part.log[0]), part.time, part.seconds, shared_clock)
+
+
+def _stretch(name: str, log: str, time: Array, seconds: Array, shared_clock: bool) -> Stretch:
+    start, end = _ends(time, seconds)
+    return Stretch(name, COMMON if shared_clock else log, start, end - start)
+
+
+def _ends(time: Array, seconds: Array) -> tuple[float, float]:
+    """When some blocks begin and end, from their middles, s."""
+    return float(time[0] - seconds[0] / 2), float(time[-1] + seconds[-1] / 2)
+
+
+def averaging_times(found: list[Still], steps: int) -> list[float]:
+    """Lengths of rest from one block to the longest, in equal ratios, s."""
+    lengths = [still.seconds for still in found if still.manoeuvre.do == "rest"]
+    if not lengths:
+        return []
+    shortest = max(float(seconds.max()) for seconds in lengths)
+    longest = max(float(seconds.sum()) for seconds in lengths)
+    return [float(t) for t in np.unique(np.geomspace(shortest, longest, steps).round(6))]

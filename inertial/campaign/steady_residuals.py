@@ -1,0 +1,216 @@
+"""The steady parts of turns at full rate: what the gyros have left, and the angle of the table."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.campaign.records import Clock, Manoeuvre
+from inertial.estimation.periodic_in_angle import Course
+from inertial.estimation.periodic_in_time import Line
+from inertial.estimation.spectrum import band_levels, white_level
+from inertial.physics.forward import Triad
+from inertial.tables import AXES, GYRO
+from inertial.tables.parquet import Stream
+
+Array = NDArray[np.float64]
+
+RESIDUALS = [f"residual_{name}" for name in GYRO]
+RESTS = ("rest-before", "rest-after")
+FEW = 3  # samples in a row without which an oscillation is still the same
+FEWEST = 64  # samples of a steady part
+WHITE_FROM = 0.5  # Hz, from which on the noise is read
+ACROSS = 0.5  # cosine below which an axis is not that of the table
+UPRIGHT = 0.999  # cosine between axis and vertical, above which gravity does not go round
+
+
+@dataclass(frozen=True)
+class SteadyTurn:
+    """The steady part of one turn, the coupling of the gyros by M undone.
+
+    name : of the manoeuvre; about : (3,), the table's axis in the case; step : s, of a sample
+    start : s, time of the first sample, NaN where it is not known
+    matrix : (3, 3), M of the gyros
+    truth : (n, 3), rad/s, residuals of the rates about the axes of the case
+    angle : (n,), rad, signed, that the table has turned since its start; NaN where the table has
+        no stated rate, for then the gyros themselves tell it, and their residuals hold no ripple
+    averaged : whether a sample is the mean of the rate over its interval, an increment
+    tilted : whether gravity goes round in the case
+    """
+
+    name: str
+    about: Array
+    matrix: Array
+    truth: Array
+    angle: Array
+    step: float
+    averaged: bool
+    tilted: bool
+    start: float = np.nan
+
+    @property
+    def rate(self) -> float:
+        """The rate of the table about its axis, rad/s; NaN where its angle is not known."""
+        return float((self.angle[-1] - self.angle[0]) / (len(self.angle) - 1) / self.step)
+
+    @property
+    def seconds(self) -> float:
+        """How long it is, s."""
+        return self.step * len(self.truth)
+
+    def hertz(self, order: float) -> float:
+        """The frequency of so many periods in a turn of the table."""
+        return order * abs(self.rate) / (2 * np.pi)
+
+    def tells(self, direction: Array) -> bool:
+        """Whether its residuals about an axis of the case, a unit vector, hold what rings there.
+
+        About the table's own they do not where the gyros themselves tell its angle.
+        """
+        return bool(np.isfinite(self.rate) or abs(direction @ self.about) < ACROSS)
+
+    def along(self, direction: Array) -> Array:
+        """The residual rate about an axis of the case, a unit vector, (n,), rad/s."""
+        return np.asarray(self.truth @ direction)
+
+    def sigma(self, direction: Array) -> float:
+        """White noise of a sample about an axis of the case, rad/s."""
+        rate = 1 / self.step
+        levels = band_levels(self.along(direction)[:, None], rate, (WHITE_FROM, rate / 2))
+        return float(white_level(levels)[0][0] * np.sqrt(rate))
+
+    def course(self, direction: Array) -> Course:
+        """The residual rate about an axis of the case, against the table's angle."""
+        return Course(
+            self.along(direction),
+            self.angle,
+            self.rate,
+            self.step,
+            self.averaged,
+            self.sigma(direction),
+            self.tilted,
+        )
+
+    def whole(self, line: Line) -> Line:
+        """A line of the rate, the averaging over a sample undone: that lessens it by sinc(fT)."""
+        share = float(np.sinc(line.frequency * self.step)) if self.averaged else 1.0
+        return Line(
+            line.frequency,
+            line.sigma_frequency,
+            line.amplitude / share,
+            line.sigma_amplitude / share,
+            line.p_value,
+        )
+
+
+def steady_turns(
+    simulated: Stream,
+    plan: Sequence[Manoeuvre],
+    gyro: Triad | None,
+    clocks: Mapping[str, Clock],
+    averaged: set[str],
+) -> list[SteadyTurn]:
+    """The steady parts of all turns of one mount; none where its gyros are not determined.
+
+    `averaged`: the logs whose samples are means.
+    """
+    if gyro is None:
+        return []
+    planned = {m.name: m for m in plan if m.do == "turn"}
+    inverse = np.linalg.inv(gyro.matrix)
+    found = []
+    for name, rows in by_turn(simulated, ["time", *GYRO, *RESIDUALS]):
+        steady = (rows["phase"] == "steady").to_numpy()
+        if name not in planned or not steady.any():
+            continue
+        m = planned[name]
+        step = clocks[m.log].step
+        angle = np.full(len(rows), np.nan)
+        if m.rate is not None and m.acceleration is not None:
+            angle = _angle(rows, (rows[GYRO].to_numpy() - gyro.bias) @ inverse.T @ m.axis, step)
+        columns = [rows[["time", *RESIDUALS]].to_numpy(np.float64), angle[:, None]]
+        columns.append(rows[["time"]].to_numpy(np.float64))
+        residuals, further = unbroken(np.hstack(columns)[steady])
+        truth = residuals @ inverse.T
+        if len(truth) < FEWEST or not np.isfinite(truth).all():
+            continue
+        tilted = m.up is None or abs(float(m.up @ m.axis)) < UPRIGHT
+        found.append(
+            SteadyTurn(
+                name,
+                m.axis,
+                gyro.matrix,
+                truth,
+                further[:, 0],
+                step,
+                m.log in averaged,
+                tilted,
+                float(further[0, 1]),
+            )
+        )
+    return found
+
+
+def _angle(rows: pd.DataFrame, rate: Array, step: float) -> Array:
+    """The table's angle at the middle of each sample since the turn began, (n,), rad.
+
+    `rate`: (n,), rad/s, about the axis, as it was simulated: with the earth's, which is what is
+    there at rest. Where samples were lost the table went on at the rate of those after.
+    """
+    still = rows["phase"].isin(RESTS).to_numpy()
+    turning = rate - (np.median(rate[still]) if still.any() else 0.0)
+    time = rows["time"].to_numpy(np.float64)
+    passed = np.ones(len(time))
+    if np.isfinite(time).all():
+        passed[1:] = np.round(np.diff(time) / step)
+    return np.asarray(np.cumsum(turning * passed) * step - turning * step / 2)
+
+
+def steady_residuals(simulated: Stream) -> Iterator[tuple[str, Array]]:
+    """The gyro residuals of the steady part of each turn, (n, 3), rad/s; one turn at a time.
+
+    Of a turn with a gap it is the longest stretch without one.
+    """
+    for name, rows in by_turn(simulated, ["time", *RESIDUALS]):
+        steady = rows.loc[rows["phase"] == "steady", ["time", *RESIDUALS]]
+        if len(steady):
+            yield name, unbroken(steady.to_numpy(np.float64))[0]
+
+
+def by_turn(simulated: Stream, columns: list[str]) -> Iterator[tuple[str, pd.DataFrame]]:
+    """The rows of each manoeuvre with their phase, one manoeuvre at a time."""
+    name, parts = "", []  # type: str, list[pd.DataFrame]
+    for batch in simulated.columns(["manoeuvre", "phase", *columns]):
+        for manoeuvre, rows in batch.to_pandas().groupby("manoeuvre", sort=False):
+            if manoeuvre != name and parts:
+                yield name, pd.concat(parts)
+                parts = []
+            name = str(manoeuvre)
+            parts.append(rows)
+    if parts:
+        yield name, pd.concat(parts)
+
+
+def unbroken(rows: Array) -> tuple[Array, Array]:
+    """The longest stretch without a gap; rows (n, 4 + c) of time, residuals, further columns.
+
+    Returns the residuals, (m, 3), and the further columns, (m, c). A few samples that are missing
+    or masked break none: they hold nothing but noise, so nothing; the further columns go on.
+    """
+    rows = rows[~np.isnan(rows[:, 1:4]).all(axis=1)]
+    if len(rows) < 2 or np.isnan(rows[:, 0]).any():
+        return rows[:, 1:4], rows[:, 4:]
+    pause = np.diff(rows[:, 0])
+    step = np.mean(pause[pause < 1.5 * np.median(pause)])
+    passed = np.maximum(np.round(pause / step), 1).astype(np.int64)
+    edges = [0, *(np.flatnonzero(passed > FEW + 1) + 1).tolist(), len(rows)]
+    first, after = max(pairwise(edges), key=lambda edge: edge[1] - edge[0])
+    place = np.append(0, np.cumsum(passed[first : after - 1]))
+    every = np.arange(place[-1] + 1)
+    stretch = np.zeros((len(every), len(AXES)))
+    stretch[place] = rows[first:after, 1:4]
+    further = [np.interp(every, place, column) for column in rows[first:after, 4:].T]
+    return stretch, np.reshape(further, (-1, len(every))).T

@@ -1,0 +1,203 @@
+"""The accelerometers from rests of unknown attitude: blocks as inference takes them, and rows.
+
+The method is `free_positions`, beside the others of the stage. Rests whose attitude is known are
+used as well, but not their attitude, so the table has no part in the result.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.campaign.estimates import NAMES as LINEAR
+from inertial.campaign.estimates import Estimates
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import Known, Manoeuvre
+from inertial.campaign.static_positions import Still
+from inertial.estimation.least_squares import Estimate, Fitted, with_scatter
+from inertial.estimation.multi_position import (
+    FREE,
+    NAMES,
+    PRIOR,
+    FreeRest,
+    Unseen,
+    free_positions,
+    unseen,
+)
+from inertial.estimation.triad import CROSS, MOUNTING, SYMMETRIC
+from inertial.tables import ACCEL, AXES, GYRO
+
+Array = NDArray[np.float64]
+
+METHOD = "free_positions"
+SCATTER = (1e-7, 1.0)  # m/s²: how much rests may differ beyond the noise
+UNKNOWN = np.full(3, np.nan)  # an attitude
+UNTOLD = (
+    "a rotation of the triad against the case changes no length, so |f| = g cannot tell it; the"
+    " axes here are those square to each other that lie nearest to the sensors': add rests whose"
+    " upward direction is known"
+)
+
+
+@dataclass(frozen=True)
+class FreeStill:
+    """A stretch at rest, whatever its attitude: both sensors, and its records [first, after)."""
+
+    force: Still
+    rate: Still
+    log: str
+    first: int
+    after: int
+
+    @property
+    def label(self) -> str:
+        """Its manoeuvre, with the phase where it is one of a turn."""
+        return self.force.label
+
+    @property
+    def rest(self) -> FreeRest:
+        """As `free_positions` takes it."""
+        return FreeRest(self.label, *self.force.over())
+
+
+def free_stills(
+    blocks: pd.DataFrame, plan: Sequence[Manoeuvre], noise: NoiseLevels
+) -> tuple[list[FreeStill], list[str]]:
+    """All stretches at rest of one mount in the order of the logs; those left out, with reasons.
+
+    None at all where the plan knows every attitude: there the other methods serve.
+    """
+    if all(m.up is not None for m in plan if m.do != "turn"):
+        return [], []
+    found: list[FreeStill] = []
+    left: list[str] = []
+    named = {m.name: m for m in plan}
+    at_rest = blocks[blocks["phase"].str.startswith("rest") & (blocks["count"] > 0)]
+    at_rest = at_rest.sort_values(["log", "from_record"])
+    for (key, phase), part in at_rest.groupby(["manoeuvre", "phase"], sort=False):
+        name = str(key)
+        m = named.get(name) or named.get(name.rpartition("-")[0])  # rests that are found have -01
+        if m is None:
+            continue
+        label = name if phase == "rest" else f"{name} ({phase})"
+        force, rate = (_still(label, name, m, part, noise, each) for each in (ACCEL, GYRO))
+        recorded = np.isfinite(force.means).any(axis=0)
+        first, after = int(part["from_record"].min()), int(part["to_record"].max())
+        if not recorded.all():
+            lacking = " and ".join(np.array(AXES)[~recorded])
+            left.append(f"{label}: |f| = g needs {lacking} too")
+        elif not np.isfinite(force.over()).all():
+            left.append(f"{label}: its noise is not known, for it has no time or is too short")
+        else:
+            found.append(FreeStill(force, rate, str(part["log"].iloc[0]), first, after))
+    return found, left
+
+
+def _still(
+    label: str,
+    name: str,
+    m: Manoeuvre,
+    part: pd.DataFrame,
+    noise: NoiseLevels,
+    channels: list[str],
+) -> Still:
+    return Still(
+        label,
+        m,
+        UNKNOWN,
+        UNKNOWN,
+        0.0,
+        part[channels].to_numpy(np.float64),
+        part["count"].to_numpy(np.float64),
+        part["seconds"].to_numpy(np.float64),
+        part["time"].to_numpy(np.float64),
+        part["temperature"].to_numpy(np.float64),
+        noise.of(name, "rest", channels),
+    )
+
+
+def fitted_to(found: Sequence[FreeStill], noise: NoiseLevels, known: Mapping[str, Known]) -> Fitted:
+    """P and bias of the accelerometers, with a scatter between rests where noise cannot explain."""
+    gravity = known["gravity"]
+    fit = partial(free_positions, [one.rest for one in found], gravity.number, gravity.scatter)
+    return with_scatter(fit, between=SCATTER, noise_degrees=noise.degrees)
+
+
+def add_free_accelerometers(
+    estimates: Estimates,
+    suffix: str,
+    blocks: pd.DataFrame,
+    plan: Sequence[Manoeuvre],
+    noise: NoiseLevels,
+    known: Mapping[str, Known],
+) -> None:
+    """The method's rows; none where the plan knows every attitude."""
+    found, left = free_stills(blocks, plan, noise)
+    if found:
+        fitted = fitted_to(found, noise, known)
+        add_symmetric(estimates, f"{METHOD}{suffix}", fitted.estimate)
+        estimates.add_fit(f"{METHOD}{suffix}", fitted, [one.label for one in found], left)
+    elif left:
+        estimates.add_nothing(f"{METHOD}{suffix}", "; ".join(left))
+
+
+def add_symmetric(estimates: Estimates, method: str, estimate: Estimate) -> None:
+    """P and bias, also as the twelve unknowns with M = P, and why what is not told is not."""
+    told = {name: name for name in NAMES}
+    told |= {f"scale_{axis}": f"symmetric_{axis}{axis}" for axis in AXES}
+    told |= {name: "symmetric_" + "".join(sorted(name[-2:])) for name in CROSS}
+    names = (*LINEAR, *MOUNTING, *SYMMETRIC)
+    unit = dict(zip(NAMES, np.eye(FREE), strict=True))
+    jacobian = np.array([unit[told[n]] if n in told else np.zeros(FREE) for n in names])
+    values = jacobian @ (estimate.values[:FREE] - PRIOR)  # P − I
+    why = dict.fromkeys(MOUNTING, UNTOLD)
+    lacks = unseen(estimate)
+    for name, own in told.items():
+        i = NAMES.index(own)
+        if not estimate.determined[i]:
+            why[name] = in_words(max(lacks, key=partial(_share, i)))
+    estimates.add(
+        method, names, values, jacobian @ estimate.covariance[:FREE, :FREE] @ jacobian.T, why
+    )
+
+
+def _share(i: int, one: Unseen) -> float:
+    return abs(float(one.along[i]))
+
+
+def in_words(one: Unseen) -> str:
+    """What the rests do not tell, and the rest that would."""
+    cure = f"add one with {_attitude(one.up)}"
+    if len(one.names) > 1:
+        *most, last = map(_called, one.names)
+        return f"the rests do not tell {', '.join(most)} from {last}: {cure}"
+    axes = one.names[0].partition("_")[2]
+    if len(set(axes)) == 2:
+        both = f"both {axes[0]} and {axes[1]}"
+        return f"no rest has {both} far from level, which would show their angle: {cure}"
+    both = f"one with +{axes[0]} up and one with -{axes[0]} up"
+    return f"too few rests have {axes[0]} up or down: add {both}"
+
+
+def _called(name: str) -> str:
+    kind, _, axes = name.partition("_")
+    if kind == "bias":
+        return f"the bias of {axes}"
+    if axes[0] == axes[1]:
+        return f"the scale factor of {axes[0]}"
+    return f"the angle between {axes[0]} and {axes[1]}"
+
+
+def _attitude(up: Array) -> str:
+    """An attitude by the axes that point up: +1, or −1 for the one that points down."""
+    signs = dict(zip(AXES, up.tolist(), strict=True))
+    axes = [f"{'+' if sign > 0 else '-'}{axis}" for axis, sign in signs.items() if sign]
+    if len(axes) == 1:
+        return f"{axes[0]} up"
+    if len(axes) == 2:
+        level = next(axis for axis, sign in signs.items() if not sign)
+        return f"{axes[0]} and {axes[1]} both 45° above level, and {level} level"
+    return f"{axes[0]}, {axes[1]} and {axes[2]} all 35° above level"

@@ -1,0 +1,87 @@
+"""The faults of a recording that the pipeline can see.
+
+To add a detector, write its file beside this one and add it here; quality, segment, the report
+and the tests take it from these lists. Those that come first mask what those after them are not
+to be misled by.
+"""
+
+from inertial.detectors.axis_swap import AxisSwap, AxisSwapOfGyros
+from inertial.detectors.axis_swap_against_plan import AxisSwapAgainstPlan
+from inertial.detectors.bias_jump import BiasJump
+from inertial.detectors.clock_jitter import ClockJitter
+from inertial.detectors.clock_scale import ClockScale
+from inertial.detectors.clock_step import ClockStep
+from inertial.detectors.dead_axis import DeadAxis
+from inertial.detectors.duplicate import Duplicate
+from inertial.detectors.gap import Gap
+from inertial.detectors.gravity_error import GravityError
+from inertial.detectors.held_record import HeldRecord
+from inertial.detectors.incomplete_turn import IncompleteTurn
+from inertial.detectors.manoeuvre_missing import ManoeuvreMissing
+from inertial.detectors.manoeuvre_swapped import ManoeuvreSwapped
+from inertial.detectors.oscillation import Oscillation
+from inertial.detectors.quantisation import Quantisation
+from inertial.detectors.rate_off import RateOff
+from inertial.detectors.saturation import Saturation
+from inertial.detectors.short_rest import ShortRest
+from inertial.detectors.sign_flip import SignFlip, SignFlipOfGyros
+from inertial.detectors.sign_flip_against_plan import SignFlipAgainstPlan
+from inertial.detectors.spike import Spikes
+from inertial.detectors.status_invalid import StatusInvalid
+from inertial.detectors.table_moving import TableMoving
+from inertial.detectors.temperature_drift import TemperatureDrift
+from inertial.detectors.time_backwards import TimeBackwards
+from inertial.detectors.time_stands_still import TimeStandsStill
+from inertial.detectors.wrong_day import WrongDay
+from inertial.detectors.wrong_direction import WrongDirection
+from inertial.detectors.wrong_imu_type import WrongImuType
+from inertial.detectors.wrong_rate import WrongRate
+from inertial.detectors.wrong_scale_factor import WrongScaleFactor
+from inertial.detectors.wrong_scale_of_turns import WrongScaleOfTurns
+from inertial.signal.detector import Detector
+from inertial.signal.plan_detector import AgainstPlan
+
+# Without the plan, in every record of every log.
+OF_RECORDS: tuple[Detector, ...] = (
+    # records and their stamps
+    Duplicate(),
+    Gap(),
+    TimeBackwards(),
+    HeldRecord(),
+    StatusInvalid(),
+    TimeStandsStill(),
+    ClockJitter(),
+    ClockStep(),
+    ClockScale(),
+    RateOff(),
+    WrongDay(),
+    WrongImuType(),
+    # readings: what stands at its limit or stands still would look like a spike
+    Saturation(),
+    DeadAxis(),
+    Spikes(),
+    AxisSwap(),
+    AxisSwapOfGyros(),
+    SignFlip(),
+    SignFlipOfGyros(),
+    Quantisation(),
+    Oscillation(),
+    # what a count is, and where it stands
+    GravityError(),
+    WrongScaleFactor(),
+    TemperatureDrift(),
+)
+# Of the records of each rest, once the plan is found in the logs.
+OF_RESTS: tuple[Detector, ...] = (TableMoving(), BiasJump())
+# Of what was recorded of all manoeuvres, against the plan.
+OF_PLAN: tuple[AgainstPlan, ...] = (
+    AxisSwapAgainstPlan(),
+    SignFlipAgainstPlan(),
+    WrongScaleOfTurns(),
+    ManoeuvreSwapped(),
+    ManoeuvreMissing(),
+    WrongDirection(),
+    IncompleteTurn(),
+    WrongRate(),
+    ShortRest(),
+)

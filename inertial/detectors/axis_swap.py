@@ -1,0 +1,40 @@
+"""Axes in each other's place from one record to the next."""
+
+from collections.abc import Iterator
+
+from inertial.signal.axis_permutations import exchange_words, exchanges_of
+from inertial.signal.detector import Detector, Event, Log, Piece, Words
+
+
+class AxisSwap(Detector):
+    """Two axes of a triad that read each other's values from one record to the next.
+
+    The IMU cannot do that: between two records it turns by far less, as its gyros say, and no
+    turn ends in exactly the same three readings on other axes. Of the accelerometers it is seen
+    in any attitude in which the two do not read the same. Of the gyros it is seen while the table
+    turns; at rest only if their biases are clear of the noise. What was exchanged before the log
+    began shows against the plan alone.
+    """
+
+    name = "axis_swap"
+    cause = "the driver or the logger wrote the fields in another order"
+    source = "RAWIMUS writes z, −y, x: a reader that mixes orders does this"
+    costs = "scale factors and biases of both axes"
+    unit = "samples"
+    severity = 3
+    masks = True
+    sensor = "accel"
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        for one in exchanges_of(piece, log, self.sensor):
+            if not one.permutation.in_place:
+                yield one.event(piece, log)
+
+    def tells(self, event: Event, name: str) -> Words:
+        return exchange_words(event, name, self.sensor)
+
+
+class AxisSwapOfGyros(AxisSwap):
+    """The same of the gyros."""
+
+    sensor = "gyro"

@@ -1,0 +1,140 @@
+"""A bias that jumps within a rest."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from inertial.signal.detector import CHANNELS, UNITS, Detector, Event, Log, Piece, Words
+from inertial.signal.level_jumps import Jump, jumps
+from inertial.signal.static_tilt import Resting
+from inertial.signal.steps import Step
+from inertial.text.numbers import fixed, significant
+
+BACK = 0.25  # of a jump: what may be left of it where the bias has gone back
+CERTAIN = 4.0  # sigmas of the two sizes, within which it has gone back as well
+UPRIGHT = 0.7  # share of the vertical from which an axis counts as upright
+
+
+@dataclass(frozen=True)
+class Jumped:
+    """What is told of a jump.
+
+    jump: as seen; back: it goes back; early, late: s by which the place may be earlier or later;
+    share: of the rest, with the new bias; upright: share of the vertical in its axis, with sign;
+    noise: of a reading; gravity: m/s².
+    """
+
+    jump: Jump
+    back: bool
+    early: float
+    late: float
+    share: float
+    upright: float
+    noise: float
+    gravity: float
+
+
+class BiasJump(Detector):
+    """A channel that reads more, or less, from one record on, while the IMU rests.
+
+    Means of 0.2 s to 10 s on both sides of every record are compared by the scatter that such
+    differences have in this rest, so excess noise and an oscillation cost sensitivity but raise
+    nothing; what drift, a random walk or settling explain as well is none. A jump of one channel
+    that the other sensor shows as a turn of the case is a motion of the table.
+    """
+
+    name = "bias_jump"
+    cause = "a loose contact, a jump of temperature or supply, or the sensor itself"
+    source = "design study, 0: a jump at any time must be sought at every time"
+    costs = "the mean of this rest, hence bias and scale factor of the axis"
+    severity = 2
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        resting, every = jumps(piece, log)
+        own = [one for one in every if not one.moved]
+        for i in range(len(CHANNELS)):
+            yield from _events(piece, log, resting, [one for one in own if one.channel == i])
+
+    def tells(self, event: Event, name: str) -> Words:
+        told: Jumped = event.facts
+        i = event.channel
+        assert i is not None  # it is one channel that jumps
+        unit, axis = UNITS[i], CHANNELS[i][-1]
+        sensor = "accelerometer" if i < 3 else "gyro"
+        back = f" and back at {fixed(event.to_s, 2)} s" if told.back else ""
+        place = f"{fixed(event.from_s, 2)} s"
+        if told.early + told.late > 0:
+            place += f" (95 %: {fixed(told.early, 2)} s earlier to {fixed(told.late, 2)} s later)"
+        sentence = (
+            f"{name}: the {axis} {sensor} jumps by {_signed(event.size)} {unit}"
+            f" (sigma {significant(told.jump.step.sigma, 2)}) at {place}{back};"
+            f" {significant(abs(event.size) / told.noise, 2)} times the noise of a reading."
+        )
+        if i >= 3 and not told.jump.agreement.tells:
+            sentence += " A slow turn about the vertical would look the same."
+        off = event.size * told.share
+        consequence = (
+            f"The mean of this rest is off by {_signed(off)} {unit} (the jump, over"
+            f" {told.share:.0%} of it)"
+        )
+        if i >= 3:
+            consequence += f", and with it the bias of the {axis} gyro as this rest has it."
+        elif abs(told.upright) > UPRIGHT:
+            ppm = off * np.sign(told.upright) / (2 * told.gravity) * 1e6
+            consequence += (
+                f". In a pair of {axis} up and {axis} down that is {_signed(off / 2)} {unit} of"
+                f" bias and {_signed(ppm)} ppm of scale factor."
+            )
+        else:
+            consequence += (
+                f", and with it bias and cross-axis terms of the {axis} accelerometer as this rest"
+                " has them."
+            )
+        return Words(
+            sentence,
+            consequence,
+            "The rest is used as it is. Record it again; see whether contact, supply or temperature"
+            " changed then.",
+        )
+
+
+def _events(piece: Piece, log: Log, resting: Resting, own: list[Jump]) -> Iterator[Event]:
+    """The jumps of one channel; one that goes back is told with the one before it."""
+    waiting = list(own)
+    while waiting:
+        jump = waiting.pop(0)
+        back = bool(waiting) and _goes_back(jump.step, waiting[0].step)
+        end = waiting[0].step.place if waiting else len(piece)
+        if back:
+            waiting.pop(0)
+        i, step = jump.channel, jump.step
+        seconds = piece.time[[step.earliest, step.place, step.latest]]
+        yield piece.event(
+            step.place,
+            end,
+            step.size,
+            channel=i,
+            p_value=step.p_value,
+            facts=Jumped(
+                jump,
+                back,
+                float(seconds[1] - seconds[0]),
+                float(seconds[2] - seconds[1]),
+                (end - step.place) / len(piece),
+                float(resting.up[i % 3]) if resting.recorded("accel") else 0.0,
+                float(resting.noise[i]),
+                log.given.gravity,
+            ),
+        )
+
+
+def _goes_back(step: Step, other: Step) -> bool:
+    left = abs(step.size + other.size)
+    unsure = CERTAIN * float(np.hypot(step.sigma, other.sigma))
+    return step.size * other.size < 0 and left < max(BACK * abs(step.size), unsure)
+
+
+def _signed(value: float) -> str:
+    text = significant(value, 3)
+    return text if value < 0 else f"+{text}"

@@ -1,0 +1,160 @@
+"""Stamps that scatter about an even clock, or are rounded."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from inertial.signal.detector import Array, Detector, Event, Integers, Log, Piece, Words
+from inertial.signal.runs import joined
+from inertial.signal.stamps import PRINTED, stamps_of, unit_of
+from inertial.text.numbers import significant
+
+# Share of an interval by which stamps may scatter. A rate made from stamp to stamp would then
+# scatter by 1.4 %, as much as a bad consumer gyro is off; a receiver's stamps keep to 10⁻⁷.
+ALLOWED = 0.01
+STRETCH = 32  # stamps in which the clock is taken as even
+SET = 3.0  # intervals: where time goes back by more, the clock was set
+FEWEST = 8  # of them, where a log is shorter
+OFTEN = 3  # stretches that must scatter: one alone is a jump or a change of the clock
+APART = 10  # stretches between those that scatter, in which rounded stamps may happen to fit
+BIASED = 1e-3  # what the median interval is off the mean: then it spoils scale factors
+ROUND = 1e-6  # s: to finer steps than that stamps are printed, not rounded
+
+
+@dataclass(frozen=True)
+class _Facts:
+    """What is told: share of an interval; unit of rounded stamps and the intervals, s; and rates.
+
+    unit is 0 where stamps are not rounded; biased: by how much the median interval is off the
+    mean, 1, where rates are made with it.
+    """
+
+    share: float
+    unit: float
+    shorter: float
+    longer: float
+    mean: float
+    biased: float
+
+
+class ClockJitter(Detector):
+    """Stamps that are off an even clock by more than 1 % of an interval, rms.
+
+    In stretches of 32 stamps a straight line is fitted to stamp against number of the sample;
+    gaps count as the samples that they lack.
+    """
+
+    name = "clock_jitter"
+    cause = "stamps are given when a record is written, not when it is sampled, or are rounded"
+    source = "design study, 41c; rounding to u scatters by u/√12"
+    costs = "a rate made from stamp to stamp scatters; when something happens is less sure"
+    unit = "s"
+    severity = 1
+    everywhere = True
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        stamps = stamps_of(piece, log)
+        if len(stamps) < FEWEST:
+            return
+        step = np.diff(stamps.time)
+        off = (step - stamps.apart * log.interval)[stamps.apart > 0]
+        if not len(off) or np.ptp(off) <= ALLOWED * log.interval:
+            return  # nothing scatters as much
+        length = min(STRETCH, len(stamps))
+        # A stamp that is behind the one before by chance is one interval on all the same.
+        apart = np.where((stamps.apart == 0) & (step > -SET * log.interval), 1, stamps.apart)
+        # By the stamps a late one may be two intervals; by the numbers of the records a gap is one.
+        ones = np.minimum(apart, 1)
+        square = np.fmin(*(_scatter(stamps.time, each, length) for each in (apart, ones)))
+        scattered = square > (ALLOWED * log.interval) ** 2
+        often = min(OFTEN, int(np.isfinite(square).sum()))
+        for first, after in joined(np.flatnonzero(scattered), APART):
+            if np.count_nonzero(scattered[first:after]) < often:
+                continue
+            start = first * length
+            end = len(stamps) if after == len(square) else after * length
+            rms = float(np.sqrt(np.median(square[first:after][scattered[first:after]])))
+            single = step[start : end - 1][apart[start : end - 1] == 1]
+            facts, place = _facts(single, rms, log), stamps.place
+            yield piece.event(
+                int(place[start]),
+                int(place[end - 1]) + 1,
+                rms,
+                facts=facts,
+                severity=3 if abs(facts.biased) > BIASED else None,
+            )
+
+    def tells(self, event: Event, name: str) -> Words:
+        facts = event.facts
+        rms = significant(event.size * 1e3, 2)
+        if facts.unit:
+            sentence = (
+                f"{name}: the stamps are rounded to {significant(facts.unit * 1e3, 1)} ms:"
+                f" {facts.shorter * 1e3:.4g} ms and {facts.longer * 1e3:.4g} ms take turns, where"
+                f" {facts.mean * 1e3:.5g} ms pass from sample to sample. So they are off an even"
+                f" clock by {rms} ms, {_percent(facts.share)} of an interval."
+            )
+        else:
+            sentence = (
+                f"{name}: the stamps scatter by {rms} ms about an even clock,"
+                f" {_percent(facts.share)} of an interval."
+            )
+        consequence = (
+            "A rate made from stamp to stamp would scatter by"
+            f" {_percent(np.sqrt(2) * facts.share)}; the pipeline makes none. When something"
+            f" happens is known to {rms} ms."
+        )
+        action = "One interval is taken for the whole log, so no parameter sees the stamps."
+        if abs(facts.biased) > BIASED:
+            consequence += (
+                " The median interval, with which increments become rates, is off the mean by"
+                f" {significant(facts.biased * 1e6, 2)} ppm, so every rate of this log is off by as"
+                " much the other way."
+            )
+            action = "Nothing is corrected."
+        return Words(
+            sentence,
+            consequence,
+            f"{action} Let the logger stamp a sample when it is taken, in µs.",
+        )
+
+
+def _scatter(time: Array, apart: Integers, length: int) -> Array:
+    """Mean square of the stamps about straight lines over stretches of `length`, (k,), s².
+
+    NaN where time goes back.
+    """
+    k = len(time) // length
+    forward = np.append(apart > 0, True)[: k * length].reshape(k, length)[:, :-1].all(axis=1)
+    number = np.append(0, np.cumsum(apart))[: k * length].reshape(k, length).astype(np.float64)
+    stamp = time[: k * length].reshape(k, length)
+    number = number - number.mean(axis=1, keepdims=True)
+    stamp = stamp - stamp.mean(axis=1, keepdims=True)
+    slope = (number * stamp).sum(axis=1) / (number**2).sum(axis=1)
+    left = stamp - slope[:, None] * number
+    return np.where(forward, (left**2).sum(axis=1) / (length - 2), np.nan)
+
+
+def _facts(single: Array, rms: float, log: Log) -> _Facts:
+    """What is told of stamps whose single intervals are these, (m,), s."""
+    ticks, often = np.unique(np.rint(single / PRINTED).astype(np.int64), return_counts=True)
+    unit = unit_of(np.asarray(ticks * PRINTED))
+    # Rounding alone scatters by unit/√12, a little more or less in a short stretch.
+    rounded = unit >= ROUND and rms < 1.5 * unit / np.sqrt(12)
+    usual = np.sort(ticks[np.argsort(often)[-2:]]) * PRINTED
+    near = single[single > 0.5 * log.interval]  # as far below the usual as single ones go above
+    mean = float(near.mean()) if len(near) else log.interval
+    increments = log.recorded_on is not None  # of a receiver; columns hold rates
+    return _Facts(
+        rms / mean,
+        unit if rounded else 0.0,
+        float(usual[0]),
+        float(usual[-1]),
+        mean,
+        log.interval / mean - 1 if increments else 0.0,
+    )
+
+
+def _percent(share: float) -> str:
+    return f"{significant(share * 100, 2)} %"

@@ -1,0 +1,304 @@
+"""Time tags that run fast or slow."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from inertial.detectors.rate_off import ANOTHER_RATE
+from inertial.signal.detector import Array, Detector, Event, Given, Integers, Log, Piece, Words
+from inertial.signal.sample_interval import Told, told_of_log, told_of_part
+from inertial.signal.stamps import PRINTED, Stamps, stamps_of, unit_of
+from inertial.signal.steps import changes
+from inertial.text.numbers import counted, fixed, significant
+
+# Crystals are cut and trimmed to some 20 to 50 ppm, cheap ones to 100 ppm (Ethernet, IEEE 802.3,
+# allows as much); what differs from the stated rate by less is no fault.
+CRYSTAL = 1e-4
+# Within a log, or from log to log, a crystal keeps to a few ppm: 10 K move it by less than that.
+LEAST = 5e-6
+BLOCK = 0.5  # s, of which the mean interval is taken,
+UNITS = 1000  # or so many units of the stamps, so that one of them is a part in a thousand
+ROUNDED = np.sqrt(2 / 12)  # units: the error of the difference of two rounded stamps
+SHORTEST = 3  # blocks of a stretch
+FEWEST = 16  # intervals
+CERTAIN = 5.0  # sigma of a mean interval
+JUMPS = 1e-3  # share of intervals that may be jumps of the clock; more are its nature
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A stretch of intervals: steps [start, end) between records; mean and its sigma, relative."""
+
+    start: int
+    end: int
+    mean: float
+    sigma: float
+
+
+@dataclass(frozen=True)
+class _Facts:
+    """What is told: intervals here, by which it is judged, and of which rates are made, s.
+
+    against: with what it is compared; part: of a log; increments: of a receiver; told: by the
+    specific force.
+    """
+
+    here: float
+    usual: float
+    used: float
+    against: str
+    part: bool
+    increments: bool
+    told: Told
+
+
+class ClockScale(Detector):
+    """A log, or a stretch of it, whose interval by the stamps is not that of the others.
+
+    The intervals of a log are cut into parts whose means differ. A part is compared with what the
+    logs of the campaign have in common; where they have nothing, with what most of the log has near
+    the stated rate, and a whole log with the stated rate. Increments tell whether the stamps are
+    off or the sampling: at rest each is gravity times the true interval.
+    """
+
+    name = "clock_scale"
+    cause = "the clock that gives the stamps runs fast or slow, or that which takes the samples"
+    source = "design study, 41b"
+    costs = "rates by the stamps, and with them all scale factors, are off by as much"
+    unit = "ppm"
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        stamps = stamps_of(piece, log)
+        steps, series = _intervals(stamps, log.interval)
+        if len(series) < FEWEST:
+            return
+        parts = _parts(series, log.interval)
+        reference, tolerance, against = _reference(parts, piece, log)
+        for part in parts:
+            away = part.mean - reference
+            if abs(away) <= max(tolerance, CERTAIN * part.sigma) or _jump(series, part, reference):
+                continue
+            first = 0 if part.start == 0 else int(steps[part.start]) + 1
+            last = int(steps[part.end - 1]) + 1
+            start, end = int(stamps.place[first]), int(stamps.place[last]) + 1
+            whole = len(parts) == 1
+            if whole and abs(away) > ANOTHER_RATE:
+                continue  # a rate of its own
+            yield piece.event(
+                start,
+                end,
+                away / (1 + reference) * 1e6,
+                facts=_Facts(
+                    here=log.interval * (1 + part.mean),
+                    usual=log.interval * (1 + reference),
+                    used=log.interval if log.recorded_on is not None else log.step,
+                    against=against if whole else "elsewhere in this log",
+                    part=not whole,
+                    increments=log.recorded_on is not None,
+                    told=told_of_log(log, away)
+                    if whole
+                    else told_of_part(piece, log, start, end, away),
+                ),
+            )
+
+    def compares(self, logs: Mapping[str, Log]) -> Iterator[Event]:
+        if not logs:
+            return
+        given = next(iter(logs.values())).given
+        usual = given.usual_interval
+        if not _agree(given) or not _off_the_stated(usual, given):
+            return
+        away = usual / given.interval - 1
+        told = {told.stamps: told for log in logs.values() for told in [told_of_log(log, away)]}
+        told.pop(None, None)
+        facts = _Facts(
+            here=usual,
+            usual=given.interval,
+            used=usual,
+            against="by the stated rate",
+            part=False,
+            increments=all(log.recorded_on is not None for log in logs.values()),
+            told=next(iter(told.values())) if len(told) == 1 else Told(),
+        )
+        yield Event(0, 0, 0, np.nan, np.nan, away * 1e6, facts=facts)
+
+    def tells(self, event: Event, name: str) -> Words:
+        facts = event.facts
+        intervals = f"{_ms(facts.here)} from record to record, {_ms(facts.usual)} {facts.against}"
+        size = _ppm(abs(event.size) * 1e-6)
+        if facts.told.stamps:
+            off = f"the stamps run {'fast' if event.size > 0 else 'slow'} by {size}"
+        else:
+            off = (
+                f"the interval by the stamps is {size} {'longer' if event.size > 0 else 'shorter'}"
+            )
+        if not name:
+            sentence = f"In most logs of the campaign {off}: {intervals}."
+        elif facts.part:
+            seconds = f"{fixed(event.from_s, 3)} s to {fixed(event.to_s, 3)} s"
+            sentence = (
+                f"{name}: in {counted(event.after - event.first, 'record')} from line"
+                f" {event.line}, {seconds}, {off}: {intervals}."
+            )
+        else:
+            sentence = f"{name}: {off}: {intervals}."
+        return Words(
+            f"{sentence} {_verdict(facts)}",
+            _consequence(event, facts),
+            "Nothing is changed. Compare the clock of the logger with another, such as GPS time."
+            if facts.part
+            else "Nothing is changed. Correct rate_hz of the instrument, or look at the clocks of"
+            " logger and IMU.",
+        )
+
+
+# ---- what the stamps say
+
+
+def _intervals(stamps: Stamps, interval: float) -> tuple[Integers, Array]:
+    """The intervals between neighbours, (m,): which they are, and how much longer than usual, 1.
+
+    Single jumps of the clock are left out.
+    """
+    steps = np.flatnonzero(stamps.apart == 1)
+    series = np.diff(stamps.time)[steps] / interval - 1
+    if len(series) < FEWEST or np.ptp(series) <= LEAST:
+        return steps, series
+    beside = np.stack([np.roll(series, shift) for shift in (-2, -1, 1, 2)])
+    least, most = beside.min(axis=0), beside.max(axis=0)
+    room = 5 * (most - least) + LEAST
+    jumps = (series > most + room) | (series < least - room)
+    if np.count_nonzero(jumps) <= max(JUMPS * len(series), 2):
+        steps, series = steps[~jumps], series[~jumps]
+    return steps, series
+
+
+def _parts(series: Array, interval: float) -> list[_Part]:
+    """The parts of a log that have each an interval of their own."""
+    if np.ptp(series) <= LEAST:
+        length = max(FEWEST, round(BLOCK / interval))
+        return [_part(series, 0, len(series), length, interval)]
+    unit = unit_of(interval * (1 + series))
+    length = max(FEWEST, round(max(BLOCK, UNITS * unit) / interval))
+    borders = changes(series, length, SHORTEST, LEAST, ROUNDED * unit / (length * interval))
+    return [_part(series, start, end, length, interval) for start, end in pairwise(borders)]
+
+
+def _part(series: Array, start: int, end: int, length: int, interval: float) -> _Part:
+    """A part of the intervals; its sigma from means of blocks, within which errors cancel."""
+    own = series[start:end]
+    blocks = own[: len(own) // length * length].reshape(-1, length).mean(axis=1)
+    few = len(blocks) < SHORTEST
+    scatter = own.std() / np.sqrt(len(own)) if few else blocks.std() / np.sqrt(len(blocks))
+    return _Part(start, end, float(own.mean()), max(float(scatter), PRINTED / interval / len(own)))
+
+
+def _reference(parts: Sequence[_Part], piece: Piece, log: Log) -> tuple[float, float, str]:
+    """With what the parts are compared: interval and tolerance, relative to the log's; and what."""
+    given = log.given
+    if _agree(given):
+        tolerance = max(LEAST, 6 * given.unlike)
+        return given.usual_interval / log.interval - 1, tolerance, "in the other logs"
+    if len(parts) == 1 and not np.isfinite(given.usual_interval):
+        here = log.interval * (1 + parts[0].mean)
+        if _off_the_stated(here, given):
+            return given.interval / log.interval - 1, CRYSTAL, "by the stated rate"
+    if log.records > len(piece):
+        return 0.0, LEAST, "at the beginning of this log"
+    stated = given.interval / log.interval
+    near = [part for part in parts if abs((1 + part.mean) / stated - 1) < CRYSTAL] or parts
+
+    def alike(one: _Part) -> int:
+        own = [part for part in near if abs(part.mean - one.mean) <= LEAST]
+        return sum(part.end - part.start for part in own)
+
+    return max(near, key=alike).mean, LEAST, "elsewhere in this log"
+
+
+def _agree(given: Given) -> bool:
+    """Whether the logs of the campaign have an interval in common, as crystals would."""
+    return bool(6 * given.unlike < CRYSTAL)
+
+
+def _off_the_stated(interval: float, given: Given) -> bool:
+    """Whether an interval is not the stated one; one that is far off is another rate altogether."""
+    if not np.isfinite(given.interval):
+        return False
+    rate = f"{1 / given.interval:.10g}"
+    digits = len(rate.partition(".")[2])
+    # A rate of 83.3 Hz is stated to half a unit of its last digit.
+    rounded = 0.5 * 10.0**-digits * given.interval if digits else 0.0
+    away = abs(interval / given.interval - 1)
+    return max(CRYSTAL, rounded) < away and abs(given.interval / interval - 1) <= ANOTHER_RATE
+
+
+def _jump(series: Array, part: _Part, reference: float) -> bool:
+    """Whether two intervals make all the difference."""
+    away = np.sort(np.sign(part.mean - reference) * (series[part.start : part.end] - reference))
+    return bool(away[:-2].sum() < 0.5 * away.sum())
+
+
+# ---- words
+
+
+def _verdict(facts: _Facts) -> str:
+    told = facts.told
+    if told.stamps is None:
+        what = "readings" if facts.increments else "rates"
+        return f"Whether the stamps are off or the sampling, the {what} do not tell."
+    change = f"{significant(told.change * 1e6, 2)} ± {significant(told.sigma * 1e6, 2)} ppm"
+    off = "the stamps are off, not the sampling"
+    if not facts.part:
+        off = off if told.stamps else "the stamps are right"
+        return f"At rest the specific force is {change} off gravity, so {off}."
+    if told.stamps:
+        return f"The specific force per record does not change with it ({change}), so {off}."
+    return (
+        f"The specific force per record changes as much ({change}), so the sampling is off, not"
+        " the stamps."
+    )
+
+
+def _consequence(event: Event, facts: _Facts) -> str:
+    used = _ms(facts.used)
+    if facts.increments and abs(facts.usual / facts.used - 1) > LEAST / 2:
+        wrong = facts.usual / facts.used - 1
+        return (
+            f"Rates are made with {used}. Where the stamps are wrong, every rate that is made with"
+            f" it is off by {_ppm(wrong)}, and the scale factors of the accelerometers, as far as"
+            " they rest on it. Angles, which are sums of increments, stand."
+        )
+    if facts.increments:
+        after = abs(event.size) * 1e-6 * (event.to_s - event.from_s) * 1e3
+        rates = f"Rates are made with {used}, the median interval of the log, and stand"
+        if facts.told.stamps is False:
+            uneven = _ppm(facts.here / facts.used - 1)
+            rates = (
+                f"Rates are made with {used} throughout; in this stretch they are off by {uneven}"
+            )
+        return (
+            f"{rates}. Angles, which are sums of increments, stand. After the stretch the stamps"
+            f" are {significant(after, 2)} ms off."
+        )
+    throughout = _ppm(facts.used / facts.usual - 1)
+    if facts.part:
+        return (
+            f"The specific force stands. An angle is a sum of rates, over {used} each: where the"
+            f" stamps are right, it is off by {_ppm(facts.used / facts.here - 1)} in this stretch;"
+            f" where they are wrong, by {throughout} throughout."
+        )
+    return (
+        "Where the stamps are wrong, an angle that is a sum of rates over time is off by"
+        f" {throughout}, and a rate that is made of increments by as much the other way; the"
+        " specific force of columns stands."
+    )
+
+
+def _ppm(share: float) -> str:
+    return f"{significant(share * 1e6, 3)} ppm"
+
+
+def _ms(seconds: float) -> str:
+    return f"{seconds * 1e3:.7g} ms"

@@ -1,0 +1,63 @@
+"""A clock that was set while a log was recorded: from one record on all stamps are off."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.signal.detector import Detector, Event, Log, Piece, Words
+from inertial.signal.stamps import stamps_of
+from inertial.text.numbers import fixed, significant
+
+LEAST = 0.02  # of an interval: what is less moves nothing
+CLEAR = 10.0  # times what the stamps beside it scatter by, rms
+BESIDE = 32  # stamps on either side
+FEWEST = 8  # of them, where the log begins or ends
+STAYS = 0.5  # of the step, by which the stamps beside it may take it back
+
+
+class ClockStep(Detector):
+    """One interval between two records that is shorter or longer, and is not made good again.
+
+    A stamp that is late by itself is made good by the next one; what is longer by a whole interval
+    is a gap, and what goes back is time that goes back.
+    """
+
+    name = "clock_step"
+    cause = "the clock of the receiver or logger was set, or it began to follow another clock"
+    source = "design study, 5: a clock step is in no catalogue of effects, and must not be silent"
+    costs = "when things happened, by the step; angles and means are sums of samples and stay"
+    unit = "s"
+    severity = 1
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        stamps = stamps_of(piece, log)
+        off = np.diff(stamps.time) - stamps.apart * log.interval
+        off[stamps.apart != 1] = np.nan
+        for k in np.flatnonzero(np.abs(off) > LEAST * log.interval):
+            before, behind = off[max(k - BESIDE, 0) : k], off[k + 1 : k + 1 + BESIDE]
+            if min(np.isfinite(before).sum(), np.isfinite(behind).sum()) < FEWEST:
+                continue
+            scatter = float(np.sqrt(np.nanmean(np.append(before, behind) ** 2)))
+            taken_back = abs(float(np.nansum(before[-2:]) + np.nansum(behind[:2])))
+            step = float(off[k])
+            if abs(step) > CLEAR * scatter and taken_back < STAYS * abs(step):
+                place = int(stamps.place[k + 1])
+                yield Event(
+                    int(piece.record[place]),
+                    int(piece.record[place]) + 1,
+                    int(piece.line[place]),
+                    float(stamps.time[k]),
+                    float(stamps.time[k + 1]),
+                    abs(step),
+                    facts=step > 0,
+                )
+
+    def tells(self, event: Event, name: str) -> Words:
+        later = "later" if event.facts else "earlier"
+        size = significant(event.size * 1e3, 3)
+        return Words(
+            f"{name}: from line {event.line} on, at {fixed(event.to_s, 3)} s, all stamps are"
+            f" {size} ms {later} than an even clock says, and no sample is missing.",
+            "What is taken against time is off by that much; angles and means hardly change.",
+            "All samples are used. Let the clock settle before recording.",
+        )

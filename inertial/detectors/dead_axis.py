@@ -1,0 +1,166 @@
+"""A channel that does not change."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import erf
+
+from inertial.signal.detector import (
+    SENSORS,
+    UNITS,
+    Array,
+    Booleans,
+    Detector,
+    Event,
+    Integers,
+    Log,
+    Piece,
+    Words,
+    channel_name,
+)
+from inertial.signal.roughness import ALIVE, BLOCK, roughness, smallest_step
+from inertial.text.numbers import significant, whole
+
+CERTAIN = 1e-4  # chance of so long a run of equal readings in a log
+SHORTEST = 4  # equal readings; fewer may be spikes
+LEAP = 20.0  # times the changes beside a run, by which the readings leap to it and back
+LEAPT = 1e-6  # chance that they do so by themselves
+BESIDE = 8  # readings before a run and after it
+SURELY = 1000  # equal readings of all axes, where nothing is known of their noise
+
+
+@dataclass(frozen=True)
+class Stillness:
+    """What is told of a dead axis: what it reads, all the time or not, and for how many s."""
+
+    level: float
+    always: bool
+    seconds: float
+
+
+class DeadAxis(Detector):
+    """A channel that reads the same for longer than its noise allows.
+
+    How much noise it has is seen in the rest of the log, or, where it never changes, in the other
+    axes of the same sensor. With noise of σ counts a reading falls into the count in the middle
+    with the chance p = erf(1 / (√8 σ)), and L in a row into the same one with
+    p^L (1 + σ √(2π/L)), times all readings of the log; fewer suffice where they leap to a value far
+    away and back. Where the noise is less than 0.6 counts an
+    axis may well stand still: that is `quantisation`, and nothing is said here; nor of a sensor
+    none of whose axes changes.
+    """
+
+    name = "dead_axis"
+    cause = "a sensor, its wire or its converter failed, or the driver writes an old value"
+    source = "the chance that two Gaussian readings fall into one count"
+    costs = "bias and scale factor of the axis, and every cross term with it"
+    unit = "samples"
+    severity = 3
+    masks = True
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        channels = [piece.channel(i) for i in range(6)]
+        runs = [_runs(values) for _, values in channels]
+        noise = [_noise(values, *run) for (_, values), run in zip(channels, runs, strict=True)]
+        for axes in SENSORS.values():
+            known = [one for one in noise[axes] if np.isfinite(one)]
+            for i in range(axes.start, axes.stop):
+                places, values = channels[i]
+                start, end = runs[i]
+                chance = np.ones(len(start))
+                if known:
+                    own = noise[i] if np.isfinite(noise[i]) else min(known)
+                    tests = 6 * log.records * np.where(_leapt_to(values, start, end), LEAPT, 1.0)
+                    chance = tests * _chance(end - start, own)
+                    for k in np.flatnonzero(chance < CERTAIN):
+                        beside = _quieter(values, int(start[k]), int(end[k]), own)
+                        chance[k] = tests[k] * _chance(end[k : k + 1] - start[k], beside)[0]
+                elif len(values) >= SURELY and max(np.nan_to_num(noise)) > ALIVE:
+                    chance[:] = np.nan  # the whole sensor stands still, and the other does not
+                for k in np.flatnonzero(~(chance > CERTAIN) & (end - start >= SHORTEST)):
+                    number = int(end[k] - start[k])
+                    yield piece.event(
+                        int(places[start[k]]),
+                        int(places[end[k] - 1]) + 1,
+                        float(number),
+                        channel=i,
+                        p_value=float(chance[k]) if np.isfinite(chance[k]) else None,
+                        facts=Stillness(
+                            float(values[start[k]]),
+                            bool(log.least[i] == log.most[i]),
+                            number * log.step,
+                        ),
+                    )
+
+    def tells(self, event: Event, name: str) -> Words:
+        assert event.channel is not None
+        facts, unit = event.facts, UNITS[event.channel]
+        level, number = f"{significant(facts.level, 6)} {unit}", whole(event.size)
+        means = f"Their mean is {level}, whatever the IMU did"
+        if event.channel >= 3 and np.isfinite(facts.seconds):
+            angle = significant(facts.level * facts.seconds, 3)
+            means = f"They add {angle} rad in {facts.seconds:.2f} s, whatever the IMU did"
+        return Words(
+            f"{name}: {channel_name(event.channel)} reads {level} "
+            + (
+                f"in all {number} readings of the log."
+                if facts.always
+                else f"{number} times in a row, from line {event.line} on."
+            ),
+            f"{means}: bias, scale factor and cross terms of this axis would be wrong.",
+            "The readings are masked; what cannot do without them must be recorded again.",
+        )
+
+
+def _chance(length: Integers, rough: float) -> Array:
+    """The chance that a run of so many equal readings begins at a reading.
+
+    rough: counts, of the channel, of which carried counts are 1/2; where it tells nothing the
+    chance is one.
+    """
+    if rough < ALIVE:
+        return np.ones(len(length))
+    noise = np.sqrt(rough**2 - 1 / 4)
+    middle = erf(1 / (np.sqrt(8) * noise))
+    return np.asarray(middle**length * (1 + noise * np.sqrt(2 * np.pi / length)))
+
+
+def _quieter(values: Array, start: int, end: int, usual: float) -> float:
+    """The roughness beside a run, if it is less than the usual one of the log, in counts.
+
+    Most of a log may be louder than that: it may oscillate. Another run beside it tells nothing.
+    """
+    sides = values[max(start - BLOCK - 1, 0) : start], values[end : end + BLOCK + 1]
+    rough = [roughness(side) / smallest_step(values) for side in sides]
+    return min(usual, *(one for one in rough if one > 0), usual)
+
+
+def _leapt_to(values: Array, start: Integers, end: Integers) -> Booleans:
+    """Which runs lie far from the readings before and from those after, (k,)."""
+    change = np.abs(np.diff(values))
+    leapt = np.zeros(len(start), bool)
+    far = LEAP * smallest_step(values)
+    inside = (end - start >= SHORTEST) & (start >= BESIDE) & (end <= len(values) - BESIDE)
+    for k in np.flatnonzero(inside):
+        first, after = int(start[k]), int(end[k])
+        leap = min(change[first - 1], change[after - 1])
+        if leap > far:
+            beside = change[first - BESIDE : first - 1], change[after : after + BESIDE - 1]
+            leapt[k] = leap > LEAP * max(side.max() for side in beside)
+    return leapt
+
+
+def _runs(values: Array) -> tuple[Integers, Integers]:
+    """Runs of equal readings: first place and place after the last, (k,) each."""
+    edges = np.flatnonzero(np.diff(values, prepend=np.nan, append=np.nan) != 0)
+    return edges[:-1], edges[1:]
+
+
+def _noise(values: Array, start: Integers, end: Integers) -> float:
+    """The roughness of a channel in counts, without its longest run; NaN where it has no other."""
+    if len(start) < 2:
+        return np.nan
+    longest = int(np.argmax(end - start))
+    rest = np.delete(values, slice(start[longest], end[longest]))
+    return roughness(rest) / smallest_step(values)

@@ -1,0 +1,53 @@
+"""A stated gravity that is not that of the place."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.signal.detector import Detector, Event, Given, Words
+from inertial.text.numbers import fixed, significant
+from inertial.text.units import STANDARD_GRAVITY
+
+# m/s²: gravity differs from normal gravity, point by point over the earth, by 42 mGal rms
+# (variance 1795 mGal²: Tscherning & Rapp, OSU Report 208, 1974); 50 mGal, as the plan takes it.
+ANOMALY = 5e-4
+CERTAIN = 3.0  # sigma
+MGAL = 1e-5  # m/s²
+SAME = 2e-5  # m/s²: gravity is stated to as much
+
+
+class GravityError(Detector):
+    """Stated gravity differs from normal gravity at latitude and height by more than 3 sigma.
+
+    Sigma is that of the stated value and the anomalies of the earth's field together.
+    """
+
+    name = "gravity_error"
+    cause = "gravity of another place, the unit g in its stead, or a slip of the pen"
+    source = "normal gravity: WGS 84; anomalies: Tscherning & Rapp, OSU Report 208, 1974"
+    costs = "the scale factors of all accelerometers are off by as much as gravity"
+    unit = "m/s²"
+    sensor = "accel"
+
+    def judges(self, given: Given) -> Iterator[Event]:
+        off = given.gravity - given.normal_gravity
+        sigma = float(np.hypot(given.gravity_sigma, ANOMALY))
+        if abs(off) > CERTAIN * sigma:
+            yield Event(0, 0, 0, np.nan, np.nan, off, facts=(given, sigma))
+
+    def tells(self, event: Event, name: str) -> Words:
+        given, sigma = event.facts
+        unit = abs(given.gravity - STANDARD_GRAVITY) < SAME
+        why = " It is the size of the unit g, which is gravity of no place." if unit else ""
+        times = significant(abs(event.size) / sigma, 2)
+        parts = -event.size / given.gravity * 1e6
+        return Words(
+            f"Gravity is stated as {fixed(given.gravity, 5)} m/s²; at this latitude and height"
+            f" normal gravity is {fixed(given.normal_gravity, 5)} m/s², from which it differs by"
+            f" {significant(event.size / MGAL, 3)} mGal, {times} sigma of what the field of the"
+            f" earth and the stated sigma explain.{why}",
+            f"If it is wrong, the scale factors of all accelerometers are off by"
+            f" {significant(parts, 3)} ppm, all by the same.",
+            "The stated value is used. Correct it, latitude or height; or leave it out, and normal"
+            " gravity is taken.",
+        )

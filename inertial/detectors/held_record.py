@@ -1,0 +1,148 @@
+"""Records that hold the readings of the one before while time goes on."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.signal.detector import Array, Booleans, Detector, Event, Integers, Log, Piece, Words
+from inertial.signal.runs import runs
+from inertial.signal.stamps import kinds
+from inertial.text.numbers import counted, fixed, p_is
+
+UNLIKELY = 1e-3  # chance in the whole log below which a run is no chance
+BESIDE = 100  # pairs on each side of a run by which its chance is judged
+# Pairs on each side, where half of the channels are equal, or more than usual: a swing turns round.
+CLOSE = (1, 3, 10)
+MORE = 3.0  # sigma, more than usual
+HALVINGS = 40  # of the interval in which the chance lies
+
+
+class HeldRecord(Detector):
+    """A record whose readings are all equal to those of the one before, though time goes on.
+
+    With the coarse counts of a consumer MEMS that happens by chance. The chance of a run of r
+    records is (number of records) × Pʳ, with P the chance that a pair is equal in all channels. It
+    follows from the pairs that are not: how often a channel is equal in them, beside the run and in
+    the whole, the larger counts. For a run of more than one it is also judged by how often the
+    readings that are held come beside it. A channel that never changes tells nothing.
+    """
+
+    name = "held_record"
+    cause = "the logger wrote the last record again where it had no new one"
+    source = "design study, 41c: identical consecutive readings of all six channels"
+    costs = "a sum over time takes old readings for new ones: the scale factor of a turn"
+    unit = "records"
+    severity = 1
+    masks = True
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        for places, channels in kinds(piece):
+            telling = channels[log.least[channels] < log.most[channels]]
+            if not len(telling) or not _any_equal(piece.values, places, telling):
+                continue
+            values = piece.values[np.ix_(places, telling)]
+            for start, end, chance in _held(values, log.records):
+                # The rows of another sensor may lie between; they are not concerned.
+                own = places[start + 1 : end + 1]
+                whole = own[-1] - own[0] + 1 == len(own)
+                for part in [own] if whole else own[:, None]:
+                    first, last, size = int(part[0]), int(part[-1]) + 1, float(len(part))
+                    yield piece.event(first, last, size, p_value=chance, facts=len(telling))
+
+    def tells(self, event: Event, name: str) -> Words:
+        one = event.size == 1
+        records = counted(int(event.size), "record")
+        at = f", {fixed(event.from_s, 3)} s," if np.isfinite(event.from_s) else ""
+        return Words(
+            f"{name}: {records} from line {event.line}{at}"
+            f" {'has' if one else 'have'} the readings of the one before in all {event.facts}"
+            f" channels, though time goes on; by chance that happens with"
+            f" {p_is(event.p_value)} in this log.",
+            "Used, a sum over time would take old readings for new ones: while it turns the angle"
+            f" is then unknown by what the rate changes in {records}; a mean hardly moves, the"
+            " noise seems smaller.",
+            f"{'It is' if one else 'They are'} masked; time passes with"
+            f" {'it' if one else 'them'}. Look at the logger's buffer and cable.",
+        )
+
+
+def _any_equal(values: Array, places: Integers, channels: Integers) -> bool:
+    """Whether any pair of neighbours, of the (m,) places in (n, 6), is equal in these channels."""
+    before, after = places[:-1], places[1:]
+    for i in channels:
+        equal = values[after, i] == values[before, i]
+        before, after = before[equal], after[equal]
+    return len(before) > 0
+
+
+def _held(values: Array, records: int) -> Iterator[tuple[int, int, float]]:
+    """Runs of pairs of neighbours, of (n, c), that are equal by no chance, and their chance."""
+    equal = values[1:] == values[:-1]
+    whole = np.asarray(equal.all(axis=1))
+    edges = np.array(list(runs(whole)), np.int64).reshape(-1, 2)
+    if not len(edges):
+        return
+    start, end = edges.T
+    length = end - start
+    likely = _likely(equal, whole, start, end)
+    for k in np.flatnonzero(records * likely**length < UNLIKELY):
+        a, b = int(start[k]), int(end[k])
+        if b > a + 1:
+            beside = np.r_[max(a - BESIDE, 0) : a, b + 1 : min(b + 1 + BESIDE, len(values))]
+            same = ((values[beside] == values[a]).sum(axis=0) + 1) / (len(beside) + 2)
+            likely[k] = max(likely[k], same.prod())
+        chance = records * float(likely[k]) ** (b - a)
+        if chance < UNLIKELY:
+            yield a, b, chance
+
+
+def _likely(equal: Booleans, whole: Booleans, start: Integers, end: Integers) -> Array:
+    """The chance that a pair beside each of k runs is equal in all channels, (k,).
+
+    By the pairs that are not, so that records that are held do not hide themselves; before the run
+    or after it, for a motion may end there. Where a swing turns round, all channels stand still
+    together: there by the pairs that are next to it.
+    """
+    pairs = len(equal)
+    other = np.zeros((pairs + 1, equal.shape[1] + 1))
+    np.cumsum(np.column_stack([equal, np.ones(pairs)]) * ~whole[:, None], axis=0, out=other[1:])
+
+    def beside(distance: int) -> list[Array]:
+        before, after = np.maximum(start - distance, 0), np.minimum(end + distance, pairs)
+        return [other[start] - other[before], other[after] - other[end]]
+
+    likely = np.repeat(_all_equal(_shares(other[-1:])), len(start))
+    for side, usual in enumerate(beside(BESIDE)):
+        shares = _shares(usual)
+        likely = np.maximum(likely, _all_equal(shares))
+        for distance in CLOSE:
+            counts = beside(distance)[side]
+            found, expected = counts[:, :-1].sum(axis=1), counts[:, -1] * shares.sum(axis=1)
+            more = found > expected + MORE * np.sqrt(expected + 1)
+            more |= found >= counts[:, -1] * shares.shape[1] / 2
+            likely = np.where(more, np.maximum(likely, _all_equal(_shares(counts))), likely)
+    return likely
+
+
+def _shares(counts: Array) -> Array:
+    """How often each of c channels is equal, (k, c), by (k, c + 1): how often, of so many.
+
+    Of few pairs it is nearly how often any channel is.
+    """
+    number, of = counts[:, :-1], counts[:, -1:]
+    any_of_them = (number.sum(axis=1, keepdims=True) + 1) / (of * number.shape[1] + 1)
+    return np.asarray((number + any_of_them) / (of + 1))
+
+
+def _all_equal(shares: Array) -> Array:
+    """The chance P that all channels are equal, (k,), if each is equal by itself.
+
+    shares: (k, c), how often each is equal where not all are: s = (p − P)/(1 − P), P = Πp. If less
+    than one channel changes in such a pair there is no P below 1.
+    """
+    low, high = np.zeros(len(shares)), np.ones(len(shares))
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        more = (shares * (1 - middle[:, None]) + middle[:, None]).prod(axis=1) > middle
+        low, high = np.where(more, middle, low), np.where(more, high, middle)
+    return high

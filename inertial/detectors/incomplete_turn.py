@@ -1,0 +1,88 @@
+"""A turn of which a part is missing."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.signal.detector import Words
+from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
+from inertial.signal.turn_scale import ALIKE, common_ratio, ratios
+from inertial.text.numbers import fixed, whole
+
+
+class IncompleteTurn(AgainstPlan):
+    """A turn that was not recorded from rest to rest, or not to the planned angle."""
+
+    name = "incomplete_turn"
+    cause = "samples were lost, or the log begins or ends while the table turns"
+    source = "S0, figure 5-9: 11.98 s are missing of a turn, so 240° of 360° are recorded"
+    costs = "its angle, and with it a scale factor, if the planned or a rounded one is taken"
+    unit = "°"
+    sensor = "gyro"
+
+    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+        common = common_ratio(recorded)
+        _, angle = ratios(recorded)
+        # By other axes no turn is used, though it may be whole.
+        misread = any(one.sensor == "gyro" and not one.log for one in recorded.misread)
+        for i, name in enumerate(recorded.name):
+            whole_planned = recorded.do[i] == "turn" and not recorded.steady[i]
+            if not whole_planned or not recorded.found[i] or recorded.complete[i]:
+                continue
+            scaled = common is not None and abs(angle[i] / common[0] - 1) <= ALIKE
+            reversed_ = angle[i] < 0
+            refused = misread and recorded.lacking_s[i] == 0
+            if scaled or reversed_ or refused or name in recorded.explained:
+                continue
+            missing = float(np.degrees(recorded.lacking[i]))
+            place = {}
+            if recorded.gap_first[i] >= 0:
+                place = {
+                    "first": int(recorded.gap_first[i]),
+                    "after": int(recorded.gap_first[i]),
+                    "from_s": float(recorded.gap_from_s[i]),
+                    "to_s": float(recorded.gap_to_s[i]),
+                }
+            yield self.of(recorded, i, missing if np.isfinite(missing) else None, **place)
+
+    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+        i = deviation.at
+        assert i is not None  # it is a turn that is not complete
+        bridged = bool(recorded.bridged[i])
+        return Words(
+            f"{recorded.name[i]}: {recorded.said[i]}",
+            _if_taken(recorded, i),
+            "The joint estimate bridges what is missing; every formula that needs the whole angle"
+            " leaves the turn out."
+            if bridged
+            else "It is left out of the joint estimate and of the angle method. Record it again.",
+        )
+
+
+def _if_taken(recorded: Recorded, i: int) -> str:
+    """What the scale factor would be wrong by if one took another angle than the recorded one."""
+    common = common_ratio(recorded)
+    scale = common[0] if common else 1.0
+    planned, read = np.degrees([recorded.angle[i], recorded.moved[i] / scale]).tolist()
+    if not np.isfinite(planned * read) or not planned * read:
+        return "Its angle is not known, so it gives no scale factor."
+    said = [f"Taken for {fixed(planned, 0)}°, {_wrong_by(read / planned - 1)}"]
+    if common:
+        said[0] = f"Without the common ratio it is {fixed(read, 2)}°. {said[0]}"
+    # The formula of two turns takes the time of a whole one, whatever the log holds of it.
+    whole_turn = abs(recorded.angle[i] / recorded.rate[i]) if recorded.rate[i] else 0.0
+    seconds = float(np.fmax(recorded.duration[i], whole_turn))
+    if seconds > 0 and abs(planned - read) > 0:
+        said[0] += f", bias by {fixed(abs(planned - read) / (2 * seconds), 4)} °/s"
+    rounded = round(read)
+    if rounded and abs(read / rounded - 1) < 0.5:
+        said.append(f"rounded to {fixed(rounded, 0)}°, {_wrong_by(read / rounded - 1)}")
+    return "; ".join(said) + "."
+
+
+def _wrong_by(error: float) -> str:
+    """A scale error of one turn, and of a pair with one that is right the other way."""
+    return (
+        f"its scale error is wrong by {whole(error * 1e6)} ppm"
+        f" ({whole(error / 2 * 1e6)} ppm in a pair with a turn that is right)"
+    )

@@ -1,0 +1,86 @@
+"""A manoeuvre that is not in its log."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.signal.axis_permutations import AXES
+from inertial.signal.detector import Array, Words
+from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
+from inertial.text.numbers import fixed
+
+SAME = float(np.cos(np.radians(25)))  # directions that are the same
+
+
+class ManoeuvreMissing(AgainstPlan):
+    """A planned rest or turn of which the log has nothing, and nothing explains why."""
+
+    name = "manoeuvre_missing"
+    cause = "it was not done, not recorded, or the plan has it in the wrong place"
+    source = "S0: a log that was not written whole"
+    costs = "what it alone would determine"
+
+    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+        for i, name in enumerate(recorded.name):
+            if not recorded.found[i] and name not in recorded.explained:
+                yield self.of(recorded, i, None, sensor=None)
+
+    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+        i = deviation.at
+        assert i is not None  # it is a manoeuvre that is missing
+        return Words(
+            recorded.said[i] + _instead(recorded, i),
+            f"It is left out; the others are used. {_left(recorded, i)}",
+            "Correct the plan, or record it.",
+        )
+
+
+def _instead(recorded: Recorded, i: int) -> str:
+    """What the log has in its place."""
+    if recorded.do[i] == "rest":
+        force, up = recorded.force[i], recorded.up[i]
+        if not (np.isfinite(force).all() and np.isfinite(up).all()):
+            return ""
+        direction = force / np.linalg.norm(force)
+        away = np.degrees(np.arccos(np.clip(direction @ up, -1, 1)))
+        told = f" Its log rests {away:.0f}° from there, with {_axis(direction)} up."
+        if float(np.abs(direction).max()) > SAME:
+            told += " Either the IMU stood so, or two axes or a sign of the accelerometers are"
+            told += " taken for others; this log alone does not tell."
+        return told
+    turned = np.degrees(recorded.turned[i])
+    about = recorded.about[i]
+    blind = np.flatnonzero(~recorded.gyros[i] & (np.abs(about) > SAME))
+    if len(blind):
+        return f" The {AXES[int(blind[0])]} gyro, which would see it, has no reading to be used."
+    if recorded.first[i] >= 0 and np.isfinite(turned).any():
+        angles = ", ".join(fixed(float(angle), 0) for angle in turned)
+        return f" What moves there turns by ({angles})° about x, y, z."
+    return ""
+
+
+def _axis(direction: Array) -> str:
+    k = int(np.argmax(np.abs(direction)))
+    if abs(direction[k]) > SAME:
+        return f"{'+' if direction[k] > 0 else '−'}{AXES[k]}"
+    return "(" + ", ".join(fixed(float(part), 2) for part in direction) + ")"
+
+
+def _left(recorded: Recorded, i: int) -> str:
+    """What the others say of the same direction."""
+    rest = recorded.do[i] == "rest"
+    directions = recorded.up if rest else recorded.about
+    own = directions[i]
+    if not np.isfinite(own).all():
+        return ""
+    along = np.nan_to_num(directions) @ own
+    same = (along > SAME) if rest else (np.abs(along) > SAME)
+    others = same & recorded.found & (np.arange(len(along)) != i)
+    others &= np.isfinite(directions).all(axis=1)
+    if others.any():
+        names = [recorded.name[k] for k in np.flatnonzero(others)[:4]]
+        return f"The same {'direction' if rest else 'axis'} is seen in {', '.join(names)}."
+    axis = _axis(own)
+    if rest:
+        return f"No other rest has {axis} up, which parts its bias from its scale factor."
+    return f"No other turn is about {axis.strip('+−')}: its scale factor is not determined."

@@ -1,0 +1,79 @@
+"""Two manoeuvres in each other's place."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.signal.detector import Words
+from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded, Swapped
+
+
+class ManoeuvreSwapped(AgainstPlan):
+    """Two logs under each other's names, or two manoeuvres of a log in each other's place.
+
+    Each fits where the plan has the other, and not where the plan has it.
+    """
+
+    name = "manoeuvre_swapped"
+    cause = "two files were handed over under each other's names, or the order was another"
+    source = "S0 took another group's log in place of a broken one: names are given by hand"
+    costs = "the sign of a bias or scale factor, were they used"
+    unit = "manoeuvres"
+
+    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+        for one in recorded.swapped:
+            i = list(recorded.name).index(one.names[0])
+            yield self.of(recorded, i, float(len(one.names)), facts=one)
+
+    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+        one: Swapped = deviation.facts
+        half = len(one.names) // 2
+        first, second = ", ".join(one.names[:half]), ", ".join(one.names[half:])
+        if len(one.logs) == 2:
+            sentence = (
+                f"{one.logs[0]} holds what {second} should be, and {one.logs[1]} what {first}"
+                " should be: they bear each other's names."
+            )
+        else:
+            sentence = f"In {one.logs[0]}, {first} and {second} stand in each other's place."
+        own = [i for i, name in enumerate(recorded.name) if name in one.names]
+        return Words(
+            sentence + (_or_a_sign(recorded, own) if len(one.logs) == 2 else ""),
+            _if_used(recorded, own),
+            "Both are left out, for only the laboratory knows which is which. Correct the names, or"
+            " the plan, and run it again.",
+        )
+
+
+def _or_a_sign(recorded: Recorded, own: list[int]) -> str:
+    """What explains the same: a wrong sign of the one axis that both see."""
+    rests = all(recorded.do[i] == "rest" for i in own)
+    directions = recorded.up[own] if rests else recorded.about[own] * recorded.angle[own, None]
+    if len(own) != 2 or not np.isfinite(directions).all():
+        return ""
+    unit = directions / np.linalg.norm(directions, axis=1)[:, None]
+    if float(unit[0] @ unit[1]) > -0.9:
+        return ""
+    axis = "xyz"[int(np.argmax(np.abs(unit[0])))]
+    if rests:
+        return (
+            f" A wrong sign of the {axis} accelerometer would look the same, if no other manoeuvre"
+            " shows its sign."
+        )
+    if recorded.gyro_signs["xyz".index(axis)] > 0:
+        return (
+            f" Planned angles of the wrong sign would look the same; the sign of the {axis} gyro is"
+            " right, for it sees the earth turn."
+        )
+    return f" A wrong sign of the {axis} gyro, or of the planned angles, would look the same."
+
+
+def _if_used(recorded: Recorded, own: list[int]) -> str:
+    if all(recorded.do[i] == "rest" for i in own):
+        gravity = 2 * recorded.given.gravity
+        return f"Used, each mean would be wrong by up to {gravity:.3g} m/s², twice gravity."
+    angles = np.degrees(np.abs(recorded.angle[own]))
+    if np.isfinite(angles).all():
+        wrong = f"{2 * angles.max():.0f}°"
+        return f"Used, each angle would be wrong by up to {wrong}, a scale error of −200 %."
+    return "Used, each would be taken for the other."

@@ -1,0 +1,156 @@
+"""A case that rings."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from inertial.signal.detector import UNITS, Array, Detector, Event, Log, Piece, Words, channel_name
+from inertial.signal.tones import Tone, tones
+from inertial.text.numbers import significant
+
+TURNING = 0.03  # rad/s, which no table does at rest
+BIAS = 0.1  # rad/s, which no gyro reads at rest
+BLOCK = 128  # readings whose mean rate is taken
+MOSTLY = 0.9  # of the time of an oscillation
+FEWEST = 3  # blocks at rest that tell that it is not there
+
+
+@dataclass(frozen=True)
+class Ringing:
+    """What is told of an oscillation.
+
+    tone: the largest; others: the same in other channels; besides: Hz, what its channel has at the
+    same time; turning: share of its time in which the IMU turned, NaN without gyros; not_at_rest:
+    the IMU was at rest without it.
+    """
+
+    tone: Tone
+    besides: tuple[float, ...]
+    turning: float
+    not_at_rest: bool
+
+
+class Oscillation(Detector):
+    """One frequency that stands out of the spectra of a channel, and keeps its phase.
+
+    It is seen in windows of 256 readings, from 8 periods a window on and in four windows at least;
+    its frequency is that by which the phase stays the same from window to window, its edges are
+    those that are most likely reading by reading. A log of 24 to 64 readings is looked at as a
+    whole. Where several channels have it, the one is told in which it is largest, of
+    the sensor that has it clearest; what others have in step with it may be coupling. Motion by
+    hand, ramps and coloured noise rise above their own spectrum on one side only, or keep no
+    phase.
+    """
+
+    name = "oscillation"
+    cause = "the case, a loose screw, the drive of the table or the electronics ring"
+    source = "S0, figures 5-14 to 5-16: 20 Hz, 0.01 rad/s about x while the table turns"
+    costs = "angles and means over part of a turn; the noise, where it is taken for noise"
+    severity = 1
+    everywhere = True
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        turning = _turning(piece, log)
+        found = sorted(tones(piece, log), key=lambda tone: -tone.clear)
+        for tone, besides in sorted(_apart(found), key=lambda one: one[0].start):
+            alike = [one for one in found if abs(one.frequency - tone.frequency) < one.resolved]
+            without = turning.copy()
+            for one in alike:
+                without[one.start : one.end] = np.nan
+            inside = turning[tone.start : tone.end]
+            known = inside[np.isfinite(inside)]
+            yield piece.event(
+                tone.start,
+                tone.end,
+                tone.amplitude,
+                channel=tone.channel,
+                p_value=tone.p_value,
+                facts=Ringing(
+                    tone,
+                    besides,
+                    float(known.mean()) if len(known) else np.nan,
+                    int(np.count_nonzero(without == 0)) >= FEWEST * BLOCK,
+                ),
+            )
+
+    def tells(self, event: Event, name: str) -> Words:
+        ringing: Ringing = event.facts
+        tone = ringing.tone
+        unit, rate = UNITS[tone.channel], tone.rate
+        others = " and ".join(
+            f"{channel_name(i)} by {significant(size, 2)} {UNITS[i]}" for i, size in tone.others
+        )
+        besides = " and ".join(f"{one:.2f} Hz" for one in ringing.besides)
+        return Words(
+            f"{name}: {channel_name(tone.channel)} oscillates at {tone.frequency:.2f} Hz by"
+            f" {significant(event.size, 2)} {unit}, from {event.from_s:.2f} s to"
+            f" {event.to_s:.2f} s{_when(ringing)}."
+            + (f" In step with it {others}, which may be coupling." if others else "")
+            + (f" It has {besides} as well." if besides else "")
+            + f" At {rate:.4g} samples per second {rate - tone.frequency:.2f} or"
+            f" {rate + tone.frequency:.2f} Hz would look the same.",
+            _consequence(tone, ringing.not_at_rest and ringing.turning > MOSTLY),
+            "Nothing is changed: over many periods it averages out. Look for a loose screw, and"
+            " whether it is there with the drive of the table switched off.",
+        )
+
+
+def _when(ringing: Ringing) -> str:
+    if not np.isfinite(ringing.turning):
+        return ""
+    if ringing.turning > MOSTLY:
+        return ", while the IMU turns" + (", and not at rest" if ringing.not_at_rest else "")
+    return ", at rest" if ringing.turning < 1 - MOSTLY else ", at rest and while the IMU turns"
+
+
+def _consequence(tone: Tone, only_turning: bool) -> str:
+    """A sine of amplitude A has an integral of ±A / (2πf), and a mean over T of ±A / (πfT)."""
+    unit = UNITS[tone.channel]
+    swing = tone.amplitude / (2 * np.pi * tone.frequency)
+    mean = (
+        f"A mean over 1 s is off by up to {significant(2 * swing, 2)} {unit}, over 100 s by up to"
+        f" {significant(swing / 50, 2)}."
+    )
+    if tone.channel < 3:
+        return f"{mean} Bias and scale factor from long rests hardly notice."
+    parts = [significant(swing / turn * 1e6, 2) for turn in (2 * np.pi, np.pi)]
+    return (
+        f"The angle swings by {significant(swing, 3)} rad: at most {parts[0]} ppm of a turn of"
+        f" 360°, {parts[1]} ppm of one of 180°."
+        f"{' Summed from rest to rest it adds nothing.' if only_turning else ''} {mean}"
+    )
+
+
+def _turning(piece: Piece, log: Log) -> Array:
+    """Whether the IMU turns, 1, or is at rest, 0, by blocks of records, (n,); NaN without gyros."""
+    means = log.windows.mean[:, 3:]
+    means = means[np.isfinite(means).all(axis=1)]
+    rates = piece.values[:, 3:]
+    turning = np.full(len(rates), np.nan)
+    if not len(means):
+        return turning
+    rest = means[np.argmin(np.linalg.norm(means, axis=1))]
+    rest = rest if np.linalg.norm(rest) < BIAS else np.zeros(3)
+    for start in range(0, len(rates), BLOCK):
+        block = rates[start : start + BLOCK]
+        block = block[np.isfinite(block).all(axis=1)]
+        if len(block):
+            away = float(np.linalg.norm(block.mean(axis=0) - rest))
+            turning[start : start + BLOCK] = away > TURNING
+    return turning
+
+
+def _apart(found: Sequence[Tone]) -> Iterator[tuple[Tone, tuple[float, ...]]]:
+    """Of tones of one channel at the same time the clearest, and the frequencies of the others."""
+    taken: list[list[Tone]] = []
+    for tone in found:
+        for group in taken:
+            first = group[0]
+            if tone.channel == first.channel and tone.start < first.end and first.start < tone.end:
+                group.append(tone)
+                break
+        else:
+            taken.append([tone])
+    for first, *others in taken:
+        yield first, tuple(other.frequency for other in others)

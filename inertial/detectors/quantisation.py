@@ -1,0 +1,149 @@
+"""Counts that are coarser than stated, or than the noise."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from inertial.signal.detector import CHANNELS, UNITS, Array, Detector, Event, Log, Piece, Words
+from inertial.signal.roughness import BLOCK, in_blocks, roughness, smallest_step
+from inertial.text.numbers import significant
+
+CERTAIN = 1e-6  # chance that all changes are multiples of k counts, in the channels of 12 logs
+TESTS = 6 * 12
+USUAL = 0.5  # of the blocks
+LARGE = 1.5  # steps: a change by two steps or more
+WHOLE = 0.01  # counts: by how much a multiple of a count may be off
+
+# The variance of rounded readings in steps², on average over where the truth lies between two,
+# by their noise in steps: σ² + 1/12 less the variance of the mean, whose harmonics are known.
+_NOISE = np.linspace(0.0, 1.0, 201)
+_VARIANCE = (
+    _NOISE**2
+    + 1 / 12
+    - sum(np.exp(-((2 * np.pi * k * _NOISE) ** 2)) / k**2 for k in range(1, 200)) / (2 * np.pi**2)
+)
+
+
+@dataclass(frozen=True)
+class Steps:
+    """What is told of the steps of some axes of a sensor.
+
+    noise: in steps, the least of them; stated: one count, unit of the channel, NaN if it is not.
+    """
+
+    axes: str
+    noise: float
+    stated: float
+    increments: bool
+
+
+class Quantisation(Detector):
+    """A channel whose readings go in steps larger than they should.
+
+    Larger than the stated count: all changes are multiples of k counts, which M changes in steps
+    of one count are with the chance k^−M. Or larger than the noise: in most blocks of 64 readings
+    no change is of two steps, that is for noise σ of less than 0.37 steps q, of increments 0.2.
+    Then many readings are no better than one: their mean is off by up to (q/π) exp(−2π² σ²/q²),
+    0.02 q for σ = 0.37 q, 0.14 q for 0.2 q. Increments that carry over what a count leaves lose
+    nothing: a sum of them is good to one count.
+    """
+
+    name = "quantisation"
+    cause = "the converter, its range, or the format of the log has fewer digits than needed"
+    source = "Widrow & Kollár, Quantization Noise, 2008: the mean of a rounded Gaussian"
+    costs = "means do not become better with time: bias"
+    severity = 1
+    everywhere = True
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        told: dict[tuple[str, float], list[Event]] = {}
+        for i in range(6):
+            event = _of_channel(piece, log, i)
+            if event is not None:
+                told.setdefault((CHANNELS[i][:-2], float(f"{event.size:.6g}")), []).append(event)
+        for events in told.values():
+            yield _together(events)
+
+    def tells(self, event: Event, name: str) -> Words:
+        assert event.channel is not None
+        facts, unit = event.facts, UNITS[event.channel]
+        sensor = "accelerometer" if event.channel < 3 else "gyro"
+        step, times = significant(event.size, 4), event.size / facts.stated
+        off = event.size / np.pi * float(np.exp(-2 * (np.pi * facts.noise) ** 2))
+        of_stated = f", {times:.0f} times the stated count" if times > 1.5 else ""
+        if facts.increments:
+            consequence = (
+                "None for sums: what a count leaves over goes into the next increment, so a sum of"
+                f" any number of them is good to one step, {step} {unit} for one interval."
+            )
+        elif off < event.size / 1000:
+            consequence = (
+                f"None for means: the noise is {significant(facts.noise, 2)} steps, which averages"
+                " them out. But what is stated of the counts is not what the log has."
+            )
+        else:
+            consequence = (
+                f"The noise is {significant(facts.noise, 2)} steps, so a mean of any length may be"
+                f" off by {significant(off, 2)} {unit}: so uncertain is the bias, whatever its"
+                " sigma says."
+            )
+        return Words(
+            f"{name}: the steps of {sensor} {', '.join(facts.axes)} are {step} {unit}{of_stated}.",
+            consequence,
+            "Nothing is changed. "
+            + (
+                "Compare the count size with the data sheet and the range that was set."
+                if of_stated
+                else "Choose a smaller range, or a format with more digits."
+            ),
+        )
+
+
+def _of_channel(piece: Piece, log: Log, i: int) -> Event | None:
+    """What is to be told of one channel."""
+    places, values = piece.channel(i)
+    step = smallest_step(values)
+    if len(values) <= BLOCK or not np.isfinite(step):
+        return None
+    stated = float(log.count[i])
+    changes = np.abs(np.diff(values))
+    times, chance = _coarser(changes[changes > step / 2], stated)
+    step = stated * times if times > 1 else step
+    blocks = in_blocks(np.abs(np.diff(values)) / step)
+    fine = (blocks > LARGE).any(axis=1)
+    coarse = fine.mean() < USUAL
+    if times == 1 and not coarse:
+        return None
+    variance = float(np.mean(blocks[~fine] ** 2) / 2) if coarse else (roughness(values) / step) ** 2
+    noise = float(np.interp(variance, _VARIANCE, _NOISE)) if coarse else float(np.sqrt(variance))
+    return piece.event(
+        int(places[0]),
+        int(places[-1]) + 1,
+        step,
+        channel=i,
+        p_value=chance if times > 1 else None,
+        severity=2 if coarse and not log.increments else 1,
+        facts=Steps(CHANNELS[i][-1], noise, stated, log.increments),
+    )
+
+
+def _together(events: list[Event]) -> Event:
+    """Axes of a sensor with the same steps as one event, under the first of them."""
+    least = min(events, key=lambda event: float(event.facts.noise))
+    axes = "".join(event.facts.axes for event in events)
+    return replace(
+        events[0],
+        facts=replace(least.facts, axes=axes),
+        severity=max(event.severity or 1 for event in events),
+    )
+
+
+def _coarser(changes: Array, count: float) -> tuple[int, float]:
+    """How many counts all changes are multiples of, and the chance of that; 1 if of one."""
+    counts = changes / count
+    if not np.isfinite(count) or (np.abs(counts - np.rint(counts)) > WHOLE).any():
+        return 1, 1.0
+    times = int(np.gcd.reduce(np.rint(counts).astype(np.int64)))
+    chance = min(TESTS * float(times) ** -len(counts), 1.0) if times > 1 else 1.0
+    return (times, chance) if chance < CERTAIN else (1, 1.0)

@@ -1,0 +1,50 @@
+"""Another sample rate than the stated one."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.signal.detector import Detector, Event, Log, Words
+from inertial.text.numbers import significant
+
+ANOTHER_RATE = 0.01  # of the stated rate: more than any crystal is off
+FACTORS = (2, 4, 5, 10)  # of rates that instruments offer
+
+
+class RateOff(Detector):
+    """The mean interval of a log, gaps left out, is not one over the stated rate."""
+
+    name = "rate_off"
+    cause = "the rate was set otherwise, records are left out, or another instrument is named"
+    source = "design study, 41e: 200 against 100 Hz"
+    costs = "nothing where stamps are recorded; where they are counted, rates by this factor"
+    unit = "1"
+    severity = 1
+    everywhere = True
+
+    def concludes(self, log: Log) -> Iterator[Event]:
+        factor = log.given.interval / log.step
+        if np.isfinite(factor) and abs(factor - 1) > ANOTHER_RATE:
+            facts = (1 / log.step, 1 / log.given.interval, log.given.instrument)
+            yield log.event(factor, facts=facts)
+
+    def tells(self, event: Event, name: str) -> Words:
+        rate, stated, instrument = event.facts
+        return Words(
+            f"{name}: {significant(rate)} samples per second by the stamps, but"
+            f" {significant(stated)} are stated: {_factor(event.size)}.",
+            "None where the stamps are right: sums over time, and rates of increments, are made"
+            " with the log's own interval. Where they are wrong, both are off by this factor.",
+            f"Nothing is changed. Correct rate_hz of {instrument}, or look whether it is the"
+            " instrument that recorded this, and whether samples are left out.",
+        )
+
+
+def _factor(factor: float) -> str:
+    """The factor in words, with its round number if it has one."""
+    for whole in FACTORS:
+        if abs(factor / whole - 1) < ANOTHER_RATE:
+            return f"×{whole}"
+        if abs(factor * whole - 1) < ANOTHER_RATE:
+            return f"÷{whole}, as if only one record in {whole} were written"
+    return f"factor {significant(factor)}"

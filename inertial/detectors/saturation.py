@@ -1,0 +1,240 @@
+"""A channel at the end of its range."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import bdtrc
+
+from inertial.signal.detector import (
+    UNITS,
+    Array,
+    Detector,
+    Event,
+    Integers,
+    Log,
+    Piece,
+    Words,
+    channel_name,
+)
+from inertial.signal.roughness import SCATTER
+from inertial.signal.runs import joined
+from inertial.text.numbers import counted, significant
+
+# ---- Readings that pile up at the largest value of a channel, as they do at the end of its range.
+
+STEPS = (8, 64, 512)  # next counts below, whose readings are compared with those at the extreme
+TESTS = 6 * 2 * len(STEPS) * 12  # both ends of each channel, in as many logs as S0 has
+CERTAIN = 1e-6  # chance of a pile in a campaign
+BETWEEN = 8  # readings at the most between two visits that are one
+SOLID = 0.5  # of the readings of a pile in one run: it is no noise cut off, but one long visit
+COARSE = 0.8  # counts of noise with that of rounding, which is up to 0.53 in increments
+OUTSIDE = 64  # readings before the first visit and after the last, and between them
+BESIDE = 8  # readings before and after a visit, in which the channel must run up to the limit
+AWAY = 8.0  # scatters of those readings: so far away from the limit it must have been
+FILLED = 0.7  # of the counts from the median to the extreme: what noise fills of them
+
+
+def pile_at_top(values: Array, most: float, count: float, noise: float) -> tuple[Integers, float]:
+    """The readings at the largest value of a log, if they pile up there, and the chance of it.
+
+    Where they cut off the noise of a steady reading: unclipped, what lies above would spread over
+    as many counts as what lies as far below the median. Where more than half of the readings
+    stand there: unclipped, no more lie at the very extreme than in each of the next counts below,
+    so of N in the last m + 1 counts at most a share of 1/(m + 1) (binomial). Nothing can be said
+    so of a channel whose noise is less than its count. A value that the readings leap to is no
+    end of a range, nor is zero.
+
+    Parameters
+    ----------
+    values : (n,), readings
+    most : the largest in the log
+    count : the smallest step, in the same unit
+    noise : sigma of a reading
+    """
+    pile, none = np.flatnonzero(values == most), np.empty(0, np.int64)
+    if len(pile) < 2 or most == 0 or not np.isfinite(count):
+        return none, 1.0
+    # Where the noise is less than a count, a steady turn stands at one value by right.
+    if _noise_beside(values, pile) < COARSE * count:
+        return none, 1.0
+    places = np.unique(np.clip(pile[:, None] + np.arange(-BESIDE, BESIDE + 1), 0, len(values) - 1))
+    if _steady(values[places], most, count):
+        chance = TESTS * _by_the_other_side(values[places], most, count)
+    elif np.count_nonzero(np.diff(pile) == 1) >= len(pile) / 2 - 1:
+        chance = TESTS * _by_what_is_below(values, most, count, len(pile))
+    else:
+        return none, 1.0  # the crests of an oscillation: one reading each
+    if chance < CERTAIN and _runs_into(values, pile, noise):
+        return pile, chance
+    return none, 1.0
+
+
+def _noise_beside(values: Array, pile: Integers) -> float:
+    """The noise of the readings before, between and after the visits of a pile, ramps or not.
+
+    Of white noise the differences of differences have 6 times the variance.
+    """
+    near = np.zeros(len(values), bool)
+    for start, end in joined(pile, 2 * OUTSIDE):
+        near[max(start - OUTSIDE, 0) : end + OUTSIDE] = True
+    for start, end in joined(pile, BETWEEN):
+        near[start:end] = False
+    rough = np.diff(values, 2)
+    whole = near[:-2] & near[1:-1] & near[2:]
+    if np.count_nonzero(whole) < OUTSIDE:  # nothing lies outside: what is not at the limit itself
+        rough, whole = np.diff(np.delete(values, pile), 2), np.ones(1, bool)
+    rough = np.abs(rough[np.broadcast_to(whole, rough.shape)])
+    return float(SCATTER * np.median(rough) / np.sqrt(6)) if len(rough) else 0.0
+
+
+def _steady(values: Array, most: float, count: float) -> bool:
+    """Whether readings fill all counts from their median to the extreme: noise about one value."""
+    upper = values[values >= np.median(values)]
+    steps = (most - upper.min()) / count
+    filled = len(np.unique(np.rint((most - upper) / count)))
+    return bool(steps >= 1 and filled > FILLED * (steps + 1))
+
+
+def _by_the_other_side(values: Array, most: float, count: float) -> float:
+    """The chance that all readings above a level fall into one count, by those as far below.
+
+    Noise is as wide upwards as downwards: of the readings that are as far below the median as
+    the extreme is above it, or farther, only a share lies within that one count.
+    """
+    below = np.median(values) - (most - np.median(values))
+    beyond = np.count_nonzero(values < below + count / 2)
+    within = np.count_nonzero(np.abs(values - below) < count / 2)
+    return float(((within + 1) / (beyond + 1)) ** np.count_nonzero(values == most))
+
+
+def _by_what_is_below(values: Array, most: float, count: float, number: int) -> float:
+    """The chance of so many readings at the largest value, by those in the counts below it."""
+    chance, filled = 1.0, 0.0
+    for steps in STEPS:
+        together = np.count_nonzero(values > most - (steps + 0.5) * count)
+        density = (together - number) / steps
+        if density < filled:
+            break  # the readings end before: they lie closer together than so many counts
+        chance = min(chance, float(bdtrc(number - 1, together, 1 / (steps + 1))))
+        filled = density
+    return chance
+
+
+def _runs_into(values: Array, pile: Integers, noise: float) -> bool:
+    """Whether a pile is noise cut off, or one visit that the channel runs into and out of."""
+    start, end = max(joined(pile, 0), key=lambda run: run[1] - run[0])
+    if end - start < max(SOLID * len(pile), BESIDE):
+        return True
+    start, end = max(joined(pile, BETWEEN), key=lambda run: run[1] - run[0])
+    sides = [
+        np.abs(values[start] - side)
+        for side in (values[max(start - BESIDE, 0) : start][::-1], values[end : end + BESIDE])
+        if len(side) == BESIDE
+    ]
+    return bool(sides) and all(
+        away[-1] > AWAY * noise and away[0] <= 2 * np.abs(np.diff(away)).max() for away in sides
+    )
+
+
+# ---- A channel at the end of its range.
+
+FULL = tuple(2**bits - one for bits in (15, 19, 23, 31) for one in (0, 1))  # counts of converters
+ROUNDED = 1 - 1e-9  # readings are counts times their size, rounded
+SHORT = 20  # readings of a visit that can be bridged by a curve
+
+
+@dataclass(frozen=True)
+class Visit:
+    """What is told of a visit.
+
+    limit: unit of the channel; seconds: that its readings stand for; lost: integral beyond the
+    limit by the cubic that continues the readings beside it, unit of the channel × s, NaN where
+    the visit is too long for one.
+    """
+
+    limit: float
+    seconds: float
+    lost: float
+
+
+class Saturation(Detector):
+    """A channel that stands at the largest or the smallest value that it can read.
+
+    It is known where the campaign states the limit, or the extreme is the full count of a
+    converter. Otherwise a pile of readings at the largest or smallest value of the log tells it,
+    where the noise is no less than a count, and the readings run into it: a value that they leap
+    to is no end of a range, nor is zero.
+    """
+
+    name = "saturation"
+    cause = "the motion went beyond the range of the sensor or of its converter"
+    source = "MPU-6050 of the Universidad Nacional de Cuyo: gyros at ±32768 counts"
+    costs = "a turn's angle is too small, and with it the scale factor"
+    unit = "samples"
+    severity = 3
+    masks = True
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        for i in range(6):
+            places, values = piece.channel(i)
+            clipped = np.zeros(len(values), bool)
+            chance: dict[float, float] = {}
+            for sign, most in ((1.0, log.most[i]), (-1.0, -log.least[i])):
+                upward = sign * values
+                clipped |= upward >= ROUNDED * _known(sign, log, i)
+                if not (upward[clipped] == most).any():
+                    pile, p_value = pile_at_top(upward, most, log.quantum[i], log.noise[i])
+                    clipped[pile] = True
+                    chance[sign * most] = p_value
+            for start, end in joined(np.flatnonzero(clipped), BETWEEN):
+                limit = float(values[start])
+                yield piece.event(
+                    int(places[start]),
+                    int(places[end - 1]) + 1,
+                    float(clipped[start:end].sum()),
+                    channel=i,
+                    p_value=chance.get(limit),
+                    facts=Visit(
+                        limit, (end - start) * log.step, _lost(values, start, end, log.step)
+                    ),
+                )
+
+    def tells(self, event: Event, name: str) -> Words:
+        assert event.channel is not None
+        visit, many = event.facts, event.size > 1
+        what, unit = ("velocity", "m/s") if event.channel < 3 else ("angle", "rad")
+        percent = abs(visit.limit) * visit.seconds / 100
+        return Words(
+            f"{name}: {counted(round(event.size), 'reading')} of {channel_name(event.channel)}"
+            f" {'stand' if many else 'stands'} at {significant(visit.limit, 6)}"
+            f" {UNITS[event.channel]}, the end of the range, from line {event.line} on.",
+            f"The {what} over {'them' if many else 'it'} is too small by all that went beyond: "
+            + (
+                f"about {significant(visit.lost, 2)} {unit}, if the readings beside are continued."
+                if np.isfinite(visit.lost)
+                else f"{significant(percent, 2)} {unit} for each 1 % beyond."
+                if np.isfinite(percent)
+                else "how much, the log does not tell."
+            ),
+            f"{'The readings are' if many else 'The reading is'} masked. Turn more slowly, or"
+            " choose a wider range.",
+        )
+
+
+def _known(sign: float, log: Log, i: int) -> float:
+    """What the channel reads at its upper end, by the campaign or as a full count."""
+    most = float(log.most[i] if sign > 0 else -log.least[i])
+    count = float(log.count[i] if np.isfinite(log.count[i]) else log.quantum[i])
+    if np.isfinite(count) and np.isclose(most / count, FULL, rtol=1e-7).any():
+        return most
+    return float(log.limit[i])
+
+
+def _lost(values: Array, start: int, end: int, step: float) -> float:
+    """What the cubic with the slopes beside a visit encloses beyond the limit."""
+    if end - start > SHORT or start < 2 or end + 2 > len(values):
+        return np.nan
+    up, down = values[start - 1] - values[start - 2], values[end + 1] - values[end]
+    lost = float((up - down) * np.sign(values[start]) * (end - start) ** 2 / 12 * step)
+    return lost if lost > 0 else np.nan

@@ -1,0 +1,26 @@
+"""Axes with the other sign, seen by what the plan says of gravity and of the turns."""
+
+from collections.abc import Iterator
+
+from inertial.signal.detector import Words
+from inertial.signal.misread_axes import deviation, misread_words
+from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
+
+
+class SignFlipAgainstPlan(AgainstPlan):
+    """Rests, or turns, that fit the plan only if an axis of a sensor reads its negative."""
+
+    name = "sign_flip"
+    cause = "a sign of the raw fields is forgotten, or taken twice"
+    source = "design study, 41d: RAWIMUS −y; two wrong flips cancel, so the determinant is told"
+    costs = "scale factor and bias of the axis"
+    unit = "manoeuvres"
+    severity = 3
+
+    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+        for one in recorded.misread:
+            if one.axes.in_place:
+                yield deviation(one, recorded)
+
+    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+        return misread_words(deviation.facts, recorded)

@@ -1,0 +1,189 @@
+"""Single readings that have nothing to do with those beside them."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import erfc
+
+from inertial.signal.detector import (
+    UNITS,
+    Array,
+    Booleans,
+    Detector,
+    Event,
+    Integers,
+    Log,
+    Piece,
+    Words,
+    channel_name,
+)
+from inertial.signal.outliers import LOUD, WIDEST, Channel
+from inertial.signal.roughness import SCATTER
+from inertial.signal.runs import joined
+from inertial.text.numbers import counted, significant, whole
+
+FEWEST = 18  # readings of a channel by which a spike can be told
+CERTAIN = 7.5  # scatters: see `chance`
+GROSS = 40.0  # scatters, where the IMU is moved by hand or rings
+LEAP = 4.0  # times the largest change between readings beside it, there
+FAINT = 0.01  # of a spike: what is less beside it in other channels is none of a knock's
+NEAR = 24  # readings on each side from which the scatter is taken where it changes
+SPARED = 4  # of them may be spikes as well
+LARGE = 1.37  # sigma: the fifth largest of 24 Gaussian readings
+SHARE = 0.75  # of that scatter, which comes from few readings, so that noise alone seldom raises it
+READINGS = 1.2e6  # of a campaign like S0's, among which the largest is looked for
+
+
+@dataclass(frozen=True)
+class Spike:
+    """What is told of a spike: its readings, and those of its channel in 1 s and in the log."""
+
+    readings: int
+    in_second: float
+    in_log: int
+
+
+class Spikes(Detector):
+    """One to three readings far off those before and after, and back again.
+
+    Looked at is what is left of the readings without their running median over 9: nothing of a
+    ramp, a step or a steady turn. It is measured by the scatter of the 1024 readings around, or of
+    the 24 on either side where that is larger, and at least by a count: so an oscillation or
+    coarse counts are no spikes. A knock shakes several channels at once, and rings: it is none
+    either. Where the IMU is moved by hand, or rings, a spike must be a gross one. The first and
+    the last reading are not judged, nor those beside readings that are masked.
+    """
+
+    name = "spike"
+    cause = "a reading was spoilt on its way, or the clock of the IMU was set while it turned"
+    source = "robust z: Iglewicz & Hoaglin, How to Detect and Handle Outliers, 1993"
+    costs = "it moves the mean of its block, and inflates the noise"
+    severity = 1
+    masks = True
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        if not np.isfinite(log.interval):
+            return  # nothing tells that one reading follows the other
+        counts = np.fmax(np.nan_to_num(log.quantum), np.nan_to_num(log.count))
+        time = piece.time / log.interval
+        channels = {
+            i: Channel.of(places, values, time[places], float(counts[i]), float(log.noise[i]))
+            for i in range(6)
+            for places, values in [piece.channel(i)]
+            if len(places) >= FEWEST
+        }
+        handled = np.zeros(len(piece), bool)
+        for channel in channels.values():
+            handled[channel.places] |= channel.handled
+        for i, channel in channels.items():
+            for start, end, scatters in _spikes(channel, handled):
+                first, last = int(channel.places[start]), int(channel.places[end - 1])
+                loud = max(LOUD, FAINT * scatters)
+                if not _shaken(channels, (first, last), i, loud, bool(handled[first])):
+                    k = start + int(np.argmax(np.abs(channel.off[start:end])))
+                    yield piece.event(
+                        first,
+                        last + 1,
+                        float(channel.off[k]),
+                        channel=i,
+                        p_value=chance(scatters),
+                        facts=Spike(end - start, 1 / log.interval, len(channel.places)),
+                    )
+
+    def tells(self, event: Event, name: str) -> Words:
+        assert event.channel is not None
+        unit, facts = UNITS[event.channel], event.facts
+        many = facts.readings > 1
+        moves = event.size * facts.readings
+        return Words(
+            f"{name}: {counted(facts.readings, 'reading')} of {channel_name(event.channel)}"
+            f" {'are' if many else 'is'} off the neighbours by {_signed(event.size)} {unit},"
+            f" at line {event.line}.",
+            f"Used, {'they' if many else 'it'} would move a mean: that of 1 s by"
+            f" {_signed(moves / facts.in_second)} {unit}, and that of all {whole(facts.in_log)}"
+            f" readings by {_signed(moves / facts.in_log)} {unit}.",
+            f"{'The readings are' if many else 'The reading is'} masked.",
+        )
+
+
+def _signed(value: float) -> str:
+    return ("+" if value > 0 else "") + significant(value, 3)
+
+
+def chance(scatters: float) -> float:
+    """The chance of a reading so far off among all of a campaign, if they are Gaussian.
+
+    A reading less a median in which it has no part has 1.09 sigma; the scatter is the least of
+    three from 1024 readings each, 4 % too small.
+    """
+    return float(min(READINGS * erfc(scatters * 0.96 / 1.09 / np.sqrt(2)), 1.0))
+
+
+def _spikes(channel: Channel, handled: Booleans) -> Iterator[tuple[int, int, float]]:
+    """Readings of a channel, and by how many scatters the farthest of them is off."""
+    off = np.abs(channel.off)
+    far = np.flatnonzero((off > CERTAIN * channel.scatter) & ~channel.alone)
+    if not len(far):
+        return
+    scatter = np.maximum(channel.scatter[far], SHARE * _beside(off, far, SPARED) / LARGE)
+    moved = np.maximum(GROSS * scatter, LEAP * _beside(channel.change, far, 0))
+    certain = off[far] > np.where(handled[channel.places[far]], moved, CERTAIN * scatter)
+    far, scatter = far[certain], scatter[certain]
+    for start, end in joined(_with_others(off, far, scatter), 0):
+        own = (far >= start) & (far < end)
+        if own.any() and end - start <= WIDEST:
+            yield start, end, float((off[far] / scatter)[own].max())
+
+
+def _beside(readings: Array, far: Integers, spared: int) -> Array:
+    """The largest readings on either side of each of these, so many spared, (k,)."""
+    shifts = np.arange(WIDEST, WIDEST + NEAR)
+    sides = []
+    for places in (far[:, None] - shifts, far[:, None] + shifts + 1):
+        there = (places >= 0) & (places < len(readings))
+        beside = np.where(there, readings[np.clip(places, 0, len(readings) - 1)], 0.0)
+        kept = NEAR - 1 - spared
+        sides.append(np.partition(beside, kept, axis=1)[:, kept])
+    return np.asarray(np.maximum(*sides))
+
+
+def _with_others(off: Array, far: Integers, scatter: Array) -> Integers:
+    """These readings, and those next to them that are off as well."""
+    near = far[:, None] + np.arange(-WIDEST, WIDEST + 1)
+    there = (near >= 0) & (near < len(off))
+    large = off[np.clip(near, 0, len(off) - 1)] > LOUD * scatter[:, None]
+    return np.unique(np.append(near[there & large], far))
+
+
+def _single(off: Booleans) -> Booleans:
+    """Which of these stand alone, neither neighbour being off."""
+    beside = np.pad(off, 1)
+    return np.asarray(off & ~beside[:-2] & ~beside[2:])
+
+
+def _shaken(
+    channels: dict[int, Channel], places: tuple[int, int], i: int, loud: float, handled: bool
+) -> bool:
+    """Whether more is off at or beside the places, first and last, than this spike of channel i.
+
+    `loud`: scatters by which a reading is off.
+    One record alone may be spoilt in several channels, but not while the IMU is moved. Nor does
+    another channel count in which single readings are grossly off: what is knocked rings.
+    """
+    first, last = places
+    for j, channel in channels.items():
+        start, end = np.searchsorted(channel.places, [first - WIDEST, last + WIDEST + 1])
+        near = slice(max(start - NEAR, 0), end + NEAR)
+        usual = SCATTER * float(np.median(np.abs(channel.off[near]))) if end > start else 0.0
+        least = np.maximum(channel.least[start:end], usual)
+        off = np.abs(channel.off[start:end]) > loud * least
+        if j != i and not handled:
+            off &= ~(_single(off) & (np.abs(channel.off[start:end]) > GROSS * least))
+        here = (channel.places[start:end] >= first) & (channel.places[start:end] <= last)
+        spared = WIDEST if j == i else 0
+        if j != i and first == last and not handled:
+            off &= ~here
+        if np.count_nonzero(off) > spared:
+            return True
+    return False

@@ -1,0 +1,49 @@
+"""Records that the instrument itself calls invalid."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.signal.detector import Detector, Event, Log, Piece, Words
+from inertial.signal.runs import runs
+from inertial.text.numbers import counted, fixed
+
+
+class StatusInvalid(Detector):
+    """A record whose status lacks a bit that must be set, or has one that must be clear."""
+
+    name = "status_invalid"
+    cause = "the instrument found a fault in itself: a sensor, its temperature, a start-up"
+    source = "the status word in the instrument's manual, as data/instruments.yaml quotes it"
+    costs = "what it reads then is not to be trusted"
+    unit = "records"
+    masks = True
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        there = np.isfinite(piece.status)
+        bits = np.where(there, piece.status, 0).astype(np.int64)
+        lacks = ~bits & log.given.must_be_set
+        has = bits & log.given.must_be_clear
+        for start, end in runs(there & ((lacks | has) != 0)):
+            facts = (int(bits[start]), int(lacks[start]), int(has[start]))
+            yield piece.event(start, end, float(end - start), facts=facts)
+
+    def tells(self, event: Event, name: str) -> Words:
+        status, lacks, has = event.facts
+        one = event.size == 1
+        at = f", {fixed(event.from_s, 3)} s," if np.isfinite(event.from_s) else ""
+        why = [f"{_bits(lacks)} {'is' if lacks.bit_count() == 1 else 'are'} not set"] * bool(lacks)
+        why += [f"{_bits(has)} {'is' if has.bit_count() == 1 else 'are'} set"] * bool(has)
+        return Words(
+            f"{name}: the instrument marks {counted(int(event.size), 'record')} from line"
+            f" {event.line}{at} as invalid: status {status:08x}, {' and '.join(why)}.",
+            "Their readings are not to be trusted, by up to the full range of the sensor.",
+            f"{'It is' if one else 'They are'} masked; time passes with {'it' if one else 'them'}."
+            " See the status word in the instrument's manual.",
+        )
+
+
+def _bits(word: int) -> str:
+    """The bits that are set, by number from 0."""
+    numbers = [str(bit) for bit in range(word.bit_length()) if word >> bit & 1]
+    return f"bit{'s' if len(numbers) > 1 else ''} {', '.join(numbers)}"

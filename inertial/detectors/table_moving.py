@@ -1,0 +1,310 @@
+"""A table that moves while it should rest."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.special import stdtr
+
+from inertial.signal.detector import SENSORS, Array, Detector, Event, Log, Piece, Words
+from inertial.signal.level_jumps import CHANCE, RESTS, Jump, jumps, shaken
+from inertial.signal.static_tilt import SCATTER, UNTOLD, Agreement, Resting
+from inertial.signal.steps import SIDE
+from inertial.text.numbers import fixed, significant
+from inertial.text.units import ARC_SECOND
+
+BLOCK = 1.0  # s of the means in which a creep is sought
+BLOCKS = 64  # at most; a longer rest has longer ones
+FEWEST = 8  # blocks in which a creep can be told from noise
+# What an accelerometer's own bias may do within a rest and look like a tilt. 30″ are 0.15 mg, more
+# than the in-run stability of a tactical unit (0.05 to 0.1 mg). A noisier one is less stable: 15
+# times what its means over a second scatter by is 44″ of 20 µg/√Hz, 440″ of 200 µg/√Hz.
+STABLE = 30 * ARC_SECOND
+STABLE_IN_NOISE = 15.0
+UPRIGHT = (
+    5.0  # times the drift of the upright accelerometer: then the level ones did not just drift
+)
+COLOURED = 1.5  # times what the noise of the readings makes means scatter by: there is more
+EFFICIENT = 0.37  # of the blocks count for the median by which their scatter is had
+MANY = 1000.0  # degrees of freedom of a scatter that is well known
+STILL = 3.0  # sigmas within which a block stands as another one does
+STILL_SHARE = 0.02  # of the whole motion, likewise
+SUDDEN = 4.0  # s, blocks of a second at both ends included: what is no creep
+SEEN = 5.0  # times what the gyros wander about the vertical, for them to tell a tilt
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion of the table within a rest: places [first, after), and by how much, rad.
+
+    kind: knock, tilt or creep; off: rad, by which the mean attitude of the rest differs from that
+    before the motion; agreement: how much of it the gyros turn.
+    """
+
+    first: int
+    after: int
+    kind: str
+    size: float
+    off: float
+    agreement: Agreement
+    p_value: float | None = None
+
+
+@dataclass(frozen=True)
+class Moved:
+    """What is told of a motion: that, the uncertainty of a set position, rad, gravity, m/s²."""
+
+    motion: Motion
+    position: float
+    gravity: float
+
+
+class TableMoving(Detector):
+    """The direction of gravity wanders in the case during a rest, or the case is knocked.
+
+    A tilt that the gyros show as well is one, however small, where it is clear of the noise and
+    larger than the position's own uncertainty. One that is too slow for the gyros must be larger
+    than what an accelerometer's bias does by itself, and larger than what the upright
+    accelerometer shows. About the vertical nothing is seen.
+    """
+
+    name = "table_moving"
+    cause = "the table creeps, a brake slips, or somebody touches it"
+    source = "design study, 2b; S1: at rest an accelerometer reads gravity alone"
+    costs = "the attitude of this rest, hence biases and cross-axis terms"
+    unit = "″"
+    severity = 2
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        resting, own = jumps(piece, log)
+        if not np.isfinite(log.interval):
+            return
+        position = log.given.position_sigma
+        motions = list(_knocks(resting))
+        if resting.recorded("accel"):
+            motions += _sudden(resting, [one for one in own if one.moved], position)
+            motions += _creep(resting, own, position)
+        for motion in _joined(motions, round(BLOCK / log.interval)):
+            yield piece.event(
+                motion.first,
+                motion.after,
+                motion.size / ARC_SECOND,
+                p_value=motion.p_value,
+                facts=Moved(motion, position, log.given.gravity),
+                severity=1 if motion.kind == "knock" else None,
+            )
+
+    def tells(self, event: Event, name: str) -> Words:
+        moved: Moved = event.facts
+        motion = moved.motion
+        size = f"{significant(event.size, 3)}″"
+        span = f"between {fixed(event.from_s, 2)} s and {fixed(event.to_s, 2)} s"
+        if motion.kind == "knock":
+            return Words(
+                f"{name}: the IMU is knocked {span}; it swings by {size} and stands again.",
+                "The mean of this rest hardly changes; its noise does.",
+                "The rest is used as it is. Keep off the table while it records.",
+            )
+        seen = (
+            f"the gyros turn along ({motion.agreement.share:.0%} of it)"
+            if motion.agreement.tells
+            else "too slowly for the gyros to tell, and more than the biases of the accelerometers"
+            " do by themselves"
+        )
+        kind = "tilts" if motion.kind == "tilt" else "creeps"
+        off = motion.off / ARC_SECOND
+        times = f", {significant(motion.off / moved.position, 2)} times the stated uncertainty of a"
+        times = times + " position" if moved.position > 0 else ""
+        return Words(
+            f"{name}: the table {kind} by {size} {span}, while it should rest: the direction of"
+            f" gravity turns in the case, {seen}.",
+            f"The mean attitude of this rest is off by {significant(off, 3)}″{times}: its level"
+            f" axes by up to {significant(motion.off * moved.gravity, 2)} m/s², with them biases"
+            " and cross-axis terms.",
+            "The rest is used as it is. Record it again, once the table stands.",
+        )
+
+
+def _knocks(resting: Resting) -> Iterator[Motion]:
+    blocks = np.flatnonzero(shaken(resting))
+    if not len(blocks):
+        return
+    length = len(resting) // len(shaken(resting))
+    for group in np.split(blocks, np.flatnonzero(np.diff(blocks) > 3) + 1):
+        first, after = int(group[0]) * length, (int(group[-1]) + 1) * length
+        size = np.nan
+        if resting.recorded("gyro"):
+            rate = resting.rate[first:after] - np.median(resting.rate, axis=0)
+            swing = np.cumsum(rate, axis=0) * resting.interval
+            size = float(np.linalg.norm(np.ptp(swing, axis=0)))
+        yield Motion(first, after, "knock", size, 0.0, UNTOLD)
+
+
+def _sudden(resting: Resting, own: list[Jump], position: float) -> Iterator[Motion]:
+    """Jumps of a channel that are a motion: of an accelerometer a tilt, of a gyro a turn."""
+    n, longest = len(resting), round(SIDE / resting.interval)
+    for one in own:
+        step = one.step
+        if one.channel < 3:
+            tilt, agreement = resting.shifted(0, step.earliest, step.latest, n)
+            size = float(np.linalg.norm(tilt))
+            first, after = step.earliest, max(step.latest, step.earliest + 1)
+            off = size * min(1 - after / n, 1.0)
+            motion = Motion(first, after, "tilt", size, off, agreement, step.p_value)
+        else:
+            ends = [j.step.place for j in own if j.channel >= 3 and j.step.place > step.place]
+            after = min([n, *ends])
+            before = resting.rate[max(step.place - longest, 0) : step.place].mean(axis=0)
+            turned = (resting.rate[step.place : after] - before).sum(axis=0) * resting.interval
+            size = float(np.linalg.norm(turned))
+            off = size * (1 - (step.place + after) / (2 * n))
+            agreement = one.agreement
+            motion = Motion(step.place, after, "creep", size, off, agreement, step.p_value)
+        if motion.size > position:
+            yield motion
+
+
+def _creep(resting: Resting, own: list[Jump], position: float) -> Iterator[Motion]:
+    """A change of the tilt over the rest, without what sudden jumps do to it."""
+    length = max(round(BLOCK / resting.interval), -(-len(resting) // BLOCKS))
+    length = min(length, len(resting) // FEWEST)
+    k = len(resting) // max(length, 1)
+    if length < 1 or k < FEWEST:
+        return
+    force = resting.force.copy()
+    for jump in own:
+        if jump.channel < 3:
+            force[jump.step.place :, jump.channel] -= jump.step.size
+    blocks = force[: k * length].reshape(k, length, 3).mean(axis=1)
+    blocks = blocks - blocks.mean(axis=0)
+    tilt = resting.tilt(blocks)
+    upright = blocks @ resting.up / np.linalg.norm(resting.force.mean(axis=0))
+    scatter = np.array([_scatter(one) for one in (*tilt.T, upright)])
+    white = resting.tilt_noise(length)
+    sigma = max(float(np.linalg.norm(scatter[:3]) / np.sqrt(2)), white, 1e-300)
+    # The noise of the readings is well known; what exceeds it is known from few blocks only.
+    degrees = MANY if sigma < COLOURED * white else EFFICIENT * k
+    i, j, size = _farthest(tilt)
+    size -= sigma  # the farthest two of many are a little too far apart
+    pairs = k * (k - 1) / 2
+    chance = float(stdtr(degrees, -size / (np.sqrt(2) * sigma))) * pairs * RESTS
+    if chance > CHANCE:
+        return
+    _, _, drift = _farthest(upright[:, None])
+    least = max(position, UPRIGHT * (drift - 5 * float(scatter[3])))
+    agreement = _turned(resting, own, tilt, length)
+    if not agreement.tells:
+        second = sigma * np.sqrt(length * resting.interval)
+        least = max(least, STABLE, STABLE_IN_NOISE * second)
+    elif not agreement.moved:
+        return
+    if size > least:
+        if not agreement.tells and _even(tilt, sigma):
+            first, after = 0, len(resting)
+            slope = np.polynomial.polynomial.polyfit(np.arange(k) / k, tilt, 1)[1]
+            size = float(np.linalg.norm(slope))
+            off = size / 2
+        else:
+            i, j = _moving(tilt, i, j, max(STILL * sigma, STILL_SHARE * size))
+            first, after = i * length, min((j + 1) * length, len(resting))
+            stood = tilt[: i + 1].mean(axis=0)
+            size = float(np.linalg.norm(tilt[j:].mean(axis=0) - stood))
+            off = float(np.linalg.norm(tilt.mean(axis=0) - stood))
+        kind = "tilt" if (after - first) * resting.interval <= SUDDEN else "creep"
+        yield Motion(first, after, kind, size, off, agreement, chance)
+
+
+def _scatter(series: Array) -> float:
+    """Sigma of the values of a series about what changes slowly."""
+    change = np.diff(series)
+    return SCATTER / float(np.sqrt(2)) * float(np.median(np.abs(change - np.median(change))))
+
+
+def _farthest(series: Array) -> tuple[int, int, float]:
+    """The two rows of (k, c) that are farthest apart, and how far."""
+    apart = np.linalg.norm(series[:, None] - series[None], axis=2)
+    i, j = sorted(np.unravel_index(int(np.argmax(apart)), apart.shape))
+    return int(i), int(j), float(apart[i, j])
+
+
+def _even(tilt: Array, sigma: float) -> bool:
+    """Whether a tilt in k blocks, (k, 3), grows evenly from the first to the last."""
+    return bool(np.sqrt(np.sum((_uneven(len(tilt)) @ tilt) ** 2) / len(tilt)) < STILL * sigma)
+
+
+def _uneven(k: int) -> Array:
+    """What takes a level and an even drift off a series of k values, (k, k)."""
+    even = np.column_stack([np.ones(k), np.arange(k)])
+    return np.asarray(np.eye(k) - even @ np.linalg.pinv(even))
+
+
+def _moving(tilt: Array, i: int, j: int, still: float) -> tuple[int, int]:
+    """From the last block that stands as block i does to the first that stands as block j."""
+    way = tilt[j] - tilt[i]
+    along = tilt @ way / float(np.linalg.norm(way))
+    first = int(np.flatnonzero(along[i:j] < along[i] + still)[-1]) + i
+    last = int(np.flatnonzero(along[first:] > along[j] - still)[0]) + first
+    return first, last
+
+
+def _turned(resting: Resting, own: list[Jump], tilt: Array, length: int) -> Agreement:
+    """How much of a tilt in k blocks, (k, 3), the gyros turn; what is even of it they cannot tell.
+
+    Their biases and the earth's rate look like an even turn. What they wander about the vertical,
+    of which the tilt knows nothing, is how well they tell the rest. Jumps of their biases are
+    taken off.
+    """
+    if not resting.recorded("gyro"):
+        return UNTOLD
+    k = len(tilt)
+    rate = resting.rate.copy()
+    for jump in own:
+        if jump.channel >= 3 and not jump.moved:
+            rate[jump.step.place :, jump.channel - 3] -= jump.step.size
+    rates = rate[: k * length].reshape(k, length, 3).sum(axis=1) * resting.interval
+    turned = np.cumsum(rates, axis=0) - rates / 2
+    uneven, seen = _uneven(k) @ tilt, _uneven(k) @ turned
+    size = float(np.sum(uneven**2))
+    level = resting.level(seen)
+    wander = float(np.sum((seen @ resting.up) ** 2))
+    white = float(np.max(resting.noise[SENSORS["gyro"]])) * resting.interval
+    wander = max(wander, k / 15 * white**2 * k * length)
+    if size <= 0:
+        return UNTOLD
+    return Agreement(float(np.sum(level * uneven)) / size, SEEN / 4 * float(np.sqrt(wander / size)))
+
+
+def _joined(motions: list[Motion], near: int) -> list[Motion]:
+    """Motions that touch, as one: that which is larger, from the first record to the last."""
+    ordered = sorted(motions, key=lambda one: one.first)
+    borders = [b.first > a + near for a, b in pairwise_reached(ordered)]
+    groups: list[list[Motion]] = []
+    for number, motion in enumerate(ordered):
+        if number == 0 or borders[number - 1]:
+            groups.append([])
+        groups[-1].append(motion)
+    return [_one_of(group) for group in groups]
+
+
+def pairwise_reached(ordered: list[Motion]) -> Iterator[tuple[int, Motion]]:
+    """For every motion but the first: how far those before it have reached, and itself."""
+    reached = 0
+    for earlier, later in pairwise(ordered):
+        reached = max(reached, earlier.after)
+        yield reached, later
+
+
+def _one_of(group: list[Motion]) -> Motion:
+    order = {"knock": 0, "tilt": 1, "creep": 2}
+    largest = max(group, key=lambda one: (one.kind != "knock", np.nan_to_num(one.size)))
+    kind = max((one.kind for one in group), key=lambda one: order[one])
+    return Motion(
+        min(one.first for one in group),
+        max(one.after for one in group),
+        kind,
+        largest.size,
+        max(one.off for one in group),
+        largest.agreement,
+        largest.p_value,
+    )

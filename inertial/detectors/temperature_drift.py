@@ -1,0 +1,156 @@
+"""A temperature that changes while it is recorded."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+from inertial.signal.detector import CHANNELS, Array, Booleans, Detector, Event, Log, Windows, Words
+from inertial.text.numbers import significant
+from inertial.text.units import DEGREE, STANDARD_GRAVITY
+
+# K. A consumer MEMS then moves by as much as it is calibrated to; a thermometer is sure of it.
+ALLOWED = 1.0
+ICE_POINT = 273.15  # K
+MEDIAN = 5  # windows of a running median, by which wrong readings of the thermometer go
+MG = STANDARD_GRAVITY * 1e-3  # m/s²
+# Per K: biases of accelerometers, m/s², and gyros, rad/s, at least and at most; scale factors, 1.
+CONSUMER = ((0.1 * MG, 1.0 * MG), (0.005 * DEGREE, 0.08 * DEGREE), 2e-4)
+TACTICAL = (0.1 * MG, 1.0 * DEGREE / 3600)
+PARALLEL = 0.1  # rad between specific forces that are of one attitude
+RATE = 1 * DEGREE  # rad/s about the median: the same motion, or rest
+FEWEST = 6  # windows of which the coldest and the warmest third are compared
+CLEAR = 5.0  # sigma of the difference of their means
+
+
+@dataclass(frozen=True)
+class _Facts:
+    """What is told: K at the ends, first and last or lowest and highest; change of channels."""
+
+    lowest: float
+    highest: float
+    warms: bool
+    changes: Mapping[int, float]  # from cold to warm, of a channel, m/s² or rad/s
+    logs: int = 0  # 0 where it is within one
+
+
+class TemperatureDrift(Detector):
+    """The temperature changes by more than 1 K within a log, or from log to log.
+
+    Where a log keeps one attitude, the mean readings of its warmest third are compared with those
+    of its coldest.
+    """
+
+    name = "temperature_drift"
+    cause = "the IMU warms up after it is switched on, or its surroundings change"
+    source = (
+        "design study 9, 22, 23: consumer MEMS 0.1 to 1 mg, 0.005 to 0.08 °/s, 0.02 % per K by data"
+        " sheets; tactical some 0.1 mg and 1 °/h per K, judged"
+    )
+    costs = "bias and scale factors are means over temperatures, and sure of none of them"
+    unit = "K"
+    everywhere = True
+
+    def concludes(self, log: Log) -> Iterator[Event]:
+        temperature = log.windows.temperature
+        lowest, highest = _range(temperature)
+        if highest - lowest > ALLOWED:
+            warms = bool(np.nanargmin(temperature) < np.nanargmax(temperature))
+            facts = _Facts(lowest, highest, warms, _changes(log.windows))
+            yield log.event(highest - lowest, facts=facts)
+
+    def compares(self, logs: Mapping[str, Log]) -> Iterator[Event]:
+        ranges = [_range(log.windows.temperature) for log in logs.values()]
+        ranges = [own for own in ranges if np.isfinite(own[0])]
+        if len(ranges) < 2:
+            return
+        lowest, highest = min(low for low, _ in ranges), max(high for _, high in ranges)
+        within = max(high - low for low, high in ranges)
+        if highest - lowest > within + ALLOWED:
+            facts = _Facts(lowest, highest, True, {}, len(ranges))
+            yield Event(0, 0, 0, np.nan, np.nan, highest - lowest, facts=facts)
+
+    def tells(self, event: Event, name: str) -> Words:
+        facts, kelvin = event.facts, event.size
+        low, high = (f"{_celsius(value)} °C" for value in (facts.lowest, facts.highest))
+        size = f"{significant(kelvin, 3)} K"
+        if facts.logs:
+            sentence = f"From log to log the temperature is between {low} and {high}, {size}."
+        else:
+            first, last = (low, high) if facts.warms else (high, low)
+            sentence = f"{name}: the temperature goes from {first} to {last}, by {size}."
+        moved = [
+            f"{CHANNELS[i].replace('_', ' ')} {_change(i, change)}"
+            for i, change in facts.changes.items()
+        ]
+        seen = ""
+        if moved:
+            seen = f" From its coldest third to its warmest the means move: {', '.join(moved)}."
+        force, rate, scale = CONSUMER
+        forces = " to ".join(significant(each * kelvin, 2) for each in force)
+        rates = " to ".join(significant(each * kelvin / DEGREE, 2) for each in rate)
+        tactical = significant(TACTICAL[0] * kelvin, 2)
+        slow = significant(TACTICAL[1] * kelvin / DEGREE * 3600, 2)
+        return Words(
+            f"{sentence}{seen}",
+            "Biases and scale factors hold for the mean temperature. Over so much those of a"
+            f" consumer MEMS typically move by {forces} m/s², {rates} °/s and"
+            f" {significant(scale * kelvin * 100, 2)} %; the biases of a tactical IMU by some"
+            f" {tactical} m/s² and {slow} °/h.",
+            "Nothing is masked. Let it warm up before recording; or calibrate at several"
+            " temperatures, for the model has none.",
+        )
+
+
+def _range(temperature: Array) -> tuple[float, float]:
+    """Lowest and highest temperature without wrong readings of the thermometer, K."""
+    there = temperature[np.isfinite(temperature)]
+    if not len(there):
+        return np.nan, np.nan
+    if len(there) > MEDIAN**2:
+        there = median_filter(there, MEDIAN, mode="nearest")
+    return float(there.min()), float(there.max())
+
+
+def _changes(windows: Windows) -> dict[int, float]:
+    """By how much channels move from the coldest third of a log to its warmest."""
+    own = _of_one_attitude(windows) & np.isfinite(windows.temperature)
+    if np.count_nonzero(own) < max(FEWEST, len(own) / 2):
+        return {}
+    temperature, mean = windows.temperature[own], windows.mean[own]
+    third = len(temperature) // 3
+    order = np.argsort(temperature, kind="stable")
+    found = {}
+    for i in range(len(CHANNELS)):
+        cold, warm = mean[order[:third], i], mean[order[-third:], i]
+        # Of neighbours, so that the drift itself does not hide the difference.
+        noise = np.std(np.diff(mean[order, i])) / np.sqrt(2)
+        change = float(warm.mean() - cold.mean())
+        if abs(change) > CLEAR * noise * np.sqrt(2 / third):
+            found[i] = change
+    return found
+
+
+def _of_one_attitude(windows: Windows) -> Booleans:
+    """Which windows have the attitude and the rate of most of them, (k,)."""
+    own = np.ones(len(windows.mean), bool)
+    force, rate = windows.mean[:, :3], windows.mean[:, 3:]
+    if np.isfinite(force).all(axis=1).any():
+        usual = np.nanmedian(force, axis=0)
+        off = np.linalg.norm(force - usual, axis=1) / np.linalg.norm(usual)
+        own &= off < PARALLEL
+    for i in range(3):
+        if np.isfinite(rate[:, i]).any():
+            own &= np.abs(rate[:, i] - np.nanmedian(rate[:, i])) < RATE
+    return own
+
+
+def _celsius(kelvin: float) -> str:
+    return significant(kelvin - ICE_POINT, 3)
+
+
+def _change(channel: int, change: float) -> str:
+    if channel < 3:
+        return f"{significant(change, 2)} m/s²"
+    return f"{significant(change / DEGREE, 2)} °/s"

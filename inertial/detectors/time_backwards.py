@@ -1,0 +1,74 @@
+"""Time that goes back."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from inertial.signal.detector import Detector, Event, Log, Piece, Words
+from inertial.signal.stamps import disorders
+from inertial.text.numbers import counted, fixed
+
+
+@dataclass(frozen=True)
+class _Facts:
+    """What is told: time before the step back; ahead or behind; the share that is a replay."""
+
+    before: float
+    ahead: bool
+    replayed: float
+
+
+class TimeBackwards(Detector):
+    """A stretch of records from where time goes back to where it has passed its former maximum.
+
+    Where stamps jump ahead first and come back after fewer records than that, these are the
+    stretch. `from_s` and `to_s` are both the stamp behind the step, for which time it was in
+    between is what is not known; the records tell how long it lasts.
+    """
+
+    name = "time_backwards"
+    cause = "logs were joined, the clock was set, or a stamp was spoilt"
+    source = "design study, 41c"
+    costs = "when these records were taken is not known"
+    unit = "s"
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        # Nothing is left of a record that repeats an earlier one.
+        replayed = np.asarray(np.isnan(piece.values).all(axis=1))
+        for one in disorders(piece.time, piece.reached, log.interval):
+            step = one.end if one.ahead and one.end < len(piece) else one.start
+            before = max(piece.reached, float(piece.time[:step].max(initial=-np.inf)))
+            facts = _Facts(before, one.ahead, float(replayed[one.start : one.end].mean()))
+            event = piece.event(one.start, one.end, one.size, facts=facts)
+            stamp = float(piece.time[step])
+            # Where it begins in an earlier piece this is its continuation.
+            yield event if step == 0 else replace(event, from_s=stamp, to_s=stamp)
+
+    def tells(self, event: Event, name: str) -> Words:
+        facts, records = event.facts, counted(event.after - event.first, "record")
+        if facts.ahead:
+            sentence = (
+                f"{name}: the stamps of {records} from line {event.line} are {event.size:.6f} s"
+                f" ahead; then time goes back to {fixed(event.from_s, 3)} s."
+            )
+        else:
+            sentence = (
+                f"{name}: at line {event.line} time goes back by {event.size:.6f} s, from"
+                f" {fixed(facts.before, 3)} s to {fixed(event.from_s, 3)} s; {records} lie behind."
+            )
+        if facts.replayed == 1:
+            return Words(
+                f"{sentence} They repeat earlier ones.",
+                "None beyond that of the repetition.",
+                "The repetition is masked. Look for logs that were joined.",
+            )
+        masked = "What repeats earlier ones is masked" if facts.replayed else "Nothing is masked"
+        return Words(
+            sentence,
+            "Means and sums do not use the stamps and stand. When these records were taken is"
+            f" unknown by {event.size:.3g} s: so is what depends on it, a drift of a bias and the"
+            " order of the manoeuvres.",
+            f"{masked}; a turn in which time goes back is left out. Look for logs that"
+            " were joined, or for a clock that was set.",
+        )

@@ -1,0 +1,54 @@
+"""A log that was recorded on another day than the campaign says."""
+
+from collections.abc import Iterator
+from datetime import date
+
+from inertial.signal.detector import Detector, Event, Log, Words
+from inertial.text.numbers import counted
+
+ZONES = 1  # day: between UTC and the laboratory's own time
+ROLL_OVER = 1024 * 7  # days after which a receiver counts the GPS weeks from 0 again
+
+
+class WrongDay(Detector):
+    """The UTC date of the first stamp is not the stated date, by more than a time zone makes."""
+
+    name = "wrong_day"
+    cause = "the log belongs to another session, or the date was written down wrong"
+    source = "S0: GPS week 2283 is 8 October 2023, where 18 October is stated; design study, 41h"
+    costs = "all results are those of another campaign, if the log is"
+    unit = "days"
+    everywhere = True
+
+    def concludes(self, log: Log) -> Iterator[Event]:
+        recorded, stated = _day(log.recorded_on), _day(log.given.date)
+        if recorded is None or stated is None:
+            return
+        apart = (stated - recorded).days
+        if abs(apart) > ZONES:
+            yield log.event(float(abs(apart)), facts=(recorded, stated))
+
+    def tells(self, event: Event, name: str) -> Words:
+        recorded, stated = event.facts
+        days = counted(int(event.size), "day")
+        when = "before" if recorded < stated else "after"
+        why = ""
+        if abs(event.size - ROLL_OVER) <= ZONES:
+            why = " That is 1024 weeks, after which receivers count from 0 again."
+        elif event.size == 10:
+            why = " One wrong digit would make that."
+        return Words(
+            f"{name}: its stamps say {recorded.isoformat()} (UTC), {days} {when} the stated"
+            f" {stated.isoformat()}.{why}",
+            "If the log is of another session, its biases are those of another switch-on; if the"
+            " date was written down wrong, nothing changes but the order of the history.",
+            "The log is used. Correct the date of the campaign, or put the right log there.",
+        )
+
+
+def _day(text: str | None) -> date | None:
+    """An ISO date; none where it is unknown."""
+    try:
+        return date.fromisoformat(text or "")
+    except ValueError:
+        return None

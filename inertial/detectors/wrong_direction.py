@@ -1,0 +1,50 @@
+"""A turn the other way."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.signal.detector import Words
+from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
+from inertial.text.numbers import fixed
+
+
+class WrongDirection(AgainstPlan):
+    """A turn whose gyro says that it went against the planned direction."""
+
+    name = "wrong_direction"
+    cause = "the sign of the planned angle, or the table turned the other way"
+    source = "S0: shun and ni; judge a turn by the sign on the gyro, not by the word"
+    costs = "the sign of a scale factor"
+    severity = 3
+    sensor = "gyro"
+
+    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+        for i, name in enumerate(recorded.name):
+            ratio = ratio_of(recorded, i)
+            if recorded.found[i] and ratio < 0 and name not in recorded.explained:
+                yield self.of(recorded, i, ratio)
+
+    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+        i = deviation.at
+        assert i is not None and deviation.size is not None
+        name, turned, wanted = recorded.name[i], recorded.moved[i], recorded.angle[i]
+        unit = "°"
+        if not np.isfinite(turned * wanted):
+            turned, wanted, unit = recorded.speed[i], recorded.rate[i], " °/s"
+        far = [fixed(float(np.degrees(turned)), 2), fixed(float(np.degrees(wanted)), 0)]
+        return Words(
+            f"{name} turns against the planned direction: by {far[0]}{unit} in place of"
+            f" {far[1]}{unit}.",
+            f"Taken as planned, its scale error would be {fixed((deviation.size - 1) * 100, 0)} %;"
+            " it is left out of all methods.",
+            "Correct the sign of degrees or rate, or the axes of the gyros.",
+        )
+
+
+def ratio_of(recorded: Recorded, i: int) -> float:
+    """Recorded over planned, of the rate or else of the angle; NaN where either is not known."""
+    by_rate = float(recorded.speed[i] / recorded.rate[i]) if recorded.rate[i] else np.nan
+    if np.isfinite(by_rate) or not recorded.angle[i]:
+        return by_rate
+    return float(recorded.moved[i] / recorded.angle[i])

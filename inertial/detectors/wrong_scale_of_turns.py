@@ -1,0 +1,51 @@
+"""Gyros whose readings are in another unit, or in the counts of another instrument."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.signal.detector import Words
+from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
+from inertial.signal.turn_scale import common_ratio, ratios
+from inertial.text.numbers import counted, fixed, significant
+
+
+class WrongScaleOfTurns(AgainstPlan):
+    """All turns are off by one ratio, in rate and in angle."""
+
+    name = "wrong_scale_factor"
+    cause = "another unit, another full scale, or the counts of another instrument"
+    source = "design study, 0: S0's log, read by the count of the iMAR-FSAS, turns at 0.17 °/s"
+    costs = "every parameter of the gyros is wrong by this ratio"
+    severity = 3
+    sensor = "gyro"
+
+    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+        common = common_ratio(recorded)
+        if common is not None:
+            ratio, why = common
+            rate, _ = ratios(recorded)
+            number = int(np.isfinite(rate).sum())
+            yield Deviation(None, "", ratio, self.sensor, count=number, facts=why)
+
+    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+        ratio, why = deviation.size, deviation.facts
+        assert ratio is not None
+        rate, angle = ratios(recorded)
+        i = int(np.flatnonzero(np.isfinite(rate))[0])
+        read = fixed(float(np.degrees(recorded.speed[i])), 5)
+        far = ""
+        if np.isfinite(angle[i]):
+            far = f" and by {fixed(float(np.degrees(recorded.moved[i])), 3)}°"
+        turns = "The turn" if deviation.count == 1 else f"All {deviation.count} turns"
+        verb = "is" if deviation.count == 1 else "are"
+        return Words(
+            f"{turns} {verb} {significant(ratio, 5)} times as fast and as far as planned"
+            f" ({recorded.name[i]}: {read} °/s{far} in place of"
+            f" {fixed(float(np.degrees(recorded.rate[i])), 0)} °/s): {why}.",
+            f"Bias, scale factors and cross terms of the gyros are {significant(ratio, 5)} times"
+            f" what they should be; no angle fits the plan, so"
+            f" {counted(deviation.count, 'turn')} {verb} left out.",
+            "Nothing is changed. Correct the unit, counts_per_unit or count size, or the name of"
+            " the instrument in the campaign.",
+        )

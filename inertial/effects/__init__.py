@@ -1,0 +1,108 @@
+"""The catalogue: every physical effect that the pipeline can look for.
+
+To add an effect, write its file beside this one and add it here; the tests, the criticism
+and the report take it from the catalogue.
+"""
+
+from inertial.effects.accel_bias_jump import AccelBiasJump
+from inertial.effects.accel_bias_ramp import AccelBiasRamp
+from inertial.effects.accel_bias_temperature import AccelBiasTemperature
+from inertial.effects.accel_cross_products import AccelCrossProducts
+from inertial.effects.accel_cubic import AccelCubic
+from inertial.effects.accel_hysteresis import AccelHysteresis
+from inertial.effects.accel_quadratic import AccelQuadratic
+from inertial.effects.accel_saturation import AccelSaturation
+from inertial.effects.accel_scale_asymmetry import AccelScaleAsymmetry
+from inertial.effects.accel_scale_temperature import AccelScaleTemperature
+from inertial.effects.accel_vibration_rectification import AccelVibrationRectification
+from inertial.effects.accel_warm_up import AccelWarmUp
+from inertial.effects.clock_scale import ClockScale
+from inertial.effects.earth_rate_omitted import EarthRateOmitted
+from inertial.effects.gravity_error import GravityError
+from inertial.effects.gyro_accel_misalignment import GyroAccelMisalignment
+from inertial.effects.gyro_bias_jump import GyroBiasJump
+from inertial.effects.gyro_bias_ramp import GyroBiasRamp
+from inertial.effects.gyro_bias_temperature import GyroBiasTemperature
+from inertial.effects.gyro_dead_band import GyroDeadBand
+from inertial.effects.gyro_flicker import GyroFlicker
+from inertial.effects.gyro_g2_sensitivity import GyroG2Sensitivity
+from inertial.effects.gyro_g_sensitivity import GyroGSensitivity
+from inertial.effects.gyro_latency import GyroLatency
+from inertial.effects.gyro_random_walk import GyroRandomWalk
+from inertial.effects.gyro_saturation import GyroSaturation
+from inertial.effects.gyro_scale_asymmetry import GyroScaleAsymmetry
+from inertial.effects.gyro_scale_cubic import GyroScaleCubic
+from inertial.effects.gyro_scale_g_dependence import GyroScaleGDependence
+from inertial.effects.gyro_scale_quadratic import GyroScaleQuadratic
+from inertial.effects.gyro_scale_temperature import GyroScaleTemperature
+from inertial.effects.gyro_warm_up import GyroWarmUp
+from inertial.effects.heading_error import HeadingError
+from inertial.effects.latitude_error import LatitudeError
+from inertial.effects.lever_arm import LeverArm
+from inertial.effects.oscillation import Oscillation
+from inertial.effects.size_effect import SizeEffect
+from inertial.effects.table_angle_scale import TableAngleScale
+from inertial.effects.table_axis_non_orthogonality import TableAxisNonOrthogonality
+from inertial.effects.table_eccentricity import TableEccentricity
+from inertial.effects.table_position_error import TablePositionError
+from inertial.effects.table_ripple import TableRipple
+from inertial.effects.table_speed_error import TableSpeedError
+from inertial.effects.table_tilt import TableTilt
+from inertial.effects.table_wobble import TableWobble
+from inertial.physics.effect import Effect
+
+CATALOGUE: dict[str, Effect] = {
+    effect.name: effect
+    for effect in (
+        # gyros
+        GyroGSensitivity(),
+        GyroG2Sensitivity(),
+        GyroScaleAsymmetry(),
+        GyroScaleQuadratic(),
+        GyroScaleCubic(),
+        GyroScaleGDependence(),
+        GyroBiasRamp(),
+        GyroWarmUp(),
+        GyroBiasTemperature(),
+        GyroScaleTemperature(),
+        GyroBiasJump(),
+        GyroRandomWalk(),
+        GyroFlicker(),
+        GyroDeadBand(),
+        GyroSaturation(),
+        GyroLatency(),
+        # accelerometers
+        AccelQuadratic(),
+        AccelCubic(),
+        AccelCrossProducts(),
+        AccelScaleAsymmetry(),
+        AccelBiasRamp(),
+        AccelWarmUp(),
+        AccelBiasTemperature(),
+        AccelScaleTemperature(),
+        AccelBiasJump(),
+        AccelVibrationRectification(),
+        AccelHysteresis(),
+        AccelSaturation(),
+        # the case
+        LeverArm(),
+        SizeEffect(),
+        GyroAccelMisalignment(),
+        # the table
+        TableSpeedError(),
+        TableTilt(),
+        TableAxisNonOrthogonality(),
+        TablePositionError(),
+        TableWobble(),
+        TableEccentricity(),
+        TableRipple(),
+        Oscillation(),
+        TableAngleScale(),
+        # site and clock
+        GravityError(),
+        LatitudeError(),
+        HeadingError(),
+        EarthRateOmitted(),
+        ClockScale(),
+    )
+}

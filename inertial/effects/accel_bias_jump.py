@@ -1,0 +1,41 @@
+"""A bias of the accelerometers that jumps once."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.drift import after, evenly, without_clock
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import STANDARD_GRAVITY
+
+TRIED = 36  # times of the jump; in half an hour about one for every minute
+
+
+class AccelBiasJump(Effect):
+    """Reading += b H(t − t₀); t₀ is scanned.
+
+    Told from a drift by being over at once. A jump between logs is seen only if they share a
+    clock.
+    """
+
+    name = "accel_bias_jump"
+    cause = "stress is released, the electronics switch, or the instrument is knocked or restarted"
+    source = "Basseville & Nikiforov 1993, Detection of Abrupt Changes, chapter 2"
+    parameters = tuple(
+        Parameter(f"b_{axis}", "m/s²", 1e-5 * STANDARD_GRAVITY, f"of the {axis} specific force")
+        for axis in "xyz"
+    )
+    sizes = by_grade(1e-6 * STANDARD_GRAVITY, 20, 100, 200, 1000)
+    scan = Scan("t0", "s", "time of the jump since the first sample of all logs")
+
+    def blind(self, motion: Motion) -> str:
+        return without_clock(motion)
+
+    def grid(self, motion: Motion) -> Array:
+        return evenly(motion, TRIED)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        jumped = after(motion, self.value(motion))
+        return replace(reading, accel=reading.accel + np.outer(jumped, values))

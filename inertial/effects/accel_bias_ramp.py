@@ -1,0 +1,38 @@
+"""A bias of the accelerometers that drifts evenly."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.drift import without_clock
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import HOUR, STANDARD_GRAVITY
+
+
+class AccelBiasRamp(Effect):
+    """Reading += c t, with t since the first sample of all logs.
+
+    Told from a constant by the order of the positions. Only logs with a common clock show it.
+    """
+
+    name = "accel_bias_ramp"
+    cause = "the bias of the accelerometers drifts, as the sensor or its electronics warm up or age"
+    source = "IEEE Std 1554-2005, 'ramp' of the Allan variance"
+    parameters = tuple(
+        Parameter(
+            f"c_{axis}",
+            "m/s³",
+            1e-5 * STANDARD_GRAVITY / HOUR,
+            f"drift of the {axis} specific force, per second",
+        )
+        for axis in "xyz"
+    )
+    sizes = by_grade(1e-6 * STANDARD_GRAVITY / HOUR, 20, 100, 100, 1000)
+
+    def blind(self, motion: Motion) -> str:
+        return without_clock(motion)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        return replace(reading, accel=reading.accel + np.outer(motion.time, values))

@@ -1,0 +1,39 @@
+"""A bias of the accelerometers that goes with the temperature."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.drift import warmer, without_temperature
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import STANDARD_GRAVITY
+
+
+class AccelBiasTemperature(Effect):
+    """Reading += k (T − mean of T).
+
+    Told from a drift by temperature that does not run with time.
+    """
+
+    name = "accel_bias_temperature"
+    cause = "the bias of the accelerometers changes with the temperature of the instrument"
+    source = "IEEE Std 1293-2018, temperature sensitivity of bias and scale factor"
+    parameters = tuple(
+        Parameter(
+            f"k_{axis}",
+            "m/s²/K",
+            1e-5 * STANDARD_GRAVITY,
+            f"of the {axis} specific force, per kelvin",
+        )
+        for axis in "xyz"
+    )
+    sizes = by_grade(1e-6 * STANDARD_GRAVITY, 20, 100, 100, 1000)
+
+    def blind(self, motion: Motion) -> str:
+        return without_temperature(motion)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        change = np.outer(warmer(motion), values)
+        return replace(reading, accel=reading.accel + change)

@@ -1,0 +1,39 @@
+"""An accelerometer that feels the product of two forces."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import STANDARD_GRAVITY
+
+PAIRS = ((0, 1), (1, 2), (2, 0))
+NAMES = ("xy", "yz", "zx")
+
+
+class AccelCrossProducts(Effect):
+    """f̃_i += Σ K_i,jk f_j f_k over the pairs xy, yz, zx.
+
+    Only oblique positions show it: with an axis up the products are nought.
+    """
+
+    name = "accel_cross_products"
+    cause = "a force across the input axis changes what the proof mass does along it"
+    source = "IEEE Std 1293-2018, model equation, cross-coupling coefficients"
+    parameters = tuple(
+        Parameter(
+            f"k_{i}_{pair}",
+            "(m/s²)/(m/s²)²",
+            1e-5 / STANDARD_GRAVITY,
+            f"of the {i} accelerometer per product of the forces along {pair[0]} and {pair[1]}",
+        )
+        for i in "xyz"
+        for pair in NAMES
+    )
+    sizes = by_grade(1e-6 / STANDARD_GRAVITY, 10, 50, 100, 500)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        products = np.column_stack([truth.force[:, j] * truth.force[:, k] for j, k in PAIRS])
+        return replace(reading, accel=reading.accel + products @ values.reshape(3, 3).T)

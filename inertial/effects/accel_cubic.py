@@ -1,0 +1,33 @@
+"""An accelerometer with a cubic term."""
+
+from dataclasses import replace
+
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import STANDARD_GRAVITY
+
+
+class AccelCubic(Effect):
+    """f̃_i += K_i f_i³.
+
+    Only oblique positions tell it from the scale factor: with an axis up, down or level the cube
+    of the force is the force.
+    """
+
+    name = "accel_cubic"
+    cause = "the suspension or the loop of the proof mass is not linear: third-order term K3"
+    source = "IEEE Std 1293-2018, model equation, K3"
+    parameters = tuple(
+        Parameter(
+            f"k3_{axis}",
+            "(m/s²)/(m/s²)³",
+            1e-5 / STANDARD_GRAVITY**2,
+            f"of the {axis} accelerometer",
+        )
+        for axis in "xyz"
+    )
+    sizes = by_grade(1e-6 / STANDARD_GRAVITY**2, 5, 50, 200, 1000)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        return replace(reading, accel=reading.accel + values * truth.force**3)

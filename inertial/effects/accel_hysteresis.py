@@ -1,0 +1,49 @@
+"""An accelerometer that remembers on which side it was."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.site import STANDARD_GRAVITY
+from inertial.physics.typical_sizes import by_grade
+
+REACHED = STANDARD_GRAVITY / 2  # m/s²: what turns the memory over
+
+
+def remembered(force: Array, order: Array) -> Array:
+    """The sign of the last force beyond half of gravity along each axis, (n, 3), by `order`.
+
+    0 before the first one.
+    """
+    sequence = np.argsort(order, kind="stable")
+    signs = np.where(np.abs(force) > REACHED, np.sign(force), 0.0)[sequence]
+    place = np.where(signs != 0, np.arange(len(signs))[:, None], 0)
+    last = np.maximum.accumulate(place, axis=0)
+    result = np.zeros_like(signs)
+    result[sequence] = np.take_along_axis(signs, last, axis=0)
+    return result
+
+
+class AccelHysteresis(Effect):
+    """f̃_i += h_i s_i (1 − |f_i|/g), s_i = ±1 the side on which axis i was last.
+
+    A loop that is widest where the axis is level and closed at ±g. Shown by an axis that comes
+    to level from above and from below; in the order of the plan. A level axis is also what the
+    error of a set position moves, so the loop must stand out of that.
+    """
+
+    name = "accel_hysteresis"
+    cause = "the suspension does not return quite to where it was before the load"
+    source = "IEEE Std 528-2019, 'hysteresis error'"
+    parameters = tuple(
+        Parameter(f"h_{axis}", "m/s²", 1e-5 * STANDARD_GRAVITY, f"half the loop of the {axis} axis")
+        for axis in "xyz"
+    )
+    sizes = by_grade(1e-6 * STANDARD_GRAVITY, 5, 20, 50, 500)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        side = remembered(truth.force, motion.visit)
+        width = np.clip(1 - np.abs(truth.force) / STANDARD_GRAVITY, 0.0, 1.0)
+        return replace(reading, accel=reading.accel + values * side * width)

@@ -1,0 +1,33 @@
+"""An accelerometer whose scale factor differs between the two senses of the force."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+
+
+class AccelScaleAsymmetry(Effect):
+    """f̃_i += A_i |f_i|.
+
+    Told from a bias as the quadratic term is, and from that only by oblique positions.
+    """
+
+    name = "accel_scale_asymmetry"
+    cause = "the suspension or the read-out answers unlike to push and pull"
+    source = "IEEE Std 1293-2018, model equation, scale factor asymmetry"
+    parameters = tuple(
+        Parameter(
+            f"a_{axis}",
+            "1",
+            1e-5,
+            f"of the {axis} accelerometer, half the difference of both scale factors",
+        )
+        for axis in "xyz"
+    )
+    sizes = by_grade(1e-6, 10, 50, 100, 500)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        return replace(reading, accel=reading.accel + values * np.abs(truth.force))

@@ -1,0 +1,31 @@
+"""A scale factor of the accelerometers that goes with the temperature."""
+
+from dataclasses import replace
+
+from inertial.physics.drift import warmer, without_temperature
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+
+
+class AccelScaleTemperature(Effect):
+    """f̃_i += k_i (T − mean of T) f_i.
+
+    Told from a bias that goes with temperature by the axis up and down at several temperatures.
+    """
+
+    name = "accel_scale_temperature"
+    cause = "the scale factor of the accelerometers changes with the temperature of the instrument"
+    source = "IEEE Std 1293-2018, temperature sensitivity of bias and scale factor"
+    parameters = tuple(
+        Parameter(f"k_{axis}", "1/K", 1e-5, f"of the {axis} accelerometer, per kelvin")
+        for axis in "xyz"
+    )
+    sizes = by_grade(1e-6, 5, 20, 50, 200)
+
+    def blind(self, motion: Motion) -> str:
+        return without_temperature(motion)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        change = values * truth.force * warmer(motion)[:, None]
+        return replace(reading, accel=reading.accel + change)

@@ -1,0 +1,38 @@
+"""An accelerometer whose bias grows with vibration."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import STANDARD_GRAVITY
+
+
+class AccelVibrationRectification(Effect):
+    """f̃_i += k_i σ_i², with σ the scatter of the samples of that accelerometer.
+
+    Told from a bias by two levels of vibration: a quiet table and a shaking one. The sensor's own
+    noise is in σ too, alike everywhere, and so in the bias. Vibration that is too fast for the
+    samples is not seen in them.
+    """
+
+    name = "accel_vibration_rectification"
+    cause = "vibration does not average out where the accelerometer is not linear"
+    source = "IEEE Std 1293-2018, vibration rectification error"
+    parameters = tuple(
+        Parameter(
+            f"k_{axis}", "(m/s²)/(m/s²)²", 1e-4 / STANDARD_GRAVITY, f"of the {axis} accelerometer"
+        )
+        for axis in "xyz"
+    )
+    sizes = by_grade(1e-6 / STANDARD_GRAVITY, 50, 100, 500, 1000)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        return replace(reading, accel=reading.accel + values * motion.vibration**2)
+
+    def blind(self, motion: Motion) -> str:
+        if np.isfinite(motion.vibration).all():
+            return ""
+        return "How much the table shakes is not known everywhere."

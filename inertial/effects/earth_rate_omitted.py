@@ -1,0 +1,27 @@
+"""A log without the earth's rate."""
+
+from dataclasses import replace
+
+from inertial.physics.earth_rate import known_earth
+from inertial.physics.effect import Array, Effect, Parameter, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import usually
+
+
+class EarthRateOmitted(Effect):
+    """ω −= s ω_earth: the share s of the earth's rate is missing from the readings.
+
+    1 where an instrument, or whoever made the log, had taken the earth's rate out already, or
+    where the log was made up without it.
+    """
+
+    name = "earth_rate_omitted"
+    cause = "the earth's rate was taken out of the log before, or never put in"
+    source = "Titterton & Weston 2004, earth's rate in the local frame"
+    parameters = (Parameter("s", "1", 1.0, "share of the earth's rate that is missing"),)
+    sizes = usually(1.0)
+    thinkable = 1.0
+
+    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+        upward, level = known_earth(truth, motion)
+        return replace(truth, rate=truth.rate - values[0] * (upward + level))

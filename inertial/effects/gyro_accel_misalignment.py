@@ -1,0 +1,32 @@
+"""Gyros that are mounted askew to the accelerometers."""
+
+from dataclasses import replace
+
+from inertial.physics.earth_rate import known_earth
+from inertial.physics.effect import Array, Effect, Parameter, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.physics.vectors import cross
+
+
+class GyroAccelMisalignment(Effect):
+    """ω += ω × φ: the triad of the gyros is turned by φ against that of the accelerometers.
+
+    It is the antisymmetric part of the gyros' M against that of the accelerometers' M, and needs
+    no parameters of its own.
+    """
+
+    name = "gyro_accel_misalignment"
+    cause = "the block of the gyros and that of the accelerometers are not mounted alike"
+    source = "Titterton & Weston 2004, mounting misalignment"
+    parameters = tuple(
+        Parameter(f"phi_{axis}", "rad", 1e-3, f"rotation about {axis} from the case to the gyros")
+        for axis in "xyz"
+    )
+    sizes = by_grade(1e-3, 1, 1, 1, 10)
+    thinkable = 10.0
+    absorbed_by = "the cross terms of the gyros"
+
+    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+        upward, level = known_earth(truth, motion)
+        return replace(truth, rate=truth.rate + cross(motion.omega + upward + level, values))

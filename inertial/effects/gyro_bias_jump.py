@@ -1,0 +1,40 @@
+"""A bias of the gyros that jumps once."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.drift import after, evenly, without_clock
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import DEGREE_PER_HOUR
+
+TRIED = 36  # times of the jump; in half an hour about one for every minute
+
+
+class GyroBiasJump(Effect):
+    """Reading += b H(t − t₀); t₀ is scanned.
+
+    Told from a drift by being over at once. A jump between logs is seen only if they share a
+    clock.
+    """
+
+    name = "gyro_bias_jump"
+    cause = "stress is released, the electronics switch, or the instrument is knocked or restarted"
+    source = "Basseville & Nikiforov 1993, Detection of Abrupt Changes, chapter 2"
+    parameters = tuple(
+        Parameter(f"b_{axis}", "rad/s", DEGREE_PER_HOUR, f"of the {axis} rate") for axis in "xyz"
+    )
+    sizes = by_grade(DEGREE_PER_HOUR, 0.3, 10, 30, 100)
+    scan = Scan("t0", "s", "time of the jump since the first sample of all logs")
+
+    def blind(self, motion: Motion) -> str:
+        return without_clock(motion)
+
+    def grid(self, motion: Motion) -> Array:
+        return evenly(motion, TRIED)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        jumped = after(motion, self.value(motion))
+        return replace(reading, gyro=reading.gyro + np.outer(jumped, values))

@@ -1,0 +1,34 @@
+"""A bias of the gyros that goes with the temperature."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.drift import warmer, without_temperature
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import DEGREE_PER_HOUR
+
+
+class GyroBiasTemperature(Effect):
+    """Reading += k (T − mean of T).
+
+    Told from a drift by temperature that does not run with time.
+    """
+
+    name = "gyro_bias_temperature"
+    cause = "the bias of the gyros changes with the temperature of the instrument"
+    source = "IEEE Std 952-1997, model equation, terms of temperature"
+    parameters = tuple(
+        Parameter(f"k_{axis}", "rad/s/K", 0.1 * DEGREE_PER_HOUR, f"of the {axis} rate, per kelvin")
+        for axis in "xyz"
+    )
+    sizes = by_grade(DEGREE_PER_HOUR, 0.05, 1, 5, 18)
+
+    def blind(self, motion: Motion) -> str:
+        return without_temperature(motion)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        change = np.outer(warmer(motion), values)
+        return replace(reading, gyro=reading.gyro + change)

@@ -1,0 +1,29 @@
+"""A gyro that feels the square of the acceleration."""
+
+from dataclasses import replace
+
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
+
+UNIT = DEGREE_PER_HOUR / STANDARD_GRAVITY**2
+
+
+class GyroG2Sensitivity(Effect):
+    """ω̃_i += G2_i f_i².
+
+    Told from a bias by three positions of an axis: up and down have it alike, level has it not.
+    """
+
+    name = "gyro_g2_sensitivity"
+    cause = "the suspension of the gyro yields unlike in its directions under load (anisoelastic)"
+    source = "IEEE Std 528-2019, 'drift rate, acceleration-squared-sensitive'"
+    parameters = tuple(
+        Parameter(f"g2_{axis}", "(rad/s)/(m/s²)²", 1.0 * UNIT, f"of the {axis} gyro")
+        for axis in "xyz"
+    )
+    sizes = by_grade(UNIT, 0.01, 0.05, 0.5, 5)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        return replace(reading, gyro=reading.gyro + values * truth.force**2)

@@ -1,0 +1,32 @@
+"""A gyro that feels acceleration."""
+
+from dataclasses import replace
+
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
+
+UNIT = DEGREE_PER_HOUR / STANDARD_GRAVITY
+
+
+class GyroGSensitivity(Effect):
+    """ω̃_i += Σ_j G_ij f_j.
+
+    Told from a constant bias by positions: it changes sign when the table turns the
+    axis over. Without level gyros that sense the earth's rate in a known direction, an error of
+    the latitude does much the same.
+    """
+
+    name = "gyro_g_sensitivity"
+    cause = "mass unbalance, or stress of the package, pulls the gyro off null under load"
+    source = "IEEE Std 528-2019, 'drift rate, acceleration-sensitive'"
+    parameters = tuple(
+        Parameter(f"g_{i}{j}", "(rad/s)/(m/s²)", 1.0 * UNIT, f"{i} gyro per force along {j}")
+        for i in "xyz"
+        for j in "xyz"
+    )
+    sizes = by_grade(UNIT, 0.05, 1, 11, 100)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        return replace(reading, gyro=reading.gyro + truth.force @ values.reshape(3, 3).T)

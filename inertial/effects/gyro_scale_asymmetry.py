@@ -1,0 +1,31 @@
+"""A gyro whose scale factor differs between the two senses of rotation."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+
+
+class GyroScaleAsymmetry(Effect):
+    """ω̃_i += A_i |ω_i|.
+
+    Told from the bias by its growth with the rate, from the scale factor by turning both ways: a
+    turn forward and one backward do not add up to nothing.
+    """
+
+    name = "gyro_scale_asymmetry"
+    cause = "the loop or the read-out of the gyro answers unlike to the two senses of rotation"
+    source = "IEEE Std 528-2019, 'asymmetry error'"
+    parameters = tuple(
+        Parameter(
+            f"a_{axis}", "1", 1e-4, f"of the {axis} gyro, half the difference of both scale factors"
+        )
+        for axis in "xyz"
+    )
+    sizes = by_grade(1e-6, 10, 30, 100, 500)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        return replace(reading, gyro=reading.gyro + values * np.abs(truth.rate))

@@ -1,0 +1,26 @@
+"""A gyro whose scale factor grows with the square of the rate."""
+
+from dataclasses import replace
+
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import DEGREE
+
+
+class GyroScaleCubic(Effect):
+    """ω̃_i += k_i ω_i³.
+
+    Told from the scale factor by turns at two rates, from the quadratic term by three of them.
+    """
+
+    name = "gyro_scale_cubic"
+    cause = "the loop or the read-out of the gyro is not linear in the rate, alike for both senses"
+    source = "IEEE Std 528-2019, 'nonlinearity'"
+    parameters = tuple(
+        Parameter(f"k_{axis}", "s²/rad²", 1e-8 / DEGREE**2, f"of the {axis} gyro") for axis in "xyz"
+    )
+    sizes = by_grade(1e-6 / DEGREE**2, 1e-3, 1e-4, 5e-3, 0.05)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        return replace(reading, gyro=reading.gyro + values * truth.rate**3)

@@ -1,0 +1,28 @@
+"""A gyro whose scale factor depends on the acceleration."""
+
+from dataclasses import replace
+
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import STANDARD_GRAVITY
+
+
+class GyroScaleGDependence(Effect):
+    """ω̃_i += k_i ω_i f_i.
+
+    Told from the scale factor by turns about the axis up and down, at the same rate: at another
+    rate a nonlinear scale factor does the same.
+    """
+
+    name = "gyro_scale_g_dependence"
+    cause = "load on the sensing element changes what a rate does to it"
+    source = "Sensonor, STIM300 data sheet, linear acceleration effect on the scale factor"
+    parameters = tuple(
+        Parameter(f"k_{axis}", "1/(m/s²)", 1e-4 / STANDARD_GRAVITY, f"of the {axis} gyro")
+        for axis in "xyz"
+    )
+    sizes = by_grade(1e-6 / STANDARD_GRAVITY, 2, 30, 100, 500)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        return replace(reading, gyro=reading.gyro + values * truth.rate * truth.force)

@@ -1,0 +1,29 @@
+"""A gyro whose scale factor grows with the rate."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import DEGREE
+
+
+class GyroScaleQuadratic(Effect):
+    """ω̃_i += k_i ω_i |ω_i|.
+
+    Told from the scale factor by turns at two rates, from the cubic term by three: while the table
+    turns, its angle within a turn is not known by itself, so one rate shows neither.
+    """
+
+    name = "gyro_scale_quadratic"
+    cause = "the loop or the read-out of the gyro is not linear in the rate"
+    source = "IEEE Std 528-2019, 'nonlinearity'"
+    parameters = tuple(
+        Parameter(f"k_{axis}", "1/(rad/s)", 1e-6 / DEGREE, f"of the {axis} gyro") for axis in "xyz"
+    )
+    sizes = by_grade(1e-6 / DEGREE, 0.1, 0.1, 1, 5)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        return replace(reading, gyro=reading.gyro + values * truth.rate * np.abs(truth.rate))

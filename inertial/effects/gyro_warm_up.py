@@ -1,0 +1,42 @@
+"""A bias of the gyros that settles after the instrument is switched on."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.drift import decayed, without_clock
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import DEGREE_PER_HOUR
+
+SHORTEST, LONGEST = 30.0, 3000.0  # s, of τ: a shorter one is over before the first rest is
+TRIED = 9  # three in each decade of three; between two of them the trace changes by a tenth
+
+
+class GyroWarmUp(Effect):
+    """Reading += b exp(−t/τ), with t since the first sample of all logs; τ is scanned.
+
+    Told from an even drift by slowing down. Only logs with a common clock show it. Switched on
+    earlier by T, the amplitude at the first sample is exp(−T/τ) of the whole.
+    """
+
+    name = "gyro_warm_up"
+    cause = "the sensor and its electronics warm up after they are switched on"
+    source = "IEEE Std 528-2019, 'warm-up time'"
+    parameters = tuple(
+        Parameter(f"b_{axis}", "rad/s", DEGREE_PER_HOUR, f"of the {axis} rate at the first sample")
+        for axis in "xyz"
+    )
+    sizes = by_grade(DEGREE_PER_HOUR, 0.3, 5, 30, 300)
+    scan = Scan("tau", "s", "time constant of the settling")
+
+    def blind(self, motion: Motion) -> str:
+        return without_clock(motion)
+
+    def grid(self, motion: Motion) -> Array:
+        return np.geomspace(SHORTEST, LONGEST, TRIED)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        settling = decayed(motion, self.value(motion))
+        return replace(reading, gyro=reading.gyro + np.outer(settling, values))

@@ -1,0 +1,32 @@
+"""A table whose heading is not what it is taken to be."""
+
+from dataclasses import replace
+
+from inertial.physics.earth_rate import known_earth
+from inertial.physics.effect import Array, Effect, Parameter, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import usually
+from inertial.physics.vectors import cross
+from inertial.text.units import DEGREE
+
+
+class HeadingError(Effect):
+    """ω += Δψ up × ω_level: seen from above, north lies Δψ further counter-clockwise of the mark.
+
+    Told by the level gyros at rest. Where no heading is stated the gyros tell the azimuth
+    themselves, and there is none to be wrong.
+    """
+
+    name = "heading_error"
+    cause = "the azimuth of the table's zero mark was taken wrong"
+    source = "Titterton & Weston 2004, gyrocompassing"
+    parameters = (Parameter("dpsi", "rad", DEGREE, "true azimuth of the mark less the known one"),)
+    sizes = usually(DEGREE)
+    thinkable = 180.0
+
+    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+        _, level = known_earth(truth, motion)
+        return replace(truth, rate=truth.rate + values[0] * cross(motion.up, level))
+
+    def blind(self, motion: Motion) -> str:
+        return "" if motion.surveyed.any() else "No heading of the table is stated."

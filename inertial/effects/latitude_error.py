@@ -1,0 +1,34 @@
+"""A latitude that is not that of the site."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.earth_rate import known_earth
+from inertial.physics.effect import Array, Effect, Parameter, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.site import EARTH_RATE
+from inertial.physics.typical_sizes import usually
+from inertial.text.units import DEGREE
+
+
+class LatitudeError(Effect):
+    """ω += Δφ (ω_e cosφ up − ω_e sinφ north): the upward part grows, the level part shrinks.
+
+    Told from g-sensitivity, which also goes with up and down, by the level part alone, and that
+    only where the heading of the table is known. The campaign's own sigma of the latitude holds.
+    """
+
+    name = "latitude_error"
+    cause = "the latitude was rounded, or of another place, so the earth's rate is wrong"
+    source = "Titterton & Weston 2004, earth's rate in the local frame"
+    parameters = (Parameter("dphi", "rad", 0.02 * DEGREE, "true latitude less the known one"),)
+    sizes = usually(0.02 * DEGREE)
+    thinkable = 1000.0
+
+    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+        upward, level = known_earth(truth, motion)
+        up_rate = np.sum(upward * motion.up, axis=1, keepdims=True)
+        level_rate = np.sqrt(np.maximum(EARTH_RATE**2 - up_rate**2, 0.0))
+        change = level_rate * motion.up - up_rate / level_rate * level
+        return replace(truth, rate=truth.rate + values[0] * change)

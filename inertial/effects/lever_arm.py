@@ -1,0 +1,30 @@
+"""An IMU that does not stand on the axis of the table."""
+
+from dataclasses import replace
+
+from inertial.physics.effect import Array, Effect, Parameter, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.physics.vectors import cross
+
+
+class LeverArm(Effect):
+    """f += α × r + ω × (ω × r), with r from the table's axis to the case's origin.
+
+    Told from a bias by motion: it is there only while the table turns. Of r only the part
+    across the axis of the turn is seen.
+    """
+
+    name = "lever_arm"
+    cause = "the accelerometers stand beside the axis of the table and feel its rotation"
+    source = "IEEE Std 1293-2018, centrifuge and rate table tests"
+    parameters = tuple(
+        Parameter(f"r_{axis}", "m", 0.01, f"from the table's axis to the case, along {axis}")
+        for axis in "xyz"
+    )
+    sizes = by_grade(1e-3, 30, 30, 30, 30)
+
+    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+        swing = cross(motion.alpha, values)
+        pull = cross(motion.omega, cross(motion.omega, values))
+        return replace(truth, force=truth.force + swing + pull)

@@ -1,0 +1,35 @@
+"""Three accelerometers that do not stand at one point."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import by_grade
+from inertial.physics.vectors import cross
+
+
+class SizeEffect(Effect):
+    """f̃_i += (α × r_i + ω × (ω × r_i))_i, with r_i from the table's axis to accelerometer i.
+
+    What the three have in common is the lever arm of the case. Told by turns about all axes; of
+    r_i the part along i by the pull, the others by starting and stopping.
+    """
+
+    name = "size_effect"
+    cause = "each accelerometer stands at a place of its own and feels the rotation there"
+    source = "Savage 2000, Strapdown Analytics, size effect of the accelerometers"
+    parameters = tuple(
+        Parameter(f"r_{i}{j}", "m", 0.01, f"from the table's axis to accelerometer {i}, along {j}")
+        for i in "xyz"
+        for j in "xyz"
+    )
+    sizes = by_grade(1e-3, 20, 5, 5, 1)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        felt = []
+        for i, arm in enumerate(values.reshape(3, 3)):
+            pull = cross(motion.omega, cross(motion.omega, arm))
+            felt.append((cross(motion.alpha, arm) + pull)[:, i])
+        return replace(reading, accel=reading.accel + np.column_stack(felt))

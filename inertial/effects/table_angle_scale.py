@@ -1,0 +1,26 @@
+"""A table whose angles are all too large by the same share."""
+
+from dataclasses import replace
+
+from inertial.physics.effect import Array, Effect, Parameter, Truth
+from inertial.physics.motion import Motion
+from inertial.physics.typical_sizes import of_tables
+from inertial.text.units import ARC_SECOND, DEGREE
+
+
+class TableAngleScale(Effect):
+    """θ becomes (1 + e) θ.
+
+    A scale factor that all gyros have in common. Nothing in the campaign tells them apart: it
+    takes an encoder that closes after a whole turn, or another table.
+    """
+
+    name = "table_angle_scale"
+    cause = "the scale of the encoder, or where a turn starts and stops, is off"
+    source = "IEEE Std 1554-2005, position accuracy of tables"
+    parameters = (Parameter("e", "1", 1e-5, "relative error of all angles"),)
+    sizes = of_tables(ARC_SECOND / (360 * DEGREE), 3, 15)
+    absorbed_by = "the scale factors of the gyros"
+
+    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+        return replace(truth, rate=truth.rate + values[0] * motion.omega)

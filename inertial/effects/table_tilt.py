@@ -1,0 +1,37 @@
+"""A table that is not level."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.effect import Array, Effect, Parameter, Truth
+from inertial.physics.motion import Motion, without_north
+from inertial.physics.typical_sizes import of_tables
+from inertial.physics.vectors import cross
+from inertial.text.units import ARC_SECOND
+
+
+class TableTilt(Effect):
+    """f −= g (n north + e east): the table's vertical leans by n towards north and e towards east.
+
+    Told from the tilt of a position by the turn: it stays fixed to the laboratory and so goes
+    round in body axes. Without the azimuth of the positions there is no telling.
+    """
+
+    name = "table_tilt"
+    cause = "the base of the table is not level, so all its axes lean the same way"
+    source = "IEEE Std 517-1974, table errors"
+    parameters = (
+        Parameter("north", "rad", 2e-5, "lean of the table's vertical towards north"),
+        Parameter("east", "rad", 2e-5, "lean of the table's vertical towards east"),
+    )
+    sizes = of_tables(ARC_SECOND, 3, 60)
+
+    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+        north = np.nan_to_num(motion.north)
+        leant = values[0] * north + values[1] * cross(north, motion.up)
+        lean = cross(motion.up, leant)
+        return replace(truth, force=truth.force - cross(lean, truth.force))
+
+    def blind(self, motion: Motion) -> str:
+        return without_north(motion)

@@ -1,0 +1,1 @@
+"""Least squares and the equations of accelerometers and gyros; arrays only."""

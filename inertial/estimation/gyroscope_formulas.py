@@ -1,0 +1,218 @@
+"""The gyros by the formulas of the sources."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.estimation.gyroscopes import Angle, Earth, Position
+from inertial.physics.motion import level_axes
+
+# ---- A formula of a source that is linear in the readings, with the covariance that it has.
+#
+#     parameter k of sensor r = sum over j of weights[r, k, j] · reading[j, r]
+#
+# The sources print such formulas without sigma. What the readings suffer is noise, each for
+# itself, and causes that several share: the tilt of a position, the angle of a turn, gravity.
+
+Array = NDArray[np.float64]
+Booleans = NDArray[np.bool_]
+
+# Sensor by sensor three columns of M and the bias, (3, 4), in the order of the twelve unknowns.
+ORDER = np.append(np.arange(12).reshape(3, 4)[:, :3].ravel(), np.arange(12).reshape(3, 4)[:, 3])
+
+
+@dataclass(frozen=True)
+class Solution:
+    """M by rows, then the bias, (12,), and their covariance, (12, 12).
+
+    NaN where a parameter is not determined.
+    """
+
+    values: Array
+    covariance: Array
+
+    @property
+    def sigma(self) -> Array:
+        """Standard deviations of the values, (12,)."""
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def determined(self) -> Booleans:
+        """Which of the twelve are determined."""
+        return np.isfinite(self.values)
+
+
+@dataclass
+class Readings:
+    """n readings of three sensors, and all that they suffer.
+
+    `values`: (n, 3); `noise`: (n, 3), standard deviations; NaN where not recorded. `causes`: for
+    each error that several readings share, what it does to all of them at one sigma, (n, 3).
+    """
+
+    values: Array
+    noise: Array
+    causes: dict[tuple[str, str], Array] = field(default_factory=dict)
+
+    def suffer(self, kind: str, name: str, reading: int, size: Array) -> None:
+        """Let one sigma of the cause change a reading by `size`, (3,)."""
+        if (kind, name) not in self.causes:
+            self.causes[kind, name] = np.zeros_like(self.values)
+        self.causes[kind, name][reading] += size
+
+    def solution(self, weights: Array, determined: Booleans) -> Solution:
+        """What the formula gives.
+
+        Parameters
+        ----------
+        weights : (3, 4, n), zero where a reading is not recorded
+        determined : (3, 4)
+        """
+        values = np.einsum("rkj,jr->rk", weights, np.nan_to_num(self.values)).ravel()[ORDER]
+        noise = np.einsum("rkj,jr->rkj", weights, np.nan_to_num(self.noise))
+        covariance = np.zeros((3, 4, 3, 4))
+        for r in range(3):
+            covariance[r, :, r, :] = noise[r] @ noise[r].T
+        flat = covariance.reshape(12, 12)[np.ix_(ORDER, ORDER)]
+        for size in self.causes.values():
+            moved = np.einsum("rkj,jr->rk", weights, size).ravel()[ORDER]
+            flat += np.outer(moved, moved)
+        missing = ~determined.ravel()[ORDER]
+        values[missing] = np.nan
+        flat[missing[:, None] | missing[None, :]] = np.nan
+        return Solution(values, flat)
+
+
+# ---- A gyro from rests with its axis up and its axis down, with the sigmas that S0 leaves out.
+#
+#     b = (ω̃_up + ω̃_down) / 2,   s = (ω̃_up − ω̃_down) / (2 ω_e sinφ) − 1        (S0 3-13, 3-14)
+#
+# The level part of the earth's rate reaches the gyro through its cross terms and through the tilt
+# of each position: γ ω_e cosφ is 0.1 °/h for γ = 7.6 mrad in Wuhan. Where the azimuth is known it
+# is taken out, else it adds to the sigmas.
+
+KNOWN = 3.0  # sigmas by which the upward earth rate must be known, or it shows no scale factor
+
+
+@dataclass(frozen=True)
+class Upright:
+    """A rest with the axis of the gyro up or down: its mean, rad/s, and the sigma of noise."""
+
+    position: Position
+    up: float  # +1 where the axis points up, −1 where it points down
+    mean: float
+    sigma: float
+
+
+@dataclass(frozen=True)
+class TwoPositions:
+    """Bias, rad/s, and scale factor error with their sigmas; no scale without a known latitude."""
+
+    bias: float
+    bias_sigma: float
+    scale: float | None
+    scale_sigma: float | None
+
+
+def two_positions(
+    rests: Sequence[Upright], cross: Array, earth: Earth, position_sigma: float
+) -> TwoPositions | None:
+    """S0's formulas; None unless the axis was up and down.
+
+    Parameters
+    ----------
+    cross : (3,), what the gyro senses of rates along x, y, z; 0 along its own axis
+    position_sigma : tilt of each position, rad
+    """
+    up = np.array([rest.up > 0 for rest in rests], dtype=np.bool_)
+    if up.all() or not up.any():
+        return None
+    # Where the axis stood up several times, the mean of smallest variance.
+    weight = np.array([rest.sigma**-2 for rest in rests])
+    share = np.where(up, weight / weight[up].sum(), weight / weight[~up].sum())
+    bias, bias_variance = _combined(rests, share / 2, cross, earth, position_sigma)
+    if abs(earth.up) < KNOWN * earth.up_sigma:
+        return TwoPositions(bias, float(np.sqrt(bias_variance)), None, None)
+    signed = np.where(up, share, -share) / (2 * earth.up)
+    ratio, variance = _combined(rests, signed, cross, earth, position_sigma)
+    variance += (ratio * earth.up_sigma / earth.up) ** 2
+    return TwoPositions(bias, float(np.sqrt(bias_variance)), ratio - 1, float(np.sqrt(variance)))
+
+
+def _combined(
+    rests: Sequence[Upright], factors: Array, cross: Array, earth: Earth, position_sigma: float
+) -> tuple[float, float]:
+    """A weighted sum of the means, the known level earth rate taken out, and its variance.
+
+    An unknown azimuth is a random direction; positions with a common mark share it.
+    """
+    value, variance = 0.0, 0.0
+    coupled: dict[str, Array] = {}
+    for rest, factor in zip(rests, factors, strict=True):
+        position = rest.position
+        value += factor * rest.mean
+        variance += (factor * rest.sigma) ** 2 + (factor * earth.level * position_sigma) ** 2
+        if position.north is not None:
+            value -= factor * earth.level * float(cross @ position.north)
+            continue
+        axes, name = level_axes(position.up), position.name
+        if position.mark is not None:
+            axes, name = (position.mark, np.cross(position.up, position.mark)), "the table"
+        part = factor * earth.level * np.array([cross @ axis for axis in axes])
+        coupled[name] = coupled.get(name, np.zeros(2)) + part
+    variance += sum(float(part @ part) / 2 for part in coupled.values())
+    return float(value), float(variance)
+
+
+# ---- A turn forward against a turn backward: does the gyro have one scale factor for both?
+#
+#     s = (α̃ − b t − ω_e sinφ t) / α − 1,   for each direction by itself
+#
+# with the bias b of the joint estimate. An asymmetry of the scale factor, and all that adds to a
+# rate while it turns, makes the two differ.
+
+
+@dataclass(frozen=True)
+class BothWays:
+    """The scale factor error that each direction gives, and the sigma of their difference."""
+
+    forward: float
+    backward: float
+    sigma: float
+
+
+def both_ways(
+    forward: Angle,
+    backward: Angle,
+    bias: float,
+    bias_sigma: float,
+    earth: Earth,
+    scatter: float = 0.0,
+) -> BothWays:
+    """Compare two turns about the same axis.
+
+    The difference is c (b_turns − b) with c = t/α forward less t/α backward, where b_turns is the
+    bias that the two turns alone would give: an error of b goes into the two scale factors with
+    opposite sign. The joint bias b is from data that hold these turns, so the two are correlated:
+    its estimate is efficient, and so it gives b_turns the weight σ_b²/σ_turns². Without `scatter`,
+    the scatter between manoeuvres that the joint estimate allows for (rad/s), this leaves
+    σ² = c² (σ_turns² − σ_b²), after Hausman (1978). The scatter is not counted as noise of the
+    turns: it stands for what the model lacks, which is what is sought here.
+    """
+    scales = [
+        (turn.summed - (bias + earth.up * turn.up) * turn.seconds) / turn.angle - 1
+        for turn in (forward, backward)
+    ]
+    noise, offsets = 0.0, 0.0
+    for turn in (forward, backward):
+        noise += (turn.density**2 * turn.seconds + turn.angle_sigma**2) / turn.angle**2
+        offsets += (scatter * turn.seconds / turn.angle) ** 2
+    c = forward.seconds / forward.angle - backward.seconds / backward.angle
+    of_bias = (c * bias_sigma) ** 2
+    shared = of_bias / (noise + offsets) * noise
+    of_earth = forward.up * forward.seconds / forward.angle
+    of_earth -= backward.up * backward.seconds / backward.angle
+    variance = abs(noise + of_bias - 2 * shared) + (of_earth * earth.up_sigma) ** 2
+    return BothWays(scales[0], scales[1], float(variance**0.5))

@@ -1,0 +1,127 @@
+"""The gyros from many steady runs of a rate table: S4's least squares, with sigma and rank.
+
+    mean reading = M · (ω u + E) + bias + noise,   [M | b] = Ω̃ Wᵀ (W Wᵀ)⁻¹
+
+The columns of W are (ω u, 1): the rate of the table about its axis u in body axes, and 1. All runs
+count alike. The earth's rate E, of which S4 does not speak, is taken out beforehand. A gyro that
+was recorded only while the table turned about its own axis has a W of rank 2: its scale factor and
+bias are those of a straight line, its cross terms are refused.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.estimation.gyroscope_formulas import Readings, Solution
+from inertial.estimation.gyroscopes import Earth, Steady
+from inertial.estimation.horizontal_earth_rate import earth_seen
+from inertial.estimation.least_squares import spanned
+from inertial.estimation.triad import AXES, linear_names
+from inertial.physics.motion import level_axes
+from inertial.physics.vectors import cross
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+COLUMNS = 4  # the rates about x, y, z, and 1
+
+
+@dataclass(frozen=True)
+class RateTable:
+    """What the runs say of the gyros.
+
+    `solution`: M and bias; `ranks`: (3,), rank of the inputs of each gyro, of 4; `recorded`: (3,),
+    runs of each gyro; `residuals`: (k, 3), rad/s, NaN where not recorded.
+    """
+
+    solution: Solution
+    ranks: Integers
+    recorded: Integers
+    residuals: Array
+
+    @property
+    def degrees(self) -> Integers:
+        """Degrees of freedom of the residuals of each gyro, (3,)."""
+        return self.recorded - self.ranks
+
+    @property
+    def rms(self) -> Array:
+        """Standard deviation of a run by the residuals of each gyro, (3,), rad/s.
+
+        NaN where no degree of freedom is left.
+        """
+        squares = np.nansum(self.residuals**2, axis=0)
+        free = np.where(self.degrees > 0, self.degrees, 1)
+        return np.where(self.degrees > 0, np.sqrt(squares / free), np.nan)
+
+    def refusals(self) -> dict[str, str]:
+        """Why a parameter is not determined, with the rank and the cure, by its name."""
+        found = {}
+        for name, there in zip(linear_names(), self.solution.determined, strict=True):
+            gyro, about = name.partition("_")[2][0], name[-1]
+            rank, runs = self.ranks[AXES.index(gyro)], self.recorded[AXES.index(gyro)]
+            if there:
+                continue
+            if not runs:
+                found[name] = f"the {gyro} gyro is not recorded in any steady run"
+                continue
+            what = f"the inputs of the {gyro} gyro have rank {rank} of {COLUMNS}"
+            cure = (
+                "add a run of another rate"
+                if name.startswith("bias")
+                else f"record all three gyros while the table turns about {about}"
+            )
+            found[name] = f"{what}: {cure}"
+        return found
+
+
+def rate_table(
+    runs: Sequence[Steady], earth: Earth, position_sigma: float, scatter: float = 0.0
+) -> RateTable | None:
+    """S4's least squares of k steady runs; None where there is none.
+
+    Sigmas are of the noise of the means, the rate of each run, the tilt of the table's axis in
+    each position (rad), the earth's rate, and the `scatter` between runs (rad/s).
+    """
+    if not runs:
+        return None
+    rates = np.array([run.rate * run.about for run in runs])
+    means = np.array([run.mean for run in runs])
+    noise = np.hypot(np.array([run.sigma for run in runs]), scatter)
+    there = np.isfinite(means) & np.isfinite(noise)
+    design = np.column_stack([rates, np.ones(len(runs))])
+    spans = [spanned(design[there[:, gyro]]) for gyro in range(3)]
+    weights = np.zeros((3, COLUMNS, len(runs)))
+    for gyro, span in enumerate(spans):
+        weights[gyro][:, there[:, gyro]] = span.inverse
+    determined = np.array([span.determined for span in spans])
+
+    seen = [
+        earth_seen(
+            earth, run.position, run.about, run.rate * run.elapsed, run.seconds / run.seconds.sum()
+        )
+        for run in runs
+    ]
+    matrix = np.eye(3)
+    for _ in range(3):  # the earth is read through M, which is not known before
+        left = means - np.array([one.known for one in seen]) @ matrix.T
+        solved = np.einsum("rkj,jr->rk", weights, np.nan_to_num(left))
+        matrix = np.where(determined[:, :3], solved[:, :3], np.eye(3))
+
+    readings = Readings(left, noise)
+    for j, (run, one) in enumerate(zip(runs, seen, strict=True)):
+        readings.suffer("rate", str(j), j, matrix @ run.about * run.rate_sigma)
+        readings.suffer("earth", "up", j, matrix @ one.up * earth.up_sigma)
+        for (kind, name), size in one.level.items():
+            readings.suffer(kind, name, j, matrix @ size)
+        for i, axis in enumerate(level_axes(run.about)):
+            lean = run.rate * cross(axis, run.about) * position_sigma
+            readings.suffer(f"tilt {i}", run.position.name, j, matrix @ lean)
+    return RateTable(
+        readings.solution(weights, determined),
+        np.array([span.rank for span in spans]),
+        there.sum(axis=0),
+        np.where(there, left - design @ solved.T, np.nan),
+    )

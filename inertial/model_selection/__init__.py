@@ -1,0 +1,1 @@
+"""Which effects the data support, and what cannot be distinguished from them; arrays only."""

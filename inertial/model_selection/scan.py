@@ -1,0 +1,132 @@
+"""By how much chi-squared drops with every candidate, beside what is already in the model."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.model_selection.evidence import Sought
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+AT_ONCE = 20_000  # groups times data sets in one array
+SEEN = 1e-6  # of the information of a column on its own: what is less is taken as none
+
+
+@dataclass(frozen=True)
+class Width:
+    """Candidates of the same number of columns: their places (g,) and columns (g, w)."""
+
+    places: Integers
+    columns: Integers
+
+
+class Candidates:
+    """All candidates of all effects in one row, and what the data say of each.
+
+    `effect`: (c,) which effect each belongs to; `value`: (c,) which value of its scan.
+    """
+
+    def __init__(self, effects: Sequence[Sought]) -> None:
+        self.effects = tuple(effects)
+        listed = [
+            (number, value, columns)
+            for number, one in enumerate(effects)
+            for value, columns in enumerate(one.candidates)
+        ]
+        self.columns = [columns for _, _, columns in listed]
+        self.effect = np.array([number for number, _, _ in listed], dtype=np.int64)
+        self.value = np.array([value for _, value, _ in listed], dtype=np.int64)
+        widths = np.array([len(columns) for columns in self.columns], dtype=np.int64)
+        self.widths = [
+            Width(
+                np.flatnonzero(widths == width),
+                np.array([c for c in self.columns if len(c) == width], dtype=np.int64),
+            )
+            for width in np.unique(widths[widths > 0])
+        ]
+
+    def __len__(self) -> int:
+        return len(self.columns)
+
+    def together(self, places: Sequence[int]) -> list[int]:
+        """The columns of some candidates, each once."""
+        return list(dict.fromkeys(i for place in places for i in self.columns[place]))
+
+    def around(self, places: Sequence[int]) -> list[int]:
+        """The same with the neighbours in each scan, between which the true value may lie."""
+        near = [
+            other
+            for place in places
+            for other in self._beside(place)
+            if 0 <= other < len(self) and self.effect[other] == self.effect[place]
+        ]
+        return self.together(near)
+
+    def _beside(self, place: int) -> tuple[int, ...]:
+        between = self.effects[self.effect[place]].between
+        return (place, place - 1, place + 1) if between else (place,)
+
+    def drops(
+        self, information: Array, right: Array, beside: Sequence[int] = ()
+    ) -> tuple[Array, Integers]:
+        """The drop of chi-squared of each candidate beside some columns, and its degrees, (c,).
+
+        `right`: (k,), or (k, n) for n data sets at once: then the drops are (c, n).
+        """
+        size = np.sqrt(np.maximum(np.diag(information), np.finfo(float).tiny))
+        many = right.reshape(len(right), -1)
+        shadow = np.zeros((0, len(right)))
+        if len(beside):
+            white = _white(information, beside)
+            shadow = white @ information[list(beside)]
+            many = many - shadow.T @ (white @ many[list(beside)])
+        drop = np.zeros((len(self), many.shape[1]))
+        degrees = np.zeros(len(self), dtype=np.int64)
+        for width in self.widths:
+            c = width.columns
+            shaded = shadow[:, c]
+            block = information[c[:, :, None], c[:, None, :]]
+            block = block - np.einsum("qgi,qgj->gij", shaded, shaded)
+            values, vectors = _modes(block, size[c])
+            white = (vectors * _inverse(values)[:, None, :]).transpose(0, 2, 1)
+            for some in _portions(len(c), many.shape[1]):
+                along = white[some] @ many[c[some]]
+                drop[width.places[some]] = np.einsum("gij,gij->gj", along, along)
+            degrees[width.places] = np.sum(values > 0, axis=1)
+        return drop.reshape(len(self), *right.shape[1:]), degrees
+
+
+def _portions(groups: int, draws: int) -> list[slice]:
+    """So many groups at once that their arrays stay small."""
+    step = max(AT_ONCE // max(draws, 1), 1)
+    return [slice(start, start + step) for start in range(0, groups, step)]
+
+
+def joint_drop(information: Array, right: Array, columns: Sequence[int]) -> float:
+    """The drop of chi-squared with some columns together."""
+    if not len(columns):
+        return 0.0
+    return float(np.sum((_white(information, columns) @ right[list(columns)]) ** 2))
+
+
+def _white(information: Array, columns: Sequence[int]) -> Array:
+    """Combinations of the columns, (w, w), that are independent and of unit information."""
+    block = information[np.ix_(columns, columns)]
+    size = np.sqrt(np.maximum(np.diag(block), np.finfo(float).tiny))
+    values, vectors = _modes(block[None], size[None])
+    white: Array = (vectors[0] * _inverse(values[0])).T
+    return white
+
+
+def _modes(block: Array, size: Array) -> tuple[Array, Array]:
+    """Information (g, w), 0 where there is none, and combinations (g, w, w), of blocks."""
+    values, vectors = np.linalg.eigh(block / (size[:, :, None] * size[:, None, :]))
+    return np.where(values > SEEN, values, 0.0), vectors / size[:, :, None]
+
+
+def _inverse(values: Array) -> Array:
+    """Root of the inverse, 0 where there is no information."""
+    return np.where(values > 0, 1 / np.sqrt(np.where(values > 0, values, 1.0)), 0.0)

@@ -1,0 +1,56 @@
+"""What drifts from stretch to stretch: with the time since the start, and with the temperature.
+
+A stretch may last for minutes, so its mean of a function of time is not the function at its
+middle. The start is the first sample of all logs: when the instrument was switched on before it,
+a warm-up began earlier, by a factor that its amplitude takes up.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.physics.motion import Motion
+
+Array = NDArray[np.float64]
+
+NO_CLOCK = (
+    "The logs share no clock, so nothing tells how long after one another they were recorded."
+)
+NO_TEMPERATURE = "No temperature is recorded."
+NOT_EVERYWHERE = "The temperature is not recorded everywhere."
+
+
+def without_clock(motion: Motion) -> str:
+    """Why time tells nothing; empty where it does."""
+    return "" if np.isfinite(motion.time).all() else NO_CLOCK
+
+
+def without_temperature(motion: Motion) -> str:
+    """Why temperature tells nothing; empty where it does."""
+    known = np.isfinite(motion.temperature)
+    if known.all():
+        return ""
+    return NOT_EVERYWHERE if known.any() else NO_TEMPERATURE
+
+
+def evenly(motion: Motion, count: int) -> Array:
+    """So many times between the first stretch and the last, s, neither of them among these."""
+    if without_clock(motion):
+        return np.zeros(0)
+    return np.linspace(motion.time.min(), motion.time.max(), count + 2)[1:-1]
+
+
+def after(motion: Motion, time: float) -> Array:
+    """The share of each stretch that lies behind a time, (n,)."""
+    return np.clip((motion.time - time) / motion.seconds + 0.5, 0.0, 1.0)
+
+
+def decayed(motion: Motion, constant: float) -> Array:
+    """The mean of exp(−t/τ) over each stretch, (n,), for the time constant τ, s."""
+    half = motion.seconds / (2 * constant)
+    return np.asarray(np.exp(-motion.time / constant) * np.sinh(half) / half)
+
+
+def warmer(motion: Motion) -> Array:
+    """By how much each stretch is warmer than the mean of the campaign, (n,), K."""
+    mean = np.average(motion.temperature, weights=motion.seconds)
+    return np.asarray(motion.temperature - mean)

@@ -1,0 +1,142 @@
+"""What every physical effect must tell about itself."""
+
+from __future__ import annotations
+
+from abc import ABC
+from collections.abc import Mapping, Sequence
+from copy import copy
+from dataclasses import dataclass
+from typing import ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.physics.motion import Motion
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Truth:
+    """Angular rate (n, 3), rad/s, and specific force (n, 3), m/s², that the sensors feel."""
+
+    rate: Array
+    force: Array
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What the sensors say: gyro (n, 3), rad/s, and accel (n, 3), m/s²."""
+
+    gyro: Array
+    accel: Array
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number that an effect needs; zero means that the effect is absent."""
+
+    name: str
+    unit: str
+    typical: float  # size in a good laboratory IMU or table; sets the step of derivatives
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Scan:
+    """A number on which an effect does not depend linearly, so that many values are tried.
+
+    `between`: whether the true value may lie between two of those that are tried.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    between: bool = True
+
+
+class Effect(ABC):
+    """One physical effect: its name, its cause, its source, its parameters and how it acts.
+
+    It `moves` the truth before it is sensed, or changes what the sensor `reads`, or both, in
+    proportion to its parameters as long as they are small.
+
+    `sizes`: what is usual, in the unit of the last parameter: of a sensor by its grade, fog (a
+    fibre-optic gyro and its accelerometers), tactical (MEMS of the STIM300 class), mti (of the
+    MTi-100 class), consumer; of a table: good table, poor table; of a site: usual. What is more
+    than `thinkable` times the largest of them is not thought of.
+
+    `sought_in` tells where it is looked for: in the "blocks" of means that all equations rest on;
+    in the "spectrum" of the full-rate residuals, for it is faster than a block or turns with the
+    table; in the "noise", for it has no mean; by the "quality" of the samples, where `finding`
+    is the cause of the finding that tells it.
+
+    `absorbed_by`: what every calibration estimates or knows that does the same, so that no plan
+    of these manoeuvres shows it; `blind` says why a certain campaign does not.
+
+    `scan`: a nonlinear parameter. The effect in the catalogue is then a family whose
+    `candidates` for a campaign have each its own value, `at`; each is an effect like others.
+    Without a value it acts with the middle one of them.
+    """
+
+    name: ClassVar[str]
+    cause: ClassVar[str]
+    source: ClassVar[str]
+    parameters: ClassVar[tuple[Parameter, ...]]
+    sizes: ClassVar[Mapping[str, float]]
+    thinkable: ClassVar[float] = 100.0
+    sought_in: ClassVar[str] = "blocks"
+    finding: ClassVar[str] = ""
+    absorbed_by: ClassVar[str] = ""
+    scan: ClassVar[Scan | None] = None
+    at: float | None = None
+
+    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+        """The truth with this effect in it; `values` follow `parameters`."""
+        return truth
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        """The reading with this effect in it; `values` follow `parameters`."""
+        return reading
+
+    def signature(self, motion: Motion) -> Reading | None:
+        """How the readings change per unit of each parameter, where no model is needed to tell.
+
+        gyro and accel, (n, 3, number of parameters) each.
+        """
+        return None
+
+    def blind(self, motion: Motion) -> str:
+        """Why the effect cannot be seen on this motion, in a sentence; empty where it may be."""
+        return ""
+
+    def grid(self, motion: Motion) -> Array:
+        """The values of what is scanned that this motion can tell apart."""
+        return np.zeros(0)
+
+    def candidates(self, motion: Motion) -> Sequence[Self]:
+        """The effect with each value of what is scanned; without a scan the effect itself."""
+        return [self.fixed(float(at)) for at in self.grid(motion)] if self.scan else [self]
+
+    def fixed(self, at: float) -> Self:
+        """The effect with one value of what is scanned."""
+        one = copy(self)
+        one.at = at
+        return one
+
+    def value(self, motion: Motion) -> float:
+        """The value of what is scanned, or the middle one of the grid; NaN where there is none."""
+        if self.at is not None:
+            return self.at
+        grid = self.grid(motion)
+        return float(grid[len(grid) // 2]) if len(grid) else np.nan
+
+    @property
+    def largest(self) -> float:
+        """The largest size that is thought of, in the unit of the last parameter."""
+        return self.thinkable * max(self.sizes.values())
+
+    @property
+    def label(self) -> str:
+        """Its name, and the value of what is scanned where it has one."""
+        return self.name if self.at is None else f"{self.name}@{self.at:.6g}"

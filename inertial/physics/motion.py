@@ -1,0 +1,214 @@
+"""How a turntable moves, and what is up for the IMU on it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from inertial.physics.vectors import cross
+
+Array = NDArray[np.float64]
+
+
+def turned(direction: Array, about: Array, angle: float) -> Array:
+    """A direction of the laboratory as the IMU sees it after it has turned by `angle`.
+
+    `direction` and `about` are body vectors before the turn. The IMU turns about
+    `about` by the right-hand rule, so what stands still in the laboratory turns the
+    other way in body axes.
+    """
+    return np.asarray(Rotation.from_rotvec(-angle * about).apply(direction), dtype=np.float64)
+
+
+def level_axes(up: Array) -> tuple[Array, Array]:
+    """Two level directions in body axes that make, with `up`, a right-handed triad."""
+    least = np.eye(3)[np.argmin(np.abs(up))]
+    first = cross(least, up)
+    first /= np.linalg.norm(first)
+    return first, cross(up, first)
+
+
+def all_level_axes(ups: Array) -> Array:
+    """`level_axes` of many upward directions (n, 3), (n, 2, 3)."""
+    least = np.eye(3)[np.argmin(np.abs(ups), axis=1)]
+    first = cross(least, ups)
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    return np.stack([first, cross(ups, first)], axis=1)
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A turn with constant acceleration at its start and stop: a trapezoid of the rate.
+
+    `angle` (rad) and `rate` (rad/s) are magnitudes; `acceleration` in rad/s².
+    """
+
+    angle: float
+    rate: float
+    acceleration: float
+
+    @property
+    def ramp_seconds(self) -> float:
+        """Duration of the acceleration, and of the braking, s."""
+        return self.rate / self.acceleration
+
+    @property
+    def seconds(self) -> float:
+        """From start to stop, A/r + r/a, s."""
+        return self.angle / self.rate + self.ramp_seconds
+
+    def at(self, time: Array) -> tuple[Array, Array]:
+        """Angle, rad, and rate, rad/s, at times since the start, (n,) each; still outside."""
+        t = np.clip(time, 0.0, self.seconds)
+        ramp, left = self.ramp_seconds, self.seconds - t
+        up = self.acceleration * t**2 / 2
+        steady = self.rate * (t - ramp / 2)
+        down = self.angle - self.acceleration * left**2 / 2
+        angle = np.where(t < ramp, up, np.where(left < ramp, down, steady))
+        rate = np.minimum(self.rate, self.acceleration * np.minimum(t, left))
+        return angle, rate
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What the table does to the IMU in n stretches of time, samples or blocks; body axes.
+
+    `time`: (n,), s since the first sample of all logs, NaN where they have no common clock;
+    `about`: (3,) or (n, 3), axis of the turn; `angle`, `rate`, `acceleration`: (n,), rad, rad/s,
+    rad/s², turned about it since the start, at the middle of each stretch; `up`: (n, 3), the
+    table's vertical; `north`: (n, 3), NaN where the azimuth is not known.
+
+    What else a stretch is: `seconds`: (n,), how long; `visit`: (n,), the place of its manoeuvre in
+    the plan, and `position`: (n,), that of its position among those of the plan; `surveyed`: (n,),
+    whether north is known from the table's heading and not from the gyros; `temperature`: (n,), K,
+    and `vibration`: (n, 3), m/s², what the samples of specific force scatter, both NaN where they
+    are not known.
+    """
+
+    time: Array
+    about: Array
+    angle: Array
+    rate: Array
+    acceleration: Array
+    up: Array
+    north: Array
+    seconds: Array
+    visit: Array
+    position: Array
+    surveyed: NDArray[np.bool_]
+    temperature: Array
+    vibration: Array
+
+    @property
+    def omega(self) -> Array:
+        """Rate of the table as a vector, (n, 3), rad/s."""
+        return self.rate[:, None] * self.about
+
+    @property
+    def alpha(self) -> Array:
+        """Angular acceleration of the table as a vector, (n, 3), rad/s²."""
+        return self.acceleration[:, None] * self.about
+
+    @property
+    def up_at_start(self) -> Array:
+        """What pointed up in body axes when the manoeuvre began, (n, 3): fixed to the case."""
+        return turned_all(self.up, self.about, -self.angle)
+
+    @property
+    def north_at_start(self) -> Array:
+        """What pointed north in body axes when the manoeuvre began, (n, 3): fixed to the case."""
+        return turned_all(self.north, self.about, -self.angle)
+
+    def ripples(self, order: float, sine: float, cosine: float) -> Array:
+        """The mean rate over each stretch, (n,), rad/s, when the table is ahead of itself by
+
+        a sin nθ + b cos nθ, rad, where its angle is θ.
+        """
+        half = self.rate * self.seconds / 2
+        first, last = order * (self.angle - half), order * (self.angle + half)
+        ahead = sine * (np.sin(last) - np.sin(first)) + cosine * (np.cos(last) - np.cos(first))
+        return np.asarray(ahead / self.seconds)
+
+    @property
+    def ends(self) -> NDArray[np.bool_]:
+        """Which stretches are the first or the last of their visit, (n,)."""
+        new = np.diff(self.visit) != 0
+        return np.asarray(np.append(True, new) | np.append(new, True))
+
+    @property
+    def since_middle(self) -> Array:
+        """Time since the middle of the visit, (n,), s; 0 without a clock."""
+        place = np.cumsum(np.diff(self.visit, prepend=self.visit[0]) != 0)
+        middle = np.bincount(place, self.time) / np.bincount(place)
+        return np.asarray(np.nan_to_num(self.time - middle[place]))
+
+
+def without_north(motion: Motion) -> str:
+    """Why nothing that is fixed to the laboratory is told; empty where it is."""
+    if np.isfinite(motion.north).any():
+        return ""
+    return "Neither a heading nor the earth's rate tells the azimuth of the positions."
+
+
+def turning(
+    about: Array,
+    up: Array,
+    north: Array,
+    angle: Array,
+    rate: Array,
+    acceleration: Array,
+    time: Array,
+    seconds: Array,
+) -> Motion:
+    """A turn from where up and north are at its start, (3,); what else it is, is not known."""
+    n = len(angle)
+    return Motion(
+        time,
+        about,
+        angle,
+        rate,
+        acceleration,
+        turned_all(up, about, angle),
+        turned_all(north, about, angle),
+        seconds,
+        np.zeros(n),
+        np.zeros(n),
+        np.zeros(n, bool),
+        np.full(n, np.nan),
+        np.full((n, 3), np.nan),
+    )
+
+
+def joined(motions: Sequence[Motion]) -> Motion:
+    """Several motions one after another."""
+
+    def all_of(name: str) -> Array:
+        return np.concatenate([getattr(motion, name) for motion in motions])
+
+    names = [field.name for field in fields(Motion)]
+    parts: dict[str, Any] = {name: all_of(name) for name in names if name != "about"}
+    about = [np.broadcast_to(motion.about, motion.up.shape) for motion in motions]
+    return Motion(about=np.concatenate(about), **parts)
+
+
+def turned_all(direction: Array, about: Array, angles: Array) -> Array:
+    """`turned` for many angles at once, (n, 3), by Rodrigues' formula.
+
+    `direction`, `about`: (3,), or (n, 3) each its own.
+    """
+    along = about * np.sum(about * direction, axis=-1, keepdims=True)
+    across = np.cos(angles)[:, None] * (direction - along)
+    return np.asarray(along + across - np.sin(angles)[:, None] * cross(about, direction))
+
+
+def mean_turned(direction: Array, about: Array, middle: Array, angle: Array) -> Array:
+    """The mean of a direction while it turns by `angle` (n,) about each `middle` (n,), (n, 3).
+
+    What is across the axis becomes shorter, by sin(θ/2) / (θ/2).
+    """
+    along = (direction @ about) * about
+    shorter = np.sinc(angle / (2 * np.pi))[:, None]
+    return np.asarray(along + shorter * turned_all(direction - along, about, middle))

@@ -1,0 +1,1 @@
+"""What detectors of faults share: steps, lines, outliers, stamps, axes; arrays only."""

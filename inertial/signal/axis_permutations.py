@@ -1,0 +1,258 @@
+"""Readings of a triad that are a signed permutation of themselves."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import permutations, product
+
+import numpy as np
+
+from inertial.physics.vectors import cross
+from inertial.signal.detector import SENSORS, Array, Event, Integers, Log, Piece, Words
+from inertial.signal.roughness import SCATTER
+from inertial.text.numbers import significant, whole
+
+# ---- Where the readings of a triad become a signed permutation of themselves.
+
+AXES = "xyz"
+BESIDE = 5  # readings on each side that are compared: the shortest exchange
+AROUND = 32  # readings on each side by which their scatter is had
+SUDDEN = 5.0  # times the largest change among those: what no motion does from reading to reading
+CLEAR = 12.0  # sigma of the jump, by which it must be more than noise
+ALIKE = 5.0  # sigma by which the readings after it may differ from the permuted ones before
+BROKEN = 1.5  # median intervals: readings farther apart are not compared
+TURNED = 0.25  # of the jump: what the IMU may have turned meanwhile, by its gyros
+
+
+@dataclass(frozen=True)
+class Permutation:
+    """After it axis i reads signs[i] × what axis sources[i] read before."""
+
+    sources: tuple[int, ...]
+    signs: tuple[int, ...]
+
+    @property
+    def moved(self) -> int:
+        """How many axes read something else than before."""
+        return int(sum(self.changed))
+
+    @property
+    def changed(self) -> list[bool]:
+        """Which axes these are, (3,)."""
+        both = zip(self.sources, self.signs, strict=True)
+        return [one != (i, 1) for i, one in enumerate(both)]
+
+    @property
+    def told(self) -> str:
+        """In words: x reads z and z reads −x."""
+        both = zip(self.sources, self.signs, strict=True)
+        reads = [f"{'' if sign > 0 else '−'}{AXES[source]}" for source, sign in both]
+        return " and ".join(f"{AXES[i]} reads {reads[i]}" for i in range(3) if self.changed[i])
+
+    @property
+    def in_place(self) -> bool:
+        """Whether only signs are turned."""
+        return self.sources == (0, 1, 2)
+
+    @property
+    def inverse(self) -> "Permutation":
+        """What takes it back."""
+        back = tuple(self.sources.index(i) for i in range(3))
+        return Permutation(back, tuple(self.signs[i] for i in back))
+
+    def of(self, vector: Array) -> Array:
+        """The vector (3,) as it reads afterwards."""
+        return np.array(self.signs) * vector[list(self.sources)]
+
+
+# The simplest first: one sign, two axes, then what is left.
+EVERY = sorted(
+    (
+        Permutation(sources, signs)
+        for sources in permutations(range(3))
+        for signs in product((1, -1), repeat=3)
+        if (sources, signs) != ((0, 1, 2), (1, 1, 1))
+    ),
+    key=lambda one: (one.moved, one.signs.count(-1)),
+)
+
+
+@dataclass(frozen=True)
+class Exchange:
+    """Places [start, end) of a piece, exchanged; before, after: (3,), readings beside its start.
+
+    lasting: to the end of what is seen; with_it: the same of the other sensor, at the same time.
+    """
+
+    start: int
+    end: int
+    permutation: Permutation
+    before: Array
+    after: Array
+    lasting: bool
+    with_it: Permutation | None = None
+
+    def event(self, piece: Piece, log: Log) -> Event:
+        """It as an event, to the end of the log if its end is not seen in this piece."""
+        event = piece.event(self.start, self.end, float(self.end - self.start), facts=self)
+        if not self.lasting or piece.after == len(piece):
+            return event
+        number = float(log.records - event.first)
+        return replace(event, after=log.records, to_s=float(log.windows.time[-1]), size=number)
+
+
+def exchange_words(event: Event, name: str, sensor: str) -> Words:
+    """An exchange in words."""
+    one: Exchange = event.facts
+    unit, what = ("m/s²", "accelerometer") if sensor == "accel" else ("rad/s", "gyro")
+    other = f" So do those of the gyros: {one.with_it.told}." if one.with_it else ""
+    worst = int(np.argmax(np.abs(one.after - one.before)))
+    return Words(
+        f"{name}: from line {event.line} on, {'to the end, ' if one.lasting else ''}for"
+        f" {whole(event.size)} records, the axes of the {what}s are others than in the records"
+        f" before: {one.permutation.told}.{other} No motion does that from one record to the next.",
+        f"Used, their mean on {AXES[worst]} would be {significant(float(one.after[worst]), 5)} in"
+        f" place of {significant(float(one.before[worst]), 5)} {unit}: bias, scale factor and cross"
+        " terms would be wrong.",
+        "These records are masked. Find out which order and signs of the axes are right, and"
+        " whether the records before are.",
+    )
+
+
+def exchanges_of(piece: Piece, log: Log, sensor: str) -> Iterator[Exchange]:
+    """The exchanges of a sensor; with those of the accelerometers what the gyros do with them.
+
+    The records are masked as a whole, so that nobody looks at their gyros any more.
+    """
+    own = list(_exchanges(piece, log, sensor))
+    others = list(_exchanges(piece, log, "gyro")) if own and sensor == "accel" else []
+    for one in own:
+        alike = [o for o in others if o.start < one.end and one.start < o.end]
+        yield replace(one, with_it=alike[0].permutation) if alike else one
+
+
+def _exchanges(piece: Piece, log: Log, sensor: str) -> Iterator[Exchange]:
+    """The exchanges in a piece of a log, in their order."""
+    triad = piece.values[:, SENSORS[sensor]]
+    places = np.flatnonzero(np.isfinite(triad).all(axis=1))
+    values = triad[places]
+    if len(values) < 2 * BESIDE:
+        return
+    smallest = np.nan_to_num(log.quantum[SENSORS[sensor]])
+    open_: tuple[int, Array, Array, list[Permutation]] | None = None
+    for k in _sudden(values, smallest):
+        if _broken(piece, log, places, k):
+            continue
+        before, after, sigma = _beside(values, k, smallest)
+        fitting = [p for p in EVERY if _fits(p, before, after, sigma)]
+        if not fitting or (sensor == "accel" and _turned(piece, log, places, k, before, after)):
+            continue
+        if open_ is None:
+            open_ = k, before, after, fitting
+            continue
+        start, earlier, later, possible = open_
+        back = [p for p in possible if p.inverse in fitting]
+        if back:
+            yield Exchange(int(places[start]), int(places[k]), back[0], earlier, later, False)
+            open_ = None
+    if open_ is not None:
+        start, earlier, later, possible = open_
+        yield Exchange(int(places[start]), len(piece), possible[0], earlier, later, True)
+
+
+def _sudden(values: Array, smallest: Array) -> list[int]:
+    """Places whose reading is away from the one before by more than others beside them are."""
+    change = np.abs(np.diff(values, axis=0))
+    side = BESIDE - 1
+    largest = change[: len(change) - side + 1].copy()  # of each change and those that follow
+    for shift in range(1, side):
+        np.maximum(largest, change[shift : len(change) - side + 1 + shift], out=largest)
+    inside = len(change) - 2 * side
+    beside = np.maximum(largest[:inside], largest[side + 1 : side + 1 + inside])
+    sudden = change[side : side + inside] > SUDDEN * np.maximum(beside, smallest)
+    found: list[int] = (np.flatnonzero(sudden.any(axis=1)) + side + 1).tolist()
+    return found
+
+
+def _broken(piece: Piece, log: Log, places: Integers, k: int) -> bool:
+    """Whether something is missing between these readings, so that the IMU may have been moved."""
+    between = piece.time[places[k]] - piece.time[places[k - 1]]
+    return bool(between > BROKEN * log.interval)
+
+
+def _beside(values: Array, k: int, smallest: Array) -> tuple[Array, Array, Array]:
+    """The readings before and after, at the instant between them, and the sigma of each, (3,).
+
+    Two straight lines through 5 readings each, continued by half an interval. The scatter is that
+    about the lines, but at least that from reading to reading around, and half a count.
+    """
+    time = np.arange(BESIDE) - (BESIDE - 1) / 2
+    parts = values[k - BESIDE : k], values[k : k + BESIDE]
+    slopes = [time @ part / (time @ time) for part in parts]
+    left = [
+        part - part.mean(axis=0) - np.outer(time, slope)
+        for part, slope in zip(parts, slopes, strict=True)
+    ]
+    about = np.sqrt(sum((one**2).sum(axis=0) for one in left) / (2 * BESIDE - 4))
+    changes = np.abs(np.diff(values[max(k - AROUND, 0) : k + AROUND], axis=0))
+    scatter = np.maximum(about, SCATTER / np.sqrt(2) * np.median(changes, axis=0))
+    before = parts[0].mean(axis=0) + slopes[0] * BESIDE / 2
+    after = parts[1].mean(axis=0) - slopes[1] * BESIDE / 2
+    share = np.sqrt(1 / BESIDE + (BESIDE / 2) ** 2 / (time @ time))
+    return before, after, share * np.maximum(scatter, smallest / 2)
+
+
+def _fits(permutation: Permutation, before: Array, after: Array, sigma: Array) -> bool:
+    """Whether it makes the readings before to those after, and makes a difference."""
+    both = np.hypot(sigma, sigma[list(permutation.sources)])
+    alike = np.abs(after - permutation.of(before)) <= ALIKE * both
+    apart = np.abs(permutation.of(before) - before) > CLEAR * both
+    return bool(alike.all() and apart[permutation.changed].all())
+
+
+def _turned(piece: Piece, log: Log, places: Integers, k: int, before: Array, after: Array) -> bool:
+    """Whether a turn of the IMU explains part of the change: df/dt = −ω × f, by the gyros."""
+    rates = piece.values[places[k - BESIDE] : places[k + BESIDE - 1] + 1, SENSORS["gyro"]]
+    known = rates[np.isfinite(rates).all(axis=1)]
+    if not len(known) or not np.isfinite(log.interval):
+        return False
+    turned = cross(known.mean(axis=0), before) * log.interval
+    return bool(np.linalg.norm(turned) > TURNED * np.abs(after - before).max())
+
+
+# ---- Whether an IMU stood in another way, or its accelerometers are read as each other.
+
+ASKEW = float(np.cos(np.radians(25)))  # how far an IMU may be mounted from the planned direction
+CLEARLY = 3.0  # times as far from what was expected, for the other explanation to be wrong
+
+
+def read_as_other_axes(force: Array, up: Array, forces: Array, ups: Array) -> Permutation | None:
+    """The permutation that a rest was read with, if that and no other attitude explains it.
+
+    Every accelerometer has its own bias and scale factor, and the triad its own mounting: what
+    the other rests read, forces = A [ups; 1], foretells the three readings of this one, either in
+    the planned attitude with the axes exchanged, or as read with another axis up. None where the
+    two differ too little to tell, as by hand, or where the other rests are too few.
+
+    Parameters
+    ----------
+    force : (3,), m/s², mean of the rest in question
+    up : (3,), what was planned to point up in it
+    forces, ups : (k, 3), the same of rests that agree with the plan
+    """
+    design = np.column_stack([ups, np.ones(len(ups))])
+    if np.linalg.matrix_rank(design, tol=0.1) < 4:
+        return None
+    response = np.linalg.lstsq(design, forces, rcond=None)[0].T
+    foretold = response @ np.append(up, 1.0)
+    away: dict[Permutation, float] = {}
+    for permutation in EVERY:
+        straight = permutation.of(force)
+        if float(straight @ up) > ASKEW * float(np.linalg.norm(force)):
+            away[permutation] = float(np.linalg.norm(straight - foretold))
+    if not away:
+        return None
+    axis = int(np.argmax(np.abs(force)))
+    stood = np.sign(force[axis]) * np.eye(3)[axis]
+    otherwise = float(np.linalg.norm(force - response @ np.append(stood, 1.0)))
+    best = min(away, key=lambda permutation: away[permutation])
+    return best if CLEARLY * away[best] < otherwise else None

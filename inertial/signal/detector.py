@@ -1,0 +1,232 @@
+"""What every detector of a fault must declare, and what it is shown of a log."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+# ---- What a channel is called in a sentence.
+
+SENSOR_NAMES = {"accel": "accelerometer", "gyro": "gyro"}
+
+
+def channel_name(channel: int) -> str:
+    """Its sensor and axis: accelerometer x, gyro z."""
+    sensor, _, axis = CHANNELS[channel].partition("_")
+    return f"{SENSOR_NAMES[sensor]} {axis}"
+
+
+# ---- What every detector of a fault must tell about itself, and what it is shown of a log.
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Booleans = NDArray[np.bool_]
+
+CHANNELS = ("accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z")
+UNITS = ("m/s²",) * 3 + ("rad/s",) * 3
+SENSORS = {"accel": slice(0, 3), "gyro": slice(3, 6)}
+
+
+@dataclass(frozen=True)
+class Given:
+    """What the campaign says of all its logs.
+
+    gravity, gravity_sigma: m/s²; normal_gravity: m/s², at its latitude and height, NaN where these
+    are not stated. interval: s, of the instrument, NaN where not stated. date: ISO, or unknown.
+    usual_interval: s, the median of the mean intervals of its logs, and unlike: by how much these
+    differ, 1; NaN where fewer than three logs have stamps.
+    must_be_set, must_be_clear: bits of the status of a valid record. count_sizes: m/s and rad, of
+    accelerometer and gyro, by the name of each listed instrument. position_sigma: rad, of the tilts
+    of a set position.
+    """
+
+    gravity: float
+    gravity_sigma: float
+    normal_gravity: float
+    interval: float
+    instrument: str
+    date: str
+    must_be_set: int
+    must_be_clear: int
+    count_sizes: Mapping[str, tuple[float, float]]
+    usual_interval: float = np.nan
+    unlike: float = np.nan
+    position_sigma: float = 0.0
+
+
+@dataclass(frozen=True)
+class Windows:
+    """Means over k windows of 1 s (or so many records, where there is no time) of a log.
+
+    mean, variance: (k, 6), NaN where not recorded; time, temperature: (k,), s and K.
+    """
+
+    mean: Array
+    variance: Array
+    time: Array
+    temperature: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Log:
+    """What is known of a log before its records are looked at one by one.
+
+    interval: s, median sample interval, NaN where there is no time; recorded_on: UTC date, or None.
+    step: s, the mean interval, which a sample counts for in a sum over time.
+    quantum, noise: (6,), smallest step of a channel's readings, and the scatter of one reading
+    about its neighbours, m/s² and rad/s, NaN where not recorded.
+    equal: (6,), share of readings that are equal to the one before.
+    least, most: (6,), its smallest and largest reading.
+    limit: (6,), how far the channel reaches, infinite where not stated.
+    count: (6,), what one count is by the campaign, m/s² and rad/s, NaN where not stated.
+    records: how many. increments: readings are increments over `step`, and what a count leaves
+    over goes into the next. imu: the types of IMU that its messages tell, by NovAtel's list.
+    """
+
+    name: str
+    given: Given
+    interval: float
+    recorded_on: str | None
+    quantum: Array
+    noise: Array
+    equal: Array
+    least: Array
+    most: Array
+    limit: Array
+    count: Array
+    windows: Windows
+    records: int
+    step: float = np.nan
+    increments: bool = False
+    imu: tuple[int, ...] = ()
+
+    def event(self, size: float, **more: Any) -> "Event":
+        """An event that concerns the log as a whole."""
+        times = self.windows.time
+        ends = (float(times[0]), float(times[-1])) if len(times) else (np.nan, np.nan)
+        return Event(0, self.records, 1, *ends, size, **more)
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """n consecutive records of a log.
+
+    record, line: (n,), numbers in the log; time: (n,), s, NaN where there is none; values:
+    (n, 6), NaN where not recorded or masked by an earlier detector; status, temperature: (n,),
+    NaN where there is none. Records [first, after) are those that are to be looked at; the
+    others are there to compare with. reached: s, how far time had come before the first of all.
+    """
+
+    record: Integers
+    line: Integers
+    time: Array
+    values: Array
+    status: Array
+    temperature: Array
+    first: int
+    after: int
+    reached: float = -np.inf
+
+    def __len__(self) -> int:
+        return len(self.record)
+
+    def channel(self, i: int) -> tuple[Integers, Array]:
+        """Where channel i is recorded, (m,), and what it reads there, (m,)."""
+        there = np.flatnonzero(np.isfinite(self.values[:, i]))
+        return there, self.values[there, i]
+
+    def without(self, events: "list[Event]") -> Self:
+        """The same piece, without the readings that these events mask."""
+        values = self.values.copy()
+        for event in events:
+            inside = slice(*np.searchsorted(self.record, [event.first, event.after]))
+            values[inside, slice(None) if event.channel is None else event.channel] = np.nan
+        return replace(self, values=values)
+
+    def event(self, start: int, end: int, size: float, **more: Any) -> "Event":
+        """An event at the places [start, end) of this piece."""
+        return Event(
+            int(self.record[start]),
+            int(self.record[end - 1]) + 1,
+            int(self.line[start]),
+            float(self.time[start]),
+            float(self.time[end - 1]),
+            size,
+            **more,
+        )
+
+
+@dataclass(frozen=True)
+class Event:
+    """One thing seen at one place: records [first, after) of a log.
+
+    from_s, to_s: time of its first and last record, NaN where there is none; size: in the
+    detector's unit, or in that of the channel; p_value: chance of it if nothing is wrong, the
+    search paid for; count: how many equal things it stands for; facts: what the words need;
+    severity: where it is not that of the detector.
+    """
+
+    first: int
+    after: int
+    line: int
+    from_s: float
+    to_s: float
+    size: float
+    channel: int | None = None
+    p_value: float | None = None
+    count: int = 1
+    facts: Any = None
+    severity: int | None = None
+
+
+@dataclass(frozen=True)
+class Words:
+    """A finding for a person: what is wrong, what it does to which parameter, what to do."""
+
+    sentence: str
+    consequence: str
+    action: str
+
+
+class Detector(ABC):
+    """One fault of a recording: its name, its cause, its source, what it costs, how it is seen.
+
+    `unit` of the size, empty where it is that of the channel; `sensor`: accel or gyro, where all
+    axes of one are concerned. `severity`: 3 spoils a result, 2 weakens it, 1 is good to know.
+    `masks`: what it finds is not used any more; `repeats`: no time passes with the records that it
+    masks. `everywhere`: the same in several logs is one finding.
+    """
+
+    name: ClassVar[str]
+    cause: ClassVar[str]
+    source: ClassVar[str]
+    costs: ClassVar[str]
+    unit: ClassVar[str] = ""
+    sensor: ClassVar[str | None] = None
+    severity: ClassVar[int] = 2
+    masks: ClassVar[bool] = False
+    repeats: ClassVar[bool] = False
+    everywhere: ClassVar[bool] = False
+
+    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+        """What it sees in a piece of a log, in the order of the records."""
+        yield from ()
+
+    def concludes(self, log: Log) -> Iterator[Event]:
+        """What it sees in a log as a whole."""
+        yield from ()
+
+    def judges(self, given: Given) -> Iterator[Event]:
+        """What it sees in what the campaign says of itself."""
+        yield from ()
+
+    def compares(self, logs: Mapping[str, Log]) -> Iterator[Event]:
+        """What it sees when the logs of the campaign, by name, lie side by side."""
+        yield from ()
+
+    @abstractmethod
+    def tells(self, event: Event, name: str) -> Words:
+        """One event in words; `name` is that of the log or rest, empty for the campaign."""

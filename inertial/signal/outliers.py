@@ -1,0 +1,164 @@
+"""How far each reading of a channel is from its neighbours, and how much they scatter."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from inertial.signal.detector import Array, Booleans, Integers
+from inertial.signal.roughness import SCATTER
+
+# ---- The running median, which takes no notice of ramps, steps and single readings far off.
+
+WIDTH = 9  # readings: of these a spike may be up to four
+
+
+def running_median(values: Array) -> Array:
+    """The median of each reading and the four on either side of it, (n,) of (n,), n ≥ 5.
+
+    The ends are continued by turning them about their last reading, which keeps a slope; that
+    reading is its own median. Median of nine by three sorted threes: Paeth, Graphics Gems I
+    (1990) 171.
+    """
+    x = np.pad(values, WIDTH // 2, mode="reflect", reflect_type="odd")
+    low, high = np.minimum(x[:-2], x[1:-1]), np.maximum(x[:-2], x[1:-1])
+    least, most = np.minimum(low, x[2:]), np.maximum(high, x[2:])
+    middle = np.maximum(low, np.minimum(high, x[2:]))
+    highest_low = np.maximum(np.maximum(least[:-6], least[3:-3]), least[6:])
+    lowest_high = np.minimum(np.minimum(most[:-6], most[3:-3]), most[6:])
+    return _middle(highest_low, _middle(middle[:-6], middle[3:-3], middle[6:]), lowest_high)
+
+
+def _middle(a: Array, b: Array, c: Array) -> Array:
+    """The middle one of three."""
+    return np.maximum(np.minimum(a, b), np.minimum(np.maximum(a, b), c))
+
+
+# ---- How far each reading of a channel is off those beside it, and how much they scatter.
+
+LOUD = 5.0  # scatters by which a reading is off, and not by chance
+BLOCK = 1024  # readings from which the scatter is taken
+SHORT = 64  # readings by which stretches are told in which the IMU is moved
+RESTLESS = 3.0  # times the scatter of the quiet stretches
+WIDEST = 3  # readings of a spike
+STEEP = 3.0  # scatters between the medians before and after
+HOLE = 8  # intervals that are missing: what lies beyond is no neighbour
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A channel at the m places of a piece at which it is read.
+
+    change: (m,), how far the reading is from the one before; off: (m,), distance from the running
+    median, with its sign; scatter: (m,), sigma of the
+    readings around, at least a count; least: (m,), that of fewer readings, where it is less;
+    handled: (m,), whether the IMU is moved, or rings; alone: (m,), whether the four readings on
+    either side are not all there.
+    """
+
+    places: Integers
+    change: Array
+    off: Array
+    scatter: Array
+    least: Array
+    handled: Booleans
+    alone: Booleans
+
+    @classmethod
+    def of(cls, places: Integers, values: Array, time: Array, count: float, noise: float) -> Self:
+        """A channel that reads `values` at `places`.
+
+        time: (m,), intervals, NaN where there is none; count: its smallest step; noise: sigma of
+        a reading in the whole log.
+        """
+        # Of a ramp's readings their running median leaves nothing; against both neighbours they
+        # scatter there as elsewhere.
+        rough = np.abs(values[1:-1] - (values[:-2] + values[2:]) / 2) / np.sqrt(1.5)
+        rough = np.pad(rough, 1, mode="edge")
+        scatter = _of_readings(_around(_scatter(rough, BLOCK, count), least=True), BLOCK, values)
+        near = _scatter(rough, SHORT, count)
+        least_near = _of_readings(_around(near, least=True), SHORT, values)
+        least = np.minimum(scatter, least_near)
+        off = _off(values, least)
+        quiet = max(min(float(np.quantile(near, 0.25)), noise), count)
+        # One spike of three readings is no motion yet, nor are several that lie apart.
+        pairs = _in_blocks(np.minimum(np.abs(off), np.abs(np.roll(off, 1))), SHORT)
+        third = np.partition(pairs, -WIDEST, axis=1)[:, -WIDEST]
+        moved = np.maximum(near / RESTLESS, third / LOUD)
+        return cls(
+            places,
+            np.abs(np.diff(values, prepend=values[0])),
+            off,
+            scatter,
+            least,
+            _of_readings(_around(moved, least=False), SHORT, values) > quiet,
+            _beside_a_hole(places, time),
+        )
+
+
+def _off(values: Array, least: Array) -> Array:
+    """The distance of readings from their running median, or, on a ramp, from that of the ramp.
+
+    A spike on a steep ramp moves the median of those beside it by a step of the ramp. So what is
+    far off by its scatter, `least`, is compared once more, the slope between the medians before
+    and after taken off, and the smaller distance holds. At the corner of a ramp, where what is
+    beside lies on one side, it must be off the straight lines through five readings before and
+    five after as well.
+    """
+    median = running_median(values)
+    off = values - median
+    half, last = WIDTH // 2, len(values) - 1
+    far = np.flatnonzero(np.abs(off) > LOUD * least)
+    before, after = np.maximum(far - half - 1, 0), np.minimum(far + half + 1, last)
+    slope = (median[after] - median[before]) / np.maximum(after - before, 1)
+    near = np.clip(far[:, None] + np.arange(-half, half + 1), 0, last)
+    flat = values[far] - np.median(values[near] - slope[:, None] * (near - far[:, None]), axis=1)
+    distances = [off[far], flat]
+    for side in (-1, 1):
+        beyond = values[np.clip(far[:, None] + side * np.arange(half, WIDTH), 0, last)]
+        steep = np.abs(slope) * (after - before) > STEEP * least[far]
+        distances.append(np.where(steep, values[far] - _continued(beyond), off[far]))
+    one_side = np.all(np.sign(distances) == np.sign(off[far]), axis=0)
+    off[far] = np.where(one_side, np.sign(off[far]) * np.min(np.abs(distances), axis=0), 0.0)
+    return off
+
+
+def _continued(readings: Array) -> Array:
+    """What straight lines through (k, 5) readings, 4 to 8 places away, read at place 0, (k,)."""
+    away = np.arange(WIDTH // 2, WIDTH)
+    middle = away.mean()
+    slope = readings @ (away - middle) / ((away - middle) @ (away - middle))
+    return np.asarray(readings.mean(axis=1) - slope * middle)
+
+
+def _in_blocks(readings: Array, length: int) -> Array:
+    """Blocks of this length, (k, length); what is left over belongs to the last block."""
+    length = min(length, len(readings))
+    return readings[: len(readings) // length * length].reshape(-1, length)
+
+
+def _scatter(rough: Array, length: int, count: float) -> Array:
+    """The scatter of each block of this length, (k,), at least a count."""
+    return np.maximum(SCATTER * np.median(_in_blocks(rough, length), axis=1), count)
+
+
+def _around(blocks: Array, *, least: bool) -> Array:
+    """The least, or the most, of each block and the two beside it."""
+    choose = np.minimum if least else np.maximum
+    padded = np.pad(blocks, 1, mode="edge")
+    return np.asarray(choose(choose(padded[:-2], padded[2:]), blocks))
+
+
+def _of_readings(blocks: Array, length: int, values: Array) -> Array:
+    """What holds for blocks as what holds for their readings."""
+    return np.asarray(blocks[np.minimum(np.arange(len(values)) // length, len(blocks) - 1)])
+
+
+def _beside_a_hole(places: Integers, time: Array) -> Booleans:
+    """Which readings have others masked, or much missing, within four on either side."""
+    apart = np.diff(places)
+    holes = np.flatnonzero((apart > np.median(apart)) | (np.diff(time) > HOLE)) + 1
+    near = holes[:, None] + np.arange(-(WIDTH // 2), WIDTH // 2)
+    alone = np.zeros(len(places), bool)
+    alone[np.clip(near, 0, len(places) - 1)] = True
+    return alone

@@ -1,0 +1,162 @@
+"""What a detector that compares the recording with its plan must tell, and what it is shown."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from inertial.signal.axis_permutations import Permutation
+from inertial.signal.detector import Array, Booleans, Given, Integers, Words
+
+
+@dataclass(frozen=True)
+class Misread:
+    """A sensor whose axes are taken for others; `log` is empty where all logs have it so.
+
+    axes: takes its readings to the axes of the plan; explains: manoeuvres that fit only so.
+    """
+
+    sensor: str
+    axes: Permutation
+    log: str
+    explains: Sequence[str]
+
+
+@dataclass(frozen=True)
+class Swapped:
+    """Manoeuvres that are found in each other's place, and the logs that hold them."""
+
+    names: Sequence[str]
+    logs: Sequence[str]
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """The m manoeuvres of a plan, and what was recorded of each, SI and radians, body axes.
+
+    name, log, do: what the plan calls it, where, and rest, turn or positions; steady: only its
+    steady part is planned to be recorded.
+    up, about: (m, 3), planned directions, NaN where none; angle, rate, seconds: (m,), planned, the
+    first two signed about `about`, NaN where none.
+    found, complete, bridged: (m,); said: what was recorded of it, in words.
+    force: (m, 3), mean of its rest, or of that before its turn; of one that is not found, of what
+    its log holds instead; turned: (m, 3), angles of its motion; NaN where not recorded.
+    moved: (m,), angle about `about`; speed: (m,), mean rate of its steady part about `about`;
+    lacking, lacking_s: (m,), angle and time that are missing; duration: (m,), s, of the rest
+    or from start to stop.
+    first, after: (m,), records of it, or of what its log holds instead, −1 where there are none;
+    from_s, to_s: (m,). gap_first, gap_from_s, gap_to_s: (m,), record after the longest gap in its
+    motion, −1 and NaN where it has none.
+    gyros: (m, 3), whether its log has readings of them.
+    count: (m,), rad, what a count of its gyros is by the campaign, NaN where not stated.
+    gyro_signs: (3,), +1 right and −1 wrong, as the earth's rate tells, 0 where it does not.
+    misread, swapped: what explains that the plan is not found as it is.
+    tolerance: accepted difference of an angle or a rate from the plan's, 1.
+    """
+
+    given: Given
+    tolerance: float
+    name: Sequence[str]
+    log: Sequence[str]
+    do: Sequence[str]
+    steady: Booleans
+    up: Array
+    about: Array
+    angle: Array
+    rate: Array
+    seconds: Array
+    found: Booleans
+    complete: Booleans
+    bridged: Booleans
+    said: Sequence[str]
+    force: Array
+    turned: Array
+    moved: Array
+    speed: Array
+    lacking: Array
+    lacking_s: Array
+    duration: Array
+    first: Integers
+    after: Integers
+    from_s: Array
+    to_s: Array
+    gap_first: Integers
+    gap_from_s: Array
+    gap_to_s: Array
+    gyros: Booleans
+    count: Array
+    gyro_signs: Sequence[int]
+    misread: Sequence[Misread]
+    swapped: Sequence[Swapped]
+
+    @property
+    def explained(self) -> set[str]:
+        """Manoeuvres of which something is known that explains why they are not as planned."""
+        names = {name for one in self.misread for name in one.explains}
+        return names | {name for one in self.swapped for name in one.names}
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """One thing in which the recording is not as planned.
+
+    at: number of the manoeuvre, None where it is the whole campaign or a log; log: empty for the
+    campaign; first, after: records that show it, −1 where none do; facts: what the words need;
+    severity: where it is not that of the detector.
+    """
+
+    at: int | None
+    log: str
+    size: float | None
+    sensor: str | None = None
+    axis: str | None = None
+    first: int = -1
+    after: int = -1
+    from_s: float | None = None
+    to_s: float | None = None
+    count: int = 1
+    facts: Any = None
+    severity: int | None = None
+
+
+class AgainstPlan(ABC):
+    """One way in which a recording and its plan disagree; `severity` and `unit` as of a Detector.
+
+    A class tells its name, its cause, its source, and what it costs.
+    """
+
+    name: ClassVar[str]
+    cause: ClassVar[str]
+    source: ClassVar[str]
+    costs: ClassVar[str]
+    unit: ClassVar[str] = "1"
+    severity: ClassVar[int] = 2
+    sensor: ClassVar[str | None] = None
+    masks: ClassVar[bool] = False
+    repeats: ClassVar[bool] = False
+    everywhere: ClassVar[bool] = False
+
+    @abstractmethod
+    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+        """What it sees, in the order of the plan."""
+
+    @abstractmethod
+    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+        """It in words."""
+
+    def of(self, recorded: Recorded, i: int, size: float | None, **more: Any) -> Deviation:
+        """A deviation of manoeuvre i, at the records that it has."""
+        place = {
+            "first": int(recorded.first[i]),
+            "after": int(recorded.after[i]),
+            "from_s": _number(recorded.from_s[i]),
+            "to_s": _number(recorded.to_s[i]),
+        }
+        known: dict[str, Any] = {"sensor": self.sensor, **place, **more}
+        return Deviation(i, recorded.log[i], size, **known)
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

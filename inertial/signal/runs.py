@@ -1,0 +1,21 @@
+"""Consecutive places that belong together."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.signal.detector import Booleans, Integers
+
+
+def runs(there: Booleans) -> Iterator[tuple[int, int]]:
+    """The runs of consecutive True in (n,): first place, and place after the last."""
+    edges = np.flatnonzero(np.diff(there, prepend=False, append=False))
+    yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+
+
+def joined(places: Integers, apart: int) -> Iterator[tuple[int, int]]:
+    """Runs of ascending places of which no more than `apart` lie between one and the next."""
+    if len(places):
+        breaks = np.flatnonzero(np.diff(places) > apart + 1)
+        first, last = np.append(0, breaks + 1), np.append(breaks, len(places) - 1)
+        yield from zip(places[first].tolist(), (places[last] + 1).tolist(), strict=True)

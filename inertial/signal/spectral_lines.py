@@ -1,0 +1,281 @@
+"""Lines of one frequency in the spectra of a channel that last for some time."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import rfft
+from scipy.special import gammaincc, gammainccinv
+
+from inertial.signal.detector import Array
+
+# ---- Lines of one frequency that stand out of the spectra of a channel for some time.
+
+Complex = NDArray[np.complex128]
+Singles = NDArray[np.float32]
+
+WINDOW = 256  # readings of a spectrum
+HOP = 128  # readings from one to the next
+PART = 8  # bins; so many periods in a window at least: what is slower is not told from motion
+CAPPED = 12.0  # times the background: so much a single window may say
+LENGTHS = (4, 8, 16, 32, 64, 128)  # windows that are taken together
+CERTAIN = 1e-4  # chance of a line in a campaign
+SEARCHED = 1.2e6 / HOP * (WINDOW / 2) * len(LENGTHS)  # sums that are looked at in one like S0's
+NOISE = 2.0  # times the background: the largest of three bins, by noise alone
+ONE_SIDED = 0.76  # the last part has nothing above it: one median is less than the larger of two
+WIDE = 8  # bins on each side that a line takes with it
+IN_STEP = 0.5  # of full: how well a line must keep its phase from one window to the next but one
+PERIODS = 6  # in a log that is no longer than one window
+ABOVE = 6.0  # times the power of anything slower in it
+FINER = 4  # steps in a bin, by which its line is sought
+APART = 2.5  # bins from a line to what is beside it
+FEWEST = 6  # bins beside it
+DISAGREED = 0.3  # of the whole: difference of its two halves
+CHANNELS = 6 * 12  # of a campaign in so short logs
+MOST = 32  # stretches in one channel of a piece that are looked at
+
+# Of the sum over windows in white noise: its shape for each window, and its scale. The background
+# scatters too, and for windows that overlap alike: 0.7 and 1.2 fit 12 million readings for 16
+# windows and more, for 4 and 8 the tail is longer.
+SHAPE, SCALE = 0.7, 1.35
+
+_LEAST = {
+    length: SCALE * float(gammainccinv(SHAPE * length, CERTAIN / SEARCHED)) for length in LENGTHS
+}
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line in the windows [first, after) of a channel.
+
+    frequency: cycles per interval; p_value: chance of it, the search of a campaign paid for.
+    """
+
+    first: int
+    after: int
+    frequency: float
+    p_value: float
+
+
+def windows(values: Array, length: int = WINDOW) -> Array:
+    """The windows of (n,) readings, each less its straight line and Hann-weighted, (k, length)."""
+    cut = in_windows(values, length)
+    time = np.arange(length) - (length - 1) / 2
+    slope = cut @ time / (time @ time)
+    level = cut - cut.mean(axis=1)[:, None] - slope[:, None] * time
+    return np.asarray(level * hann(length))
+
+
+def in_windows(values: Array, length: int = WINDOW) -> Array:
+    """What is there for (n,) readings, by windows, (k, length)."""
+    return np.lib.stride_tricks.sliding_window_view(values, length)[::HOP]
+
+
+def hann(length: int) -> Array:
+    """The weights of a window, (length,)."""
+    return np.hanning(length + 1)[:-1]
+
+
+def lines(cut: Array, time: Array) -> Iterator[Line]:
+    """The lines in a channel's windows, the clearest first.
+
+    Each window is compared with its own spectrum beside the bin. Of white noise that ratio is
+    about exponentially distributed, and its sum over windows, though they overlap by half, gamma.
+
+    Parameters
+    ----------
+    cut : (k, WINDOW), readings
+    time : (k, WINDOW), their times in intervals
+    """
+    power = np.abs(rfft(cut.astype(np.float32), axis=1)[:, :-1]) ** 2
+    ratio = _ratio(power)
+    for _ in range(MOST):
+        seed = _clearest(ratio)
+        if seed is None:
+            return
+        first, after, bin_, chance = seed
+        first, after = _stretch(ratio[:, bin_ - 1 : bin_ + 2].max(axis=1), first, after)
+        near = slice(max(bin_ - WIDE, PART), bin_ + WIDE + 1)
+        if after - first >= LENGTHS[0]:
+            # A strong line is capped in several bins; the largest of them is nearest to it, by the
+            # median, for in a single window a motion may be larger.
+            peak = near.start + int(np.argmax(np.median(power[first:after, near], axis=0)))
+            inside = slice(first, after)
+            frequency, in_step = _tuned(cut[inside], time[inside], peak / WINDOW)
+            if in_step > IN_STEP:
+                yield Line(first, after, frequency, min(chance * SEARCHED, 1.0))
+        ratio[max(first - 2, 0) : after + 2, near] = 0.0
+
+
+def line_of_one(cut: Array, time: Array) -> Iterator[Line]:
+    """The line of a single window (1, length), if there is one.
+
+    It must stand out of the median of all other bins, be larger than anything slower, which
+    coloured noise and motion are not, and be the same in both halves.
+    """
+    length = cut.shape[1]
+    power = np.abs(np.fft.rfft(cut[0], FINER * length)) ** 2
+    bins = np.arange(len(power)) / FINER
+    peak = int(np.argmax(np.where(bins < PERIODS, 0.0, power)))
+    apart = np.abs(bins - bins[peak]) > APART
+    others = power[apart & (bins >= PERIODS)][::FINER]
+    slower = power[apart & (bins < bins[peak])]
+    if len(others) < FEWEST or power[peak] < ABOVE * slower.max(initial=0.0):
+        return
+    ratio = float(np.log(2) * power[peak] / np.median(others))
+    # Of a background from m bins, of which a Hann window makes two thirds independent.
+    m = len(others) / 1.5
+    p_value = min(float((1 + ratio / m) ** -m) * CHANNELS * length / 2, 1.0)
+    frequency = float(bins[peak] / length)
+    half = length // 2
+    raw = cut / np.maximum(hann(length), 1e-3)
+    parts = [
+        phasors(raw[:, part] * hann(half), time[:, part], frequency)[0]
+        for part in (slice(0, half), slice(length - half, length))
+    ]
+    agreed = abs(parts[0] - parts[1]) < DISAGREED * (abs(parts[0]) + abs(parts[1]))
+    if agreed and p_value < CERTAIN:
+        yield Line(0, 1, frequency, p_value)
+
+
+def phasors(cut: Array, time: Array, frequency: float) -> Complex:
+    """Amplitude and phase of a line in each window, (k,); cut and time (k, length)."""
+    turning = np.exp(-2j * np.pi * frequency * time)
+    return np.asarray(np.einsum("ij,ij->i", cut, turning) * 2 / hann(cut.shape[1]).sum())
+
+
+def _ratio(power: Singles) -> Singles:
+    """How far the spectra (k, WINDOW / 2) stand out of what is beside each bin, the same shape.
+
+    Beside it: the larger of the medians of 16 bins below and of 16 above, without the 8 to which
+    it belongs. The flank of a motion lies above the bins on its right, not above those on its left.
+    """
+    parts = power.reshape(len(power), -1, PART)
+    pairs = np.concatenate([parts[:, :-1], parts[:, 1:]], axis=2)
+    of_pairs = np.partition(pairs, (PART - 1, PART), axis=2)[:, :, PART - 1 : PART + 1].mean(axis=2)
+    ends = np.median(parts[:, 0, 1:], axis=1), np.median(parts[:, -1], axis=1)
+    lowest, highest = (end[:, None] for end in ends)
+    none = np.zeros_like(lowest)
+    below = np.hstack([none, lowest, of_pairs[:, :-1]])
+    above = np.hstack([of_pairs[:, 1:], highest, none])
+    beside = np.repeat(np.maximum(below, above), PART, axis=1)
+    ratio = np.divide(np.log(2) * power, beside, out=np.zeros_like(power), where=beside > 0)
+    ratio[:, :PART] = 0.0
+    ratio[:, -PART:] *= ONE_SIDED
+    return np.asarray(np.minimum(ratio, CAPPED))
+
+
+def _clearest(ratio: Singles) -> tuple[int, int, int, float] | None:
+    """The windows [first, after) and the bin whose sum chance explains least, and that chance."""
+    sums = np.cumsum(ratio, axis=0, dtype=np.float64)
+    sums = np.vstack([np.zeros((1, sums.shape[1])), sums])
+    best = None
+    for length in LENGTHS:
+        if length > len(ratio):
+            break
+        together = sums[length:] - sums[:-length]
+        first, bin_ = divmod(int(np.argmax(together)), ratio.shape[1])
+        largest = float(together[first, bin_])
+        if largest > _LEAST[length]:
+            chance = float(gammaincc(SHAPE * length, largest / SCALE))
+            if best is None or chance < best[3]:
+                best = first, first + length, bin_, chance
+    return best
+
+
+def _stretch(ratio: Singles, first: int, after: int) -> tuple[int, int]:
+    """The windows in which a line stands out, (k,) ratios, from those in which it was found.
+
+    Halfway between the line and noise is the level; the sum above it is the largest.
+    """
+    found = ratio[first:after]
+    # Windows taken together may hold a break; the median is then that of the line.
+    above = ratio - (max(found.mean(), np.median(found)) + NOISE) / 2
+    sums = np.append(0.0, np.cumsum(above))
+    middle = first + int(np.argmax(above[first:after]))
+    start = int(np.argmin(sums[: middle + 1]))
+    return start, middle + 1 + int(np.argmax(sums[middle + 1 :]))
+
+
+def _tuned(cut: Array, time: Array, frequency: float) -> tuple[float, float]:
+    """The frequency by which a line keeps its phase, and how well it does.
+
+    From window to window at first, then over ever more of them.
+    """
+    lag, in_step = 1, 0.0
+    while lag < max(len(cut) / 2, 3) and lag < len(cut):
+        tones = phasors(cut, time, frequency)
+        sizes = np.abs(tones)
+        tones /= np.maximum(sizes, 2 * np.median(sizes))  # no window says more than twice its share
+        product = tones[lag:] * tones[:-lag].conj()
+        coherence = float(np.abs(product.sum()) / max(np.abs(product).sum(), 1e-300))
+        if lag == 2:
+            in_step = coherence
+        if coherence < IN_STEP:
+            break
+        frequency += float(np.angle(product.sum())) / (2 * np.pi * lag * HOP)
+        lag *= 2
+    return frequency, in_step
+
+
+# ---- Where an oscillation begins and ends, to the record.
+
+FITTED = 512  # readings at the most, inside, from which amplitude and phase are had
+LONGEST = 101  # readings of the moving mean that is taken off
+
+
+def edges(
+    values: Array, time: Array, inside: tuple[int, int], outside: tuple[int, int], frequency: float
+) -> tuple[int, int]:
+    """The first reading of an oscillation, and the one after its last.
+
+    From readings well inside it the oscillation s is continued to the outside. Each reading y says
+    by (y − s/2) s whether it has it or not (the logarithm of the likelihood ratio in white noise);
+    the edge is where the sum of this over all readings within is largest.
+
+    Parameters
+    ----------
+    values : (n,), readings
+    time : (n,), intervals
+    inside : places between which it certainly is
+    outside : places beyond which it is not looked for
+    frequency : cycles per interval
+    """
+    level = _levelled(values, frequency)
+    first, after = inside
+    length = min(after - first, FITTED)
+    start = _edge(level, time, slice(first, first + length), outside[0], frequency)
+    end = _edge(
+        level[::-1],
+        time[::-1],
+        slice(len(level) - after, len(level) - after + length),
+        len(level) - outside[1],
+        frequency,
+    )
+    return start, len(level) - end
+
+
+def _edge(level: Array, time: Array, inside: slice, outside: int, frequency: float) -> int:
+    """The first place of an oscillation that is there `inside`, and not before `outside`."""
+    # Times are large where a log is long; the phase is counted from the reading that is nearest.
+    phase = 2 * np.pi * frequency * (time - time[inside.start])
+    columns = np.column_stack([np.cos(phase), np.sin(phase)])
+    parts = np.linalg.lstsq(columns[inside], level[inside], rcond=None)[0]
+    tone = columns[outside : inside.start] @ parts
+    # The corner of a ramp leaves more than any oscillation; no reading says more than twice its.
+    most = 2 * float(np.linalg.norm(parts))
+    says = (np.clip(level[outside : inside.start], -most, most) - tone / 2) * tone
+    # Summed from the inside out; nothing more than what is inside is one of the choices.
+    together = np.append(0.0, np.cumsum(says[::-1]))
+    return int(inside.start) - int(np.argmax(together))
+
+
+def _levelled(values: Array, frequency: float) -> Array:
+    """Readings less their moving mean over as near to whole periods as an odd number may be."""
+    lengths = np.arange(3, min(int(4 / frequency) + 3, LONGEST, len(values)) + 1, 2)
+    passed = np.abs(np.sin(np.pi * frequency * lengths) / (lengths * np.sin(np.pi * frequency)))
+    length = int(lengths[np.argmin(passed)])
+    padded = np.pad(values - values.mean(), length // 2, mode="reflect", reflect_type="odd")
+    sums = np.append(0.0, np.cumsum(padded))
+    return np.asarray(values - values.mean() - (sums[length:] - sums[:-length]) / length)

@@ -1,0 +1,155 @@
+"""What a rest shows of an IMU that does not quite stand still: its tilt, by both sensors."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from inertial.physics.vectors import cross
+from inertial.signal.detector import SENSORS, Array, Booleans, Log, Piece
+
+RECORDED = 0.2  # of the records of a rest that a channel must be in
+SCATTER = 1.4826  # sigma of Gaussian values in units of the median of their absolute values
+AROUND = 2.0  # s on each side of a place whose means are compared
+BESIDE = 0.15  # s on each side of a place that a sudden motion may take
+JERK = 4.0  # times the usual change of readings: 10⁻¹⁶ a block of 10 in both sensors by chance
+TELLING = 0.25  # share of a motion to which the other sensor must know it
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """How much of a motion that one sensor shows the other one shows too: share and its sigma."""
+
+    share: float
+    sigma: float
+
+    @property
+    def tells(self) -> bool:
+        """Whether the other sensor is good enough to tell."""
+        return self.sigma < TELLING
+
+    @property
+    def moved(self) -> bool:
+        """Whether both say that the IMU moved."""
+        return self.tells and 0.5 < self.share < 1.5
+
+
+UNTOLD = Agreement(0.0, np.inf)
+
+
+class Resting:
+    """The n records of a rest; where a channel has no reading, it is interpolated.
+
+    When the case turns by a small angle φ, the force in its axes changes by f × φ. So the
+    accelerometers show the two level components: φ = δf × u / g with u = f / g. About the
+    vertical they are blind.
+    """
+
+    def __init__(self, piece: Piece, log: Log) -> None:
+        n = len(piece)
+        self.interval = log.interval
+        self.values = np.full((n, 6), np.nan)
+        self.noise = np.full(6, np.nan)
+        for i in range(6):
+            there, read = piece.channel(i)
+            if len(there) > max(RECORDED * n, 2):
+                self.values[:, i] = np.interp(np.arange(n), there, read)
+                scatter = SCATTER / np.sqrt(2) * float(np.median(np.abs(np.diff(read))))
+                self.noise[i] = max(scatter, float(np.nan_to_num(log.quantum[i])) / np.sqrt(12))
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def recorded(self, sensor: str) -> bool:
+        """Whether all three axes of a sensor are there."""
+        return bool(np.isfinite(self.noise[SENSORS[sensor]]).all())
+
+    @cached_property
+    def force(self) -> Array:
+        """Specific force, (n, 3), m/s²."""
+        return self.values[:, SENSORS["accel"]]
+
+    @cached_property
+    def rate(self) -> Array:
+        """Angular rate, (n, 3), rad/s."""
+        return self.values[:, SENSORS["gyro"]]
+
+    @cached_property
+    def up(self) -> Array:
+        """The direction that points up, (3,)."""
+        return np.asarray(self._mean_force / np.linalg.norm(self._mean_force))
+
+    @cached_property
+    def _mean_force(self) -> Array:
+        return np.asarray(self.force.mean(axis=0))
+
+    def tilt(self, change: Array) -> Array:
+        """The level part of the turn, (…, 3), rad, that changes the force by `change`, m/s²."""
+        return np.asarray(cross(change, self.up) / np.linalg.norm(self._mean_force))
+
+    def level(self, turn: Array) -> Array:
+        """A turn, (…, 3), without its part about the vertical."""
+        return np.asarray(turn - np.multiply.outer(turn @ self.up, self.up))
+
+    def tilt_noise(self, records: float) -> float:
+        """Sigma of a tilt from means over so many records, rad."""
+        level = np.sqrt(np.sum(self.noise[:3] ** 2 * (1 - self.up**2)) / 2)
+        return float(level / np.linalg.norm(self._mean_force) / np.sqrt(records))
+
+    def shifted(self, start: int, first: int, after: int, stop: int) -> tuple[Array, Agreement]:
+        """The tilt by which the force changes between the records `first` and `after`.
+
+        With it, how much of it the gyros turned meanwhile. Nothing else happens from `start` to
+        `stop`.
+        """
+        side, beside = round(AROUND / self.interval), round(BESIDE / self.interval)
+        first, after = max(first - beside, start + 1), min(after + beside, stop - 1)
+        earlier, later = (
+            slice(max(first - side, start), first),
+            slice(after, min(after + side, stop)),
+        )
+        tilt = self.tilt(self.force[later].mean(axis=0) - self.force[earlier].mean(axis=0))
+        size = float(np.linalg.norm(tilt))
+        if not (self.recorded("gyro") and size > 0):
+            return tilt, UNTOLD
+        usual = (self.rate[earlier].mean(axis=0) + self.rate[later].mean(axis=0)) / 2
+        turned = (self.rate[first:after] - usual).sum(axis=0) * self.interval
+        by_rate = float(np.max(self.noise[3:])) * self.interval * np.sqrt(after - first)
+        shortest = min(first - earlier.start, later.stop - after)
+        sigma = float(np.hypot(by_rate, self.tilt_noise(shortest / 2)))
+        return tilt, Agreement(float(turned @ tilt) / size**2, sigma / size)
+
+    def speeded(self, start: int, place: int, stop: int) -> Agreement:
+        """How much of a change of rate at a place the accelerometers show as a tilt that grows.
+
+        Nothing else happens from `start` to `stop`.
+        """
+        if not self.recorded("accel"):
+            return UNTOLD
+        jump = self.rate[place:stop].mean(axis=0) - self.rate[start:place].mean(axis=0)
+        level = self.level(jump)
+        size = float(np.linalg.norm(level))
+        # A turn about an axis near the vertical hardly tilts.
+        if size < 0.5 * float(np.linalg.norm(jump)):
+            return UNTOLD
+        time = (np.arange(start, stop) - place) * self.interval
+        design = np.column_stack([np.ones(len(time)), time, np.maximum(time, 0.0)])
+        inverse = np.linalg.pinv(design)
+        kink = self.tilt(inverse[2] @ self.force[start:stop])
+        sigma = self.tilt_noise(1) * float(np.linalg.norm(inverse[2]))
+        return Agreement(float(kink @ level) / size**2, sigma / size)
+
+    def shaken(self, length: int) -> Booleans:
+        """Which blocks of so many records jerk in both sensors: k = n // length, (k,).
+
+        By the median of the changes from reading to reading, which no spike moves.
+        """
+        k = len(self) // length
+        both = np.ones(k, bool)
+        for sensor in ("accel", "gyro"):
+            own = np.flatnonzero(np.isfinite(self.noise[SENSORS[sensor]])) + SENSORS[sensor].start
+            change = np.abs(np.diff(self.values[: k * length, own], axis=0, append=np.nan))
+            usual = self.noise[own] * np.sqrt(2) / SCATTER
+            blocks = np.nanmedian(change.reshape(k, length, len(own)), axis=1)
+            both &= (blocks > JERK * usual).any(axis=1)
+        return both

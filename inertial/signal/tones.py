@@ -1,0 +1,250 @@
+"""Oscillations of a piece of a log: where, of what frequency, in which channels, how large."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.fft import rfft
+
+from inertial.signal.detector import SENSORS, Array, Integers, Log, Piece
+from inertial.signal.spectral_lines import (
+    HOP,
+    LENGTHS,
+    PART,
+    WINDOW,
+    Line,
+    edges,
+    hann,
+    in_windows,
+    line_of_one,
+    lines,
+    phasors,
+    windows,
+)
+
+LOWEST = 2.0  # Hz: what is slower is motion
+COUPLED = 5.0  # sigma: what another channel has of an oscillation at the least, to be named
+BRIDGED = 8  # intervals between two readings at the most, to be interpolated
+RECORDED = 0.5  # of the readings of a channel at the least
+EXCERPT = (24, 64)  # readings of a log that is looked at as a whole
+WHOLE = 0.9  # of the usual size: a window in which the oscillation is there all the time
+FEWEST = 2  # such windows
+
+
+@dataclass(frozen=True)
+class Tone:
+    """An oscillation in the places [start, end) of a piece.
+
+    frequency, resolved: Hz; amplitude: unit of its channel; clear: the amplitude in units of the
+    noise of one reading; others: channels in step with it, and their amplitudes; rate: samples per
+    second; p_value: chance of it, the search of a campaign paid for.
+    """
+
+    channel: int
+    start: int
+    end: int
+    frequency: float
+    resolved: float
+    amplitude: float
+    clear: float
+    others: tuple[tuple[int, float], ...]
+    rate: float
+    p_value: float
+
+
+@dataclass(frozen=True, eq=False)
+class Triad:
+    """The readings of a sensor as an even row.
+
+    places: (n,), in the piece; values: (n, 3), single readings that are missing interpolated, NaN
+    where too many are; time: (n,), intervals; rate: readings per second; window: readings.
+    """
+
+    first_channel: int
+    places: Integers
+    values: Array
+    time: Array
+    rate: float
+    window: int
+
+    def cut(self, axis: int, line: Line | None = None) -> Array:
+        """The windows of an axis, (k, window), all or those of a line."""
+        return windows(self.values[self._part(line), axis], self.window)
+
+    def times(self, line: Line | None = None) -> Array:
+        """The times of the same, (k, window)."""
+        return in_windows(self.time[self._part(line)], self.window)
+
+    def _part(self, line: Line | None) -> slice:
+        if line is None:
+            return slice(None)
+        return slice(line.first * HOP, (line.after - 1) * HOP + self.window)
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """A line of one axis of a triad, its amplitude and that in units of the noise."""
+
+    triad: Triad
+    axis: int
+    line: Line
+    amplitude: float
+    clear: float
+
+    @property
+    def frequency(self) -> float:
+        """Hz."""
+        return self.line.frequency * self.triad.rate
+
+    @property
+    def resolved(self) -> float:
+        """Hz, the width of a bin."""
+        return self.triad.rate / self.triad.window
+
+    @property
+    def extent(self) -> tuple[int, int]:
+        """Its windows as places of the piece, first and last."""
+        last = (self.line.after - 1) * HOP + self.triad.window - 1
+        return int(self.triad.places[self.line.first * HOP]), int(self.triad.places[last])
+
+
+def tones(piece: Piece, log: Log) -> Iterator[Tone]:
+    """The oscillations of a piece, each told of the channel in which it is largest."""
+    triads = [
+        triad for axes in SENSORS.values() for triad in _triads(piece, log.interval, axes.start)
+    ]
+    seen = [one for triad in triads for axis in range(3) for one in _seen(triad, axis, log)]
+    while seen:
+        clearest = max(seen, key=lambda one: one.clear)
+        alike = [one for one in seen if _same(one, clearest)]
+        seen = [one for one in seen if one not in alike]
+        own = [one for one in alike if one.triad is clearest.triad]
+        largest = max(own, key=lambda one: one.amplitude)
+        yield _tone(largest, alike, triads, log)
+
+
+def _triads(piece: Piece, interval: float, first_channel: int) -> Iterator[Triad]:
+    """The sensor with this first channel, if it is recorded, in even steps of time."""
+    readings = piece.values[:, first_channel : first_channel + 3]
+    there = np.isfinite(readings)
+    places = np.flatnonzero(there.any(axis=1))
+    steps = np.rint(np.diff(piece.time[places]) / interval)
+    if not len(places) or not np.isfinite(steps).all():
+        return
+    # Stamps may jitter; what counts is how many intervals lie between two readings.
+    steps = np.maximum(steps, 1.0)
+    read = np.append(0.0, np.cumsum(steps))
+    # A few that are missing are interpolated like single channels; a longer gap stays one.
+    known = np.repeat(np.arange(len(steps)), np.where(steps <= BRIDGED, steps, 1).astype(np.int64))
+    since = np.arange(len(known)) - np.searchsorted(known, known)
+    time = np.append(read[known] + since, read[-1])
+    values = np.full((len(time), 3), np.nan)
+    for axis in range(3):
+        own = there[places, axis]
+        if own.mean() > RECORDED:
+            values[:, axis] = np.interp(time, read[own], readings[places[own], axis])
+    excerpt = EXCERPT[0] <= len(time) <= EXCERPT[1]
+    if excerpt or len(time) >= WINDOW + (LENGTHS[0] - 1) * HOP:
+        even = np.append(places[known], places[-1])
+        window = len(time) if excerpt else WINDOW
+        yield Triad(first_channel, even, values, time, 1 / interval, window)
+
+
+def _seen(triad: Triad, axis: int, log: Log) -> Iterator[Seen]:
+    """The lines of one axis that are faster than a motion and larger than rounding makes them."""
+    if not np.isfinite(triad.values[:, axis]).all():
+        return
+    cut, time = triad.cut(axis), triad.times()
+    count = float(np.nan_to_num(log.quantum[triad.first_channel + axis]))
+    for line in lines(cut, time) if triad.window == WINDOW else line_of_one(cut, time):
+        # Windows at its ends may hold but part of it.
+        inner = 1 if line.after - line.first > LENGTHS[0] else 0
+        part = slice(line.first + inner, line.after - inner)
+        amplitude, noise = _size(cut[part], time[part], line.frequency)
+        if line.frequency * triad.rate >= LOWEST and (amplitude > count or noise > count / 2):
+            yield Seen(triad, axis, line, amplitude, amplitude / noise)
+
+
+def _size(cut: Array, time: Array, frequency: float) -> tuple[float, float]:
+    """The amplitude of a line over windows, and the noise of one reading."""
+    weights = hann(cut.shape[1])
+    power = np.abs(rfft(cut, axis=1)[:, PART:-1]) ** 2
+    variance = float(np.median(power) / np.log(2) / (weights @ weights))
+    square = float(np.mean(np.abs(phasors(cut, time, frequency)) ** 2))
+    # What noise adds to the square of a phasor.
+    square -= 4 * variance * float(weights @ weights) / weights.sum() ** 2
+    return float(np.sqrt(max(square, 0.0))), float(np.sqrt(max(variance, 1e-300)))
+
+
+def _same(one: Seen, other: Seen) -> bool:
+    """Whether two lines may be one oscillation: the same frequency at the same time."""
+    (start, end), (begin, finish) = one.extent, other.extent
+    shared = min(end, finish) - max(start, begin)
+    shorter = min(end - start, finish - begin)
+    near = abs(one.frequency - other.frequency) < max(one.resolved, other.resolved)
+    return near and shared > shorter / 2
+
+
+def _tone(seen: Seen, alike: list[Seen], triads: list[Triad], log: Log) -> Tone:
+    """What is told of a line, and of the other channels that have it."""
+    triad, frequency = seen.triad, seen.line.frequency
+    line, start, end = seen.line, 0, len(triad.places)
+    if triad.window == WINDOW:
+        start, end = _extent(seen)
+        # Windows that lie within it as a whole tell how large it is.
+        line = replace(line, first=-(-start // HOP), after=(end - WINDOW) // HOP + 1)
+        line = line if line.after - line.first >= FEWEST else seen.line
+    amplitude, noise = _size(triad.cut(seen.axis, line), triad.times(line), frequency)
+    # An increment is the mean over its interval, which is less than the rate at an instant.
+    whole = 1 / float(np.sinc(frequency)) if log.increments else 1.0
+    shares = _shares(replace(seen, line=line), alike, triads)
+    return Tone(
+        channel=triad.first_channel + seen.axis,
+        start=int(triad.places[start]),
+        end=int(triad.places[end - 1]) + 1,
+        frequency=seen.frequency,
+        resolved=seen.resolved,
+        amplitude=whole * amplitude,
+        clear=amplitude / noise,
+        others=tuple((channel, whole * amplitude * share) for channel, share in shares),
+        rate=triad.rate,
+        p_value=min(one.line.p_value for one in alike),
+    )
+
+
+def _extent(seen: Seen) -> tuple[int, int]:
+    """The readings of a line: the first, and the one after the last."""
+    triad, line = seen.triad, seen.line
+    sizes = np.abs(phasors(triad.cut(seen.axis, line), triad.times(line), line.frequency))
+    whole = line.first + np.flatnonzero(sizes > WHOLE * np.median(sizes))
+    inside = int(whole[0]) * HOP + WINDOW // 2, int(whole[-1]) * HOP + WINDOW // 2
+    outside = line.first * HOP - WINDOW, (line.after + 1) * HOP + WINDOW
+    return edges(
+        triad.values[:, seen.axis],
+        triad.time,
+        inside,
+        (max(outside[0], 0), min(outside[1], len(triad.time))),
+        line.frequency,
+    )
+
+
+def _shares(seen: Seen, alike: list[Seen], triads: list[Triad]) -> Iterator[tuple[int, float]]:
+    """The other channels that have an oscillation, and their part of its amplitude."""
+    line, time = seen.line, seen.triad.times(seen.line)
+    own = phasors(seen.triad.cut(seen.axis, line), time, line.frequency)
+    square = float(np.vdot(own, own).real)
+    for triad in triads:
+        found = {one.axis: one.amplitude for one in alike if one.triad is triad}
+        for axis in range(3):
+            if (triad is seen.triad and axis == seen.axis) or np.isnan(triad.values[0, axis]):
+                continue
+            if len(own) == 1 or not np.array_equal(triad.places, seen.triad.places):
+                share, clear = found.get(axis, 0.0) / seen.amplitude, axis in found
+            else:
+                other = phasors(triad.cut(axis, line), time, line.frequency)
+                in_step = np.vdot(own, other) / square
+                left = float(np.linalg.norm(other - in_step * own)) / np.sqrt(len(own) - 1)
+                share = float(np.abs(in_step))
+                clear = share * np.sqrt(square) > COUPLED * left
+            if clear:
+                yield triad.first_channel + axis, share

@@ -1,0 +1,156 @@
+"""Compensated samples, their checks, and the archive of calibrations."""
+
+import pyarrow as pa
+
+from inertial.tables.parquet import Column, Table
+from inertial.tables.shared import DOUBLE, INTEGER, LABEL, TEXT, TRUTH, channels
+
+# ---- Samples with the errors taken out, and the checks of them.
+
+COMPENSATED = Table(
+    "compensated",
+    1,
+    (
+        Column("log", LABEL, "", "as in logs"),
+        Column("record", INTEGER, "1", "as in samples"),
+        Column("time", DOUBLE, "s", "as in samples", nullable=True),
+        *channels("specific force, angular rate, with the errors taken out"),
+    ),
+)
+CHECKS = Table(
+    "checks",
+    1,
+    (
+        Column("id", TEXT, "", "stable identifier: compensation/quantity/manoeuvre"),
+        Column(
+            "manoeuvre",
+            TEXT,
+            "",
+            "as in manoeuvres, with the rest of a turn in brackets",
+            nullable=True,
+        ),
+        Column(
+            "quantity",
+            TEXT,
+            "",
+            "gravity: |f|; force_up: f along up; rate_up: rate along up; angle: of a turn about its"
+            " axis, the earth's rate taken out; accelerometer, gyro: why one is not compensated",
+        ),
+        Column("unit", TEXT, "", "unit of the values, SI"),
+        Column("expected", DOUBLE, "as unit", "what is known of it", nullable=True),
+        Column("expected_sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
+        Column("before", DOUBLE, "as unit", "by the readings", nullable=True),
+        Column("after", DOUBLE, "as unit", "by the compensated readings", nullable=True),
+        Column(
+            "after_sigma",
+            DOUBLE,
+            "as unit",
+            "of after less expected, by noise, angle, position and earth rate; without what all"
+            " manoeuvres share and the parameters have taken up, as the sigma of gravity",
+            nullable=True,
+        ),
+        Column("in_sigmas_after", DOUBLE, "1", "after less expected, in sigmas", nullable=True),
+        Column("sentence", TEXT, "", "the check in words"),
+    ),
+)
+
+
+# ---- The archive of calibrations.
+
+
+def _rows(*fields: tuple[str, pa.DataType, str]) -> pa.DataType:
+    """A column that holds rows of its own, of columns with name, type and meaning."""
+    return pa.list_(
+        pa.struct([pa.field(name, kind, True, {"meaning": told}) for name, kind, told in fields])
+    )
+
+
+# An archive outlives the other tables, so it borrows no columns of theirs. Whoever counts its
+# version up writes how the older files are read.
+CALIBRATION = Table(
+    "calibration",
+    1,
+    (
+        Column("campaign", TEXT, "", "name of the campaign's folder"),
+        Column("simulated", TRUTH, "", "recorded by the simulated laboratory"),
+        Column("compensated", TRUTH, "", "the errors were taken out of its logs already"),
+        Column("instrument", TEXT, "", "name of the IMU's type"),
+        Column("serial", TEXT, "", "serial number, or unknown"),
+        Column("date", TEXT, "", "date as the campaign states it, or unknown"),
+        Column("laboratory", TEXT, "", "where", nullable=True),
+        Column("operator", TEXT, "", "by whom", nullable=True),
+        Column("notes", TEXT, "", "remarks of the laboratory", nullable=True),
+        Column("table", TEXT, "", "name of the table"),
+        Column(
+            "parameters",
+            _rows(
+                ("id", TEXT, "stable identifier: stage/method/parameter"),
+                ("method", TEXT, "method of estimation"),
+                ("value", DOUBLE, "estimate in this unit; none where it is not determined"),
+                ("sigma", DOUBLE, "its standard deviation"),
+                ("unit", TEXT, "unit of value and sigma"),
+                ("frame", TEXT, "frame it is expressed in"),
+                ("meaning", TEXT, "what it is, in words"),
+                ("reason", TEXT, "why it is not determined"),
+            ),
+            "as unit",
+            "the parameters of every method",
+        ),
+        Column(
+            "covariance",
+            _rows(
+                ("first", TEXT, "id of a parameter"),
+                ("second", TEXT, "id of a parameter"),
+                ("covariance", DOUBLE, "of the two estimates"),
+            ),
+            "product of the units",
+            "of the joint methods, and of the extended result where that counts",
+        ),
+        Column(
+            "inputs",
+            _rows(
+                ("file", TEXT, "file name"),
+                ("size", INTEGER, "size of the file, byte"),
+                ("sha256", TEXT, "SHA-256 of the file"),
+            ),
+            "",
+            "campaign file and logs",
+        ),
+        Column(
+            "made_by",
+            _rows(
+                ("stage", TEXT, "name of the stage"),
+                ("settings", TEXT, "its settings, as JSON"),
+                ("code", TEXT, "SHA-256 of its code"),
+                ("inputs", TEXT, "SHA-256 of each file that it read, as JSON"),
+            ),
+            "",
+            "the stages that made these tables",
+        ),
+        Column("content", TEXT, "", "SHA-256 of what makes it another calibration"),
+        Column("supersedes", pa.list_(TEXT), "", "files of the archive that it replaces"),
+    ),
+)
+ARCHIVED = Table(
+    "archived",
+    1,
+    (
+        Column("file", TEXT, "", "the archive's file that holds this calibration"),
+        Column("sha256", TEXT, "", "SHA-256 of that file"),
+        Column("content", TEXT, "", "SHA-256 of what makes it another calibration"),
+        Column("supersedes", TEXT, "", "files that it replaces, with spaces between; or none"),
+    ),
+)
+EARLIER = Table(
+    "earlier",
+    2,
+    (
+        Column("campaign", TEXT, "", "campaign of another calibration of the same IMU"),
+        Column("date", TEXT, "", "its date, not later than this campaign's, or unknown"),
+        Column("file", TEXT, "", "the archive's file that holds it"),
+        Column("id", TEXT, "", "identifier of the parameter by the joint method"),
+        Column("value", DOUBLE, "as unit", "its estimate then, by the result that counted"),
+        Column("sigma", DOUBLE, "as unit", "standard deviation of the estimate"),
+        Column("unit", TEXT, "", "unit of value and sigma"),
+    ),
+)

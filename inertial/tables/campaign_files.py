@@ -1,0 +1,33 @@
+"""Which campaigns there are and which logs they name, before anything is run.
+
+The workflow asks this to know its files. It never fails: what is wrong with a
+campaign is said by its plan, so that one bad campaign does not stop the others.
+"""
+
+from pathlib import Path
+
+from inertial.tables.errors import Refusal
+from inertial.tables.yaml_file import YamlFile
+
+
+def campaigns(folder: str, pattern: str) -> list[str]:
+    """Names of the campaigns under `folder`: of the files, or of the folders they lie in."""
+    found = sorted(Path(folder).glob(pattern))
+    return [path.stem if "/" not in pattern else path.parent.name for path in found]
+
+
+def logs_of(path: Path) -> list[str]:
+    """The log files that a campaign names, or the campaign inside a simulated one's description."""
+    try:
+        content = YamlFile(path).content
+    except (Refusal, OSError):
+        return []
+    if isinstance(content, dict) and isinstance(content.get("campaign"), dict):
+        content = content["campaign"]
+    if not isinstance(content, dict) or not isinstance(content.get("plan"), list):
+        return []
+    named = [item.get("log") for item in content["plan"] if isinstance(item, dict)]
+    logs = [content.get("log") if log is None else log for log in named]
+    if isinstance(content.get("encoder"), dict):
+        logs.append(content["encoder"].get("log"))
+    return sorted({log for log in logs if isinstance(log, str) and Path(log).name == log})

@@ -1,0 +1,236 @@
+"""Noise, parameters, covariance, fits, studies and comparisons."""
+
+from inertial.tables.parquet import Column, Table
+from inertial.tables.shared import BODY, DOUBLE, INTEGER, TEXT
+
+# ---- Noise, parameters, covariance, fits and positions.
+
+NOISE = Table(
+    "noise",
+    1,
+    (
+        Column("manoeuvre", TEXT, "", "as in manoeuvres"),
+        Column("phase", TEXT, "", "rest or steady"),
+        Column("channel", TEXT, "", "one of the six channels"),
+        Column("white_noise", DOUBLE, "rad/√s, m/s/√s", "random walk: root of the power density"),
+        Column("sigma", DOUBLE, "rad/√s, m/s/√s", "standard deviation of white_noise"),
+        Column("per_sample", DOUBLE, "rad/s, m/s²", "standard deviation of the samples"),
+        Column("samples", INTEGER, "1", "number of samples"),
+        Column("data_sheet", DOUBLE, "rad/√s, m/s/√s", "the data sheet's figure", nullable=True),
+    ),
+)
+PARAMETERS = Table(
+    "parameters",
+    1,
+    (
+        Column("id", TEXT, "", "stable identifier: stage/method/parameter"),
+        Column("stage", TEXT, "", "stage that estimated it"),
+        Column("method", TEXT, "", "method of estimation"),
+        Column("parameter", TEXT, "", "name within the method"),
+        Column(
+            "value", DOUBLE, "as unit", "estimate; none where it is not determined", nullable=True
+        ),
+        Column("sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
+        Column("unit", TEXT, "", "unit of value and sigma"),
+        Column("frame", TEXT, "", "frame it is expressed in"),
+        Column("meaning", TEXT, "", "what it is, in words"),
+        Column("reason", TEXT, "", "why it is not determined, and the manoeuvre that would help"),
+    ),
+)
+COVARIANCE = Table(
+    "covariance",
+    1,
+    (
+        Column("first", TEXT, "", "id of a parameter"),
+        Column("second", TEXT, "", "id of a parameter"),
+        Column("covariance", DOUBLE, "product of the units", "of the two estimates"),
+    ),
+)
+FIT = Table(
+    "fit",
+    2,
+    (
+        Column("method", TEXT, "", "method of estimation"),
+        Column(
+            "chi_squared",
+            DOUBLE,
+            "1",
+            "weighted sum of squared residuals, the scatter allowed for",
+        ),
+        Column("degrees", INTEGER, "1", "degrees of freedom"),
+        Column("p_value", DOUBLE, "1", "chance of residuals this large by noise alone"),
+        Column(
+            "scatter", DOUBLE, "as unit", "what manoeuvres differ by beyond noise; 0 where p ≥ 1 %"
+        ),
+        Column("unit", TEXT, "", "unit of the scatter"),
+        Column("used", TEXT, "", "the manoeuvres that were used"),
+        Column("left_out", TEXT, "", "the manoeuvres that were not, each with the reason"),
+        Column(
+            "random_walk", DOUBLE, "unit/√s", "of the bias, which is that of the middle; 0: none"
+        ),
+        Column("random_walk_sigma", DOUBLE, "unit/√s", "its standard deviation", nullable=True),
+    ),
+)
+POSITIONS = Table(
+    "positions",
+    1,
+    (
+        Column("method", TEXT, "", "method of estimation"),
+        Column("position", TEXT, "", "set position"),
+        Column("quantity", TEXT, "", "tilt 0, tilt 1; level 0, level 1: part of the earth's rate"),
+        Column("value", DOUBLE, "as unit", "estimate, about or along the level axis 0 or 1", BODY),
+        Column("sigma", DOUBLE, "as unit", "its standard deviation"),
+        Column("unit", TEXT, "", "unit of value and sigma"),
+    ),
+)
+AVERAGING = Table(
+    "averaging",
+    1,
+    (
+        Column("parameter", TEXT, "", "id of a parameter"),
+        Column("seconds", DOUBLE, "s", "length of each rest that was used, from its start"),
+        Column("value", DOUBLE, "as the parameter", "estimate from these"),
+        Column("sigma", DOUBLE, "as the parameter", "its standard deviation"),
+    ),
+)
+WANTED = Table(
+    "wanted",
+    1,
+    (
+        Column("parameter", TEXT, "", "id of a bias by one of S0's formulas"),
+        Column("seconds", DOUBLE, "s", "length of each rest that was recorded"),
+        Column("sigma", DOUBLE, "as the parameter", "standard deviation of the bias by these"),
+        Column("floor", DOUBLE, "as the parameter", "what of it no time averages out"),
+        Column("random_walk", DOUBLE, "parameter·√s", "white noise of the bias, √s of a rest"),
+        Column("wanted", DOUBLE, "as the parameter", "sigma that is wanted"),
+        Column(
+            "wanted_seconds",
+            DOUBLE,
+            "s",
+            "for it; none where the floor is above it",
+            nullable=True,
+        ),
+    ),
+)
+
+
+# ---- Parameters by epochs, windows and angles.
+
+EPOCHS = Table(
+    "epochs",
+    1,
+    (
+        Column("parameter", TEXT, "", "stage, rests and parameter: gyroscope/rests/bias_x"),
+        Column("unit", TEXT, "", "unit of the parameter, SI"),
+        Column("seconds", DOUBLE, "s", "end of the epoch, from the start of every rest"),
+        Column("single", DOUBLE, "as unit", "by this epoch alone", nullable=True),
+        Column("single_sigma", DOUBLE, "as unit", "its sigma by white noise"),
+        Column("running", DOUBLE, "as unit", "by all epochs up to this one", nullable=True),
+        Column("running_sigma", DOUBLE, "as unit", "its sigma by white noise"),
+    ),
+)
+SPREADS = Table(
+    "spreads",
+    1,
+    (
+        Column("parameter", TEXT, "", "as in epochs"),
+        Column("unit", TEXT, "", "unit of the parameter, SI"),
+        Column("seconds", DOUBLE, "s", "length of an epoch"),
+        Column("epochs", INTEGER, "1", "how many there are"),
+        Column("single", DOUBLE, "unit²", "variance of the values by single epochs"),
+        Column("running", DOUBLE, "unit²", "variance of the values by running means"),
+        Column("white", DOUBLE, "unit²", "variance by single epochs that white noise would give"),
+    ),
+)
+WINDOWS = Table(
+    "windows",
+    1,
+    (
+        Column("axis", TEXT, "", "gyro, and axis of both turns", BODY),
+        Column("forward", TEXT, "", "manoeuvre of the turn forward"),
+        Column("backward", TEXT, "", "manoeuvre of the turn backward"),
+        Column(
+            "by",
+            TEXT,
+            "",
+            "how the angle of the window is known: whole turn; set rate: by time; own angle: by the"
+            " time and angle of the same two turns; other turns: by the speed of turns about other"
+            " axes",
+        ),
+        Column("from_s", DOUBLE, "s", "start of the window, from the start of the steady part"),
+        Column("samples", INTEGER, "1", "intervals of the window"),
+        Column("angle", DOUBLE, "rad", "half of what lies between the two angles of the table"),
+        Column("scale", DOUBLE, "1", "scale factor error"),
+        Column("scale_sigma", DOUBLE, "1", "its sigma"),
+        Column("cut_sigma", DOUBLE, "1", "the part of it that differs from window to window"),
+        Column("bias", DOUBLE, "rad/s", "bias"),
+        Column("bias_sigma", DOUBLE, "rad/s", "its sigma"),
+    ),
+)
+TIME_ANGLE = Table(
+    "time_angle",
+    1,
+    (
+        Column("manoeuvre", TEXT, "", "a turn that was recorded whole"),
+        Column("seconds", DOUBLE, "s", "since the stretch with its motion began"),
+        Column("angle", DOUBLE, "rad", "turned so far, mean over some samples about this time"),
+        Column("swing", DOUBLE, "rad", "half the range within them, what bends slowly left out"),
+        Column("sigma", DOUBLE, "rad", "of the angle; at the end that of the whole angle"),
+        Column("set_angle", DOUBLE, "rad", "of the trapezoid that was set", nullable=True),
+    ),
+)
+MOTIONS = Table(
+    "motions",
+    1,
+    (
+        Column("manoeuvre", TEXT, "", "a turn that was recorded whole"),
+        Column(
+            "quantity",
+            TEXT,
+            "",
+            "speed; spin-up or spin-down and start, seconds, acceleration: as if it were constant",
+        ),
+        Column("value", DOUBLE, "as unit", "by time and angle"),
+        Column("sigma", DOUBLE, "as unit", "its sigma"),
+        Column("set_value", DOUBLE, "as unit", "what was set", nullable=True),
+        Column("unit", TEXT, "", "unit of these"),
+    ),
+)
+NOT_STUDIED = Table(
+    "not_studied",
+    1,
+    (
+        Column("study", TEXT, "", "rests, or turns"),
+        Column("subject", TEXT, "", "manoeuvres or parameters, in words"),
+        Column("reason", TEXT, "", "why there is nothing of it"),
+    ),
+)
+
+
+# ---- Results held against each other.
+
+DIFFERENCES = Table(
+    "differences",
+    1,
+    (
+        Column("id", TEXT, "", "stable identifier: comparison/kind/parameter, and which turns"),
+        Column(
+            "kind",
+            TEXT,
+            "",
+            "static_against_turns, forward_against_backward, method_against_method, published,"
+            " fencepost; with @ and the mount where there are several",
+        ),
+        Column("parameter", TEXT, "", "stage and parameter, such as gyroscope/bias_x"),
+        Column("unit", TEXT, "", "unit of the values, SI"),
+        Column("first", TEXT, "", "what is compared: id of a parameter, or in words"),
+        Column("second", TEXT, "", "with what: id of a parameter, or in words"),
+        Column("first_value", DOUBLE, "as unit", "none where not determined", nullable=True),
+        Column("second_value", DOUBLE, "as unit", "none where not determined", nullable=True),
+        Column("difference", DOUBLE, "as unit", "first less second", nullable=True),
+        Column("sigma", DOUBLE, "as unit", "its sigma; none where not known", nullable=True),
+        Column("in_sigmas", DOUBLE, "1", "difference in units of its sigma", nullable=True),
+        Column("p_value", DOUBLE, "1", "chance of one so large, either way", nullable=True),
+        Column("sentence", TEXT, "", "the difference and the verdict in words"),
+    ),
+)

@@ -1,0 +1,130 @@
+"""The plan: campaign, what is known, manoeuvres, what others published."""
+
+from inertial.tables.parquet import Column, Table
+from inertial.tables.shared import BODY, DOUBLE, INTEGER, LOG, TEXT, TRUTH, vector
+
+CAMPAIGN = Table(
+    "campaign",
+    2,
+    (
+        Column("campaign", TEXT, "", "name of the campaign's folder"),
+        Column("simulated", TRUTH, "", "recorded by the simulated laboratory"),
+        Column("compensated", TRUTH, "", "the errors were taken out of its logs already"),
+        Column("instrument", TEXT, "", "name of the IMU's type"),
+        Column("serial", TEXT, "", "serial number, or unknown"),
+        Column("date", TEXT, "", "date as the campaign states it, or unknown"),
+        Column("laboratory", TEXT, "", "where", nullable=True),
+        Column("operator", TEXT, "", "by whom", nullable=True),
+        Column("notes", TEXT, "", "remarks of the laboratory", nullable=True),
+        Column("table", TEXT, "", "name of the table"),
+        Column("rate", DOUBLE, "Hz", "stated sample rate", nullable=True),
+        Column("latitude", DOUBLE, "rad", "geodetic latitude", "earth", True),
+        Column("height", DOUBLE, "m", "height above the ellipsoid", "earth", True),
+        Column("must_be_set", INTEGER, "", "bits that are set in the status of a valid record"),
+        Column("must_be_clear", INTEGER, "", "bits that are clear in the status of a valid record"),
+    ),
+)
+KNOWN = Table(
+    "known",
+    1,
+    (
+        Column("quantity", TEXT, "", "name of what is taken as known"),
+        Column("value", DOUBLE, "as unit", "its value; none where it is not known", nullable=True),
+        Column("sigma", DOUBLE, "as unit", "standard deviation of the value", nullable=True),
+        Column("unit", TEXT, "", "unit of value and sigma"),
+        Column("origin", TEXT, "", "stated in the campaign, computed, or assumed, and from what"),
+    ),
+)
+SENSORS = Table(
+    "sensors",
+    1,
+    (
+        Column("channel", TEXT, "", "one of the six channels"),
+        Column("count_size", DOUBLE, "rad, m/s", "increment of one count", nullable=True),
+        Column("full_scale", DOUBLE, "rad/s, m/s²", "largest input", nullable=True),
+        Column(
+            "white_noise", DOUBLE, "rad/√s, m/s/√s", "random walk of the data sheet", nullable=True
+        ),
+        Column("source", TEXT, "", "where these figures are from", nullable=True),
+    ),
+)
+LOGS = Table(
+    "logs",
+    1,
+    (
+        LOG,
+        Column("file", TEXT, "", "file name inside the campaign's folder"),
+        Column("layout", TEXT, "", "how its bytes are read, as JSON"),
+    ),
+)
+RANGES = Table(
+    "ranges",
+    1,
+    (
+        LOG,
+        Column("channel", TEXT, "", "one of the six channels"),
+        Column("count", DOUBLE, "as the channel", "what one count is, if stated", nullable=True),
+        Column("increments", TRUTH, "", "a count is an increment: its unit is times s"),
+        Column("limit", DOUBLE, "as the channel", "how far it reaches, if stated", nullable=True),
+    ),
+)
+COUNT_SIZES = Table(
+    "count_sizes",
+    1,
+    (
+        Column("instrument", TEXT, "", "entry of the list of instruments"),
+        Column("sensor", TEXT, "", "accel or gyro"),
+        Column("count_size", DOUBLE, "rad, m/s", "increment of one count"),
+    ),
+)
+INPUTS = Table(
+    "inputs",
+    1,
+    (
+        Column("file", TEXT, "", "file name"),
+        Column("size", INTEGER, "byte", "size of the file"),
+        Column("sha256", TEXT, "", "SHA-256 of the file"),
+    ),
+)
+MANOEUVRES = Table(
+    "manoeuvres",
+    1,
+    (
+        Column("manoeuvre", TEXT, "", "identifier, unique in the campaign"),
+        Column("do", TEXT, "", "rest, turn or positions"),
+        LOG,
+        Column("position", TEXT, "", "manoeuvres of one position share its error"),
+        Column("mount", TEXT, "", "how the IMU sits on the table"),
+        *vector("up", "1", "unit vector that points up at the start"),
+        *vector("mark", "1", "unit vector to the table's zero mark at the start"),
+        *vector("about", "1", "unit vector of the axis of the turn"),
+        Column(
+            "angle", DOUBLE, "rad", "angle of the turn about `about`, right-hand rule", BODY, True
+        ),
+        Column("angle_sigma", DOUBLE, "rad", "standard deviation of the angle", nullable=True),
+        Column("rate", DOUBLE, "rad/s", "signed rate of the turn about `about`", BODY, True),
+        Column("acceleration", DOUBLE, "rad/s²", "of the table at start and stop", nullable=True),
+        Column("seconds", DOUBLE, "s", "planned duration", nullable=True),
+        Column("recorded", TEXT, "", "whole: rest on both sides is in the log; steady: it is not"),
+        Column(
+            "from_s", DOUBLE, "s", "start of the stated span, in the log's own time", nullable=True
+        ),
+        Column("to_s", DOUBLE, "s", "end of the stated span", nullable=True),
+        Column("from_row", INTEGER, "1", "first data row of the stated rows", nullable=True),
+        Column("to_row", INTEGER, "1", "data row after the last", nullable=True),
+        Column("label", TEXT, "", "the records with this label", nullable=True),
+    ),
+)
+PUBLISHED = Table(
+    "published",
+    2,
+    (
+        Column("parameter", TEXT, "", "stage and parameter, such as gyroscope/bias_x"),
+        Column("value", DOUBLE, "as unit", "what others found for it"),
+        Column("sigma", DOUBLE, "as unit", "its standard deviation, if told", nullable=True),
+        Column("unit", TEXT, "", "unit of value and sigma, SI"),
+        Column("source", TEXT, "", "where it is published"),
+        Column("window", DOUBLE, "rad", "angle of the window it is from, if told", nullable=True),
+        Column("samples", DOUBLE, "1", "intervals of that window, if told", nullable=True),
+    ),
+)

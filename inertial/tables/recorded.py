@@ -1,0 +1,222 @@
+"""What was recorded: samples, clocks, findings, masks, segments, blocks."""
+
+import pyarrow as pa
+
+from inertial.tables.parquet import Column, Table
+from inertial.tables.shared import (
+    BODY,
+    DOUBLE,
+    INTEGER,
+    LABEL,
+    LOG,
+    PHASES,
+    RECORDS,
+    TEXT,
+    TRUTH,
+    channels,
+)
+
+# ---- Samples, the account of every byte, and the clocks.
+
+SAMPLES = Table(
+    "samples",
+    1,
+    (
+        Column("log", LABEL, "", "as in logs"),
+        Column("record", INTEGER, "1", "number of the record in its log, refused ones counted"),
+        Column("offset", INTEGER, "byte", "where its line begins in the file"),
+        Column("line", INTEGER, "1", "number of its line, from 1"),
+        Column("time", DOUBLE, "s", "since the start of its clock", nullable=True),
+        Column("status", pa.uint32(), "", "status word of the instrument", nullable=True),
+        Column(
+            "mean_of",
+            DOUBLE,
+            "1",
+            "number of samples that this record is the mean of",
+            nullable=True,
+        ),
+        *channels("specific force, angular rate"),
+        Column("table_angle", DOUBLE, "rad", "as the table's encoder gives it", nullable=True),
+        Column("temperature", DOUBLE, "K", "of the instrument", nullable=True),
+        Column("label", LABEL, "", "label that the plan selects by", nullable=True),
+    ),
+)
+REFUSED = Table(
+    "refused",
+    1,
+    (
+        LOG,
+        Column("line", INTEGER, "1", "number of the line, from 1"),
+        Column("offset", INTEGER, "byte", "where the line begins in the file"),
+        Column("bytes", INTEGER, "byte", "its length with its line end"),
+        Column("reason", TEXT, "", "what was found and what was expected"),
+        Column("text", TEXT, "", "its beginning"),
+    ),
+)
+ACCOUNTS = Table(
+    "accounts",
+    1,
+    (
+        LOG,
+        Column("kind", TEXT, "", "decoded, other message, header, blank, not selected, refused"),
+        Column("name", TEXT, "", "name of the message, where it has one"),
+        Column("lines", INTEGER, "1", "number of lines"),
+        Column("bytes", INTEGER, "byte", "their bytes; all rows of a log add up to its size"),
+    ),
+)
+CLOCKS = Table(
+    "clocks",
+    2,
+    (
+        LOG,
+        Column(
+            "clock", TEXT, "", "GPS: shared by the logs; own: each log from its first sample; none"
+        ),
+        Column("epoch_gps", DOUBLE, "s", "GPS time at time 0", nullable=True),
+        Column("recorded_on", TEXT, "", "UTC date of the first sample", nullable=True),
+        Column("from_s", DOUBLE, "s", "time of the first sample", nullable=True),
+        Column("to_s", DOUBLE, "s", "time of the last sample", nullable=True),
+        Column("records", INTEGER, "1", "number of decoded records"),
+        Column("interval", DOUBLE, "s", "median sample interval", nullable=True),
+        Column("step", DOUBLE, "s", "what a sample counts for in a sum over time", nullable=True),
+        Column(
+            "imu_types",
+            TEXT,
+            "",
+            "types of IMU that its messages tell, by NovAtel's list",
+            nullable=True,
+        ),
+    ),
+)
+
+
+# ---- What is wrong with a recording, and its parts: findings, masks, segments, blocks.
+
+FINDINGS = Table(
+    "findings",
+    1,
+    (
+        Column("id", TEXT, "", "stable identifier: stage/cause/place"),
+        Column("cause", TEXT, "", "what it is"),
+        Column("sensor", TEXT, "", "accel or gyro, where one is concerned", nullable=True),
+        Column("axis", TEXT, "", "x, y or z, where one is concerned", nullable=True),
+        Column("log", TEXT, "", "as in logs", nullable=True),
+        Column("manoeuvre", TEXT, "", "as in manoeuvres", nullable=True),
+        Column("from_s", DOUBLE, "s", "from, in the time of the log", nullable=True),
+        Column("to_s", DOUBLE, "s", "to, in the time of the log", nullable=True),
+        Column("count", INTEGER, "1", "how many equal ones this stands for"),
+        Column("size", DOUBLE, "as unit", "how large", nullable=True),
+        Column("unit", TEXT, "", "unit of size"),
+        Column("p_value", DOUBLE, "1", "chance of such a size if nothing is wrong", nullable=True),
+        Column("severity", INTEGER, "", "3 spoils a result, 2 weakens it, 1 is good to know"),
+        Column("consequence", TEXT, "", "what it does to the result"),
+        Column("action", TEXT, "", "what the pipeline did, or what the laboratory should do"),
+        Column("sentence", TEXT, "", "the finding in words"),
+    ),
+)
+MASKS = Table(
+    "masks",
+    2,
+    (
+        LOG,
+        *RECORDS,
+        Column("channel", TEXT, "", "the one channel that is masked, else all", nullable=True),
+        Column("repeated", TRUTH, "", "they repeat other records: no time passes with them"),
+        Column("finding", TEXT, "", "id of the finding that masks these records"),
+    ),
+)
+CLOSE_UPS = Table(
+    "close_ups",
+    1,
+    (
+        Column("finding", TEXT, "", "id of the finding that these records show"),
+        LOG,
+        Column("record", INTEGER, "1", "number of the record in its log"),
+        Column("line", INTEGER, "1", "number of its line, from 1"),
+        Column("time", DOUBLE, "s", "as in samples", nullable=True),
+        *channels("as in samples"),
+        Column("concerned", TRUTH, "", "it lies in the stretch that the finding is about"),
+    ),
+)
+GAPS = Table(
+    "gaps",
+    1,
+    (
+        LOG,
+        Column("record", INTEGER, "1", "first record after the gap"),
+        Column("from_s", DOUBLE, "s", "time of the record before the gap"),
+        Column("to_s", DOUBLE, "s", "time of the record after the gap"),
+        Column("missing", INTEGER, "1", "number of samples that are missing"),
+    ),
+)
+SEGMENTS = Table(
+    "segments",
+    1,
+    (
+        Column("manoeuvre", TEXT, "", "as in manoeuvres"),
+        Column("phase", TEXT, "", PHASES),
+        LOG,
+        *RECORDS,
+        Column("from_s", DOUBLE, "s", "time of its first record", nullable=True),
+        Column("to_s", DOUBLE, "s", "time of its last record", nullable=True),
+    ),
+)
+PERFORMED = Table(
+    "performed",
+    2,
+    (
+        Column("manoeuvre", TEXT, "", "as in manoeuvres"),
+        Column("found", TRUTH, "", "found in its log"),
+        Column("complete", TRUTH, "", "recorded from rest to rest without a gap, as planned"),
+        Column(
+            "bridged",
+            TRUTH,
+            "",
+            "not complete, but what is missing lies in the steady part, so the joint estimate can"
+            " bridge it; in a ramp, or by hand, only a few masked samples",
+        ),
+        Column("angle", DOUBLE, "rad", "angle that was recorded, about `about`", BODY, True),
+        Column(
+            "missing_angle", DOUBLE, "rad", "angle that was planned but not recorded", BODY, True
+        ),
+        Column("missing_s", DOUBLE, "s", "time that is lost or masked while it turns"),
+        Column("rate", DOUBLE, "rad/s", "mean rate of the steady part, about `about`", BODY, True),
+        Column("seconds", DOUBLE, "s", "duration of the rest, or from start to stop of the turn"),
+        Column("sentence", TEXT, "", "what was recorded of it, in words"),
+    ),
+)
+BLOCKS = Table(
+    "blocks",
+    2,
+    (
+        Column("manoeuvre", TEXT, "", "as in manoeuvres"),
+        Column("phase", TEXT, "", PHASES),
+        LOG,
+        *RECORDS,
+        Column("time", DOUBLE, "s", "middle of the block", nullable=True),
+        Column("seconds", DOUBLE, "s", "count × step: mean × seconds is a sum", nullable=True),
+        Column("count", DOUBLE, "1", "number of samples in the means"),
+        Column(
+            "missing_s",
+            DOUBLE,
+            "s",
+            "of a turn: time before it, since the block before, that is lost or masked; else 0",
+        ),
+        *channels("mean"),
+        Column("table_angle", DOUBLE, "rad", "mean angle of the table", nullable=True),
+        Column("temperature", DOUBLE, "K", "mean temperature", nullable=True),
+        Column("mask_share", DOUBLE, "1", "share of its records that are masked"),
+    ),
+)
+TRACES = Table(
+    "traces",
+    1,
+    (
+        LOG,
+        *RECORDS,
+        Column("from_s", DOUBLE, "s", "time of the first record", nullable=True),
+        Column("to_s", DOUBLE, "s", "time of the last record", nullable=True),
+        *channels("smallest", prefix="least_"),
+        *channels("largest", prefix="most_"),
+    ),
+)

@@ -1,0 +1,50 @@
+"""What many tables share: types, axes, channels, and columns that come together."""
+
+import pyarrow as pa
+
+from inertial.tables.parquet import Column
+
+AXES = ("x", "y", "z")
+# Lists, for pandas takes a tuple as one name.
+ACCEL, GYRO = ([f"{sensor}_{axis}" for axis in AXES] for sensor in ("accel", "gyro"))
+CHANNELS = (*ACCEL, *GYRO)
+UNITS = {"accel": "m/s²", "gyro": "rad/s"}
+PHASES = (
+    "rest; for a turn rest-before, spin-up, steady, spin-down, rest-after; by hand: turning;"
+    " from one rest of unknown attitude to the next: between"
+)
+BODY = "body"  # axes x, y, z of the IMU's case, right-handed
+
+DOUBLE, TEXT, INTEGER, TRUTH = pa.float64(), pa.string(), pa.int64(), pa.bool_()
+LABEL = pa.dictionary(pa.int32(), pa.string())
+
+
+def vector(stem: str, unit: str, meaning: str, *, nullable: bool = True) -> list[Column]:
+    return [
+        Column(f"{stem}_{axis}", DOUBLE, unit, f"{meaning}, {axis}", BODY, nullable)
+        for axis in AXES
+    ]
+
+
+def channels(meaning: str, *, prefix: str = "") -> list[Column]:
+    return [
+        Column(
+            f"{prefix}{channel}",
+            DOUBLE,
+            UNITS[channel[:-2]],
+            f"{meaning}, {channel}",
+            BODY,
+            nullable=True,
+            noisy=True,
+        )
+        for channel in CHANNELS
+    ]
+
+
+LOG = Column(
+    "log", TEXT, "", "file name; with ':' and the format's name where it is read in several"
+)
+RECORDS = (
+    Column("from_record", INTEGER, "1", "first record"),
+    Column("to_record", INTEGER, "1", "record after the last"),
+)

@@ -1,0 +1,184 @@
+"""A YAML 1.2 file that people wrote: its content, and the line of every key for errors.
+
+Dates stay text, as YAML 1.2 has it.
+"""
+
+import difflib
+from collections.abc import Sequence
+from functools import cache
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.resolver import VersionedResolver
+from ruamel.yaml.scalarbool import ScalarBoolean
+
+from inertial.tables.errors import Refusal
+
+Key = Sequence[str | int]
+LARGEST = 4_000_000  # bytes; a campaign file of a person is a thousand times smaller
+MOST, DEEPEST = 100_000, 40  # values, and levels of them: a few lines of aliases make billions
+ABSURD = 1e15  # nothing that a laboratory writes down is larger, in whichever unit
+FOLDER = Path(__file__).parent
+
+
+class _DatesAreText(VersionedResolver):
+    """The YAML 1.2 core schema: without the timestamps that ruamel.yaml adds to it."""
+
+    def resolve(self, kind: Any, value: Any, implicit: Any) -> Any:
+        tag = super().resolve(kind, value, implicit)
+        return "tag:yaml.org,2002:str" if str(tag).endswith(":timestamp") else tag
+
+
+class YamlFile:
+    """The content of a YAML file as plain dicts, lists and scalars.
+
+    Raises
+    ------
+    Refusal
+        where it is no YAML, with the line; later, where it breaks a schema, with line and key
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._lines: dict[tuple[str | int, ...], int] = {}
+        self._values = 0
+        self.content = self._plain(self._load(), ())
+
+    def place(self, key: Key) -> str:
+        """Line and key, as an error names them: `line 12, plan[3].up`."""
+        known = tuple(key)
+        while known and known not in self._lines:
+            known = known[:-1]
+        name = "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in key).lstrip(".")
+        line = f"line {self._lines[known]}" if known else ""
+        return ", ".join(part for part in (line, name) if part)
+
+    def refuse(self, key: Key, found: object, expected: str, cure: str) -> Refusal:
+        """The error that names this file and `key`."""
+        return Refusal(str(self.path), self.place(key), shown(found), expected, cure)
+
+    def check(self, schema: str, entries: str | None = None) -> None:
+        """Hold the content, or each of its entries, against `contracts/<schema>.schema.yaml`.
+
+        `entries` is the definition of that schema that every entry must follow.
+        """
+        rules = schema_of(schema)
+        if entries:
+            of_each = {"$ref": f"#/$defs/{entries}"}
+            rules = {"type": "object", "additionalProperties": of_each, "$defs": rules["$defs"]}
+        validator = jsonschema.Draft202012Validator(rules)
+        errors = list(validator.iter_errors(self.content))
+        if errors:
+            raise self._refusal_of(jsonschema.exceptions.best_match(errors))
+
+    def _refusal_of(self, error: jsonschema.ValidationError) -> Refusal:
+        key = list(error.absolute_path)
+        rule: Any = error.schema
+        meaning = rule.get("description", "") if isinstance(rule, dict) else ""
+        if error.validator == "additionalProperties":
+            allowed = list(rule["properties"])
+            given: Any = error.instance
+            unknown = next(k for k in given if k not in allowed)
+            near = difflib.get_close_matches(str(unknown), allowed, n=1)
+            cure = f"write {near[0]}" if near else "remove it"
+            found = f"the key {shown(unknown)}"
+            return self.refuse_text([*key, unknown], found, f"one of {', '.join(allowed)}", cure)
+        if error.validator == "required":
+            wanted: Any = error.validator_value
+            instance: Any = error.instance
+            missing = next(k for k in wanted if k not in instance)
+            said = rule.get("properties", {}).get(missing, {}).get("description", "")
+            return self.refuse_text(
+                key, f"no key {missing!r}", f"{missing}: {said}".rstrip(": "), f"add {missing}"
+            )
+        if key and key[-1] in ("serial", "date") and not isinstance(error.instance, str):
+            found = f"the number {shown(error.instance)}, in which leading zeros are lost"
+            return self.refuse_text(key, found, meaning, f'put it in quotes: {key[-1]}: "…"')
+        expected = f"{meaning} ({error.message})" if meaning else error.message
+        return self.refuse(key, error.instance, expected, "correct the value")
+
+    def refuse_text(self, key: Key, found: str, expected: str, cure: str) -> Refusal:
+        """The error that names this file and `key`, with `found` in words."""
+        return Refusal(str(self.path), self.place(key), found, expected, cure)
+
+    def _load(self) -> Any:
+        size = self.path.stat().st_size
+        if size > LARGEST:
+            raise Refusal(
+                str(self.path), "", f"{size} bytes", f"at most {LARGEST}", "is this a log?"
+            )
+        yaml = YAML(typ="rt", pure=True)
+        yaml.Resolver = _DatesAreText
+        try:
+            return yaml.load(self.path.read_text(encoding="utf-8"))
+        except UnicodeDecodeError as error:
+            raise Refusal(
+                str(self.path), f"byte {error.start}", "no UTF-8", "UTF-8 text", "save it as UTF-8"
+            ) from None
+        except MarkedYAMLError as error:
+            mark = error.problem_mark
+            line = f"line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+            found = str(error.problem)
+            raise Refusal(
+                str(self.path), line, found, "YAML 1.2", "correct this line or the one before"
+            ) from None
+        except (YAMLError, ValueError) as error:
+            raise Refusal(str(self.path), "", str(error), "YAML 1.2", "correct the file") from None
+        except RecursionError:
+            raise self._too_much("levels without end", f"at most {DEEPEST} levels") from None
+
+    def _too_much(self, found: str, expected: str) -> Refusal:
+        return Refusal(str(self.path), "", found, expected, "write it out without aliases")
+
+    def _plain(self, node: Any, key: tuple[str | int, ...]) -> Any:
+        self._values += 1
+        if self._values > MOST:
+            raise self._too_much(f"more than {MOST} values, aliases written out", "fewer")
+        if len(key) > DEEPEST:
+            raise self._too_much("more levels", f"at most {DEEPEST} levels")
+        if getattr(getattr(node, "tag", None), "value", None):
+            raise self.refuse(key, str(node), "text, a number, a list or keys", "remove its tag")
+        if isinstance(node, CommentedMap):
+            for name in node:
+                if not isinstance(name, str | int):
+                    raise self.refuse(key, name, "a key of text", "put the key in quotes")
+                self._lines[(*key, name)] = node.lc.key(name)[0] + 1
+            return {name: self._plain(value, (*key, name)) for name, value in node.items()}
+        if isinstance(node, CommentedSeq):
+            for number in range(len(node)):
+                self._lines[(*key, number)] = node.lc.item(number)[0] + 1
+            return [self._plain(value, (*key, number)) for number, value in enumerate(node)]
+        return self._scalar(node, key)
+
+    def _scalar(self, node: Any, key: Key) -> str | int | float | None:
+        if isinstance(node, str):
+            return str(node)
+        if isinstance(node, ScalarBoolean | bool):
+            return bool(node)
+        if isinstance(node, int | float):
+            if not isfinite(node):
+                raise self.refuse(key, float(node), "a finite number", "correct the value")
+            if abs(node) > ABSURD:
+                raise self.refuse(key, node, f"at most {ABSURD:g}", "correct the value")
+            return int(node) if isinstance(node, int) else float(node)
+        if node is None:
+            return None
+        raise self.refuse(key, str(node), "text or a number", "put it in quotes")
+
+
+@cache
+def schema_of(name: str) -> dict[str, Any]:
+    """The JSON schema `contracts/<name>.schema.yaml`."""
+    content = YAML(typ="safe", pure=True).load(FOLDER / f"{name}.schema.yaml")
+    return dict(content)
+
+
+def shown(value: object) -> str:
+    """A value as it is shown in an error, not longer than a line."""
+    text = repr(value)
+    return text if len(text) <= 100 else f"{text[:97]}…"

@@ -1,0 +1,1 @@
+"""How numbers, units and causes are written for a person."""

@@ -1,0 +1,1 @@
+"""The accelerometers from rests and steady turns: bias, M, mounting, with covariance."""

@@ -1,0 +1,65 @@
+"""A position that does not fit the others, as a finding that names the terms it spoils."""
+
+from collections.abc import Iterator
+from math import degrees
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.campaign.estimates import NAMES
+from inertial.campaign.findings import Finding
+from inertial.estimation.position_outlier import OffPosition
+from inertial.tables import AXES
+from inertial.text.numbers import fixed, significant
+from inertial.text.units import quantity
+
+Array = NDArray[np.float64]
+
+NOTABLE = 1.0  # sigmas of the estimate by which a term must move to be named
+WORDS = {
+    "bias": "bias of the {row} accelerometer",
+    "scale": "scale factor of the {row} accelerometer",
+    "cross": "response of the {row} accelerometer to force along {column}",
+}
+
+
+def findings(off: OffPosition, sigma: Array, suffix: str) -> Iterator[Finding]:
+    """One finding; `sigma`: (12,), of the parameters without the scatter."""
+    several = len(off.positions) > 1
+    names = " or ".join(off.positions)
+    axis = int(np.argmax(np.abs(off.about)))
+    spoilt = [
+        _moved(name, float(off.moved[i]))
+        for i, name in enumerate(NAMES)
+        if abs(off.moved[i]) > NOTABLE * sigma[i]
+    ]
+    size = fixed(degrees(off.tilt), 4)
+    yield Finding(
+        id=f"accelerometer/table_position_error{suffix}/{off.positions[0]}",
+        cause="table_position_error",
+        sensor="accel",
+        manoeuvre=off.positions[0],
+        size=off.tilt,
+        unit="rad",
+        p_value=off.p_value,
+        severity=2,
+        sentence=f"The position {names} stands off by {size} ± {fixed(degrees(off.sigma), 4)}°,"
+        f" mostly about {AXES[axis]}, against all others."
+        + (" The readings do not tell which of these it is." if several else "")
+        + " Or the accelerometers have an error that the twelve parameters lack: criticism weighs"
+        " the two.",
+        consequence=(
+            f"With it left free, {'; '.join(spoilt)}. The joint estimate holds it as a scatter"
+            " between positions."
+            if spoilt
+            else "No parameter moves by more than its sigma."
+        ),
+        action="Set this position again and record it; or state position_sigma_arcsec as it is.",
+    )
+
+
+def _moved(name: str, by: float) -> str:
+    kind, _, axes = name.partition("_")
+    words = WORDS[kind].format(row=axes[0], column=axes[-1])
+    unit = quantity(name, "m/s²" if kind == "bias" else "1").laboratory
+    return f"the {words} moves by {significant(unit.of(by), 3)} {unit.name}"

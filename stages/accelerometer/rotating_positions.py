@@ -1,0 +1,96 @@
+"""The accelerometers while the table turns steadily: as good as a rest, with a known pull.
+
+A whole turn shows every accelerometer its part of gravity for as long as a rest. It also pulls at
+the case: f += ω × (ω × r), with an unknown lever arm r from the table's axis, for each of the three
+its own. At a steady rate only the component of r along the accelerometer counts, so three unknowns
+are enough; ramps, where the others count too, are left out.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.rate_segments import refusal_of
+from inertial.campaign.records import Manoeuvre, Performed
+from inertial.campaign.static_positions import Blocks, by_manoeuvre, stretch_of
+from inertial.estimation.accelerometers import Rest
+from inertial.estimation.sensitivities import Traces
+from inertial.physics.motion import mean_turned
+from inertial.tables import ACCEL, AXES
+
+Array = NDArray[np.float64]
+
+LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU stands farther off
+ALIKE = np.radians(5)  # by how much the vertical may turn in the case within one mean
+
+
+def turning_rests(
+    blocks: pd.DataFrame,
+    plan: Sequence[Manoeuvre],
+    performed: Mapping[str, Performed],
+    noise: NoiseLevels,
+    shared_clock: bool,
+) -> list[tuple[str, Rest]]:
+    """The steady parts of all whole turns, each with its label, in means of like attitude.
+
+    `shared_clock`: whether times of different logs are comparable. The `traces` of each are those
+    of LEVER_ARM.
+    """
+    moving = by_manoeuvre(blocks[~blocks["phase"].str.startswith("rest")])
+    quiet = by_manoeuvre(blocks[blocks["phase"].isin(["rest-before", "rest-after"])])
+    found: list[tuple[str, Rest]] = []
+    for m in plan:
+        if m.do != "turn" or m.recorded != "whole" or m.name not in moving:
+            continue
+        part = moving[m.name]
+        usable = performed[m.name].complete and not refusal_of(m, performed[m.name], part)
+        if usable and m.name in quiet and bool(part.steady.any()):
+            density = noise.of(m.name, "steady", ACCEL)
+            stretch = stretch_of(m.name, part.those(part.steady), shared_clock)
+            found += [
+                (f"{m.name} (steady)", replace(rest, stretch=stretch))
+                for rest in _steady(m, part, quiet[m.name], density)
+            ]
+    return found
+
+
+def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[Rest]:
+    """The blocks of the steady part, as many in one mean as see the same attitude."""
+    assert m.up is not None and m.angle is not None  # else the turn is refused
+    read, seconds = part.accel, part.seconds
+    angle = _angles(m, part, quiet)
+    steady = np.flatnonzero(part.steady)
+    middle = np.cumsum(angle) - angle / 2
+    ups = mean_turned(m.up, m.axis, middle, angle)
+    level = np.linalg.norm(m.up - (m.up @ m.axis) * m.axis)
+    rate = angle / seconds
+    turns = abs(float(angle[steady].sum())) * float(level)
+    pieces = np.array_split(steady, max(1, int(np.ceil(turns / ALIKE))))
+    rests = []
+    for some in (piece for piece in pieces if len(piece)):
+        share = seconds[some] / seconds[some].sum()
+        square = float(share @ rate[some] ** 2)
+        pull = square * (np.outer(m.axis, m.axis) - np.eye(3))  # ω × (ω × r) of r
+        rests.append(
+            Rest(
+                m.position,
+                share @ ups[some],
+                share @ read[some],
+                density / np.sqrt(seconds[some].sum()),
+                traces=Traces(tuple(LEVER_ARM), pull),
+            )
+        )
+    return rests
+
+
+def _angles(m: Manoeuvre, part: Blocks, quiet: Blocks) -> Array:
+    """The angle of each block, (k,), rad: as the gyros along the axis share out the known whole."""
+    assert m.angle is not None  # else the turn is refused
+    along = np.nan_to_num(part.gyro) @ m.axis
+    still = float(np.nan_to_num(quiet.gyro @ m.axis).mean())
+    own = (along - still) * part.seconds
+    return np.asarray(own * (m.angle / own.sum()))

@@ -1,0 +1,83 @@
+"""The accelerometers by the sources' own formulas, beside the joint estimate.
+
+`six_position`: S0 (3-6), all rests alike. `up_and_down`: S1, two positions with tilt, where the
+plan has no more. `pooled_positions`: S3, stops at one attitude pooled. All have the sigmas that the
+sources leave out.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.campaign.estimates import NAMES, Estimates, Wanted
+from inertial.campaign.static_positions import Still
+from inertial.estimation.accelerometer_formulas import Upright, pooled_positions, up_and_down
+from inertial.estimation.accelerometers import Rest, formula
+from inertial.estimation.triad import UNKNOWNS, errors_of
+from inertial.tables import AXES
+
+Array = NDArray[np.float64]
+
+
+def add_six_positions(
+    estimates: Estimates,
+    suffix: str,
+    planned: Sequence[tuple[Still, Rest]],
+    about: tuple[float, float, float],  # gravity, its sigma, m/s², sigma of a position, rad
+    scatter: float,
+    wanted: float,
+) -> None:
+    """S0's formula from the rests of the plan; where they do not span it, S1's from pairs.
+
+    `scatter`: m/s², between rests; `wanted`: m/s², sigma of a bias for which the length of the
+    rests is reckoned.
+    """
+    rests = [rest for _, rest in planned]
+    solved = formula(rests, *about, scatter) if rests else None
+    if solved is None:
+        _add_up_and_down(estimates, f"up_and_down{suffix}", rests, about, scatter)
+        return
+    unknowns, covariance = solved
+    estimates.add(f"six_position{suffix}", NAMES, errors_of(unknowns), covariance, {})
+    ideal = formula([replace(rest, sigma=np.zeros(3)) for rest in rests], *about)
+    assert ideal is not None  # it depends on the same attitudes
+    seconds = float(np.mean([still.seconds.sum() for still, _ in planned]))
+    for i, axis in enumerate(AXES, UNKNOWNS - 3):
+        sigma, floor = (float(np.sqrt(of[i, i])) for of in (covariance, ideal[1]))
+        estimates.add_wanted(f"six_position{suffix}", axis, Wanted(sigma, floor, seconds), wanted)
+
+
+def _add_up_and_down(
+    estimates: Estimates,
+    method: str,
+    rests: Sequence[Rest],
+    about: tuple[float, float, float],
+    scatter: float,
+) -> None:
+    for i, axis in enumerate(AXES):
+        own = [
+            Upright(float(rest.up[i]), float(rest.mean[i]), float(np.hypot(rest.sigma[i], scatter)))
+            for rest in rests
+            if abs(rest.up[i]) > 1 - 1e-9 and np.isfinite(rest.mean[i] * rest.sigma[i])
+        ]
+        found = up_and_down(own, *about)
+        if found is not None:
+            values = np.array([found.bias, found.scale])
+            sigmas = np.array([found.bias_sigma, found.scale_sigma])
+            estimates.add(method, (f"bias_{axis}", f"scale_{axis}"), values, np.diag(sigmas**2), {})
+
+
+def add_pooled_positions(
+    estimates: Estimates,
+    suffix: str,
+    rests: Sequence[Rest],
+    about: tuple[float, float, float],
+    scatter: float,
+) -> None:
+    """S3's formula, for plans that turn both ways and stop at positions in common."""
+    pooled = pooled_positions(rests, *about, scatter)
+    if pooled is not None:
+        values = errors_of(pooled.values)
+        estimates.add(f"pooled_positions{suffix}", NAMES, values, pooled.covariance, {})

@@ -1,1 +1,0 @@
-"""What a campaign file says, made explicit: manoeuvres, what is known, how logs are read."""

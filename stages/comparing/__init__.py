@@ -1,1 +1,0 @@
-"""What is compared with what: rests, turns, directions, methods, and what others published."""

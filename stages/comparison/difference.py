@@ -1,0 +1,164 @@
+"""One difference between two values of a parameter, in units of its sigma."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import pandas as pd
+
+from inertial import tables
+from inertial.campaign.records import Row, rows_of
+from inertial.estimation.consistency import beyond_chance, chance_of
+from inertial.text.numbers import decimals_of, fixed, p_is, with_sigma
+from inertial.text.units import quantity
+
+# ---- One difference between two values of a parameter, in units of its sigma, and the verdict.
+
+SENSORS = {"accelerometer": ("accelerometer", "force"), "gyroscope": ("gyro", "rate")}
+FORMS = {
+    "cubic": "what all gyros read beyond a straight line, with the cube of the rate",
+    "asymmetry": "what all gyros read beyond a straight line, with the size of the rate",
+    "scale": "scale factors of the gyros",
+}
+NEAR = 2.0  # sigmas within which values simply agree
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Two values of a parameter, and the sigma of `first` less `second`; SI.
+
+    Values and sigma are None where there is none; `remark` then says why.
+    """
+
+    kind: str
+    parameter: str  # stage and parameter, such as gyroscope/bias_x
+    unit: str
+    first: str
+    second: str
+    first_value: float | None
+    second_value: float | None
+    sigma: float | None
+    between: tuple[str, str]  # what is compared, as the sentence names it
+    remark: str = ""
+    place: str = ""  # which of several, such as the turns that are compared
+    degrees: float = np.inf  # of freedom, from which sigma is estimated
+
+    @property
+    def id(self) -> str:
+        """The stable identifier."""
+        parts = ["comparison", self.kind, self.parameter, self.place]
+        return "/".join(part for part in parts if part)
+
+    @property
+    def value(self) -> float | None:
+        """First less second."""
+        if self.first_value is None or self.second_value is None:
+            return None
+        return self.first_value - self.second_value
+
+    @property
+    def in_sigmas(self) -> float | None:
+        """The difference in units of its sigma."""
+        return None if self.value is None or not self.sigma else self.value / self.sigma
+
+    @property
+    def p_value(self) -> float | None:
+        """Chance of a difference so large, either way, if the two are the same."""
+        return None if self.in_sigmas is None else chance_of(self.in_sigmas, self.degrees)
+
+    def sentence(self, beyond: bool, among: int) -> str:
+        """The difference in the laboratory's unit, and whether it is more than chance."""
+        subject = named(self.parameter)
+        one, other = self.between
+        if self.value is None or self.in_sigmas is None or self.p_value is None:
+            return f"{subject}: {self.remark}."
+        unit = quantity(self.parameter.rpartition("/")[2], self.unit).laboratory
+        sigma = unit.of(self.sigma)
+        size = " ± ".join(with_sigma(unit.of(self.value), sigma, decimals_of(sigma)))
+        far = f"{size} {unit.name}, {fixed(abs(self.in_sigmas), 1)} sigma"
+        chance = f"({p_is(self.p_value)})"
+        remark = f" {self.remark}." if self.remark else ""
+        if beyond:
+            told = f"{one} and {other} differ by {far}: more than chance {chance}."
+        elif abs(self.in_sigmas) <= NEAR:
+            told = f"{one} and {other} agree within their sigmas: they differ by {far} {chance}."
+        else:
+            told = (
+                f"{one} and {other} differ by {far}: no more than chance among {among}"
+                f" comparisons {chance}."
+            )
+        return f"{subject}: {told}{remark}"
+
+
+def named(parameter: str) -> str:
+    """A parameter in words: gyroscope/bias_y is the bias of the y gyro."""
+    stage, _, name = parameter.partition("/")
+    if name in FORMS:
+        return FORMS[name]
+    kind, _, axes = name.partition("_")
+    sensor, input_ = SENSORS[stage]
+    if kind == "cross":
+        return f"response of the {axes[0]} {sensor} to {input_} along {axes[1]}"
+    what = {"bias": "bias", "scale": "scale factor"}[kind]
+    return f"{what} of the {axes} {sensor}"
+
+
+def table_of(differences: Sequence[Difference], level: float) -> pd.DataFrame:
+    """The table of differences; `level` is the chance of one false alarm in all of it."""
+    chances = [1.0 if d.p_value is None else d.p_value for d in differences]
+    compared = np.array([d.p_value is not None for d in differences], dtype=np.bool_)
+    among = int(compared.sum())
+    beyond = np.zeros(len(differences), dtype=np.bool_)
+    beyond[compared] = beyond_chance(np.array(chances)[compared].tolist(), level)
+    rows = [_row(d, bool(beyond[i]), among) for i, d in enumerate(differences)]
+    return pd.DataFrame(rows) if rows else tables.DIFFERENCES.empty()
+
+
+def _row(d: Difference, beyond: bool, among: int) -> Row:
+    return {
+        "id": d.id,
+        "kind": d.kind,
+        "parameter": d.parameter,
+        "unit": d.unit,
+        "first": d.first,
+        "second": d.second,
+        "first_value": d.first_value,
+        "second_value": d.second_value,
+        "difference": d.value,
+        "sigma": d.sigma,
+        "in_sigmas": d.in_sigmas,
+        "p_value": d.p_value,
+        "sentence": d.sentence(beyond, among),
+    }
+
+
+# ---- The parameters of one mount, by method and name.
+
+
+@dataclass(frozen=True)
+class Results:
+    """What the methods of one stage found for one mount."""
+
+    stage: str
+    parameters: pd.DataFrame
+    suffix: str  # of the methods' names: @ and the mount where there are several
+
+    @cached_property
+    def _rows(self) -> dict[tuple[str, str], Row]:
+        return {(row["method"], row["parameter"]): row for row in rows_of(self.parameters)}
+
+    def of(self, method: str, name: str) -> Row | None:
+        """The row of a parameter; none where the method does not have it."""
+        return self._rows.get((f"{method}{self.suffix}", name))
+
+    def determined(self, method: str, name: str) -> Row | None:
+        """The same; none where it is not determined either."""
+        row = self.of(method, name)
+        return None if row is None or row["value"] is None else row
+
+    def names(self, method: str) -> Iterator[str]:
+        """Names of the parameters that a method determined."""
+        for wanted, name in self._rows:
+            if wanted == f"{method}{self.suffix}" and self.determined(method, name):
+                yield name

@@ -1,0 +1,115 @@
+"""Published scale factors of the gyros that are all off by one sample of their window: fencepost.
+
+S0's table 5-5 is such a case (design study, T11 to T13): 1801 samples summed for the 1800 of 180°.
+"""
+
+from collections.abc import Iterator, Sequence
+from math import pi
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.campaign.records import Row, rows_of
+from inertial.estimation.angle_windows import Fencepost, fencepost
+from inertial.estimation.consistency import shared_cause
+from inertial.text.numbers import fixed, whole
+from inertial.text.units import PPM
+from stages.comparison.difference import Difference, Results
+
+Array = NDArray[np.float64]
+
+KIND = "fencepost"
+FEWEST = 2  # axes, for what is in common
+ALIKE = 3.0  # sigmas within which the speed of the table would explain it as well
+
+
+def off_by_a_sample(
+    published: pd.DataFrame,
+    gyro: Results,
+    growing: pd.DataFrame,
+    motions: pd.DataFrame,
+    level: float,
+) -> Iterator[Difference]:
+    """The one row that names it; none where it is not so.
+
+    Where the source does not tell its window, it is taken as S0's: 180° at the rate and sample
+    interval of the turns of this campaign, and just one sample may be too many or too few. What
+    an oscillation leaves of a window that cuts it at any phase is in the sigma.
+    """
+    windows = [row for row in rows_of(growing) if row["by"] == "set rate"]
+    scales = [r for r in rows_of(published) if r["parameter"].startswith("gyroscope/scale_")]
+    cases = [one for row in scales for one in [_case(row, gyro, windows)] if one is not None]
+    if len(cases) < FEWEST:
+        return
+    told = all(row["samples"] is not None for row in scales)
+    theirs, ours, sigma, samples = np.array(cases).T
+    found, speed = fencepost(theirs, ours, sigma, samples), _speed(motions)
+    if not found.told(level) or not (told or abs(found.whole) == 1):
+        return
+    if speed is not None and _explains(speed, found, samples):
+        return
+    yield Difference(
+        kind=f"{KIND}{gyro.suffix}",
+        parameter="gyroscope/scale",
+        unit="1",
+        first=f"gyroscope/joint{gyro.suffix}",
+        second=scales[0]["source"],
+        first_value=None,
+        second_value=None,
+        sigma=None,
+        between=("this calibration", "the published values"),
+        remark=_words(found, samples, told, speed),
+    )
+
+
+def _case(row: Row, gyro: Results, windows: Sequence[Row]) -> tuple[float, ...] | None:
+    """Published and our scale factor, sigma of their difference, and N; none where one lacks."""
+    axis, angle = row["parameter"][-1], row["window"] or pi
+    ours = gyro.determined("joint", f"scale_{axis}")
+    like = {w["axis"]: w for w in sorted(windows, key=lambda w: -abs(w["angle"] - angle))}
+    # An axis without windows of its own counts with the worst of the others.
+    own = like.get(axis) or max(like.values(), key=lambda w: w["cut_sigma"], default=None)
+    samples = row["samples"]
+    if samples is None and own is not None:
+        samples = round(angle / own["angle"] * own["samples"])
+    if ours is None or not samples:
+        return None
+    cut = own["cut_sigma"] if own is not None else 0.0
+    sigma = float(np.linalg.norm([ours["sigma"], row["sigma"] or 0.0, cut]))
+    return row["value"], ours["value"], sigma, float(samples)
+
+
+def _speed(motions: pd.DataFrame) -> tuple[float, float] | None:
+    """By what the table turned faster than set in all turns, and the sigma; none without turns."""
+    rows = [r for r in rows_of(motions) if r["quantity"] == "speed" and r["set_value"]]
+    if not rows:
+        return None
+    excess = np.array([r["value"] / r["set_value"] - 1 for r in rows])
+    sigma = np.array([r["sigma"] / r["set_value"] for r in rows])
+    common = shared_cause(excess, sigma)
+    return common.amount, common.sigma
+
+
+def _explains(speed: tuple[float, float], found: Fencepost, samples: Array) -> bool:
+    """Whether a window by time is off by the same amount for the speed of the table alone."""
+    common = float(found.cause.amount / samples.mean())
+    sigma = float(np.hypot(speed[1], found.cause.sigma / samples.mean()))
+    return abs(speed[0] - common) < ALIKE * sigma
+
+
+def _words(found: Fencepost, samples: Array, told: bool, speed: tuple[float, float] | None) -> str:
+    ratios = ", ".join(fixed(PPM.of(ratio), 0) for ratio in found.ratios)
+    counts = sorted({round(n) for n in samples})
+    each = ", ".join(f"{whole(n + found.whole)} samples for {whole(n)}" for n in counts)
+    factor = f"{fixed(found.cause.amount, 2)} ± {fixed(found.cause.sigma, 2)}"
+    said = (
+        f"fencepost: the published ones differ from ours by {ratios} ppm, {factor} samples of their"
+        f" windows, as if {each} had been summed; a window of N samples has N + 1 edges"
+    )
+    if not told:
+        said += " (their window is not told; it is taken as 180° by time)"
+    if speed is not None:
+        real = f"{fixed(PPM.of(speed[0]), 1)} ± {fixed(PPM.of(speed[1]), 1)} ppm"
+        said += f". The speed of the table is not the cause: here it is off by {real}"
+    return said

@@ -1,0 +1,101 @@
+"""The joint estimate against the formulas of the sources, and against published values."""
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+import pandas as pd
+
+from inertial.campaign.records import rows_of
+from stages.comparison.difference import Difference, Results
+
+# ---- The joint estimate against the formulas of the sources, which use the same data.
+
+METHOD_AGAINST_METHOD = "method_against_method"
+ALIKE = 0.01  # relative difference of two sigmas below which two methods are one
+WORDS = {
+    "six_position": "the six-position formula",
+    "pooled_positions": "the formula for pooled positions",
+    "turns": "the formula for turns",
+    "turn_and_stop": "the turn-and-stop formulas",
+    "stops": "the mean of the stops",
+    "rate_table": "the least squares of the rate table",
+}
+
+
+def method_against_method(results: Results, method: str) -> Iterator[Difference]:
+    """Every parameter that both `method` and the joint estimate have determined.
+
+    The two use the same data, so their errors are correlated. Of all unbiased estimates the joint
+    one has the smallest variance; then the variance of the difference is the difference of the
+    variances, σ² = |σ₁² − σ₂²| (Hausman 1978).
+    """
+    for name in results.names(method):
+        other, joint = results.of(method, name), results.determined("joint", name)
+        if other is None or joint is None:
+            continue
+        alike = abs(other["sigma"] / joint["sigma"] - 1) < ALIKE
+        sigma = abs(other["sigma"] ** 2 - joint["sigma"] ** 2) ** 0.5
+        yield Difference(
+            kind=f"{METHOD_AGAINST_METHOD}{results.suffix}",
+            parameter=f"{results.stage}/{name}",
+            unit=joint["unit"],
+            first=other["id"],
+            second=joint["id"],
+            first_value=other["value"],
+            second_value=joint["value"],
+            sigma=None if alike else sigma,
+            between=(WORDS[method], "the joint estimate"),
+            place=method,
+            remark=(
+                f"{WORDS[method]} and the joint estimate use the same data with the same sigma:"
+                " there is nothing to compare"
+                if alike
+                else "Both are from the same data, so their variances are subtracted"
+            ),
+        )
+
+
+# ---- What others published of this IMU against the joint estimate.
+
+PUBLISHED = "published"
+
+
+def against_published(
+    published: pd.DataFrame, results: Mapping[str, Results]
+) -> Iterator[Difference]:
+    """Every published parameter, with the results of accelerometer and gyroscope by stage.
+
+    The sigma is of both; of ours alone where none is published.
+    """
+    for told in rows_of(published):
+        stage, _, name = told["parameter"].partition("/")
+        own = results[stage]
+        ours = own.of("joint", name)
+        missing = ours is None or ours["value"] is None
+        reason = ours["reason"] if ours else "nothing was recorded that shows it"
+        table = own.of("rate_table", name)
+        if table is not None and table["reason"]:  # with the rank of what was put in
+            reason = table["reason"]
+        alone = told["sigma"] is None
+        yield Difference(
+            kind=f"{PUBLISHED}{own.suffix}",
+            parameter=told["parameter"],
+            unit=told["unit"],
+            first=f"{stage}/joint{own.suffix}/{name}",
+            second=told["source"],
+            first_value=None if ours is None else ours["value"],
+            second_value=told["value"],
+            sigma=(
+                None
+                if ours is None or missing
+                else float(np.hypot(ours["sigma"], 0.0 if alone else told["sigma"]))
+            ),
+            between=("this calibration", f"the published value ({told['source']})"),
+            remark=(
+                f"it is not determined here, so {told['source']} cannot be judged: {reason}"
+                if missing
+                else "No sigma is published, so it is ours alone"
+                if alone
+                else ""
+            ),
+        )

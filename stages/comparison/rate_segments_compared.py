@@ -1,0 +1,111 @@
+"""Gyros in static positions against rate segments, forward against backward."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.campaign.gyroscope_methods import uprights
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.rate_segments import GyroInputs, angles_about
+from inertial.estimation.gyroscope_formulas import both_ways, two_positions
+from inertial.estimation.gyroscopes import Angle, known_angle
+from inertial.tables import AXES
+from stages.comparison.difference import Difference, Results
+
+# ---- Turns forward against turns backward about the same axis.
+
+FORWARD_AGAINST_BACKWARD = "forward_against_backward"
+Pair = tuple[tuple[str, Angle], tuple[str, Angle]]
+
+
+def forward_against_backward(
+    inputs: GyroInputs, levels: NoiseLevels, gyro: Results, scatter: float
+) -> Iterator[Difference]:
+    """The scale factor by each direction alone, pair by pair, the joint bias taken out."""
+    for i, axis in enumerate(AXES):
+        bias = gyro.determined("joint", f"bias_{axis}")
+        pairs = _pairs(angles_about(inputs, i, levels))
+        if bias is None:
+            continue
+        for (forward_name, forward), (backward_name, backward) in pairs:
+            found = both_ways(
+                forward, backward, bias["value"], bias["sigma"], inputs.earth, scatter
+            )
+            yield Difference(
+                kind=f"{FORWARD_AGAINST_BACKWARD}{gyro.suffix}",
+                parameter=f"gyroscope/scale_{axis}",
+                unit="1",
+                first=forward_name,
+                second=backward_name,
+                first_value=found.forward,
+                second_value=found.backward,
+                sigma=found.sigma,
+                between=(forward_name, backward_name),
+                place=f"{forward_name},{backward_name}" if len(pairs) > 1 else "",
+            )
+
+
+def _pairs(turns: list[tuple[str, Angle]]) -> list[Pair]:
+    """Forward turns, each with a backward one of the same angle, the same end of the axis up."""
+    pairs: list[Pair] = []
+    for up in (1, -1):
+        own = [(name, turn) for name, turn in turns if turn.up * up > 0]
+        backward = [turn for turn in own if turn[1].angle < 0]
+        for turn in own:
+            alike = [b for b in backward if abs(b[1].angle + turn[1].angle) < 1e-9]
+            if turn[1].angle > 0 and alike:
+                backward.remove(alike[0])
+                pairs.append((turn, alike[0]))
+    return pairs
+
+
+# ---- The gyros at rest against the gyros in turns: S0, tables 5-2 and 5-7.
+
+STATIC_AGAINST_TURNS = "static_against_turns"
+UNKNOWN_CROSS = 0.01  # rad, a mounting askew by half a degree: a cross term that no one determined
+
+
+def static_against_turns(
+    inputs: GyroInputs, levels: NoiseLevels, gyro: Results
+) -> Iterator[Difference]:
+    """Bias and scale factor of each axis from its rests up and down, and from its turns.
+
+    Both sigmas are of noise and of what is known of table and site. The scatter between
+    manoeuvres that the joint estimate may allow for is left out: it stands for what the model
+    lacks, and that is what differs here.
+    """
+    for i, axis in enumerate(AXES):
+        rests = list(uprights(inputs, i))
+        static = two_positions(
+            [rest for _, rest in rests], _cross(gyro, axis), inputs.earth, inputs.position_sigma
+        )
+        if static is None or gyro.determined("turns", f"bias_{axis}") is None:
+            continue
+        turns = known_angle([turn for _, turn in angles_about(inputs, i, levels)], inputs.earth)
+        found = {
+            "bias": (static.bias, static.bias_sigma, 0, "rad/s"),
+            "scale": (static.scale, static.scale_sigma, 1, "1"),
+        }
+        for name, (value, sigma, column, unit) in found.items():
+            if value is None or sigma is None:
+                continue
+            yield Difference(
+                kind=f"{STATIC_AGAINST_TURNS}{gyro.suffix}",
+                parameter=f"gyroscope/{name}_{axis}",
+                unit=unit,
+                first=f"rests with {axis} up and {axis} down: {', '.join(n for n, _ in rests)}",
+                second=f"gyroscope/turns{gyro.suffix}/{name}_{axis}",
+                first_value=value,
+                second_value=float(turns.values[column]),
+                sigma=float(np.hypot(sigma, turns.sigma[column])),
+                between=("rests", "turns"),
+            )
+
+
+def _cross(gyro: Results, axis: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """What a gyro senses of rates along x, y, z besides its own axis, (3,)."""
+    rows = [gyro.of("joint", f"cross_{axis}{other}") for other in AXES]
+    values = [
+        UNKNOWN_CROSS if row is None or row["value"] is None else row["value"] for row in rows
+    ]
+    return np.where([other == axis for other in AXES], 0.0, np.array(values, dtype=np.float64))

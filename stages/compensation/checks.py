@@ -1,0 +1,235 @@
+"""The compensated readings against what is known: gravity, the earth's rate, the angle of turns.
+
+Compensation is linear, so the mean of compensated samples is the compensated mean: the blocks of
+`segment` are enough, and what is masked stays out.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial import tables
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.rate_segments import Recorded, gyro_inputs, position_of
+from inertial.campaign.records import Known, Manoeuvre, Performed, Row, rows_of
+from inertial.campaign.static_positions import Still, stills
+from inertial.estimation.gyroscopes import Position
+from inertial.physics.forward import Triad
+from inertial.tables import GYRO
+from inertial.text.numbers import decimals_of, fixed, with_sigma
+from inertial.text.units import DEGREES, DEGREES_PER_HOUR, MICRO_G, SECONDS_OF_ARC, Unit
+from stages.compensation.correction import Correction, truth_of
+
+Array = NDArray[np.float64]
+
+UNITS = {
+    # quantity: (its name in a sentence, unit of the value, unit of the difference)
+    "gravity": ("|f|", Unit("m/s²", 1.0), MICRO_G),
+    "force_up": ("f along up", Unit("m/s²", 1.0), MICRO_G),
+    "rate_up": ("the rate along up", DEGREES_PER_HOUR, DEGREES_PER_HOUR),
+    "angle": ("the angle", DEGREES, SECONDS_OF_ARC),
+}
+SI = {"gravity": "m/s²", "force_up": "m/s²", "rate_up": "rad/s", "angle": "rad"}
+BEYOND = 3.0  # sigmas, from which a sentence says that the parameters do not tell all
+
+
+@dataclass(frozen=True)
+class Check:
+    """One quantity before and after, SI; `sigma` of after less expected."""
+
+    manoeuvre: str
+    quantity: str
+    expected: float
+    expected_sigma: float
+    before: float
+    after: float
+    sigma: float
+
+    def row(self, suffix: str) -> Row:
+        """The row of the table; `suffix` is @ and the mount where there are several."""
+        name, unit, fine = UNITS[self.quantity]
+        off, sigma = fine.of(self.after - self.expected), fine.of(self.sigma)
+        left, spread = with_sigma(off, sigma, decimals_of(sigma))
+        before = fixed(fine.of(self.before - self.expected), decimals_of(sigma) or 0)
+        far = (self.after - self.expected) / self.sigma
+        verdict = (
+            "within its sigma"
+            if abs(far) <= 1
+            else f"{fixed(abs(far), 1)} sigma"
+            if abs(far) <= BEYOND
+            else f"{fixed(abs(far), 1)} sigma, so these parameters are not all there is"
+        )
+        value = fixed(unit.of(self.expected), 4) + (
+            unit.name if unit is DEGREES else f" {unit.name}"
+        )
+        return {
+            "id": f"compensation{suffix}/{self.quantity}/{self.manoeuvre}",
+            "manoeuvre": self.manoeuvre,
+            "quantity": self.quantity,
+            "unit": SI[self.quantity],
+            "expected": self.expected,
+            "expected_sigma": self.expected_sigma,
+            "before": self.before,
+            "after": self.after,
+            "after_sigma": self.sigma,
+            "in_sigmas_after": far,
+            "sentence": f"{self.manoeuvre}: {name} differs from {value} by {before}"
+            f" {fine.name} before and by {left} ± {spread} {fine.name} after compensation:"
+            f" {verdict}.",
+        }
+
+
+def checks(
+    blocks: pd.DataFrame,
+    plan: Sequence[Manoeuvre],
+    done: Mapping[str, Performed],
+    levels: NoiseLevels,
+    known: Mapping[str, Known],
+    correction: Correction,
+) -> Iterator[Check]:
+    """Every rest and every whole turn of one mount."""
+    if correction.accelerometer is not None:
+        found, _ = stills(blocks, plan, done, levels, "accel")
+        for still in found:
+            yield from _forces(still, correction.accelerometer, known)
+    if correction.gyro is not None:
+        inputs = gyro_inputs(blocks, plan, done, levels, known)
+        for still in inputs.stills:
+            yield from _rate(still, correction.gyro, known)
+        for one in inputs.usable:
+            if one.plan.recorded == "whole" and one.done.complete:
+                yield from _angle(one, levels, correction.gyro, known)
+
+
+def missing(parameters: pd.DataFrame, method: str, sensor: str, suffix: str) -> Row:
+    """Why the three sensors of one kind are not compensated."""
+    reasons: dict[str, list[str]] = {}
+    for row in rows_of(parameters):
+        linear = row["parameter"].startswith(("bias", "scale", "cross"))
+        if linear and row["method"] == method and row["value"] is None:
+            reasons.setdefault(row["reason"], []).append(row["parameter"])
+    told = "; ".join(f"{', '.join(names)}: {reason}" for reason, names in reasons.items())
+    nothing = ("expected", "expected_sigma", "before", "after", "after_sigma", "in_sigmas_after")
+    return dict.fromkeys(nothing) | {
+        "id": f"compensation{suffix}/{sensor}",
+        "manoeuvre": None,
+        "quantity": sensor,
+        "unit": "",
+        "sentence": f"The {sensor}s are not compensated, for not all of M and bias is determined."
+        f" {told or 'Nothing was recorded that shows them'}.",
+    }
+
+
+def table_of(rows: list[Row]) -> pd.DataFrame:
+    """The table of checks, which may be empty."""
+    if not rows:
+        return tables.CHECKS.empty()
+    frame = pd.DataFrame(rows)
+    numbers = [column.name for column in tables.CHECKS.columns if column.unit in ("as unit", "1")]
+    return frame.astype(dict.fromkeys(numbers, np.float64))
+
+
+# ---- at rest
+
+
+def _forces(still: Still, triad: Triad, known: Mapping[str, Known]) -> Iterator[Check]:
+    """|f|, which no tilt changes, and the force along up, which tilt lessens by its square."""
+    reading, noise = still.over()
+    force = truth_of(reading, triad)
+    gravity = known["gravity"]
+    size = float(np.linalg.norm(force))
+    if not np.isfinite(size):
+        return
+    yield Check(
+        still.label,
+        "gravity",
+        gravity.number,
+        gravity.scatter,
+        float(np.linalg.norm(reading)),
+        size,
+        _noise_along(force / size, triad, noise),
+    )
+    up = still.up_now
+    tilted = gravity.number * known["position"].scatter ** 2
+    yield Check(
+        still.label,
+        "force_up",
+        gravity.number,
+        gravity.scatter,
+        float(reading @ up),
+        float(force @ up),
+        float(np.hypot(_noise_along(up, triad, noise), tilted)),
+    )
+
+
+def _rate(still: Still, triad: Triad, known: Mapping[str, Known]) -> Iterator[Check]:
+    """The rate along up; a tilt turns part of the level earth rate into it."""
+    reading, noise = still.over()
+    up, earth = still.up_now, known["earth_rate_up"]
+    after = float(truth_of(reading, triad) @ up)
+    if np.isfinite(after):
+        tilted = known["earth_rate_level"].number * known["position"].scatter
+        spread = (_noise_along(up, triad, noise), tilted, earth.scatter)
+        yield Check(
+            still.label,
+            "rate_up",
+            earth.number,
+            earth.scatter,
+            float(reading @ up),
+            after,
+            float(np.linalg.norm(spread)),
+        )
+
+
+def _noise_along(direction: Array, triad: Triad, sigma: Array) -> float:
+    """The noise of a compensated mean along a direction, from that of the three readings."""
+    weights = direction @ np.linalg.inv(triad.matrix)
+    return float(np.linalg.norm(np.where(weights == 0, 0.0, weights * sigma)))
+
+
+# ---- turns
+
+
+def _angle(
+    one: Recorded, levels: NoiseLevels, triad: Triad, known: Mapping[str, Known]
+) -> Iterator[Check]:
+    """The angle of a whole turn about its axis, with the earth's rate taken out.
+
+    The axis stands still in body and laboratory, so the earth's rate along it is the same all the
+    time: ω_e sinφ for an upright axis.
+    """
+    m, seconds = one.plan, one.blocks.seconds
+    assert m.angle is not None and m.angle_sigma is not None  # else it is refused
+    time = float(seconds.sum())
+    summed = (one.blocks.gyro * seconds[:, None]).sum(axis=0)
+    earth, sigma = _earth_along(m.axis, position_of(m, known["heading"].value), known)
+    after = float(truth_of(summed, triad, time) @ m.axis) - earth * time
+    if not np.isfinite(after):
+        return
+    noise = _noise_along(m.axis, triad, levels.of(m.name, "rest", GYRO) * np.sqrt(time))
+    yield Check(
+        m.name,
+        "angle",
+        m.angle,
+        m.angle_sigma,
+        float(summed @ m.axis) - earth * time,
+        after,
+        float(np.linalg.norm([noise, m.angle_sigma, sigma * time])),
+    )
+
+
+def _earth_along(
+    axis: Array, position: Position, known: Mapping[str, Known]
+) -> tuple[float, float]:
+    """The earth's rate along the axis of a turn, and its sigma, rad/s."""
+    up, level = known["earth_rate_up"], known["earth_rate_level"].number
+    lean = float(position.up @ axis)
+    upward, spread = up.number * lean, up.scatter * lean
+    if position.north is not None:
+        return upward + level * float(position.north @ axis), abs(spread)
+    # An unknown azimuth is a random direction.
+    across = level * np.sqrt(max(1 - lean**2, 0.0) / 2)
+    return upward, float(np.hypot(spread, across))

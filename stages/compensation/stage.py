@@ -1,0 +1,121 @@
+"""The samples with the errors taken out, and the check against what is known."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from inertial import tables
+from inertial.campaign import findings as found
+from inertial.campaign.estimates import by_mount
+from inertial.campaign.findings import Finding
+from inertial.campaign.masked_samples import Masks
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import Row, known_of, manoeuvres_of, performed_of, rows_of
+from inertial.campaign.solution import triad_of
+from inertial.tables.errors import Refusal
+from inertial.tables.parquet import Stream
+from inertial.tables.stage import Pieces, Stage
+from stages.compensation.checks import checks, missing, table_of
+from stages.compensation.compensated_samples import CompensatedStream
+from stages.compensation.correction import Correction, mounted
+from stages.compensation.envelope import envelope
+
+ALREADY = Finding(
+    id="compensation/already_compensated/campaign",
+    cause="already_compensated",
+    sentence="The campaign says that its logs are compensated already, so they are not compensated"
+    " again.",
+    consequence="The parameters are what the first compensation has left over, not those of the"
+    " IMU.",
+    action="No sample is compensated. Give the raw logs, or remove compensated from campaign.yaml.",
+    severity=3,
+)
+
+
+def compensation(
+    samples: Stream,
+    traces: pd.DataFrame,
+    masks: pd.DataFrame,
+    segments: pd.DataFrame,
+    blocks: pd.DataFrame,
+    campaign: pd.DataFrame,
+    manoeuvres: pd.DataFrame,
+    performed: pd.DataFrame,
+    noise: pd.DataFrame,
+    known: pd.DataFrame,
+    accelerometer_parameters: pd.DataFrame,
+    gyroscope_parameters: pd.DataFrame,
+    provenance: Mapping[str, Mapping[str, Any]],
+) -> Pieces:
+    """The tables compensated, checks, compensated_traces and findings, in pieces.
+
+    Raises
+    ------
+    Refusal
+        where the samples are themselves the output of a compensation
+    """
+    maker = provenance["samples"]["stage"]
+    if maker != "decode":
+        raise Refusal(
+            str(samples.path),
+            "",
+            f"samples made by {maker}",
+            "samples as decode makes them from the logs, not compensated",
+            "give the samples of decode: a second compensation would take out the errors twice",
+        )
+    (facts,) = rows_of(campaign)
+    if facts["compensated"]:
+        yield "findings", found.table_of([ALREADY])
+        return
+    given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
+    plan = manoeuvres_of(manoeuvres)
+    corrections: dict[str, Correction] = {}
+    rows: list[Row] = []
+    for suffix, own in by_mount(plan):
+        correction = Correction(
+            triad_of(accelerometer_parameters, f"joint{suffix}"),
+            triad_of(gyroscope_parameters, f"joint{suffix}"),
+        )
+        corrections[own[0].mount] = correction
+        told = checks(blocks, own, done, levels, given, correction)
+        rows += [check.row(suffix) for check in told]
+        if correction.accelerometer is None:
+            rows.append(
+                missing(accelerometer_parameters, f"joint{suffix}", "accelerometer", suffix)
+            )
+        if correction.gyro is None:
+            rows.append(missing(gyroscope_parameters, f"joint{suffix}", "gyro", suffix))
+    yield "checks", table_of(rows)
+    compensated = CompensatedStream(
+        samples.path, mounted(plan, segments, corrections), Masks(masks)
+    )
+    for batch in compensated.columns([column.name for column in tables.COMPENSATED.columns]):
+        yield "compensated", batch
+    yield "compensated_traces", envelope(compensated, traces)
+
+
+STAGE = Stage(
+    compensation,
+    reads={
+        "samples": tables.SAMPLES,
+        "traces": tables.TRACES,
+        "masks": tables.MASKS,
+        "segments": tables.SEGMENTS,
+        "blocks": tables.BLOCKS,
+        "campaign": tables.CAMPAIGN,
+        "manoeuvres": tables.MANOEUVRES,
+        "performed": tables.PERFORMED,
+        "noise": tables.NOISE,
+        "known": tables.KNOWN,
+        "accelerometer_parameters": tables.PARAMETERS,
+        "gyroscope_parameters": tables.PARAMETERS,
+    },
+    streams=("samples",),
+    writes={
+        "compensated": tables.COMPENSATED,
+        "checks": tables.CHECKS,
+        "compensated_traces": tables.TRACES,
+        "findings": tables.FINDINGS,
+    },
+)

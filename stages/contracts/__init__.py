@@ -1,1 +1,0 @@
-"""What passes a border: tables, campaign and settings, errors, the command line of a stage."""

@@ -1,0 +1,1 @@
+"""Which physical effects the simulation lacks, by name."""

@@ -1,0 +1,350 @@
+"""The search for oscillations: in which channels, periodic in time or in angle."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.campaign.steady_residuals import SteadyTurn
+from inertial.estimation.periodic_in_angle import Orders, Ripple, fitted, grid, search, sigmas_seen
+from inertial.estimation.periodic_in_time import (
+    TELLS,
+    Taken,
+    energy,
+    in_angle,
+    in_time,
+    line_at,
+    near,
+    phasor,
+    without_line,
+)
+from inertial.physics.vectors import cross
+from inertial.tables import AXES
+from stages.criticism.oscillation_fits import (
+    ECCENTRIC,
+    Oscillating,
+    Ringing,
+    Stands,
+    best_orders,
+    in_all,
+    in_turns,
+    ringing,
+    shortest,
+    together,
+)
+
+# ---- What the other axes of the case see of an oscillation about one of them.
+
+Array = NDArray[np.float64]
+
+TABLE = "table"  # the axis that the table turns about
+CLEAR = 5.0  # sigmas from which an axis has more than coupling
+TERM = 1e-4  # rad, 20″: what a cross term may be off
+
+
+@dataclass(frozen=True)
+class Coupled:
+    """An oscillation in the gyro of another axis; rad/s, rms over the turns of the amplitudes.
+
+    read : as the gyro reads it; expected : by its cross term; left : with M undone, and what noise
+    would leave of it;
+    tipping : what the rate of the table brings, into which the case tips as it oscillates; more :
+    whether there is more than the cross term brings
+    """
+
+    axis: str
+    read: float
+    expected: float
+    left: float
+    left_sigma: float
+    tipping: float
+    more: bool
+
+
+def direction(turn: SteadyTurn, axis: str) -> Array:
+    """The unit vector of an axis of the case, or of the table's, (3,)."""
+    return turn.about if axis == TABLE else np.eye(3)[AXES.index(axis)]
+
+
+def coupled(
+    turns: Sequence[SteadyTurn], axis: str, frequencies: Mapping[str, float]
+) -> list[Coupled]:
+    """The other axes; of an oscillation about the table's axis none, for it differs by turn."""
+    heard = [turn for turn in turns if turn.name in frequencies]
+    if axis == TABLE or not heard:
+        return []
+    source = AXES.index(axis)
+    truth = np.array([_phasors(turn, frequencies[turn.name]) for turn in heard])
+    matrix = heard[0].matrix
+    read = _rms(truth @ matrix.T)
+    size = _rms(truth)
+    noise = np.array([[_sigma(turn, i) for i in range(len(AXES))] for turn in heard])
+    # What noise leaves of the mean square of k amplitudes scatters by 2 σ²/√k.
+    sigma = np.sqrt(2 * np.mean(noise**2, axis=0) / np.sqrt(len(heard)))
+    found = []
+    for i, name in enumerate(AXES):
+        if i == source:
+            continue
+        tips = [
+            _tipping(turn, truth[k, source], frequencies[turn.name], source, i)
+            for k, turn in enumerate(heard)
+        ]
+        left = float(np.sqrt(max(size[i] ** 2 - 2 * np.mean(noise[:, i] ** 2), 0.0)))
+        found.append(
+            Coupled(
+                name,
+                float(read[i]),
+                float(abs(matrix[i, source]) * size[source]),
+                left,
+                float(sigma[i]),
+                float(_rms(np.array(tips))),
+                bool(left > max(np.sqrt(CLEAR) * sigma[i], TERM * size[source])),
+            )
+        )
+    return found
+
+
+def _phasors(turn: SteadyTurn, frequency: float) -> NDArray[np.complex128]:
+    share = float(np.sinc(frequency * turn.step)) if turn.averaged else 1.0
+    parts = [phasor(record, 1 / turn.step, frequency) / share for record in turn.truth.T]
+    return np.array(parts, dtype=np.complex128)
+
+
+def _sigma(turn: SteadyTurn, i: int) -> float:
+    """Standard deviation of either part of an amplitude, rad/s."""
+    return turn.sigma(np.eye(3)[i]) * float(np.sqrt(2 / len(turn.truth)))
+
+
+def _tipping(turn: SteadyTurn, size: complex, frequency: float, source: int, i: int) -> float:
+    """The case tips by size/(2πf), and so has a share of the table's rate about a third axis."""
+    across = cross(np.eye(3)[source], turn.about)[i]
+    rate = 0.0 if np.isnan(turn.rate) else turn.rate
+    return float(abs(size) / (2 * np.pi * frequency) * abs(rate * across))
+
+
+def _rms(values: NDArray[np.complex128] | Array) -> Array:
+    """Root mean square over the turns."""
+    return np.asarray(np.sqrt(np.mean(np.abs(values) ** 2, axis=0)))
+
+
+# ---- To what an oscillation is bound: time or the table's angle; and about which axis it arises.
+
+TOLERANCE = 1e-5  # rad, 2″: at what angle a table starts a turn
+WIDTH = 0.5  # bins by which an order may be off where it was seen first
+FREER = 9.0  # drop of chi-squared that an order other than 1 must bring beside 1
+REFINED = 30.0  # drop of chi-squared from which a turn tells its frequency itself
+PERIODS = 3.0  # in a turn, without which it does not
+TIME, ANGLE = "time", "angle"
+
+
+@dataclass(frozen=True)
+class Bound:
+    """An oscillation over all turns.
+
+    bound : to time or to the angle, whichever is likelier; axis : x, y or z of the case, or the
+    table's, about which it arises; log_odds : natural logarithm of its odds against the other
+    frequencies : Hz, in each turn; oscillating : as one in time; ripple : as one against the angle,
+    None where no angle is known; shown : its line in each turn; through : the other axes of the
+    case; eccentric : whether of the order 1
+    """
+
+    bound: str
+    axis: str
+    log_odds: float
+    p_value: float
+    frequencies: Mapping[str, float]
+    oscillating: Oscillating
+    ripple: Ripple | None
+    shown: Sequence[Ringing]
+    through: Sequence[Coupled]
+
+    @property
+    def told(self) -> bool:
+        """Whether the data tell time from angle."""
+        return self.log_odds >= TELLS
+
+
+def explained(seed: Stands, turns: Sequence[SteadyTurn], lowest: float, level: float) -> Bound:
+    """Both explanations of what stands out, and the better one."""
+    angle_score, axis_of_ripple, ripple = _in_angle(seed, turns)
+    time_score, axis, lines = _in_time(seed, turns, lowest)
+    rates = [turn for turn in turns if np.isfinite(turn.rate)]
+    bound, frequencies = TIME, {one.manoeuvre: one.line.frequency for one in lines}
+    if ripple is not None and angle_score > time_score:
+        bound, axis = ANGLE, axis_of_ripple
+        frequencies = {turn.name: turn.hertz(ripple.order) for turn in rates}
+        lines = _lines(turns, axis, frequencies, lowest, fixed=True)
+    clear = _clear(lines, turns, level)
+    oscillating = together(clear)
+    if bound == TIME:
+        own = {one.manoeuvre: one.line.frequency for one in clear}
+        frequencies = {turn.name: own.get(turn.name, oscillating.frequency) for turn in turns}
+    names = [one.manoeuvre for one in clear]
+    return Bound(
+        bound,
+        axis,
+        abs(angle_score - time_score),
+        seed.p_value,
+        frequencies,
+        oscillating,
+        ripple,
+        lines if bound == ANGLE else clear,
+        coupled([turn for turn in turns if turn.name in names], axis, frequencies),
+    )
+
+
+def _in_angle(seed: Stands, turns: Sequence[SteadyTurn]) -> tuple[float, str, Ripple | None]:
+    """The best score of one order about any axis, the axis, and the ripple."""
+    known = [turn for turn in turns if np.isfinite(turn.rate)]
+    order = seed.order
+    if order is None and np.isfinite(seed.turn.rate):
+        order = seed.frequency / seed.turn.hertz(1.0)
+    best: tuple[float, str, Ripple | None] = (-np.inf, TABLE, None)
+    if order is None:
+        return best
+    for axis in (TABLE, *AXES):
+        courses = [turn.course(direction(turn, axis)) for turn in known]
+        width = WIDTH / max(one.turned for one in courses)
+        ripple = fitted(courses, order, width)
+        trials = float(len(grid(courses)) * (1 + len(AXES)))
+        if axis == TABLE and abs(ripple.order - ECCENTRIC) < 2 * width:
+            eccentric = fitted(courses, ECCENTRIC, 0.0)
+            if ripple.drop - eccentric.drop < FREER:
+                ripple, trials = eccentric, 1.0
+        drop = ripple.drop + ripple.apart - ripple.beyond(TOLERANCE)
+        score = in_angle(max(drop, ripple.drop), trials)
+        if score > best[0]:
+            best = (score, axis, ripple)
+    return best
+
+
+def _in_time(
+    seed: Stands, turns: Sequence[SteadyTurn], lowest: float
+) -> tuple[float, str, list[Ringing]]:
+    """The best score of one frequency about any axis, the axis, and its line in each turn."""
+    tried = {seed.frequency}
+    if seed.order is not None:
+        tried = {round(turn.hertz(seed.order), 6) for turn in turns if np.isfinite(turn.rate)}
+    best: tuple[float, str, list[Ringing]] = (-np.inf, TABLE, [])
+    bins = max(turn.seconds / turn.step for turn in turns)
+    for frequency in sorted(tried):
+        everywhere = {turn.name: frequency for turn in turns}
+        for axis in (*AXES, TABLE):
+            lines = _lines(turns, axis, everywhere, lowest)
+            if not lines:
+                continue
+            known = [one for one in lines if one.drop > REFINED]
+            one = together(known).frequency if known else frequency
+            same = _lines(turns, axis, dict.fromkeys(everywhere, one), lowest, fixed=True)
+            score = in_time(
+                np.array([ring.drop for ring in lines]),
+                np.array([ring.line.amplitude for ring in same]),
+                np.array([ring.drop for ring in same]),
+                bins * (1 + len(AXES)),
+            )
+            if score > best[0]:
+                best = (score, axis, lines)
+    return best
+
+
+def _lines(
+    turns: Sequence[SteadyTurn],
+    axis: str,
+    frequencies: Mapping[str, float],
+    lowest: float,
+    fixed: bool = False,
+) -> list[Ringing]:
+    """The line of each turn at its frequency, or near it; nothing from half the sample rate on."""
+    found = []
+    for turn in turns:
+        frequency, rate = frequencies.get(turn.name, np.inf), 1 / turn.step
+        along = direction(turn, axis)
+        if frequency >= rate / 2 or not turn.tells(along):
+            continue
+        record, sigma = turn.along(along), turn.sigma(along)
+        drop = energy(record, rate, frequency) / sigma**2
+        line = line_at(record, rate, lowest, frequency, 1.0)
+        if drop > REFINED and not fixed and frequency * turn.seconds > PERIODS:
+            line = near(record, rate, lowest, frequency, 1.0)
+            drop = energy(record, rate, line.frequency) / sigma**2
+        searched = min(len(record) * float(np.exp(-min(drop / 2, 700.0))), 1.0)
+        found.append(Ringing(turn.name, axis, turn.whole(replace(line, p_value=searched)), drop))
+    return found
+
+
+def _clear(
+    lines: Sequence[Ringing], turns: Sequence[SteadyTurn], level: float
+) -> Sequence[Ringing]:
+    """The turns that show a line by themselves; all where none does."""
+    trials = len(turns) * len(AXES)
+    return [one for one in lines if one.line.p_value * trials < level] or lines
+
+
+# ---- The oscillations of all turns of one mount, one after another: bound to time or to the
+# angle.
+
+MOST = 6  # oscillations that are told apart
+SEARCHES = 4  # in one turn, in all turns, orders, the order 1: each has its share of the chance
+
+
+@dataclass(frozen=True)
+class Heard:
+    """What was found in the turns of one mount.
+
+    lines : the oscillations in the order in which they were found
+    strongest : the strongest line in time of each axis and turn before any was taken out
+    orders : of the last search, what each says; None without a turn whose angle is known
+    left : of the last search, what stood out most in time, the order 1, and the best other order
+    seen : (m,), from how many sigmas on an order is seen
+    more : whether the last search would have found another one, but enough were found
+    """
+
+    turns: Sequence[SteadyTurn]
+    lines: Sequence[Bound]
+    strongest: Sequence[Ringing]
+    orders: Orders | None
+    left: Sequence[Stands]
+    seen: Array
+    more: bool
+
+
+def heard(turns: Sequence[SteadyTurn], level: float, lowest: float) -> Heard:
+    """Find the oscillation that stands out most, take it out, and search again.
+
+    level : accepted chance of finding any where there is none; lowest : Hz, from which on lines in
+    time are sought
+    """
+    share = level / SEARCHES
+    left, taken = list(turns), {turn.name: list[Taken]() for turn in turns}
+    lines: list[Bound] = []
+    first: list[Ringing] = []
+    while True:
+        rings = [ring for turn in left for ring in ringing(turn, lowest, taken[turn.name])]
+        first = first if lines else rings
+        turning = [turn for turn in left if np.isfinite(turn.rate)]
+        orders = search([turn.course(turn.about) for turn in turning]) if turning else None
+        against = [] if orders is None else best_orders(turning, orders, taken)
+        every = [*in_turns(rings, left), *in_all(left, taken, lowest), *against]
+        clear = [one for one in every if one.p_value < share]
+        if not clear or len(lines) == MOST:
+            break
+        found = explained(max(clear, key=lambda one: one.drop), left, lowest, share)
+        lines.append(found)
+        left = [_without(turn, found, taken[turn.name]) for turn in left]
+    seen = np.zeros(0) if orders is None else sigmas_seen(orders, shortest(turning), share)
+    return Heard(turns, lines, first, orders, every, seen, bool(clear))
+
+
+def _without(turn: SteadyTurn, found: Bound, taken: list[Taken]) -> SteadyTurn:
+    """A turn without an oscillation: about each axis as large, and in such phase, as it is."""
+    frequency = found.frequencies.get(turn.name)
+    if frequency is None:
+        return turn
+    parts = [without_line(record, 1 / turn.step, frequency) for record in turn.truth.T]
+    taken.append(Taken(frequency, max(part.amplitude for part in parts)))
+    less = [
+        record - part.amplitude * part.shape
+        for record, part in zip(turn.truth.T, parts, strict=True)
+    ]
+    return replace(turn, truth=np.column_stack(less))

@@ -1,0 +1,139 @@
+"""Drift of the biases of a sensor beside the named effects: random walk and half waves."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from inertial.campaign.equations import USUAL, Campaign
+from inertial.estimation.accelerometers import WALK as LARGEST_OF_ACCELEROMETERS
+from inertial.estimation.accelerometers import Rest
+from inertial.estimation.gyroscope_rows import Still, Turn
+from inertial.estimation.gyroscopes import WALK as LARGEST_OF_GYROS
+from inertial.estimation.least_squares import LIKELIER
+from inertial.estimation.random_walk import Times, likeliest, sigma_of, times_of
+from inertial.physics.drift import without_clock
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.motion import Motion
+
+# ---- By how much the biases of a sensor walk at random, beside the effects that are named.
+
+SENSORS = ("gyro", "accel")
+
+
+def walks_beside(campaign: Campaign, effects: Sequence[Effect]) -> tuple[float, float]:
+    """The likeliest random walks of gyros and accelerometers; 0 where none is asked for."""
+    found = [_walk(campaign, sensor, effects) for sensor in SENSORS]
+    return found[0], found[1]
+
+
+def slight(campaign: Campaign) -> tuple[float, float]:
+    """Walks that take a bias three times as far in the whole campaign as the noise of a stretch."""
+    times = [_times(campaign, sensor) for sensor in SENSORS]
+    found = [0.0 if one is None else 3 * one.noise / float(np.sqrt(one.span)) for one in times]
+    return found[0], found[1]
+
+
+def _walk(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> float:
+    times = _times(campaign, sensor)
+    if times is None:
+        return 0.0
+    deviance = _deviance(campaign, sensor, effects)
+    alone = deviance(0.0)
+    size, smallest = likeliest(deviance, times.walks, alone)
+    return size if alone - smallest >= LIKELIER else 0.0
+
+
+@dataclass(frozen=True)
+class Walk:
+    """A random walk of the biases of a sensor, and its sigma, rad/s/√s or m/s²/√s."""
+
+    size: float
+    sigma: float
+
+
+def walks_with_sigmas(campaign: Campaign, effects: Sequence[Effect]) -> dict[str, Walk]:
+    """The random walks that the equations of a campaign have, by sensor."""
+    return {
+        sensor: Walk(size, sigma_of(_deviance(campaign, sensor, effects), size))
+        for sensor, size in zip(SENSORS, campaign.solution.walks, strict=True)
+        if size
+    }
+
+
+def _deviance(
+    campaign: Campaign, sensor: str, effects: Sequence[Effect]
+) -> Callable[[float], float]:
+    equations = campaign.walked(sensor, effects, USUAL)
+
+    def deviance(size: float) -> float:
+        system = equations(size)
+        assert system is not None  # else it has no times
+        return system.solve_shared().deviance
+
+    return deviance
+
+
+def _times(campaign: Campaign, sensor: str) -> Times | None:
+    """What the times of a sensor's stretches can tell of a walk; None where they tell nothing."""
+    parts: Sequence[Still | Turn | Rest]
+    if sensor == "gyro":
+        solved, largest = campaign.solution.gyro, LARGEST_OF_GYROS
+        rests: Sequence[Still | Rest] = campaign.inputs.rests
+        parts = [*rests, *campaign.inputs.turns]
+    else:
+        solved, largest = campaign.solution.accelerometer, LARGEST_OF_ACCELEROMETERS
+        parts = rests = [rest for _, rest, _ in campaign.rests]
+    if solved is None or not rests:
+        return None
+    stretches = [part.stretch for part in parts if part.stretch is not None]
+    return times_of(stretches, float(np.nanmedian([rest.sigma for rest in rests])), largest)
+
+
+# ---- A drift that could be anything: half waves over the campaign, of one sensor.
+
+HALF_WAVES = 8  # in the campaign: the fastest that is told from a jump
+STRENGTH = {"gyro": ("rad/s", 5e-6), "accel": ("m/s²", 1e-4)}  # a degree per hour, 10 µg
+
+
+class Course(Effect):
+    """Reading += c cos(k π t/T): no physical effect, but what a drift without a law is made of.
+
+    It takes the place of several effects that together would only imitate it.
+    """
+
+    cause = "the bias drifts, by no law of the catalogue"
+    source = "Fourier, by cosines over the time of the campaign"
+    thinkable = 1e4
+
+    def __init__(self, sensor: str, half_waves: int) -> None:
+        unit, size = STRENGTH[sensor]
+        self.sensor, self.at = sensor, float(half_waves)
+        self.name = course_of(sensor)  # type: ignore[misc]
+        self.parameters = tuple(  # type: ignore[misc]
+            Parameter(f"c_{axis}", unit, size, f"of the {axis} reading") for axis in "xyz"
+        )
+        self.sizes = {"usual": size}  # type: ignore[misc]
+
+    def blind(self, motion: Motion) -> str:
+        return without_clock(motion)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        if without_clock(motion) or self.at is None:
+            return reading
+        first, last = motion.time.min(), motion.time.max()
+        phase = np.pi * self.at * (motion.time - first) / max(last - first, 1.0)
+        wave = np.outer(np.cos(phase), values)
+        if self.sensor == "gyro":
+            return replace(reading, gyro=reading.gyro + wave)
+        return replace(reading, accel=reading.accel + wave)
+
+
+def course_of(sensor: str) -> str:
+    """The name of the free course of a sensor."""
+    return f"{sensor}_drift"
+
+
+def courses(sensor: str) -> Iterator[Course]:
+    """The half waves of a sensor."""
+    return (Course(sensor, k) for k in range(1, HALF_WAVES + 1))

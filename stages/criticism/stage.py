@@ -1,0 +1,159 @@
+"""Which physical effects the simulation lacks, by name."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+import pandas as pd
+
+from inertial import tables
+from inertial.campaign.equations import Campaign, campaign_of
+from inertial.campaign.estimates import by_mount
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import (
+    Known,
+    clocks_of,
+    known_of,
+    manoeuvres_of,
+    performed_of,
+    rows_of,
+    share_a_clock,
+)
+from inertial.campaign.solution import Solution, solution_of
+from inertial.campaign.steady_residuals import steady_turns
+from inertial.effects import CATALOGUE
+from inertial.tables.parquet import Stream
+from inertial.tables.stage import Stage, Tables
+from stages.criticism import noise_effects, structure_rows, temperature_findings
+from stages.criticism.judging import SENSORS, judge
+from stages.criticism.oscillation_removal import without_lines
+from stages.criticism.oscillation_search import heard
+from stages.criticism.oscillations import LinesOfTurns
+from stages.criticism.random_walks import walks_with_sigmas
+from stages.criticism.rows import Rows
+from stages.criticism.splitting_manoeuvres import Foreseen, Further, further
+from stages.criticism.structure import tested
+from stages.criticism.unexplained import unexplained
+
+Row = dict[str, Any]
+
+PLACES = ("blocks", "spectrum", "noise", "quality")
+BLOCKS_SHARE = 0.9  # of the accepted chance of a false name; the rest is that of the spectrum
+WRITES = {
+    "scores": tables.SCORES,
+    "effects": tables.EFFECTS,
+    "blind_spots": tables.BLIND_SPOTS,
+    "lines": tables.LINES,
+    "walks": tables.WALKS,
+    "structures": tables.STRUCTURES,
+    "structure_points": tables.STRUCTURE_POINTS,
+    "findings": tables.CAUSES,
+}
+
+
+def criticism(
+    simulated: Stream,
+    blocks: pd.DataFrame,
+    manoeuvres: pd.DataFrame,
+    performed: pd.DataFrame,
+    noise: pd.DataFrame,
+    known: pd.DataFrame,
+    clocks: pd.DataFrame,
+    accelerometer_parameters: pd.DataFrame,
+    accelerometer_positions: pd.DataFrame,
+    gyroscope_parameters: pd.DataFrame,
+    gyroscope_positions: pd.DataFrame,
+    accelerometer_fit: pd.DataFrame,
+    gyroscope_fit: pd.DataFrame,
+    *,
+    level: float,
+    lowest_hz: float,
+) -> Tables:
+    """Scores of every effect of the catalogue, its estimates, the lines, and the findings.
+
+    `level` is the accepted chance of naming anything where nothing is missing.
+    """
+    given, done, clock = known_of(known), performed_of(performed), clocks_of(clocks)
+    averaged = {row["log"] for row in rows_of(clocks) if row["clock"] == "GPS"}
+    levels, shared = NoiseLevels(noise), share_a_clock(clocks)
+    sought = {place: [e for e in CATALOGUE.values() if e.sought_in == place] for place in PLACES}
+    in_blocks = sought["blocks"]
+    others = [*sought["noise"], *sought["quality"]]
+    made: dict[str, list[Row]] = {name: [] for name in WRITES}
+    for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
+        solution = solution_of(
+            (accelerometer_parameters, gyroscope_parameters),
+            (accelerometer_positions, gyroscope_positions),
+            given,
+            suffix,
+            (accelerometer_fit, gyroscope_fit),
+        )
+        turns = steady_turns(simulated, plan, solution.gyro, clock, averaged)
+        found = heard(turns, level * (1 - BLOCKS_SHARE), lowest_hz)
+        quiet = without_lines(blocks, turns, found.lines)
+        campaign = campaign_of(quiet, plan, done, levels, given, solution, shared)
+        judged = judge(campaign, in_blocks, level * BLOCKS_SHARE, levels.degrees)
+        left = tested(judged.campaign, judged.effects, levels.degrees)
+        judged = judged.demoted([sensor for sensor in SENSORS if left.of(sensor)])
+        walks = walks_with_sigmas(judged.campaign, judged.effects)
+        more = {
+            name: partial(_with, make, (levels, given, solution, shared))
+            for name, make in further(plan, done, quiet).items()
+        }
+        rows = Rows(campaign, judged, Foreseen(judged, more), suffix)
+        lines = LinesOfTurns(found, suffix)
+        made["scores"] += [*rows.scores(), *lines.scores()]
+        made["scores"] += noise_effects.scores(others, walks.get("gyro"))
+        for sensor, walk in walks.items():
+            structured = bool(left.of(sensor))
+            made["findings"] += noise_effects.findings(
+                sensor, walk, judged.instead, suffix, structured=structured
+            )
+            made["walks"].append(noise_effects.walk_row(f"joint{suffix}", sensor, walk))
+        made["structures"] += structure_rows.rows(left, f"joint{suffix}")
+        made["structure_points"] += structure_rows.pictures(left, f"joint{suffix}")
+        made["effects"] += [*rows.effects(), *lines.effects()]
+        made["blind_spots"] += [*rows.blind_spots(), *lines.blind_spots()]
+        made["lines"] += lines.lines()
+        made["findings"] += rows.findings()
+        made["findings"] += lines.findings()
+        made["findings"] += structure_rows.findings(left, judged.consistent(), suffix)
+        made["findings"] += unexplained(judged, suffix)
+        made["findings"] += temperature_findings.findings(blocks, plan, level, suffix)
+    return {
+        name: pd.DataFrame(rows, columns=[column.name for column in table.columns])
+        if rows
+        else table.empty()
+        for (name, table), rows in zip(WRITES.items(), made.values(), strict=True)
+    }
+
+
+def _with(
+    make: Callable[[], Further],
+    equal: tuple[NoiseLevels, Mapping[str, Known], Solution, bool],
+) -> Campaign:
+    """The campaign with a further manoeuvre, all else equal."""
+    one = make()
+    return campaign_of(one.blocks, one.plan, one.performed, *equal)
+
+
+STAGE = Stage(
+    criticism,
+    reads={
+        "simulated": tables.SIMULATED,
+        "blocks": tables.BLOCKS,
+        "manoeuvres": tables.MANOEUVRES,
+        "performed": tables.PERFORMED,
+        "noise": tables.NOISE,
+        "known": tables.KNOWN,
+        "clocks": tables.CLOCKS,
+        "accelerometer_parameters": tables.PARAMETERS,
+        "accelerometer_positions": tables.POSITIONS,
+        "gyroscope_parameters": tables.PARAMETERS,
+        "gyroscope_positions": tables.POSITIONS,
+        "accelerometer_fit": tables.FIT,
+        "gyroscope_fit": tables.FIT,
+    },
+    streams=("simulated",),
+    writes=WRITES,
+)

@@ -1,0 +1,88 @@
+"""A log of columns."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from inertial.tables import AXES
+from inertial.text.campaign_units import CHANNEL_UNITS
+from stages.decode.decoded import Decoded, Reals, look_ahead
+from stages.decode.table_angle import ANGLE_UNITS
+from stages.formats import columns
+from stages.formats.column_layout import ticks_per_second
+
+ICE_POINT = 273.15  # K
+
+
+class ColumnLog:
+    """A log of columns, text or not: its own time or none, and values in units or counts."""
+
+    def __init__(self, name: str, path: Path, layout: Mapping[str, Any]) -> None:
+        self.name = name
+        self.path = path
+        self._layout = layout
+        time = layout.get("time")
+        self.clock = "none" if time is None else "own"
+        self._ticks = 1.0 if time is None else ticks_per_second(layout)
+        self._first, self.interval, self.step = self._beginning()
+
+    def _beginning(self) -> tuple[float, float | None, float | None]:
+        """The time of the first sample in ticks; median and mean sample interval, s."""
+        time = self._layout.get("time")
+        if time is None:
+            return 0.0, None, None
+        if time.get("column") is None:  # rows are counted from the first, though it be refused
+            return 0.0, 1 / self._ticks, 1 / self._ticks
+        readings = columns.read(self.path, self._layout)
+        first, median, mean = look_ahead(self._ticks_of_one_sensor(readings))
+        if median is None or mean is None:
+            return first or 0.0, None, None
+        return first or 0.0, median / self._ticks, mean / self._ticks
+
+    def _ticks_of_one_sensor(self, readings: Iterable[columns.Reading]) -> Iterator[Reals]:
+        """The times of one sensor, for two may come in rows of their own."""
+        for reading in readings:
+            rows = reading.records
+            sensor = rows.accelerometer if "accelerometer" in self._layout else rows.gyro
+            if rows.ticks is not None:
+                yield rows.ticks[np.isfinite(sensor).any(axis=1)]
+
+    def decoded(self, origin: int) -> Iterator[Decoded]:
+        """The log, piece by piece; `origin` is none of its business."""
+        for reading in columns.read(self.path, self._layout):
+            rows = reading.records
+            samples = {
+                "record": rows.record,
+                "offset": rows.offset,
+                "line": rows.line,
+                "mean_of": rows.mean_of,
+                "label": rows.label,
+                **self._triad("accel", "accelerometer", rows.accelerometer),
+                **self._triad("gyro", "gyro", rows.gyro),
+            }
+            if rows.ticks is not None:
+                samples["time"] = (rows.ticks - self._first) / self._ticks
+            if rows.table_angle is not None:
+                unit = ANGLE_UNITS[self._layout["table_angle"]["unit"]]
+                samples["table_angle"] = rows.table_angle * unit
+            if rows.temperature is not None:
+                above = ICE_POINT if self._layout["temperature"]["unit"] == "degC" else 0.0
+                samples["temperature"] = rows.temperature + above
+            yield Decoded(samples, reading.refused, reading.account)
+
+    def _triad(self, sensor: str, key: str, values: Reals) -> dict[str, Reals]:
+        triad = self._layout.get(key)
+        if triad is None:
+            return {}
+        size = CHANNEL_UNITS[triad["unit"]] / (triad.get("counts_per_unit") or 1)
+        return {f"{sensor}_{axis}": values[:, place] * size for place, axis in enumerate(AXES)}
+
+    def began(self, origin: int, *, absolute: bool) -> float:
+        """What its samples' time 0 is by its own clock, which is the encoder's too, s."""
+        return self._first / self._ticks
+
+    def epoch(self, origin: int) -> dict[str, Any]:
+        """Nothing: its clock is its own."""
+        return {"epoch_gps": None, "recorded_on": None}

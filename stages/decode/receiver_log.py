@@ -1,0 +1,105 @@
+"""A log of a NovAtel receiver."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.tables.errors import Refusal
+from stages.decode.decoded import Decoded, Reals, look_ahead
+from stages.formats.content import Content, content_of, refuse_compressed
+from stages.formats.gps_time import NANOSECONDS, utc
+
+if TYPE_CHECKING:
+    from stages.formats import novatel
+
+
+class ReceiverLog:
+    """A log of a NovAtel receiver: GPS time, and increments in counts.
+
+    Raises
+    ------
+    Refusal
+        where the file is something else, such as a compressed log
+    """
+
+    clock = "GPS"
+
+    def __init__(self, name: str, path: Path, layout: Mapping[str, Any]) -> None:
+        _refuse_other_than_messages(path)
+        self.name = name
+        self.path = path
+        self._axes: list[str] = layout["axes"]  # such as z, -y, x: the order and sign of the fields
+        self._counts = {
+            "accel": float(layout["accelerometer_count"]),  # m/s
+            "gyro": float(layout["gyro_count"]),  # rad
+        }
+        stamps = (reading.records.stamp for reading in _messages(path))
+        first, median, _ = look_ahead(stamps)
+        # ns since the start of GPS time
+        self.first = None if first is None else int(first)
+        self.interval = None if median is None else median / NANOSECONDS  # s
+        # Increments become rates with this interval, so it turns them back into increments.
+        self.step = self.interval
+
+    def decoded(self, origin: int) -> Iterator[Decoded]:
+        """The log, piece by piece, with time since `origin`, ns of GPS time."""
+        for reading in _messages(self.path):
+            records = reading.records
+            samples = {
+                "record": records.record,
+                "offset": records.offset,
+                "line": records.line,
+                # Whole numbers up to the difference: nothing of a nanosecond is lost.
+                "time": (records.stamp - origin) / NANOSECONDS,
+                "status": records.status,
+                **self._rates(records.counts),
+            }
+            types = np.bincount(records.imu[records.imu > 0])
+            told = frozenset(np.flatnonzero(types).tolist())
+            yield Decoded(samples, reading.refused, reading.account, told)
+
+    def _rates(self, counts: NDArray[np.int32]) -> dict[str, Reals]:
+        if self.interval is None:
+            return {}
+        rates: dict[str, Reals] = {}
+        fields = [(sensor, axis) for sensor in ("accel", "gyro") for axis in self._axes]
+        for field, (sensor, axis) in enumerate(fields):
+            sign = -1 if axis.startswith("-") else 1
+            rate_of_count = sign * self._counts[sensor] / self.interval
+            rates[f"{sensor}_{axis[-1]}"] = counts[:, field].astype(np.float64) * rate_of_count
+        return rates
+
+    def began(self, origin: int, *, absolute: bool) -> float:
+        """What its samples' time 0 is by the encoder's clock, s: GPS time, or 0."""
+        return origin / NANOSECONDS if absolute else 0.0
+
+    def epoch(self, origin: int) -> dict[str, Any]:
+        """Where time 0 lies in GPS time, and the day of the first sample."""
+        if self.first is None:
+            return {"epoch_gps": None, "recorded_on": None}
+        return {
+            "epoch_gps": origin / NANOSECONDS,
+            "recorded_on": utc(self.first).date().isoformat(),
+        }
+
+
+def _messages(path: Path) -> "Iterator[novatel.Reading]":
+    """The messages of a receiver; what reads them is loaded only where there are any."""
+    from stages.formats import novatel
+
+    return novatel.read(path)
+
+
+def _refuse_other_than_messages(path: Path) -> None:
+    refuse_compressed(path)
+    if (content := content_of(path)) is not Content.TEXT:
+        raise Refusal(
+            path.name,
+            "",
+            f"a file of {content.value}",
+            "messages of a NovAtel receiver, text or binary, as the instrument's format says",
+            "name the right log, or give its manoeuvres a format of kind columns",
+        )

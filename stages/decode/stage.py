@@ -1,0 +1,106 @@
+"""The logs become samples in SI units, body axes and one clock; no byte is left unaccounted for.
+
+Nothing is repaired here. A line that cannot be trusted is refused with the reason; what the samples
+themselves are worth is the business of `quality`.
+"""
+
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+import pyarrow as pa
+
+from inertial.tables import ACCOUNTS, CLOCKS, LOGS, REFUSED, SAMPLES
+from inertial.tables.parquet import BATCH_ROWS
+from inertial.tables.stage import Stage
+from stages.decode.column_log import ColumnLog
+from stages.decode.decoded import Decoded
+from stages.decode.log_files import path_of, refuse_grown
+from stages.decode.receiver_log import ReceiverLog
+from stages.decode.table_angle import TableAngle
+from stages.decode.table_rows import Pieces, account_of, refused_rows, sample_rows
+from stages.formats.account import Account
+from stages.formats.ahead import ahead
+from stages.formats.arrow_arrays import batch_of_rows
+
+
+def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
+    """The tables samples, refused, accounts and clocks in pieces, log after log.
+
+    Time is GPS time since the first sample of the campaign for the logs of a receiver; for a log of
+    columns it is the time since its own first sample. Increments become rates with the log's own
+    median sample interval; a log that has too few samples for one has no rates.
+
+    Raises
+    ------
+    Refusal
+        where a log is missing, or has not the columns that its layout names
+    """
+    rows = [row for batch in logs for row in batch.to_pylist()]
+    opened = [_open(row, raw) for row in rows]
+    table = TableAngle.told(rows, raw)
+    stamps = [log.first for log in opened if isinstance(log, ReceiverLog) and log.first is not None]
+    origin = min(stamps, default=0)
+    for log in opened:
+        size = log.path.stat().st_size
+        yield from _pieces_of(log, origin, table)
+        refuse_grown(log.path, size)
+    if table is not None:
+        yield from account_of(table.file, table.encoder.account, table.encoder.refused)
+
+
+def _open(row: Mapping[str, str], raw: list[Path]) -> ReceiverLog | ColumnLog:
+    """The log of one row of the table logs."""
+    layout = json.loads(row["layout"])
+    kind = ReceiverLog if layout["kind"] == "rawimus" else ColumnLog
+    return kind(row["log"], path_of(row["file"], raw), layout)
+
+
+def _pieces_of(log: ReceiverLog | ColumnLog, origin: int, table: TableAngle | None) -> Pieces:
+    """All four tables of one log."""
+    account = Account()
+    records = 0
+    ends: list[float | None] = []
+    imu_types: frozenset[int] = frozenset()
+    for decoded, samples in ahead(_decoded(log, origin, table)):
+        account.add_account(decoded.account)
+        imu_types |= decoded.imu_types
+        yield from refused_rows(log.name, decoded.refused)
+        for start in range(0, len(samples), BATCH_ROWS):
+            yield "samples", samples.slice(start, BATCH_ROWS)
+        if len(samples):
+            records += len(samples)
+            ends = [*ends[:1], samples["time"][0].as_py(), samples["time"][-1].as_py()]
+    yield from account_of(log.name, account, [])
+    clock = {
+        "log": log.name,
+        "clock": log.clock,
+        **log.epoch(origin),
+        "from_s": ends[0] if ends else None,
+        "to_s": ends[-1] if ends else None,
+        "records": records,
+        "interval": log.interval,
+        "step": log.step,
+        "imu_types": " ".join(map(str, sorted(imu_types))) or None,
+    }
+    yield "clocks", batch_of_rows([clock], CLOCKS.schema)
+
+
+def _decoded(
+    log: ReceiverLog | ColumnLog, origin: int, table: TableAngle | None
+) -> Iterator[tuple[Decoded, pa.RecordBatch]]:
+    """A log, piece by piece, and the rows of the table samples."""
+    for decoded in log.decoded(origin):
+        if table is not None and "time" in decoded.samples:
+            began = log.began(origin, absolute=table.absolute)
+            decoded.samples["table_angle"] = table.at(decoded.samples["time"] + began)
+        yield decoded, sample_rows(log.name, decoded.samples)
+
+
+STAGE = Stage(
+    decode,
+    reads={"logs": LOGS},
+    streams=("logs",),
+    files=("raw",),
+    writes={"samples": SAMPLES, "refused": REFUSED, "accounts": ACCOUNTS, "clocks": CLOCKS},
+)

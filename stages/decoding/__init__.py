@@ -1,1 +1,0 @@
-"""Logs of every kind as samples in SI units, body axes and one clock."""

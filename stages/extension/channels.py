@@ -1,0 +1,169 @@
+"""What each channel by itself says of the effects: its means over rests, and over turns.
+
+The blocks of a turn mix the channels, for the angle of each is known from them alone. So a channel
+is judged by its mean reading of every stretch, less what the joint result predicts,
+
+    gyro at rest:           reading − (M ω + b)
+    gyro, a whole turn:     (Σ reading τ − M (u α + Σ ω_earth τ)) / T − b
+    accelerometer:          reading − (M f + b), at rest, or over some blocks of a turn
+
+in proportion to changes of its row of M and of its bias, to the effects, and to the errors of the
+tilt, of the azimuth, of the angle of the turn, of gravity and of the earth's rate, each with its
+known sigma; where the bias walks, that too. What happens within a turn of a gyro is not in it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.campaign.equations import Campaign
+from inertial.campaign.rate_segments import Recorded
+from inertial.estimation.gyroscope_rows import Position, Turn, level_names, level_of
+from inertial.physics.effect import Effect, Truth
+from inertial.physics.forward import Triad, signatures, truth_of
+from inertial.physics.motion import Motion, level_axes, turned_all
+from inertial.physics.vectors import cross
+
+Array = NDArray[np.float64]
+Errors = dict[tuple[str, str], tuple[Array, float]]  # what the readings change by (3,), and sigma
+
+
+@dataclass(frozen=True)
+class Mean:
+    """The mean readings of three channels over a stretch.
+
+    `residual`, `sigma`: (3,), less the prediction; `truth`: (3,), what was felt; `traces`: (3, k),
+    per unit of each parameter of the effects; `time`: s, of its middle.
+    """
+
+    manoeuvre: str
+    residual: Array
+    sigma: Array
+    truth: Array
+    traces: Array
+    errors: Errors
+    time: float
+
+
+@dataclass(frozen=True)
+class Channels:
+    """The means of one campaign, `gyro` and `accel`, with the traces of some effects."""
+
+    campaign: Campaign
+    effects: Sequence[Effect]
+
+    @property
+    def names(self) -> list[str]:
+        """The parameters of the effects, in the order of the traces."""
+        return [f"{e.label}.{parameter.name}" for e in self.effects for parameter in e.parameters]
+
+    @cached_property
+    def _traces(self) -> list[tuple[Motion, Truth, Array, Array]]:
+        """Each stretch: motion, truth, and traces of gyros and accelerometers, (n, 3, k)."""
+        campaign = self.campaign
+        motions = [*campaign.still_motions, *campaign.turn_motions]
+        motions += [motion for _, _, motion in campaign.rests]
+        triads = [campaign.solution.gyro, campaign.solution.accelerometer]
+        gyro, accel = (one or Triad(np.eye(3), np.zeros(3)) for one in triads)
+        told = signatures(campaign.motion, campaign.solution.site, gyro, accel, self.effects)
+        traces = [
+            np.concatenate([getattr(one, s) for one in told], axis=2) for s in ("gyro", "accel")
+        ]
+        found, start = [], 0
+        for motion in motions:
+            part = slice(start, start + len(motion.rate))
+            truth = truth_of(motion, campaign.solution.site)
+            found.append((motion, truth, traces[0][part], traces[1][part]))
+            start = part.stop
+        return found
+
+    def means(self, sensor: str) -> list[Mean]:
+        """The means of the three channels of a sensor."""
+        if sensor == "accel":
+            return [] if self.campaign.solution.accelerometer is None else self._of_accelerometers()
+        return [] if self.campaign.solution.gyro is None else self._of_gyros()
+
+    def _of_gyros(self) -> list[Mean]:
+        campaign, inputs = self.campaign, self.campaign.inputs
+        stills, turns = len(campaign.still_motions), len(campaign.turn_motions)
+        found = []
+        rests = zip(inputs.stills, inputs.rests, self._traces[:stills], strict=True)
+        for still, rest, (motion, truth, traces, _) in rests:
+            known = _known_rate(motion, truth, rest.position)[0]
+            errors = self._earth(rest.position, motion, np.ones(1))
+            residual = rest.mean - self._gyro.matrix @ known - self._gyro.bias
+            name, time = still.manoeuvre.name, float(motion.time[0])
+            found.append(Mean(name, residual, rest.sigma, known, traces[0], errors, time))
+        whole = [one for one in inputs.usable if one.plan.recorded == "whole"]
+        told = self._traces[stills : stills + turns]
+        for one, turn, (motion, truth, traces, _) in zip(whole, inputs.turns, told, strict=True):
+            found.append(self._of_turn(one, turn, motion, truth, traces))
+        return found
+
+    @property
+    def _gyro(self) -> Triad:
+        assert self.campaign.solution.gyro is not None  # else nothing is said of it
+        return self.campaign.solution.gyro
+
+    def _of_turn(
+        self, one: Recorded, turn: Turn, motion: Motion, truth: Truth, traces: Array
+    ) -> Mean:
+        """A turn as a whole; what is missing of it counts as the blocks about it."""
+        weight = turn.weights * turn.seconds
+        total = float(weight.sum())
+        share = weight / total
+        earth = _known_rate(motion, truth, turn.position) - motion.omega
+        felt = turn.about * (turn.angle / total) + share @ earth
+        residual = turn.weights @ turn.sums / total - self._gyro.matrix @ felt - self._gyro.bias
+        sigma = turn.quiet_density * np.sqrt(turn.weights**2 @ turn.seconds) / total
+        errors = self._earth(turn.position, motion, share)
+        along = self._gyro.matrix @ turn.about / total
+        errors["angle", one.plan.name] = (
+            along,
+            float(np.hypot(turn.angle_sigma, turn.bridged_sigma)),
+        )
+        for i, axis in enumerate(level_axes(turn.about)):
+            leant = self._gyro.matrix @ cross(axis, turn.about) * (turn.angle / total)
+            errors[f"tilt {i}", turn.position.name] = (leant, self.campaign.position_sigma)
+        of_effects = np.einsum("n,nck->ck", share, traces)
+        time = float(share @ motion.time)
+        return Mean(one.plan.name, residual, sigma, felt, of_effects, errors, time)
+
+    def _earth(self, position: Position, motion: Motion, share: Array) -> Errors:
+        """The errors of what is known of the earth's rate."""
+        earth, matrix = self.campaign.inputs.earth, self._gyro.matrix
+        errors: Errors = {("earth", "up"): (matrix @ (share @ motion.up), earth.up_sigma)}
+        for key, axis in zip(level_names(position), level_of(position), strict=False):
+            about = np.broadcast_to(motion.about, motion.up.shape)
+            level = share @ turned_all(axis, about, motion.angle)
+            errors[key] = (matrix @ level, earth.level / np.sqrt(2))
+        return errors
+
+    def _of_accelerometers(self) -> list[Mean]:
+        campaign, triad = self.campaign, self.campaign.solution.accelerometer
+        assert triad is not None  # else nothing is said of it
+        gravity, found = campaign.gravity, []
+        told = self._traces[len(self._traces) - len(campaign.rests) :]
+        for (name, rest, _), (motion, _, _, traces) in zip(campaign.rests, told, strict=True):
+            force = gravity.number * rest.up
+            errors: Errors = {("gravity", ""): (triad.matrix @ rest.up, gravity.scatter)}
+            for i, axis in enumerate(level_axes(rest.up / np.linalg.norm(rest.up))):
+                leant = triad.matrix @ cross(axis, force)
+                errors[f"tilt {i}", rest.position] = (leant, campaign.position_sigma)
+            residual = rest.mean - triad.matrix @ force - triad.bias
+            found.append(
+                Mean(name, residual, rest.sigma, force, traces[0], errors, float(motion.time[0]))
+            )
+        return found
+
+
+def _known_rate(motion: Motion, truth: Truth, position: Position) -> Array:
+    """The rate that is known beforehand, (n, 3): without a level earth rate that is not."""
+    if position.north is not None:
+        return truth.rate
+    earth = truth.rate - motion.omega
+    upward = np.sum(earth * motion.up, axis=1, keepdims=True) * motion.up
+    return np.asarray(motion.omega + upward)

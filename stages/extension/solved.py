@@ -1,0 +1,147 @@
+"""The refitted model as rows, and how far its parameters move."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial import tables
+from inertial.campaign.estimates import UNIT, described
+from inertial.estimation.least_squares import Estimate, System
+from inertial.estimation.triad import UNKNOWNS, errors_of, linear_names
+from stages.extension.models import Models
+
+# ---- The parameters of the extended model with their covariance, and how well it fits.
+
+Array = NDArray[np.float64]
+Row = dict[str, Any]
+
+STAGES = {"gyro": "gyroscope", "accel": "accelerometer"}
+NOT_DETERMINED = "beside the effects the manoeuvres do not determine it"
+
+
+@dataclass(frozen=True)
+class Solved:
+    """The extended fit of one sensor: rows of its parameters, their covariance in that order."""
+
+    sensor: str
+    method: str
+    rows: list[Row]
+    covariance: Array
+    estimate: Estimate
+    walk: float
+
+    @property
+    def stage(self) -> str:
+        """The stage that made the joint result of this sensor."""
+        return STAGES[self.sensor]
+
+    @property
+    def of_sensor(self) -> list[Row]:
+        """The rows of the twelve parameters."""
+        return self.rows[:UNKNOWNS]
+
+    @property
+    def of_effects(self) -> list[Row]:
+        """The rows of the effects' parameters."""
+        return self.rows[UNKNOWNS:]
+
+    def covariance_rows(self) -> pd.DataFrame:
+        """The covariance as its table has it, of the parameters that are determined."""
+        there = [i for i, row in enumerate(self.rows) if row["value"] is not None]
+        names = [self.rows[i]["id"] for i in there]
+        return pd.DataFrame(
+            {
+                "first": np.repeat(names, len(names)),
+                "second": np.tile(names, len(names)),
+                "covariance": self.covariance[np.ix_(there, there)].ravel(),
+            },
+            columns=[column.name for column in tables.COVARIANCE.columns],
+        )
+
+    def fit_row(self, joint: Row, noise_degrees: float) -> Row:
+        """How well the extended model describes the data; `joint`: the row of the joint fit."""
+        return {
+            "method": self.method,
+            "chi_squared": self.estimate.chi_squared,
+            "degrees": self.estimate.degrees,
+            "p_value": self.estimate.p_value(noise_degrees),
+            "scatter": 0.0,
+            "unit": UNIT[self.stage],
+            "used": joint["used"],
+            "left_out": joint["left_out"],
+            "random_walk": self.walk,
+            "random_walk_sigma": None,
+        }
+
+
+def solved(models: Models, sensor: str, system: System, walk: float, suffix: str) -> Solved:
+    """The twelve parameters of a sensor and those of the effects that it shows."""
+    estimate = system.solve_shared()
+    stage = STAGES[sensor]
+    method = f"{stage}{suffix}"
+    places = list(range(UNKNOWNS))
+    told = [(name, *described(stage, name)) for name in linear_names()]
+    for effect in models.effects:
+        for parameter in effect.parameters:
+            place = system.column("effect", f"{effect.label}.{parameter.name}")
+            if place is not None and estimate.determined[place]:
+                places.append(place)
+                name = f"{effect.name}.{parameter.name}"
+                told.append((name, parameter.unit, "body", parameter.meaning))
+    values = estimate.values.copy()
+    values[:UNKNOWNS] = errors_of(values[:UNKNOWNS])
+    rows = []
+    for place, (name, unit, frame, meaning) in zip(places, told, strict=True):
+        there = bool(estimate.determined[place])
+        rows.append(
+            {
+                "id": f"extension/{method}/{name}",
+                "stage": "extension",
+                "method": method,
+                "parameter": name,
+                "value": float(values[place]) if there else None,
+                "sigma": float(estimate.sigma[place]) if there else None,
+                "unit": unit,
+                "frame": frame,
+                "meaning": meaning,
+                "reason": "" if there else NOT_DETERMINED,
+            }
+        )
+    covariance = estimate.covariance[np.ix_(places, places)]
+    return Solved(sensor, method, rows, covariance, estimate, walk)
+
+
+# ---- How far the effects move each of the 24 parameters.
+
+
+def moved(solution: Solved, joint: Sequence[Row], scatter: bool) -> Iterator[Row]:
+    """Each parameter by the joint and by the extended fit.
+
+    Nested fits of the same data differ by a variance σ²(extended) − σ²(joint) (Hausman 1978), if
+    both allow for the same noise; `scatter`: the joint one has held the effect as a scatter of the
+    manoeuvres, and then they do not.
+    """
+    before = {row["parameter"]: row for row in joint}
+    for row in solution.of_sensor:
+        name = row["parameter"]
+        old = before.get(name, {"value": None, "sigma": None, "id": ""})
+        both = row["value"] is not None and old["value"] is not None
+        difference = row["value"] - old["value"] if both else None
+        added = row["sigma"] ** 2 - old["sigma"] ** 2 if both and not scatter else 0.0
+        yield {
+            "id": row["id"],
+            "joint_id": old["id"],
+            "parameter": name,
+            "unit": row["unit"],
+            "joint": old["value"],
+            "joint_sigma": old["sigma"],
+            "extended": row["value"],
+            "extended_sigma": row["sigma"],
+            "difference": difference,
+            "difference_sigma": float(np.sqrt(added)) if added > 0 else None,
+            "in_sigmas": difference / old["sigma"] if both and old["sigma"] else None,
+        }

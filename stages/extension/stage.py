@@ -1,0 +1,187 @@
+"""The model with the effects that were named, refitted: what it gains, and whether it counts."""
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import pandas as pd
+
+from inertial import tables
+from inertial.campaign.equations import campaign_of
+from inertial.campaign.estimates import by_mount
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import (
+    Manoeuvre,
+    clocks_of,
+    known_of,
+    manoeuvres_of,
+    performed_of,
+    rows_of,
+    share_a_clock,
+)
+from inertial.campaign.solution import solution_of
+from inertial.campaign.steady_residuals import steady_residuals, steady_turns
+from inertial.estimation.triad import linear_names
+from inertial.physics.forward import Triad
+from inertial.tables.parquet import Stream
+from inertial.tables.stage import Stage, Tables
+from stages.extension.decision import decision, result
+from stages.extension.gain import gain
+from stages.extension.held_out import held_out
+from stages.extension.models import SENSORS, models_of
+from stages.extension.named import Named, named_of
+from stages.extension.navigation_error import change_of, worth
+from stages.extension.oscillation_gain import gain_of_line, gain_of_ripple
+from stages.extension.solved import Solved, moved, solved
+
+Row = dict[str, Any]
+
+TWELVE = linear_names()
+WRITES = {
+    "parameters": tables.PARAMETERS,
+    "covariance": tables.COVARIANCE,
+    "fit": tables.FIT,
+    "gain": tables.GAIN,
+    "moved": tables.MOVED,
+    "worth": tables.WORTH,
+    "decision": tables.DECISION,
+    "result": tables.PARAMETERS,
+}
+
+
+def extension(
+    simulated: Stream,
+    criticism_findings: pd.DataFrame,
+    effects: pd.DataFrame,
+    walks: pd.DataFrame,
+    blocks: pd.DataFrame,
+    manoeuvres: pd.DataFrame,
+    performed: pd.DataFrame,
+    noise: pd.DataFrame,
+    known: pd.DataFrame,
+    clocks: pd.DataFrame,
+    accelerometer_parameters: pd.DataFrame,
+    accelerometer_positions: pd.DataFrame,
+    gyroscope_parameters: pd.DataFrame,
+    gyroscope_positions: pd.DataFrame,
+    accelerometer_fit: pd.DataFrame,
+    gyroscope_fit: pd.DataFrame,
+) -> Tables:
+    """Parameters and covariance of the extended model, and the parameters that count.
+
+    Where nothing was named there is nothing to extend: the joint result counts, and the tables but
+    `decision` and `result` are empty.
+    """
+    given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
+    joint = {
+        "gyro": rows_of(gyroscope_parameters),
+        "accel": rows_of(accelerometer_parameters),
+    }
+    fits = {
+        (sensor, row["method"]): row
+        for sensor, fit in (("gyro", gyroscope_fit), ("accel", accelerometer_fit))
+        for row in rows_of(fit)
+    }
+    walk_of = defaultdict(
+        float, {(row["method"], row["sensor"]): row["walk"] for row in rows_of(walks)}
+    )
+    made: dict[str, list[Row]] = {name: [] for name in WRITES}
+    covariances: list[pd.DataFrame] = []
+    for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
+        mount, method = suffix[1:], f"joint{suffix}"
+        named = named_of(rows_of(criticism_findings), rows_of(effects), suffix)
+        solution = solution_of(
+            (accelerometer_parameters, gyroscope_parameters),
+            (accelerometer_positions, gyroscope_positions),
+            given,
+            suffix,
+            (accelerometer_fit, gyroscope_fit),
+        )
+        extended: dict[str, Solved] = {}
+        found = {}
+        if named.in_blocks:
+            campaign = campaign_of(
+                blocks, plan, done, levels, given, solution, share_a_clock(clocks)
+            )
+            beside = (walk_of[method, "gyro"], walk_of[method, "accel"])
+            models = models_of(campaign, named.in_blocks, beside)
+            for sensor, system, walk in zip(SENSORS, models.systems(), beside, strict=True):
+                if system is not None:
+                    one = solved(models, sensor, system, walk, suffix)
+                    extended[sensor] = one
+                    covariances.append(one.covariance_rows())
+                    made["parameters"] += one.rows
+                    made["fit"].append(one.fit_row(fits[sensor, method], levels.degrees))
+            found = held_out(models)
+            made["gain"] += gain(models, found, mount)
+            triads = {"gyro": solution.gyro, "accel": solution.accelerometer}
+            changes = {
+                sensor: change
+                for sensor, one in extended.items()
+                if (triad := triads[sensor]) is not None
+                and (change := change_of(one, triad)) is not None
+            }
+            made["worth"] += worth(models.extended, models.effects, changes, mount)
+        for sensor in SENSORS:
+            own = [r for r in joint[sensor] if r["method"] == method and r["parameter"] in TWELVE]
+            one_of = extended.get(sensor)
+            decided = decision(sensor, mount, named, one_of, found.get(sensor), own)
+            made["decision"].append(decided)
+            made["result"] += result(decided, one_of, own)
+            if one_of is not None:
+                made["moved"] += moved(one_of, own, bool(fits[sensor, method]["scatter"]))
+        if named.in_spectrum and solution.gyro is not None:
+            made["gain"] += _of_spectrum(named, simulated, plan, solution.gyro, clocks, mount)
+    written = {
+        name: pd.DataFrame(rows, columns=[column.name for column in WRITES[name].columns])
+        if rows
+        else WRITES[name].empty()
+        for name, rows in made.items()
+    }
+    return written | ({"covariance": pd.concat(covariances)} if covariances else {})
+
+
+def _of_spectrum(
+    named: Named,
+    simulated: Stream,
+    plan: Sequence[Manoeuvre],
+    gyro: Triad,
+    clocks: pd.DataFrame,
+    mount: str,
+) -> Iterator[Row]:
+    """The gain of an oscillation, and of what goes with the table's angle."""
+    clock = clocks_of(clocks)
+    for effect, values in named.in_spectrum.items():
+        if effect != "oscillation":
+            averaged = {row["log"] for row in rows_of(clocks) if row["clock"] == "GPS"}
+            turns = steady_turns(simulated, plan, gyro, clock, averaged)
+            yield from gain_of_ripple(turns, effect, values, mount)
+        elif "frequency" in values:
+            step_of = {m.name: clock[m.log].step for m in plan}
+            heard = [(n, r) for n, r in steady_residuals(simulated) if n in step_of]
+            yield from gain_of_line(heard, step_of, values["frequency"], gyro, mount)
+
+
+STAGE = Stage(
+    extension,
+    reads={
+        "simulated": tables.SIMULATED,
+        "criticism_findings": tables.CAUSES,
+        "effects": tables.EFFECTS,
+        "walks": tables.WALKS,
+        "blocks": tables.BLOCKS,
+        "manoeuvres": tables.MANOEUVRES,
+        "performed": tables.PERFORMED,
+        "noise": tables.NOISE,
+        "known": tables.KNOWN,
+        "clocks": tables.CLOCKS,
+        "accelerometer_parameters": tables.PARAMETERS,
+        "accelerometer_positions": tables.POSITIONS,
+        "gyroscope_parameters": tables.PARAMETERS,
+        "gyroscope_positions": tables.POSITIONS,
+        "accelerometer_fit": tables.FIT,
+        "gyroscope_fit": tables.FIT,
+    },
+    streams=("simulated",),
+    writes=WRITES,
+)

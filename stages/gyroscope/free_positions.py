@@ -1,0 +1,117 @@
+"""The gyros from the motions between rests of unknown attitude: blocks as inference takes them.
+
+The method is `free_positions`, as that of the accelerometers, in whose axes its result is. A motion
+is the blocks of phase `between`, one for each record, from the end of a rest to the beginning of
+the next one in the same log; where one of them is missing, no attitude can be carried through.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.campaign.estimates import Estimates, reasons
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import Known, Manoeuvre
+from inertial.campaign.unknown_attitude import METHOD, FreeStill, fitted_to, free_stills
+from inertial.estimation.between_positions import Given, Passage, Stop, between_rests
+from inertial.estimation.gyroscopes import Earth
+from inertial.estimation.least_squares import with_scatter
+from inertial.tables import GYRO
+
+Array = NDArray[np.float64]
+
+BETWEEN = "between"  # phase of the blocks from one rest to the next
+SCATTER = (1e-11, 0.1)  # rad/s: how much rests and motions may differ beyond the noise
+CURES = {
+    "bias": "no rest shows it: add a rest",
+    "matrix": "between the rests the IMU hardly turned about {axis} while {axis} lay level: add"
+    " turns of 90° or more about {axis}, there and back",
+}
+
+
+def add_free_gyros(
+    estimates: Estimates,
+    suffix: str,
+    blocks: pd.DataFrame,
+    plan: Sequence[Manoeuvre],
+    noise: NoiseLevels,
+    known: Mapping[str, Known],
+) -> None:
+    """The method's rows; none where the plan knows every attitude."""
+    found, left = free_stills(blocks, plan, noise)
+    stops = [_stop(one) for one in found]
+    recorded = np.isfinite(np.array([stop.mean for stop in stops]).reshape(-1, 3)).any(axis=0)
+    if not recorded.any():
+        if left or found:
+            estimates.add_nothing(f"{METHOD}{suffix}", "; ".join(left) or "no gyro is recorded")
+        return
+    passages, names, broken = passages_of(found, blocks, noise)
+    earth = Earth(
+        known["earth_rate_up"].number,
+        known["earth_rate_up"].scatter,
+        known["earth_rate_level"].number,
+    )
+    between = fitted_to(found, noise, known).scatter
+    given = Given(known["gravity"].number, known["gravity"].scatter, between, earth)
+    fits = [
+        with_scatter(
+            partial(between_rests, stops, passages, given, sways=sways),
+            between=SCATTER,
+            noise_degrees=noise.degrees,
+        )
+        for sways in (False, True)
+    ]
+    fitted = min(fits, key=lambda fit: fit.estimate.deviance)
+    why = reasons(fitted.estimate.determined, recorded, "gyro", CURES)
+    estimates.add_triad(f"{METHOD}{suffix}", fitted.estimate, why)
+    used = [one.label for one in found] + names
+    estimates.add_fit(f"{METHOD}{suffix}", fitted, used, left + broken)
+
+
+def _stop(one: FreeStill) -> Stop:
+    return Stop(one.rest, *one.rate.over(), float(one.rate.seconds.sum()))
+
+
+def passages_of(
+    found: Sequence[FreeStill], blocks: pd.DataFrame, noise: NoiseLevels
+) -> tuple[list[Passage], list[str], list[str]]:
+    """The motions from each rest to the next, their names, and those left out with the reason."""
+    moving = blocks[blocks["phase"] == BETWEEN].sort_values(["log", "from_record"])
+    passages: list[Passage] = []
+    names: list[str] = []
+    left: list[str] = []
+    for i, (before, behind) in enumerate(pairwise(found)):
+        if before.log != behind.log:
+            continue
+        name = f"{before.label} to {behind.label}"
+        inside = (moving["from_record"] >= before.after) & (moving["to_record"] <= behind.first)
+        part = moving[inside & (moving["log"] == before.log)]
+        density = noise.of(name, "rest", GYRO)
+        if refusal := refusal_of(part, before, behind, density):
+            left.append(f"{name}: {refusal}")
+            continue
+        seconds = part["seconds"].to_numpy(np.float64)
+        passages.append(Passage(i, part[GYRO].to_numpy(np.float64), seconds, density))
+        names.append(name)
+    return passages, names, left
+
+
+def refusal_of(part: pd.DataFrame, before: FreeStill, behind: FreeStill, density: Array) -> str:
+    """Why no attitude can be carried from one rest to the next; empty where it can."""
+    if part.empty:
+        return "nothing of the motion between them is kept"
+    ends = np.append(before.after, part["to_record"].to_numpy(np.int64))
+    starts = np.append(part["from_record"].to_numpy(np.int64), behind.first)
+    masked = int((starts - ends).sum())
+    if masked:
+        return f"{masked} records are masked while it moves, so no attitude is carried through"
+    lost = float(part["missing_s"].sum())
+    if lost:
+        return f"{lost:.2f} s are lost while it moves, so no attitude is carried through"
+    if not np.isfinite(density).all() or part[[*GYRO, "seconds"]].isna().any(axis=None):
+        return "all three gyros and the time are needed to carry an attitude through"
+    return ""

@@ -1,1 +1,0 @@
-"""The inverse problem: from readings to parameters, each with its covariance."""

@@ -1,0 +1,131 @@
+"""White noise of every channel in every manoeuvre, from the data, beside the data sheet's."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial import tables
+from inertial.campaign.masked_samples import Masks, pieces
+from inertial.campaign.records import clocks_of, rows_of
+from inertial.estimation.spectrum import band_levels, white_level
+from inertial.tables.parquet import Stream
+from inertial.tables.stage import Stage, Tables
+
+Array = NDArray[np.float64]
+
+LONGEST = 32768  # samples in one periodogram; bounds the memory of a long log
+PHASES = {"rest": "rest", "rest-before": "rest", "rest-after": "rest", "steady": "steady"}
+_SENSORS = {"accel": slice(0, 3), "gyro": slice(3, 6)}
+SHORTEST = 16  # samples below which nothing is said about noise
+
+
+def noise(
+    samples: Stream,
+    segments: pd.DataFrame,
+    clocks: pd.DataFrame,
+    gaps: pd.DataFrame,
+    masks: pd.DataFrame,
+    sensors: pd.DataFrame,
+    *,
+    from_hz: float,
+    to_hz: float,
+) -> Tables:
+    """One row for each manoeuvre, phase (rest or steady) and channel that is recorded."""
+    clock = clocks_of(clocks)
+    sheet = {row["channel"]: row["white_noise"] for row in rows_of(sensors)}
+    quiet = [row for row in rows_of(segments) if row["phase"] in PHASES]
+    spectra: dict[tuple[str, str], _Spectra] = {}
+    for log, record, values in _unbroken(samples, gaps, masks):
+        step = clock[log].duration
+        for row in quiet:
+            if row["log"] != log or step is None:
+                continue
+            inside_it = (record >= row["from_record"]) & (record < row["to_record"])
+            chosen = values[inside_it]
+            collected = spectra.setdefault((row["manoeuvre"], PHASES[row["phase"]]), _Spectra())
+            for start in range(0, len(chosen), LONGEST):
+                collected.add(chosen[start : start + LONGEST], 1 / step, (from_hz, to_hz))
+    rows = [
+        row | {"data_sheet": sheet[row["channel"]]}
+        for (manoeuvre, phase), collected in spectra.items()
+        for row in collected.rows(manoeuvre, phase)
+    ]
+    return {"noise": pd.DataFrame(rows) if rows else tables.NOISE.empty()}
+
+
+class _Spectra:
+    """The band levels of one manoeuvre, piece by piece, for each sensor by itself.
+
+    Accelerometers and gyros may come in records of their own.
+    """
+
+    def __init__(self) -> None:
+        self.levels: dict[str, list[Array]] = {}
+        self.squares = np.zeros(6)
+        self.samples: dict[str, int] = {}
+
+    def add(self, values: Array, rate: float, band: tuple[float, float]) -> None:
+        for sensor, columns in _SENSORS.items():
+            part = values[:, columns]
+            part = part[np.isfinite(part).any(axis=1)]
+            if len(part) >= SHORTEST:
+                whole = np.isfinite(part).all(axis=0)
+                levels = band_levels(np.where(whole, part, 0.0), rate, band)
+                self.levels.setdefault(sensor, []).append(np.where(whole, levels, np.nan))
+                self.squares[columns] += np.var(part, axis=0) * len(part)
+                self.samples[sensor] = self.samples.get(sensor, 0) + len(part)
+
+    def rows(self, manoeuvre: str, phase: str) -> Iterator[dict[str, Any]]:
+        for sensor, levels in self.levels.items():
+            white, sigma = white_level(np.concatenate(levels))
+            for i, axis in enumerate(tables.AXES):
+                if white[i] > 0:
+                    square = self.squares[_SENSORS[sensor]][i]
+                    yield {
+                        "manoeuvre": manoeuvre,
+                        "phase": phase,
+                        "channel": f"{sensor}_{axis}",
+                        "white_noise": float(white[i]),
+                        "sigma": float(sigma[i]),
+                        "per_sample": float(np.sqrt(square / self.samples[sensor])),
+                        "samples": self.samples[sensor],
+                    }
+
+
+def _unbroken(
+    samples: Stream, gaps: pd.DataFrame, masks: pd.DataFrame
+) -> Iterator[tuple[str, NDArray[np.int64], Array]]:
+    """Records of one log without a gap or a masked record between them: log, numbers, values."""
+    known = Masks(masks)
+    for log, piece in pieces(samples, ["record", *tables.CHANNELS]):
+        record = piece["record"]
+        values = np.column_stack([piece[channel] for channel in tables.CHANNELS])
+        starts = gaps.loc[gaps["log"] == log, "record"].to_numpy(np.int64)
+        masked = known.of(log, record)
+        values[masked.channels] = np.nan
+        bad, here = masked.whole, masked.channels
+        breaks = (np.diff(record) != 1) | np.isin(record[1:], starts) | np.diff(bad)
+        breaks |= (here[1:] != here[:-1]).any(axis=1)
+        edges = [0, *(np.flatnonzero(breaks) + 1).tolist(), len(record)]
+        for first, after in pairwise(edges):
+            if not bad[first]:
+                yield log, record[first:after], values[first:after]
+
+
+STAGE = Stage(
+    noise,
+    reads={
+        "samples": tables.SAMPLES,
+        "segments": tables.SEGMENTS,
+        "clocks": tables.CLOCKS,
+        "gaps": tables.GAPS,
+        "masks": tables.MASKS,
+        "sensors": tables.SENSORS,
+    },
+    streams=("samples",),
+    writes={"noise": tables.NOISE},
+)

@@ -1,0 +1,192 @@
+"""The manoeuvres of a plan, every shorthand expanded: one row each, SI, body axes."""
+
+from collections.abc import Iterator
+from math import cos, isclose, radians
+from typing import Any
+
+import numpy as np
+
+from inertial import tables
+from inertial.physics.motion import Array, Profile, turned
+from inertial.tables.yaml_file import Key, YamlFile
+from inertial.text.campaign_units import ARC_SECOND, DEGREE, in_si
+from stages.plan.taken_as_known import ASSUMED_ANGLE
+
+AXES = np.eye(3)
+Row = dict[str, Any]
+
+
+_ALWAYS = {"id", "do", "log", "format", "span", "rows", "where", "mount", "position"}
+_ALLOWED = {
+    "rest": {"up", "mark", "seconds"},
+    "positions": {"seconds"},
+    "turn": {
+        *("up", "mark", "about", "degrees", "degrees_sigma"),
+        *("rate_deg_s", "accel_deg_s2", "seconds", "recorded"),
+    },
+    "tumble": {"up", "mark", "about", "step_degrees", "steps", "and_back", "seconds"},
+}
+
+
+def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
+    """One row for a rest, a turn or a search for positions; one per rest of a tumble."""
+    row: Row = {
+        "manoeuvre": item["id"],
+        "do": item["do"],
+        "position": item.get("position", item["id"]),
+        "mount": item.get("mount", "as mounted"),
+        "recorded": item.get("recorded", "whole"),
+        "seconds": item.get("seconds"),
+        "angle": None,
+        "angle_sigma": None,
+        "rate": None,
+        "acceleration": in_si(item.get("accel_deg_s2"), DEGREE),
+    }
+    up, mark = _direction(file, [*key, "up"], item), _direction(file, [*key, "mark"], item)
+    if up is not None and mark is not None and abs(up @ mark) > cos(radians(1)):
+        raise file.refuse(
+            [*key, "mark"], item["mark"], "a direction across up", "name a level direction"
+        )
+    allowed = _ALLOWED[item["do"]]
+    for name in set(item) - allowed - _ALWAYS:
+        raise file.refuse_text(
+            [*key, name],
+            f"the key {name!r}",
+            f"for do: {item['do']} one of {', '.join(sorted(allowed | _ALWAYS))}",
+            f"remove {name}, or correct do",
+        )
+    if item["do"] == "turn":
+        about = _direction(file, [*key, "about"], item)
+        about = up if about is None else about
+        if about is None:
+            raise file.refuse_text(
+                key, "a turn without an axis", "about, or up", "add about: the axis of the turn"
+            )
+        yield row | _vectors(up, mark, about) | _turn(file, key, item)
+    elif item["do"] == "tumble":
+        yield from _tumble(file, key, item, row, up, mark)
+    else:
+        if item["do"] == "positions" and "seconds" not in item:
+            raise file.refuse_text(
+                key, "no key 'seconds'", "seconds: the shortest rest, s", "add seconds"
+            )
+        yield row | _vectors(up, mark, None)
+
+
+def _direction(file: YamlFile, key: Key, item: dict[str, Any]) -> Array | None:
+    """A unit vector in body axes; none where it is left out or unknown."""
+    stated = item.get(str(key[-1]), "unknown")
+    if stated == "unknown":
+        return None
+    if isinstance(stated, str):
+        sign = -1.0 if stated[0] == "-" else 1.0
+        return np.asarray(sign * AXES["xyz".index(stated[1])], dtype=np.float64)
+    vector = np.array(stated, dtype=np.float64)
+    length = float(np.linalg.norm(vector))
+    if length == 0:
+        raise file.refuse(key, stated, "a vector that is not zero", "correct the vector")
+    return np.asarray(vector / length, dtype=np.float64)
+
+
+def _vectors(up: Array | None, mark: Array | None, about: Array | None) -> Row:
+    vectors = {"up": up, "mark": mark, "about": about}
+    return {
+        f"{name}_{axis}": None if vector is None else float(vector[i])
+        for name, vector in vectors.items()
+        for i, axis in enumerate(tables.AXES)
+    }
+
+
+def _turn(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:
+    """Angle, rate and duration of a turn; two of the three suffice, by hand none is needed."""
+    angle, rate = in_si(item.get("degrees"), DEGREE), in_si(item.get("rate_deg_s"), DEGREE)
+    acceleration = in_si(item.get("accel_deg_s2"), DEGREE)
+    seconds: float | None = item.get("seconds")
+    _check_signs(file, key, item)
+    if angle is not None and rate is not None:
+        rate = float(np.copysign(rate, angle))
+        profile = Profile(abs(angle), abs(rate), acceleration or np.inf)
+        if seconds is not None and not isclose(profile.seconds, seconds, rel_tol=0.05):
+            raise file.refuse(
+                [*key, "seconds"],
+                seconds,
+                f"about {profile.seconds:.4g} s by degrees, rate_deg_s and accel_deg_s2",
+                "leave out one of degrees, rate_deg_s and seconds",
+            )
+        seconds = profile.seconds
+    elif rate is not None and seconds is not None:
+        angle = rate * (seconds - (abs(rate) / acceleration if acceleration else 0.0))
+    elif angle is not None and seconds is not None:
+        rate = angle / seconds
+    elif not _by_hand(file) and not (rate is not None and item.get("recorded") == "steady"):
+        raise file.refuse_text(
+            key,
+            "fewer than two of degrees, rate_deg_s and seconds",
+            "two of them; for recorded: steady a signed rate; by hand none is needed",
+            "add what the table was set to",
+        )
+    sigma = None if angle is None else _angle_sigma(file, key, item)
+    return {"angle": angle, "angle_sigma": sigma, "rate": rate, "seconds": seconds}
+
+
+def _check_signs(file: YamlFile, key: Key, item: dict[str, Any]) -> None:
+    """The sign of a turn stands in degrees, or in the rate where degrees is not given."""
+    for name in ("degrees", "rate_deg_s"):
+        if item.get(name) == 0:
+            raise file.refuse([*key, name], 0, "a number that is not 0", f"correct {name}")
+    if "degrees" in item and item.get("rate_deg_s", 1) < 0:
+        raise file.refuse(
+            [*key, "rate_deg_s"],
+            item["rate_deg_s"],
+            "a magnitude, for degrees has the sign",
+            "leave the sign to degrees",
+        )
+
+
+def _by_hand(file: YamlFile) -> bool:
+    return bool(file.content.get("table", {}).get("name") == "by hand")
+
+
+def _angle_sigma(file: YamlFile, key: Key, item: dict[str, Any]) -> float:
+    """How well the angle of a turn is known, rad."""
+    table = file.content.get("table", {})
+    if "degrees_sigma" in item:
+        return float(item["degrees_sigma"] * DEGREE)
+    if "angle_sigma_arcsec" in table:
+        return float(table["angle_sigma_arcsec"] * ARC_SECOND)
+    if _by_hand(file):
+        raise file.refuse_text(
+            key,
+            "a turn by hand without degrees_sigma",
+            "degrees_sigma: how well the angle is known, degrees",
+            "add degrees_sigma",
+        )
+    return ASSUMED_ANGLE
+
+
+def _tumble(
+    file: YamlFile, key: Key, item: dict[str, Any], row: Row, up: Array | None, mark: Array | None
+) -> Iterator[Row]:
+    about = _direction(file, [*key, "about"], item)
+    missing = [name for name in ("up", "about", "step_degrees", "steps") if name not in item]
+    if missing or up is None or about is None:
+        raise file.refuse_text(
+            key,
+            f"a tumble without {', '.join(missing) or 'known directions'}",
+            "up, about, step_degrees and steps",
+            "add what is missing",
+        )
+    if abs(up @ about) > cos(radians(1)):
+        raise file.refuse(
+            [*key, "about"], item["about"], "an axis across up", "name the level axis"
+        )
+    there = list(range(item["steps"]))
+    for way, numbers in (("", there), ("-back", there[::-1] if item.get("and_back") else [])):
+        for number in numbers:
+            angle = radians(number * item["step_degrees"])
+            ups = turned(up, about, angle)
+            marks = None if mark is None else turned(mark, about, angle)
+            name = f"{item['id']}{way}-{number:02d}"
+            position = f"{item['position']}-{number:02d}" if "position" in item else name
+            named = {"manoeuvre": name, "position": position, "do": "rest"}
+            yield row | named | _vectors(ups, marks, None)

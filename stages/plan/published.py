@@ -1,0 +1,62 @@
+"""What others published of the same IMU: the file published.yaml beside campaign.yaml."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from inertial.physics.site import STANDARD_GRAVITY
+from inertial.tables.yaml_file import YamlFile
+from inertial.text.campaign_units import ARC_SECOND, DEGREE
+
+Row = dict[str, Any]
+
+STAGES = {"accelerometer": "accelerometer", "gyro": "gyroscope"}
+SI = {("accelerometer", "bias"): "m/s²", ("gyro", "bias"): "rad/s"}  # all others are ratios
+SIZES = {
+    "m/s2": 1.0,
+    "mGal": 1e-5,
+    "g": STANDARD_GRAVITY,
+    "mg": STANDARD_GRAVITY * 1e-3,
+    "ug": STANDARD_GRAVITY * 1e-6,
+    "rad/s": 1.0,
+    "deg/s": DEGREE,
+    "deg/h": DEGREE / 3600,
+    "1": 1.0,
+    "%": 1e-2,
+    "ppm": 1e-6,
+    "rad": 1.0,
+    "mrad": 1e-3,
+    "urad": 1e-6,
+    "deg": DEGREE,
+    "arcmin": ARC_SECOND * 60,
+    "arcsec": ARC_SECOND,
+}
+
+
+def published_values(file: YamlFile) -> Iterator[Row]:
+    """The values in SI, one row each.
+
+    Raises
+    ------
+    Refusal
+        for the first thing in the file that cannot be used
+    """
+    file.check("published")
+    window = file.content.get("gyro_window")
+    for sensor, stage in STAGES.items():
+        for name, told in file.content.get(sensor, {}).items():
+            size = SIZES[told["unit"]] if "unit" in told else 1.0
+            by_time = window if stage == "gyroscope" and name.startswith("scale") else None
+            yield {
+                "parameter": f"{stage}/{name}",
+                "value": told["value"] * size,
+                "sigma": told["sigma"] * size if "sigma" in told else None,
+                "unit": SI.get((sensor, name.partition("_")[0]), "1"),
+                "source": file.content["source"],
+                "window": by_time["degrees"] * DEGREE if by_time else None,
+                "samples": _samples(by_time) if by_time else None,
+            }
+
+
+def _samples(window: Row) -> float:
+    """How many samples lie in a window: one for each interval."""
+    return float(window["degrees"] / window["rate_deg_s"] * window["rate_hz"])

@@ -1,0 +1,240 @@
+"""Where each manoeuvre is recorded, and how its log and that of the encoder are read."""
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from inertial import tables
+from inertial.physics.site import STANDARD_GRAVITY
+from inertial.tables.yaml_file import Key, YamlFile
+from inertial.text.campaign_units import CHANNEL_UNITS, DEGREE, PER_ROOT_HOUR, in_si
+
+# ---- The log of the table's encoder, where a campaign has one beside the IMU's.
+
+KEY = "encoder"
+
+
+def encoder(file: YamlFile) -> dict[str, Any] | None:
+    """Its file, layout, GPS week or none, and what is added to its time, s; None without one."""
+    stated = file.content.get(KEY)
+    if stated is None:
+        return None
+    formats = file.content.get("formats", {})
+    if stated["format"] not in formats:
+        raise file.refuse(
+            [KEY, "format"],
+            stated["format"],
+            f"one of {', '.join(formats) or 'formats, of which there are none'}",
+            "correct the name or add it to formats",
+        )
+    layout = formats[stated["format"]]
+    for key in ("time", "table_angle"):
+        if key not in layout:
+            raise file.refuse_text(
+                ["formats", stated["format"]],
+                f"no {key}",
+                "time and table_angle, the columns of the encoder's log",
+                f"add {key}",
+            )
+    return {
+        "file": stated["log"],
+        "layout": {key: layout[key] for key in layout if key not in ("gyro", "accelerometer")},
+        "gps_week": stated.get("gps_week"),
+        "offset": stated.get("offset_s", 0.0),
+    }
+
+
+# ---- Where each manoeuvre is recorded, and how its log is read.
+
+Row = dict[str, Any]
+
+
+def instrument(file: YamlFile, instruments: Path) -> dict[str, Any]:
+    """The instrument of a campaign, written out in it or one of the listed."""
+    stated = file.content["instrument"]
+    if isinstance(stated, dict):
+        return stated
+    listed = YamlFile(instruments)
+    listed.check("campaign", entries="instrument")
+    if stated not in listed.content:
+        raise file.refuse(
+            ["instrument"],
+            stated,
+            f"one of {', '.join(listed.content)}",
+            f"correct the name, add the instrument to {instruments.name}, or write it out here",
+        )
+    return dict(listed.content[stated])
+
+
+def sensors(entry: dict[str, Any]) -> Iterator[Row]:
+    """Count size, full scale and white noise of each channel by the data sheet, in SI."""
+    accelerometer, gyro = entry.get("accelerometer", {}), entry.get("gyro", {})
+    velocity_random_walk = accelerometer.get("velocity_random_walk_m_s_sqrt_h")
+    figures = {
+        "accel": {
+            "count_size": accelerometer.get("count_m_s"),
+            "full_scale": in_si(accelerometer.get("full_scale_g"), STANDARD_GRAVITY),
+            "white_noise": in_si(velocity_random_walk, PER_ROOT_HOUR),
+            "source": accelerometer.get("source"),
+        },
+        "gyro": {
+            "count_size": gyro.get("count_rad"),
+            "full_scale": in_si(gyro.get("full_scale_deg_s"), DEGREE),
+            "white_noise": in_si(gyro.get("angle_random_walk_deg_sqrt_h"), DEGREE * PER_ROOT_HOUR),
+            "source": gyro.get("source"),
+        },
+    }
+    for channel in tables.CHANNELS:
+        yield {"channel": channel, **figures[channel.partition("_")[0]]}
+
+
+def ranges(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
+    """What one count of each channel of each log is, and how far the channel reaches, in SI."""
+    scales = {row["channel"]: row["full_scale"] for row in sensors(entry)}
+    keys = {"accel": ("accelerometer", "count_m_s"), "gyro": ("gyro", "count_rad")}
+    for log, rows in by_log(manoeuvres).items():
+        layout = rows[0]["layout"]
+        for channel in tables.CHANNELS:
+            key, increment = keys[channel.partition("_")[0]]
+            triad, full = layout.get(key) or {}, scales[channel]
+            increments = layout["kind"] == "rawimus"
+            count, limit = entry.get(key, {}).get(increment) if increments else None, None
+            if "counts_per_unit" in triad:
+                count = CHANNEL_UNITS[triad["unit"]] / triad["counts_per_unit"]
+                limit = triad["limit_counts"] * count if "limit_counts" in triad else None
+            yield {
+                "log": log,
+                "channel": channel,
+                "count": count,
+                "increments": increments,
+                "limit": full if limit is None else limit,
+            }
+
+
+def count_sizes(instruments: Path) -> Iterator[Row]:
+    """The increments that one count is worth in each of the listed instruments."""
+    for name, entry in YamlFile(instruments).content.items():
+        for sensor, key, size in (
+            ("accel", "accelerometer", "count_m_s"),
+            ("gyro", "gyro", "count_rad"),
+        ):
+            if size in entry.get(key, {}):
+                yield {"instrument": name, "sensor": sensor, "count_size": entry[key][size]}
+
+
+def recording(file: YamlFile, key: Key, item: dict[str, Any], entry: dict[str, Any]) -> Row:
+    """Where a manoeuvre is recorded: log, layout, and the stretch of it."""
+    name = item.get("log", file.content.get("log"))
+    if name is None:
+        raise file.refuse_text(
+            key, "no log", "log here, or a default log of the campaign", "add log: its file name"
+        )
+    layout, layout_key = _layout(file, key, item, entry)
+    _check_layout(file, layout_key, layout, entry)
+    ways = [way for way in ("span", "rows", "where") if way in item]
+    if len(ways) > 1:
+        raise file.refuse_text(
+            [*key, ways[1]], f"both {' and '.join(ways)}", "one of them", f"remove {ways[1]}"
+        )
+    for way in ("span", "rows"):
+        if way in item and not item[way][0] < item[way][1]:
+            raise file.refuse([*key, way], item[way], "[from, to] with from < to", "swap the two")
+    where = item.get("where", {})
+    span, rows = item.get("span", [None, None]), item.get("rows", [None, None])
+    return {
+        "key": [*key, "log"] if "log" in item else key,
+        "file": name,
+        "format": item.get("format", ""),
+        "layout": layout,
+        "label_columns": sorted(where),
+        "label": "; ".join(f"{column}={where[column]}" for column in sorted(where)) or None,
+        "from_s": span[0],
+        "to_s": span[1],
+        "from_row": rows[0],
+        "to_row": rows[1],
+    }
+
+
+def _layout(
+    file: YamlFile, key: Key, item: dict[str, Any], entry: dict[str, Any]
+) -> tuple[dict[str, Any], Key]:
+    formats = file.content.get("formats", {})
+    if "format" in item:
+        if item["format"] not in formats:
+            raise file.refuse(
+                [*key, "format"],
+                item["format"],
+                f"one of {', '.join(formats) or 'formats, of which there are none'}",
+                "correct the name or add it to formats",
+            )
+        return formats[item["format"]], ["formats", item["format"]]
+    if "format" not in entry:
+        raise file.refuse_text(
+            key,
+            "no format",
+            f"format, for the instrument {entry['name']} has none of its own",
+            "name one of formats",
+        )
+    return entry["format"], ["instrument", "format"]
+
+
+def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[str, Any]) -> None:
+    """A layout must hold at least one sensor, in units of that sensor, or counts of known size."""
+    if layout["kind"] == "rawimus":
+        for sensor, count in (("gyro", "count_rad"), ("accelerometer", "count_m_s")):
+            if count not in entry.get(sensor, {}) or "axes" not in entry:
+                raise file.refuse_text(
+                    ["instrument"],
+                    f"no {sensor}.{count} or no axes",
+                    "the count sizes and axes of the raw fields",
+                    "add them to the instrument",
+                )
+        return
+    if "gyro" not in layout and "accelerometer" not in layout:
+        raise file.refuse_text(
+            key, "neither gyro nor accelerometer", "at least one of them", "add its columns"
+        )
+    for sensor, units in (("gyro", ("rad/s", "deg/s")), ("accelerometer", ("m/s2", "g"))):
+        if sensor in layout and layout[sensor]["unit"] not in units:
+            raise file.refuse(
+                [*key, sensor, "unit"],
+                layout[sensor]["unit"],
+                f"one of {', '.join(units)}",
+                "correct the unit",
+            )
+
+
+def logs(
+    manoeuvres: list[Row], entry: dict[str, Any], encoder: dict[str, Any] | None
+) -> Iterator[Row]:
+    """Every log with the layout of its bytes, complete with what the instrument says of it.
+
+    `encoder`: the log of the table's encoder, if there is one.
+    """
+    for log, rows in by_log(manoeuvres).items():
+        layout = dict(rows[0]["layout"])
+        if layout["kind"] == "rawimus":
+            layout |= {
+                "axes": entry["axes"],
+                "gyro_count": entry["gyro"]["count_rad"],
+                "accelerometer_count": entry["accelerometer"]["count_m_s"],
+            }
+        elif labels := sorted({column for row in rows for column in row["label_columns"]}):
+            layout["label"] = labels
+        if encoder is not None:
+            layout["encoder"] = encoder
+        yield {"log": log, "file": rows[0]["file"], "layout": json.dumps(layout, sort_keys=True)}
+
+
+def by_log(manoeuvres: list[Row]) -> dict[str, list[Row]]:
+    """Manoeuvres by log, whose name they get; a file in several formats counts as several logs."""
+    formats: dict[str, set[str]] = {}
+    for row in manoeuvres:
+        formats.setdefault(row["file"], set()).add(row["format"])
+    logs: dict[str, list[Row]] = {}
+    for row in manoeuvres:
+        single = len(formats[row["file"]]) == 1
+        row["log"] = row["file"] if single else f"{row['file']}:{row['format']}"
+        logs.setdefault(row["log"], []).append(row)
+    return logs

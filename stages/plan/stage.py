@@ -1,0 +1,148 @@
+"""The campaign file, made explicit: one row per manoeuvre in SI, and all that is taken as known.
+
+This is the only stage that reads YAML, so a bad campaign fails here, by name.
+"""
+
+from collections.abc import Sequence
+from math import radians
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from inertial import tables
+from inertial.tables.code import hash_of_file
+from inertial.tables.stage import Stage, Tables
+from inertial.tables.yaml_file import Key, YamlFile
+from stages.plan.manoeuvres import expanded
+from stages.plan.published import published_values
+from stages.plan.recording import (
+    by_log,
+    count_sizes,
+    encoder,
+    instrument,
+    logs,
+    ranges,
+    recording,
+    sensors,
+)
+from stages.plan.taken_as_known import known
+
+Row = dict[str, Any]
+
+
+def plan(
+    campaign: list[Path],
+    raw: list[Path],
+    instruments: list[Path],
+    published: Sequence[Path] = (),
+) -> Tables:
+    """The campaign, its instrument, its logs and its manoeuvres, and what others published of it.
+
+    Raises
+    ------
+    Refusal
+        for the first thing in these files that cannot be used
+    """
+    file = YamlFile(campaign[0])
+    version = file.content.get("campaign") if isinstance(file.content, dict) else None
+    if version != 1:
+        raise file.refuse(
+            ["campaign"], version, "campaign: 1", "write the campaign in version 1 of the grammar"
+        )
+    file.check("campaign")
+    entry = instrument(file, instruments[0])
+    taken_as_known = list(known(file))
+    manoeuvres, table = _manoeuvres(file, entry), encoder(file)
+    present = {path.name: path for path in raw}
+    named = [(row["key"], row["file"]) for row in manoeuvres]
+    named += [] if table is None else [(["encoder", "log"], table["file"])]
+    for key, log in named:
+        if log not in present:
+            raise file.refuse(
+                key,
+                log,
+                f"a log in {campaign[0].parent}",
+                "put the log there, or correct its name",
+            )
+        _stays_inside(file, key, present[log])
+    others = [row for path in published for row in published_values(YamlFile(path))]
+    used = sorted({present[log] for _, log in named})
+    return {
+        "campaign": pd.DataFrame([_campaign(file, campaign[0].parent.name, entry)]),
+        "known": pd.DataFrame(taken_as_known),
+        "sensors": pd.DataFrame(sensors(entry)),
+        "logs": pd.DataFrame(logs(manoeuvres, entry, table)),
+        "ranges": pd.DataFrame(ranges(manoeuvres, entry)),
+        "count_sizes": pd.DataFrame(count_sizes(instruments[0])),
+        "inputs": pd.DataFrame(
+            {"file": path.name, "size": path.stat().st_size, "sha256": hash_of_file(path)}
+            for path in [campaign[0], *used]
+        ),
+        "published": pd.DataFrame(others) if others else tables.PUBLISHED.empty(),
+        "manoeuvres": pd.DataFrame(manoeuvres)[[c.name for c in tables.MANOEUVRES.columns]],
+    }
+
+
+def _stays_inside(file: YamlFile, key: Key, log: Path) -> None:
+    """A campaign from elsewhere reads nothing but what lies in its own folder."""
+    if (target := log.resolve()).parent != file.path.resolve().parent:
+        raise file.refuse_text(
+            key,
+            f"{log.name}, a link to {target}",
+            f"a log in {file.path.parent}",
+            "copy the log there instead of the link",
+        )
+
+
+def _campaign(file: YamlFile, folder: str, entry: dict[str, Any]) -> Row:
+    content, site = file.content, file.content["site"]
+    return {
+        "campaign": folder,
+        "simulated": content.get("simulated", False),
+        "compensated": content.get("compensated", False),
+        "instrument": entry["name"],
+        "serial": content["serial"],
+        "date": content["date"],
+        **{key: content.get(key) for key in ("laboratory", "operator", "notes")},
+        "table": content.get("table", {}).get("name", "not named"),
+        "rate": entry.get("rate_hz"),
+        "latitude": None if site["latitude_deg"] is None else radians(site["latitude_deg"]),
+        "height": site.get("height_m"),
+        **{bits: entry.get("status", {}).get(bits, 0) for bits in ("must_be_set", "must_be_clear")},
+    }
+
+
+def _manoeuvres(file: YamlFile, entry: dict[str, Any]) -> list[Row]:
+    """The plan with every shorthand expanded, in its order, each with its log."""
+    rows: dict[str, Row] = {}
+    for number, item in enumerate(file.content["plan"]):
+        for row in expanded(file, ["plan", number], item):
+            if row["manoeuvre"] in rows:
+                raise file.refuse(
+                    ["plan", number, "id"],
+                    row["manoeuvre"],
+                    "an id of its own",
+                    "rename one of the two",
+                )
+            where = recording(file, ["plan", number], item, entry)
+            rows[row["manoeuvre"]] = row | where
+    by_log(list(rows.values()))
+    return list(rows.values())
+
+
+STAGE = Stage(
+    plan,
+    files=("campaign", "raw", "instruments", "published"),
+    writes={
+        "campaign": tables.CAMPAIGN,
+        "known": tables.KNOWN,
+        "sensors": tables.SENSORS,
+        "logs": tables.LOGS,
+        "ranges": tables.RANGES,
+        "count_sizes": tables.COUNT_SIZES,
+        "inputs": tables.INPUTS,
+        "published": tables.PUBLISHED,
+        "manoeuvres": tables.MANOEUVRES,
+    },
+)

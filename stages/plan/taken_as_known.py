@@ -1,0 +1,94 @@
+"""What a campaign takes as known: every quantity with its sigma and where it is from."""
+
+from collections.abc import Iterator
+from math import cos, radians
+from typing import Any
+
+from inertial.physics.site import EARTH_RATE, earth_rate, normal_gravity
+from inertial.tables.yaml_file import YamlFile
+from inertial.text.campaign_units import ARC_SECOND
+
+# Where a campaign states no sigma, these are taken, and the report says so.
+ASSUMED_POSITION = 30 * ARC_SECOND
+ASSUMED_ANGLE = 30 * ARC_SECOND
+ASSUMED_RATE = 1e-3
+ASSUMED_GRAVITY = 5e-5  # m/s² of a stated value: 5 mGal
+ASSUMED_ANOMALY = 5e-4  # m/s² of normal gravity: what gravity differs by from place to place
+ASSUMED_LATITUDE = radians(0.01)
+
+Row = dict[str, Any]
+
+
+def known(file: YamlFile) -> Iterator[Row]:
+    """Every quantity that the estimation takes as known, with its sigma and where it is from."""
+    site, table = file.content["site"], file.content.get("table", {})
+
+    def row(quantity: str, value: float | None, sigma: float | None, unit: str, origin: str) -> Row:
+        return {
+            "quantity": quantity,
+            "value": value,
+            "sigma": sigma,
+            "unit": unit,
+            "origin": origin,
+        }
+
+    def table_row(quantity: str, key: str, unit_size: float, assumed: float, unit: str) -> Row:
+        if key in table:
+            return row(quantity, 0.0, table[key] * unit_size, unit, f"stated: table.{key}")
+        return row(quantity, 0.0, assumed, unit, f"assumed, for table.{key} is not stated")
+
+    if table.get("name") == "by hand" and "position_sigma_arcsec" not in table:
+        raise file.refuse_text(
+            ["table"],
+            "no position_sigma_arcsec",
+            "position_sigma_arcsec for positions set by hand",
+            "state how well the faces were set, for example position_sigma_arcsec: 3600 for 1°",
+        )
+    yield row("gravity", *_gravity(file), "m/s²", _gravity_origin(site))
+    if site["latitude_deg"] is None:
+        # A direction of which nothing is known: each part has a third of the squared rate.
+        unknown = "assumed, for the latitude is not known"
+        yield row("earth_rate_up", 0.0, EARTH_RATE / 3**0.5, "rad/s", unknown)
+        yield row("earth_rate_level", EARTH_RATE * (2 / 3) ** 0.5, None, "rad/s", unknown)
+    else:
+        latitude = radians(site["latitude_deg"])
+        up, level = earth_rate(latitude)
+        computed = "computed from the latitude, whose sigma is assumed as 0.01°"
+        sigma = EARTH_RATE * abs(cos(latitude)) * ASSUMED_LATITUDE
+        yield row("earth_rate_up", up, sigma, "rad/s", computed)
+        yield row("earth_rate_level", level, None, "rad/s", computed)
+    heading = table.get("heading_deg")
+    yield row(
+        "heading",
+        None if heading is None else radians(heading),
+        None,
+        "rad",
+        "not known" if heading is None else "stated: table.heading_deg",
+    )
+    yield table_row("position", "position_sigma_arcsec", ARC_SECOND, ASSUMED_POSITION, "rad")
+    yield table_row("turn_angle", "angle_sigma_arcsec", ARC_SECOND, ASSUMED_ANGLE, "rad")
+    yield table_row("turn_rate", "rate_sigma_ppm", 1e-6, ASSUMED_RATE, "1")
+
+
+def _gravity(file: YamlFile) -> tuple[float, float]:
+    site = file.content["site"]
+    stated: float | None = site.get("gravity_m_s2")
+    if stated is not None:
+        return stated, site.get("gravity_sigma_m_s2", ASSUMED_GRAVITY)
+    if site["latitude_deg"] is None:
+        raise file.refuse_text(
+            ["site"],
+            "neither gravity_m_s2 nor a latitude",
+            "one of the two",
+            "state gravity_m_s2, or latitude_deg and height_m for normal gravity",
+        )
+    value = normal_gravity(radians(site["latitude_deg"]), site.get("height_m", 0.0))
+    return value, site.get("gravity_sigma_m_s2", ASSUMED_ANOMALY)
+
+
+def _gravity_origin(site: dict[str, Any]) -> str:
+    if "gravity_m_s2" in site:
+        stated = "stated: site.gravity_m_s2"
+        return stated if "gravity_sigma_m_s2" in site else f"{stated}, its sigma assumed as 5 mGal"
+    height = f"{site['height_m']:g} m" if "height_m" in site else "0 m, for no height is stated"
+    return f"normal gravity at latitude {site['latitude_deg']:g}°, height {height}"

@@ -1,0 +1,1 @@
+"""What can be said of a recording without the plan: its time, its values, its scale."""

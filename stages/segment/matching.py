@@ -1,0 +1,275 @@
+"""Which stretch of a window is which manoeuvre, and which records are which phase of it."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.campaign.records import Manoeuvre
+from stages.segment.motion import Stretch, steady_part
+from stages.segment.windows import Binned
+
+# ---- Which stretch of a log is which manoeuvre: the best match that keeps the order of both.
+
+Array = NDArray[np.float64]
+
+ASKEW = np.radians(25)  # how far an IMU may be mounted from the planned direction
+ASLANT = np.radians(45)  # and a turn about another axis than the planned one, as by hand
+UPRIGHT = 0.9  # share of the planned direction in the axes that are recorded, to tell it
+WRONG_WAY = 0.01  # score of a turn against the planned direction
+
+
+def align(scores: Array) -> list[int | None]:
+    """Match rows to columns in ascending order so that the sum of the scores is largest.
+
+    Parameters
+    ----------
+    scores : (m, n), how well manoeuvre i fits stretch j; 0 or less where it does not
+
+    Returns
+    -------
+    for each manoeuvre its stretch, or None where it is not found. Stretches may be
+    left over: anything may happen between two manoeuvres.
+    """
+    m, n = scores.shape
+    best = np.zeros((m + 1, n + 1))
+    for i in range(1, m + 1):
+        for j in range(1, n + 1):
+            together = (
+                best[i - 1, j - 1] + scores[i - 1, j - 1] if scores[i - 1, j - 1] > 0 else -1.0
+            )
+            best[i, j] = max(best[i - 1, j], best[i, j - 1], together)
+    found: list[int | None] = [None] * m
+    i, j = m, n
+    while i and j:
+        if best[i, j] == best[i - 1, j]:
+            i -= 1
+        elif best[i, j] == best[i, j - 1]:
+            j -= 1
+        else:
+            i, j = i - 1, j - 1
+            found[i] = j
+    return found
+
+
+def rest_score(seconds: float, planned: float | None, force: Array, up: Array | None) -> float:
+    """How well a stretch at rest fits a planned rest: by its duration and its direction.
+
+    Parameters
+    ----------
+    force : (3,), m/s², mean specific force, NaN where not recorded
+    up : (3,), the planned direction, None where unknown
+    """
+    if up is not None and not points(force, up):
+        return 0.0
+    return min(seconds / planned, 1.0) if planned else seconds / (seconds + 1.0)
+
+
+def points(force: Array, up: Array) -> bool:
+    """Whether a specific force, (3,), points up as planned, as far as its axes are recorded."""
+    there = np.isfinite(force)
+    seen = float(np.linalg.norm(up[there]))
+    if seen < UPRIGHT:
+        return True  # the axis that would tell is not recorded
+    along = float(force[there] @ up[there]) / seen
+    return bool(along >= np.cos(ASKEW) * float(np.linalg.norm(force[there])))
+
+
+def turn_score(turned: Array, about: Array, planned: float | None) -> float:
+    """How well a motion fits a planned turn: by its angle, rad, or its rate, rad/s.
+
+    A turn in the wrong direction is still the turn, unless a better one is there; a turn about
+    another axis is not.
+
+    Parameters
+    ----------
+    turned : (3,), angles or rates about the axes of the body, NaN where not recorded
+    about : (3,), the planned axis
+    """
+    own = np.nan_to_num(turned)
+    angle = float(own @ about)
+    if abs(angle) < np.cos(ASLANT) * float(np.linalg.norm(own)):
+        return 0.0
+    if planned is None:
+        return abs(angle) / (abs(angle) + 0.1)
+    ratio = angle / planned
+    if ratio < 0:
+        return WRONG_WAY if ratio < -0.5 else 0.0
+    return max(1.0 - abs(1.0 - ratio), 0.02) if ratio > 0.005 else 0.0
+
+
+# ---- Which stretch of a window is which manoeuvre, and which records are which phase of it.
+
+BETWEEN = "between"  # from a rest to the next, where attitudes are unknown: what carries them on
+
+
+@dataclass(frozen=True)
+class Part:
+    """One phase of one manoeuvre: records [first, after) of its log."""
+
+    manoeuvre: str
+    phase: str
+    log: str
+    first: int
+    after: int
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What a stretch shows: seconds; force and rate, (3,), means; turned, (3,), angles, rad.
+
+    NaN where an axis is not recorded; rates and angles are those above the gyros' level at rest.
+    unsure: (3,), rad/s, sigma of the mean rate.
+    """
+
+    moves: bool
+    seconds: float
+    force: Array
+    rate: Array
+    turned: Array
+    unsure: Array
+
+
+def seen(one: Binned, found: Sequence[Stretch], level: Array) -> list[Seen]:
+    """What each stretch of a window shows; `level` is what the gyros read at rest."""
+    return [_seen(one, stretch, level) for stretch in found]
+
+
+def _seen(one: Binned, stretch: Stretch, level: Array) -> Seen:
+    inside = slice(stretch.first, stretch.after)
+    rates, seconds = one.rates[inside] - level, one.seconds[inside]
+    mean, number = _mean(rates), np.isfinite(rates).sum(axis=0)
+    angles = np.nansum(rates * seconds[:, None], axis=0)
+    return Seen(
+        stretch.moves,
+        float(seconds.sum()),
+        _mean(one.forces[inside]),
+        mean,
+        np.where(number > 0, angles, np.nan),
+        np.sqrt(_mean((rates - mean) ** 2) / np.maximum(number, 1)),
+    )
+
+
+def _mean(values: Array) -> Array:
+    """Means of the columns of (k, 3), NaN where nothing is."""
+    there = np.isfinite(values)
+    number = there.sum(axis=0)
+    total = np.where(there, values, 0.0).sum(axis=0)
+    return np.where(number > 0, total / np.maximum(number, 1), np.nan)
+
+
+def match(manoeuvres: Sequence[Manoeuvre], shown: Sequence[Seen]) -> dict[str, int | None]:
+    """For each manoeuvre of a window its stretch, None where it is not found."""
+    sought = [m for m in manoeuvres if m.do != "positions"]
+    scores = np.array([[_score(one, m) for one in shown] for m in sought], np.float64)
+    places = align(scores.reshape(len(sought), len(shown)))
+    return {m.name: place for m, place in zip(sought, places, strict=True)}
+
+
+def _score(shown: Seen, m: Manoeuvre) -> float:
+    if shown.moves is (m.do == "rest"):
+        return 0.0
+    if m.do == "rest":
+        return rest_score(shown.seconds, m.seconds, shown.force, m.up)
+    steady = m.recorded == "steady"
+    return turn_score(shown.rate if steady else shown.turned, m.axis, m.rate if steady else m.angle)
+
+
+def motion(one: Binned, found: Sequence[Stretch], place: int) -> tuple[int, int]:
+    """The bins of a turn; in a window of its own it is all that moves, pauses included."""
+    if one.window.alone:
+        moves = [stretch for stretch in found if stretch.moves]
+        return moves[0].first, moves[-1].after
+    return found[place].first, found[place].after
+
+
+def rest_part(one: Binned, stretch: Stretch, name: str, margin: float) -> Part:
+    """A rest without the margin beside a motion."""
+    room = one.bins_in(margin)
+    first = stretch.first + (room if stretch.first > 0 else 0)
+    after = stretch.after - (room if stretch.after < one.bins else 0)
+    first, after = (first, after) if after > first else (stretch.first, stretch.after)
+    return Part(name, "rest", one.window.log, int(one.edges[first]), int(one.edges[after]))
+
+
+def position_parts(
+    one: Binned,
+    found: Sequence[Stretch],
+    m: Manoeuvre,
+    matched: Mapping[str, int | None],
+    margin: float,
+) -> Iterator[Part]:
+    """Every rest that is long enough and no other manoeuvre's, numbered."""
+    number = 0
+    for place, stretch in enumerate(found):
+        seconds = float(one.seconds[stretch.first : stretch.after].sum())
+        free = not stretch.moves and place not in matched.values()
+        if free and seconds >= (m.seconds or 0.0):
+            number += 1
+            yield rest_part(one, stretch, f"{m.name}-{number:02d}", margin)
+
+
+def between_parts(rests: Sequence[Part]) -> Iterator[Part]:
+    """All that lies between each rest and the next one of the same log."""
+    for before, behind in pairwise(sorted(rests, key=lambda part: (part.log, part.first))):
+        if before.log == behind.log and before.after < behind.first:
+            name = f"{before.manoeuvre} to {behind.manoeuvre}"
+            yield Part(name, BETWEEN, before.log, before.after, behind.first)
+
+
+def _first_of(rest: Stretch, room: int, shared: bool) -> int:
+    """Where the rest before a turn begins; the turn before it, if any, has the first half."""
+    if shared:
+        return (rest.first + rest.after) // 2
+    return min(rest.first + (room if rest.first > 0 else 0), rest.after)
+
+
+def _after_of(rest: Stretch, room: int, shared: bool, bins: int) -> int:
+    """Where the rest after a turn ends; the turn behind it, if any, has the second half."""
+    if shared:
+        return (rest.first + rest.after) // 2
+    return max(rest.after - (room if rest.after < bins else 0), rest.first)
+
+
+def turn_parts(
+    one: Binned,
+    found: Sequence[Stretch],
+    m: Manoeuvre,
+    matched: Mapping[str, int | None],
+    level: Array,
+    margin: float,
+) -> Iterator[Part]:
+    """The phases of a turn, and the rests beside it that no other manoeuvre has."""
+    place = matched[m.name]
+    assert place is not None  # only a turn that was found has phases
+    first, after = motion(one, found, place)
+    room = one.bins_in(margin)
+    start, stop = max(first - room, 0), min(after + room, one.bins)
+    taken = set(matched.values())
+    free = [place + side not in taken for side in (-1, 1)]
+    before, behind = 0, one.bins
+    if not one.window.alone and place > 0:
+        before = _first_of(found[place - 1], room, place - 2 in taken)
+    if not one.window.alone and place + 1 < len(found):
+        behind = _after_of(found[place + 1], room, place + 2 in taken, one.bins)
+
+    phases: list[tuple[str, int, int]] = []
+    if free[0] and first > 0:
+        phases.append(("rest-before", before, start))
+    if m.rate is None:
+        phases.append(("turning", start, stop))
+    else:
+        a, b = steady_part(one.about(m.axis, level)[first:after])
+        steady = (first + a, first + b)
+        phases += [
+            ("spin-up", start, steady[0]),
+            ("steady", *steady),
+            ("spin-down", steady[1], stop),
+        ]
+    if free[1] and after < one.bins:
+        phases.append(("rest-after", stop, behind))
+    for phase, a, b in phases:
+        if b > a:
+            yield Part(m.name, phase, one.window.log, int(one.edges[a]), int(one.edges[b]))

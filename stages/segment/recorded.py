@@ -1,0 +1,184 @@
+"""What was recorded of every manoeuvre, as arrays for the detectors that know the plan."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.campaign.records import Manoeuvre, Performed, rows_of
+from inertial.signal.detector import Given
+from inertial.signal.plan_detector import Misread, Recorded, Swapped
+from stages.segment.explanations import Exchanged, Explained, unlike
+from stages.segment.locating import AS_PLANNED, Located
+from stages.segment.matching import motion
+
+Array = NDArray[np.float64]
+UNKNOWN = np.full(3, np.nan)
+
+
+def recorded_of(
+    plan: Sequence[Manoeuvre],
+    explained: Explained,
+    performed: Mapping[str, Performed],
+    segments: pd.DataFrame,
+    gaps: pd.DataFrame,
+    counts: Mapping[str, float],
+    given: Given,
+    tolerance: float,
+) -> Recorded:
+    """All that the plan and the recording say of each manoeuvre.
+
+    Parameters
+    ----------
+    segments, gaps : their tables
+    counts : rad, what a count of the gyros is, by log; NaN where not stated
+    tolerance : accepted difference of a turn's angle or rate from the plan's, 1
+    """
+    where = {m.name: one for one in explained.located for m in one.one.window.manoeuvres}
+    parts = _parts(segments)
+    done = [performed[m.name] for m in plan]
+    shown = [_shown(m, where[m.name]) for m in plan]
+    places = [parts.get(m.name) or _instead(m, where[m.name]) for m in plan]
+    holes = [_hole(m, place, gaps) for m, place in zip(plan, places, strict=True)]
+    return Recorded(
+        given=given,
+        tolerance=tolerance,
+        name=[m.name for m in plan],
+        log=[m.log for m in plan],
+        do=[m.do for m in plan],
+        steady=np.array([m.recorded == "steady" for m in plan], bool),
+        up=_vectors([m.up for m in plan]),
+        about=_vectors([m.about for m in plan]),
+        angle=_numbers([m.angle for m in plan]),
+        rate=_numbers([m.rate for m in plan]),
+        seconds=_numbers([m.seconds for m in plan]),
+        found=np.array([d.found for d in done], bool),
+        complete=np.array([d.complete for d in done], bool),
+        bridged=np.array([d.bridged for d in done], bool),
+        said=[d.sentence for d in done],
+        force=_vectors([force for force, _ in shown]),
+        turned=_vectors([turned for _, turned in shown]),
+        moved=_numbers([d.angle for d in done]),
+        speed=_numbers([d.rate for d in done]),
+        lacking=_numbers([d.missing_angle for d in done]),
+        lacking_s=_numbers([d.missing_s for d in done]),
+        duration=_numbers([d.seconds for d in done]),
+        first=np.array([place[0] for place in places], np.int64),
+        after=np.array([place[1] for place in places], np.int64),
+        from_s=_numbers([place[2] for place in places]),
+        to_s=_numbers([place[3] for place in places]),
+        gap_first=np.array([hole[0] for hole in holes], np.int64),
+        gap_from_s=_numbers([hole[1] for hole in holes]),
+        gap_to_s=_numbers([hole[2] for hole in holes]),
+        gyros=np.array([np.isfinite(where[m.name].one.rates).any(axis=0) for m in plan], bool),
+        count=_numbers([counts.get(m.log) for m in plan]),
+        gyro_signs=explained.gyro_signs,
+        misread=_misread(plan, explained),
+        swapped=[_in_order(one, [m.name for m in plan]) for one in explained.exchanged],
+    )
+
+
+Place = tuple[int, int, float | None, float | None]
+NOWHERE: Place = (-1, -1, None, None)
+
+
+def _parts(segments: pd.DataFrame) -> dict[str, Place]:
+    """For each manoeuvre the records and times of its rest, or of all its motion."""
+    own: dict[str, list[dict[str, Any]]] = {}
+    for row in rows_of(segments):
+        if row["phase"] not in ("rest-before", "rest-after"):
+            own.setdefault(row["manoeuvre"], []).append(row)
+    return {
+        name: (
+            min(row["from_record"] for row in rows),
+            max(row["to_record"] for row in rows),
+            rows[0]["from_s"],
+            rows[-1]["to_s"],
+        )
+        for name, rows in own.items()
+    }
+
+
+def _candidate(m: Manoeuvre, located: Located) -> int | None:
+    """The stretch of a manoeuvre; of one that is not found, what a log of its own has instead."""
+    place = located.place(m)
+    if place is not None or not located.one.window.alone:
+        return place
+    alike = [k for k, what in enumerate(located.seen) if what.moves is (m.do != "rest")]
+    return max(alike, key=lambda k: located.seen[k].seconds, default=None)
+
+
+def _instead(m: Manoeuvre, located: Located) -> Place:
+    place = _candidate(m, located)
+    if place is None:
+        return NOWHERE
+    one, stretch = located.one, located.found[place]
+    times = one.first_s[stretch.first], one.last_s[stretch.after - 1]
+    records = one.edges[stretch.first], one.edges[stretch.after]
+    return int(records[0]), int(records[1]), float(times[0]), float(times[1])
+
+
+def _shown(m: Manoeuvre, located: Located) -> tuple[Array | None, Array | None]:
+    """The mean force at its rest, or at that before its turn, and the angles of its motion."""
+    place = _candidate(m, located)
+    if m.do == "positions" or place is None:
+        return None, None
+    if m.do == "rest":
+        return located.seen[place].force, None
+    before = located.rest_before(m)
+    turned = located.seen[place].turned
+    if located.one.window.alone:
+        first, after = motion(located.one, located.found, place)
+        pairs = zip(located.found, located.seen, strict=True)
+        own = [w.turned for s, w in pairs if first <= s.first and s.after <= after]
+        turned = np.asarray(np.sum(own, axis=0))
+    return None if before is None else located.seen[before].force, turned
+
+
+def _hole(m: Manoeuvre, place: Place, gaps: pd.DataFrame) -> tuple[int, float | None, float | None]:
+    """The record after the longest gap within these records, and its times."""
+    inside = gaps[
+        (gaps["log"] == m.log) & (gaps["record"] > place[0]) & (gaps["record"] < place[1])
+    ]
+    if m.do != "turn" or inside.empty:
+        return -1, None, None
+    longest = max(rows_of(inside), key=lambda row: row["missing"])
+    return longest["record"], longest["from_s"], longest["to_s"]
+
+
+def _in_order(one: Exchanged, plan: list[str]) -> Swapped:
+    """Exchanged manoeuvres, that which the plan has earlier first."""
+    half = len(one.names) // 2
+    if plan.index(one.names[0]) <= plan.index(one.names[half]):
+        return Swapped(one.names, one.logs)
+    return Swapped(one.names[half:] + one.names[:half], one.logs[::-1])
+
+
+def _misread(plan: Sequence[Manoeuvre], explained: Explained) -> list[Misread]:
+    found = []
+    for sensor, axes in unlike(explained.everywhere, AS_PLANNED):
+        seen_by = [m.name for m in plan if _sees(m, sensor) and not _same(m, sensor, axes)]
+        found.append(Misread(sensor, axes, "", seen_by))
+    for log, own in explained.misread.items():
+        for sensor, axes in unlike(own, explained.everywhere):
+            found.append(Misread(sensor, axes, log, [m.name for m in plan if m.log == log]))
+    return found
+
+
+def _sees(m: Manoeuvre, sensor: str) -> bool:
+    return (m.up is not None) if sensor == "accel" else m.do == "turn"
+
+
+def _same(m: Manoeuvre, sensor: str, axes: Any) -> bool:
+    direction = m.up if sensor == "accel" else m.about
+    return direction is None or bool(np.allclose(axes.of(direction), direction))
+
+
+def _vectors(values: Sequence[Array | None]) -> Array:
+    return np.array([UNKNOWN if value is None else value for value in values]).reshape(-1, 3)
+
+
+def _numbers(values: Sequence[float | None]) -> Array:
+    return np.array([np.nan if value is None else value for value in values], np.float64)

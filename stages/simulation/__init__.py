@@ -1,0 +1,1 @@
+"""What the IMU should have read, by the forward model with the solved parameters."""

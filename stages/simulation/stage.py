@@ -1,0 +1,249 @@
+"""What the IMU should have read, by the forward model with the solved parameters."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial import tables
+from inertial.campaign.estimates import by_mount
+from inertial.campaign.masked_samples import inside, pieces
+from inertial.campaign.motions import at_rest, in_samples
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import (
+    Clock,
+    Known,
+    Manoeuvre,
+    Performed,
+    Row,
+    clocks_of,
+    known_of,
+    manoeuvres_of,
+    performed_of,
+    rows_of,
+)
+from inertial.campaign.solution import Solution, solution_of
+from inertial.campaign.static_positions import stills
+from inertial.physics.effect import Reading
+from inertial.physics.forward import Triad, predict
+from inertial.physics.motion import Motion
+from inertial.tables import GYRO
+from inertial.tables.parquet import Stream
+from inertial.tables.stage import Pieces, Stage
+
+Array = NDArray[np.float64]
+
+OF_CHANNELS = ("said", "residual")
+NOTHING = Triad(np.full((3, 3), np.nan), np.full(3, np.nan))  # of a triad that is not determined
+
+
+def simulation(
+    samples: Stream,
+    blocks: pd.DataFrame,
+    segments: pd.DataFrame,
+    manoeuvres: pd.DataFrame,
+    performed: pd.DataFrame,
+    noise: pd.DataFrame,
+    known: pd.DataFrame,
+    clocks: pd.DataFrame,
+    accelerometer_parameters: pd.DataFrame,
+    accelerometer_positions: pd.DataFrame,
+    gyroscope_parameters: pd.DataFrame,
+    gyroscope_positions: pd.DataFrame,
+) -> Pieces:
+    """Turns sample by sample, rests block by block, each with what is left of the reading."""
+    given, done, clock = known_of(known), performed_of(performed), clocks_of(clocks)
+    levels = NoiseLevels(noise)
+    for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
+        solution = solution_of(
+            (accelerometer_parameters, gyroscope_parameters),
+            (accelerometer_positions, gyroscope_positions),
+            given,
+            suffix,
+        )
+        rests = list(_rests(blocks, plan, done, levels, given, solution))
+        if rests:
+            yield "simulated", _frame([part for part, _ in rests])
+            rows = [row for part, s in rests for row in _fidelity(part, levels, "at rest", s)]
+            yield "fidelity", _table(rows)
+        if solution.gyro is None:
+            continue
+        whole = [m for m in plan if _whole(m, done)]
+        for m, parts in _samples_of(samples, segments, whole):
+            heading = given["heading"].value
+            used = blocks[blocks["manoeuvre"] == m.name]
+            part, how = _turn(m, parts, segments, used, clock[m.log], solution, heading)
+            yield "simulated", _frame([part])
+            yield "fidelity", _table(_fidelity(part, levels, how, clock[m.log].step))
+
+
+def _whole(m: Manoeuvre, done: Mapping[str, Performed]) -> bool:
+    known = m.up is not None and m.angle is not None
+    recorded = done[m.name].complete or done[m.name].bridged
+    return m.do == "turn" and m.recorded == "whole" and known and recorded
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """n samples of a turn or blocks of a rest: what the six channels should have read, and did.
+
+    `phase`, `record`, `time`, s: (n,); `said`, `read`: m/s² and rad/s, (n, 6).
+    """
+
+    manoeuvre: str
+    log: str
+    phase: NDArray[Any]
+    record: NDArray[Any]
+    time: Array
+    said: Array
+    read: Array
+
+    @cached_property
+    def residual(self) -> Array:
+        """What is left of the reading, (n, 6)."""
+        return self.read - self.said
+
+
+def _rests(
+    blocks: pd.DataFrame,
+    plan: list[Manoeuvre],
+    done: Mapping[str, Performed],
+    levels: NoiseLevels,
+    known: Mapping[str, Known],
+    solution: Solution,
+) -> Iterator[tuple[Simulated, float]]:
+    """Every rest in its blocks, each with how long a block lasts, s."""
+    found = {
+        still.label: still
+        for sensor in ("gyro", "accel")
+        for still in stills(blocks, plan, done, levels, sensor)[0]
+    }
+    rows = blocks.groupby(["manoeuvre", "phase"]).indices
+    log, phase, record = (blocks[name].to_numpy() for name in ("log", "phase", "from_record"))
+    time, seconds = (blocks[name].to_numpy(np.float64) for name in ("time", "seconds"))
+    read = blocks[list(tables.CHANNELS)].to_numpy(np.float64)
+    for label, still in found.items():
+        name = still.manoeuvre.name
+        own = rows[name, "rest" if label == name else label.rpartition("(")[2][:-1]]
+        said = _predicted(at_rest(still, solution, known["heading"].value, 0.0), solution)
+        row = np.concatenate([said.accel[0], said.gyro[0]])
+        every = np.tile(row, (len(own), 1))
+        part = Simulated(name, log[own[0]], phase[own], record[own], time[own], every, read[own])
+        yield part, float(np.median(seconds[own]))
+
+
+def _predicted(motion: Motion, solution: Solution) -> Reading:
+    gyro, accelerometer = solution.gyro or NOTHING, solution.accelerometer or NOTHING
+    return predict(motion, solution.site, gyro, accelerometer)
+
+
+def _samples_of(
+    samples: Stream, segments: pd.DataFrame, whole: list[Manoeuvre]
+) -> Iterator[tuple[Manoeuvre, dict[str, NDArray[Any]]]]:
+    """The samples of each of these turns, from the rest before it to the rest after it."""
+    spans = {
+        str(name): (int(rows["from_record"].min()), int(rows["to_record"].max()))
+        for name, rows in segments.groupby("manoeuvre")
+    }
+    columns = ["record", "time", *tables.CHANNELS]
+    waiting = {m.name: [] for m in whole}  # type: dict[str, list[dict[str, NDArray[Any]]]]
+    for log, piece in pieces(samples, columns):
+        for m in whole:
+            if m.log != log:
+                continue
+            first, after = spans[m.name]
+            inside = (piece["record"] >= first) & (piece["record"] < after)
+            if inside.any():
+                waiting[m.name].append({c: piece[c][inside] for c in columns})
+            if piece["record"][-1] >= after - 1 and waiting[m.name]:
+                parts = waiting.pop(m.name)
+                waiting[m.name] = []
+                yield m, {c: np.concatenate([part[c] for part in parts]) for c in columns}
+
+
+def _turn(
+    m: Manoeuvre,
+    parts: dict[str, NDArray[Any]],
+    segments: pd.DataFrame,
+    blocks: pd.DataFrame,
+    clock: Clock,
+    solution: Solution,
+    heading: float | None,
+) -> tuple[Simulated, str]:
+    """A turn sample by sample; what is in none of its blocks is masked, and not compared."""
+    record = parts["record"]
+    own = [row for row in rows_of(segments) if row["manoeuvre"] == m.name]
+    phase = np.full(len(record), "rest", dtype=object)
+    for row in own:
+        phase[(record >= row["from_record"]) & (record < row["to_record"])] = row["phase"]
+    read = np.column_stack([parts[channel] for channel in tables.CHANNELS])
+    edges = [blocks[name].to_numpy(np.int64) for name in ("from_record", "to_record")]
+    read[~inside(record, *edges)] = np.nan
+    increments = read[:, len(GYRO) :] * clock.step
+    steady = phase == "steady"
+    motion, how = in_samples(m, increments, clock.step, steady, parts["time"], solution, heading)
+    said = _predicted(motion, solution)
+    both = np.hstack([said.accel, said.gyro])
+    return Simulated(m.name, m.log, phase, record, parts["time"], both, read), how
+
+
+def _frame(parts: Sequence[Simulated]) -> pd.DataFrame:
+    counts = [len(part.record) for part in parts]
+    said, residual = (np.concatenate([getattr(p, name) for p in parts]) for name in OF_CHANNELS)
+    return pd.DataFrame(
+        {
+            "manoeuvre": np.repeat([part.manoeuvre for part in parts], counts),
+            "phase": np.concatenate([part.phase for part in parts]),
+            "log": np.repeat([part.log for part in parts], counts),
+            "record": np.concatenate([part.record for part in parts]),
+            "time": np.concatenate([part.time for part in parts]),
+            **dict(zip(tables.CHANNELS, said.T, strict=True)),
+            **{f"residual_{c}": left for c, left in zip(tables.CHANNELS, residual.T, strict=True)},
+        }
+    )
+
+
+def _fidelity(part: Simulated, levels: NoiseLevels, how: str, seconds: float) -> Iterator[Row]:
+    """How large the residuals are beside what white noise alone would leave of means so long."""
+    white = levels.of(part.manoeuvre, "rest", tables.CHANNELS)
+    for channel, residual, level in zip(tables.CHANNELS, part.residual.T, white, strict=True):
+        there = residual[np.isfinite(residual)]
+        if len(there) and np.isfinite(level):
+            yield {
+                "manoeuvre": part.manoeuvre,
+                "channel": channel,
+                "profile": how,
+                "residual_rms": float(np.sqrt(np.mean(there**2))),
+                "noise_rms": float(level) / np.sqrt(seconds),
+                "samples": len(there),
+            }
+
+
+def _table(rows: Iterable[Row]) -> pd.DataFrame:
+    found = list(rows)
+    return pd.DataFrame(found) if found else tables.FIDELITY.empty()
+
+
+STAGE = Stage(
+    simulation,
+    reads={
+        "samples": tables.SAMPLES,
+        "blocks": tables.BLOCKS,
+        "segments": tables.SEGMENTS,
+        "manoeuvres": tables.MANOEUVRES,
+        "performed": tables.PERFORMED,
+        "noise": tables.NOISE,
+        "known": tables.KNOWN,
+        "clocks": tables.CLOCKS,
+        "accelerometer_parameters": tables.PARAMETERS,
+        "accelerometer_positions": tables.POSITIONS,
+        "gyroscope_parameters": tables.PARAMETERS,
+        "gyroscope_positions": tables.POSITIONS,
+    },
+    streams=("samples",),
+    writes={"simulated": tables.SIMULATED, "fidelity": tables.FIDELITY},
+)

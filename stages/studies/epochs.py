@@ -1,0 +1,188 @@
+"""The parameters by rests, epoch by epoch: S0's six positions, and the gyros up and down."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.campaign.estimates import UNIT, described
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import Known, Manoeuvre, Performed, rows_of
+from inertial.estimation.averaging_epochs import Formula, in_epochs, spread
+from inertial.estimation.triad import errors_of, linear_names
+from inertial.tables import AXES, CHANNELS
+from stages.studies.stretches import Samples, Stretch
+
+Array = NDArray[np.float64]
+Row = dict[str, Any]
+
+MOST_SAMPLES = 60_000  # of each rest: ten minutes at 100 Hz
+MOST_EPOCHS = 200  # of the table, each a second or longer
+FEWEST = 64  # samples of a rest
+SHARE = 0.25  # of the longest rest, which a rest must have, for all are cut to the shortest
+ALIKE = 0.05  # by which sample intervals may differ from log to log
+FEWEST_EPOCHS = 8  # of which a variance is told
+NEEDED = {
+    "accelerometer": "four or more attitudes, of about the same length, that span all axes",
+    "gyroscope": "an axis that points up and down, for about the same time",
+}
+SENSORS = {"accelerometer": 0, "gyroscope": 3}  # place of their x among the channels
+
+
+@dataclass(frozen=True)
+class Named:
+    """Parameters of one stage by a formula over the rests; its readings rest by rest, x, y, z."""
+
+    stage: str
+    names: tuple[str, ...]
+    formula: Formula
+
+
+def rests_of(
+    plan: Sequence[Manoeuvre], done: Mapping[str, Performed], segments: pd.DataFrame
+) -> dict[str, tuple[Manoeuvre, Stretch]]:
+    """The planned rests of known attitude that were found, each cut to the shortest of them.
+
+    One that is far shorter than the others is left out.
+    """
+    usable = [m for m in plan if m.do == "rest" and m.up is not None and done[m.name].found]
+    spans = {
+        row["manoeuvre"]: (row["from_record"], row["to_record"])
+        for row in rows_of(segments[segments["phase"] == "rest"])
+    }
+    lengths = {m.name: spans[m.name][1] - spans[m.name][0] for m in usable if m.name in spans}
+    longest = max(lengths.values(), default=0)
+    lengths = {name: n for name, n in lengths.items() if n >= FEWEST and n > SHARE * longest}
+    length = min([*lengths.values(), MOST_SAMPLES])
+    return {
+        m.name: (m, Stretch(m.log, spans[m.name][0], spans[m.name][0] + length))
+        for m in usable
+        if m.name in lengths
+    }
+
+
+def formulas(ups: Array, gravity: float) -> list[Named]:
+    """What the upward directions (n, 3) of the rests let the formulas solve."""
+    found = []
+    truth = np.vstack([gravity * ups.T, np.ones(len(ups))])
+    if np.linalg.matrix_rank(truth) == 4:
+        inverse = truth.T @ np.linalg.inv(truth @ truth.T)  # (n, 4), as S0 (3-6) has it
+        weights = np.zeros((12, len(ups), 3))
+        for sensor in range(3):
+            weights[3 * sensor : 3 * sensor + 3, :, sensor] = inverse[:, :3].T
+            weights[9 + sensor, :, sensor] = inverse[:, 3]
+        formula = Formula(weights.reshape(12, -1), errors_of(np.zeros(12)))
+        found.append(Named("accelerometer", linear_names(), formula))
+    names, rows = [], []
+    for i, axis in enumerate(AXES):
+        up, down = (sign * ups[:, i] > 1 - 1e-9 for sign in (1, -1))
+        if up.any() and down.any():
+            row = np.zeros((len(ups), 3))
+            row[:, i] = up / (2 * up.sum()) + down / (2 * down.sum())
+            names.append(f"bias_{axis}")
+            rows.append(row.ravel())
+    if rows:
+        found.append(Named("gyroscope", tuple(names), Formula(np.array(rows), np.zeros(len(rows)))))
+    return found
+
+
+def studied(
+    rests: Mapping[str, tuple[Manoeuvre, Stretch]],
+    samples: Mapping[str, Samples],
+    steps: Mapping[str, float],
+    levels: NoiseLevels,
+    known: Mapping[str, Known],
+    suffix: str,
+) -> dict[str, list[Row]]:
+    """Epochs and spreads of the rests of one mount, and what is not studied.
+
+    `steps`: s, of a sample, by log.
+    """
+    rows: dict[str, list[Row]] = {"epochs": [], "spreads": [], "not_studied": []}
+    there = {name: one for name, one in rests.items() if name in samples}
+    length = min((len(samples[name].time) for name in there), default=0)
+    step = np.array([steps[m.log] for m, _ in there.values()])
+    if length < FEWEST or np.ptp(step) > ALIKE * step.min():
+        short = f"no rest of known attitude and {FEWEST} samples or more was found"
+        reason = short if length < FEWEST else "the rests differ in their sample interval"
+        rows["not_studied"].append(_not_studied(f"rests{suffix}", reason))
+        return rows
+    ups = np.array([m.up for m, _ in there.values()])
+    found = formulas(ups, known["gravity"].number)
+    for stage in SENSORS:
+        if stage not in [named.stage for named in found]:
+            what = f"{stage}{suffix}"
+            rows["not_studied"].append(_not_studied(what, f"it needs {NEEDED[stage]}"))
+    for named in found:
+        place = SENSORS[named.stage]
+        channels = CHANNELS[place : place + 3]
+        values = [samples[name].values[:length, place : place + 3] for name in there]
+        density = np.concatenate([levels.of(name, "rest", channels) for name in there])
+        _add(rows, named, np.hstack(values), density, float(step.mean()), suffix)
+    return rows
+
+
+def _not_studied(subject: str, reason: str) -> Row:
+    return {"study": "rests", "subject": subject, "reason": reason}
+
+
+def _add(
+    rows: dict[str, list[Row]],
+    named: Named,
+    readings: Array,
+    density: Array,
+    step: float,
+    suffix: str,
+) -> None:
+    told = np.isfinite(readings).any(axis=0) & np.isfinite(density)
+    needed = (named.formula.weights != 0) @ ~told == 0
+    for name in np.array(named.names)[~needed]:
+        what = f"{named.stage}{suffix}: {name}"
+        reason = "not all of its rests were recorded, with their noise"
+        rows["not_studied"].append(_not_studied(what, reason))
+    names = [name for name, has in zip(named.names, needed, strict=True) if has]
+    if not names:
+        return
+    formula = Formula(named.formula.weights[needed], named.formula.constant[needed])
+    readings, density = np.where(told, readings, 0.0), np.where(told, density, 0.0)
+    ids = [f"{named.stage}/rests{suffix}/{name}" for name in names]
+    unit = [described(named.stage, name)[0] for name in names]
+    assert set(unit) <= {"1", *UNIT.values()}
+
+    length = max(round(1 / step), -(-len(readings) // MOST_EPOCHS), 1)
+    length = min(length, len(readings) // FEWEST_EPOCHS)
+    single, running = (formula.of(part) for part in in_epochs(readings, length))
+    for k in range(len(single)):
+        seconds = (k + 1) * length * step
+        sigma = formula.sigma(density, length * step)
+        for i, name in enumerate(ids):
+            rows["epochs"].append(
+                {
+                    "parameter": name,
+                    "unit": unit[i],
+                    "seconds": seconds,
+                    "single": single[k, i],
+                    "single_sigma": sigma[i],
+                    "running": running[k, i],
+                    "running_sigma": sigma[i] / np.sqrt(k + 1),
+                }
+            )
+    most = len(readings) // FEWEST_EPOCHS
+    lengths = [2**octave for octave in range(most.bit_length())]
+    for one in spread(formula, readings, lengths):
+        white = formula.sigma(density, one.samples * step) ** 2
+        for i, name in enumerate(ids):
+            rows["spreads"].append(
+                {
+                    "parameter": name,
+                    "unit": unit[i],
+                    "seconds": one.samples * step,
+                    "epochs": one.epochs,
+                    "single": one.single[i],
+                    "running": one.running[i],
+                    "white": white[i],
+                }
+            )

@@ -1,0 +1,266 @@
+"""Turns recorded whole, sample by sample: what the gyros summed, and the angle of the table."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.campaign.motions import angles_seen
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.rate_segments import GyroInputs, Recorded, position_of
+from inertial.campaign.records import Manoeuvre, rows_of
+from inertial.estimation.periodic_in_time import strongest
+from inertial.estimation.time_angle import Errors, TimeAngle, ripple_angle, ripple_window, tied
+from inertial.estimation.triad import linear_names
+from inertial.physics.forward import Site, Triad
+from inertial.physics.vectors import cross
+from inertial.tables import AXES, GYRO
+from stages.studies.stretches import Samples, Stretch
+
+Array = NDArray[np.float64]
+
+UNKNOWN_CROSS = 0.01  # rad, a mounting askew by half a degree: a cross term that no one determined
+LOWEST = 2.0  # Hz, above which a turn rings; what is slower is the table's own motion
+LOUD = 1e-4  # chance below which it does
+LATE = 0.5  # of a step by which a sample may be late; more, and one is missing
+
+
+@dataclass(frozen=True)
+class Gyros:
+    """The joint result of one mount: M and bias, with what is not determined put in as unknown.
+
+    `sigma`: (3,), rad/s, of the biases, infinite where there is none; `unknown`: (3, 3), which
+    cross terms are not determined.
+    """
+
+    triad: Triad
+    sigma: Array
+    unknown: NDArray[np.bool_]
+
+    @property
+    def left(self) -> Array:
+        """Size of what is left of the cross terms of each gyro when M is undone, (3,)."""
+        return np.asarray(UNKNOWN_CROSS * np.sqrt(self.unknown.sum(axis=1)))
+
+    def cross(self, i: int) -> float:
+        """Size of the cross terms of a gyro as it reads."""
+        terms = np.where(self.unknown, UNKNOWN_CROSS, self.triad.matrix)[i]
+        return float(np.linalg.norm(np.delete(terms, i)))
+
+    def along(self, about: Array) -> float:
+        """Sigma of the bias along an axis, rad/s."""
+        there = about != 0
+        return float(np.linalg.norm(about[there] * self.sigma[there]))
+
+
+def gyros_of(parameters: pd.DataFrame, method: str) -> Gyros:
+    """The result of a method, by the table of parameters."""
+    rows = {row["parameter"]: row for row in rows_of(parameters) if row["method"] == method}
+    names = linear_names()
+    told = [name in rows and rows[name]["value"] is not None for name in names]
+    values = [rows[name]["value"] if has else 0.0 for name, has in zip(names, told, strict=True)]
+    sigma = [rows[n]["sigma"] if has else np.inf for n, has in zip(names, told, strict=True)]
+    unknown = ~np.array(told[:9]).reshape(3, 3) & ~np.eye(3, dtype=bool)
+    matrix = np.eye(3) + np.array(values[:9], dtype=np.float64).reshape(3, 3)
+    return Gyros(
+        Triad(matrix, np.array(values[9:], dtype=np.float64)),
+        np.array(sigma[9:], dtype=np.float64),
+        unknown,
+    )
+
+
+class Ringing(NamedTuple):
+    """An oscillation of what a gyro reads: rad/s, the averaging of a sample undone, and Hz."""
+
+    amplitude: float
+    frequency: float
+
+
+@dataclass(frozen=True)
+class WholeMotion:
+    """One turn from the first motion to the last.
+
+    `increments`: (n, 3), rad, of the gyros; `first`, `after`: edges of the steady part; `angle`:
+    the table's angle at the edges; `lines`: (3,) of what rings in each gyro, None where nothing.
+    """
+
+    recorded: Recorded
+    step: float
+    increments: Array
+    first: int
+    after: int
+    table: TimeAngle
+    lines: Sequence[Ringing | None]
+
+    @property
+    def plan(self) -> Manoeuvre:
+        """The manoeuvre."""
+        return self.recorded.plan
+
+    @cached_property
+    def signed(self) -> Array:
+        """The angle about the manoeuvre's axis at the edges, (n + 1,), rad."""
+        assert self.plan.angle is not None
+        return self.table.angle * float(np.sign(self.plan.angle))
+
+    def ripple(self, gyro: int, seconds: Array | None) -> Array:
+        """Rms angle that an oscillation leaves of a gyro in windows of `seconds`, rad.
+
+        Without `seconds` the window ends at any phase.
+        """
+        line = self.lines[gyro]
+        if line is None:
+            return np.zeros(())
+        if seconds is None:
+            return np.asarray(ripple_angle(line.amplitude, line.frequency))
+        return ripple_window(line.amplitude, line.frequency, seconds)
+
+
+def stretch_of(one: Recorded, segments: pd.DataFrame) -> Stretch:
+    """The records of a turn from the first motion to the last."""
+    own = segments[(segments["manoeuvre"] == one.plan.name) & (segments["log"] == one.plan.log)]
+    moving = own[~own["phase"].str.startswith("rest")]
+    return Stretch(one.plan.log, int(moving["from_record"].min()), int(moving["to_record"].max()))
+
+
+def steady_times(one: Recorded, segments: pd.DataFrame) -> tuple[float, float]:
+    """When the first and the last sample of its steady part were taken, s."""
+    own = segments[(segments["manoeuvre"] == one.plan.name) & (segments["phase"] == "steady")]
+    return float(own["from_s"].min()), float(own["to_s"].max())
+
+
+def why_not(one: Recorded) -> str:
+    """Why a turn is not studied; empty where it is."""
+    if one.refusal:
+        return one.refusal
+    if one.plan.recorded != "whole":
+        return "only its steady part was planned, so no whole angle ties it"
+    if not one.done.complete:
+        return one.done.sentence
+    return "" if one.blocks.steady.any() else "it has no steady part"
+
+
+def motion_of(
+    one: Recorded,
+    samples: Samples,
+    steady: tuple[float, float],
+    step: float,
+    inputs: GyroInputs,
+    gyros: Gyros,
+    levels: NoiseLevels,
+    scatter: float,
+) -> WholeMotion | str:
+    """A turn, or why there is none.
+
+    Parameters
+    ----------
+    steady : s, time of the first and of the last sample of the steady part
+    scatter : rad/s, between manoeuvres, that the joint estimate allows for
+    """
+    m = one.plan
+    assert m.up is not None and m.angle is not None and m.angle_sigma is not None  # else refused
+    rates, time = samples.values[:, 3:], samples.time
+    there = np.isfinite(rates) | ~np.isfinite(rates).any(axis=0)
+    rates, time = rates[there.all(axis=1)], time[there.all(axis=1)]
+    even = np.abs(np.diff(time) / step - 1) < LATE
+    about = m.axis
+    if not even.all() or len(time) < 2:
+        return "its samples do not follow each other step by step"
+    if not np.isfinite(rates[:, about != 0]).all() or not np.isfinite(gyros.along(about)):
+        return f"the gyro along its axis is not recorded, or has no bias ({m.name})"
+    increments = rates * step
+    first = int(np.argmin(np.abs(time - steady[0])))
+    after = int(np.argmin(np.abs(time - steady[1]))) + 1
+
+    earth = inputs.earth
+    north = position_of(m, inputs.heading).north
+    lying = float(np.linalg.norm(cross(m.up, about)))  # 0 where the axis is upright
+    sensed = np.where(np.isfinite(increments), increments, gyros.triad.bias * step)
+    seen = angles_seen(
+        sensed,
+        np.full(len(time), step),
+        about,
+        m.up,
+        np.full(3, np.nan) if north is None else north,
+        gyros.triad,
+        Site(0.0, earth.up, earth.level),
+        lambda angle: np.asarray(np.cumsum(angle) - angle / 2),
+    )
+    lines = [_line(increments[first:after, i], step) for i in range(3)]
+    unknown_level = 0.0 if north is not None else earth.level * lying / np.sqrt(2)
+    density = (about * levels.of(m.name, "steady", GYRO))[about != 0]
+    ringing = lines[int(np.argmax(np.abs(about)))]
+    offset = [gyros.along(about), scatter, earth.up_sigma * float(about @ m.up), unknown_level]
+    if not np.isfinite(density).all():
+        return "its white noise is not known"
+    errors = Errors(
+        density=float(np.linalg.norm(density)),
+        offset=float(np.linalg.norm(np.array(offset))),
+        whole=m.angle_sigma,
+        level=float(np.abs(about) @ gyros.left) * earth.level / np.sqrt(2),
+        ripple=0.0 if ringing is None else ripple_angle(*ringing) / np.sqrt(2),
+    )
+    turned = np.sign(m.angle) * seen
+    return WholeMotion(
+        one, step, increments, first, after, tied(turned, step, abs(m.angle), errors), lines
+    )
+
+
+def _line(increments: Array, step: float) -> Ringing | None:
+    """What rings in the steady part of a gyro; none that chance explains.
+
+    A sample is the mean over its interval, which lessens a line by sin(πfT)/(πfT); with that
+    undone, its angle is A/(2πf), for an alias as well.
+    """
+    if not np.isfinite(increments).all():
+        return None
+    line = strongest(increments / step, 1 / step, LOWEST)
+    if line is None or line.p_value > LOUD:
+        return None
+    return Ringing(line.amplitude / float(np.sinc(line.frequency * step)), line.frequency)
+
+
+def axis_of(m: Manoeuvre) -> int | None:
+    """The body axis that a turn is about while it points up or down; none where there is none."""
+    for i in range(len(AXES)):
+        if m.up is not None and min(abs(float(m.up[i])), abs(float(m.axis[i]))) > 1 - 1e-9:
+            return i
+    return None
+
+
+def pairs_of(motions: Mapping[str, WholeMotion]) -> list[tuple[int, WholeMotion, WholeMotion]]:
+    """Turns forward, each with one backward: same axis, same end up, same angle, same rate.
+
+    Forward and backward are about the body axis, whose number comes first.
+    """
+    forward: list[tuple[int, WholeMotion]] = []
+    backward: dict[str, tuple[int, WholeMotion]] = {}
+    for name, motion in motions.items():
+        i = axis_of(motion.plan)
+        if i is None or motion.plan.rate is None or motion.plan.angle is None:
+            continue
+        if motion.plan.angle * motion.plan.axis[i] > 0:
+            forward.append((i, motion))
+        else:
+            backward[name] = (i, motion)
+    found = []
+    for i, motion in forward:
+        alike = [name for name, (j, b) in backward.items() if i == j and _same(motion, b, i)]
+        if alike:
+            found.append((i, motion, backward.pop(alike[0])[1]))
+    return found
+
+
+def _same(one: WholeMotion, other: WholeMotion, i: int) -> bool:
+    """Whether two turns about body axis i are alike but for their direction."""
+    ups = [motion.plan.up for motion in (one, other)]
+    if ups[0] is None or ups[1] is None or ups[0][i] * ups[1][i] < 0:
+        return False
+    sizes, others = (
+        np.array([abs(m.plan.angle or 0.0), abs(m.plan.rate or 0.0), m.step]) for m in (one, other)
+    )
+    return bool(np.allclose(sizes, others, rtol=1e-6))
