@@ -21,7 +21,8 @@ from inertial.campaign.masked_samples import Masks
 from inertial.campaign.records import Row, manoeuvres_of, rows_of
 from inertial.tables.code import code_of, hash_of, hash_of_file
 from inertial.tables.errors import Refusal
-from inertial.tables.parquet import Stream, Table, provenance
+from inertial.tables.parquet import Stream, provenance
+from inertial.tables.table import Table
 from inertial.tables.whole_files import write_whole
 from stages.exporting.ardupilot import ardupilot
 from stages.exporting.calibration import (

@@ -19,8 +19,9 @@ from inertial import tables
 from inertial.campaign.final_result import counting, extended_methods
 from inertial.tables.code import code_of, hash_of
 from inertial.tables.errors import Refusal
-from inertial.tables.parquet import Stream, Table
+from inertial.tables.parquet import Stream
 from inertial.tables.parquet import provenance as made_by
+from inertial.tables.table import Table
 from inertial.tables.whole_files import write_whole
 from inertial.text import numbers
 from stages.reporting import (

@@ -20,7 +20,8 @@ from hypothesis import strategies as st
 
 from inertial import tables
 from inertial.tables.errors import Refusal
-from inertial.tables.parquet import Table, Writer, provenance
+from inertial.tables.parquet import Writer, provenance
+from inertial.tables.table import Table
 from stages.archiving.archive import Archive
 from stages.archiving.names import file_name
 from stages.history import STAGE

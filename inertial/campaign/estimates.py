@@ -11,7 +11,7 @@ from inertial import tables
 from inertial.campaign.records import Manoeuvre
 from inertial.estimation import triad
 from inertial.estimation.least_squares import Estimate, Fitted
-from inertial.tables.parquet import Table
+from inertial.tables.table import Table
 
 # ---- How long the rests must last for a bias of a wanted sigma, by S0's formulas.
 #

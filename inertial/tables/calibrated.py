@@ -1,9 +1,7 @@
 """Compensated samples, their checks, and the archive of calibrations."""
 
-import pyarrow as pa
-
-from inertial.tables.parquet import Column, Table
-from inertial.tables.shared import DOUBLE, INTEGER, LABEL, TEXT, TRUTH, channels
+from inertial.tables.shared import channels
+from inertial.tables.table import DOUBLE, INTEGER, LABEL, TEXT, TEXTS, TRUTH, Column, Table
 
 # ---- Samples with the errors taken out, and the checks of them.
 
@@ -58,11 +56,9 @@ CHECKS = Table(
 # ---- The archive of calibrations.
 
 
-def _rows(*fields: tuple[str, pa.DataType, str]) -> pa.DataType:
-    """A column that holds rows of its own, of columns with name, type and meaning."""
-    return pa.list_(
-        pa.struct([pa.field(name, kind, True, {"meaning": told}) for name, kind, told in fields])
-    )
+def _rows(*fields: tuple[str, str, str]) -> tuple[Column, ...]:
+    """The columns of the rows that each value of a column holds: name, type and meaning."""
+    return tuple(Column(name, kind, "", meaning, nullable=True) for name, kind, meaning in fields)
 
 
 # An archive outlives the other tables, so it borrows no columns of theirs. Whoever counts its
@@ -128,7 +124,7 @@ CALIBRATION = Table(
             "the stages that made these tables",
         ),
         Column("content", TEXT, "", "SHA-256 of what makes it another calibration"),
-        Column("supersedes", pa.list_(TEXT), "", "files of the archive that it replaces"),
+        Column("supersedes", TEXTS, "", "files of the archive that it replaces"),
     ),
 )
 ARCHIVED = Table(

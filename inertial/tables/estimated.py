@@ -1,7 +1,7 @@
 """Noise, parameters, covariance, fits, studies and comparisons."""
 
-from inertial.tables.parquet import Column, Table
-from inertial.tables.shared import BODY, DOUBLE, INTEGER, TEXT
+from inertial.tables.shared import BODY
+from inertial.tables.table import DOUBLE, INTEGER, TEXT, Column, Table
 
 # ---- Noise, parameters, covariance, fits and positions.
 

@@ -1,4 +1,4 @@
-"""A table contract, and the only place that reads or writes Parquet."""
+"""Tables as Parquet: the only place that reads or writes it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import secrets
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -17,6 +17,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from inertial.tables.errors import Refusal
+from inertial.tables.table import Column, Table
 
 if TYPE_CHECKING:  # decode streams record batches and starts faster without pandas
     import pandas as pd
@@ -25,130 +26,94 @@ BATCH_ROWS = 65536  # rows that a stream holds in memory at a time
 AGAIN = "delete the file and run the campaign again"
 
 
-@dataclass(frozen=True)
-class Column:
-    """One column: what its numbers mean, in which unit and frame."""
+TYPES: dict[str, pa.DataType] = {
+    "double": pa.float64(),
+    "string": pa.string(),
+    "int64": pa.int64(),
+    "uint32": pa.uint32(),
+    "bool": pa.bool_(),
+    "label": pa.dictionary(pa.int32(), pa.string()),
+    "texts": pa.list_(pa.string()),
+}
+WRITTEN = {"compression": "zstd", "write_statistics": False}
 
-    name: str
-    type: pa.DataType
-    unit: str
-    meaning: str
-    frame: str = ""
-    nullable: bool = False
-    noisy: bool = False  # not packed: to do so takes longer than the room is worth
+
+@cache
+def schema_of(table: Table) -> pa.Schema:
+    """The Arrow schema, with unit, frame and meaning of each column in its metadata."""
+    fields = [_field(column) for column in table.columns]
+    return pa.schema(fields, {"table": table.name, "version": str(table.version)})
 
 
-@dataclass(frozen=True)
-class Table:
-    """Whoever reads this table gets these columns, in this order.
+def _field(column: Column) -> pa.Field:
+    kind = column.type
+    told = {"unit": column.unit, "frame": column.frame, "meaning": column.meaning}
+    of = TYPES[kind] if isinstance(kind, str) else pa.list_(pa.struct([_field(c) for c in kind]))
+    return pa.field(column.name, of, column.nullable, told)
 
-    `version` counts up with every change of the columns or of what they mean.
+
+def read(table: Table, path: Path) -> pd.DataFrame:
+    """The whole table; for tables that are small."""
+    with _readable(path):
+        _check(table, path)
+        frame: pd.DataFrame = pq.read_table(path).to_pandas()
+    return frame
+
+
+def stream(table: Table, path: Path) -> Stream:
+    """The table batch by batch, as often as wanted; for tables that may be large."""
+    with _readable(path):
+        _check(table, path)
+    return Stream(path)
+
+
+def write_once(table: Table, path: Path, rows: pd.DataFrame) -> None:
+    """Write a file that never changes again; where there is one already, that one stays.
+
+    It is written beside its place and then linked there whole. The link fails where
+    another process was first, so nobody waits and no lock is left after a kill.
     """
-
-    name: str
-    version: int
-    columns: tuple[Column, ...]
-
-    @cached_property
-    def schema(self) -> pa.Schema:
-        """The Arrow schema, with unit, frame and meaning of each column in its metadata."""
-        return pa.schema(
-            [
-                pa.field(
-                    column.name,
-                    column.type,
-                    column.nullable,
-                    {"unit": column.unit, "frame": column.frame, "meaning": column.meaning},
-                )
-                for column in self.columns
-            ],
-            {"table": self.name, "version": str(self.version)},
-        )
-
-    @property
-    def packing(self) -> dict[str, Any]:
-        """How Parquet writes the columns: numbers byte by byte, the first of each, the second, …
-
-        What is full of noise stays as it is; the rest, texts among them, becomes a dictionary of
-        the values that there are.
-        """
-        noisy = {c.name for c in self.columns if c.noisy}
-        numbers = {c.name for c in self.columns if _is_number(c.type)} - noisy
-        return {
-            "compression": {c.name: "none" if c.name in noisy else "lz4" for c in self.columns},
-            "use_dictionary": [c.name for c in self.columns if c.name not in numbers | noisy],
-            "column_encoding": dict.fromkeys(numbers, "BYTE_STREAM_SPLIT"),
-            "write_statistics": False,  # nobody here skips parts of a table by them
-            "max_rows_per_page": BATCH_ROWS,
-            "write_batch_size": BATCH_ROWS,
-        }
-
-    def read(self, path: Path) -> pd.DataFrame:
-        """The whole table; for tables that are small."""
-        with _readable(path):
-            self._check(path, pq.read_schema(path))
-            frame: pd.DataFrame = pq.read_table(path).to_pandas()
-        return frame
-
-    def stream(self, path: Path) -> Stream:
-        """The table batch by batch, as often as wanted; for tables that may be large."""
-        with _readable(path):
-            self._check(path, pq.read_schema(path))
-        return Stream(path)
-
-    def write_once(self, path: Path, rows: pd.DataFrame) -> None:
-        """Write a file that never changes again; where there is one already, that one stays.
-
-        It is written beside its place and then linked there whole. The link fails where
-        another process was first, so nobody waits and no lock is left after a kill.
-        """
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part = path.with_name(f"{path.name}.{secrets.token_hex(4)}.part")
-        try:
-            with part.open("xb") as file:
-                pq.write_table(self.arrow(rows), file, **self.packing)
-                file.flush()
-                os.fsync(file.fileno())
-            with suppress(FileExistsError):
-                path.hardlink_to(part)
-        finally:
-            part.unlink(missing_ok=True)
-
-    def arrow(self, rows: pd.DataFrame | pa.RecordBatch) -> pa.Table:
-        """`rows` in the columns of the contract.
-
-        Raises
-        ------
-        ValueError
-            where a column is missing, or has gaps that the contract does not allow
-        """
-        if isinstance(rows, pa.RecordBatch):
-            table = pa.Table.from_batches([rows]).select(self.schema.names).cast(self.schema)
-        else:
-            columns = [column.name for column in self.columns]
-            if missing := [name for name in columns if name not in rows]:
-                raise ValueError(f"the {self.name} table lacks {', '.join(missing)}")
-            table = pa.Table.from_pandas(rows[columns], schema=self.schema, preserve_index=False)
-        for column in self.columns:
-            if not column.nullable and table[column.name].null_count:
-                raise ValueError(f"the {self.name} table has gaps in {column.name}")
-        return table.replace_schema_metadata(self.schema.metadata)
-
-    def empty(self) -> pd.DataFrame:
-        """A table without rows."""
-        frame: pd.DataFrame = self.schema.empty_table().to_pandas()
-        return frame
-
-    def _check(self, path: Path, schema: pa.Schema) -> None:
-        told = {key.decode(): value.decode() for key, value in (schema.metadata or {}).items()}
-        found = f"{told.get('table')} table of version {told.get('version')}"
-        expected = f"{self.name} table of version {self.version}"
-        if found != expected:
-            raise Refusal(str(path), "", found, expected, AGAIN)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f"{path.name}.{secrets.token_hex(4)}.part")
+    try:
+        with part.open("xb") as file:
+            pq.write_table(arrow(table, rows), file, **WRITTEN)
+            file.flush()
+            os.fsync(file.fileno())
+        with suppress(FileExistsError):
+            path.hardlink_to(part)
+    finally:
+        part.unlink(missing_ok=True)
 
 
-def _is_number(of: pa.DataType) -> bool:
-    return bool(pa.types.is_integer(of) or pa.types.is_floating(of))
+def arrow(table: Table, rows: pd.DataFrame | pa.RecordBatch) -> pa.Table:
+    """`rows` in the columns of the contract.
+
+    Raises
+    ------
+    ValueError
+        where a column is missing, or has gaps that the contract does not allow
+    """
+    schema = schema_of(table)
+    if isinstance(rows, pa.RecordBatch):
+        made = pa.Table.from_batches([rows]).select(schema.names).cast(schema)
+    else:
+        if missing := [name for name in schema.names if name not in rows]:
+            raise ValueError(f"the {table.name} table lacks {', '.join(missing)}")
+        made = pa.Table.from_pandas(rows[schema.names], schema=schema, preserve_index=False)
+    for column in table.columns:
+        if not column.nullable and made[column.name].null_count:
+            raise ValueError(f"the {table.name} table has gaps in {column.name}")
+    return made.replace_schema_metadata(schema.metadata)
+
+
+def _check(table: Table, path: Path) -> None:
+    metadata = pq.read_schema(path).metadata or {}
+    written = {key.decode(): value.decode() for key, value in metadata.items()}
+    found = f"{written.get('table')} table of version {written.get('version')}"
+    expected = f"{table.name} table of version {table.version}"
+    if found != expected:
+        raise Refusal(str(path), "", found, expected, AGAIN)
 
 
 @dataclass(frozen=True)
@@ -213,7 +178,7 @@ class Writer:
         self._folder.mkdir(parents=True, exist_ok=True)
         try:
             for name, table in self._tables.items():
-                writer = pq.ParquetWriter(self._part(name), table.schema, **table.packing)
+                writer = pq.ParquetWriter(self._part(name), schema_of(table), **WRITTEN)
                 self._files[name] = self._open.enter_context(writer)
         except OSError:
             self._remove_parts()
@@ -222,7 +187,7 @@ class Writer:
 
     def write(self, name: str, rows: pd.DataFrame | pa.RecordBatch) -> None:
         """Add `rows` to the table `name`."""
-        self._files[name].write_table(self._tables[name].arrow(rows))
+        self._files[name].write_table(arrow(self._tables[name], rows))
 
     def __exit__(
         self,

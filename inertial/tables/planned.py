@@ -1,7 +1,7 @@
 """The plan: campaign, what is known, manoeuvres, what others published."""
 
-from inertial.tables.parquet import Column, Table
-from inertial.tables.shared import BODY, DOUBLE, INTEGER, LOG, TEXT, TRUTH, vector
+from inertial.tables.shared import BODY, LOG, vector
+from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
 
 CAMPAIGN = Table(
     "campaign",

@@ -1,20 +1,7 @@
 """What was recorded: samples, clocks, findings, masks, segments, blocks."""
 
-import pyarrow as pa
-
-from inertial.tables.parquet import Column, Table
-from inertial.tables.shared import (
-    BODY,
-    DOUBLE,
-    INTEGER,
-    LABEL,
-    LOG,
-    PHASES,
-    RECORDS,
-    TEXT,
-    TRUTH,
-    channels,
-)
+from inertial.tables.shared import BODY, LOG, PHASES, RECORDS, channels
+from inertial.tables.table import DOUBLE, INTEGER, LABEL, TEXT, TRUTH, WORD, Column, Table
 
 # ---- Samples, the account of every byte, and the clocks.
 
@@ -27,7 +14,7 @@ SAMPLES = Table(
         Column("offset", INTEGER, "byte", "where its line begins in the file"),
         Column("line", INTEGER, "1", "number of its line, from 1"),
         Column("time", DOUBLE, "s", "since the start of its clock", nullable=True),
-        Column("status", pa.uint32(), "", "status word of the instrument", nullable=True),
+        Column("status", WORD, "", "status word of the instrument", nullable=True),
         Column(
             "mean_of",
             DOUBLE,

@@ -1,8 +1,6 @@
 """What many tables share: types, axes, channels, and columns that come together."""
 
-import pyarrow as pa
-
-from inertial.tables.parquet import Column
+from inertial.tables.table import DOUBLE, INTEGER, TEXT, Column
 
 AXES = ("x", "y", "z")
 # Lists, for pandas takes a tuple as one name.
@@ -14,9 +12,6 @@ PHASES = (
     " from one rest of unknown attitude to the next: between"
 )
 BODY = "body"  # axes x, y, z of the IMU's case, right-handed
-
-DOUBLE, TEXT, INTEGER, TRUTH = pa.float64(), pa.string(), pa.int64(), pa.bool_()
-LABEL = pa.dictionary(pa.int32(), pa.string())
 
 
 def vector(stem: str, unit: str, meaning: str, *, nullable: bool = True) -> list[Column]:
@@ -35,7 +30,6 @@ def channels(meaning: str, *, prefix: str = "") -> list[Column]:
             f"{meaning}, {channel}",
             BODY,
             nullable=True,
-            noisy=True,
         )
         for channel in CHANNELS
     ]

@@ -17,7 +17,8 @@ import pyarrow as pa
 
 from inertial.tables.code import code_of, hash_of, hash_of_file
 from inertial.tables.errors import Refusal
-from inertial.tables.parquet import Table, Writer, provenance
+from inertial.tables.parquet import Writer, provenance
+from inertial.tables.table import Table
 from inertial.tables.whole_files import room_for
 
 if TYPE_CHECKING:

@@ -1,8 +1,8 @@
 """The simulation, the effects that it lacks, and the model extended by them."""
 
-from inertial.tables.parquet import Column, Table
 from inertial.tables.recorded import FINDINGS
-from inertial.tables.shared import BODY, DOUBLE, INTEGER, LOG, PHASES, TEXT, TRUTH, channels
+from inertial.tables.shared import BODY, LOG, PHASES, channels
+from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
 
 # ---- What should have been recorded.
 

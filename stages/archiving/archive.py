@@ -19,6 +19,7 @@ import pandas as pd
 from inertial.campaign.records import Row
 from inertial.tables import CALIBRATION
 from inertial.tables.errors import Refusal
+from inertial.tables.parquet import write_once
 from stages.archiving.content import content_of
 from stages.archiving.names import SIMULATED, file_name
 
@@ -55,7 +56,7 @@ class Archive:
         replaced = [entry.file for entry in held]
         path = self._folder(calibration) / _name(calibration, content, replaced)
         row = calibration | {"content": content, "supersedes": replaced}
-        CALIBRATION.write_once(path, pd.DataFrame([row]))
+        write_once(CALIBRATION, path, pd.DataFrame([row]))
         return self._entry(path)
 
     def current(self, campaign: str) -> list[Entry]:

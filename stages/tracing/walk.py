@@ -12,7 +12,7 @@ import pandas as pd
 from inertial import tables
 from inertial.campaign.records import Row, rows_of
 from inertial.tables.errors import Refusal
-from inertial.tables.parquet import Table
+from inertial.tables.table import Table
 from inertial.text.numbers import visible
 from stages.tracing.lines import Lines, Stretch, lines_of
 from stages.tracing.number import Number, number

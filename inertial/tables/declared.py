@@ -1,0 +1,36 @@
+"""What a stage reads and writes: declared apart from its function, so that it costs no import."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from inertial.tables.table import Table
+
+
+@dataclass(frozen=True)
+class From:
+    """A table of an earlier stage; `file`: its name there, where it is not that of the contract."""
+
+    stage: str
+    table: Table
+    file: str = ""
+
+    @property
+    def place(self) -> str:
+        """Where it lies in the folder of a campaign."""
+        return f"{self.stage}/{self.file or self.table.name}.parquet"
+
+
+@dataclass(frozen=True)
+class Declared:
+    """A stage by the tables that it reads, by argument, and those that it writes, by file name.
+
+    A table listed in `streams` is handed over unread, to be read batch by batch; an input listed
+    in `files` is no table, and is handed over as the list of its paths. `documents` are the
+    endings of files that a stage writes for people and other programs instead of tables.
+    """
+
+    reads: Mapping[str, From] = field(default_factory=dict)
+    writes: Mapping[str, Table] = field(default_factory=dict)
+    streams: Sequence[str] = ()
+    files: Sequence[str] = ()
+    documents: Sequence[str] = ()

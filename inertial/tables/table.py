@@ -1,0 +1,84 @@
+"""A table contract: its columns with type, unit, frame and meaning. It loads no library.
+
+What reads or writes Parquet is in `parquet.py` and loaded when a table is first read, so that the
+declarations of all stages are read in a tenth of a second.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import pyarrow as pa
+
+    from inertial.tables.parquet import Stream
+
+DOUBLE, TEXT, INTEGER, TRUTH, WORD = "double", "string", "int64", "bool", "uint32"
+LABEL = "label"  # one of few texts: a dictionary
+TEXTS = "texts"  # a list of texts
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: what its numbers mean, in which unit and frame.
+
+    `type`: a name above, or the columns of the rows that each value holds.
+    """
+
+    name: str
+    type: str | tuple[Column, ...]
+    unit: str
+    meaning: str
+    frame: str = ""
+    nullable: bool = False
+
+
+@dataclass(frozen=True)
+class Table:
+    """Whoever reads this table gets these columns, in this order.
+
+    `version` counts up with every change of the columns or of what they mean.
+    """
+
+    name: str
+    version: int
+    columns: tuple[Column, ...]
+
+    @property
+    def schema(self) -> pa.Schema:
+        """The Arrow schema, with unit, frame and meaning of each column in its metadata."""
+        from inertial.tables import parquet
+
+        return parquet.schema_of(self)
+
+    def read(self, path: Path) -> pd.DataFrame:
+        """The whole table; for tables that are small."""
+        from inertial.tables import parquet
+
+        return parquet.read(self, path)
+
+    def stream(self, path: Path) -> Stream:
+        """The table batch by batch, as often as wanted; for tables that may be large."""
+        from inertial.tables import parquet
+
+        return parquet.stream(self, path)
+
+    def arrow(self, rows: pd.DataFrame | pa.RecordBatch) -> pa.Table:
+        """`rows` in the columns of the contract.
+
+        Raises
+        ------
+        ValueError
+            where a column is missing, or has gaps that the contract does not allow
+        """
+        from inertial.tables import parquet
+
+        return parquet.arrow(self, rows)
+
+    def empty(self) -> pd.DataFrame:
+        """A table without rows."""
+        frame: pd.DataFrame = self.schema.empty_table().to_pandas()
+        return frame
