@@ -47,7 +47,7 @@ def sample_rows(log: str, samples: Mapping[str, Any]) -> pa.RecordBatch:
             filled[name] = array_of_numbers(values)
     arrays = [
         filled[column.name] if column.name in filled else _nulls(rows, column.type)
-        for column in SAMPLES.columns
+        for column in SAMPLES.schema
     ]
     return pa.RecordBatch.from_arrays(arrays, schema=SAMPLES.schema)
 
