@@ -11,6 +11,7 @@ from inertial import tables
 from inertial.campaign.final_result import counting, extended_methods
 from inertial.campaign.records import Row, rows_of
 from inertial.tables.code import hash_of_file
+from inertial.tables.declared import Declared, From
 from inertial.tables.stage import Stage, Tables
 from stages.archiving.archive import Archive, Entry
 
@@ -101,19 +102,21 @@ def _is_joint(row: Row) -> bool:
 
 STAGE = Stage(
     history,
-    reads={
-        "campaign": tables.CAMPAIGN,
-        "inputs": tables.INPUTS,
-        "accelerometer_parameters": tables.PARAMETERS,
-        "accelerometer_covariance": tables.COVARIANCE,
-        "gyroscope_parameters": tables.PARAMETERS,
-        "gyroscope_covariance": tables.COVARIANCE,
-        "extension_parameters": tables.PARAMETERS,
-        "extension_covariance": tables.COVARIANCE,
-        "decision": tables.DECISION,
-    },
-    files=("archive",),
-    writes={"archived": tables.ARCHIVED, "earlier": tables.EARLIER},
+    Declared(
+        reads={
+            "campaign": From("plan", tables.CAMPAIGN),
+            "inputs": From("plan", tables.INPUTS),
+            "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
+            "accelerometer_covariance": From("accelerometer", tables.COVARIANCE),
+            "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
+            "gyroscope_covariance": From("gyroscope", tables.COVARIANCE),
+            "extension_parameters": From("extension", tables.PARAMETERS),
+            "extension_covariance": From("extension", tables.COVARIANCE),
+            "decision": From("extension", tables.DECISION),
+        },
+        writes={"archived": tables.ARCHIVED, "earlier": tables.EARLIER},
+        files=("archive",),
+    ),
 )
 
 if __name__ == "__main__":

@@ -1,6 +1,5 @@
 """The stages one after another in this process, as the workflow runs them."""
 
-import inspect
 from collections.abc import Collection, Mapping
 from importlib import import_module
 from pathlib import Path
@@ -10,7 +9,7 @@ import pandas as pd
 from ruamel.yaml import YAML
 
 import laboratory
-from inertial.tables.parquet import provenance
+from inertial.tables.stage import Stage
 
 ROOT = Path(__file__).parent.parent
 ORDER = (
@@ -30,6 +29,12 @@ ORDER = (
     "history",
 )
 SETTINGS: dict[str, dict[str, Any]] = YAML(typ="safe").load(ROOT / "config.yaml")
+
+
+def stage_of(name: str) -> Stage:
+    """A stage by its name."""
+    stage: Stage = import_module(f"stages.{name}" + ("" if name == "history" else ".stage")).STAGE
+    return stage
 
 
 class Results:
@@ -54,7 +59,6 @@ def run(
 
     `without`: stages that are left out, because no later one needs them.
     """
-    made: dict[str, Path] = {}
     told = {"campaign.yaml", "published.yaml"}
     raw = [path for path in campaign.iterdir() if path.name not in told]
     sources: Mapping[str, list[Path]] = {
@@ -67,31 +71,17 @@ def run(
     for name in ORDER[: ORDER.index(until) + 1]:
         if name in without:
             continue
-        stage = import_module(f"stages.{name}.stage").STAGE
-        files = {file: sources.get(file, []) for file in stage.files}
-        stage.run(made, files, derived / name, SETTINGS.get(name, {}))
-        for table in stage.writes:  # by its own name, and by that of its stage where two write one
-            made[table] = made[f"{name}_{table}"] = derived / name / f"{table}.parquet"
+        stage = stage_of(name)
+        files = {file: sources.get(file, []) for file in stage.declared.files}
+        stage.run(derived, files, SETTINGS.get(name, {}))
     return Results(derived)
 
 
 def again(results: Results, name: str, **changes: Any) -> dict[str, pd.DataFrame]:
     """The tables of a stage, run once more on those of an earlier run, some of them changed."""
-    made: dict[str, Path] = {}
-    for earlier in ORDER[: ORDER.index(name)]:
-        for table in import_module(f"stages.{earlier}.stage").STAGE.writes:
-            path = results.folder / earlier / f"{table}.parquet"
-            made[table] = made[f"{earlier}_{table}"] = path
-    stage = import_module(f"stages.{name}.stage").STAGE
-    inputs: dict[str, Any] = {
-        table: contract.stream(made[table])
-        if table in stage.streams
-        else contract.read(made[table])
-        for table, contract in stage.reads.items()
-    }
-    if "provenance" in inspect.signature(stage.function).parameters:
-        inputs["provenance"] = {table: provenance(made[table]) for table in stage.reads}
-    pieces = stage.function(**{**inputs, **SETTINGS.get(name, {}), **changes})
+    stage = stage_of(name)
+    inputs = stage.inputs(stage.paths(results.folder))
+    pieces = stage.result({**inputs, **SETTINGS.get(name, {}), **changes})
     collected: dict[str, list[pd.DataFrame]] = {table: [] for table in stage.writes}
     for table, rows in pieces.items() if isinstance(pieces, Mapping) else pieces:
         collected[table].append(stage.writes[table].arrow(rows).to_pandas())

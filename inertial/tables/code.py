@@ -6,29 +6,29 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parent.parent.parent
-# `from stages.model import site`, over several lines too, or `import stages.model`. The text is
-# searched, for to parse it took longer than many a stage works.
+# `from inertial.physics import site`, over several lines too, or `import inertial.physics`. The
+# text is searched: to parse it takes longer than many a stage works.
 IMPORT = re.compile(
-    r"^[ \t]*(?:from|import) (stages[\w.]*)(?: import (\([^)]*\)|.*))?", re.MULTILINE
+    r"^[ \t]*(?:from|import) ((?:stages|inertial)[\w.]*)(?: import (\([^)]*\)|.*))?", re.MULTILINE
 )
 DATA = {".yaml", ".html", ".css"}  # schemas and templates lie beside the module that reads them
 
 
 def code_of(stage: str) -> list[Path]:
-    """Every file of `stages/` that `stages.<stage>` can reach by its imports, and the lock file.
+    """Every file that `python -m stages.<stage>` can reach by its imports, and the lock file.
 
     The imports are read from the text, so nothing is run. With a module come the
     schemas and templates that lie in its folder.
     """
     reached: set[Path] = set()
-    waiting, seen = ["stages", f"stages.{stage}"], set[str]()
+    waiting, seen = [f"stages.{stage}.__main__", "stages", f"stages.{stage}"], set[str]()
     while waiting:
         if (module := waiting.pop()) not in seen:
             seen.add(module)
             for file in _files(ROOT, module):
                 reached.add(file)
                 waiting += _imports(file)
-    folders = {file.parent for file in reached} - {ROOT / "stages"}
+    folders = {file.parent for file in reached} - {ROOT / "stages", ROOT / "inertial"}
     beside = {file for folder in folders for file in _data(folder)}
     return sorted(reached | beside | {ROOT / "requirements.lock"})
 

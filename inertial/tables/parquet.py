@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import os
 import secrets
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, TypeAlias
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -35,6 +35,8 @@ TYPES: dict[str, pa.DataType] = {
     "label": pa.dictionary(pa.int32(), pa.string()),
     "texts": pa.list_(pa.string()),
 }
+# Rows of a table: as a frame, as a batch of Arrow, or one mapping for each.
+Rows: TypeAlias = "pd.DataFrame | pa.RecordBatch | Sequence[Mapping[str, Any]]"
 WRITTEN = {"compression": "zstd", "write_statistics": False}
 
 
@@ -67,7 +69,7 @@ def stream(table: Table, path: Path) -> Stream:
     return Stream(path)
 
 
-def write_once(table: Table, path: Path, rows: pd.DataFrame) -> None:
+def write_once(table: Table, path: Path, rows: Rows) -> None:
     """Write a file that never changes again; where there is one already, that one stays.
 
     It is written beside its place and then linked there whole. The link fails where
@@ -86,7 +88,7 @@ def write_once(table: Table, path: Path, rows: pd.DataFrame) -> None:
         part.unlink(missing_ok=True)
 
 
-def arrow(table: Table, rows: pd.DataFrame | pa.RecordBatch) -> pa.Table:
+def arrow(table: Table, rows: Rows) -> pa.Table:
     """`rows` in the columns of the contract.
 
     Raises
@@ -98,6 +100,8 @@ def arrow(table: Table, rows: pd.DataFrame | pa.RecordBatch) -> pa.Table:
     if isinstance(rows, pa.RecordBatch):
         made = pa.Table.from_batches([rows]).select(schema.names).cast(schema)
     else:
+        if not hasattr(rows, "columns"):
+            rows = table.frame(rows)
         if missing := [name for name in schema.names if name not in rows]:
             raise ValueError(f"the {table.name} table lacks {', '.join(missing)}")
         made = pa.Table.from_pandas(rows[schema.names], schema=schema, preserve_index=False)
@@ -185,7 +189,7 @@ class Writer:
             raise
         return self
 
-    def write(self, name: str, rows: pd.DataFrame | pa.RecordBatch) -> None:
+    def write(self, name: str, rows: Rows) -> None:
         """Add `rows` to the table `name`."""
         self._files[name].write_table(arrow(self._tables[name], rows))
 

@@ -1,4 +1,10 @@
-"""How a stage meets the outside: one function from tables to tables, and its command line."""
+"""How a stage meets the outside: one function from tables to tables, and its command line.
+
+    python -m stages.<stage> data/derived/<campaign> --settings '{"level": 0.005}'
+
+It reads the tables that it declares from the folders of earlier stages in the folder of the
+campaign, and writes its own into the folder of its name there; or documents, into `reports/`.
+"""
 
 from __future__ import annotations
 
@@ -11,66 +17,103 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import pyarrow as pa
+from typing import Any
 
 from inertial.tables.code import code_of, hash_of, hash_of_file
+from inertial.tables.declared import Declared
 from inertial.tables.errors import Refusal
-from inertial.tables.parquet import Writer, provenance
+from inertial.tables.parquet import Rows, Writer, provenance
 from inertial.tables.table import Table
-from inertial.tables.whole_files import room_for
+from inertial.tables.whole_files import room_for, write_whole
 
-if TYPE_CHECKING:
-    import pandas as pd
-
-# What a stage gives back: its tables by name, or, where one is too long for memory, pieces of
-# them one after another.
-Tables = Mapping[str, "pd.DataFrame"]
-Pieces = Iterator[tuple[str, "pd.DataFrame | pa.RecordBatch"]]
+# What a stage returns: its tables by name, or, where one is too long for memory, pieces of them
+# one after another.
+Tables = Mapping[str, Rows]
+Pieces = Iterator[tuple[str, Rows]]
 
 
 @dataclass(frozen=True)
 class Stage:
-    """A stage: its function, the tables it reads and writes.
+    """A stage: its function, and what it declares to read and write.
 
-    A table listed in `streams` is handed over unread, to be looped over batch by
-    batch; an input listed in `files` as the list of its paths. A function that takes
-    `provenance` gets what made each of its tables.
+    `gathers`: arguments of the function that are made from other inputs; the function that makes
+    one names them as its own arguments. A function that takes `provenance` gets what made each
+    of its tables.
     """
 
-    function: Callable[..., Tables | Pieces]
-    writes: Mapping[str, Table]
-    reads: Mapping[str, Table] = field(default_factory=dict)
-    streams: Sequence[str] = ()
-    files: Sequence[str] = ()
+    function: Callable[..., Any]
+    declared: Declared
+    gathers: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
-        """The name of its function, which is that of its file."""
+        """The name of its function, which is that of its folder."""
         return self.function.__name__
+
+    @property
+    def reads(self) -> Mapping[str, Table]:
+        """The contracts of the tables that it reads, by argument."""
+        return {name: source.table for name, source in self.declared.reads.items()}
+
+    @property
+    def writes(self) -> Mapping[str, Table]:
+        """The contracts of the tables that it writes, by file name."""
+        return self.declared.writes
+
+    def paths(self, derived: Path) -> dict[str, Path]:
+        """Where the tables that it reads lie in the folder of a campaign."""
+        return {name: derived / source.place for name, source in self.declared.reads.items()}
+
+    def inputs(self, paths: Mapping[str, Path]) -> dict[str, Any]:
+        """The tables that it reads, by argument: a stream where it declares one.
+
+        Raises
+        ------
+        Refusal
+            where a table is missing, damaged, or of another version
+        """
+        streams = self.declared.streams
+        read: dict[str, Any] = {
+            name: table.stream(paths[name]) if name in streams else table.read(paths[name])
+            for name, table in self.reads.items()
+        }
+        if "provenance" in inspect.signature(self.function).parameters:
+            read["provenance"] = {name: provenance(paths[name]) for name in self.reads}
+        return read
+
+    def result(self, inputs: Mapping[str, Any]) -> Any:
+        """What its function makes of tables, files and settings."""
+        own = inspect.signature(self.function).parameters
+        gathered = {
+            name: make(**{key: inputs[key] for key in inspect.signature(make).parameters})
+            for name, make in self.gathers.items()
+        }
+        return self.function(**{k: v for k, v in inputs.items() if k in own}, **gathered)
 
     def run(
         self,
-        paths: Mapping[str, Path],
-        files: Mapping[str, list[Path]],
-        output: Path,
+        derived: Path,
+        files: Mapping[str, Sequence[Path]],
         settings: Mapping[str, Any],
+        documents: Path | None = None,
     ) -> None:
-        """Read the tables at `paths`, work, and write into the folder `output`, all or nothing.
+        """Read the tables of a campaign, work, and write its own beside them, all or nothing.
+
+        `documents`: where its documents go, but for their endings.
 
         Raises
         ------
         Refusal
             where an input cannot be used
         """
-        inputs: dict[str, Any] = {
-            name: table.stream(paths[name]) if name in self.streams else table.read(paths[name])
-            for name, table in self.reads.items()
-        }
-        if "provenance" in inspect.signature(self.function).parameters:
-            inputs["provenance"] = {name: provenance(paths[name]) for name in self.reads}
-        made_from = [*(paths[name] for name in self.reads), *chain.from_iterable(files.values())]
+        paths, output = self.paths(derived), derived / self.name
+        inputs = {**self.inputs(paths), **files, **settings}
+        if self.declared.documents:
+            assert documents is not None
+            contents = self.result(inputs)
+            write_whole({Path(f"{documents}.{end}"): contents[end] for end in contents})
+            return
+        made_from = [*paths.values(), *chain.from_iterable(files.values())]
         made_by = {
             "stage": self.name,
             "settings": dict(settings),
@@ -81,23 +124,29 @@ class Stage:
             with Writer(
                 output, self.writes, lambda: made_by | {"inputs": hashes.result()}
             ) as writer:
-                result = self.function(**inputs, **files, **settings)
+                result = self.result(inputs)
                 for name, rows in result.items() if isinstance(result, Mapping) else result:
                     writer.write(name, rows)
 
     def command_line(self, arguments: Sequence[str] | None = None) -> None:
-        """`--NAME PATH` for each input, `--output FOLDER`, `--settings JSON`."""
+        """The folder of the campaign, `--settings JSON`, and `--NAME PATH` for files."""
         parser = argparse.ArgumentParser(description=self.function.__doc__)
-        for name, table in self.reads.items():
-            parser.add_argument(f"--{name}", type=Path, required=True, help=f"{table.name} table")
-        for name in self.files:
-            parser.add_argument(f"--{name}", type=Path, action="append", default=[], help="file")
-        parser.add_argument("--output", type=Path, required=True, help="folder for the tables")
-        parser.add_argument("--settings", type=json.loads, default={}, help="its settings")
+        parser.add_argument("derived", type=Path, help="data/derived/<campaign>")
+        parser.add_argument("--settings", type=json.loads, default={}, help="its settings, JSON")
+        for name in self.declared.files:
+            parser.add_argument(f"--{name}", type=Path, nargs="*", default=[], help="files")
+        if self.declared.documents:
+            endings = ", ".join(self.declared.documents)
+            parser.add_argument(
+                "--documents",
+                type=Path,
+                required=True,
+                help=f"reports/<campaign>, before {endings}",
+            )
         given = vars(parser.parse_args(arguments))
-        files = {name: given[name] for name in self.files}
+        files = {name: given[name] for name in self.declared.files}
         try:
-            self.run(given, files, given["output"], given["settings"])
+            self.run(given["derived"], files, given["settings"], given.get("documents"))
         except Refusal as refusal:
             sys.exit(f"{self.name}: {refusal}")
 

@@ -6,15 +6,16 @@ declarations of all stages are read in a tenth of a second.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
-    from inertial.tables.parquet import Stream
+    from inertial.tables.parquet import Rows, Stream
 
 DOUBLE, TEXT, INTEGER, TRUTH, WORD = "double", "string", "int64", "bool", "uint32"
 LABEL = "label"  # one of few texts: a dictionary
@@ -66,7 +67,7 @@ class Table:
 
         return parquet.stream(self, path)
 
-    def arrow(self, rows: pd.DataFrame | pa.RecordBatch) -> pa.Table:
+    def arrow(self, rows: Rows) -> pa.Table:
         """`rows` in the columns of the contract.
 
         Raises
@@ -77,6 +78,13 @@ class Table:
         from inertial.tables import parquet
 
         return parquet.arrow(self, rows)
+
+    def frame(self, rows: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
+        """Rows given one by one as a frame, with the columns of the contract even where empty."""
+        import pandas as pd
+
+        names = [column.name for column in self.columns]
+        return pd.DataFrame(rows, columns=names) if rows else self.empty()
 
     def empty(self) -> pd.DataFrame:
         """A table without rows."""

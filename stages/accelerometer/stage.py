@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial import tables
 from inertial.campaign.estimates import Estimates, by_mount, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
 from inertial.campaign.noise_levels import NoiseLevels
@@ -18,6 +17,7 @@ from inertial.estimation.accelerometers import Rest, equations, weighted
 from inertial.estimation.least_squares import INCONSISTENT
 from inertial.estimation.position_outlier import off_position
 from inertial.tables.stage import Stage, Tables
+from stages.accelerometer.declared import DECLARED
 from stages.accelerometer.position_findings import findings
 from stages.accelerometer.rotating_positions import LEVER_ARM, turning_rests
 from stages.accelerometer.source_formulas import add_pooled_positions, add_six_positions
@@ -104,23 +104,4 @@ def _rest(still: Still, seconds: float = np.inf) -> Rest:
     return Rest(still.manoeuvre.position, still.up_now, *still.over(seconds), stretch=stretch)
 
 
-STAGE = Stage(
-    accelerometer,
-    reads={
-        "blocks": tables.BLOCKS,
-        "manoeuvres": tables.MANOEUVRES,
-        "performed": tables.PERFORMED,
-        "noise": tables.NOISE,
-        "known": tables.KNOWN,
-        "clocks": tables.CLOCKS,
-    },
-    writes={
-        "parameters": tables.PARAMETERS,
-        "covariance": tables.COVARIANCE,
-        "fit": tables.FIT,
-        "averaging": tables.AVERAGING,
-        "positions": tables.POSITIONS,
-        "wanted": tables.WANTED,
-        "findings": tables.FINDINGS,
-    },
-)
+STAGE = Stage(accelerometer, DECLARED)

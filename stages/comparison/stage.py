@@ -4,12 +4,12 @@ from collections.abc import Iterator
 
 import pandas as pd
 
-from inertial import tables
 from inertial.campaign.estimates import by_mount
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.rate_segments import gyro_inputs
 from inertial.campaign.records import known_of, manoeuvres_of, performed_of, rows_of
 from inertial.tables.stage import Stage, Tables
+from stages.comparison.declared import DECLARED
 from stages.comparison.difference import Difference, Results, table_of
 from stages.comparison.fencepost_error import off_by_a_sample
 from stages.comparison.methods_compared import against_published, method_against_method
@@ -70,20 +70,4 @@ def comparison(
     return {"differences": table_of(found, level)}
 
 
-STAGE = Stage(
-    comparison,
-    reads={
-        "blocks": tables.BLOCKS,
-        "manoeuvres": tables.MANOEUVRES,
-        "performed": tables.PERFORMED,
-        "noise": tables.NOISE,
-        "known": tables.KNOWN,
-        "accelerometer_parameters": tables.PARAMETERS,
-        "gyroscope_parameters": tables.PARAMETERS,
-        "gyroscope_fit": tables.FIT,
-        "growing": tables.WINDOWS,
-        "motions": tables.MOTIONS,
-        "published": tables.PUBLISHED,
-    },
-    writes={"differences": tables.DIFFERENCES},
-)
+STAGE = Stage(comparison, DECLARED)

@@ -19,6 +19,7 @@ from inertial.tables.stage import Pieces, Stage
 from stages.compensation.checks import checks, missing, table_of
 from stages.compensation.compensated_samples import CompensatedStream
 from stages.compensation.correction import Correction, mounted
+from stages.compensation.declared import DECLARED
 from stages.compensation.envelope import envelope
 
 ALREADY = Finding(
@@ -95,27 +96,4 @@ def compensation(
     yield "compensated_traces", envelope(compensated, traces)
 
 
-STAGE = Stage(
-    compensation,
-    reads={
-        "samples": tables.SAMPLES,
-        "traces": tables.TRACES,
-        "masks": tables.MASKS,
-        "segments": tables.SEGMENTS,
-        "blocks": tables.BLOCKS,
-        "campaign": tables.CAMPAIGN,
-        "manoeuvres": tables.MANOEUVRES,
-        "performed": tables.PERFORMED,
-        "noise": tables.NOISE,
-        "known": tables.KNOWN,
-        "accelerometer_parameters": tables.PARAMETERS,
-        "gyroscope_parameters": tables.PARAMETERS,
-    },
-    streams=("samples",),
-    writes={
-        "compensated": tables.COMPENSATED,
-        "checks": tables.CHECKS,
-        "compensated_traces": tables.TRACES,
-        "findings": tables.FINDINGS,
-    },
-)
+STAGE = Stage(compensation, DECLARED)

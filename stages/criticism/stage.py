@@ -6,7 +6,6 @@ from typing import Any
 
 import pandas as pd
 
-from inertial import tables
 from inertial.campaign.equations import Campaign, campaign_of
 from inertial.campaign.estimates import by_mount
 from inertial.campaign.noise_levels import NoiseLevels
@@ -25,6 +24,7 @@ from inertial.effects import CATALOGUE
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from stages.criticism import noise_effects, structure_rows, temperature_findings
+from stages.criticism.declared import DECLARED
 from stages.criticism.judging import SENSORS, judge
 from stages.criticism.oscillation_removal import without_lines
 from stages.criticism.oscillation_search import heard
@@ -39,16 +39,6 @@ Row = dict[str, Any]
 
 PLACES = ("blocks", "spectrum", "noise", "quality")
 BLOCKS_SHARE = 0.9  # of the accepted chance of a false name; the rest is that of the spectrum
-WRITES = {
-    "scores": tables.SCORES,
-    "effects": tables.EFFECTS,
-    "blind_spots": tables.BLIND_SPOTS,
-    "lines": tables.LINES,
-    "walks": tables.WALKS,
-    "structures": tables.STRUCTURES,
-    "structure_points": tables.STRUCTURE_POINTS,
-    "findings": tables.CAUSES,
-}
 
 
 def criticism(
@@ -79,7 +69,7 @@ def criticism(
     sought = {place: [e for e in CATALOGUE.values() if e.sought_in == place] for place in PLACES}
     in_blocks = sought["blocks"]
     others = [*sought["noise"], *sought["quality"]]
-    made: dict[str, list[Row]] = {name: [] for name in WRITES}
+    made: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
         solution = solution_of(
             (accelerometer_parameters, gyroscope_parameters),
@@ -124,7 +114,7 @@ def criticism(
         name: pd.DataFrame(rows, columns=[column.name for column in table.columns])
         if rows
         else table.empty()
-        for (name, table), rows in zip(WRITES.items(), made.values(), strict=True)
+        for (name, table), rows in zip(DECLARED.writes.items(), made.values(), strict=True)
     }
 
 
@@ -137,23 +127,4 @@ def _with(
     return campaign_of(one.blocks, one.plan, one.performed, *equal)
 
 
-STAGE = Stage(
-    criticism,
-    reads={
-        "simulated": tables.SIMULATED,
-        "blocks": tables.BLOCKS,
-        "manoeuvres": tables.MANOEUVRES,
-        "performed": tables.PERFORMED,
-        "noise": tables.NOISE,
-        "known": tables.KNOWN,
-        "clocks": tables.CLOCKS,
-        "accelerometer_parameters": tables.PARAMETERS,
-        "accelerometer_positions": tables.POSITIONS,
-        "gyroscope_parameters": tables.PARAMETERS,
-        "gyroscope_positions": tables.POSITIONS,
-        "accelerometer_fit": tables.FIT,
-        "gyroscope_fit": tables.FIT,
-    },
-    streams=("simulated",),
-    writes=WRITES,
-)
+STAGE = Stage(criticism, DECLARED)

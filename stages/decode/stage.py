@@ -10,10 +10,11 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from inertial.tables import ACCOUNTS, CLOCKS, LOGS, REFUSED, SAMPLES
+from inertial.tables import CLOCKS
 from inertial.tables.parquet import BATCH_ROWS
 from inertial.tables.stage import Stage
 from stages.decode.column_log import ColumnLog
+from stages.decode.declared import DECLARED
 from stages.decode.decoded import Decoded
 from stages.decode.log_files import path_of, refuse_grown
 from stages.decode.receiver_log import ReceiverLog
@@ -97,10 +98,4 @@ def _decoded(
         yield decoded, sample_rows(log.name, decoded.samples)
 
 
-STAGE = Stage(
-    decode,
-    reads={"logs": LOGS},
-    streams=("logs",),
-    files=("raw",),
-    writes={"samples": SAMPLES, "refused": REFUSED, "accounts": ACCOUNTS, "clocks": CLOCKS},
-)
+STAGE = Stage(decode, DECLARED)

@@ -6,7 +6,6 @@ from typing import Any
 
 import pandas as pd
 
-from inertial import tables
 from inertial.campaign.equations import campaign_of
 from inertial.campaign.estimates import by_mount
 from inertial.campaign.noise_levels import NoiseLevels
@@ -26,6 +25,7 @@ from inertial.physics.forward import Triad
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from stages.extension.decision import decision, result
+from stages.extension.declared import DECLARED
 from stages.extension.gain import gain
 from stages.extension.held_out import held_out
 from stages.extension.models import SENSORS, models_of
@@ -37,16 +37,6 @@ from stages.extension.solved import Solved, moved, solved
 Row = dict[str, Any]
 
 TWELVE = linear_names()
-WRITES = {
-    "parameters": tables.PARAMETERS,
-    "covariance": tables.COVARIANCE,
-    "fit": tables.FIT,
-    "gain": tables.GAIN,
-    "moved": tables.MOVED,
-    "worth": tables.WORTH,
-    "decision": tables.DECISION,
-    "result": tables.PARAMETERS,
-}
 
 
 def extension(
@@ -85,7 +75,7 @@ def extension(
     walk_of = defaultdict(
         float, {(row["method"], row["sensor"]): row["walk"] for row in rows_of(walks)}
     )
-    made: dict[str, list[Row]] = {name: [] for name in WRITES}
+    made: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     covariances: list[pd.DataFrame] = []
     for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
         mount, method = suffix[1:], f"joint{suffix}"
@@ -133,9 +123,9 @@ def extension(
         if named.in_spectrum and solution.gyro is not None:
             made["gain"] += _of_spectrum(named, simulated, plan, solution.gyro, clocks, mount)
     written = {
-        name: pd.DataFrame(rows, columns=[column.name for column in WRITES[name].columns])
+        name: pd.DataFrame(rows, columns=[column.name for column in DECLARED.writes[name].columns])
         if rows
-        else WRITES[name].empty()
+        else DECLARED.writes[name].empty()
         for name, rows in made.items()
     }
     return written | ({"covariance": pd.concat(covariances)} if covariances else {})
@@ -162,26 +152,4 @@ def _of_spectrum(
             yield from gain_of_line(heard, step_of, values["frequency"], gyro, mount)
 
 
-STAGE = Stage(
-    extension,
-    reads={
-        "simulated": tables.SIMULATED,
-        "criticism_findings": tables.CAUSES,
-        "effects": tables.EFFECTS,
-        "walks": tables.WALKS,
-        "blocks": tables.BLOCKS,
-        "manoeuvres": tables.MANOEUVRES,
-        "performed": tables.PERFORMED,
-        "noise": tables.NOISE,
-        "known": tables.KNOWN,
-        "clocks": tables.CLOCKS,
-        "accelerometer_parameters": tables.PARAMETERS,
-        "accelerometer_positions": tables.POSITIONS,
-        "gyroscope_parameters": tables.PARAMETERS,
-        "gyroscope_positions": tables.POSITIONS,
-        "accelerometer_fit": tables.FIT,
-        "gyroscope_fit": tables.FIT,
-    },
-    streams=("simulated",),
-    writes=WRITES,
-)
+STAGE = Stage(extension, DECLARED)

@@ -4,7 +4,6 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial import tables
 from inertial.campaign.estimates import Estimates, by_mount, reasons, stops_between_turns
 from inertial.campaign.gyroscope_methods import add_formulas, add_turn_and_stop
 from inertial.campaign.noise_levels import NoiseLevels
@@ -13,6 +12,7 @@ from inertial.campaign.records import known_of, manoeuvres_of, performed_of, sha
 from inertial.campaign.static_positions import averaging_times
 from inertial.estimation import gyroscopes
 from inertial.tables.stage import Stage, Tables
+from stages.gyroscope.declared import DECLARED
 from stages.gyroscope.free_positions import add_free_gyros
 
 CURES = {
@@ -68,22 +68,4 @@ def _channels(inputs: GyroInputs) -> NDArray[np.bool_]:
     return np.asarray(np.isfinite(np.array(readings)).any(axis=0))
 
 
-STAGE = Stage(
-    gyroscope,
-    reads={
-        "blocks": tables.BLOCKS,
-        "manoeuvres": tables.MANOEUVRES,
-        "performed": tables.PERFORMED,
-        "noise": tables.NOISE,
-        "known": tables.KNOWN,
-        "clocks": tables.CLOCKS,
-    },
-    writes={
-        "parameters": tables.PARAMETERS,
-        "covariance": tables.COVARIANCE,
-        "fit": tables.FIT,
-        "averaging": tables.AVERAGING,
-        "positions": tables.POSITIONS,
-        "wanted": tables.WANTED,
-    },
-)
+STAGE = Stage(gyroscope, DECLARED)

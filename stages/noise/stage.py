@@ -14,6 +14,7 @@ from inertial.campaign.records import clocks_of, rows_of
 from inertial.estimation.spectrum import band_levels, white_level
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
+from stages.noise.declared import DECLARED
 
 Array = NDArray[np.float64]
 
@@ -116,16 +117,4 @@ def _unbroken(
                 yield log, record[first:after], values[first:after]
 
 
-STAGE = Stage(
-    noise,
-    reads={
-        "samples": tables.SAMPLES,
-        "segments": tables.SEGMENTS,
-        "clocks": tables.CLOCKS,
-        "gaps": tables.GAPS,
-        "masks": tables.MASKS,
-        "sensors": tables.SENSORS,
-    },
-    streams=("samples",),
-    writes={"noise": tables.NOISE},
-)
+STAGE = Stage(noise, DECLARED)

@@ -14,6 +14,7 @@ from inertial import tables
 from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
 from inertial.tables.yaml_file import Key, YamlFile
+from stages.plan.declared import DECLARED
 from stages.plan.manoeuvres import expanded
 from stages.plan.published import published_values
 from stages.plan.recording import (
@@ -131,18 +132,4 @@ def _manoeuvres(file: YamlFile, entry: dict[str, Any]) -> list[Row]:
     return list(rows.values())
 
 
-STAGE = Stage(
-    plan,
-    files=("campaign", "raw", "instruments", "published"),
-    writes={
-        "campaign": tables.CAMPAIGN,
-        "known": tables.KNOWN,
-        "sensors": tables.SENSORS,
-        "logs": tables.LOGS,
-        "ranges": tables.RANGES,
-        "count_sizes": tables.COUNT_SIZES,
-        "inputs": tables.INPUTS,
-        "published": tables.PUBLISHED,
-        "manoeuvres": tables.MANOEUVRES,
-    },
-)
+STAGE = Stage(plan, DECLARED)

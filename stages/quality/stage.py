@@ -15,6 +15,7 @@ from inertial.detectors import OF_RECORDS
 from inertial.detectors.gap import Gap
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
+from stages.quality.declared import DECLARED
 
 
 def quality(
@@ -50,21 +51,4 @@ def quality(
     }
 
 
-STAGE = Stage(
-    quality,
-    reads={
-        "samples": tables.SAMPLES,
-        "clocks": tables.CLOCKS,
-        "campaign": tables.CAMPAIGN,
-        "known": tables.KNOWN,
-        "ranges": tables.RANGES,
-        "count_sizes": tables.COUNT_SIZES,
-    },
-    streams=("samples",),
-    writes={
-        "findings": tables.FINDINGS,
-        "masks": tables.MASKS,
-        "gaps": tables.GAPS,
-        "close_ups": tables.CLOSE_UPS,
-    },
-)
+STAGE = Stage(quality, DECLARED)

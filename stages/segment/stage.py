@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial import tables
 from inertial.campaign.close_ups import close_ups
 from inertial.campaign.findings import table_of
 from inertial.campaign.log_properties import given_by, logs
@@ -18,6 +17,7 @@ from inertial.signal.detector import Log
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from stages.segment import completeness, reduction
+from stages.segment.declared import DECLARED
 from stages.segment.detection_against_plan import compare
 from stages.segment.detection_in_positions import rests_of, screen
 from stages.segment.explanations import explain
@@ -142,26 +142,4 @@ def _rest_level(every: Sequence[Binned]) -> tuple[Array, float]:
     return np.zeros(3), 0.0
 
 
-STAGE = Stage(
-    segment,
-    reads={
-        "samples": tables.SAMPLES,
-        "campaign": tables.CAMPAIGN,
-        "known": tables.KNOWN,
-        "ranges": tables.RANGES,
-        "count_sizes": tables.COUNT_SIZES,
-        "manoeuvres": tables.MANOEUVRES,
-        "clocks": tables.CLOCKS,
-        "gaps": tables.GAPS,
-        "masks": tables.MASKS,
-    },
-    streams=("samples",),
-    writes={
-        "segments": tables.SEGMENTS,
-        "performed": tables.PERFORMED,
-        "blocks": tables.BLOCKS,
-        "traces": tables.TRACES,
-        "findings": tables.FINDINGS,
-        "close_ups": tables.CLOSE_UPS,
-    },
-)
+STAGE = Stage(segment, DECLARED)

@@ -34,6 +34,7 @@ from inertial.physics.motion import Motion
 from inertial.tables import GYRO
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Pieces, Stage
+from stages.simulation.declared import DECLARED
 
 Array = NDArray[np.float64]
 
@@ -228,22 +229,4 @@ def _table(rows: Iterable[Row]) -> pd.DataFrame:
     return pd.DataFrame(found) if found else tables.FIDELITY.empty()
 
 
-STAGE = Stage(
-    simulation,
-    reads={
-        "samples": tables.SAMPLES,
-        "blocks": tables.BLOCKS,
-        "segments": tables.SEGMENTS,
-        "manoeuvres": tables.MANOEUVRES,
-        "performed": tables.PERFORMED,
-        "noise": tables.NOISE,
-        "known": tables.KNOWN,
-        "clocks": tables.CLOCKS,
-        "accelerometer_parameters": tables.PARAMETERS,
-        "accelerometer_positions": tables.POSITIONS,
-        "gyroscope_parameters": tables.PARAMETERS,
-        "gyroscope_positions": tables.POSITIONS,
-    },
-    streams=("samples",),
-    writes={"simulated": tables.SIMULATED, "fidelity": tables.FIDELITY},
-)
+STAGE = Stage(simulation, DECLARED)

@@ -5,7 +5,6 @@ from typing import Any
 
 import pandas as pd
 
-from inertial import tables
 from inertial.campaign.estimates import by_mount
 from inertial.campaign.masked_samples import Masks
 from inertial.campaign.noise_levels import NoiseLevels
@@ -14,6 +13,7 @@ from inertial.campaign.records import clocks_of, known_of, manoeuvres_of, perfor
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from stages.studies import motion_rows
+from stages.studies.declared import DECLARED
 from stages.studies.epochs import rests_of, studied
 from stages.studies.stretches import samples_in
 from stages.studies.table_motion import (
@@ -29,16 +29,6 @@ from stages.studies.table_motion import (
 from stages.studies.window_rows import growing, middle, pair_of, sliding
 
 Row = dict[str, Any]
-WRITES = {
-    "epochs": tables.EPOCHS,
-    "spreads": tables.SPREADS,
-    "windows": tables.WINDOWS,
-    "growing": tables.WINDOWS,
-    "middles": tables.WINDOWS,
-    "time_angle": tables.TIME_ANGLE,
-    "motions": tables.MOTIONS,
-    "not_studied": tables.NOT_STUDIED,
-}
 
 
 def studies(
@@ -68,7 +58,7 @@ def studies(
     wanted |= {r.plan.name: stretch_of(r, segments) for found in turns.values() for r in found}
     read = samples_in(samples, wanted, Masks(masks))
 
-    rows: dict[str, list[Row]] = {name: [] for name in WRITES}
+    rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     for suffix in plans:
         _add(rows, studied(rests[suffix], read, steps, levels, given, suffix))
         _add(rows, _refused(inputs[suffix].recorded))
@@ -86,7 +76,7 @@ def studies(
         _add(rows, _of_turns(motions, inputs[suffix], levels, gyros, rate_sigma))
     return {
         name: pd.DataFrame(rows[name]) if rows[name] else table.empty()
-        for name, table in WRITES.items()
+        for name, table in DECLARED.writes.items()
     }
 
 
@@ -112,7 +102,7 @@ def _of_turns(
     rate_sigma: float,
 ) -> dict[str, list[Row]]:
     """Time and angle of each turn, and the windows of each pair."""
-    rows: dict[str, list[Row]] = {name: [] for name in WRITES}
+    rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     for motion in motions.values():
         rows["time_angle"] += motion_rows.angles(motion)
         rows["motions"] += motion_rows.numbers(motion)
@@ -129,21 +119,4 @@ def _of_turns(
     return rows
 
 
-STAGE = Stage(
-    studies,
-    reads={
-        "samples": tables.SAMPLES,
-        "masks": tables.MASKS,
-        "clocks": tables.CLOCKS,
-        "segments": tables.SEGMENTS,
-        "blocks": tables.BLOCKS,
-        "manoeuvres": tables.MANOEUVRES,
-        "performed": tables.PERFORMED,
-        "noise": tables.NOISE,
-        "known": tables.KNOWN,
-        "gyroscope_parameters": tables.PARAMETERS,
-        "gyroscope_fit": tables.FIT,
-    },
-    streams=("samples",),
-    writes=WRITES,
-)
+STAGE = Stage(studies, DECLARED)

@@ -1,0 +1,23 @@
+"""What the stage reads and writes."""
+
+from inertial import tables
+from inertial.tables.declared import Declared, From
+
+DECLARED = Declared(
+    reads={
+        "blocks": From("segment", tables.BLOCKS),
+        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "performed": From("segment", tables.PERFORMED),
+        "noise": From("noise", tables.NOISE),
+        "known": From("plan", tables.KNOWN),
+        "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
+        "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
+        "gyroscope_fit": From("gyroscope", tables.FIT),
+        "growing": From("studies", tables.WINDOWS, "growing"),
+        "motions": From("studies", tables.MOTIONS),
+        "published": From("plan", tables.PUBLISHED),
+    },
+    writes={
+        "differences": tables.DIFFERENCES,
+    },
+)

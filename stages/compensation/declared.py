@@ -1,0 +1,28 @@
+"""What the stage reads and writes."""
+
+from inertial import tables
+from inertial.tables.declared import Declared, From
+
+DECLARED = Declared(
+    reads={
+        "samples": From("decode", tables.SAMPLES),
+        "traces": From("segment", tables.TRACES),
+        "masks": From("quality", tables.MASKS),
+        "segments": From("segment", tables.SEGMENTS),
+        "blocks": From("segment", tables.BLOCKS),
+        "campaign": From("plan", tables.CAMPAIGN),
+        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "performed": From("segment", tables.PERFORMED),
+        "noise": From("noise", tables.NOISE),
+        "known": From("plan", tables.KNOWN),
+        "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
+        "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
+    },
+    writes={
+        "compensated": tables.COMPENSATED,
+        "checks": tables.CHECKS,
+        "compensated_traces": tables.TRACES,
+        "findings": tables.FINDINGS,
+    },
+    streams=("samples",),
+)

@@ -1,0 +1,33 @@
+"""What the stage reads and writes."""
+
+from inertial import tables
+from inertial.tables.declared import Declared, From
+
+DECLARED = Declared(
+    reads={
+        "simulated": From("simulation", tables.SIMULATED),
+        "blocks": From("segment", tables.BLOCKS),
+        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "performed": From("segment", tables.PERFORMED),
+        "noise": From("noise", tables.NOISE),
+        "known": From("plan", tables.KNOWN),
+        "clocks": From("decode", tables.CLOCKS),
+        "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
+        "accelerometer_positions": From("accelerometer", tables.POSITIONS),
+        "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
+        "gyroscope_positions": From("gyroscope", tables.POSITIONS),
+        "accelerometer_fit": From("accelerometer", tables.FIT),
+        "gyroscope_fit": From("gyroscope", tables.FIT),
+    },
+    writes={
+        "scores": tables.SCORES,
+        "effects": tables.EFFECTS,
+        "blind_spots": tables.BLIND_SPOTS,
+        "lines": tables.LINES,
+        "walks": tables.WALKS,
+        "structures": tables.STRUCTURES,
+        "structure_points": tables.STRUCTURE_POINTS,
+        "findings": tables.CAUSES,
+    },
+    streams=("simulated",),
+)

@@ -1,0 +1,18 @@
+"""What the stage reads and writes."""
+
+from inertial import tables
+from inertial.tables.declared import Declared, From
+
+DECLARED = Declared(
+    reads={
+        "logs": From("plan", tables.LOGS),
+    },
+    writes={
+        "samples": tables.SAMPLES,
+        "refused": tables.REFUSED,
+        "accounts": tables.ACCOUNTS,
+        "clocks": tables.CLOCKS,
+    },
+    streams=("logs",),
+    files=("raw",),
+)

@@ -1,0 +1,36 @@
+"""What the stage reads and writes."""
+
+from inertial import tables
+from inertial.tables.declared import Declared, From
+
+DECLARED = Declared(
+    reads={
+        "simulated": From("simulation", tables.SIMULATED),
+        "criticism_findings": From("criticism", tables.CAUSES, "findings"),
+        "effects": From("criticism", tables.EFFECTS),
+        "walks": From("criticism", tables.WALKS),
+        "blocks": From("segment", tables.BLOCKS),
+        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "performed": From("segment", tables.PERFORMED),
+        "noise": From("noise", tables.NOISE),
+        "known": From("plan", tables.KNOWN),
+        "clocks": From("decode", tables.CLOCKS),
+        "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
+        "accelerometer_positions": From("accelerometer", tables.POSITIONS),
+        "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
+        "gyroscope_positions": From("gyroscope", tables.POSITIONS),
+        "accelerometer_fit": From("accelerometer", tables.FIT),
+        "gyroscope_fit": From("gyroscope", tables.FIT),
+    },
+    writes={
+        "parameters": tables.PARAMETERS,
+        "covariance": tables.COVARIANCE,
+        "fit": tables.FIT,
+        "gain": tables.GAIN,
+        "moved": tables.MOVED,
+        "worth": tables.WORTH,
+        "decision": tables.DECISION,
+        "result": tables.PARAMETERS,
+    },
+    streams=("simulated",),
+)

@@ -1,0 +1,23 @@
+"""What the stage reads and writes."""
+
+from inertial import tables
+from inertial.tables.declared import Declared, From
+
+DECLARED = Declared(
+    reads={
+        "blocks": From("segment", tables.BLOCKS),
+        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "performed": From("segment", tables.PERFORMED),
+        "noise": From("noise", tables.NOISE),
+        "known": From("plan", tables.KNOWN),
+        "clocks": From("decode", tables.CLOCKS),
+    },
+    writes={
+        "parameters": tables.PARAMETERS,
+        "covariance": tables.COVARIANCE,
+        "fit": tables.FIT,
+        "averaging": tables.AVERAGING,
+        "positions": tables.POSITIONS,
+        "wanted": tables.WANTED,
+    },
+)

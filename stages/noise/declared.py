@@ -1,0 +1,19 @@
+"""What the stage reads and writes."""
+
+from inertial import tables
+from inertial.tables.declared import Declared, From
+
+DECLARED = Declared(
+    reads={
+        "samples": From("decode", tables.SAMPLES),
+        "segments": From("segment", tables.SEGMENTS),
+        "clocks": From("decode", tables.CLOCKS),
+        "gaps": From("quality", tables.GAPS),
+        "masks": From("quality", tables.MASKS),
+        "sensors": From("plan", tables.SENSORS),
+    },
+    writes={
+        "noise": tables.NOISE,
+    },
+    streams=("samples",),
+)

@@ -1,0 +1,19 @@
+"""What the stage reads and writes."""
+
+from inertial import tables
+from inertial.tables.declared import Declared
+
+DECLARED = Declared(
+    writes={
+        "campaign": tables.CAMPAIGN,
+        "known": tables.KNOWN,
+        "sensors": tables.SENSORS,
+        "logs": tables.LOGS,
+        "ranges": tables.RANGES,
+        "count_sizes": tables.COUNT_SIZES,
+        "inputs": tables.INPUTS,
+        "published": tables.PUBLISHED,
+        "manoeuvres": tables.MANOEUVRES,
+    },
+    files=("campaign", "raw", "instruments", "published"),
+)

@@ -1,0 +1,27 @@
+"""What the stage reads and writes."""
+
+from inertial import tables
+from inertial.tables.declared import Declared, From
+
+DECLARED = Declared(
+    reads={
+        "samples": From("decode", tables.SAMPLES),
+        "campaign": From("plan", tables.CAMPAIGN),
+        "known": From("plan", tables.KNOWN),
+        "ranges": From("plan", tables.RANGES),
+        "count_sizes": From("plan", tables.COUNT_SIZES),
+        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "clocks": From("decode", tables.CLOCKS),
+        "gaps": From("quality", tables.GAPS),
+        "masks": From("quality", tables.MASKS),
+    },
+    writes={
+        "segments": tables.SEGMENTS,
+        "performed": tables.PERFORMED,
+        "blocks": tables.BLOCKS,
+        "traces": tables.TRACES,
+        "findings": tables.FINDINGS,
+        "close_ups": tables.CLOSE_UPS,
+    },
+    streams=("samples",),
+)

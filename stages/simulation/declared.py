@@ -1,0 +1,26 @@
+"""What the stage reads and writes."""
+
+from inertial import tables
+from inertial.tables.declared import Declared, From
+
+DECLARED = Declared(
+    reads={
+        "samples": From("decode", tables.SAMPLES),
+        "blocks": From("segment", tables.BLOCKS),
+        "segments": From("segment", tables.SEGMENTS),
+        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "performed": From("segment", tables.PERFORMED),
+        "noise": From("noise", tables.NOISE),
+        "known": From("plan", tables.KNOWN),
+        "clocks": From("decode", tables.CLOCKS),
+        "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
+        "accelerometer_positions": From("accelerometer", tables.POSITIONS),
+        "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
+        "gyroscope_positions": From("gyroscope", tables.POSITIONS),
+    },
+    writes={
+        "simulated": tables.SIMULATED,
+        "fidelity": tables.FIDELITY,
+    },
+    streams=("samples",),
+)

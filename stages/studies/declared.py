@@ -1,0 +1,31 @@
+"""What the stage reads and writes."""
+
+from inertial import tables
+from inertial.tables.declared import Declared, From
+
+DECLARED = Declared(
+    reads={
+        "samples": From("decode", tables.SAMPLES),
+        "masks": From("quality", tables.MASKS),
+        "clocks": From("decode", tables.CLOCKS),
+        "segments": From("segment", tables.SEGMENTS),
+        "blocks": From("segment", tables.BLOCKS),
+        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "performed": From("segment", tables.PERFORMED),
+        "noise": From("noise", tables.NOISE),
+        "known": From("plan", tables.KNOWN),
+        "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
+        "gyroscope_fit": From("gyroscope", tables.FIT),
+    },
+    writes={
+        "epochs": tables.EPOCHS,
+        "spreads": tables.SPREADS,
+        "windows": tables.WINDOWS,
+        "growing": tables.WINDOWS,
+        "middles": tables.WINDOWS,
+        "time_angle": tables.TIME_ANGLE,
+        "motions": tables.MOTIONS,
+        "not_studied": tables.NOT_STUDIED,
+    },
+    streams=("samples",),
+)
