@@ -6,10 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from inertial.detectors.rate_off import ANOTHER_RATE
 from inertial.signal.detector import Array, Detector, Event, Given, Integers, Log, Piece, Words
 from inertial.signal.sample_interval import Told, told_of_log, told_of_part
-from inertial.signal.stamps import PRINTED, Stamps, stamps_of, unit_of
+from inertial.signal.stamps import MAX_RATE_ERROR, PRINTED, Stamps, stamps_of, unit_of
 from inertial.signal.steps import changes
 from inertial.text.numbers import counted, fixed, significant
 
@@ -84,7 +83,7 @@ class ClockScale(Detector):
             last = int(steps[part.end - 1]) + 1
             start, end = int(stamps.place[first]), int(stamps.place[last]) + 1
             whole = len(parts) == 1
-            if whole and abs(away) > ANOTHER_RATE:
+            if whole and abs(away) > MAX_RATE_ERROR:
                 continue  # a rate of its own
             yield piece.event(
                 start,
@@ -231,7 +230,7 @@ def _off_the_stated(interval: float, given: Given) -> bool:
     # A rate of 83.3 Hz is stated to half a unit of its last digit.
     rounded = 0.5 * 10.0**-digits * given.interval if digits else 0.0
     away = abs(interval / given.interval - 1)
-    return max(CRYSTAL, rounded) < away and abs(given.interval / interval - 1) <= ANOTHER_RATE
+    return max(CRYSTAL, rounded) < away and abs(given.interval / interval - 1) <= MAX_RATE_ERROR
 
 
 def _jump(series: Array, part: _Part, reference: float) -> bool:

@@ -6,7 +6,7 @@ import numpy as np
 
 from inertial.signal.detector import Words
 from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
-from inertial.signal.turn_scale import ALIKE, common_ratio, ratios
+from inertial.signal.scale_factor import MAX_RATIO_SPREAD, common_turn_ratio, turn_ratios
 from inertial.text.numbers import fixed, whole
 
 
@@ -21,15 +21,15 @@ class IncompleteTurn(AgainstPlan):
     sensor = "gyro"
 
     def finds(self, recorded: Recorded) -> Iterator[Deviation]:
-        common = common_ratio(recorded)
-        _, angle = ratios(recorded)
+        common = common_turn_ratio(recorded)
+        _, angle = turn_ratios(recorded)
         # By other axes no turn is used, though it may be whole.
         misread = any(one.sensor == "gyro" and not one.log for one in recorded.misread)
         for i, name in enumerate(recorded.name):
             whole_planned = recorded.do[i] == "turn" and not recorded.steady[i]
             if not whole_planned or not recorded.found[i] or recorded.complete[i]:
                 continue
-            scaled = common is not None and abs(angle[i] / common[0] - 1) <= ALIKE
+            scaled = common is not None and abs(angle[i] / common[0] - 1) <= MAX_RATIO_SPREAD
             reversed_ = angle[i] < 0
             refused = misread and recorded.lacking_s[i] == 0
             if scaled or reversed_ or refused or name in recorded.explained:
@@ -61,7 +61,7 @@ class IncompleteTurn(AgainstPlan):
 
 def _if_taken(recorded: Recorded, i: int) -> str:
     """What the scale factor would be wrong by if one took another angle than the recorded one."""
-    common = common_ratio(recorded)
+    common = common_turn_ratio(recorded)
     scale = common[0] if common else 1.0
     planned, read = np.degrees([recorded.angle[i], recorded.moved[i] / scale]).tolist()
     if not np.isfinite(planned * read) or not planned * read:

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from inertial.signal.detector import Detector, Event, Log, Words
+from inertial.signal.stamps import MAX_RATE_ERROR
 from inertial.text.numbers import significant
 
-ANOTHER_RATE = 0.01  # of the stated rate: more than any crystal is off
 FACTORS = (2, 4, 5, 10)  # of rates that instruments offer
 
 
@@ -24,7 +24,7 @@ class RateOff(Detector):
 
     def concludes(self, log: Log) -> Iterator[Event]:
         factor = log.given.interval / log.step
-        if np.isfinite(factor) and abs(factor - 1) > ANOTHER_RATE:
+        if np.isfinite(factor) and abs(factor - 1) > MAX_RATE_ERROR:
             facts = (1 / log.step, 1 / log.given.interval, log.given.instrument)
             yield log.event(factor, facts=facts)
 
@@ -43,8 +43,8 @@ class RateOff(Detector):
 def _factor(factor: float) -> str:
     """The factor in words, with its round number if it has one."""
     for whole in FACTORS:
-        if abs(factor / whole - 1) < ANOTHER_RATE:
+        if abs(factor / whole - 1) < MAX_RATE_ERROR:
             return f"×{whole}"
-        if abs(factor * whole - 1) < ANOTHER_RATE:
+        if abs(factor * whole - 1) < MAX_RATE_ERROR:
             return f"÷{whole}, as if only one record in {whole} were written"
     return f"factor {significant(factor)}"

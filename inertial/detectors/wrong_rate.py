@@ -6,7 +6,7 @@ import numpy as np
 
 from inertial.signal.detector import Words
 from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
-from inertial.signal.turn_scale import common_ratio, ratios
+from inertial.signal.scale_factor import common_turn_ratio, turn_ratios
 from inertial.text.numbers import fixed, significant
 
 
@@ -20,9 +20,9 @@ class WrongRate(AgainstPlan):
     sensor = "gyro"
 
     def finds(self, recorded: Recorded) -> Iterator[Deviation]:
-        if common_ratio(recorded) is not None:
+        if common_turn_ratio(recorded) is not None:
             return
-        rate, angle = ratios(recorded)
+        rate, angle = turn_ratios(recorded)
         for i, ratio in enumerate(rate):
             if ratio > 0 and abs(ratio - 1) > recorded.tolerance:
                 as_planned = abs(angle[i] - 1) <= recorded.tolerance
@@ -32,7 +32,7 @@ class WrongRate(AgainstPlan):
         i, ratio = deviation.at, deviation.size
         assert i is not None and ratio is not None
         read, wanted = np.degrees([recorded.speed[i], recorded.rate[i]]).tolist()
-        _, angle = ratios(recorded)
+        _, angle = turn_ratios(recorded)
         if deviation.severity == 1:
             consequence = (
                 f"Its angle is as planned ({fixed(float(np.degrees(recorded.moved[i])), 2)}°), so"

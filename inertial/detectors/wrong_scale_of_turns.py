@@ -6,7 +6,7 @@ import numpy as np
 
 from inertial.signal.detector import Words
 from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
-from inertial.signal.turn_scale import common_ratio, ratios
+from inertial.signal.scale_factor import common_turn_ratio, turn_ratios
 from inertial.text.numbers import counted, fixed, significant
 
 
@@ -21,17 +21,17 @@ class WrongScaleOfTurns(AgainstPlan):
     sensor = "gyro"
 
     def finds(self, recorded: Recorded) -> Iterator[Deviation]:
-        common = common_ratio(recorded)
+        common = common_turn_ratio(recorded)
         if common is not None:
             ratio, why = common
-            rate, _ = ratios(recorded)
+            rate, _ = turn_ratios(recorded)
             number = int(np.isfinite(rate).sum())
             yield Deviation(None, "", ratio, self.sensor, count=number, facts=why)
 
     def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
         ratio, why = deviation.size, deviation.facts
         assert ratio is not None
-        rate, angle = ratios(recorded)
+        rate, angle = turn_ratios(recorded)
         i = int(np.flatnonzero(np.isfinite(rate))[0])
         read = fixed(float(np.degrees(recorded.speed[i])), 5)
         far = ""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.detectors.wrong_scale_factor import force_at_rest
 from inertial.signal.detector import Array, Log, Piece
+from inertial.signal.scale_factor import force_at_rest
 
 NEAR = 2000  # records on either side of a change in which the specific force is compared
 LENGTH = 25  # records of the means that tell whether it rests

@@ -10,6 +10,7 @@ from inertial.signal.detector import Array, Booleans, Integers, Log, Piece
 # ---- The stamps of a piece, one for each sample, whichever way the sensors are written.
 
 PRINTED = 1e-9  # s, the last digit of a stamp at best
+MAX_RATE_ERROR = 0.01  # of the stated rate: more than any crystal is off
 
 
 @dataclass(frozen=True)

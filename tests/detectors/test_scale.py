@@ -6,7 +6,8 @@ from recorded_by_hand import COUNTS, GRAVITY, assert_told, given, log, piece, re
 
 from inertial.detectors.gravity_error import GravityError
 from inertial.detectors.temperature_drift import TemperatureDrift
-from inertial.detectors.wrong_scale_factor import WrongScaleFactor, explanations
+from inertial.detectors.wrong_scale_factor import WrongScaleFactor
+from inertial.signal.scale_factor import explanation_of
 
 
 def up(reading: float) -> np.ndarray:
@@ -55,12 +56,12 @@ def test_without_all_three_accelerometers_nothing_is_said():
 def test_the_instrument_whose_counts_these_are_is_named():
     """S0 names the iMAR-FSAS; its counts are those of the SPAN-CPT, 180/π times as large."""
     mine = COUNTS["imar-fsas"][1]
-    said = explanations(1 / 57.29578, "gyro", given(), mine)
+    said = explanation_of(1 / 57.29578, "gyro", given(), mine)
     assert "the counts are those of span-cpt or xw-gi7681" in said
     assert "the values are in radians but are read as degrees" in said
     # An instrument with the present one's counts explains nothing.
-    assert "instrument" not in explanations(2.0, "accel", given(), COUNTS["span-cpt"][0])
-    assert "those of" not in explanations(57.29578, "accel", given(), COUNTS["span-cpt"][0])
+    assert "instrument" not in explanation_of(2.0, "accel", given(), COUNTS["span-cpt"][0])
+    assert "those of" not in explanation_of(57.29578, "accel", given(), COUNTS["span-cpt"][0])
     other = given(count_sizes={**COUNTS, "other": (4.5e-6, 3e-7)})
     one = piece(up(GRAVITY * COUNTS["span-cpt"][0] / 4.5e-6), stamps(1000))
     (event,) = seen(WrongScaleFactor(), one, other)
@@ -74,12 +75,16 @@ def test_the_instrument_whose_counts_these_are_is_named():
         (2.0, "counts_per_unit is 2 times too small, as of another full scale, or the sample rate"),
         (0.125, "counts_per_unit is 8 times too large"),
         (131.0, "the values are counts"),
-        (1.3, "no known unit, full scale or instrument explains it"),
     ],
 )
 def test_what_explains_the_ratio_of_a_turn(ratio, said):
-    assert said in explanations(ratio, "gyro", given(count_sizes={}))
-    assert said in explanations(-ratio, "gyro", given(count_sizes={}))
+    assert said in explanation_of(ratio, "gyro", given(count_sizes={}))
+    assert said in explanation_of(-ratio, "gyro", given(count_sizes={}))
+
+
+def test_a_ratio_of_no_unit_is_not_explained():
+    assert explanation_of(1.3, "gyro", given(count_sizes={})) is None
+    assert explanation_of(-1.3, "gyro", given(count_sizes={})) is None
 
 
 # ---- gravity

@@ -1,0 +1,113 @@
+"""Readings that are a multiple of what they should be, and the units that explain the multiple."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.signal.detector import Array, Given, Log
+from inertial.signal.plan_detector import Recorded
+from inertial.text.units import DEGREE, STANDARD_GRAVITY
+
+# Of gravity. A consumer accelerometer may be off by 80 mg and 3 % (MPU-6050, PS-MPU-6000A), an old
+# one by 110 mg; the smallest wrong factor is 2. Of the rate of a turn, which has no bias: 3 %.
+MAX_SCALE_ERROR = {"accel": 0.15, "gyro": 0.05}
+MAX_RATIO_SPREAD = 0.05  # of the ratios of turns to their plan: a gyro of a phone is off by 3 %
+MAX_FACTOR_DIFFERENCE = 0.01  # relative: factors that differ by less explain the same
+MIN_RAW_COUNT_RATIO = 50.0  # a multiple that no sensor reads in any unit
+FULL_SCALE_FACTORS = (2, 4, 8, 16)
+QUIET_VARIANCE_RATIO = 4.0  # over the lower quartile: a window of 1 s in which the IMU is at rest
+UNIT_FACTORS = {
+    "accel": {
+        STANDARD_GRAVITY: "the values are in m/s² but are read as g",
+        1 / STANDARD_GRAVITY: "the values are in g but are read as m/s²",
+    },
+    "gyro": {
+        1 / DEGREE: "the values are in degrees but are read as radians",
+        DEGREE: "the values are in radians but are read as degrees",
+    },
+}
+
+
+def force_at_rest(log: Log) -> float:
+    """The median of |f| where a log is quiet, m/s²; NaN where not all axes are recorded."""
+    force = np.linalg.norm(log.windows.mean[:, :3], axis=1)
+    recorded = np.isfinite(force)
+    if not recorded.any():
+        return np.nan
+    variance = np.nansum(log.windows.variance[recorded], axis=1)
+    quiet = variance <= QUIET_VARIANCE_RATIO * np.quantile(variance, 0.25)
+    return float(np.median(force[recorded][quiet]))
+
+
+def explanation_of(ratio: float, sensor: str, given: Given, count: float = np.nan) -> str | None:
+    """What explains that a sensor reads `ratio` times what it should, in words; None if nothing.
+
+    Parameters
+    ----------
+    sensor : accel or gyro
+    count : m/s or rad, what one count is by the campaign; where it is not given, the counts of
+        any two listed instruments are compared
+    """
+    known = dict(_known_factors(sensor, given, count))
+    distance = {factor: abs(np.log(abs(ratio) / factor)) for factor in known}
+    nearest = min(distance, key=lambda factor: distance[factor], default=1.0)
+    if known and distance[nearest] < np.log1p(MAX_SCALE_ERROR[sensor]):
+        near = [f for f in distance if abs(f / nearest - 1) < MAX_FACTOR_DIFFERENCE]
+        return ", or ".join(known[factor] for factor in sorted(near, key=lambda f: distance[f]))
+    if abs(ratio) > MIN_RAW_COUNT_RATIO:
+        return "the values are counts, and counts_per_unit is missing"
+    return None
+
+
+def _known_factors(sensor: str, given: Given, count: float) -> Iterator[tuple[float, str]]:
+    """Factors that are known to happen, and what makes each."""
+    yield from UNIT_FACTORS[sensor].items()
+    for scale in FULL_SCALE_FACTORS:
+        for factor, size in ((float(scale), "small"), (1 / scale, "large")):
+            cause = f"counts_per_unit is {scale} times too {size}, as of another full scale"
+            if sensor == "gyro" and scale == FULL_SCALE_FACTORS[0]:
+                cause += f", or the sample rate is off by {scale}"
+            yield factor, cause
+    size_of = {name: sizes[sensor == "gyro"] for name, sizes in given.count_sizes.items()}
+    for used in [count] if np.isfinite(count) else sorted(set(size_of.values())):
+        instruments: dict[float, list[str]] = {}
+        for name, other in size_of.items():
+            if abs(used / other - 1) > MAX_FACTOR_DIFFERENCE:
+                instruments.setdefault(used / other, []).append(name)
+        for factor, names in instruments.items():
+            # Slightly beside the factor itself, which may be that of a unit as well.
+            yield factor * (1 + 1e-12), f"the counts are those of {' or '.join(names)}"
+
+
+def turn_ratios(recorded: Recorded) -> tuple[Array, Array]:
+    """Recorded over planned rate and angle of each turn, (m,), NaN where not known."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rate = np.where(recorded.found, recorded.speed / recorded.rate, np.nan)
+        whole = recorded.found & ~recorded.steady & (recorded.lacking_s == 0)
+        angle = np.where(whole, recorded.moved / recorded.angle, np.nan)
+    return rate, angle
+
+
+def common_turn_ratio(recorded: Recorded) -> tuple[float, str] | None:
+    """The ratio by which all turns differ from their plan, in rate and in angle, and its cause.
+
+    None where they do not differ, or not by one ratio. A single turn may have been planned
+    wrongly: its ratio counts only if a unit, a full scale or an instrument explains it.
+    """
+    rate, angle = turn_ratios(recorded)
+    known = np.isfinite(rate)
+    if not known.any():
+        return None
+    ratio = float(np.median(rate[known]))
+    both = np.concatenate([rate[known], angle[known & np.isfinite(angle)]]) / ratio
+    if abs(ratio - 1) <= recorded.tolerance or ratio <= 0:
+        return None
+    if np.abs(both - 1).max() > MAX_RATIO_SPREAD:
+        return None
+    count = recorded.count[known]
+    count = count[np.isfinite(count)]
+    size = float(np.median(count)) if len(count) else np.nan
+    cause = explanation_of(ratio, "gyro", recorded.given, size)
+    if cause is None and known.sum() == 1:
+        return None
+    return ratio, cause or "no known unit, full scale or instrument explains it"
