@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.steady_residuals import SteadyTurn
@@ -19,14 +20,17 @@ from inertial.estimation.periodic_in_time import (
     phasor,
     without_line,
 )
-from inertial.physics.vectors import cross
-from inertial.tables import AXES
+from inertial.tables import AXES, GYRO
 from stages.criticism.oscillation_fits import (
     ECCENTRIC,
+    TABLE,
+    Coupled,
     Oscillating,
     Ringing,
     Stands,
     best_orders,
+    coupled,
+    direction,
     in_all,
     in_turns,
     ringing,
@@ -34,99 +38,7 @@ from stages.criticism.oscillation_fits import (
     together,
 )
 
-# ---- What the other axes of the case see of an oscillation about one of them.
-
 Array = NDArray[np.float64]
-
-TABLE = "table"  # the axis that the table turns about
-CLEAR = 5.0  # sigmas from which an axis has more than coupling
-TERM = 1e-4  # rad, 20″: what a cross term may be off
-
-
-@dataclass(frozen=True)
-class Coupled:
-    """An oscillation in the gyro of another axis; rad/s, rms over the turns of the amplitudes.
-
-    read : as the gyro reads it; expected : by its cross term; left : with M undone, and what noise
-    would leave of it;
-    tipping : what the rate of the table brings, into which the case tips as it oscillates; more :
-    whether there is more than the cross term brings
-    """
-
-    axis: str
-    read: float
-    expected: float
-    left: float
-    left_sigma: float
-    tipping: float
-    more: bool
-
-
-def direction(turn: SteadyTurn, axis: str) -> Array:
-    """The unit vector of an axis of the case, or of the table's, (3,)."""
-    return turn.about if axis == TABLE else np.eye(3)[AXES.index(axis)]
-
-
-def coupled(
-    turns: Sequence[SteadyTurn], axis: str, frequencies: Mapping[str, float]
-) -> list[Coupled]:
-    """The other axes; of an oscillation about the table's axis none, for it differs by turn."""
-    heard = [turn for turn in turns if turn.name in frequencies]
-    if axis == TABLE or not heard:
-        return []
-    source = AXES.index(axis)
-    truth = np.array([_phasors(turn, frequencies[turn.name]) for turn in heard])
-    matrix = heard[0].matrix
-    read = _rms(truth @ matrix.T)
-    size = _rms(truth)
-    noise = np.array([[_sigma(turn, i) for i in range(len(AXES))] for turn in heard])
-    # What noise leaves of the mean square of k amplitudes scatters by 2 σ²/√k.
-    sigma = np.sqrt(2 * np.mean(noise**2, axis=0) / np.sqrt(len(heard)))
-    found = []
-    for i, name in enumerate(AXES):
-        if i == source:
-            continue
-        tips = [
-            _tipping(turn, truth[k, source], frequencies[turn.name], source, i)
-            for k, turn in enumerate(heard)
-        ]
-        left = float(np.sqrt(max(size[i] ** 2 - 2 * np.mean(noise[:, i] ** 2), 0.0)))
-        found.append(
-            Coupled(
-                name,
-                float(read[i]),
-                float(abs(matrix[i, source]) * size[source]),
-                left,
-                float(sigma[i]),
-                float(_rms(np.array(tips))),
-                bool(left > max(np.sqrt(CLEAR) * sigma[i], TERM * size[source])),
-            )
-        )
-    return found
-
-
-def _phasors(turn: SteadyTurn, frequency: float) -> NDArray[np.complex128]:
-    share = float(np.sinc(frequency * turn.step)) if turn.averaged else 1.0
-    parts = [phasor(record, 1 / turn.step, frequency) / share for record in turn.truth.T]
-    return np.array(parts, dtype=np.complex128)
-
-
-def _sigma(turn: SteadyTurn, i: int) -> float:
-    """Standard deviation of either part of an amplitude, rad/s."""
-    return turn.sigma(np.eye(3)[i]) * float(np.sqrt(2 / len(turn.truth)))
-
-
-def _tipping(turn: SteadyTurn, size: complex, frequency: float, source: int, i: int) -> float:
-    """The case tips by size/(2πf), and so has a share of the table's rate about a third axis."""
-    across = cross(np.eye(3)[source], turn.about)[i]
-    rate = 0.0 if np.isnan(turn.rate) else turn.rate
-    return float(abs(size) / (2 * np.pi * frequency) * abs(rate * across))
-
-
-def _rms(values: NDArray[np.complex128] | Array) -> Array:
-    """Root mean square over the turns."""
-    return np.asarray(np.sqrt(np.mean(np.abs(values) ** 2, axis=0)))
-
 
 # ---- To what an oscillation is bound: time or the table's angle; and about which axis it arises.
 
@@ -348,3 +260,50 @@ def _without(turn: SteadyTurn, found: Bound, taken: list[Taken]) -> SteadyTurn:
         for record, part in zip(turn.truth.T, parts, strict=True)
     ]
     return replace(turn, truth=np.column_stack(less))
+
+
+# ---- The blocks of turns without the oscillations that were found in them.
+#
+# Where a block holds no whole number of periods the mean of an oscillation over it is not zero,
+# and over many blocks that beats: it would be taken for whatever goes with time or angle.
+
+
+def without_lines(
+    blocks: pd.DataFrame, turns: Sequence[SteadyTurn], lines: Sequence[Bound]
+) -> pd.DataFrame:
+    """The same blocks, each line taken out of the steady ones with its own phase in each turn.
+
+    The angle of a turn stays as it was: from rest to rest what rings comes back, and so does a
+    ripple of a whole order. What it adds while the turn is steady it takes away while the table
+    speeds up and slows down.
+    """
+    if not lines:
+        return blocks
+    quiet = blocks.copy()
+    for turn in turns:
+        own = (blocks["manoeuvre"] == turn.name) & (blocks["phase"] == "steady")
+        if own.any() and np.isfinite(turn.start):
+            ringing = _mean_rates(turn, lines, blocks[own])
+            ringing -= np.average(ringing, axis=0, weights=blocks.loc[own, "seconds"])
+            quiet.loc[own, GYRO] -= ringing @ turn.matrix.T
+    return quiet
+
+
+def _mean_rates(turn: SteadyTurn, lines: Sequence[Bound], blocks: pd.DataFrame) -> Array:
+    """The mean rates of all lines in blocks of a turn, (k, 3), rad/s, about the case's axes."""
+    left = turn.truth.copy()
+    time = turn.step * np.arange(len(left))
+    since = blocks["time"].to_numpy(np.float64) - turn.start
+    count = blocks["count"].to_numpy(np.float64)
+    means = np.zeros((len(blocks), 3))
+    for line in lines:
+        frequency = line.frequencies.get(turn.name)
+        if frequency is None:
+            continue
+        half = np.pi * frequency * turn.step
+        share = np.sin(count * half) / (count * np.sin(half))  # of a sum of so many samples
+        for axis in range(3):
+            amplitude = phasor(left[:, axis], 1 / turn.step, frequency)
+            left[:, axis] -= np.real(amplitude * np.exp(2j * np.pi * frequency * time))
+            means[:, axis] += share * np.real(amplitude * np.exp(2j * np.pi * frequency * since))
+    return means

@@ -23,17 +23,15 @@ from inertial.campaign.steady_residuals import steady_turns
 from inertial.effects import CATALOGUE
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
-from stages.criticism import noise_effects, structure_rows, temperature_findings
+from stages.criticism import block_results, residual_structure, temperature_findings
+from stages.criticism.bias_drift import walks_with_sigmas
+from stages.criticism.block_results import Rows, unexplained
+from stages.criticism.class_splitting import Foreseen, Further, further
 from stages.criticism.declared import DECLARED
-from stages.criticism.judging import SENSORS, judge
-from stages.criticism.oscillation_removal import without_lines
-from stages.criticism.oscillation_search import heard
-from stages.criticism.oscillations import LinesOfTurns
-from stages.criticism.random_walks import walks_with_sigmas
-from stages.criticism.rows import Rows
-from stages.criticism.splitting_manoeuvres import Foreseen, Further, further
-from stages.criticism.structure import tested
-from stages.criticism.unexplained import unexplained
+from stages.criticism.oscillation_results import LinesOfTurns
+from stages.criticism.oscillation_search import heard, without_lines
+from stages.criticism.residual_structure import tested
+from stages.criticism.selection import SENSORS, judge
 
 Row = dict[str, Any]
 
@@ -93,21 +91,21 @@ def criticism(
         rows = Rows(campaign, judged, Foreseen(judged, more), suffix)
         lines = LinesOfTurns(found, suffix)
         made["scores"] += [*rows.scores(), *lines.scores()]
-        made["scores"] += noise_effects.scores(others, walks.get("gyro"))
+        made["scores"] += block_results.noise_scores(others, walks.get("gyro"))
         for sensor, walk in walks.items():
             structured = bool(left.of(sensor))
-            made["findings"] += noise_effects.findings(
+            made["findings"] += block_results.walk_findings(
                 sensor, walk, judged.instead, suffix, structured=structured
             )
-            made["walks"].append(noise_effects.walk_row(f"joint{suffix}", sensor, walk))
-        made["structures"] += structure_rows.rows(left, f"joint{suffix}")
-        made["structure_points"] += structure_rows.pictures(left, f"joint{suffix}")
+            made["walks"].append(block_results.walk_row(f"joint{suffix}", sensor, walk))
+        made["structures"] += residual_structure.test_rows(left, f"joint{suffix}")
+        made["structure_points"] += residual_structure.point_rows(left, f"joint{suffix}")
         made["effects"] += [*rows.effects(), *lines.effects()]
         made["blind_spots"] += [*rows.blind_spots(), *lines.blind_spots()]
         made["lines"] += lines.lines()
         made["findings"] += rows.findings()
         made["findings"] += lines.findings()
-        made["findings"] += structure_rows.findings(left, judged.consistent(), suffix)
+        made["findings"] += residual_structure.findings(left, judged.consistent(), suffix)
         made["findings"] += unexplained(judged, suffix)
         made["findings"] += temperature_findings.findings(blocks, plan, level, suffix)
     return {

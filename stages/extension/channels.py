@@ -1,16 +1,4 @@
-"""What each channel by itself says of the effects: its means over rests, and over turns.
-
-The blocks of a turn mix the channels, for the angle of each is known from them alone. So a channel
-is judged by its mean reading of every stretch, less what the joint result predicts,
-
-    gyro at rest:           reading − (M ω + b)
-    gyro, a whole turn:     (Σ reading τ − M (u α + Σ ω_earth τ)) / T − b
-    accelerometer:          reading − (M f + b), at rest, or over some blocks of a turn
-
-in proportion to changes of its row of M and of its bias, to the effects, and to the errors of the
-tilt, of the azimuth, of the angle of the turn, of gravity and of the earth's rate, each with its
-known sigma; where the bias walks, that too. What happens within a turn of a gyro is not in it.
-"""
+"""The mean readings of each channel and their equations."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,14 +6,30 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
 
 from inertial.campaign.equations import Campaign
 from inertial.campaign.rate_segments import Recorded
 from inertial.estimation.gyroscope_rows import Position, Turn, level_names, level_of
+from inertial.estimation.least_squares import System
 from inertial.physics.effect import Effect, Truth
 from inertial.physics.forward import Triad, signatures, truth_of
 from inertial.physics.motion import Motion, level_axes, turned_all
 from inertial.physics.vectors import cross
+
+# ---- What each channel by itself says of the effects: its means over rests, and over turns.
+#
+# The blocks of a turn mix the channels, for the angle of each is known from them alone. So a
+# channel is judged by its mean reading of every stretch, less what the joint result predicts,
+#
+#     gyro at rest:           reading − (M ω + b)
+#     gyro, a whole turn:     (Σ reading τ − M (u α + Σ ω_earth τ)) / T − b
+#     accelerometer:          reading − (M f + b), at rest, or over some blocks of a turn
+#
+# in proportion to changes of its row of M and of its bias, to the effects, and to the errors of
+# the tilt, of the azimuth, of the angle of the turn, of gravity and of the earth's rate, each
+# with its known sigma; where the bias walks, that too. What happens within a turn of a gyro is
+# not in it.
 
 Array = NDArray[np.float64]
 Errors = dict[tuple[str, str], tuple[Array, float]]  # what the readings change by (3,), and sigma
@@ -167,3 +171,55 @@ def _known_rate(motion: Motion, truth: Truth, position: Position) -> Array:
     earth = truth.rate - motion.omega
     upward = np.sum(earth * motion.up, axis=1, keepdims=True) * motion.up
     return np.asarray(motion.omega + upward)
+
+
+# ---- The equations of one channel: its row of M, its bias, the effects, and the errors.
+
+UNKNOWNS = 4  # of a channel: three of M and the bias
+VAGUE = (0.1, 0.1, 0.1, 1.0)  # their sigmas beforehand, about the joint result
+
+
+def system_of(
+    means: Sequence[Mean], names: Sequence[str], channel: int, shown: Sequence[str], walk: float
+) -> System | None:
+    """The equations of one channel; None where it has no reading.
+
+    `names`: of all traces, of which the effects `shown` are unknowns; `walk`: of the bias, per √s.
+    """
+    some = [m for m in means if np.isfinite(m.residual[channel]) and np.isfinite(m.sigma[channel])]
+    if not some:
+        return None
+    sigma = np.array([mean.sigma[channel] for mean in some])
+    kept = [names.index(name) for name in shown]
+    own = np.array([np.append(mean.truth, 1.0) for mean in some])
+    of_effects = np.array([mean.traces[channel, kept] for mean in some])
+    errors = {key: size for mean in some for key, (_, size) in mean.errors.items()}
+    columns = {key: np.zeros(len(some)) for key in errors}
+    for row, mean in enumerate(some):
+        for key, (change, _) in mean.errors.items():
+            columns[key][row] = change[channel]
+    design = np.hstack([own, of_effects, *(column[:, None] for column in columns.values())])
+    unknowns = [("parameter", str(i)) for i in range(UNKNOWNS)]
+    unknowns += [*(("effect", name) for name in shown), *columns]
+    observed = np.array([mean.residual[channel] for mean in some])
+    rows = np.column_stack([design, observed]) / sigma[:, None]
+    if walk:  # from one stretch to the next, in units of the noise
+        walked = walk**2 * _walked(some) / np.outer(sigma, sigma)
+        lower = np.linalg.cholesky(np.eye(len(some)) + walked)
+        rows = solve_triangular(lower, rows, lower=True)
+    return System(
+        rows[:, :-1],
+        rows[:, -1],
+        np.ones(len(some)),
+        np.zeros(len(unknowns)),
+        np.array([*VAGUE, *np.ones(len(shown)), *errors.values()]),
+        UNKNOWNS,
+        tuple(unknowns),
+    )
+
+
+def _walked(means: Sequence[Mean]) -> Array:
+    """How long two stretches have walked together since the first one, s, (n, n)."""
+    time = np.array([mean.time for mean in means])
+    since = np.nan_to_num(time - np.nanmin([*time, np.inf]))
+    return np.asarray(np.minimum.outer(since, since))

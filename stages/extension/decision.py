@@ -9,9 +9,9 @@ from typing import Any
 
 from inertial.estimation.triad import linear_names
 from inertial.text.cause_names import in_words
-from stages.extension.held_out import CLEAR, HeldOut
-from stages.extension.named import Named
-from stages.extension.solved import Solved
+from stages.extension.cross_validation import MIN_SNR_SQUARED, HeldOut
+from stages.extension.estimates import Solved
+from stages.extension.named_effects import Named
 
 Row = dict[str, Any]
 
@@ -80,7 +80,7 @@ def _against(
         return (
             f"{said}it is not cross-validatable, for the manoeuvres that can be foretold from the"
             f" others hold too little of it (SNR² {max(found.at_stake, 0.0):.1f}, less than"
-            f" {CLEAR:.0f})."
+            f" {MIN_SNR_SQUARED:.0f})."
         )
     if found.drop <= found.walked:
         return (

@@ -1,4 +1,4 @@
-"""The joint model of one mount and the extended one: what the equations of a sensor tell."""
+"""The joint model of one mount and the extended one."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -15,7 +15,7 @@ from inertial.physics.forward import Triad, signatures, truth_of
 from inertial.physics.motion import Motion, turned_all
 from inertial.physics.typical_sizes import GOOD, POOR, USUAL
 from inertial.physics.vectors import cross
-from stages.extension.solved import Solved
+from stages.extension.estimates import Solved
 
 # ---- How errors of the sensors grow in free inertial navigation over a minute.
 #

@@ -24,15 +24,14 @@ from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Triad
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
+from stages.extension.cross_validation import held_out
 from stages.extension.decision import decision, result
 from stages.extension.declared import DECLARED
-from stages.extension.gain import gain
-from stages.extension.held_out import held_out
+from stages.extension.estimates import Solved, moved, solved
+from stages.extension.gain import gain, gain_of_line, gain_of_ripple
 from stages.extension.models import SENSORS, models_of
-from stages.extension.named import Named, named_of
+from stages.extension.named_effects import Named, named_of
 from stages.extension.navigation_error import change_of, worth
-from stages.extension.oscillation_gain import gain_of_line, gain_of_ripple
-from stages.extension.solved import Solved, moved, solved
 
 Row = dict[str, Any]
 

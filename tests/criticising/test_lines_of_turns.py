@@ -12,8 +12,8 @@ from residuals_of_turns import ARC_SECOND, MATRIX, NOISE, locked, turns
 
 from inertial import tables
 from inertial.campaign.steady_residuals import SteadyTurn
+from stages.criticism.oscillation_results import LinesOfTurns
 from stages.criticism.oscillation_search import heard
-from stages.criticism.oscillations import LinesOfTurns
 
 LEVEL = 1e-3  # of the spectrum: a tenth of the accepted one in a hundred
 LOWEST = 2.0  # Hz

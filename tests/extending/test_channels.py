@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.extension.channel_equations import system_of
-from stages.extension.channels import Mean
+from stages.extension.channels import Mean, system_of
 
 NAMES = ["effect.k"]
 TILT = 3e-4

@@ -8,12 +8,11 @@ import pytest
 
 from inertial.estimation.least_squares import Estimate, Reduced
 from inertial.estimation.triad import linear_names
+from stages.extension.cross_validation import Fold, HeldOut
 from stages.extension.decision import decision, result
-from stages.extension.folds import Fold
-from stages.extension.held_out import HeldOut
+from stages.extension.estimates import Solved
 from stages.extension.models import Told
-from stages.extension.named import Named
-from stages.extension.solved import Solved
+from stages.extension.named_effects import Named
 
 Row = dict[str, Any]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from inertial.estimation.least_squares import Reduced, System
-from stages.extension.folds import KEPT, fold, groups, snr_squared
+from stages.extension.cross_validation import KEPT, fold, groups, snr_squared
 
 NAMES = tuple("abcdef")
 TRUTH = np.array([3.0, -2.0])  # of the effects

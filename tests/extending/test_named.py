@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from stages.extension.named import named_of
+from stages.extension.named_effects import named_of
 
 Row = dict[str, Any]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from inertial.campaign.steady_residuals import SteadyTurn
-from stages.extension.oscillation_gain import gain_of_ripple
+from stages.extension.gain import gain_of_ripple
 
 RATE, STEP, NOISE = np.radians(10.0), 0.01, 3.5e-5  # rad/s, s, rad/s of a sample
 AHEAD = np.radians(0.5 / 3600)

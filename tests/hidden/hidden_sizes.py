@@ -27,7 +27,7 @@ from inertial.model_selection.naming import law_of
 from inertial.model_selection.null_simulation import Chance, power, power_limit
 from inertial.physics.effect import Effect
 from inertial.tables.code import code_of, hash_of
-from stages.criticism.judging import said_of
+from stages.criticism.selection import said_of
 from stages.criticism.stage import BLOCKS_SHARE
 
 SEED = 9_999

@@ -1,4 +1,4 @@
-"""Which further manoeuvre would split a class, by this campaign's noise."""
+"""Which further manoeuvre would distinguish the members of a class."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -15,7 +15,7 @@ from inertial.estimation.least_squares import Reduced
 from inertial.model_selection.splitting import TELLS, split
 from inertial.physics.effect import Effect
 from inertial.tables import GYRO
-from stages.criticism.judging import Judged, said_of
+from stages.criticism.selection import Judged, said_of
 
 # ---- Manoeuvres that a laboratory might add: copies of what it did, to foresee what they would
 # tell.

@@ -1,4 +1,4 @@
-"""What is said of a cause, of a class of causes, and of what was not seen."""
+"""Sentences about effects that are selected from block means."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -15,7 +15,7 @@ from inertial.physics.effect import Effect
 from inertial.text.cause_names import in_words
 from inertial.text.numbers import decimals_of, p_is, significant, with_sigma
 from inertial.text.units import quantity
-from stages.criticism.splitting_manoeuvres import TURNED_OVER, Splitting
+from stages.criticism.class_splitting import TURNED_OVER, Splitting
 
 Row = Mapping[str, Any]
 

@@ -1,12 +1,4 @@
-"""The causes that a campaign asks for.
-
-Where something is scanned they are found several times, with ever finer values about the first.
-
-A random walk of a bias may stand for effects, or they for it: a jump, a ramp, whatever drifts. So
-the two explanations are weighed by their likelihoods, and the walk is estimated anew beside the
-effects that are named. Of an effect that a walk could do as well no more is said than that the
-data are consistent with it, for what walks has no law that could be tested.
-"""
+"""Selection of the unmodelled effects of one mount from its block means."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -21,7 +13,7 @@ from inertial.model_selection.evidence import Evidence, Sought, sought
 from inertial.model_selection.naming import causes, law_of
 from inertial.model_selection.scan_refinement import finer, to_refine
 from inertial.physics.effect import Effect
-from stages.criticism.random_walks import course_of, courses, slight, walks_beside
+from stages.criticism.bias_drift import course_of, courses, slight, walks_beside
 
 OCCAM = 20.0  # of the deviance: so much the sizes that were possible beforehand weigh at most
 FINER = 4  # steps of the second look in each interval of the first

@@ -1,4 +1,4 @@
-"""What is said of oscillations: in time and against the table's angle, found and not found."""
+"""Sentences about oscillations, detected and not detected."""
 
 from collections.abc import Sequence
 from math import degrees, exp, pi
@@ -9,7 +9,8 @@ from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.periodic_in_angle import Ripple
 from inertial.text.numbers import decimals_of, fixed, significant, with_sigma
 from inertial.text.units import ARC_SECOND
-from stages.criticism.oscillation_search import ANGLE, CLEAR, TABLE, Bound, Coupled
+from stages.criticism.oscillation_fits import CLEAR, TABLE, Coupled
+from stages.criticism.oscillation_search import ANGLE, Bound
 
 NO_TURN = "no whole turn at a steady rate was recorded"
 NO_ANGLE = "of no whole turn at a steady rate both rate and acceleration are stated"

@@ -1,4 +1,4 @@
-"""The effects that criticism has named for one mount, and what keeps the joint result."""
+"""The effects that criticism has named for one mount, and its unexplained findings."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

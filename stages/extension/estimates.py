@@ -1,4 +1,4 @@
-"""The refitted model as rows, and how far its parameters move."""
+"""The refitted model as rows, and the changes of its parameters."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
