@@ -13,6 +13,7 @@
 #   make challenge                hides effects in many campaigns and says what is found, on
 #                                 docs/challenge.md; 90 minutes on two cores, can be resumed; with
 #                                 DRAWS=100 a tenth of them
+#   make docs                     docs/tables.md and the catalogue of messages, from the code
 #   make clean                    what can be made again from the raw logs; reports stay
 #   make setup                    only the environment, .venv; everything above sees to it itself
 
@@ -20,7 +21,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check trace test style bench challenge clean setup pango campaign
+.PHONY: report check trace test style bench challenge docs clean setup pango campaign
 
 # Taken word for word and given to the shell through the environment, so that neither make nor the
 # shell runs what may stand in them.
@@ -80,10 +81,11 @@ test: setup
 style: setup
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/mypy stages laboratory
+	$(BIN)/mypy stages inertial commands laboratory
 	MYPYPATH=tests:tests/bounds $(BIN)/mypy benchmarks/*.py benchmarks/own/*.py
 	$(BIN)/snakefmt --check -l 100 Snakefile
 	$(BIN)/lint-imports
+	$(BIN)/snakemake --lint &> .snakemake/lint || { cat .snakemake/lint; exit 1; }
 
 bench: .venv/complete benchmarks/.venv/complete
 	read -ra parts <<< "$$ONLY"
@@ -91,6 +93,12 @@ bench: .venv/complete benchmarks/.venv/complete
 
 challenge: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m hidden "$$DRAWS" data/derived/challenge
+
+# What is written by the code of the project itself; tests fail where it is not current.
+docs: .venv/complete
+	$(BIN)/python -m commands.tables
+	$(BIN)/pybabel -q extract --keywords _ --keywords plural:1,2 --no-wrap --omit-header \
+		--sort-by-file --add-location file --output inertial/text/messages.pot inertial stages commands
 
 clean:
 	rm -rf data/derived .snakemake

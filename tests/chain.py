@@ -9,25 +9,11 @@ import pandas as pd
 from ruamel.yaml import YAML
 
 import laboratory
+import stages
 from inertial.tables.stage import Stage
 
 ROOT = Path(__file__).parent.parent
-ORDER = (
-    "plan",
-    "decode",
-    "quality",
-    "segment",
-    "noise",
-    "accelerometer",
-    "gyroscope",
-    "studies",
-    "comparison",
-    "compensation",
-    "simulation",
-    "criticism",
-    "extension",
-    "history",
-)
+ORDER = stages.ORDER[: stages.ORDER.index("export")]
 SETTINGS: dict[str, dict[str, Any]] = YAML(typ="safe").load(ROOT / "config.yaml")
 
 

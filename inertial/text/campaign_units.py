@@ -2,7 +2,7 @@
 
 from math import pi
 
-from inertial.physics.site import STANDARD_GRAVITY
+from inertial.text.units import STANDARD_GRAVITY
 
 DEGREE = pi / 180
 ARC_SECOND = DEGREE / 3600
