@@ -52,16 +52,16 @@ report: campaign setup
 	echo "For other programs:" reports/$$CAMPAIGN.{calibration.json,calibration.yaml,kalibr.yaml,px4.params,ardupilot.param}
 	echo "The report:" "$${kinds[@]/#/reports/$$CAMPAIGN.}"
 
-# By hand `python -m stages.checking --campaign=<name>` ends with 1 where something spoils a result;
+# By hand `python -m commands.check --campaign=<name>` ends with 1 where something spoils a result;
 # make turns that into its own 2.
 check: campaign .venv/complete
 	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
 	$(SNAKEMAKE) data/derived/$$CAMPAIGN/{quality,segment}/findings.parquet
 	echo
-	$(BIN)/python -m stages.checking "--campaign=$$CAMPAIGN"
+	$(BIN)/python -m commands.check "--campaign=$$CAMPAIGN"
 
 trace: campaign setup
-	$(BIN)/python -m stages.tracing "--campaign=$$CAMPAIGN" "--id=$$ID"
+	$(BIN)/python -m commands.trace "--campaign=$$CAMPAIGN" "--id=$$ID"
 
 campaign:
 	LC_ALL=C # a-z without ä

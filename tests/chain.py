@@ -19,7 +19,7 @@ SETTINGS: dict[str, dict[str, Any]] = YAML(typ="safe").load(ROOT / "config.yaml"
 
 def stage_of(name: str) -> Stage:
     """A stage by its name."""
-    stage: Stage = import_module(f"stages.{name}" + ("" if name == "history" else ".stage")).STAGE
+    stage: Stage = import_module(f"stages.{name}.stage").STAGE
     return stage
 
 

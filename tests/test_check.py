@@ -13,9 +13,8 @@ import pyarrow.parquet as pq
 import pytest
 from chain import ROOT, Results
 
+from commands.check import LINE_WIDTH, main
 from inertial import tables
-from stages.checking.__main__ import main
-from stages.checking.verdict import WIDTH
 
 NAME = "demo"
 READ = ("quality/findings", "segment/findings", "segment/performed", "decode/accounts")
@@ -74,7 +73,7 @@ def test_the_worst_comes_first(data: Path, capsys: pytest.CaptureFixture[str]) -
 def test_it_fits_into_a_terminal(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
     change(data, "quality/findings", consequence="A result is not what it should be. " * 20)
     check(data)
-    assert max(map(len, capsys.readouterr().out.splitlines())) <= WIDTH
+    assert max(map(len, capsys.readouterr().out.splitlines())) <= LINE_WIDTH
 
 
 def test_a_number_stays_in_one_line(data: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -17,11 +18,10 @@ from inertial import tables
 from inertial.campaign.solution import triad_of
 from inertial.tables.code import hash_of_file
 from inertial.tables.parquet import Writer
-from stages import export as stage
 from stages.compensation.correction import truth_of
-from stages.export import READS, STREAMS, export, main
+from stages.export.stage import STAGE
 from stages.extension.stage import STAGE as EXTENSION
-from tests.exporting.readers import mavproxy, qgroundcontrol
+from tests.export.readers import mavproxy, qgroundcontrol
 
 ENDINGS = (
     "calibration.json",
@@ -30,7 +30,7 @@ ENDINGS = (
     "px4.params",
     "ardupilot.param",
 )
-SCHEMA = Path(stage.__file__).parent / "exporting/calibration.schema.json"
+SCHEMA = chain.ROOT / "stages/export/calibration.schema.json"
 GRAVITY, GRAVITY_SIGMA = 9.7936174, 5e-5
 KINDS = {"accelerometer": slice(0, 3), "gyroscope": slice(3, 6)}
 
@@ -58,7 +58,7 @@ def write_nothing_extended(folder: Path) -> None:
 def files(results: chain.Results, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the files, written as the workflow writes them."""
     folder = tmp_path_factory.mktemp("reports")
-    main([*arguments(results), "--output", str(folder / "short")])
+    STAGE.command_line([str(results.folder), "--documents", str(folder / "short")])
     return folder
 
 
@@ -67,33 +67,16 @@ def content(files: Path) -> dict[str, Any]:
     return dict(json.loads((files / "short.calibration.json").read_text("utf-8")))
 
 
-def paths(results: chain.Results) -> dict[str, Path]:
-    found = {}
-    for name, table in READS.items():
-        folder = name.partition("_")[0] if "_" in name else "*"
-        folder = folder if folder in {*KINDS, "extension"} else "*"
-        (path,) = results.folder.glob(f"{folder}/{table.name}.parquet")
-        found[name] = path
-    return found
-
-
-def arguments(results: chain.Results) -> list[str]:
-    return [f"--{name}={path}" for name, path in paths(results).items()]
-
-
 def exported(results: chain.Results, **changes: Any) -> dict[str, str]:
     """The texts, with some of the tables changed."""
-    read = {
-        name: table.stream(path) if name in STREAMS else table.read(path)
-        for (name, table), path in zip(READS.items(), paths(results).values(), strict=True)
-    }
-    return export(**read | {"made_by": []} | changes)
+    texts = STAGE.result(STAGE.inputs(STAGE.paths(results.folder)) | changes)
+    return dict(texts)
 
 
 def valid(text: str) -> dict[str, Any]:
-    told = json.loads(text)
-    jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text("utf-8"))).validate(told)
-    return dict(told)
+    content = json.loads(text)
+    jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text("utf-8"))).validate(content)
+    return dict(content)
 
 
 def numbers(values: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -105,6 +88,7 @@ def numbers(values: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
 
 def test_the_command_writes_five_files_and_nothing_beside_them(files: Path) -> None:
     assert {path.name for path in files.iterdir()} == {f"short.{ending}" for ending in ENDINGS}
+    assert STAGE.declared.documents == ENDINGS
 
 
 def test_json_and_yaml_say_the_same_by_the_schema(files: Path, content: dict[str, Any]) -> None:
@@ -118,7 +102,7 @@ def test_json_and_yaml_say_the_same_by_the_schema(files: Path, content: dict[str
 def test_the_same_tables_give_the_same_bytes(
     results: chain.Results, files: Path, tmp_path: Path
 ) -> None:
-    main([*arguments(results), "--output", str(tmp_path / "new/short")])
+    STAGE.command_line([str(results.folder), "--documents", str(tmp_path / "new/short")])
     for ending in ENDINGS:
         first, second = (folder / f"short.{ending}" for folder in (files, tmp_path / "new"))
         assert first.read_bytes() == second.read_bytes()
@@ -127,11 +111,12 @@ def test_the_same_tables_give_the_same_bytes(
 def test_a_missing_table_is_named_and_nothing_is_written(
     results: chain.Results, tmp_path: Path
 ) -> None:
-    given = [*arguments(results), "--noise", str(tmp_path / "gone.parquet")]
+    derived = shutil.copytree(results.folder, tmp_path / "derived")
+    (derived / "noise/noise.parquet").unlink()
     with pytest.raises(SystemExit) as refused:
-        main([*given, "--output", str(tmp_path / "reports/short")])
-    assert "gone.parquet" in str(refused.value)
-    assert list(tmp_path.iterdir()) == []
+        STAGE.command_line([str(derived), "--documents", str(tmp_path / "reports/short")])
+    assert "noise.parquet" in str(refused.value)
+    assert [path.name for path in tmp_path.iterdir()] == ["derived"]
 
 
 # ---- what they say
@@ -229,12 +214,16 @@ def test_noise_rate_gravity_inputs_and_makers(
     assert read["gyroscope/parameters.parquet"] == hash_of_file(table)
 
 
-def test_a_temperature_that_was_recorded_is_told(results: chain.Results) -> None:
+def test_a_temperature_that_was_recorded_is_exported(results: chain.Results) -> None:
     blocks = results["segment/blocks"]
     warm = blocks.assign(temperature=np.linspace(295.0, 299.0, len(blocks)))
-    told = valid(exported(results, blocks=warm)["calibration.json"])["temperature"]
-    assert (told["unit"], told["lowest"], told["highest"]) == ("K", 295.0, 299.0)
-    assert 295 < told["mean"] < 299
+    temperature = valid(exported(results, blocks=warm)["calibration.json"])["temperature"]
+    assert (temperature["unit"], temperature["lowest"], temperature["highest"]) == (
+        "K",
+        295.0,
+        299.0,
+    )
+    assert 295 < temperature["mean"] < 299
 
 
 # ---- where the extended result counts
@@ -367,10 +356,10 @@ def test_a_campaign_that_determines_nothing_exports_nulls(results: chain.Results
 
 def test_a_compensated_campaign_exports_nothing_but_says_why(results: chain.Results) -> None:
     texts = exported(results, campaign=results["plan/campaign"].assign(compensated=True))
-    told = valid(texts["calibration.json"])
-    assert told["mounts"] == told["noise"] == told["known"] == []
-    assert "taken out of its logs already" in told["not_exported"]
-    assert yaml.safe_load(texts["calibration.yaml"]) == told
+    content = valid(texts["calibration.json"])
+    assert content["mounts"] == content["noise"] == content["known"] == []
+    assert "taken out of its logs already" in content["not_exported"]
+    assert yaml.safe_load(texts["calibration.yaml"]) == content
     assert qgroundcontrol(texts["px4.params"]) == mavproxy(texts["ardupilot.param"]) == {}
     assert yaml.safe_load(texts["kalibr.yaml"]) is None
     for ending in ("kalibr.yaml", "px4.params", "ardupilot.param"):

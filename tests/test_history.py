@@ -20,11 +20,9 @@ from hypothesis import strategies as st
 
 from inertial import tables
 from inertial.tables.errors import Refusal
-from inertial.tables.parquet import Writer, provenance
-from inertial.tables.table import Table
-from stages.archiving.archive import Archive
-from stages.archiving.names import file_name
-from stages.history import STAGE
+from inertial.tables.parquet import Table, Writer, provenance
+from stages.history.archive import Archive, file_name
+from stages.history.stage import STAGE
 
 Row = dict[str, Any]
 SPAWN = multiprocessing.get_context("spawn")  # a fork would copy Arrow's threads
@@ -124,19 +122,7 @@ def run(
     decision = decided | nothing | {"alarms": "", "sentence": "It counts."}
     some = [decision] if rows else [decision | {"result": "joint"}]
     write(derived / "extension", "decision", tables.DECISION, some, by_extension)
-    paths = {
-        "campaign": derived / "plan/campaign.parquet",
-        "inputs": derived / "plan/inputs.parquet",
-        **{
-            f"{stage}_{table}": derived / stage / f"{table}.parquet"
-            for stage in ("accelerometer", "gyroscope")
-            for table in ("parameters", "covariance")
-        },
-        "extension_parameters": derived / "extension/parameters.parquet",
-        "extension_covariance": derived / "extension/covariance.parquet",
-        "decision": derived / "extension/decision.parquet",
-    }
-    STAGE.run(paths, {"archive": [place / "history"]}, derived / "history", {})
+    STAGE.run(derived, {"archive": [place / "history"]}, {})
     return dict(pd.read_parquet(derived / "history/archived.parquet").iloc[0])
 
 
@@ -209,15 +195,15 @@ def test_the_extended_result_is_kept_beside_the_joint_one_and_compared_later(
     tmp_path: Path,
 ) -> None:
     held = run(tmp_path, bias=1e-5, extended=3e-5, campaign="spring", date="2026-03-02")
-    row = tables.CALIBRATION.read(tmp_path / "history" / held["file"]).iloc[0]
-    by_id = {one["id"]: one for one in row["parameters"]}
+    entry = tables.CALIBRATION.read(tmp_path / "history" / held["file"]).iloc[0]
+    by_id = {row["id"]: row for row in entry["parameters"]}
     assert by_id["gyroscope/joint/bias_x"]["value"] == 1e-5
     assert by_id["extension/gyroscope/bias_x"]["value"] == 3e-5
-    assert {one["first"] for one in row["covariance"]} == {
+    assert {row["first"] for row in entry["covariance"]} == {
         "gyroscope/joint/bias_x",
         "extension/gyroscope/bias_x",
     }
-    assert "extension" in {one["stage"] for one in row["made_by"]}
+    assert "extension" in {row["stage"] for row in entry["made_by"]}
     run(tmp_path, bias=2e-5, campaign="autumn", date="2026-10-02")
     (then,) = earlier(tmp_path, "autumn").to_dict("records")
     assert (then["id"], then["value"], then["sigma"]) == ("gyroscope/joint/bias_x", 3e-5, 2e-7)

@@ -1,4 +1,4 @@
-"""From a number to its lines: the walk names the right ones, and notices what has changed."""
+"""From a number to its lines: the trace names the right ones, and detects what has changed."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from commands.trace import provenance
+from commands.trace.__main__ import main
 from inertial import tables
 from inertial.tables.code import code_of, hash_of, hash_of_file
 from inertial.tables.parquet import Writer
-from stages import history
 from stages.extension import stage
-from stages.tracing import origins
-from stages.tracing.__main__ import main
+from stages.history import stage as history
 
 BIAS = "gyroscope/joint/bias_x"
 REMARK = b"# the operator has opened the door\r\n"  # no message of the receiver: a line, no record
@@ -55,15 +55,11 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (raw / log).write_bytes(b"".join([*lines[:line], REMARK, *lines[line:]]))
     derived = data / "derived/short"
     chain.run(raw, derived, until="gyroscope")
-    paths = {name: derived / f"{name.replace('_', '/')}.parquet" for name in history.STAGE.reads}
-    paths |= {name: derived / f"plan/{name}.parquet" for name in ("campaign", "inputs")}
     nothing = {name: stage.STAGE.writes[name] for name in ("parameters", "covariance", "decision")}
     with Writer(derived / "extension", nothing, made_by_extension) as writer:
         for name, table in nothing.items():
             writer.write(name, table.empty())
-            paths[f"extension_{name}"] = derived / f"extension/{name}.parquet"
-    paths["decision"] = paths.pop("extension_decision")
-    history.STAGE.run(paths, {"archive": [data / "history"]}, derived / "history", {})
+    history.STAGE.run(derived, {"archive": [data / "history"]}, {})
     return data
 
 
@@ -110,10 +106,10 @@ def put_back(file: Path) -> Iterator[Path]:
 # ---- the way down
 
 
-def test_every_link_holds_after_a_run(trace) -> None:
+def test_every_link_is_intact_after_a_run(trace) -> None:
     said = trace()
     assert said.code == 0, said.text
-    assert "Every link holds" in said.text
+    assert "Every link is intact" in said.text
     assert "CHANGED" not in said.text
 
 
@@ -172,8 +168,9 @@ def test_a_method_without_a_fit_of_its_own_says_so(trace) -> None:
 def test_a_stage_without_a_fit_rests_on_those_behind_it(trace, data: Path) -> None:
     """As one does that refits with more effects what the gyroscope stage has found."""
     derived = data / "derived/short"
-    found = pq.read_table(derived / "gyroscope/parameters.parquet").to_pandas()
-    again = found[found["method"] == "joint"].assign(stage="extension", method="gyroscope")
+    parameters = pq.read_table(derived / "gyroscope/parameters.parquet").to_pandas()
+    joint = parameters[parameters["method"] == "joint"]
+    again = joint.assign(stage="extension", method="gyroscope")
     again["id"] = "extension/gyroscope/" + again["parameter"]
     read = ("gyroscope/parameters.parquet", "accelerometer/parameters.parquet")
     made_by = made_by_extension(**{file: hash_of_file(derived / file) for file in read})
@@ -259,8 +256,8 @@ def test_a_changed_number_in_a_table_is_noticed(
         place = content.schema.get_field_index(column)
         field = content.schema.field(column)
         changed = content.set_column(place, field, pa.array(values, field.type))
-        told = {b"made_by": pq.read_metadata(path).metadata[b"made_by"]}
-        pq.write_table(changed.replace_schema_metadata(content.schema.metadata | told), path)
+        metadata = {b"made_by": pq.read_metadata(path).metadata[b"made_by"]}
+        pq.write_table(changed.replace_schema_metadata(content.schema.metadata | metadata), path)
         said = trace()
     assert said.code == 1
     assert f"{path} has changed since" in said.text
@@ -291,7 +288,7 @@ def test_a_table_that_another_program_wrote_is_noticed(trace, data: Path) -> Non
         pq.write_table(pq.read_table(path), path)
         said = trace()
     assert said.code == 1
-    assert f"{path} does not tell what made it" in said.text
+    assert f"{path} has no provenance" in said.text
 
 
 def test_a_table_of_another_run_is_noticed(trace, data: Path) -> None:
@@ -300,8 +297,8 @@ def test_a_table_of_another_run_is_noticed(trace, data: Path) -> None:
         content = pq.read_table(path)
         metadata = pq.read_metadata(path).metadata
         older = metadata[b"made_by"].replace(b'"averaging_steps": 20', b'"averaging_steps": 19')
-        told = {**content.schema.metadata, b"made_by": older}
-        pq.write_table(content.replace_schema_metadata(told), path)
+        changed = {**content.schema.metadata, b"made_by": older}
+        pq.write_table(content.replace_schema_metadata(changed), path)
         said = trace()
     assert said.code == 1
     assert f"{path} and " in said.text
@@ -320,10 +317,9 @@ def test_a_changed_setting_is_noticed(trace, tmp_path: Path) -> None:
 
 def test_changed_code_is_noticed(trace, monkeypatch: pytest.MonkeyPatch) -> None:
     def of_other_code(files: list[Path]) -> str:
-        return "0" * 64 if any(file.name == "gyroscope.py" for file in files) else before(files)
+        return "0" * 64 if files == code_of("gyroscope") else hash_of(files)
 
-    before = origins.hash_of
-    monkeypatch.setattr(origins, "hash_of", of_other_code)
+    monkeypatch.setattr(provenance, "hash_of", of_other_code)
     said = trace()
     assert said.code == 1
     assert "The code of gyroscope has changed since its tables were made" in said.text
@@ -365,5 +361,5 @@ def test_make_hands_the_identifier_on_word_for_word(tmp_path: Path, identifier: 
     done = subprocess.run(make, cwd=tmp_path, env=env, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     given = (tmp_path / "arguments").read_text().split("\0")[:-1]
-    assert given == ["-m", "stages.tracing", "--campaign=demo", f"--id={identifier}"]
+    assert given == ["-m", "commands.trace", "--campaign=demo", f"--id={identifier}"]
     assert not (tmp_path / "run").exists()

@@ -38,7 +38,7 @@ class Stage:
 
     `gathers`: arguments of the function that are made from other inputs; the function that makes
     one names them as its own arguments. A function that takes `provenance` gets what made each
-    of its tables.
+    of its tables, by argument; that of documents also what makes them, by the name of the stage.
     """
 
     function: Callable[..., Any]
@@ -79,16 +79,24 @@ class Stage:
         }
         if "provenance" in inspect.signature(self.function).parameters:
             read["provenance"] = {name: provenance(paths[name]) for name in self.reads}
+            if self.declared.documents:
+                made_by = self._made_by({}) | {"inputs": _hashes([*paths.values()])}
+                read["provenance"] |= {self.name: made_by}
         return read
 
     def result(self, inputs: Mapping[str, Any]) -> Any:
         """What its function makes of tables, files and settings."""
         own = inspect.signature(self.function).parameters
+        every = any(one.kind is one.VAR_KEYWORD for one in own.values())
         gathered = {
             name: make(**{key: inputs[key] for key in inspect.signature(make).parameters})
             for name, make in self.gathers.items()
         }
-        return self.function(**{k: v for k, v in inputs.items() if k in own}, **gathered)
+        return self.function(**{k: v for k, v in inputs.items() if every or k in own}, **gathered)
+
+    def _made_by(self, settings: Mapping[str, Any]) -> dict[str, Any]:
+        code = hash_of(code_of(self.name))
+        return {"stage": self.name, "settings": dict(settings), "code": code}
 
     def run(
         self,
@@ -110,15 +118,12 @@ class Stage:
         inputs = {**self.inputs(paths), **files, **settings}
         if self.declared.documents:
             assert documents is not None
-            contents = self.result(inputs)
+            texts = self.result(inputs)
+            contents = {end: t if isinstance(t, bytes) else t.encode() for end, t in texts.items()}
             write_whole({Path(f"{documents}.{end}"): contents[end] for end in contents})
             return
         made_from = [*paths.values(), *chain.from_iterable(files.values())]
-        made_by = {
-            "stage": self.name,
-            "settings": dict(settings),
-            "code": hash_of(code_of(self.name)),
-        }
+        made_by = self._made_by(settings)
         with ThreadPoolExecutor(1) as beside, room_for(output):
             hashes = beside.submit(_hashes, made_from)  # a long log while it is read
             with Writer(

@@ -1,0 +1,329 @@
+"""The steps from a number of the report to the lines of the logs.
+
+The number, its method and fit, the stages between, the manoeuvres used with records, lines, bytes
+and times, and the files of the laboratory.
+"""
+
+import difflib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from math import isnan
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from commands.trace.log_lines import LogLines, RecordRange, UsedPhase, lines_of, used_phases
+from commands.trace.provenance import Campaign, Provenance, StageRun
+from inertial import tables
+from inertial.campaign.records import Row, rows_of
+from inertial.tables.errors import Refusal
+from inertial.tables.table import Table
+from inertial.text.numbers import visible
+
+GPS_WEEK = 604_800  # s
+MAX_SHOWN_BYTES = 100  # of a line
+MAX_SUGGESTIONS = 6  # identifiers, where one is not known
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step down: its title, and its details."""
+
+    title: str
+    lines: Sequence[str]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """The steps, and in sentences the broken links between them."""
+
+    steps: Sequence[Step]
+    broken: Sequence[str]
+
+
+@dataclass(frozen=True)
+class Number:
+    """A row of PARAMETERS, and the table it stands in: folder/file."""
+
+    row: Row
+    table: str
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A row of FIT, and the stage that made it."""
+
+    stage: str
+    row: Row
+
+
+def trace(campaign: Campaign, identifier: str, settings: Mapping[str, Any]) -> Trace:
+    """From the number `identifier` of a campaign to the lines it was computed from.
+
+    `settings` are the current ones, one section per stage.
+
+    Raises
+    ------
+    Refusal
+        where there is no such number
+    """
+    number = number_of(campaign, identifier)
+    stage = number.table.partition("/")[0]
+    roots = [number.table, f"{stage}/fit.parquet", "plan/inputs.parquet"]
+    provenance = Provenance(campaign, roots, settings)
+    content = _Tables(campaign)
+    fits = _fits(number, content, provenance)
+    steps = [_value(number), _method(number, provenance), *(_fit(fit, number) for fit in fits)]
+    steps += [_stage(run) for run in provenance.runs if run.stage != stage]
+    steps += _manoeuvres(fits, content, provenance)
+    steps.append(_files(campaign, provenance))
+    inputs = content.rows("plan/inputs", tables.INPUTS)
+    broken = [*provenance.broken, *_listed_otherwise(inputs, provenance), *content.unreadable]
+    return Trace(steps, broken)
+
+
+def number_of(campaign: Campaign, identifier: str) -> Number:
+    """The number with this identifier.
+
+    Raises
+    ------
+    Refusal
+        where the campaign has no results, or none with this identifier, with similar ones
+    """
+    numbers: dict[str, Number] = {}
+    for path in sorted(campaign.derived.glob("*/parameters.parquet")):
+        table = f"{path.parent.name}/{path.name}"
+        rows = rows_of(tables.PARAMETERS.read(path))
+        numbers |= {row["id"]: Number(row, table) for row in rows}
+    if not numbers:
+        raise Refusal(
+            str(campaign.derived),
+            "",
+            "no results",
+            "tables of parameters",
+            f"run the campaign: make report CAMPAIGN={campaign.name}",
+        )
+    if identifier not in numbers:
+        similar = difflib.get_close_matches(identifier, numbers, n=MAX_SUGGESTIONS, cutoff=0.5)
+        raise Refusal(
+            str(campaign.derived),
+            "",
+            f"no number {identifier!r}",
+            f"one of {', '.join(similar or numbers)}",
+            "give one of these: ID=<number>",
+        )
+    return numbers[identifier]
+
+
+class _Tables:
+    """The tables of a campaign; one that cannot be read is a broken link, and empty."""
+
+    def __init__(self, campaign: Campaign) -> None:
+        self.campaign = campaign
+        self.unreadable: list[str] = []
+
+    def read(self, name: str, table: Table) -> pd.DataFrame:
+        """A small table."""
+        try:
+            return table.read(self.campaign.path(f"{name}.parquet"))
+        except Refusal as refusal:
+            self._note(refusal)
+            return table.empty()
+
+    def rows(self, name: str, table: Table) -> list[Row]:
+        """The rows of a small table."""
+        return rows_of(self.read(name, table))
+
+    def lines(self, ranges: Sequence[RecordRange]) -> dict[RecordRange, LogLines]:
+        """Where some ranges of records stand in their logs."""
+        path = self.campaign.path("decode/samples.parquet")
+        try:
+            return lines_of(tables.SAMPLES.stream(path), ranges)
+        except Refusal as refusal:
+            self._note(refusal)
+            return {}
+
+    def _note(self, refusal: Refusal) -> None:
+        self.unreadable.append(f"{refusal.file} cannot be read: {refusal.found}.")
+
+
+# ---- the number and its method
+
+
+def _value(number: Number) -> Step:
+    row = number.row
+    frame = f", frame: {row['frame']}" if row["frame"] else ""
+    if row["value"] is None:
+        return Step(f"{row['id']} is not determined", [row["meaning"] + frame, row["reason"]])
+    value = f"{row['value']:.10g} ± {row['sigma']:.2g}" + _unit(row["unit"])
+    return Step(f"{row['id']} = {value}", [row["meaning"] + frame])
+
+
+def _method(number: Number, provenance: Provenance) -> Step:
+    row = number.row
+    made_by = [
+        line for run in provenance.runs if run.stage == row["stage"] for line in _made_by(run)
+    ]
+    return Step(f"estimated by the stage {row['stage']}, method {row['method']}", made_by)
+
+
+def _fits(number: Number, content: _Tables, provenance: Provenance) -> list[Fit]:
+    """The fits that say what a number was estimated from: its own, or those that it rests on.
+
+    A method that keeps no fit uses what the joint one of its mount used. A stage that keeps none
+    rests on the stages behind it, and where its method is named after one, on that one.
+    """
+    method, _, mount = number.row["method"].partition("@")
+    joint = f"joint@{mount}" if mount else "joint"
+    stage = number.table.partition("/")[0]
+    by_stage = {
+        run.stage: {row["method"]: row for row in content.rows(f"{run.stage}/fit", tables.FIT)}
+        for run in provenance.runs
+        if content.campaign.path(f"{run.stage}/fit.parquet").is_file()
+    }
+    if not by_stage:
+        content.unreadable.append(f"No table says what {number.row['id']} was estimated from.")
+    nearest = [name for name in (stage, method) if name in by_stage][:1]
+    fits = []
+    for name in nearest or by_stage:
+        own = by_stage[name].get(number.row["method"]) if name == stage else None
+        row = own or by_stage[name].get(joint)
+        fits += [Fit(name, row)] if row else []
+    return fits
+
+
+def _fit(fit: Fit, number: Number) -> Step:
+    row = fit.row
+    lines = [
+        f"chi-squared {row['chi_squared']:.1f} with {row['degrees']} degrees of freedom, "
+        f"p = {row['p_value']:.2g}",
+        f"scatter between manoeuvres beyond the noise: {row['scatter']:.3g}{_unit(row['unit'])}",
+        f"used: {row['used'] or 'nothing'}",
+        *(f"left out: {omitted}" for omitted in row["left_out"].split("; ") if omitted),
+    ]
+    if (fit.stage, row["method"]) != (number.row["stage"], number.row["method"]):
+        method = f"{number.row['stage']}, method {number.row['method']}"
+        lines.insert(0, f"{method}, keeps no record of what it used; it rests on this fit")
+    return Step(f"the fit of the stage {fit.stage}, method {row['method']}", lines)
+
+
+def _unit(unit: str) -> str:
+    return "" if unit == "1" else f" {unit}"
+
+
+# ---- the stages between
+
+
+def _stage(run: StageRun) -> Step:
+    return Step(f"from the stage {run.stage}: {', '.join(sorted(run.tables))}", _made_by(run))
+
+
+def _made_by(run: StageRun) -> list[str]:
+    settings = ", ".join(f"{name}: {value}" for name, value in run.settings.items())
+    tables_read = [file for file in run.inputs if file.endswith(".parquet")]
+    return [
+        f"settings: {settings or 'none'}",
+        f"code: SHA-256 {run.code}",
+        *(f"read {file}, SHA-256 {run.inputs[file]}" for file in tables_read),
+    ]
+
+
+# ---- manoeuvres, records, lines
+
+
+def _manoeuvres(fits: Sequence[Fit], content: _Tables, provenance: Provenance) -> list[Step]:
+    """A step for each manoeuvre that the fits have used, with every phase of it."""
+    labels = [label for fit in fits for label in fit.row["used"].split(", ")]
+    phases = used_phases(
+        list(dict.fromkeys(labels)),
+        content.read("segment/blocks", tables.BLOCKS),
+        content.read("plan/manoeuvres", tables.MANOEUVRES),
+        content.read("quality/masks", tables.MASKS),
+    )
+    lines = content.lines([phase.records for phase in phases])
+    logs = {row["log"]: row["file"] for row in content.rows("plan/logs", tables.LOGS)}
+    clocks = {row["log"]: row for row in content.rows("decode/clocks", tables.CLOCKS)}
+    changed = {Path(file).name for file, (was, now) in provenance.files().items() if was != now}
+    steps = []
+    for label, of_label in groupby(phases, key=lambda phase: phase.label):
+        details: list[str] = []
+        for phase in of_label:
+            log = phase.records.log
+            file = logs.get(log, log)
+            details.append(_blocks(phase))
+            if phase.records in lines:
+                where, path = lines[phase.records], content.campaign.raw / file
+                details += [_place(path, where), _time_span(where, clocks.get(log, {}))]
+                details += [] if file in changed else _texts(path, where)
+        steps.append(Step(f"used: {label}", details))
+    return steps
+
+
+def _blocks(phase: UsedPhase) -> str:
+    masked = f", some masked by {', '.join(phase.findings)}" if phase.findings else ""
+    return (
+        f"{phase.phase}: {phase.blocks} blocks, {phase.samples:g} samples, "
+        f"records {phase.records.first} to {phase.records.after - 1}{masked}"
+    )
+
+
+def _place(log: Path, where: LogLines) -> str:
+    if not where.of_text:
+        return (
+            f"  {log}, rows {where.from_line} to {where.to_line}, {where.decoded} of them decoded"
+        )
+    return (
+        f"  {log}, line {where.from_line} (from byte {where.from_byte}) "
+        f"to line {where.to_line} (from byte {where.to_byte}), {where.decoded} of them decoded"
+    )
+
+
+def _time_span(where: LogLines, clock: Row) -> str:
+    """The time span; for GPS also as week and seconds, as the lines state it."""
+    if isnan(where.from_s):
+        return "  without time"
+    epoch = clock.get("epoch_gps")
+    origin = "the log's first sample" if epoch is None else "the campaign's first sample"
+    span = f"  {where.from_s:.3f} s to {where.to_s:.3f} s since {origin}"
+    if epoch is not None:
+        week, start = divmod(epoch + where.from_s, GPS_WEEK)
+        span += f"; GPS week {week:.0f}, {start:.3f} s to {start + where.to_s - where.from_s:.3f} s"
+    return span
+
+
+def _texts(log: Path, where: LogLines) -> list[str]:
+    """The first and the last line, as they stand in the log."""
+    ends = {where.from_line: where.from_byte, where.to_line: where.to_byte}
+    if not log.is_file() or not where.of_text:
+        return []
+    texts = []
+    with log.open("rb") as file:
+        for line, byte in ends.items():
+            file.seek(byte)
+            text = file.readline(MAX_SHOWN_BYTES).decode("utf-8", "backslashreplace")
+            texts.append(f"  line {line}: " + visible(text.rstrip("\r\n")))
+    return texts
+
+
+# ---- the files of the laboratory
+
+
+def _files(campaign: Campaign, provenance: Provenance) -> Step:
+    lines = []
+    for file, (was, now) in provenance.files().items():
+        state = "unchanged" if was == now else "MISSING" if now is None else "CHANGED"
+        lines.append(f"{campaign.path(file)}, SHA-256 {was}, {state}")
+    return Step("read from the laboratory", lines)
+
+
+def _listed_otherwise(inputs: Sequence[Row], provenance: Provenance) -> list[str]:
+    """Files that the report lists with another SHA-256 than they were read with."""
+    listed = {row["file"]: row["sha256"] for row in inputs}
+    return [
+        f"{file} is listed in plan/inputs.parquet with another SHA-256 than it was read with:"
+        f" {listed[name]} instead of {was}."
+        for file, (was, _) in provenance.files().items()
+        if (name := Path(file).name) in listed and listed[name] != was
+    ]

@@ -1,1 +1,0 @@
-"""The archive of calibrations: one file for each, which never changes."""

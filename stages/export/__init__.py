@@ -1,0 +1,1 @@
+"""The calibration for other programs: JSON and YAML, Kalibr, PX4, ArduPilot."""

@@ -1,0 +1,156 @@
+"""Parameter files of the autopilots PX4 and ArduPilot.
+
+Both correct axis by axis, with data in m/s² and rad/s:
+
+    accelerometer: rotation · ((data − offset) × scale)        gyro: rotation · (data − offset)
+
+PX4 (PX4-Autopilot, src/lib/sensor_calibration, Correct() of Accelerometer and Gyroscope) subtracts
+a thermal offset as well. A line of its file for QGroundControl: vehicle, component, name, value,
+MAVLink type, with tabs between; 9 is a float, 6 an integer. QGroundControl
+(ParameterManager::readParametersFromStream) ignores lines that begin with #.
+
+ArduPilot (ardupilot, libraries/AP_InertialSensor/AP_InertialSensor_Backend.cpp,
+_rotate_and_correct_accel and _rotate_and_correct_gyro) rotates by the orientation of the board,
+after the rotation of the sensor that its driver states. A line of its file: NAME,VALUE.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from stages.export.axis_correction import (
+    AxisCorrection,
+    axis_correction,
+    cross_terms,
+    remaining_errors,
+    scale_errors,
+)
+from stages.export.calibration import Calibration
+from stages.export.header import commented, effect_terms, mounts, origin
+
+
+@dataclass(frozen=True)
+class Autopilot:
+    """How an autopilot names its parameters, and what its user must know.
+
+    parameters : accelerometer or gyroscope → offset or scale → the name, {} for X, Y or Z
+    line : of a parameter, by name and value
+    to_fill_in : lines of comment after the head, for what the user must add
+    """
+
+    name: str
+    parameters: Mapping[str, Mapping[str, str]]
+    notes: Sequence[str]
+    line: str
+    to_fill_in: Sequence[str]
+
+
+PX4 = Autopilot(
+    "PX4",
+    {
+        "accelerometer": {"offset": "CAL_ACC0_{}OFF", "scale": "CAL_ACC0_{}SCALE"},
+        "gyroscope": {"offset": "CAL_GYRO0_{}OFF"},
+    },
+    (
+        "To be loaded by QGroundControl. PX4 corrects the accelerometers as (reading - offset) *"
+        " scale and the gyros as reading - offset, each axis by itself, m/s^2 and rad/s.",
+        "",
+        "To be filled in and checked before you load it:",
+        "- CAL_ACC0_ID and CAL_GYRO0_ID: the device ids of the IMU, which a turntable does not"
+        " know. PX4 applies a calibration only to the sensor with its id. Take them from your"
+        " vehicle; where the IMU has another number than 0 there, rename CAL_ACC0_ and CAL_GYRO0_.",
+        "- Vehicle and component are 1; QGroundControl refuses the file for a vehicle with another"
+        " id.",
+        "- Axes: x, y, z are those of the IMU's data sheet; no axis was exchanged or reversed"
+        " for PX4's forward, right, down. PX4 applies the numbers to sensor_accel and sensor_gyro,"
+        " before CAL_ACC0_ROT and the rotation of the board. With +x up, x of sensor_accel must"
+        " read +9.8; turned about +x by the right hand, x of sensor_gyro must read positive;"
+        " likewise y and z. Where the driver exchanges axes, exchange the numbers; where it"
+        " reverses one, change the sign of its offset, not of its scale factor.",
+        "- The driver must use the count size of the campaign, or the scale factors are wrong.",
+        "- Set SENS_IMU_AUTOCAL to 0, or PX4 replaces the offsets by its own estimates.",
+        "- Restart after loading: while it runs, PX4 ignores changes of the offsets below 0.01"
+        " m/s^2 or 0.01 rad/s, and of the scale factors below 0.01; older versions ignore them"
+        " even at their start.",
+    ),
+    line="1\t1\t{name}\t{value}\t9",
+    to_fill_in=(
+        "#",
+        "# Vehicle-Id Component-Id Name Value Type",
+        "# 1\t1\tCAL_ACC0_ID\t\t6",
+        "# 1\t1\tCAL_GYRO0_ID\t\t6",
+    ),
+)
+ARDUPILOT = Autopilot(
+    "ArduPilot",
+    {
+        "accelerometer": {"offset": "INS_ACCOFFS_{}", "scale": "INS_ACCSCAL_{}"},
+        "gyroscope": {"offset": "INS_GYROFFS_{}"},
+    },
+    (
+        "To be loaded by Mission Planner or MAVProxy. ArduPilot corrects the accelerometers as"
+        " (reading - INS_ACCOFFS) * INS_ACCSCAL and the gyros as reading - INS_GYROFFS, each axis"
+        " by itself, m/s^2 and rad/s.",
+        "",
+        "To be filled in and checked before you load it:",
+        "- INS_ACC_ID and INS_GYR_ID: the device ids of the IMU, which a turntable does not know."
+        " ArduPilot does not arm where they are not those of its sensors. Take them from your"
+        " vehicle; where the IMU is not the first one there, rename the parameters: INS_ACC2OFFS_X,"
+        " INS_ACC2SCAL_X, INS_GYR2OFFS_X and so on.",
+        "- INS_GYR_CAL must be 0, or ArduPilot measures the gyro offsets anew at every start.",
+        "- Axes: x, y, z are those of the IMU's data sheet; no axis was exchanged or reversed"
+        " for ArduPilot's forward, right, down. ArduPilot applies the numbers after the rotation"
+        " that its driver states for the sensor and before AHRS_ORIENTATION. With +x up, the x"
+        " accelerometer must read +9.8 there; turned about +x by the right hand, the x gyro must"
+        " read positive; likewise y and z. Where the driver exchanges axes, exchange the numbers;"
+        " where it reverses one, change the sign of its offset, not of its scale factor.",
+        "- The driver must use the count size of the campaign, or the scale factors are wrong.",
+        "- Where INS_TCAL1_ENABLE is set, ArduPilot adds a temperature correction of its own.",
+    ),
+    line="{name},{value}",
+    to_fill_in=("#", "# INS_ACC_ID,", "# INS_GYR_ID,"),
+)
+
+
+def parameter_file(calibration: Calibration, autopilot: Autopilot) -> str:
+    """The parameter file, to be completed by hand where its head says so.
+
+    A parameter that was not determined is left out.
+    """
+    head = list(origin(calibration, autopilot.name))
+    if calibration.not_exported:
+        return "\n".join(commented(head)) + "\n"
+    chosen = [calibration.best(kind) for kind in autopilot.parameters]
+    accelerometer, gyroscope = (triad for _, triad in chosen)
+    head += [
+        *autopilot.notes,
+        *mounts(calibration, chosen),
+        "",
+        f"Not contained in this file, because {autopilot.name} has no such parameter:",
+        f"- cross-axis terms of the accelerometers: {cross_terms(accelerometer)}",
+        f"- scale factor errors of the gyros: {scale_errors(gyroscope)}",
+        f"- cross-axis terms of the gyros: {cross_terms(gyroscope)}",
+        *effect_terms(triad for _, triad in chosen),
+        "- the sigma of every number, their covariance, the noise densities, the temperature",
+        "",
+        "Errors that remain because of this:",
+    ]
+    lines: list[str] = []
+    left_out: dict[str, list[str]] = {}
+    for _, triad in chosen:
+        names = autopilot.parameters[triad.kind]
+        correction = axis_correction(triad, scaled="scale" in names)
+        head += remaining_errors(triad, correction.offset, correction.scale)
+        for name, value in _values(names, correction):
+            lines.append(autopilot.line.format(name=name, value=f"{value:.9g}"))
+        for (quantity, axis), reason in correction.left_out.items():
+            left_out.setdefault(reason, []).append(names[quantity].format(axis.upper()))
+    if left_out:
+        head += ["", "Left out:"]
+        head += [f"- {', '.join(names)}: {reason}" for reason, names in left_out.items()]
+    return "\n".join([*commented(head), *autopilot.to_fill_in, *lines]) + "\n"
+
+
+def _values(names: Mapping[str, str], correction: AxisCorrection) -> Iterator[tuple[str, float]]:
+    for quantity, name in names.items():
+        for axis, value in correction.values(quantity):
+            yield name.format(axis.upper()), value

@@ -1,0 +1,32 @@
+"""What the stage reads, and the files that it writes for other programs."""
+
+from inertial import tables
+from inertial.tables.declared import Declared, From
+
+DECLARED = Declared(
+    reads={
+        "campaign": From("plan", tables.CAMPAIGN),
+        "known": From("plan", tables.KNOWN),
+        "inputs": From("plan", tables.INPUTS),
+        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "clocks": From("decode", tables.CLOCKS),
+        "samples": From("decode", tables.SAMPLES),
+        "masks": From("quality", tables.MASKS),
+        "blocks": From("segment", tables.BLOCKS),
+        "noise": From("noise", tables.NOISE),
+        **{
+            f"{stage}_{table.name}": From(stage, table)
+            for stage in ("accelerometer", "gyroscope", "extension")
+            for table in (tables.PARAMETERS, tables.COVARIANCE, tables.FIT)
+        },
+        "decision": From("extension", tables.DECISION),
+    },
+    streams=("samples",),
+    documents=(
+        "calibration.json",
+        "calibration.yaml",
+        "kalibr.yaml",
+        "px4.params",
+        "ardupilot.param",
+    ),
+)

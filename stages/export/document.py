@@ -1,0 +1,232 @@
+"""The calibration as one document of plain values, and its text as JSON and as YAML.
+
+`calibration.schema.json` beside this file says what every key means and in which unit. Whoever
+changes a key, or what it means, counts VERSION up there and here.
+"""
+
+import json
+import re
+from io import StringIO
+from math import isfinite
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedSeq
+from ruamel.yaml.representer import RoundTripRepresenter
+from ruamel.yaml.scalarstring import DoubleQuotedScalarString
+
+from inertial.campaign.records import Row
+from stages.export.calibration import PARAMETERS, Calibration, Mount, Triad
+from stages.export.examples import Example
+
+Array = NDArray[np.float64]
+
+FORMAT = "turntable calibration"
+VERSION = 2
+SQRT_HZ = {"accel": "(m/s²)/√Hz", "gyro": "(rad/s)/√Hz"}
+EQUATION = {
+    "reading": "reading = M · truth + bias",
+    "correction": "truth = inverse · (reading − bias), with inverse = M⁻¹",
+    "in_words": "Take the bias off the three readings, then multiply by the inverse: row i of it"
+    " times the three differences gives the truth along axis i. All nine elements are meant, not"
+    " the diagonal alone. Readings are those of the log in m/s² and rad/s, with the count size that"
+    " the campaign states.",
+    "matrix": "Row: the sensor that reads, x y z. Column: the axis that it feels, x y z."
+    " scale_x is M_xx − 1, cross_xy is M_xy.",
+    "signs": "Specific force: the axis that points up reads +g at rest. Angular rate: right-hand"
+    " rule; it contains the earth's rate, so a corrected gyro at rest reads that and not zero.",
+    "frame": "Body axes x, y, z of the IMU, right-handed, as its data sheet names them and as the"
+    " campaign set them on the table. No axis is exchanged or turned over.",
+}
+
+
+# A list of numbers alone, as json.dumps breaks it over lines. A text holds no raw line break, and
+# so is never taken for one.
+_NUMBER_LIST = re.compile(r'\[\n([^\[\]{}"]*)\n\s*\]')
+NO_LINE_BREAKS = 1_000_000  # characters of a line of YAML
+
+
+def document(calibration: Calibration) -> Row:
+    """The content of calibration.json and calibration.yaml."""
+    campaign = calibration.campaign
+    texts = ("instrument", "serial", "date", "laboratory", "operator", "notes", "table")
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "campaign": campaign["campaign"],
+        "simulated": bool(campaign["simulated"]),
+        "not_exported": calibration.not_exported,
+        **{key: campaign[key] for key in texts},
+        "equation": EQUATION,
+        "mounts": [_mount(mount) for mount in calibration.mounts],
+        "noise": [_noise(row) for row in calibration.noise],
+        "rate": {
+            "unit": "Hz",
+            "measured": _number(calibration.rate),
+            "stated": _number(campaign["rate"]),
+        },
+        "temperature": calibration.temperature and {"unit": "K", **calibration.temperature},
+        "known": [
+            {
+                "quantity": row["quantity"],
+                "value": _number(row["value"]),
+                "sigma": _number(row["sigma"]),
+                "unit": row["unit"],
+                "origin": row["origin"],
+            }
+            for row in calibration.known
+        ],
+        "inputs": [
+            {key: row[key] for key in ("file", "size", "sha256")} for row in calibration.inputs
+        ],
+        "made_by": list(calibration.made_by),
+    }
+
+
+def _mount(mount: Mount) -> Row:
+    return {
+        "mount": mount.name,
+        "accelerometer": _triad(mount.accelerometer),
+        "gyroscope": _triad(mount.gyroscope),
+        "worked_samples": [_example(example, mount) for example in mount.examples],
+    }
+
+
+def _triad(triad: Triad) -> Row:
+    reasons = {**triad.reasons, "inverse": triad.no_inverse}
+    return {
+        "result": "extended" if triad.effects else "joint",
+        "effects": [
+            {
+                "name": row["parameter"],
+                "value": _number(row["value"]),
+                "sigma": _number(row["sigma"]),
+                "unit": row["unit"],
+                "meaning": row["meaning"],
+            }
+            for row in triad.effects
+        ],
+        "matrix": _with_sigma("1", triad.matrix, triad.matrix_sigma),
+        "inverse": _with_sigma("1", triad.inverse, triad.inverse_sigma),
+        "bias": _with_sigma(triad.unit, triad.bias, triad.bias_sigma),
+        "covariance": {"names": list(triad.ids), "value": _numbers(triad.covariance)},
+        "not_determined": [
+            {"name": f"{triad.id_prefix}/{name}", "reason": reason}
+            for name in (*PARAMETERS, "inverse")
+            if (reason := reasons.get(name))
+        ],
+        "fit": triad.fit and _fit(triad.fit),
+    }
+
+
+def _with_sigma(unit: str, value: Array | None, sigma: Array | None) -> Row:
+    return {"unit": unit, "value": _numbers(value), "sigma": _numbers(sigma)}
+
+
+def _fit(row: Row) -> Row:
+    return {
+        "chi_squared": _number(row["chi_squared"]),
+        "degrees": row["degrees"],
+        "p_value": _number(row["p_value"]),
+        "scatter": _number(row["scatter"]),
+        "unit": row["unit"],
+        "used": row["used"],
+        "left_out": row["left_out"],
+    }
+
+
+def _example(example: Example, mount: Mount) -> Row:
+    def correction(triad: Triad, reading: Array) -> Row:
+        return {
+            "unit": triad.unit,
+            "reading": _numbers(reading),
+            "corrected": _numbers(triad.truth(reading)),
+        }
+
+    return {
+        "what": example.what,
+        "manoeuvre": example.manoeuvre,
+        "log": example.log,
+        "from_record": example.first,
+        "to_record": example.after,
+        "line": example.line,
+        "accelerometer": correction(mount.accelerometer, example.reading[:3]),
+        "gyroscope": correction(mount.gyroscope, example.reading[3:]),
+    }
+
+
+def _noise(row: Row) -> Row:
+    numbers = ("density", "least", "most", "data_sheet")
+    return {
+        "channel": row["channel"],
+        "unit": SQRT_HZ[row["channel"].partition("_")[0]],
+        **{key: _number(row[key]) for key in numbers},
+        "stretches": row["stretches"],
+    }
+
+
+def _numbers(array: Array | None) -> Any:
+    """Nested lists of an array, null for what is NaN; null for no array."""
+    if array is None:
+        return None
+    return [_number(each) if np.ndim(each) == 0 else _numbers(each) for each in array]
+
+
+def _number(value: float | None) -> float | None:
+    return None if value is None or not isfinite(value) else float(value)
+
+
+# ---- texts
+
+
+def as_json(content: Row) -> str:
+    """`content` as JSON: every number to the last bit, one row of a matrix on one line."""
+    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+    return _NUMBER_LIST.sub(lambda row: f"[{' '.join(row[1].split())}]", text) + "\n"
+
+
+def as_yaml(content: Any) -> str:
+    """`content`, of dicts, lists, texts, finite numbers, truth values and None, as YAML.
+
+    Readers of version 1.1 and of version 1.2 understand it alike: every text is quoted, so that
+    none is taken for a date, a number or a truth value; every number with an exponent has a
+    point, because `1e-05` is a text to readers of version 1.1.
+    """
+    writer = YAML()
+    writer.Representer = _Representer
+    writer.width = NO_LINE_BREAKS
+    writer.indent(mapping=2, sequence=4, offset=2)
+    text = StringIO()
+    writer.dump(_styled(content), text)
+    return text.getvalue()
+
+
+class _Representer(RoundTripRepresenter):
+    """Numbers and nulls as both versions read them."""
+
+    def represent_plain_float(self, value: float) -> Any:
+        text = repr(value)
+        return self.represent_scalar(
+            "tag:yaml.org,2002:float", text if "." in text else text.replace("e", ".0e")
+        )
+
+    def represent_plain_null(self, _: None) -> Any:
+        return self.represent_scalar("tag:yaml.org,2002:null", "null")
+
+
+_Representer.add_representer(float, _Representer.represent_plain_float)
+_Representer.add_representer(type(None), _Representer.represent_plain_null)
+
+
+def _styled(node: Any) -> Any:
+    """The same with every text quoted, and with lists of numbers on one line."""
+    if isinstance(node, dict):
+        return {key: _styled(value) for key, value in node.items()}
+    if isinstance(node, list):
+        styled = CommentedSeq(_styled(value) for value in node)
+        if all(value is None or isinstance(value, float | int) for value in node):
+            styled.fa.set_flow_style()
+        return styled
+    return DoubleQuotedScalarString(node) if isinstance(node, str) else node

@@ -1,0 +1,125 @@
+"""Worked examples: readings of the campaign, on which users check their own code.
+
+For each mount two: the mean over the first static position, and one sample from the middle of the
+first turn, of those that hold most of the six channels. Masked samples are not taken.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.campaign.masked_samples import Masks, pieces
+from inertial.campaign.records import Manoeuvre
+from inertial.tables import CHANNELS
+from inertial.tables.parquet import Stream
+
+Array = NDArray[np.float64]
+
+STATIC_PHASES = ("rest", "rest-before", "rest-after")
+TURN_PHASES = ("steady", "turning")
+# Where the sensors come in records of their own, a turn is shown by its gyros.
+CHANNEL_WEIGHTS = np.array([1, 1, 1, 4, 4, 4])
+
+
+@dataclass(frozen=True)
+class Example:
+    """A reading, and where it stands: records [first, after) of a log.
+
+    reading : (6,) in the order of CHANNELS, m/s² and rad/s, NaN where not recorded
+    line : number of the line of a single sample, from 1; none for a mean
+    """
+
+    what: str
+    manoeuvre: str
+    log: str
+    first: int
+    after: int
+    line: int | None
+    reading: Array
+
+
+def examples_of(
+    plan: Sequence[Manoeuvre], blocks: pd.DataFrame, samples: Stream, masks: Masks
+) -> dict[str, list[Example]]:
+    """Mount → the mean of its first rest and a sample of its first turn, as far as they exist."""
+    examples: dict[str, list[Example]] = {}
+    turn_blocks: dict[str, pd.Series] = {}
+    blocks = blocks[blocks["count"] > 0]
+    for mount in dict.fromkeys(m.mount for m in plan):
+        on_mount = [m for m in plan if m.mount == mount]
+        rest = _most_complete(on_mount, blocks, STATIC_PHASES)
+        turn = _most_complete([m for m in on_mount if m.do == "turn"], blocks, TURN_PHASES)
+        examples[mount] = [] if rest is None else [_mean(rest)]
+        if turn is not None:
+            turn_blocks[mount] = turn.iloc[len(turn) // 2]
+    for mount, example in _samples(samples, masks, turn_blocks).items():
+        examples[mount].append(example)
+    return examples
+
+
+def _most_complete(
+    plan: Sequence[Manoeuvre], blocks: pd.DataFrame, phases: Sequence[str]
+) -> pd.DataFrame | None:
+    """The blocks of one phase of a manoeuvre: the first that has most of the channels."""
+    candidates = [
+        blocks[(blocks["manoeuvre"] == m.name) & (blocks["phase"] == phase)]
+        for phase in phases
+        for m in plan
+    ]
+    recorded = [part.sort_values("from_record") for part in candidates if len(part)]
+    return max(recorded, key=_channels_in_all, default=None)
+
+
+def _channels_in_all(blocks: pd.DataFrame) -> int:
+    """How many of the channels are in every block."""
+    return int(blocks[list(CHANNELS)].notna().all().sum())
+
+
+def _mean(blocks: pd.DataFrame) -> Example:
+    """The mean over the blocks of one phase, which are means themselves."""
+    first = blocks.iloc[0]
+    values = blocks[list(CHANNELS)].to_numpy(np.float64)
+    mean = np.average(values, axis=0, weights=blocks["count"].to_numpy(np.float64))
+    return Example(
+        what=f"mean over {first['phase']}",
+        manoeuvre=str(first["manoeuvre"]),
+        log=str(first["log"]),
+        first=int(first["from_record"]),
+        after=int(blocks.iloc[-1]["to_record"]),
+        line=None,
+        reading=np.asarray(mean),
+    )
+
+
+def _samples(samples: Stream, masks: Masks, blocks: Mapping[str, pd.Series]) -> dict[str, Example]:
+    """Mount → the first most complete sample of its block; the logs are read no further."""
+    examples: dict[str, Example] = {}
+    if not blocks:
+        return examples
+    for log, piece in pieces(samples, ["record", "line", *CHANNELS]):
+        record = piece["record"]
+        readings = np.column_stack([piece[channel] for channel in CHANNELS])
+        masked = masks.of(log, record)
+        readings[masked.channels | masked.whole[:, None]] = np.nan
+        for mount, block in blocks.items():
+            in_block = (record >= block["from_record"]) & (record < block["to_record"])
+            weights = np.isfinite(readings) @ CHANNEL_WEIGHTS * in_block
+            if mount in examples or log != block["log"] or not weights.any():
+                continue
+            i = int(np.argmax(weights))
+            number, line = int(record[i]), int(piece["line"][i])
+            examples[mount] = Example(
+                "one sample of a turn",
+                str(block["manoeuvre"]),
+                log,
+                number,
+                number + 1,
+                line,
+                readings[i],
+            )
+        if len(examples) == len(blocks):
+            break
+    return examples

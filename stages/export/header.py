@@ -1,0 +1,95 @@
+"""The head of a parameter file: origin, mount, effects, as comment lines in ASCII.
+
+Autopilots, their ground stations and Kalibr read these files with the character set of the
+machine they run on, so nothing but ASCII is written.
+"""
+
+import textwrap
+from collections.abc import Iterable, Iterator, Sequence
+
+from inertial.text.cause_names import in_words
+from stages.export.calibration import Calibration, Triad
+
+LINE_WIDTH = 96
+MAX_NAME_LENGTH = 80  # characters of a name from outside
+ASCII_SPELLING = str.maketrans(
+    {
+        "°": " deg", "²": "^2", "√": "sqrt ", "−": "-", "±": "+-", "×": "*", "·": "*", "µ": "u",
+        "σ": "sigma", "…": "...", "′": "'", "″": '"', "–": "-", "÷": "/", "⁻": "^-", "¹": "1",
+    }
+)  # fmt: skip
+
+
+def origin(calibration: Calibration, target: str) -> Iterator[str]:
+    """Of which IMU and campaign these parameters for `target` are."""
+    campaign = calibration.campaign
+    yield f"Calibration of an IMU on a turntable, for {target}."
+    if campaign["simulated"]:
+        yield "SIMULATED: no real instrument has these errors."
+    yield f"IMU: {_quoted(campaign['instrument'])}, serial number {_quoted(campaign['serial'])}"
+    yield f"Campaign: {_quoted(campaign['campaign'])}, date {_quoted(campaign['date'])}"
+    if calibration.not_exported:
+        yield ""
+        yield f"Nothing is exported. {calibration.not_exported}"
+        return
+    yield (
+        f"The whole calibration, with every sigma, is in {campaign['campaign']}.calibration.json,"
+        " which also contains readings before and after the correction."
+    )
+
+
+def mounts(calibration: Calibration, chosen: Sequence[tuple[str, Triad]]) -> Iterator[str]:
+    """From which mount the numbers are, where the campaign has several."""
+    if len(calibration.mounts) > 1:
+        names = ", ".join(f"{triad.kind} {_quoted(name)}" for name, triad in chosen)
+        yield (
+            f"The IMU was fixed on {len(calibration.mounts)} mounts; each has an M of its own,"
+            f" because M contains the mounting rotation. These numbers are from: {names}."
+        )
+
+
+def effect_terms(triads: Iterable[Triad]) -> Iterator[str]:
+    """For each triad whose extended result is final, the terms that the file does not contain."""
+    for triad in triads:
+        if not triad.effects:
+            continue
+        names = dict.fromkeys(row["parameter"].partition(".")[0] for row in triad.effects)
+        terms = ", ".join(
+            f"{row['parameter']} = {row['value']:.4g} {row['unit'].removeprefix('1')}".rstrip()
+            for row in triad.effects
+        )
+        yield (
+            f"- terms of effects of the {triad.kind}s: its numbers are those of the model with"
+            f" {' and '.join(in_words(name) for name in names)}; readings corrected without these"
+            f" terms still contain them: {terms}"
+        )
+
+
+def commented(paragraphs: Iterable[str]) -> list[str]:
+    """Each paragraph as lines of a comment; one that begins with '- ' as an item of a list."""
+    lines = []
+    for paragraph in paragraphs:
+        indent = "  " if paragraph.startswith("- ") else ""
+        wrapped = textwrap.wrap(
+            _ascii(paragraph),
+            LINE_WIDTH,
+            subsequent_indent=indent,
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+        lines += [f"# {line}" for line in wrapped] or ["#"]
+    return lines
+
+
+def _quoted(name: str) -> str:
+    """A name from outside, between quotes and not too long."""
+    short = name if len(name) <= MAX_NAME_LENGTH else f"{name[:MAX_NAME_LENGTH]}…"
+    return f'"{_ascii(short)}"'
+
+
+def _ascii(text: str) -> str:
+    """`text` in printable ASCII on one line; any other character as its escape sequence."""
+    return "".join(
+        c if c.isascii() and c.isprintable() else c.encode("unicode_escape").decode()
+        for c in text.translate(ASCII_SPELLING)
+    )

@@ -1,0 +1,90 @@
+"""From the tables of a campaign to the texts of the exported files."""
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from inertial.campaign.final_result import extended_methods
+from inertial.campaign.masked_samples import Masks
+from inertial.campaign.records import Row, manoeuvres_of, rows_of
+from inertial.tables.parquet import Stream
+from inertial.tables.stage import Stage
+from stages.export.autopilots import ARDUPILOT, PX4, parameter_file
+from stages.export.calibration import (
+    COMPENSATED,
+    Calibration,
+    mounts_of,
+    noise_of,
+    rate_of,
+    temperature_of,
+)
+from stages.export.declared import DECLARED
+from stages.export.document import as_json, as_yaml, document
+from stages.export.examples import examples_of
+from stages.export.kalibr import imu_yaml
+
+
+def export(
+    provenance: Mapping[str, Mapping[str, Any]], samples: Stream, **tables: pd.DataFrame
+) -> dict[str, str]:
+    """Ending of each file's name → its text."""
+    made_by = _made_by(provenance)
+    (campaign,) = rows_of(tables["campaign"])
+    inputs = rows_of(tables["inputs"])
+    if campaign["compensated"]:
+        calibration = Calibration(campaign, inputs, made_by=made_by, not_exported=COMPENSATED)
+    else:
+        plan = manoeuvres_of(tables["manoeuvres"])
+        fits = {
+            stage: (
+                tables[f"{stage}_parameters"],
+                tables[f"{stage}_covariance"],
+                tables[f"{stage}_fit"],
+            )
+            for stage in ("accelerometer", "gyroscope", "extension")
+        }
+        calibration = Calibration(
+            campaign,
+            inputs,
+            made_by=made_by,
+            known=rows_of(tables["known"]),
+            noise=noise_of(tables["noise"]),
+            rate=rate_of(tables["clocks"]),
+            temperature=temperature_of(tables["blocks"]),
+            mounts=mounts_of(
+                plan,
+                fits,
+                extended_methods(rows_of(tables["decision"])),
+                examples_of(plan, tables["blocks"], samples, Masks(tables["masks"])),
+            ),
+        )
+    content = document(calibration)
+    return {
+        "calibration.json": as_json(content),
+        "calibration.yaml": as_yaml(content),
+        "kalibr.yaml": imu_yaml(calibration),
+        "px4.params": parameter_file(calibration, PX4),
+        "ardupilot.param": parameter_file(calibration, ARDUPILOT),
+    }
+
+
+def _made_by(provenance: Mapping[str, Mapping[str, Any]]) -> list[Row]:
+    """Every stage that made one of the tables, and this one: settings, code, what it read."""
+    by_stage = {made["stage"]: made for made in provenance.values()}
+    own = by_stage.pop("export")
+    return [
+        {
+            "stage": made["stage"],
+            "settings": json.dumps(made["settings"], sort_keys=True),
+            "code": made["code"],
+            "inputs": [
+                {"file": file, "sha256": sha} for file, sha in sorted(made["inputs"].items())
+            ],
+        }
+        for made in [*(by_stage[stage] for stage in sorted(by_stage)), own]
+    ]
+
+
+STAGE = Stage(export, DECLARED)

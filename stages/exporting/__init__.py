@@ -1,1 +1,0 @@
-"""A calibration in the formats that other programs read, each with what it cannot carry."""

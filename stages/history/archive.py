@@ -1,0 +1,157 @@
+"""The archive of calibrations: one file for each, which never changes.
+
+    data/history/<instrument>/<serial>/<date>-<campaign>-<hash>.parquet
+    data/history/simulated/<instrument>/<serial>/<date>-<campaign>-<hash>.parquet
+
+A file that supersedes others names them; the current calibrations are those that no other file
+names.
+"""
+
+import glob
+import hashlib
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from urllib.parse import quote_plus
+
+from inertial.campaign.records import Row
+from inertial.tables import CALIBRATION
+from inertial.tables.errors import Refusal
+from inertial.tables.parquet import write_once
+
+SIMULATED = "simulated"  # folder of simulated calibrations; no instrument's folder has this name
+COMPARABLE_BY = ("instrument", "serial", "compensated")  # equal where calibrations are compared
+FILE_HASH_DIGITS = 12
+MAX_NAME_LENGTH = 100  # characters; a file name holds campaign, date and hash, 255 at most
+NAME_HASH_DIGITS = 16  # of the hash that replaces the end of a longer name
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A file of the archive, by its path inside it, and its content: a row of CALIBRATION."""
+
+    file: str
+    row: Row
+
+
+class Archive:
+    """The calibrations below `root`: those of real recordings, or those of simulated ones."""
+
+    def __init__(self, root: Path, *, simulated: bool) -> None:
+        self.root = root
+        self._base = root / SIMULATED if simulated else root
+
+    def add(self, calibration: Row) -> Entry:
+        """Add a calibration, unless a current one has the same content.
+
+        Two processes that add the same content write one file, for its name follows from the
+        content. Two that add different content of one campaign leave both current, until a
+        third supersedes them.
+        """
+        content, current = content_hash(calibration), self.current(calibration["campaign"])
+        for entry in current:
+            if entry.row["content"] == content:
+                return entry
+        superseded = [entry.file for entry in current]
+        path = self._folder(calibration) / _path_name(calibration, content, superseded)
+        row = calibration | {"content": content, "supersedes": superseded}
+        write_once(CALIBRATION, path, [row])
+        return self._entry(path)
+
+    def current(self, campaign: str) -> list[Entry]:
+        """The current entries of a campaign, also where its IMU or its date was corrected."""
+        digits = "[0-9a-f]" * FILE_HASH_DIGITS
+        pattern = f"*/*/*-{glob.escape(file_name(campaign))}-{digits}.parquet"
+        entries = self._entries(self._base.glob(pattern))
+        of_campaign = [entry for entry in entries if entry.row["campaign"] == campaign]
+        superseded = {file for entry in of_campaign for file in entry.row["supersedes"]}
+        return [entry for entry in of_campaign if entry.file not in superseded]
+
+    def earlier(self, calibration: Row) -> list[Entry]:
+        """Current entries of other campaigns of the same IMU that are not dated later.
+
+        Calibrations of compensated logs hold what the first compensation left over, so they are
+        not compared with the others. The order of campaigns without a date is unknown, so they
+        are included. IMUs without a known serial number may be different ones, so they have no
+        earlier calibrations.
+        """
+        if calibration["serial"] == "unknown":
+            return []
+        neighbours = self._entries(self._folder(calibration).glob("*.parquet"))
+        campaigns = {entry.row["campaign"] for entry in neighbours} - {calibration["campaign"]}
+        comparable = [
+            entry
+            for campaign in campaigns
+            for entry in self.current(campaign)
+            if all(entry.row[key] == calibration[key] for key in COMPARABLE_BY)
+            and _is_not_later(entry.row["date"], calibration["date"])
+        ]
+        return sorted(comparable, key=lambda entry: (entry.row["date"], entry.file))
+
+    def _folder(self, calibration: Row) -> Path:
+        return self._base / file_name(calibration["instrument"]) / file_name(calibration["serial"])
+
+    def _entries(self, paths: Iterable[Path]) -> list[Entry]:
+        return [self._entry(path) for path in sorted(paths) if path.is_file()]
+
+    def _entry(self, path: Path) -> Entry:
+        try:
+            table = CALIBRATION.read(path)
+        except Refusal as refusal:
+            raise replace(refusal, cure="move this file out of the archive") from None
+        row = {str(name): value for name, value in table.iloc[0].items()}
+        return Entry(path.relative_to(self.root).as_posix(), row)
+
+
+def content_hash(calibration: Row) -> str:
+    """SHA-256 over IMU and campaign, numbers, inputs and settings of a row of the archive.
+
+    The code is left out: where a change of it leaves all numbers unchanged, the calibration is
+    the same.
+    """
+    content = {
+        "of": [calibration[key] for key in ("campaign", "simulated", "instrument", "serial")],
+        "date": calibration["date"],
+        "parameters": sorted(
+            [row["id"], row["unit"], row["frame"], row["value"], row["sigma"]]
+            for row in calibration["parameters"]
+        ),
+        "covariance": sorted(
+            [row["first"], row["second"], row["covariance"]] for row in calibration["covariance"]
+        ),
+        "inputs": sorted([row["file"], row["sha256"]] for row in calibration["inputs"]),
+        "settings": {row["stage"]: row["settings"] for row in calibration["made_by"]},
+    }
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def file_name(text: str) -> str:
+    """A file name for any text: unique, and without path separators or a leading dot.
+
+    Other characters than letters, digits, '-', '_' and inner '.' are written as in a web address:
+    `A/17 b` is `A%2F17+b`. A name that would be too long ends with '~' and a hash of the text.
+    """
+    name = quote_plus(text, safe="").replace("~", "%7E")
+    if name.startswith("."):
+        name = f"%2E{name[1:]}"
+    if name == SIMULATED:
+        name = f"%{ord(name[0]):X}{name[1:]}"
+    if len(name) > MAX_NAME_LENGTH:
+        digest = hashlib.sha256(text.encode()).hexdigest()[:NAME_HASH_DIGITS]
+        name = f"{name[: MAX_NAME_LENGTH - 1 - NAME_HASH_DIGITS]}~{digest}"
+    return name
+
+
+def _path_name(calibration: Row, content: str, superseded: list[str]) -> str:
+    """The name of a new file.
+
+    Its hash includes the superseded files, so that going back to an older content adds a file.
+    """
+    digest = hashlib.sha256(json.dumps([content, *sorted(superseded)]).encode()).hexdigest()
+    date, campaign = file_name(calibration["date"]), file_name(calibration["campaign"])
+    return f"{date}-{campaign}-{digest[:FILE_HASH_DIGITS]}.parquet"
+
+
+def _is_not_later(date: str, than: str) -> bool:
+    return "unknown" in (date, than) or date <= than
