@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 from scipy.optimize import minimize_scalar
-from scipy.signal import czt
 
 from inertial.estimation.probability import chi_squared_bound
 
@@ -153,6 +152,8 @@ def search(courses: Sequence[Course]) -> Orders:
 
 def _transform(course: Course, orders: Array) -> NDArray[np.complex128]:
     """Σ y exp(−i n θ) at evenly spaced orders, by the chirp z-transform."""
+    from scipy.signal import czt  # here, for it loads half of scipy
+
     if len(orders) == 0:
         return np.zeros(0, np.complex128)
     pace = course.rate * course.step

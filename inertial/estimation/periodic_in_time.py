@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
-from scipy.signal import czt, periodogram
 
 from inertial.estimation.probability import log_chi_squared_beyond
 
@@ -102,6 +101,8 @@ def line_at(record: Array, rate: float, lowest: float, frequency: float, p_value
 
 def _spectrum(record: Array, rate: float) -> tuple[Array, Array]:
     """Frequencies, Hz, and power density of one side."""
+    from scipy.signal import periodogram  # here, for it loads half of scipy
+
     # The stubs do not know that the trend may be a line.
     frequency, density = periodogram(  # type: ignore[call-overload]
         record, rate, "boxcar", nfft=OVERSAMPLED * len(record), detrend="linear"
@@ -188,6 +189,8 @@ def pooled(
     records : each (n,), samples without gaps; rates : Hz, samples per second
     lowest : Hz, below which nothing is looked for
     """
+    from scipy.signal import czt  # here, for it loads half of scipy
+
     longest = max(len(one) / rate for one, rate in zip(records, rates, strict=True))
     step = 1 / (OVERSAMPLED * longest)
     frequency = np.arange(lowest, min(rates) / 2, step)

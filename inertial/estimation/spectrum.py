@@ -2,7 +2,6 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import periodogram
 
 # ---- How much white noise a record holds, read from its spectrum.
 #
@@ -29,6 +28,8 @@ def band_levels(values: Array, rate: float, band: tuple[float, float]) -> Array:
     -------
     (bins, c), U²/Hz; white noise of random walk N (U/√Hz) has the level N²
     """
+    from scipy.signal import periodogram  # here, for it loads half of scipy
+
     # The stubs know arrays of one dimension only.
     frequency, density = periodogram(values, rate, "hann", detrend="linear", axis=0)  # type: ignore[call-overload]
     half = density[1:-1] / 2
