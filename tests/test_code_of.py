@@ -9,36 +9,43 @@ import pytest
 
 from inertial.tables import code
 from inertial.tables.code import ROOT, code_of, hash_of
+from stages import ORDER
 
 PROJECT = {
     "requirements.lock": "numpy==2",
     "laboratory/__init__.py": "",
     "stages/__init__.py": "",
-    "stages/weigh.py": "import numpy\nfrom stages.scales import beam\n",
-    "stages/unrelated.py": "import stages.scales.unused\n",
-    "stages/scales/__init__.py": "",
-    "stages/scales/beam.py": "def f():\n    import stages.masses.kilogram as k\n",
-    "stages/scales/unused.py": "",
-    "stages/scales/scales.schema.yaml": "",
-    "stages/scales/page.html": "",
-    "stages/scales/notes.txt": "",
-    "stages/masses/__init__.py": "from stages.masses.gram import GRAM\n",
-    "stages/masses/kilogram.py": "",
-    "stages/masses/gram.py": "",
-    "stages/figures/__init__.py": "",
-    "stages/figures/style.css": "",
+    "inertial/__init__.py": "",
+    "stages/weigh/__init__.py": "",
+    "stages/weigh/__main__.py": "from stages.weigh.stage import STAGE\n",
+    "stages/weigh/stage.py": "import numpy\nfrom inertial.scales import beam\n",
+    "stages/unrelated/__main__.py": "import inertial.scales.unused\n",
+    "inertial/scales/__init__.py": "",
+    "inertial/scales/beam.py": "def f():\n    import inertial.masses.kilogram as k\n",
+    "inertial/scales/unused.py": "",
+    "inertial/scales/scales.schema.yaml": "",
+    "inertial/scales/page.html": "",
+    "inertial/scales/notes.txt": "",
+    "inertial/masses/__init__.py": "from inertial.masses.gram import GRAM\n",
+    "inertial/masses/kilogram.py": "",
+    "inertial/masses/gram.py": "",
+    "inertial/figures/__init__.py": "",
+    "inertial/figures/style.css": "",
 }
 REACHED = {
     "requirements.lock",
     "stages/__init__.py",
-    "stages/weigh.py",
-    "stages/scales/__init__.py",
-    "stages/scales/beam.py",
-    "stages/scales/scales.schema.yaml",
-    "stages/scales/page.html",
-    "stages/masses/__init__.py",
-    "stages/masses/kilogram.py",  # imported by what weigh imports, inside a function
-    "stages/masses/gram.py",  # imported by the package alone
+    "inertial/__init__.py",
+    "stages/weigh/__init__.py",
+    "stages/weigh/__main__.py",
+    "stages/weigh/stage.py",
+    "inertial/scales/__init__.py",
+    "inertial/scales/beam.py",
+    "inertial/scales/scales.schema.yaml",
+    "inertial/scales/page.html",
+    "inertial/masses/__init__.py",
+    "inertial/masses/kilogram.py",  # imported by what weigh imports, inside a function
+    "inertial/masses/gram.py",  # imported by the package alone
 }
 
 
@@ -64,10 +71,10 @@ def test_the_hash_changes_with_these_files_and_no_other(project: Path, name: str
 
 
 def test_it_agrees_with_the_import_graph_of_grimp() -> None:
-    graph = grimp.build_graph("stages", cache_dir=None)
-    stages = {path.stem for path in (ROOT / "stages").glob("*.py")} - {"__init__"}
-    for stage in sorted(stages):
-        upstream = {f"stages.{stage}", *graph.find_upstream_modules(f"stages.{stage}")}
+    graph = grimp.build_graph("stages", "inertial", cache_dir=None)
+    for stage in ORDER:
+        main = f"stages.{stage}.__main__"
+        upstream = {main, *graph.find_upstream_modules(main)}
         with_packages = {
             name.rsplit(".", cut)[0] for name in upstream for cut in range(name.count(".") + 1)
         }

@@ -11,7 +11,14 @@ ROOT = Path(__file__).parent.parent.parent
 IMPORT = re.compile(
     r"^[ \t]*(?:from|import) ((?:stages|inertial)[\w.]*)(?: import (\([^)]*\)|.*))?", re.MULTILINE
 )
-DATA = {".yaml", ".html", ".css"}  # schemas and templates lie beside the module that reads them
+DATA = {
+    ".yaml",
+    ".json",
+    ".html",
+    ".css",
+    ".pot",
+    ".po",
+}  # schemas and templates lie beside the module that reads them
 
 
 def code_of(stage: str) -> list[Path]:
