@@ -10,6 +10,7 @@ from ruamel.yaml import YAML
 
 import laboratory
 import stages
+from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.tables.stage import Stage
 
 ROOT = Path(__file__).parent.parent
@@ -61,6 +62,24 @@ def run(
         files = {file: sources.get(file, []) for file in stage.declared.files}
         stage.run(derived, files, SETTINGS.get(name, {}))
     return Results(derived)
+
+
+def mounts(results: Results, **changes: Any) -> list[CampaignData]:
+    """The campaign as later stages take it, with the joint result where there is one."""
+    tables: dict[str, Any] = {
+        "manoeuvres": "plan/manoeuvres",
+        "performed": "segment/performed",
+        "blocks": "segment/blocks",
+        "noise": "noise/noise",
+        "known": "plan/known",
+        "clocks": "decode/clocks",
+    }
+    for stage in ("accelerometer", "gyroscope"):
+        if (results.folder / stage).is_dir():
+            tables |= {
+                f"{stage}_{of}": f"{stage}/{of}" for of in ("parameters", "positions", "fit")
+            }
+    return campaigns_of(**{name: results[table] for name, table in tables.items()} | changes)
 
 
 def again(results: Results, name: str, **changes: Any) -> dict[str, pd.DataFrame]:

@@ -7,11 +7,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from inertial.campaign.records import manoeuvres_of
 from inertial.physics.forward import Triad
 from inertial.tables import CHANNELS, parquet
 from inertial.tables.errors import Refusal
-from stages.compensation.correction import ALL, Correction, mounted, truth_of
+from stages.compensation.correction import ALL, mounted, truth_of
 
 QUANTITIES = ["gravity", "force_up", "rate_up", "angle"]
 ACCEL, GYRO = list(CHANNELS[:3]), list(CHANNELS[3:])
@@ -145,11 +144,13 @@ def test_each_mount_has_its_own_parameters_and_between_them_nothing_is_known(cle
             "to_record": [100, 300, 600, 800],
         }
     )
-    corrections = {mount: Correction(None, None) for mount in ("flat", "on edge")}
-    parts = mounted(manoeuvres_of(plan), segments, corrections)["one.asc"]
+    mounts = chain.mounts(clean[0], manoeuvres=plan)
+    parts = mounted(mounts, segments)["one.asc"]
     assert [(part.first, part.after) for part in parts] == [(10, 300), (500, 800)]
-    assert parts[1].correction is corrections["on edge"]
-    alone = mounted(manoeuvres_of(plan.assign(mount="flat")), segments, corrections)["one.asc"]
+    assert mounts[1].mount == "on edge" and parts[1].result is mounts[1].result
+    alone = mounted(chain.mounts(clean[0], manoeuvres=plan.assign(mount="flat")), segments)[
+        "one.asc"
+    ]
     assert [(part.first, part.after) for part in alone] == [(0, ALL)]
 
 

@@ -16,6 +16,7 @@ from moved_by_hand import (
     handled,
 )
 
+from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import Estimates
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Known, Manoeuvre
@@ -93,7 +94,7 @@ def recorded(imu):
 
 def rows(add, stage, blocks, imu, plan=PLAN):
     estimates = Estimates(stage)
-    add(estimates, "", blocks, plan, noise(imu), KNOWN)
+    add(estimates, CampaignData(plan, {}, blocks, noise(imu), KNOWN))
     tables = estimates.tables()
     parameters = tables["parameters"]
     assert parameters.empty or set(parameters["method"]) == {"free_positions"}
@@ -167,11 +168,10 @@ def test_where_every_attitude_is_known_the_method_has_no_rows(imu, recorded):
 
 
 def test_an_accelerometer_that_is_not_recorded_is_named(imu, recorded):
-    found, left = free_stills(recorded.assign(accel_y=np.nan), PLAN, noise(imu))
+    unread = recorded.assign(accel_y=np.nan)
+    found, left = free_stills(CampaignData(PLAN, {}, unread, noise(imu), KNOWN))
     assert not found and left[0] == "settle: |f| = g needs y too"
-    table, _, _ = rows(
-        add_free_accelerometers, "accelerometer", recorded.assign(accel_y=np.nan), imu
-    )
+    table, _, _ = rows(add_free_accelerometers, "accelerometer", unread, imu)
     assert table["value"].isna().all()
 
 

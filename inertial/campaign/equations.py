@@ -6,15 +6,14 @@ from functools import cached_property
 from itertools import accumulate, pairwise
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
+from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.motions import CampaignMotions, mean_motion, positions_of
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.rate_segments import GyroInputs, Recorded, gyro_inputs
-from inertial.campaign.records import Known, Manoeuvre, Performed
+from inertial.campaign.rate_segments import GyroInputs, Recorded
+from inertial.campaign.records import Known, Manoeuvre
 from inertial.campaign.solution import Solution
-from inertial.campaign.static_positions import Blocks, Still, stills
+from inertial.campaign.static_positions import Blocks, Still
 from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.accelerometers import Rest
 from inertial.estimation.gyroscopes import Around
@@ -241,24 +240,14 @@ class Campaign:
         return [Traces(names, every[part]) for part in own]
 
 
-def campaign_of(
-    blocks: pd.DataFrame,
-    plan: Sequence[Manoeuvre],
-    done: Mapping[str, Performed],
-    levels: NoiseLevels,
-    known: Mapping[str, Known],
-    solution: Solution,
-    shared_clock: bool,
-) -> Campaign:
+def campaign_of(data: CampaignData) -> Campaign:
     """Gather what the equations need of one mount.
 
     Without a shared clock the times of different logs are not comparable, and so none is given.
     """
-    inputs = gyro_inputs(blocks, plan, done, levels, known, shared_clock)
-    inputs = replace(inputs, stills=_in_pieces(inputs.stills))
-    found = _in_pieces(stills(blocks, plan, done, levels, "accel", shared_clock)[0])
-    heading = inputs.heading
-    motions = CampaignMotions(plan, levels, solution, heading, shared_clock)
+    inputs = replace(data.gyro_inputs, stills=_in_pieces(data.gyro_inputs.stills))
+    found = _in_pieces(data.accelerometer_positions[0])
+    motions, solution = CampaignMotions(data), data.result
     stills_of_gyro = [motions.at_rest(still) for still in inputs.stills]
     turns: list[Motion] = []
     rests: list[tuple[str, Rest, Motion]] = []
@@ -271,7 +260,7 @@ def campaign_of(
         motion = motions.turning(one, turn)
         turns.append(motion)
         if not turn.by_hand:
-            density = levels.of(one.plan.name, "steady", ACCEL)
+            density = data.noise.of(one.plan.name, "steady", ACCEL)
             edges = [0, *(bridge.before for bridge in turn.bridges), len(turn.seconds)]
             parts = _turning(one.plan, one.blocks, motion, density, edges)
             rests += [(m, replace(part, stretch=turn.stretch), at) for m, part, at in parts]
@@ -281,9 +270,9 @@ def campaign_of(
         stills_of_gyro,
         turns,
         solution,
-        known["gravity"],
-        known["position"].scatter,
-        positions_of(plan),
+        data.gravity,
+        data.position_sigma,
+        positions_of(data.plan),
     )
 
 

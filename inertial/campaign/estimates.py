@@ -1,6 +1,7 @@
 """Rows of the tables that every method of estimation writes: parameters, covariance, fit."""
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -8,10 +9,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.records import Manoeuvre
+from inertial.campaign.records import Manoeuvre, with_mount
 from inertial.estimation import triad
 from inertial.estimation.least_squares import Estimate, Fitted
-from inertial.tables.table import Table
 
 # ---- How long the rests must last for a bias of a wanted sigma, by S0's formulas.
 #
@@ -56,19 +56,28 @@ NAMES = triad.linear_names()
 SENSED = {"accelerometer": "specific force", "gyroscope": "angular rate"}
 SET = {"tilt": "rad", "level": "rad/s"}  # what is estimated of a position, and its unit
 UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
+TABLES = {
+    "parameters": tables.PARAMETERS,
+    "fit": tables.FIT,
+    "averaging": tables.AVERAGING,
+    "positions": tables.POSITIONS,
+    "wanted": tables.WANTED,
+}
 
 
-@dataclass
 class Estimates:
-    """What the methods of one stage found, collected as rows of the common tables."""
+    """What the methods of one stage found for one mount, collected as rows of the common tables."""
 
-    stage: str
-    _parameters: list[dict[str, Any]] = field(default_factory=list)
-    _covariance: list[pd.DataFrame] = field(default_factory=list)
-    _fit: list[dict[str, Any]] = field(default_factory=list)
-    _averaging: list[dict[str, Any]] = field(default_factory=list)
-    _positions: list[dict[str, Any]] = field(default_factory=list)
-    _wanted: list[dict[str, Any]] = field(default_factory=list)
+    def __init__(self, stage: str, mount: str = "") -> None:
+        self.stage, self.mount = stage, mount
+        self.rows: dict[str, list[dict[str, Any]]] = {name: [] for name in TABLES}
+        self.covariances: list[pd.DataFrame] = []
+
+    def on(self, mount: str) -> "Estimates":
+        """The same collection, for the rows of another mount."""
+        other = Estimates(self.stage, mount)
+        other.rows, other.covariances = self.rows, self.covariances
+        return other
 
     def add(
         self,
@@ -79,16 +88,16 @@ class Estimates:
         reasons: dict[str, str],
     ) -> None:
         """The result of one method; a name in `reasons` is not determined, for that reason."""
-        ids = [f"{self.stage}/{method}/{name}" for name in names]
+        ids = [self._id(method, name) for name in names]
         sigma = np.sqrt(np.diag(covariance))
         for i, name in enumerate(names):
             unit, frame, meaning = described(self.stage, name)
             missing = name in reasons
-            self._parameters.append(
+            self.rows["parameters"].append(
                 {
                     "id": ids[i],
                     "stage": self.stage,
-                    "method": method,
+                    "method": with_mount(method, self.mount),
                     "parameter": name,
                     "value": None if missing else float(values[i]),
                     "sigma": None if missing else float(sigma[i]),
@@ -100,7 +109,7 @@ class Estimates:
             )
         there = [i for i, name in enumerate(names) if name not in reasons]
         kept = [ids[i] for i in there]
-        self._covariance.append(
+        self.covariances.append(
             pd.DataFrame(
                 {
                     "first": np.repeat(kept, len(kept)),
@@ -109,6 +118,9 @@ class Estimates:
                 }
             )
         )
+
+    def _id(self, method: str, name: str) -> str:
+        return f"{self.stage}/{with_mount(method, self.mount)}/{name}"
 
     def add_triad(self, method: str, estimate: Estimate, reasons: dict[str, str]) -> None:
         """The twelve unknowns of three sensors, and what M falls into by polar decomposition."""
@@ -143,9 +155,9 @@ class Estimates:
         """How well the method's model describes the data, from which manoeuvres, set how."""
         for column, (kind, position) in enumerate(fitted.estimate.names):
             if kind.partition(" ")[0] in SET:
-                self._positions.append(
+                self.rows["positions"].append(
                     {
-                        "method": method,
+                        "method": with_mount(method, self.mount),
                         "position": position,
                         "quantity": kind,
                         "value": float(fitted.estimate.values[column]),
@@ -153,9 +165,9 @@ class Estimates:
                         "unit": SET[kind.partition(" ")[0]],
                     }
                 )
-        self._fit.append(
+        self.rows["fit"].append(
             {
-                "method": method,
+                "method": with_mount(method, self.mount),
                 "chi_squared": fitted.estimate.chi_squared,
                 "degrees": fitted.estimate.degrees,
                 "p_value": fitted.p_value,
@@ -171,9 +183,9 @@ class Estimates:
     def add_averaging(self, method: str, seconds: float, estimate: Estimate) -> None:
         """What the method finds from so many seconds of each rest."""
         values = triad.errors_of(estimate.values[:12])
-        self._averaging += [
+        self.rows["averaging"] += [
             {
-                "parameter": f"{self.stage}/{method}/{name}",
+                "parameter": self._id(method, name),
                 "seconds": seconds,
                 "value": float(values[i]),
                 "sigma": float(estimate.sigma[i]),
@@ -184,30 +196,21 @@ class Estimates:
 
     def add_wanted(self, method: str, axis: str, told: Wanted, wanted: float) -> None:
         """How long the rests must last for a bias with the sigma `wanted`."""
-        self._wanted.append({"parameter": f"{self.stage}/{method}/bias_{axis}"} | told.row(wanted))
+        name = self._id(method, f"bias_{axis}")
+        self.rows["wanted"].append({"parameter": name} | told.row(wanted))
 
     def tables(self) -> dict[str, pd.DataFrame]:
         """The six tables, with their columns even where there are no rows."""
-
-        def frame(rows: list[dict[str, Any]], empty: Table) -> pd.DataFrame:
-            return pd.DataFrame(rows) if rows else empty.empty()
-
-        covariance = pd.concat(self._covariance) if self._covariance else tables.COVARIANCE.empty()
-        return {
-            "parameters": frame(self._parameters, tables.PARAMETERS),
-            "covariance": covariance,
-            "fit": frame(self._fit, tables.FIT),
-            "averaging": frame(self._averaging, tables.AVERAGING),
-            "positions": frame(self._positions, tables.POSITIONS),
-            "wanted": frame(self._wanted, tables.WANTED),
+        made = {
+            name: pd.DataFrame(rows) if rows else TABLES[name].empty()
+            for name, rows in self.rows.items()
         }
+        empty = tables.COVARIANCE.empty()
+        return made | {"covariance": pd.concat(self.covariances) if self.covariances else empty}
 
 
 def by_mount(plan: list[Manoeuvre]) -> list[tuple[str, list[Manoeuvre]]]:
-    """The manoeuvres of each mount, and what its methods' names end with where there are several.
-
-    Each mount has parameters of its own, for its mounting rotation is one of them.
-    """
+    """The manoeuvres of each mount, and the end of its methods' names where there are several."""
     mounts = list(dict.fromkeys(m.mount for m in plan))
     return [
         ("" if len(mounts) == 1 else f"@{mount}", [m for m in plan if m.mount == mount])
@@ -215,7 +218,7 @@ def by_mount(plan: list[Manoeuvre]) -> list[tuple[str, list[Manoeuvre]]]:
     ]
 
 
-def stops_between_turns(plan: list[Manoeuvre]) -> bool:
+def stops_between_turns(plan: Sequence[Manoeuvre]) -> bool:
     """Whether several manoeuvres stand at one set position, as S3 turns and stops."""
     return len({m.position for m in plan}) < len(plan)
 

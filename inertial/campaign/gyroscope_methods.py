@@ -12,8 +12,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import NAMES, Estimates, Wanted
-from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.rate_segments import GyroInputs, angles_about, position_of
 from inertial.estimation import gyroscopes
 from inertial.estimation.gyroscope_formulas import Solution, Upright, two_positions
@@ -30,23 +30,19 @@ SILENT = 1e-15  # rad/s, a sigma as good as none
 UNREAD = "the {axis} gyro is not recorded"
 
 
-def add_formulas(
-    estimates: Estimates,
-    suffix: str,
-    inputs: GyroInputs,
-    noise: NoiseLevels,
-    joint: Fitted,
-    wanted: float,
-) -> None:
+def add_formulas(estimates: Estimates, data: CampaignData, joint: Fitted, wanted: float) -> None:
     """The rows of every formula that the plan feeds, with the scatter of the joint estimate.
 
     `wanted`: rad/s, sigma of a bias for which the length of the rests is reckoned.
     """
+    inputs = data.gyro_inputs
     scatter, told = joint.scatter, joint.estimate.determined[:9]
     cross = np.where(told, joint.estimate.values[:9], UNKNOWN).reshape(3, 3)
-    _add_static(estimates, f"static{suffix}", inputs, cross, (scatter, wanted))
-    _add_known_angle(estimates, f"turns{suffix}", inputs, noise, scatter)
-    _add_rate_table(estimates, f"rate_table{suffix}", inputs, scatter)
+    _add_static(estimates, inputs, cross, (scatter, wanted))
+    _add_known_angle(estimates, data, scatter)
+    found = rate_table(inputs.steadies, inputs.earth, inputs.position_sigma, scatter)
+    if found is not None:
+        _add(estimates, "rate_table", found.solution, found.refusals())
 
 
 def uprights(inputs: GyroInputs, i: int) -> Iterator[tuple[str, Upright]]:
@@ -61,7 +57,6 @@ def uprights(inputs: GyroInputs, i: int) -> Iterator[tuple[str, Upright]]:
 
 def _add_static(
     estimates: Estimates,
-    method: str,
     inputs: GyroInputs,
     cross: Array,
     sigmas_of: tuple[float, float],  # between manoeuvres, and wanted of a bias, rad/s
@@ -79,21 +74,20 @@ def _add_static(
         sigmas = np.array([found.bias_sigma, found.scale_sigma or 0.0])
         reason = "the upward earth rate is not known well enough to be an input"
         why = {names[1]: reason} if found.scale is None else {}
-        estimates.add(method, names, np.array(values), np.diag(sigmas**2), why)
+        estimates.add("static", names, np.array(values), np.diag(sigmas**2), why)
         ideal = two_positions([replace(rest, sigma=max(scatter, SILENT)) for rest in rests], *about)
         if ideal is not None:
             told = Wanted(found.bias_sigma, ideal.bias_sigma, float(np.mean(seconds)))
-            estimates.add_wanted(method, axis, told, wanted)
+            estimates.add_wanted("static", axis, told, wanted)
 
 
-def _add_known_angle(
-    estimates: Estimates, method: str, inputs: GyroInputs, noise: NoiseLevels, scatter: float
-) -> None:
+def _add_known_angle(estimates: Estimates, data: CampaignData, scatter: float) -> None:
     """Axis by axis: it needs whole turns both ways about the axis that is up."""
+    method, inputs = "turns", data.gyro_inputs
     for i, axis in enumerate(AXES):
         whole = [r for r in inputs.recorded if r.plan.recorded == "whole"]
         own = [r for r in whole if abs(r.plan.axis[i]) > 1 - 1e-9]
-        turns = [angle for _, angle in angles_about(inputs, i, noise)]
+        turns = [angle for _, angle in angles_about(data, i)]
         names = (f"bias_{axis}", f"scale_{axis}")
         if len({np.sign(turn.angle) for turn in turns}) == 2:
             estimate = gyroscopes.known_angle(turns, inputs.earth, scatter)
@@ -106,20 +100,18 @@ def _add_known_angle(
             estimates.add(method, names, *nothing, dict.fromkeys(names, reason))
 
 
-def add_turn_and_stop(
-    estimates: Estimates, suffix: str, inputs: GyroInputs, scatter: float
-) -> None:
+def add_turn_and_stop(estimates: Estimates, inputs: GyroInputs, scatter: float) -> None:
     """S3's formulas, for plans that turn both ways and stop at positions in common."""
     found = turn_and_stop(inputs.turns, inputs.rests, inputs.earth, inputs.position_sigma, scatter)
     if not found.pairs or found.by_turns is None:
         return
-    _add(estimates, f"turn_and_stop{suffix}", found.by_turns, _untold(found.by_turns))
+    _add(estimates, "turn_and_stop", found.by_turns, _untold(found.by_turns))
     if found.by_rests is not None:
         bias = slice(NAMES.index(BIAS[0]), None)
         values, covariance = found.by_rests.values[bias], found.by_rests.covariance[bias, bias]
         missing = zip(BIAS, found.by_rests.determined[bias], strict=True)
         why = {name: UNREAD.format(axis=name[-1]) for name, there in missing if not there}
-        estimates.add(f"stops{suffix}", BIAS, values, covariance, why)
+        estimates.add("stops", BIAS, values, covariance, why)
 
 
 def _untold(solution: Solution) -> dict[str, str]:
@@ -130,12 +122,6 @@ def _untold(solution: Solution) -> dict[str, str]:
             words = UNREAD if name in BIAS else UNTURNED
             why[name] = words.format(axis=name[-1])
     return why
-
-
-def _add_rate_table(estimates: Estimates, method: str, inputs: GyroInputs, scatter: float) -> None:
-    found = rate_table(inputs.steadies, inputs.earth, inputs.position_sigma, scatter)
-    if found is not None:
-        _add(estimates, method, found.solution, found.refusals())
 
 
 def _add(estimates: Estimates, method: str, solution: Solution, why: dict[str, str]) -> None:

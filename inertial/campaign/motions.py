@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Manoeuvre
-from inertial.campaign.solution import Solution
 from inertial.campaign.static_positions import Still
 from inertial.estimation.gyroscopes import Turn
 from inertial.physics.forward import Site, Triad
@@ -22,11 +21,11 @@ from inertial.tables import ACCEL
 Array = NDArray[np.float64]
 
 
-def at_rest(still: Still, solution: Solution, heading: float | None, time: float) -> Motion:
+def at_rest(data: CampaignData, still: Still, time: float) -> Motion:
     """A rest as one stretch of time, about its middle `time`, s."""
     m = still.manoeuvre
-    position = position_of(m, heading)
-    up, north = solution.upright(m), solution.north(position)
+    position = position_of(m, data.heading)
+    up, north = data.result.upright(m), data.result.north(position)
     zero = np.zeros(1)
     rest = turning(
         still.about,
@@ -41,11 +40,9 @@ def at_rest(still: Still, solution: Solution, heading: float | None, time: float
     return replace(rest, surveyed=np.array([position.north is not None]))
 
 
-def in_blocks(
-    m: Manoeuvre, turn: Turn, solution: Solution, heading: float | None, time: Array
-) -> Motion:
+def in_blocks(data: CampaignData, m: Manoeuvre, turn: Turn, time: Array) -> Motion:
     """A turn in the k blocks of its sums; the angle of each is what the gyros saw of it."""
-    position = position_of(m, heading)
+    solution, position = data.result, position_of(m, data.heading)
     up, north = solution.upright(m), solution.north(position)
     gyro, site = solution.gyro, solution.site
     assert gyro is not None  # else nothing is simulated
@@ -85,13 +82,12 @@ def angles_seen(
 
 
 def in_samples(
+    data: CampaignData,
     m: Manoeuvre,
     increments: Array,
     step: float,
     steady: NDArray[np.bool_],
     time: Array,
-    solution: Solution,
-    heading: float | None,
 ) -> tuple[Motion, str]:
     """A turn from rest to rest, sample by sample, and how its profile was had.
 
@@ -105,7 +101,8 @@ def in_samples(
     steady : (n,), which samples are at the steady rate
     time : (n,), s; where it jumps at the steady rate, samples were lost
     """
-    up, north = solution.upright(m), solution.north(position_of(m, heading))
+    solution = data.result
+    up, north = solution.upright(m), solution.north(position_of(m, data.heading))
     assert solution.gyro is not None and m.angle is not None  # else it is not simulated
     passed = np.round(np.diff(time, prepend=time[0] - step) / step)  # samples, 0 where one repeats
     counts, lost = np.minimum(passed, 1.0), np.maximum(passed - 1.0, 0.0)
@@ -174,29 +171,21 @@ UPRIGHT = 1 - 1e-6  # cosine of an axis to the vertical
 class CampaignMotions:
     """The stretches of one mount; without a clock that the logs share, no time is given."""
 
-    def __init__(
-        self,
-        plan: Sequence[Manoeuvre],
-        levels: NoiseLevels,
-        solution: Solution,
-        heading: float | None,
-        shared_clock: bool,
-    ) -> None:
-        self._shared_clock = shared_clock
-        self._visits = {m.name: float(place) for place, m in enumerate(plan)}
-        names = positions_of(plan)
-        self._places = {m.name: float(names.index(m.position)) for m in plan}
-        self._levels, self._solution, self._heading = levels, solution, heading
+    def __init__(self, data: CampaignData) -> None:
+        self._data = data
+        self._visits = {m.name: float(place) for place, m in enumerate(data.plan)}
+        names = positions_of(data.plan)
+        self._places = {m.name: float(names.index(m.position)) for m in data.plan}
         self._at_rest: dict[tuple[str, float], Motion] = {}
 
     def at_rest(self, still: Still) -> Motion:
         """A rest as one stretch."""
         name, time = still.manoeuvre.name, still.mean_of(still.time)
-        time = time if self._shared_clock else np.nan
+        time = time if self._data.shared_clock else np.nan
         later = AFTER if still.label.endswith("(rest-after)") else 0.0
         place = (name, still.angle)  # all pieces of a rest stand alike
         if place not in self._at_rest:
-            self._at_rest[place] = at_rest(still, self._solution, self._heading, time)
+            self._at_rest[place] = at_rest(self._data, still, time)
         return replace(
             self._at_rest[place],
             time=np.array([time]),
@@ -204,17 +193,19 @@ class CampaignMotions:
             visit=np.array([self._visits[name] + later]),
             position=np.array([self._places[name]]),
             temperature=np.array([still.mean_of(still.temperature)]),
-            vibration=self._levels.of_samples(name, "rest", ACCEL)[None],
+            vibration=self._data.noise.of_samples(name, "rest", ACCEL)[None],
         )
 
     def turning(self, one: Recorded, turn: Turn) -> Motion:
         """A turn in its blocks; about an axis that is not upright gravity hides how it shakes."""
         name = one.plan.name
         blocks = one.blocks
-        time = blocks.time if self._shared_clock else np.full(len(blocks), np.nan)
-        motion = in_blocks(one.plan, turn, self._solution, self._heading, time)
+        time = blocks.time if self._data.shared_clock else np.full(len(blocks), np.nan)
+        motion = in_blocks(self._data, one.plan, turn, time)
         upright = abs(float(turn.position.up @ turn.about)) > UPRIGHT
-        shaken = self._levels.of_samples(name, "steady", ACCEL) if upright else np.full(3, np.nan)
+        shaken = (
+            self._data.noise.of_samples(name, "steady", ACCEL) if upright else np.full(3, np.nan)
+        )
         return replace(
             motion,
             visit=np.full(len(time), self._visits[name] + MOVING),

@@ -1,22 +1,25 @@
 """The rate segments of a campaign as the equations of the gyros take them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import cos, degrees, sin
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import Known, Manoeuvre, Performed
-from inertial.campaign.static_positions import NONE, Blocks, Still, by_manoeuvre, stills, stretch_of
+from inertial.campaign.records import Manoeuvre, Performed
+from inertial.campaign.static_positions import NONE, Blocks, Still, by_manoeuvre, stretch_of
 from inertial.estimation import gyroscopes
 from inertial.estimation.gyroscopes import Angle, Bridge, Earth, Position, Steady, Turn
 from inertial.estimation.spectrum import strays
 from inertial.physics.vectors import cross
 from inertial.tables import GYRO
+
+if TYPE_CHECKING:
+    from inertial.campaign.campaign_data import CampaignData
 
 # ---- What is missing of a turn, bridged by the blocks about it, and how sure the angle is.
 #
@@ -165,53 +168,40 @@ class GyroInputs:
         return [still_of(still, self.heading, seconds) for still in self.stills]
 
 
-def gyro_inputs(
-    blocks: pd.DataFrame,
-    plan: Sequence[Manoeuvre],
-    done: Mapping[str, Performed],
-    levels: NoiseLevels,
-    known: Mapping[str, Known],
-    shared_clock: bool = False,
-) -> GyroInputs:
-    """Gather the rests and turns of one mount; `shared_clock` as in `stills`."""
-    found, left = stills(blocks, plan, done, levels, "gyro", shared_clock)
-    recorded = recorded_turns(blocks, plan, done)
-    left += [f"{one.plan.name}: {one.refusal}" for one in recorded if one.refusal]
-    heading, rate_sigma = known["heading"].value, known["turn_rate"].scatter
+def gyro_inputs(data: "CampaignData") -> GyroInputs:
+    """Gather the static positions and rate segments of one mount."""
+    found, left = data.gyro_positions
+    recorded = list(_recorded_turns(data))
     usable = [one for one in recorded if not one.refusal]
-    up, level = known["earth_rate_up"], known["earth_rate_level"]
-    given = (levels, heading, rate_sigma)
+    given = (data.noise, data.heading, data.rate_sigma)
+    shared = data.shared_clock
     return GyroInputs(
         found,
         recorded,
         [
-            replace(turn_of(r, *given), stretch=stretch_of(r.plan.name, r.blocks, shared_clock))
+            replace(turn_of(r, *given), stretch=stretch_of(r.plan.name, r.blocks, shared))
             for r in usable
             if r.plan.recorded == "whole"
         ],
         [
-            replace(steady_of(r, *given), stretch=stretch_of(r.plan.name, r.steady, shared_clock))
+            replace(steady_of(r, *given), stretch=stretch_of(r.plan.name, r.steady, shared))
             for r in usable
             if r.plan.recorded == "steady"
         ],
-        Earth(up.number, up.scatter, level.number),
-        known["position"].scatter,
-        heading,
-        left,
+        data.earth,
+        data.position_sigma,
+        data.heading,
+        left + [f"{one.plan.name}: {one.refusal}" for one in recorded if one.refusal],
     )
 
 
-def recorded_turns(
-    blocks: pd.DataFrame, plan: Sequence[Manoeuvre], done: Mapping[str, Performed]
-) -> list[Recorded]:
+def _recorded_turns(data: "CampaignData") -> Iterator[Recorded]:
     """Every turn of the plan."""
-    moving = by_manoeuvre(blocks[blocks["phase"].isin(TURNING)])
-    result = []
-    for m in plan:
+    moving = by_manoeuvre(data.blocks[data.blocks["phase"].isin(TURNING)])
+    for m in data.plan:
         if m.do == "turn":
-            part = moving.get(m.name, NONE)
-            result.append(Recorded(m, done[m.name], part, refusal_of(m, done[m.name], part)))
-    return result
+            done, part = data.performed[m.name], moving.get(m.name, NONE)
+            yield Recorded(m, done, part, refusal_of(m, done, part))
 
 
 def refusal_of(m: Manoeuvre, done: Performed, part: Blocks) -> str:
@@ -297,14 +287,15 @@ def steady_of(
     )
 
 
-def angles_about(inputs: GyroInputs, i: int, noise: NoiseLevels) -> list[tuple[str, Angle]]:
+def angles_about(data: "CampaignData", i: int) -> list[tuple[str, Angle]]:
     """The whole turns about body axis i while it points up or down, as their own gyro saw them.
 
     Each with the name of its manoeuvre. A turn that is bridged is not whole.
     """
-    recorded = [r for r in inputs.usable if r.plan.recorded == "whole" and r.done.complete]
+    usable = data.gyro_inputs.usable
+    recorded = [r for r in usable if r.plan.recorded == "whole" and r.done.complete]
     whole = [r for r in recorded if _upright(r.plan, i)]
-    angles = [(r.plan.name, _angle(r, i, noise)) for r in whole]
+    angles = [(r.plan.name, _angle(r, i, data.noise)) for r in whole]
     return [(name, angle) for name, angle in angles if np.isfinite(angle.summed)]
 
 

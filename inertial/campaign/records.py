@@ -59,6 +59,11 @@ class Manoeuvre:
         return self.about
 
 
+def with_mount(name: str, mount: str) -> str:
+    """A part of an identifier, with the mount where the campaign has several; else it is empty."""
+    return f"{name}@{mount}" if mount else name
+
+
 def manoeuvres_of(table: pd.DataFrame) -> list[Manoeuvre]:
     """The manoeuvres of the plan in their order."""
     return [

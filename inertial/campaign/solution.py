@@ -54,37 +54,46 @@ class Solution:
         return np.asarray((parts[0] * axes[0] + parts[1] * axes[1]) / self.site.earth_level)
 
 
+@dataclass(frozen=True)
+class Estimated:
+    """The tables of one stage of estimation; None where they are not read."""
+
+    parameters: pd.DataFrame
+    positions: pd.DataFrame | None = None
+    fit: pd.DataFrame | None = None
+
+    def found(self, method: str, kind: str, below: float) -> dict[tuple[str, str], float]:
+        """What is estimated of the positions, tilt or level, with a sigma below this."""
+        rows = [] if self.positions is None else rows_of(self.positions)
+        return {
+            (row["position"], row["quantity"]): row["value"]
+            for row in rows
+            if row["method"] == method and row["quantity"].startswith(kind) and row["sigma"] < below
+        }
+
+    def walk(self, method: str) -> float:
+        """The random walk of the bias."""
+        rows = [] if self.fit is None else rows_of(self.fit)
+        return float(next((r["random_walk"] or 0.0 for r in rows if r["method"] == method), 0.0))
+
+
 def solution_of(
-    parameters: tuple[pd.DataFrame, pd.DataFrame],
-    positions: tuple[pd.DataFrame, pd.DataFrame],
-    known: Mapping[str, Known],
-    suffix: str,
-    fits: tuple[pd.DataFrame, pd.DataFrame] | None = None,
+    method: str, known: Mapping[str, Known], accelerometer: Estimated, gyro: Estimated
 ) -> Solution:
-    """The joint result of the mount `suffix`; tables of accelerometer and gyroscope, in this order.
+    """The result of a method, tilts from the accelerometers, azimuths from the gyros.
 
     The azimuth of a position counts as found where its level earth rate is known to a third.
     """
-    method = f"joint{suffix}"
     level = known["earth_rate_level"].number
-    found = {
-        (row["position"], row["quantity"]): row["value"]
-        for table in positions
-        for row in rows_of(table)
-        if row["method"] == method
-        and (row["quantity"].startswith("tilt") == (table is positions[0]))
-        and (row["quantity"].startswith("tilt") or row["sigma"] < level / 3)
-    }
-    site = Site(known["gravity"].number, known["earth_rate_up"].number, level)
-    gyro, accelerometer = (triad_of(table, method) for table in reversed(parameters))
-    walks = [_walk_of(fit, method) for fit in reversed(fits)] if fits else [0.0, 0.0]
-    return Solution(gyro, accelerometer, site, found, (walks[0], walks[1]))
-
-
-def _walk_of(fit: pd.DataFrame, method: str) -> float:
-    """The random walk of the bias by a method."""
-    walks = [row["random_walk"] for row in rows_of(fit) if row["method"] == method]
-    return float(walks[0] or 0.0) if walks else 0.0
+    tilts = accelerometer.found(method, "tilt", np.inf)
+    levels = gyro.found(method, "level", level / 3)
+    return Solution(
+        triad_of(gyro.parameters, method),
+        triad_of(accelerometer.parameters, method),
+        Site(known["gravity"].number, known["earth_rate_up"].number, level),
+        tilts | levels,
+        (gyro.walk(method), accelerometer.walk(method)),
+    )
 
 
 def triad_of(parameters: pd.DataFrame, method: str) -> Triad | None:

@@ -1,20 +1,21 @@
 """The static positions of a campaign: means of blocks, with their noise."""
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import Manoeuvre, Performed
+from inertial.campaign.records import Manoeuvre
 from inertial.estimation.random_walk import COMMON, Stretch
 from inertial.physics.motion import turned
 from inertial.tables import ACCEL, AXES, GYRO
+
+if TYPE_CHECKING:
+    from inertial.campaign.campaign_data import CampaignData
 
 # ---- The blocks of one manoeuvre as arrays.
 
@@ -151,20 +152,13 @@ class Still:
         return np.cumsum([samples * np.nan_to_num(self.means), samples, lasted], axis=1)
 
 
-def stills(
-    blocks: pd.DataFrame,
-    plan: Sequence[Manoeuvre],
-    performed: Mapping[str, Performed],
-    noise: NoiseLevels,
-    sensor: str,
-    shared_clock: bool = False,
-) -> tuple[list[Still], list[str]]:
+def stills(data: "CampaignData", sensor: str) -> tuple[list[Still], list[str]]:
     """The stretches at rest with a known attitude, and what is left out with the reason.
 
     After a turn the IMU stands where the turn has brought it, so that stretch counts
-    where the turn was recorded from rest to rest. `sensor` is accel or gyro; `shared_clock`: the
-    times of different logs are comparable.
+    where the turn was recorded from rest to rest. `sensor` is accel or gyro.
     """
+    blocks, performed = data.blocks, data.performed
     found: list[Still] = []
     left: list[str] = []
     channels = [f"{sensor}_{axis}" for axis in AXES]
@@ -173,7 +167,7 @@ def stills(
     each = {name: at_rest[name].to_numpy(np.float64) for name in OF_BLOCKS}
     logs = at_rest["log"].to_numpy()
     rows = at_rest.groupby(["manoeuvre", "phase"]).indices
-    for m in plan:
+    for m in data.plan:
         if m.do == "positions":
             left.append(f"{m.name}: the attitudes of its rests are not known")
         if m.do == "rest" and not performed[m.name].found:
@@ -183,7 +177,7 @@ def stills(
             if part is None or np.isnan(read[part]).all():
                 continue
             count, seconds, time, temperature = (each[name][part] for name in OF_BLOCKS)
-            density = noise.of(m.name, "rest", channels)
+            density = data.noise.of(m.name, "rest", channels)
             label = m.name if phase == "rest" else f"{m.name} ({phase})"
             after, whole = phase == "rest-after", performed[m.name].complete
             if m.up is None:
@@ -206,7 +200,7 @@ def stills(
                         time,
                         temperature,
                         density,
-                        _stretch(label, str(logs[part[0]]), time, seconds, shared_clock),
+                        _stretch(label, str(logs[part[0]]), time, seconds, data.shared_clock),
                     )
                 )
     return found, left

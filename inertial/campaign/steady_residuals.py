@@ -1,6 +1,6 @@
 """The steady parts of turns at full rate: what the gyros have left, and the angle of the table."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -8,11 +8,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.records import Clock, Manoeuvre
+from inertial.campaign.campaign_data import CampaignData
 from inertial.estimation.periodic_in_angle import Course
 from inertial.estimation.periodic_in_time import Line
 from inertial.estimation.spectrum import band_levels, white_level
-from inertial.physics.forward import Triad
 from inertial.tables import AXES, GYRO
 from inertial.tables.parquet import Stream
 
@@ -106,20 +105,15 @@ class SteadyTurn:
         )
 
 
-def steady_turns(
-    simulated: Stream,
-    plan: Sequence[Manoeuvre],
-    gyro: Triad | None,
-    clocks: Mapping[str, Clock],
-    averaged: set[str],
-) -> list[SteadyTurn]:
+def steady_turns(data: CampaignData, simulated: Stream, averaged: set[str]) -> list[SteadyTurn]:
     """The steady parts of all turns of one mount; none where its gyros are not determined.
 
     `averaged`: the logs whose samples are means.
     """
+    gyro = data.result.gyro
     if gyro is None:
         return []
-    planned = {m.name: m for m in plan if m.do == "turn"}
+    planned = {m.name: m for m in data.plan if m.do == "turn"}
     inverse = np.linalg.inv(gyro.matrix)
     found = []
     for name, rows in by_turn(simulated, ["time", *GYRO, *RESIDUALS]):
@@ -127,7 +121,7 @@ def steady_turns(
         if name not in planned or not steady.any():
             continue
         m = planned[name]
-        step = clocks[m.log].step
+        step = data.clocks[m.log].step
         angle = np.full(len(rows), np.nan)
         if m.rate is not None and m.acceleration is not None:
             angle = _angle(rows, (rows[GYRO].to_numpy() - gyro.bias) @ inverse.T @ m.axis, step)

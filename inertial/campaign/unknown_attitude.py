@@ -4,7 +4,7 @@ The method is `free_positions`, beside the others of the stage. Rests whose atti
 used as well, but not their attitude, so the table has no part in the result.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -12,10 +12,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import NAMES as LINEAR
 from inertial.campaign.estimates import Estimates
 from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import Known, Manoeuvre
+from inertial.campaign.records import Manoeuvre
 from inertial.campaign.static_positions import Still
 from inertial.estimation.least_squares import Estimate, Fitted, with_scatter
 from inertial.estimation.multi_position import (
@@ -63,13 +64,12 @@ class FreeStill:
         return FreeRest(self.label, *self.force.over())
 
 
-def free_stills(
-    blocks: pd.DataFrame, plan: Sequence[Manoeuvre], noise: NoiseLevels
-) -> tuple[list[FreeStill], list[str]]:
+def free_stills(data: CampaignData) -> tuple[list[FreeStill], list[str]]:
     """All stretches at rest of one mount in the order of the logs; those left out, with reasons.
 
     None at all where the plan knows every attitude: there the other methods serve.
     """
+    blocks, plan = data.blocks, data.plan
     if all(m.up is not None for m in plan if m.do != "turn"):
         return [], []
     found: list[FreeStill] = []
@@ -83,7 +83,7 @@ def free_stills(
         if m is None:
             continue
         label = name if phase == "rest" else f"{name} ({phase})"
-        force, rate = (_still(label, name, m, part, noise, each) for each in (ACCEL, GYRO))
+        force, rate = (_still(label, name, m, part, data.noise, each) for each in (ACCEL, GYRO))
         recorded = np.isfinite(force.means).any(axis=0)
         first, after = int(part["from_record"].min()), int(part["to_record"].max())
         if not recorded.all():
@@ -119,29 +119,22 @@ def _still(
     )
 
 
-def fitted_to(found: Sequence[FreeStill], noise: NoiseLevels, known: Mapping[str, Known]) -> Fitted:
+def fitted_to(data: CampaignData, found: Sequence[FreeStill]) -> Fitted:
     """P and bias of the accelerometers, with a scatter between rests where noise cannot explain."""
-    gravity = known["gravity"]
-    fit = partial(free_positions, [one.rest for one in found], gravity.number, gravity.scatter)
-    return with_scatter(fit, between=SCATTER, noise_degrees=noise.degrees)
+    gravity, rests = data.gravity, [one.rest for one in found]
+    fit = partial(free_positions, rests, gravity.number, gravity.scatter)
+    return with_scatter(fit, between=SCATTER, noise_degrees=data.noise.degrees)
 
 
-def add_free_accelerometers(
-    estimates: Estimates,
-    suffix: str,
-    blocks: pd.DataFrame,
-    plan: Sequence[Manoeuvre],
-    noise: NoiseLevels,
-    known: Mapping[str, Known],
-) -> None:
+def add_free_accelerometers(estimates: Estimates, data: CampaignData) -> None:
     """The method's rows; none where the plan knows every attitude."""
-    found, left = free_stills(blocks, plan, noise)
+    found, left = free_stills(data)
     if found:
-        fitted = fitted_to(found, noise, known)
-        add_symmetric(estimates, f"{METHOD}{suffix}", fitted.estimate)
-        estimates.add_fit(f"{METHOD}{suffix}", fitted, [one.label for one in found], left)
+        fitted = fitted_to(data, found)
+        add_symmetric(estimates, METHOD, fitted.estimate)
+        estimates.add_fit(METHOD, fitted, [one.label for one in found], left)
     elif left:
-        estimates.add_nothing(f"{METHOD}{suffix}", "; ".join(left))
+        estimates.add_nothing(METHOD, "; ".join(left))
 
 
 def add_symmetric(estimates: Estimates, method: str, estimate: Estimate) -> None:

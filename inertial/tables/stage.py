@@ -89,7 +89,7 @@ class Stage:
         own = inspect.signature(self.function).parameters
         every = any(one.kind is one.VAR_KEYWORD for one in own.values())
         gathered = {
-            name: make(**{key: inputs[key] for key in inspect.signature(make).parameters})
+            name: make(**{k: inputs[k] for k in inspect.signature(make).parameters if k in inputs})
             for name, make in self.gathers.items()
         }
         return self.function(**{k: v for k, v in inputs.items() if every or k in own}, **gathered)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from inertial.campaign.estimates import NAMES
 from inertial.campaign.findings import Finding
+from inertial.campaign.records import with_mount
 from inertial.estimation.position_outlier import OffPosition
 from inertial.tables import AXES
 from inertial.text.numbers import fixed, significant
@@ -23,9 +24,9 @@ WORDS = {
 }
 
 
-def findings(off: OffPosition, sigma: Array, suffix: str) -> Iterator[Finding]:
+def findings(off: OffPosition, sigma: Array, mount: str) -> Iterator[Finding]:
     """One finding; `sigma`: (12,), of the parameters without the scatter."""
-    several = len(off.positions) > 1
+    cause, several = "table_position_error", len(off.positions) > 1
     names = " or ".join(off.positions)
     axis = int(np.argmax(np.abs(off.about)))
     spoilt = [
@@ -35,8 +36,8 @@ def findings(off: OffPosition, sigma: Array, suffix: str) -> Iterator[Finding]:
     ]
     size = fixed(degrees(off.tilt), 4)
     yield Finding(
-        id=f"accelerometer/table_position_error{suffix}/{off.positions[0]}",
-        cause="table_position_error",
+        id="/".join(("accelerometer", with_mount(cause, mount), off.positions[0])),
+        cause=cause,
         sensor="accel",
         manoeuvre=off.positions[0],
         size=off.tilt,

@@ -6,16 +6,14 @@ its own. At a steady rate only the component of r along the accelerometer counts
 are enough; ramps, where the others count too, are left out.
 """
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import refusal_of
-from inertial.campaign.records import Manoeuvre, Performed
+from inertial.campaign.records import Manoeuvre
 from inertial.campaign.static_positions import Blocks, by_manoeuvre, stretch_of
 from inertial.estimation.accelerometers import Rest
 from inertial.estimation.sensitivities import Traces
@@ -28,29 +26,23 @@ LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU stan
 ALIKE = np.radians(5)  # by how much the vertical may turn in the case within one mean
 
 
-def turning_rests(
-    blocks: pd.DataFrame,
-    plan: Sequence[Manoeuvre],
-    performed: Mapping[str, Performed],
-    noise: NoiseLevels,
-    shared_clock: bool,
-) -> list[tuple[str, Rest]]:
+def turning_rests(data: CampaignData) -> list[tuple[str, Rest]]:
     """The steady parts of all whole turns, each with its label, in means of like attitude.
 
-    `shared_clock`: whether times of different logs are comparable. The `traces` of each are those
-    of LEVER_ARM.
+    The `traces` of each are those of LEVER_ARM.
     """
+    blocks, performed = data.blocks, data.performed
     moving = by_manoeuvre(blocks[~blocks["phase"].str.startswith("rest")])
     quiet = by_manoeuvre(blocks[blocks["phase"].isin(["rest-before", "rest-after"])])
     found: list[tuple[str, Rest]] = []
-    for m in plan:
+    for m in data.plan:
         if m.do != "turn" or m.recorded != "whole" or m.name not in moving:
             continue
         part = moving[m.name]
         usable = performed[m.name].complete and not refusal_of(m, performed[m.name], part)
         if usable and m.name in quiet and bool(part.steady.any()):
-            density = noise.of(m.name, "steady", ACCEL)
-            stretch = stretch_of(m.name, part.those(part.steady), shared_clock)
+            density = data.noise.of(m.name, "steady", ACCEL)
+            stretch = stretch_of(m.name, part.those(part.steady), data.shared_clock)
             found += [
                 (f"{m.name} (steady)", replace(rest, stretch=stretch))
                 for rest in _steady(m, part, quiet[m.name], density)

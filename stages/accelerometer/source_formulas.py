@@ -23,7 +23,6 @@ Array = NDArray[np.float64]
 
 def add_six_positions(
     estimates: Estimates,
-    suffix: str,
     planned: Sequence[tuple[Still, Rest]],
     about: tuple[float, float, float],  # gravity, its sigma, m/s², sigma of a position, rad
     scatter: float,
@@ -37,21 +36,20 @@ def add_six_positions(
     rests = [rest for _, rest in planned]
     solved = formula(rests, *about, scatter) if rests else None
     if solved is None:
-        _add_up_and_down(estimates, f"up_and_down{suffix}", rests, about, scatter)
+        _add_up_and_down(estimates, rests, about, scatter)
         return
     unknowns, covariance = solved
-    estimates.add(f"six_position{suffix}", NAMES, errors_of(unknowns), covariance, {})
+    estimates.add("six_position", NAMES, errors_of(unknowns), covariance, {})
     ideal = formula([replace(rest, sigma=np.zeros(3)) for rest in rests], *about)
     assert ideal is not None  # it depends on the same attitudes
     seconds = float(np.mean([still.seconds.sum() for still, _ in planned]))
     for i, axis in enumerate(AXES, UNKNOWNS - 3):
         sigma, floor = (float(np.sqrt(of[i, i])) for of in (covariance, ideal[1]))
-        estimates.add_wanted(f"six_position{suffix}", axis, Wanted(sigma, floor, seconds), wanted)
+        estimates.add_wanted("six_position", axis, Wanted(sigma, floor, seconds), wanted)
 
 
 def _add_up_and_down(
     estimates: Estimates,
-    method: str,
     rests: Sequence[Rest],
     about: tuple[float, float, float],
     scatter: float,
@@ -66,12 +64,12 @@ def _add_up_and_down(
         if found is not None:
             values = np.array([found.bias, found.scale])
             sigmas = np.array([found.bias_sigma, found.scale_sigma])
-            estimates.add(method, (f"bias_{axis}", f"scale_{axis}"), values, np.diag(sigmas**2), {})
+            names = (f"bias_{axis}", f"scale_{axis}")
+            estimates.add("up_and_down", names, values, np.diag(sigmas**2), {})
 
 
 def add_pooled_positions(
     estimates: Estimates,
-    suffix: str,
     rests: Sequence[Rest],
     about: tuple[float, float, float],
     scatter: float,
@@ -80,4 +78,4 @@ def add_pooled_positions(
     pooled = pooled_positions(rests, *about, scatter)
     if pooled is not None:
         values = errors_of(pooled.values)
-        estimates.add(f"pooled_positions{suffix}", NAMES, values, pooled.covariance, {})
+        estimates.add("pooled_positions", NAMES, values, pooled.covariance, {})

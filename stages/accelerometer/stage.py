@@ -6,11 +6,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.estimates import Estimates, by_mount, reasons, stops_between_turns
+from inertial.campaign.campaign_data import campaigns_of
+from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import known_of, manoeuvres_of, performed_of, share_a_clock
-from inertial.campaign.static_positions import Still, averaging_times, stills
+from inertial.campaign.static_positions import Still, averaging_times
 from inertial.campaign.unknown_attitude import add_free_accelerometers
 from inertial.estimation import accelerometers, triad
 from inertial.estimation.accelerometers import Rest, equations, weighted
@@ -46,43 +45,41 @@ def accelerometer(
 
     Each mount has parameters of its own, for its mounting rotation is one of them.
     """
-    given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
-    shared = share_a_clock(clocks)
-    gravity = given["gravity"]
-    about = (gravity.number, gravity.scatter, given["position"].scatter)
-    estimates = Estimates("accelerometer")
+    collected = Estimates("accelerometer")
     told: list[Finding] = []
-    for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
-        add_free_accelerometers(estimates, suffix, blocks, plan, levels, given)
-        found, left = stills(blocks, plan, done, levels, "accel", shared)
+    for data in campaigns_of(manoeuvres, performed, blocks, noise, known, clocks):
+        estimates, gravity = collected.on(data.mount), data.gravity
+        about = (gravity.number, gravity.scatter, data.position_sigma)
+        add_free_accelerometers(estimates, data)
+        found, left = data.accelerometer_positions
         if not found:
-            estimates.add_nothing(f"joint{suffix}", "; ".join(left))
+            estimates.add_nothing("joint", "; ".join(left))
             continue
-        turns = turning_rests(blocks, plan, done, levels, shared)
+        turns = turning_rests(data)
         wide = LEVER_ARM if turns else None
         moving = [rest for _, rest in turns]
         rests = [*(_rest(still) for still in found), *moving]
-        fitted = accelerometers.fitted(rests, *about, levels.degrees, wide)
+        fitted = accelerometers.fitted(rests, *about, data.noise.degrees, wide)
         recorded = np.isfinite(np.array([rest.mean for rest in rests])).any(axis=0)
         why = reasons(fitted.estimate.determined, recorded, "accelerometer", CURES)
-        estimates.add_triad(f"joint{suffix}", fitted.estimate, why)
+        estimates.add_triad("joint", fitted.estimate, why)
         used = [still.label for still in found] + list(dict.fromkeys(label for label, _ in turns))
-        estimates.add_fit(f"joint{suffix}", fitted, used, left)
+        estimates.add_fit("joint", fitted, used, left)
         matrix = fitted.estimate.values[:9].reshape(3, 3)
         if fitted.p_value < INCONSISTENT:
-            told += _off(rests, about, matrix, wide, suffix)
+            told += _off(rests, about, matrix, wide, data.mount)
         for seconds in averaging_times(found, averaging_steps):
             part = [*(_rest(still, seconds) for still in found), *moving]
             shorter = equations(part, *about, fitted.scatter, matrix, wide, fitted.walk)
-            estimates.add_averaging(f"joint{suffix}", seconds, shorter.solve_shared())
+            estimates.add_averaging("joint", seconds, shorter.solve_shared())
         stops = [_rest(still) for still in found]
         planned = [
             pair for pair in zip(found, stops, strict=True) if pair[0].manoeuvre.do == "rest"
         ]
-        add_six_positions(estimates, suffix, planned, about, fitted.scatter, wanted_bias)
-        if stops_between_turns(plan):
-            add_pooled_positions(estimates, suffix, stops, about, fitted.scatter)
-    return {**estimates.tables(), "findings": table_of(told)}
+        add_six_positions(estimates, planned, about, fitted.scatter, wanted_bias)
+        if stops_between_turns(data.plan):
+            add_pooled_positions(estimates, stops, about, fitted.scatter)
+    return {**collected.tables(), "findings": table_of(told)}
 
 
 def _off(
@@ -90,13 +87,13 @@ def _off(
     about: tuple[float, float, float],
     matrix: Array,
     wide: Mapping[str, float] | None,
-    suffix: str,
+    mount: str,
 ) -> Iterator[Finding]:
     """The position that does not fit, where one alone explains why the model does not."""
     off = off_position(rests, *about, matrix, wide)
     if off is not None:
         sigma = weighted(rests, *about, wide=wide).sigma[: triad.UNKNOWNS]
-        yield from findings(off, sigma, suffix)
+        yield from findings(off, sigma, mount)
 
 
 def _rest(still: Still, seconds: float = np.inf) -> Rest:

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from inertial import tables
-from inertial.campaign.records import Row, rows_of
+from inertial.campaign.records import Row, rows_of, with_mount
 from inertial.estimation.consistency import beyond_chance, chance_of
 from inertial.text.numbers import decimals_of, fixed, p_is, with_sigma
 from inertial.text.units import quantity
@@ -142,7 +142,15 @@ class Results:
 
     stage: str
     parameters: pd.DataFrame
-    suffix: str  # of the methods' names: @ and the mount where there are several
+    mount: str
+
+    def named(self, name: str) -> str:
+        """A method or a kind of difference, with the mount where there are several."""
+        return with_mount(name, self.mount)
+
+    def id(self, method: str, name: str) -> str:
+        """The identifier of a parameter."""
+        return f"{self.stage}/{self.named(method)}/{name}"
 
     @cached_property
     def _rows(self) -> dict[tuple[str, str], Row]:
@@ -150,7 +158,7 @@ class Results:
 
     def of(self, method: str, name: str) -> Row | None:
         """The row of a parameter; none where the method does not have it."""
-        return self._rows.get((f"{method}{self.suffix}", name))
+        return self._rows.get((self.named(method), name))
 
     def determined(self, method: str, name: str) -> Row | None:
         """The same; none where it is not determined either."""
@@ -160,5 +168,5 @@ class Results:
     def names(self, method: str) -> Iterator[str]:
         """Names of the parameters that a method determined."""
         for wanted, name in self._rows:
-            if wanted == f"{method}{self.suffix}" and self.determined(method, name):
+            if wanted == self.named(method) and self.determined(method, name):
                 yield name

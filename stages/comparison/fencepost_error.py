@@ -50,10 +50,10 @@ def off_by_a_sample(
     if speed is not None and _explains(speed, found, samples):
         return
     yield Difference(
-        kind=f"{KIND}{gyro.suffix}",
+        kind=gyro.named(KIND),
         parameter="gyroscope/scale",
         unit="1",
-        first=f"gyroscope/joint{gyro.suffix}",
+        first=f"gyroscope/{gyro.named('joint')}",
         second=scales[0]["source"],
         first_value=None,
         second_value=None,

@@ -36,7 +36,7 @@ def method_against_method(results: Results, method: str) -> Iterator[Difference]
         alike = abs(other["sigma"] / joint["sigma"] - 1) < ALIKE
         sigma = abs(other["sigma"] ** 2 - joint["sigma"] ** 2) ** 0.5
         yield Difference(
-            kind=f"{METHOD_AGAINST_METHOD}{results.suffix}",
+            kind=results.named(METHOD_AGAINST_METHOD),
             parameter=f"{results.stage}/{name}",
             unit=joint["unit"],
             first=other["id"],
@@ -78,10 +78,10 @@ def against_published(
             reason = table["reason"]
         alone = told["sigma"] is None
         yield Difference(
-            kind=f"{PUBLISHED}{own.suffix}",
+            kind=own.named(PUBLISHED),
             parameter=told["parameter"],
             unit=told["unit"],
-            first=f"{stage}/joint{own.suffix}/{name}",
+            first=own.id("joint", name),
             second=told["source"],
             first_value=None if ours is None else ours["value"],
             second_value=told["value"],

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.gyroscope_methods import uprights
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.rate_segments import GyroInputs, angles_about
+from inertial.campaign.rate_segments import angles_about
 from inertial.estimation.gyroscope_formulas import both_ways, two_positions
 from inertial.estimation.gyroscopes import Angle, known_angle
 from inertial.tables import AXES
@@ -19,20 +19,18 @@ Pair = tuple[tuple[str, Angle], tuple[str, Angle]]
 
 
 def forward_against_backward(
-    inputs: GyroInputs, levels: NoiseLevels, gyro: Results, scatter: float
+    data: CampaignData, gyro: Results, scatter: float
 ) -> Iterator[Difference]:
     """The scale factor by each direction alone, pair by pair, the joint bias taken out."""
     for i, axis in enumerate(AXES):
         bias = gyro.determined("joint", f"bias_{axis}")
-        pairs = _pairs(angles_about(inputs, i, levels))
+        pairs = _pairs(angles_about(data, i))
         if bias is None:
             continue
         for (forward_name, forward), (backward_name, backward) in pairs:
-            found = both_ways(
-                forward, backward, bias["value"], bias["sigma"], inputs.earth, scatter
-            )
+            found = both_ways(forward, backward, bias["value"], bias["sigma"], data.earth, scatter)
             yield Difference(
-                kind=f"{FORWARD_AGAINST_BACKWARD}{gyro.suffix}",
+                kind=gyro.named(FORWARD_AGAINST_BACKWARD),
                 parameter=f"gyroscope/scale_{axis}",
                 unit="1",
                 first=forward_name,
@@ -65,9 +63,7 @@ STATIC_AGAINST_TURNS = "static_against_turns"
 UNKNOWN_CROSS = 0.01  # rad, a mounting askew by half a degree: a cross term that no one determined
 
 
-def static_against_turns(
-    inputs: GyroInputs, levels: NoiseLevels, gyro: Results
-) -> Iterator[Difference]:
+def static_against_turns(data: CampaignData, gyro: Results) -> Iterator[Difference]:
     """Bias and scale factor of each axis from its rests up and down, and from its turns.
 
     Both sigmas are of noise and of what is known of table and site. The scatter between
@@ -75,13 +71,13 @@ def static_against_turns(
     lacks, and that is what differs here.
     """
     for i, axis in enumerate(AXES):
-        rests = list(uprights(inputs, i))
+        rests = list(uprights(data.gyro_inputs, i))
         static = two_positions(
-            [rest for _, rest in rests], _cross(gyro, axis), inputs.earth, inputs.position_sigma
+            [rest for _, rest in rests], _cross(gyro, axis), data.earth, data.position_sigma
         )
         if static is None or gyro.determined("turns", f"bias_{axis}") is None:
             continue
-        turns = known_angle([turn for _, turn in angles_about(inputs, i, levels)], inputs.earth)
+        turns = known_angle([turn for _, turn in angles_about(data, i)], data.earth)
         found = {
             "bias": (static.bias, static.bias_sigma, 0, "rad/s"),
             "scale": (static.scale, static.scale_sigma, 1, "1"),
@@ -90,11 +86,11 @@ def static_against_turns(
             if value is None or sigma is None:
                 continue
             yield Difference(
-                kind=f"{STATIC_AGAINST_TURNS}{gyro.suffix}",
+                kind=gyro.named(STATIC_AGAINST_TURNS),
                 parameter=f"gyroscope/{name}_{axis}",
                 unit=unit,
                 first=f"rests with {axis} up and {axis} down: {', '.join(n for n, _ in rests)}",
-                second=f"gyroscope/turns{gyro.suffix}/{name}_{axis}",
+                second=gyro.id("turns", f"{name}_{axis}"),
                 first_value=value,
                 second_value=float(turns.values[column]),
                 sigma=float(np.hypot(sigma, turns.sigma[column])),

@@ -4,7 +4,7 @@ Compensation is linear, so the mean of compensated samples is the compensated me
 `segment` are enough, and what is masked stays out.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,16 +12,16 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.rate_segments import Recorded, gyro_inputs, position_of
-from inertial.campaign.records import Known, Manoeuvre, Performed, Row, rows_of
-from inertial.campaign.static_positions import Still, stills
-from inertial.estimation.gyroscopes import Position
+from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.rate_segments import Recorded, position_of
+from inertial.campaign.records import Row, rows_of, with_mount
+from inertial.campaign.static_positions import Still
+from inertial.estimation.gyroscopes import Earth, Position
 from inertial.physics.forward import Triad
 from inertial.tables import GYRO
 from inertial.text.numbers import decimals_of, fixed, with_sigma
 from inertial.text.units import DEGREES, DEGREES_PER_HOUR, MICRO_G, SECONDS_OF_ARC, Unit
-from stages.compensation.correction import Correction, truth_of
+from stages.compensation.correction import truth_of
 
 Array = NDArray[np.float64]
 
@@ -48,8 +48,8 @@ class Check:
     after: float
     sigma: float
 
-    def row(self, suffix: str) -> Row:
-        """The row of the table; `suffix` is @ and the mount where there are several."""
+    def row(self, mount: str) -> Row:
+        """The row of the table; `mount` is empty where there is a single one."""
         name, unit, fine = UNITS[self.quantity]
         off, sigma = fine.of(self.after - self.expected), fine.of(self.sigma)
         left, spread = with_sigma(off, sigma, decimals_of(sigma))
@@ -66,7 +66,7 @@ class Check:
             unit.name if unit is DEGREES else f" {unit.name}"
         )
         return {
-            "id": f"compensation{suffix}/{self.quantity}/{self.manoeuvre}",
+            "id": f"{with_mount('compensation', mount)}/{self.quantity}/{self.manoeuvre}",
             "manoeuvre": self.manoeuvre,
             "quantity": self.quantity,
             "unit": SI[self.quantity],
@@ -82,30 +82,22 @@ class Check:
         }
 
 
-def checks(
-    blocks: pd.DataFrame,
-    plan: Sequence[Manoeuvre],
-    done: Mapping[str, Performed],
-    levels: NoiseLevels,
-    known: Mapping[str, Known],
-    correction: Correction,
-) -> Iterator[Check]:
+def checks(data: CampaignData) -> Iterator[Check]:
     """Every rest and every whole turn of one mount."""
-    if correction.accelerometer is not None:
-        found, _ = stills(blocks, plan, done, levels, "accel")
-        for still in found:
-            yield from _forces(still, correction.accelerometer, known)
-    if correction.gyro is not None:
-        inputs = gyro_inputs(blocks, plan, done, levels, known)
-        for still in inputs.stills:
-            yield from _rate(still, correction.gyro, known)
-        for one in inputs.usable:
+    if (triad := data.result.accelerometer) is not None:
+        for still in data.accelerometer_positions[0]:
+            yield from _forces(still, triad, data)
+    if (triad := data.result.gyro) is not None:
+        for still in data.gyro_positions[0]:
+            yield from _rate(still, triad, data)
+        for one in data.gyro_inputs.usable:
             if one.plan.recorded == "whole" and one.done.complete:
-                yield from _angle(one, levels, correction.gyro, known)
+                yield from _angle(one, triad, data)
 
 
-def missing(parameters: pd.DataFrame, method: str, sensor: str, suffix: str) -> Row:
+def missing(parameters: pd.DataFrame, sensor: str, mount: str) -> Row:
     """Why the three sensors of one kind are not compensated."""
+    method = with_mount("joint", mount)
     reasons: dict[str, list[str]] = {}
     for row in rows_of(parameters):
         linear = row["parameter"].startswith(("bias", "scale", "cross"))
@@ -114,7 +106,7 @@ def missing(parameters: pd.DataFrame, method: str, sensor: str, suffix: str) -> 
     told = "; ".join(f"{', '.join(names)}: {reason}" for reason, names in reasons.items())
     nothing = ("expected", "expected_sigma", "before", "after", "after_sigma", "in_sigmas_after")
     return dict.fromkeys(nothing) | {
-        "id": f"compensation{suffix}/{sensor}",
+        "id": f"{with_mount('compensation', mount)}/{sensor}",
         "manoeuvre": None,
         "quantity": sensor,
         "unit": "",
@@ -135,11 +127,11 @@ def table_of(rows: list[Row]) -> pd.DataFrame:
 # ---- at rest
 
 
-def _forces(still: Still, triad: Triad, known: Mapping[str, Known]) -> Iterator[Check]:
+def _forces(still: Still, triad: Triad, data: CampaignData) -> Iterator[Check]:
     """|f|, which no tilt changes, and the force along up, which tilt lessens by its square."""
     reading, noise = still.over()
     force = truth_of(reading, triad)
-    gravity = known["gravity"]
+    gravity = data.gravity
     size = float(np.linalg.norm(force))
     if not np.isfinite(size):
         return
@@ -153,7 +145,7 @@ def _forces(still: Still, triad: Triad, known: Mapping[str, Known]) -> Iterator[
         _noise_along(force / size, triad, noise),
     )
     up = still.up_now
-    tilted = gravity.number * known["position"].scatter ** 2
+    tilted = gravity.number * data.position_sigma**2
     yield Check(
         still.label,
         "force_up",
@@ -165,19 +157,19 @@ def _forces(still: Still, triad: Triad, known: Mapping[str, Known]) -> Iterator[
     )
 
 
-def _rate(still: Still, triad: Triad, known: Mapping[str, Known]) -> Iterator[Check]:
+def _rate(still: Still, triad: Triad, data: CampaignData) -> Iterator[Check]:
     """The rate along up; a tilt turns part of the level earth rate into it."""
     reading, noise = still.over()
-    up, earth = still.up_now, known["earth_rate_up"]
+    up, earth = still.up_now, data.earth
     after = float(truth_of(reading, triad) @ up)
     if np.isfinite(after):
-        tilted = known["earth_rate_level"].number * known["position"].scatter
-        spread = (_noise_along(up, triad, noise), tilted, earth.scatter)
+        tilted = earth.level * data.position_sigma
+        spread = (_noise_along(up, triad, noise), tilted, earth.up_sigma)
         yield Check(
             still.label,
             "rate_up",
-            earth.number,
-            earth.scatter,
+            earth.up,
+            earth.up_sigma,
             float(reading @ up),
             after,
             float(np.linalg.norm(spread)),
@@ -193,9 +185,7 @@ def _noise_along(direction: Array, triad: Triad, sigma: Array) -> float:
 # ---- turns
 
 
-def _angle(
-    one: Recorded, levels: NoiseLevels, triad: Triad, known: Mapping[str, Known]
-) -> Iterator[Check]:
+def _angle(one: Recorded, triad: Triad, data: CampaignData) -> Iterator[Check]:
     """The angle of a whole turn about its axis, with the earth's rate taken out.
 
     The axis stands still in body and laboratory, so the earth's rate along it is the same all the
@@ -205,11 +195,11 @@ def _angle(
     assert m.angle is not None and m.angle_sigma is not None  # else it is refused
     time = float(seconds.sum())
     summed = (one.blocks.gyro * seconds[:, None]).sum(axis=0)
-    earth, sigma = _earth_along(m.axis, position_of(m, known["heading"].value), known)
+    earth, sigma = _earth_along(m.axis, position_of(m, data.heading), data.earth)
     after = float(truth_of(summed, triad, time) @ m.axis) - earth * time
     if not np.isfinite(after):
         return
-    noise = _noise_along(m.axis, triad, levels.of(m.name, "rest", GYRO) * np.sqrt(time))
+    noise = _noise_along(m.axis, triad, data.noise.of(m.name, "rest", GYRO) * np.sqrt(time))
     yield Check(
         m.name,
         "angle",
@@ -221,15 +211,12 @@ def _angle(
     )
 
 
-def _earth_along(
-    axis: Array, position: Position, known: Mapping[str, Known]
-) -> tuple[float, float]:
+def _earth_along(axis: Array, position: Position, earth: Earth) -> tuple[float, float]:
     """The earth's rate along the axis of a turn, and its sigma, rad/s."""
-    up, level = known["earth_rate_up"], known["earth_rate_level"].number
     lean = float(position.up @ axis)
-    upward, spread = up.number * lean, up.scatter * lean
+    upward, spread = earth.up * lean, earth.up_sigma * lean
     if position.north is not None:
-        return upward + level * float(position.north @ axis), abs(spread)
+        return upward + earth.level * float(position.north @ axis), abs(spread)
     # An unknown azimuth is a random direction.
-    across = level * np.sqrt(max(1 - lean**2, 0.0) / 2)
+    across = earth.level * np.sqrt(max(1 - lean**2, 0.0) / 2)
     return upward, float(np.hypot(spread, across))

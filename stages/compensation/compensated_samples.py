@@ -54,5 +54,5 @@ class CompensatedStream(Stream):
                     masked = self.masks.of(log, record[own])
                     kept = np.where(masked.channels, np.nan, readings[own])
                     kept[masked.whole] = np.nan
-                    truth[own] = part.correction.truth(kept)
+                    truth[own] = part.truth(kept)
         return truth

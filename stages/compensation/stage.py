@@ -7,18 +7,16 @@ import pandas as pd
 
 from inertial import tables
 from inertial.campaign import findings as found
-from inertial.campaign.estimates import by_mount
+from inertial.campaign.campaign_data import campaigns_of
 from inertial.campaign.findings import Finding
 from inertial.campaign.masked_samples import Masks
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import Row, known_of, manoeuvres_of, performed_of, rows_of
-from inertial.campaign.solution import triad_of
+from inertial.campaign.records import Row, rows_of
 from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Pieces, Stage
 from stages.compensation.checks import checks, missing, table_of
 from stages.compensation.compensated_samples import CompensatedStream
-from stages.compensation.correction import Correction, mounted
+from stages.compensation.correction import mounted
 from stages.compensation.declared import DECLARED
 from stages.compensation.envelope import envelope
 
@@ -69,28 +67,25 @@ def compensation(
     if facts["compensated"]:
         yield "findings", found.table_of([ALREADY])
         return
-    given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
-    plan = manoeuvres_of(manoeuvres)
-    corrections: dict[str, Correction] = {}
-    rows: list[Row] = []
-    for suffix, own in by_mount(plan):
-        correction = Correction(
-            triad_of(accelerometer_parameters, f"joint{suffix}"),
-            triad_of(gyroscope_parameters, f"joint{suffix}"),
-        )
-        corrections[own[0].mount] = correction
-        told = checks(blocks, own, done, levels, given, correction)
-        rows += [check.row(suffix) for check in told]
-        if correction.accelerometer is None:
-            rows.append(
-                missing(accelerometer_parameters, f"joint{suffix}", "accelerometer", suffix)
-            )
-        if correction.gyro is None:
-            rows.append(missing(gyroscope_parameters, f"joint{suffix}", "gyro", suffix))
-    yield "checks", table_of(rows)
-    compensated = CompensatedStream(
-        samples.path, mounted(plan, segments, corrections), Masks(masks)
+    mounts = campaigns_of(
+        manoeuvres,
+        performed,
+        blocks,
+        noise,
+        known,
+        None,
+        accelerometer_parameters,
+        gyroscope_parameters,
     )
+    rows: list[Row] = []
+    for data in mounts:
+        rows += [check.row(data.mount) for check in checks(data)]
+        if data.result.accelerometer is None:
+            rows.append(missing(accelerometer_parameters, "accelerometer", data.mount))
+        if data.result.gyro is None:
+            rows.append(missing(gyroscope_parameters, "gyro", data.mount))
+    yield "checks", table_of(rows)
+    compensated = CompensatedStream(samples.path, mounted(mounts, segments), Masks(masks))
     for batch in compensated.columns([column.name for column in tables.COMPENSATED.columns]):
         yield "compensated", batch
     yield "compensated_traces", envelope(compensated, traces)

@@ -1,24 +1,15 @@
 """Which physical effects the simulation lacks, by name."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import pandas as pd
 
+from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.equations import Campaign, campaign_of
-from inertial.campaign.estimates import by_mount
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import (
-    Known,
-    clocks_of,
-    known_of,
-    manoeuvres_of,
-    performed_of,
-    rows_of,
-    share_a_clock,
-)
-from inertial.campaign.solution import Solution, solution_of
+from inertial.campaign.records import rows_of
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.effects import CATALOGUE
 from inertial.tables.parquet import Stream
@@ -61,32 +52,37 @@ def criticism(
 
     `level` is the accepted chance of naming anything where nothing is missing.
     """
-    given, done, clock = known_of(known), performed_of(performed), clocks_of(clocks)
     averaged = {row["log"] for row in rows_of(clocks) if row["clock"] == "GPS"}
-    levels, shared = NoiseLevels(noise), share_a_clock(clocks)
     sought = {place: [e for e in CATALOGUE.values() if e.sought_in == place] for place in PLACES}
     in_blocks = sought["blocks"]
     others = [*sought["noise"], *sought["quality"]]
     made: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
-    for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
-        solution = solution_of(
-            (accelerometer_parameters, gyroscope_parameters),
-            (accelerometer_positions, gyroscope_positions),
-            given,
-            suffix,
-            (accelerometer_fit, gyroscope_fit),
-        )
-        turns = steady_turns(simulated, plan, solution.gyro, clock, averaged)
+    for data in campaigns_of(
+        manoeuvres,
+        performed,
+        blocks,
+        noise,
+        known,
+        clocks,
+        accelerometer_parameters,
+        gyroscope_parameters,
+        accelerometer_positions,
+        gyroscope_positions,
+        accelerometer_fit,
+        gyroscope_fit,
+    ):
+        suffix, degrees = data.named(""), data.noise.degrees
+        turns = steady_turns(data, simulated, averaged)
         found = heard(turns, level * (1 - BLOCKS_SHARE), lowest_hz)
         quiet = without_lines(blocks, turns, found.lines)
-        campaign = campaign_of(quiet, plan, done, levels, given, solution, shared)
-        judged = judge(campaign, in_blocks, level * BLOCKS_SHARE, levels.degrees)
-        left = tested(judged.campaign, judged.effects, levels.degrees)
+        campaign = campaign_of(replace(data, blocks=quiet))
+        judged = judge(campaign, in_blocks, level * BLOCKS_SHARE, degrees)
+        left = tested(judged.campaign, judged.effects, degrees)
         judged = judged.demoted([sensor for sensor in SENSORS if left.of(sensor)])
         walks = walks_with_sigmas(judged.campaign, judged.effects)
         more = {
-            name: partial(_with, make, (levels, given, solution, shared))
-            for name, make in further(plan, done, quiet).items()
+            name: partial(_with, make, data)
+            for name, make in further(data.plan, data.performed, quiet).items()
         }
         rows = Rows(campaign, judged, Foreseen(judged, more), suffix)
         lines = LinesOfTurns(found, suffix)
@@ -107,7 +103,7 @@ def criticism(
         made["findings"] += lines.findings()
         made["findings"] += residual_structure.findings(left, judged.consistent(), suffix)
         made["findings"] += unexplained(judged, suffix)
-        made["findings"] += temperature_findings.findings(blocks, plan, level, suffix)
+        made["findings"] += temperature_findings.findings(blocks, data.plan, level, suffix)
     return {
         name: pd.DataFrame(rows, columns=[column.name for column in table.columns])
         if rows
@@ -116,13 +112,10 @@ def criticism(
     }
 
 
-def _with(
-    make: Callable[[], Further],
-    equal: tuple[NoiseLevels, Mapping[str, Known], Solution, bool],
-) -> Campaign:
+def _with(make: Callable[[], Further], data: CampaignData) -> Campaign:
     """The campaign with a further manoeuvre, all else equal."""
     one = make()
-    return campaign_of(one.blocks, one.plan, one.performed, *equal)
+    return campaign_of(replace(data, blocks=one.blocks, plan=one.plan, performed=one.performed))
 
 
 STAGE = Stage(criticism, DECLARED)

@@ -1,24 +1,14 @@
 """The model with the effects that were named, refitted: what it gains, and whether it counts."""
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 import pandas as pd
 
+from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.equations import campaign_of
-from inertial.campaign.estimates import by_mount
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import (
-    Manoeuvre,
-    clocks_of,
-    known_of,
-    manoeuvres_of,
-    performed_of,
-    rows_of,
-    share_a_clock,
-)
-from inertial.campaign.solution import solution_of
+from inertial.campaign.records import rows_of
 from inertial.campaign.steady_residuals import steady_residuals, steady_turns
 from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Triad
@@ -61,7 +51,6 @@ def extension(
     Where nothing was named there is nothing to extend: the joint result counts, and the tables but
     `decision` and `result` are empty.
     """
-    given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
     joint = {
         "gyro": rows_of(gyroscope_parameters),
         "accel": rows_of(accelerometer_parameters),
@@ -76,22 +65,27 @@ def extension(
     )
     made: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     covariances: list[pd.DataFrame] = []
-    for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
-        mount, method = suffix[1:], f"joint{suffix}"
+    for data in campaigns_of(
+        manoeuvres,
+        performed,
+        blocks,
+        noise,
+        known,
+        clocks,
+        accelerometer_parameters,
+        gyroscope_parameters,
+        accelerometer_positions,
+        gyroscope_positions,
+        accelerometer_fit,
+        gyroscope_fit,
+    ):
+        mount, method, suffix = data.mount, data.named("joint"), data.named("")
+        solution = data.result
         named = named_of(rows_of(criticism_findings), rows_of(effects), suffix)
-        solution = solution_of(
-            (accelerometer_parameters, gyroscope_parameters),
-            (accelerometer_positions, gyroscope_positions),
-            given,
-            suffix,
-            (accelerometer_fit, gyroscope_fit),
-        )
         extended: dict[str, Solved] = {}
         found = {}
         if named.in_blocks:
-            campaign = campaign_of(
-                blocks, plan, done, levels, given, solution, share_a_clock(clocks)
-            )
+            campaign = campaign_of(data)
             beside = (walk_of[method, "gyro"], walk_of[method, "accel"])
             models = models_of(campaign, named.in_blocks, beside)
             for sensor, system, walk in zip(SENSORS, models.systems(), beside, strict=True):
@@ -100,7 +94,7 @@ def extension(
                     extended[sensor] = one
                     covariances.append(one.covariance_rows())
                     made["parameters"] += one.rows
-                    made["fit"].append(one.fit_row(fits[sensor, method], levels.degrees))
+                    made["fit"].append(one.fit_row(fits[sensor, method], data.noise.degrees))
             found = held_out(models)
             made["gain"] += gain(models, found, mount)
             triads = {"gyro": solution.gyro, "accel": solution.accelerometer}
@@ -120,7 +114,7 @@ def extension(
             if one_of is not None:
                 made["moved"] += moved(one_of, own, bool(fits[sensor, method]["scatter"]))
         if named.in_spectrum and solution.gyro is not None:
-            made["gain"] += _of_spectrum(named, simulated, plan, solution.gyro, clocks, mount)
+            made["gain"] += _of_spectrum(data, named, simulated, clocks, solution.gyro)
     written = {
         name: pd.DataFrame(rows, columns=[column.name for column in DECLARED.writes[name].columns])
         if rows
@@ -131,24 +125,22 @@ def extension(
 
 
 def _of_spectrum(
+    data: CampaignData,
     named: Named,
     simulated: Stream,
-    plan: Sequence[Manoeuvre],
-    gyro: Triad,
     clocks: pd.DataFrame,
-    mount: str,
+    gyro: Triad,
 ) -> Iterator[Row]:
     """The gain of an oscillation, and of what goes with the table's angle."""
-    clock = clocks_of(clocks)
     for effect, values in named.in_spectrum.items():
         if effect != "oscillation":
             averaged = {row["log"] for row in rows_of(clocks) if row["clock"] == "GPS"}
-            turns = steady_turns(simulated, plan, gyro, clock, averaged)
-            yield from gain_of_ripple(turns, effect, values, mount)
+            turns = steady_turns(data, simulated, averaged)
+            yield from gain_of_ripple(turns, effect, values, data.mount)
         elif "frequency" in values:
-            step_of = {m.name: clock[m.log].step for m in plan}
+            step_of = {m.name: data.clocks[m.log].step for m in data.plan}
             heard = [(n, r) for n, r in steady_residuals(simulated) if n in step_of]
-            yield from gain_of_line(heard, step_of, values["frequency"], gyro, mount)
+            yield from gain_of_line(heard, step_of, values["frequency"], gyro, data.mount)
 
 
 STAGE = Stage(extension, DECLARED)

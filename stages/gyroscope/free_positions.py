@@ -5,7 +5,7 @@ is the blocks of phase `between`, one for each record, from the end of a rest to
 the next one in the same log; where one of them is missing, no attitude can be carried through.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
 
@@ -13,12 +13,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import Estimates, reasons
 from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import Known, Manoeuvre
 from inertial.campaign.unknown_attitude import METHOD, FreeStill, fitted_to, free_stills
 from inertial.estimation.between_positions import Given, Passage, Stop, between_rests
-from inertial.estimation.gyroscopes import Earth
 from inertial.estimation.least_squares import with_scatter
 from inertial.tables import GYRO
 
@@ -33,43 +32,31 @@ CURES = {
 }
 
 
-def add_free_gyros(
-    estimates: Estimates,
-    suffix: str,
-    blocks: pd.DataFrame,
-    plan: Sequence[Manoeuvre],
-    noise: NoiseLevels,
-    known: Mapping[str, Known],
-) -> None:
+def add_free_gyros(estimates: Estimates, data: CampaignData) -> None:
     """The method's rows; none where the plan knows every attitude."""
-    found, left = free_stills(blocks, plan, noise)
+    found, left = free_stills(data)
     stops = [_stop(one) for one in found]
     recorded = np.isfinite(np.array([stop.mean for stop in stops]).reshape(-1, 3)).any(axis=0)
     if not recorded.any():
         if left or found:
-            estimates.add_nothing(f"{METHOD}{suffix}", "; ".join(left) or "no gyro is recorded")
+            estimates.add_nothing(METHOD, "; ".join(left) or "no gyro is recorded")
         return
-    passages, names, broken = passages_of(found, blocks, noise)
-    earth = Earth(
-        known["earth_rate_up"].number,
-        known["earth_rate_up"].scatter,
-        known["earth_rate_level"].number,
-    )
-    between = fitted_to(found, noise, known).scatter
-    given = Given(known["gravity"].number, known["gravity"].scatter, between, earth)
+    passages, names, broken = passages_of(found, data.blocks, data.noise)
+    between = fitted_to(data, found).scatter
+    given = Given(data.gravity.number, data.gravity.scatter, between, data.earth)
     fits = [
         with_scatter(
             partial(between_rests, stops, passages, given, sways=sways),
             between=SCATTER,
-            noise_degrees=noise.degrees,
+            noise_degrees=data.noise.degrees,
         )
         for sways in (False, True)
     ]
     fitted = min(fits, key=lambda fit: fit.estimate.deviance)
     why = reasons(fitted.estimate.determined, recorded, "gyro", CURES)
-    estimates.add_triad(f"{METHOD}{suffix}", fitted.estimate, why)
+    estimates.add_triad(METHOD, fitted.estimate, why)
     used = [one.label for one in found] + names
-    estimates.add_fit(f"{METHOD}{suffix}", fitted, used, left + broken)
+    estimates.add_fit(METHOD, fitted, used, left + broken)
 
 
 def _stop(one: FreeStill) -> Stop:

@@ -4,11 +4,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.estimates import Estimates, by_mount, reasons, stops_between_turns
+from inertial.campaign.campaign_data import campaigns_of
+from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
 from inertial.campaign.gyroscope_methods import add_formulas, add_turn_and_stop
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.rate_segments import GyroInputs, gyro_inputs
-from inertial.campaign.records import known_of, manoeuvres_of, performed_of, share_a_clock
+from inertial.campaign.rate_segments import GyroInputs
 from inertial.campaign.static_positions import averaging_times
 from inertial.estimation import gyroscopes
 from inertial.tables.stage import Stage, Tables
@@ -36,28 +35,26 @@ def gyroscope(
 
     Each mount has parameters of its own, for its mounting rotation is one of them.
     """
-    given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
-    shared = share_a_clock(clocks)
-    estimates = Estimates("gyroscope")
-    for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
-        add_free_gyros(estimates, suffix, blocks, plan, levels, given)
-        inputs = gyro_inputs(blocks, plan, done, levels, given, shared)
+    collected = Estimates("gyroscope")
+    for data in campaigns_of(manoeuvres, performed, blocks, noise, known, clocks):
+        estimates, inputs = collected.on(data.mount), data.gyro_inputs
+        add_free_gyros(estimates, data)
         if inputs.nothing:
-            estimates.add_nothing(f"joint{suffix}", "; ".join(inputs.left_out))
+            estimates.add_nothing("joint", "; ".join(inputs.left_out))
             continue
         moving = (inputs.turns, inputs.steadies, inputs.earth, inputs.position_sigma)
-        fitted = gyroscopes.fitted(inputs.rests, *moving, levels.degrees)
+        fitted = gyroscopes.fitted(inputs.rests, *moving, data.noise.degrees)
         why = reasons(fitted.estimate.determined, _channels(inputs), "gyro", CURES)
-        estimates.add_triad(f"joint{suffix}", fitted.estimate, why)
-        estimates.add_fit(f"joint{suffix}", fitted, inputs.used, inputs.left_out)
+        estimates.add_triad("joint", fitted.estimate, why)
+        estimates.add_fit("joint", fitted, inputs.used, inputs.left_out)
         linear = gyroscopes.about(gyroscopes.around_of(fitted.estimate, inputs.earth), *moving)
         for seconds in averaging_times(inputs.stills, averaging_steps):
             shorter = linear.system(inputs.first_of_rests(seconds), fitted.scatter, fitted.walk)
-            estimates.add_averaging(f"joint{suffix}", seconds, shorter.solve_shared())
-        add_formulas(estimates, suffix, inputs, levels, fitted, wanted_bias)
-        if stops_between_turns(plan):
-            add_turn_and_stop(estimates, suffix, inputs, fitted.scatter)
-    return estimates.tables()
+            estimates.add_averaging("joint", seconds, shorter.solve_shared())
+        add_formulas(estimates, data, fitted, wanted_bias)
+        if stops_between_turns(data.plan):
+            add_turn_and_stop(estimates, inputs, fitted.scatter)
+    return collected.tables()
 
 
 def _channels(inputs: GyroInputs) -> NDArray[np.bool_]:

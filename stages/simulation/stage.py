@@ -1,6 +1,6 @@
 """What the IMU should have read, by the forward model with the solved parameters."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -10,24 +10,12 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.estimates import by_mount
+from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.masked_samples import inside, pieces
 from inertial.campaign.motions import at_rest, in_samples
 from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import (
-    Clock,
-    Known,
-    Manoeuvre,
-    Performed,
-    Row,
-    clocks_of,
-    known_of,
-    manoeuvres_of,
-    performed_of,
-    rows_of,
-)
-from inertial.campaign.solution import Solution, solution_of
-from inertial.campaign.static_positions import stills
+from inertial.campaign.records import Manoeuvre, Performed, Row, rows_of
+from inertial.campaign.solution import Solution
 from inertial.physics.effect import Reading
 from inertial.physics.forward import Triad, predict
 from inertial.physics.motion import Motion
@@ -57,34 +45,35 @@ def simulation(
     gyroscope_positions: pd.DataFrame,
 ) -> Pieces:
     """Turns sample by sample, rests block by block, each with what is left of the reading."""
-    given, done, clock = known_of(known), performed_of(performed), clocks_of(clocks)
-    levels = NoiseLevels(noise)
-    for suffix, plan in by_mount(manoeuvres_of(manoeuvres)):
-        solution = solution_of(
-            (accelerometer_parameters, gyroscope_parameters),
-            (accelerometer_positions, gyroscope_positions),
-            given,
-            suffix,
-        )
-        rests = list(_rests(blocks, plan, done, levels, given, solution))
+    for data in campaigns_of(
+        manoeuvres,
+        performed,
+        blocks,
+        noise,
+        known,
+        clocks,
+        accelerometer_parameters,
+        gyroscope_parameters,
+        accelerometer_positions,
+        gyroscope_positions,
+    ):
+        rests = list(_rests(data))
         if rests:
             yield "simulated", _frame([part for part, _ in rests])
-            rows = [row for part, s in rests for row in _fidelity(part, levels, "at rest", s)]
+            rows = [row for part, s in rests for row in _fidelity(part, data.noise, "at rest", s)]
             yield "fidelity", _table(rows)
-        if solution.gyro is None:
+        if data.result.gyro is None:
             continue
-        whole = [m for m in plan if _whole(m, done)]
+        whole = [m for m in data.plan if _whole(m, data.performed[m.name])]
         for m, parts in _samples_of(samples, segments, whole):
-            heading = given["heading"].value
-            used = blocks[blocks["manoeuvre"] == m.name]
-            part, how = _turn(m, parts, segments, used, clock[m.log], solution, heading)
+            part, how = _turn(data, m, parts, segments)
             yield "simulated", _frame([part])
-            yield "fidelity", _table(_fidelity(part, levels, how, clock[m.log].step))
+            yield "fidelity", _table(_fidelity(part, data.noise, how, data.clocks[m.log].step))
 
 
-def _whole(m: Manoeuvre, done: Mapping[str, Performed]) -> bool:
+def _whole(m: Manoeuvre, done: Performed) -> bool:
     known = m.up is not None and m.angle is not None
-    recorded = done[m.name].complete or done[m.name].bridged
+    recorded = done.complete or done.bridged
     return m.do == "turn" and m.recorded == "whole" and known and recorded
 
 
@@ -109,20 +98,11 @@ class Simulated:
         return self.read - self.said
 
 
-def _rests(
-    blocks: pd.DataFrame,
-    plan: list[Manoeuvre],
-    done: Mapping[str, Performed],
-    levels: NoiseLevels,
-    known: Mapping[str, Known],
-    solution: Solution,
-) -> Iterator[tuple[Simulated, float]]:
+def _rests(data: CampaignData) -> Iterator[tuple[Simulated, float]]:
     """Every rest in its blocks, each with how long a block lasts, s."""
-    found = {
-        still.label: still
-        for sensor in ("gyro", "accel")
-        for still in stills(blocks, plan, done, levels, sensor)[0]
-    }
+    both = [*data.gyro_positions[0], *data.accelerometer_positions[0]]
+    found = {still.label: still for still in both}
+    blocks = data.blocks
     rows = blocks.groupby(["manoeuvre", "phase"]).indices
     log, phase, record = (blocks[name].to_numpy() for name in ("log", "phase", "from_record"))
     time, seconds = (blocks[name].to_numpy(np.float64) for name in ("time", "seconds"))
@@ -130,7 +110,7 @@ def _rests(
     for label, still in found.items():
         name = still.manoeuvre.name
         own = rows[name, "rest" if label == name else label.rpartition("(")[2][:-1]]
-        said = _predicted(at_rest(still, solution, known["heading"].value, 0.0), solution)
+        said = _predicted(at_rest(data, still, 0.0), data.result)
         row = np.concatenate([said.accel[0], said.gyro[0]])
         every = np.tile(row, (len(own), 1))
         part = Simulated(name, log[own[0]], phase[own], record[own], time[own], every, read[own])
@@ -167,16 +147,11 @@ def _samples_of(
 
 
 def _turn(
-    m: Manoeuvre,
-    parts: dict[str, NDArray[Any]],
-    segments: pd.DataFrame,
-    blocks: pd.DataFrame,
-    clock: Clock,
-    solution: Solution,
-    heading: float | None,
+    data: CampaignData, m: Manoeuvre, parts: dict[str, NDArray[Any]], segments: pd.DataFrame
 ) -> tuple[Simulated, str]:
     """A turn sample by sample; what is in none of its blocks is masked, and not compared."""
-    record = parts["record"]
+    record, step = parts["record"], data.clocks[m.log].step
+    blocks = data.blocks[data.blocks["manoeuvre"] == m.name]
     own = [row for row in rows_of(segments) if row["manoeuvre"] == m.name]
     phase = np.full(len(record), "rest", dtype=object)
     for row in own:
@@ -184,10 +159,10 @@ def _turn(
     read = np.column_stack([parts[channel] for channel in tables.CHANNELS])
     edges = [blocks[name].to_numpy(np.int64) for name in ("from_record", "to_record")]
     read[~inside(record, *edges)] = np.nan
-    increments = read[:, len(GYRO) :] * clock.step
+    increments = read[:, len(GYRO) :] * step
     steady = phase == "steady"
-    motion, how = in_samples(m, increments, clock.step, steady, parts["time"], solution, heading)
-    said = _predicted(motion, solution)
+    motion, how = in_samples(data, m, increments, step, steady, parts["time"])
+    said = _predicted(motion, data.result)
     both = np.hstack([said.accel, said.gyro])
     return Simulated(m.name, m.log, phase, record, parts["time"], both, read), how
 

@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import UNIT, described
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import Known, Manoeuvre, Performed, rows_of
+from inertial.campaign.records import Manoeuvre, Performed, rows_of, with_mount
 from inertial.estimation.averaging_epochs import Formula, in_epochs, spread
 from inertial.estimation.triad import errors_of, linear_names
 from inertial.tables import AXES, CHANNELS
@@ -90,38 +90,32 @@ def formulas(ups: Array, gravity: float) -> list[Named]:
 
 
 def studied(
+    data: CampaignData,
     rests: Mapping[str, tuple[Manoeuvre, Stretch]],
     samples: Mapping[str, Samples],
-    steps: Mapping[str, float],
-    levels: NoiseLevels,
-    known: Mapping[str, Known],
-    suffix: str,
 ) -> dict[str, list[Row]]:
-    """Epochs and spreads of the rests of one mount, and what is not studied.
-
-    `steps`: s, of a sample, by log.
-    """
+    """Epochs and spreads of the rests of one mount, and what is not studied."""
     rows: dict[str, list[Row]] = {"epochs": [], "spreads": [], "not_studied": []}
     there = {name: one for name, one in rests.items() if name in samples}
     length = min((len(samples[name].time) for name in there), default=0)
-    step = np.array([steps[m.log] for m, _ in there.values()])
+    step = np.array([data.clocks[m.log].step for m, _ in there.values()])
     if length < FEWEST or np.ptp(step) > ALIKE * step.min():
         short = f"no rest of known attitude and {FEWEST} samples or more was found"
         reason = short if length < FEWEST else "the rests differ in their sample interval"
-        rows["not_studied"].append(_not_studied(f"rests{suffix}", reason))
+        rows["not_studied"].append(_not_studied(data.named("rests"), reason))
         return rows
     ups = np.array([m.up for m, _ in there.values()])
-    found = formulas(ups, known["gravity"].number)
+    found = formulas(ups, data.gravity.number)
     for stage in SENSORS:
         if stage not in [named.stage for named in found]:
-            what = f"{stage}{suffix}"
-            rows["not_studied"].append(_not_studied(what, f"it needs {NEEDED[stage]}"))
+            needed = NEEDED[stage]
+            rows["not_studied"].append(_not_studied(data.named(stage), f"it needs {needed}"))
     for named in found:
         place = SENSORS[named.stage]
         channels = CHANNELS[place : place + 3]
         values = [samples[name].values[:length, place : place + 3] for name in there]
-        density = np.concatenate([levels.of(name, "rest", channels) for name in there])
-        _add(rows, named, np.hstack(values), density, float(step.mean()), suffix)
+        density = np.concatenate([data.noise.of(name, "rest", channels) for name in there])
+        _add(rows, named, np.hstack(values), density, float(step.mean()), data.mount)
     return rows
 
 
@@ -135,12 +129,12 @@ def _add(
     readings: Array,
     density: Array,
     step: float,
-    suffix: str,
+    mount: str,
 ) -> None:
     told = np.isfinite(readings).any(axis=0) & np.isfinite(density)
     needed = (named.formula.weights != 0) @ ~told == 0
     for name in np.array(named.names)[~needed]:
-        what = f"{named.stage}{suffix}: {name}"
+        what = f"{with_mount(named.stage, mount)}: {name}"
         reason = "not all of its rests were recorded, with their noise"
         rows["not_studied"].append(_not_studied(what, reason))
     names = [name for name, has in zip(named.names, needed, strict=True) if has]
@@ -148,7 +142,8 @@ def _add(
         return
     formula = Formula(named.formula.weights[needed], named.formula.constant[needed])
     readings, density = np.where(told, readings, 0.0), np.where(told, density, 0.0)
-    ids = [f"{named.stage}/rests{suffix}/{name}" for name in names]
+    method = with_mount("rests", mount)
+    ids = [f"{named.stage}/{method}/{name}" for name in names]
     unit = [described(named.stage, name)[0] for name in names]
     assert set(unit) <= {"1", *UNIT.values()}
 

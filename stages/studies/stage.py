@@ -5,11 +5,10 @@ from typing import Any
 
 import pandas as pd
 
-from inertial.campaign.estimates import by_mount
+from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.masked_samples import Masks
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.rate_segments import GyroInputs, Recorded, gyro_inputs
-from inertial.campaign.records import clocks_of, known_of, manoeuvres_of, performed_of, rows_of
+from inertial.campaign.rate_segments import Recorded
+from inertial.campaign.records import rows_of
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from stages.studies import motion_rows
@@ -45,35 +44,32 @@ def studies(
     gyroscope_fit: pd.DataFrame,
 ) -> Tables:
     """Every study of every mount; what cannot be studied, with the reason."""
-    given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
-    steps = {log: one.step for log, one in clocks_of(clocks).items()}
     scatter = {row["method"]: row["scatter"] or 0.0 for row in rows_of(gyroscope_fit)}
-    rate_sigma = given["turn_rate"].scatter
-    plans = dict(by_mount(manoeuvres_of(manoeuvres)))
-    inputs = {suffix: gyro_inputs(blocks, m, done, levels, given) for suffix, m in plans.items()}
-    rests = {suffix: rests_of(m, done, segments) for suffix, m in plans.items()}
-    turns = {suffix: [r for r in inputs[suffix].recorded if not why_not(r)] for suffix in plans}
+    mounts = campaigns_of(manoeuvres, performed, blocks, noise, known, clocks)
+    rests = {data.mount: rests_of(data.plan, data.performed, segments) for data in mounts}
+    turns = {
+        data.mount: [r for r in data.gyro_inputs.recorded if not why_not(r)] for data in mounts
+    }
 
     wanted = {name: stretch for found in rests.values() for name, (_, stretch) in found.items()}
     wanted |= {r.plan.name: stretch_of(r, segments) for found in turns.values() for r in found}
     read = samples_in(samples, wanted, Masks(masks))
 
     rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
-    for suffix in plans:
-        _add(rows, studied(rests[suffix], read, steps, levels, given, suffix))
-        _add(rows, _refused(inputs[suffix].recorded))
-        gyros = gyros_of(gyroscope_parameters, f"joint{suffix}")
-        between = scatter.get(f"joint{suffix}", 0.0)
+    for data in mounts:
+        _add(rows, studied(data, rests[data.mount], read))
+        _add(rows, _refused(data.gyro_inputs.recorded))
+        gyros = gyros_of(gyroscope_parameters, data.named("joint"))
+        between = scatter.get(data.named("joint"), 0.0)
         motions: dict[str, WholeMotion] = {}
-        for r in turns[suffix]:
+        for r in turns[data.mount]:
             name, times = r.plan.name, steady_times(r, segments)
-            step = steps[r.plan.log]
-            found = motion_of(r, read[name], times, step, inputs[suffix], gyros, levels, between)
+            found = motion_of(data, r, read[name], times, gyros, between)
             if isinstance(found, WholeMotion):
                 motions[name] = found
             else:
                 _add(rows, {"not_studied": [_not_studied(name, found)]})
-        _add(rows, _of_turns(motions, inputs[suffix], levels, gyros, rate_sigma))
+        _add(rows, _of_turns(data, motions, gyros))
     return {
         name: pd.DataFrame(rows[name]) if rows[name] else table.empty()
         for name, table in DECLARED.writes.items()
@@ -95,11 +91,7 @@ def _not_studied(turn: str, reason: str) -> Row:
 
 
 def _of_turns(
-    motions: Mapping[str, WholeMotion],
-    inputs: GyroInputs,
-    levels: NoiseLevels,
-    gyros: Gyros,
-    rate_sigma: float,
+    data: CampaignData, motions: Mapping[str, WholeMotion], gyros: Gyros
 ) -> dict[str, list[Row]]:
     """Time and angle of each turn, and the windows of each pair."""
     rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
@@ -107,8 +99,8 @@ def _of_turns(
         rows["time_angle"] += motion_rows.angles(motion)
         rows["motions"] += motion_rows.numbers(motion)
     for found in pairs_of(motions):
-        pair = pair_of(found, list(motions.values()), inputs, levels, gyros, rate_sigma)
-        whole = pair.whole(inputs, levels)
+        pair = pair_of(data, found, list(motions.values()), gyros)
+        whole = pair.whole(data)
         windows = sliding(pair, whole)
         rows["windows"] += windows
         rows["growing"] += growing(pair, whole)

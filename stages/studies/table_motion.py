@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.motions import angles_seen
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.rate_segments import GyroInputs, Recorded, position_of
+from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Manoeuvre, rows_of
 from inertial.estimation.periodic_in_time import strongest
 from inertial.estimation.time_angle import Errors, TimeAngle, ripple_angle, ripple_window, tied
@@ -145,13 +145,11 @@ def why_not(one: Recorded) -> str:
 
 
 def motion_of(
+    data: CampaignData,
     one: Recorded,
     samples: Samples,
     steady: tuple[float, float],
-    step: float,
-    inputs: GyroInputs,
     gyros: Gyros,
-    levels: NoiseLevels,
     scatter: float,
 ) -> WholeMotion | str:
     """A turn, or why there is none.
@@ -161,7 +159,7 @@ def motion_of(
     steady : s, time of the first and of the last sample of the steady part
     scatter : rad/s, between manoeuvres, that the joint estimate allows for
     """
-    m = one.plan
+    m, step = one.plan, data.clocks[one.plan.log].step
     assert m.up is not None and m.angle is not None and m.angle_sigma is not None  # else refused
     rates, time = samples.values[:, 3:], samples.time
     there = np.isfinite(rates) | ~np.isfinite(rates).any(axis=0)
@@ -176,8 +174,8 @@ def motion_of(
     first = int(np.argmin(np.abs(time - steady[0])))
     after = int(np.argmin(np.abs(time - steady[1]))) + 1
 
-    earth = inputs.earth
-    north = position_of(m, inputs.heading).north
+    earth = data.earth
+    north = position_of(m, data.heading).north
     lying = float(np.linalg.norm(cross(m.up, about)))  # 0 where the axis is upright
     sensed = np.where(np.isfinite(increments), increments, gyros.triad.bias * step)
     seen = angles_seen(
@@ -192,7 +190,7 @@ def motion_of(
     )
     lines = [_line(increments[first:after, i], step) for i in range(3)]
     unknown_level = 0.0 if north is not None else earth.level * lying / np.sqrt(2)
-    density = (about * levels.of(m.name, "steady", GYRO))[about != 0]
+    density = (about * data.noise.of(m.name, "steady", GYRO))[about != 0]
     ringing = lines[int(np.argmax(np.abs(about)))]
     offset = [gyros.along(about), scatter, earth.up_sigma * float(about @ m.up), unknown_level]
     if not np.isfinite(density).all():

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.rate_segments import GyroInputs, angles_about
+from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.rate_segments import angles_about
 from inertial.estimation.angle_windows import (
     Window,
     at_set_rate,
@@ -122,11 +122,11 @@ class Pair:
             sigmas = {name: whole[name] for name in ("scale_sigma", "cut_sigma", "bias_sigma")}
             yield row | sigmas
 
-    def whole(self, inputs: GyroInputs, levels: NoiseLevels) -> Row:
+    def whole(self, data: CampaignData) -> Row:
         """The whole turn, by S0's formula."""
         names = (self.forward.plan.name, self.backward.plan.name)
-        own = [turn for name, turn in angles_about(inputs, self.axis, levels) if name in names]
-        found = known_angle(own, inputs.earth)
+        own = [turn for name, turn in angles_about(data, self.axis) if name in names]
+        found = known_angle(own, data.earth)
         return self._row(
             "whole turn",
             from_s=-self.forward.first * self.step,
@@ -209,18 +209,16 @@ def together(values: Iterable[Valued]) -> Valued | None:
 
 
 def pair_of(
+    data: CampaignData,
     found: tuple[int, WholeMotion, WholeMotion],
     motions: Sequence[WholeMotion],
-    inputs: GyroInputs,
-    levels: NoiseLevels,
     gyros: Gyros,
-    rate_sigma: float,
 ) -> Pair:
     """A pair with what its windows suffer; `motions`: all turns of the mount."""
     i, forward, backward = found
     up = forward.plan.up
     assert up is not None  # else the turn is refused
-    densities = [levels.of(m.plan.name, "steady", GYRO)[i] for m in (forward, backward)]
+    densities = [data.noise.of(m.plan.name, "steady", GYRO)[i] for m in (forward, backward)]
     others = [
         one
         for motion in motions
@@ -233,9 +231,9 @@ def pair_of(
         forward,
         backward,
         (float(densities[0]), float(densities[1])),
-        inputs.earth.up * float(up[i]),
-        gyros.cross(i) * inputs.earth.level / np.sqrt(2),
-        rate_sigma,
+        data.earth.up * float(up[i]),
+        gyros.cross(i) * data.earth.level / np.sqrt(2),
+        data.rate_sigma,
         together(others),
     )
 

@@ -9,9 +9,6 @@ import pytest
 from z_turns import ANGLE, NOISE, Z_SCALE, inputs_of, lose
 
 from inertial.campaign.equations import campaign_of
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import known_of, manoeuvres_of, performed_of
-from inertial.campaign.solution import solution_of
 from inertial.estimation.gyroscopes import Angle, Turn, joint, known_angle
 from inertial.estimation.triad import errors_of, linear_names
 
@@ -63,18 +60,8 @@ def test_criticism_and_extension_take_the_turn_as_the_joint_estimate_does(tmp_pa
         entry |= {"seconds": 30} if entry["do"] == "rest" else {}
     campaign = chain.simulate(document, tmp_path / "raw")
     results = chain.run(campaign, tmp_path / "derived", "gyroscope")
-    given = known_of(results["plan/known"])
-    of_stages = [results[f"{stage}/parameters"] for stage in ("accelerometer", "gyroscope")]
-    set_up = [results[f"{stage}/positions"] for stage in ("accelerometer", "gyroscope")]
-    campaign = campaign_of(
-        results["segment/blocks"],
-        manoeuvres_of(results["plan/manoeuvres"]),
-        performed_of(results["segment/performed"]),
-        NoiseLevels(results["noise/noise"]),
-        given,
-        solution_of(tuple(of_stages), tuple(set_up), given, ""),
-        shared_clock=True,
-    )
+    (data,) = chain.mounts(results)
+    campaign = campaign_of(data).without_walk()
     assert "z-backward" in campaign.manoeuvres
     system, _ = campaign.systems([], 1.0)
     assert system.column("bridged", "z-backward 5") is not None

@@ -6,9 +6,7 @@ from pathlib import Path
 import chain
 import pandas as pd
 
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.rate_segments import GyroInputs, gyro_inputs
-from inertial.campaign.records import known_of, manoeuvres_of, performed_of
+from inertial.campaign.rate_segments import GyroInputs
 
 NOISE = radians(0.012 / 60)  # rad/√s, of the demo
 STEP = 0.01  # s
@@ -42,14 +40,8 @@ def recorded(folder: Path, until: str = "segment", **changes) -> chain.Results:
 
 def inputs_of(results: chain.Results, tables: dict[str, pd.DataFrame] | None = None) -> GyroInputs:
     """What the gyros' estimate takes; `tables`: other blocks and performed manoeuvres."""
-    tables = tables or {name: results[f"segment/{name}"] for name in ("blocks", "performed")}
-    return gyro_inputs(
-        tables["blocks"],
-        manoeuvres_of(results["plan/manoeuvres"]),
-        performed_of(tables["performed"]),
-        NoiseLevels(results["noise/noise"]),
-        known_of(results["plan/known"]),
-    )
+    (data,) = chain.mounts(results, **tables or {})
+    return data.gyro_inputs
 
 
 def of_z(results_or_tables, key: str = "performed") -> pd.Series:

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.equations import Campaign, campaign_of
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Known, Manoeuvre, Performed
@@ -147,8 +148,17 @@ class Plan:
         }
         solution = Solution(GYRO, ACCELEROMETER, SITE, {})
         blocks = pd.concat(self.rows, ignore_index=True)
-        levels = NoiseLevels(self._noise())
-        return campaign_of(blocks, self.manoeuvres, done, levels, known, solution, self.clock)
+        return campaign_of(
+            CampaignData(
+                self.manoeuvres,
+                done,
+                blocks,
+                NoiseLevels(self._noise()),
+                known,
+                shared_clock=self.clock,
+                solution=solution,
+            )
+        )
 
     def _noise(self) -> pd.DataFrame:
         rows = []

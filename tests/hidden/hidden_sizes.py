@@ -18,9 +18,6 @@ from hidden_ways import WAYS
 
 import laboratory
 from inertial.campaign.equations import Campaign, campaign_of, evidence
-from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import known_of, manoeuvres_of, performed_of, share_a_clock
-from inertial.campaign.solution import solution_of
 from inertial.effects import CATALOGUE
 from inertial.model_selection.evidence import Evidence, Sought
 from inertial.model_selection.naming import law_of
@@ -144,25 +141,12 @@ def _made(plan: str) -> Reference:
     recording = laboratory.perform(laboratory.specify(PLANS[plan](seed=SEED)))
     with in_memory.recorded(recording, folder / "raw") as raw:
         results = chain.run(raw, folder / "derived", "gyroscope", BESIDE)
-    given, levels = known_of(results["plan/known"]), NoiseLevels(results["noise/noise"])
-    stages = ("accelerometer", "gyroscope")
-    tables = [
-        tuple(results[f"{stage}/{table}"] for stage in stages)
-        for table in ("parameters", "positions", "fit")
-    ]
-    campaign = campaign_of(
-        results["segment/blocks"],
-        manoeuvres_of(results["plan/manoeuvres"]),
-        performed_of(results["segment/performed"]),
-        levels,
-        given,
-        solution_of(tables[0], tables[1], given, "", tables[2]),
-        share_a_clock(results["decode/clocks"]),
-    ).without_walk()
+    (data,) = chain.mounts(results)
+    campaign, degrees = campaign_of(data).without_walk(), data.noise.degrees
     shutil.rmtree(folder)
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
     families = {name: tuple(one) for name, one in campaign.candidates(in_blocks).items()}
-    said, asked = said_of(campaign, families, levels.degrees)
+    said, asked = said_of(campaign, families, degrees)
     law = law_of(said, asked, LEVEL)
     assert law is not None  # the plans show effects
-    return Reference(campaign, said.seen(), asked, families, law, levels.degrees)
+    return Reference(campaign, said.seen(), asked, families, law, degrees)

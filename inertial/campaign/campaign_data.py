@@ -1,0 +1,139 @@
+"""One mount of a campaign, as the stages between segment and diagnosis work on it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import pandas as pd
+
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.rate_segments import GyroInputs, gyro_inputs
+from inertial.campaign.records import (
+    Clock,
+    Known,
+    Manoeuvre,
+    Performed,
+    clocks_of,
+    known_of,
+    manoeuvres_of,
+    performed_of,
+    share_a_clock,
+    with_mount,
+)
+from inertial.campaign.solution import Estimated, Solution, solution_of
+from inertial.campaign.static_positions import Still, stills
+from inertial.estimation.gyroscopes import Earth
+
+
+@dataclass(frozen=True, eq=False)
+class CampaignData:
+    """What was planned and recorded on one mount, what is known, and the joint result.
+
+    plan : the manoeuvres of the mount, in their order
+    performed, clocks, known : by the name of the manoeuvre, the log, the quantity
+    blocks : the table, of all mounts
+    noise : the effective noise levels, on which every sigma rests
+    mount : its name; empty where the campaign has a single one
+    shared_clock : whether times of different logs are comparable
+    solution : None until there is one
+    """
+
+    plan: Sequence[Manoeuvre]
+    performed: Mapping[str, Performed]
+    blocks: pd.DataFrame
+    noise: NoiseLevels
+    known: Mapping[str, Known]
+    mount: str = ""
+    clocks: Mapping[str, Clock] = field(default_factory=dict)
+    shared_clock: bool = False
+    solution: Solution | None = None
+
+    def named(self, name: str) -> str:
+        """A method or an effect as identifiers call it, with the mount where there are several."""
+        return with_mount(name, self.mount)
+
+    @property
+    def gravity(self) -> Known:
+        """Gravity at the site, m/s²."""
+        return self.known["gravity"]
+
+    @property
+    def heading(self) -> float | None:
+        """The azimuth of the table's zero mark, clockwise from north, rad; None if unknown."""
+        return self.known["heading"].value
+
+    @property
+    def position_sigma(self) -> float:
+        """Sigma of the attitude of a set position, rad."""
+        return self.known["position"].scatter
+
+    @property
+    def rate_sigma(self) -> float:
+        """Relative sigma of the table's rate."""
+        return self.known["turn_rate"].scatter
+
+    @property
+    def earth(self) -> Earth:
+        """The components of the earth's rate at the site, rad/s."""
+        up = self.known["earth_rate_up"]
+        return Earth(up.number, up.scatter, self.known["earth_rate_level"].number)
+
+    @property
+    def result(self) -> Solution:
+        """The joint result of stages that run after the estimation."""
+        assert self.solution is not None
+        return self.solution
+
+    @cached_property
+    def accelerometer_positions(self) -> tuple[list[Still], list[str]]:
+        """The static positions with readings of accelerometers; those left out, with the reason."""
+        return stills(self, "accel")
+
+    @cached_property
+    def gyro_positions(self) -> tuple[list[Still], list[str]]:
+        """The same of the gyros."""
+        return stills(self, "gyro")
+
+    @cached_property
+    def gyro_inputs(self) -> GyroInputs:
+        """Static positions and rate segments as the equations of the gyros take them."""
+        return gyro_inputs(self)
+
+
+def campaigns_of(
+    manoeuvres: pd.DataFrame,
+    performed: pd.DataFrame,
+    blocks: pd.DataFrame,
+    noise: pd.DataFrame,
+    known: pd.DataFrame,
+    clocks: pd.DataFrame | None = None,
+    accelerometer_parameters: pd.DataFrame | None = None,
+    gyroscope_parameters: pd.DataFrame | None = None,
+    accelerometer_positions: pd.DataFrame | None = None,
+    gyroscope_positions: pd.DataFrame | None = None,
+    accelerometer_fit: pd.DataFrame | None = None,
+    gyroscope_fit: pd.DataFrame | None = None,
+) -> list[CampaignData]:
+    """The mounts of a campaign from its tables, with a solution where there are parameters.
+
+    Each mount has parameters of its own, for its mounting rotation is one of them.
+    """
+    plan = manoeuvres_of(manoeuvres)
+    mounts = list(dict.fromkeys(m.mount for m in plan))
+    given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
+    times = {} if clocks is None else clocks_of(clocks)
+    result = []
+    for mount in mounts:
+        name = mount if len(mounts) > 1 else ""
+        solution = None
+        if accelerometer_parameters is not None and gyroscope_parameters is not None:
+            solution = solution_of(
+                with_mount("joint", name),
+                given,
+                Estimated(accelerometer_parameters, accelerometer_positions, accelerometer_fit),
+                Estimated(gyroscope_parameters, gyroscope_positions, gyroscope_fit),
+            )
+        own = [m for m in plan if m.mount == mount]
+        shared = clocks is not None and share_a_clock(clocks)
+        result.append(CampaignData(own, done, blocks, levels, given, name, times, shared, solution))
+    return result
