@@ -132,10 +132,14 @@ def known_of(table: pd.DataFrame) -> dict[str, Known]:
 
 @dataclass(frozen=True)
 class Clock:
-    """The clock of a log, s: median interval, and what a sample counts for in a sum over time."""
+    """The clock of a log, s: median interval, and what a sample counts for in a sum over time.
+
+    `averaged`: whether a sample is the mean over its interval, an increment, as receivers log it.
+    """
 
     interval: float | None
     duration: float | None  # None without time
+    averaged: bool = False
 
     @property
     def step(self) -> float:
@@ -145,7 +149,10 @@ class Clock:
 
 def clocks_of(table: pd.DataFrame) -> dict[str, Clock]:
     """The clocks by the name of the log."""
-    return {row["log"]: Clock(row["interval"], row["step"]) for row in rows_of(table)}
+    return {
+        row["log"]: Clock(row["interval"], row["step"], row["clock"] == "GPS")
+        for row in rows_of(table)
+    }
 
 
 def share_a_clock(table: pd.DataFrame) -> bool:

@@ -105,11 +105,8 @@ class SteadyTurn:
         )
 
 
-def steady_turns(data: CampaignData, simulated: Stream, averaged: set[str]) -> list[SteadyTurn]:
-    """The steady parts of all turns of one mount; none where its gyros are not determined.
-
-    `averaged`: the logs whose samples are means.
-    """
+def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
+    """The steady parts of all turns of one mount; none where its gyros are not determined."""
     gyro = data.result.gyro
     if gyro is None:
         return []
@@ -140,7 +137,7 @@ def steady_turns(data: CampaignData, simulated: Stream, averaged: set[str]) -> l
                 truth,
                 further[:, 0],
                 step,
-                m.log in averaged,
+                data.clocks[m.log].averaged,
                 tilted,
                 float(further[0, 1]),
             )

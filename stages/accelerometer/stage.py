@@ -1,12 +1,11 @@
 """The accelerometers from rests and steady turns: bias, M, mounting, with covariance."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.campaign_data import campaigns_of
+from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
 from inertial.campaign.static_positions import Still, averaging_times
@@ -31,12 +30,7 @@ CURES = {
 
 
 def accelerometer(
-    blocks: pd.DataFrame,
-    manoeuvres: pd.DataFrame,
-    performed: pd.DataFrame,
-    noise: pd.DataFrame,
-    known: pd.DataFrame,
-    clocks: pd.DataFrame,
+    mounts: Sequence[CampaignData],
     *,
     averaging_steps: int,
     wanted_bias: float,
@@ -47,7 +41,7 @@ def accelerometer(
     """
     collected = Estimates("accelerometer")
     told: list[Finding] = []
-    for data in campaigns_of(manoeuvres, performed, blocks, noise, known, clocks):
+    for data in mounts:
         estimates, gravity = collected.on(data.mount), data.gravity
         about = (gravity.number, gravity.scatter, data.position_sigma)
         add_free_accelerometers(estimates, data)
@@ -101,4 +95,4 @@ def _rest(still: Still, seconds: float = np.inf) -> Rest:
     return Rest(still.manoeuvre.position, still.up_now, *still.over(seconds), stretch=stretch)
 
 
-STAGE = Stage(accelerometer, DECLARED)
+STAGE = Stage(accelerometer, DECLARED, gathers={"mounts": campaigns_of})

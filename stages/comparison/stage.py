@@ -1,6 +1,6 @@
 """What should agree: rests and turns, both ways of turning, methods, rates, published and ours."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import pandas as pd
 
@@ -16,11 +16,7 @@ from stages.comparison.straight_line import straight_line
 
 
 def comparison(
-    blocks: pd.DataFrame,
-    manoeuvres: pd.DataFrame,
-    performed: pd.DataFrame,
-    noise: pd.DataFrame,
-    known: pd.DataFrame,
+    mounts: Sequence[CampaignData],
     accelerometer_parameters: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
     gyroscope_fit: pd.DataFrame,
@@ -32,7 +28,6 @@ def comparison(
 ) -> Tables:
     """Every difference in units of its sigma, with the verdict in a sentence."""
     scatter = {row["method"]: row["scatter"] for row in rows_of(gyroscope_fit)}
-    mounts = campaigns_of(manoeuvres, performed, blocks, noise, known)
 
     def of_mount(data: CampaignData) -> Iterator[Difference]:
         gyro = Results("gyroscope", gyroscope_parameters, data.mount)
@@ -56,4 +51,4 @@ def comparison(
     return {"differences": table_of(found, level)}
 
 
-STAGE = Stage(comparison, DECLARED)
+STAGE = Stage(comparison, DECLARED, gathers={"mounts": campaigns_of})

@@ -1,13 +1,13 @@
 """The samples with the errors taken out, and the check against what is known."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
 
 from inertial import tables
 from inertial.campaign import findings as found
-from inertial.campaign.campaign_data import campaigns_of
+from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.findings import Finding
 from inertial.campaign.masked_samples import Masks
 from inertial.campaign.records import Row, rows_of
@@ -33,16 +33,12 @@ ALREADY = Finding(
 
 
 def compensation(
+    mounts: Sequence[CampaignData],
     samples: Stream,
     traces: pd.DataFrame,
     masks: pd.DataFrame,
     segments: pd.DataFrame,
-    blocks: pd.DataFrame,
     campaign: pd.DataFrame,
-    manoeuvres: pd.DataFrame,
-    performed: pd.DataFrame,
-    noise: pd.DataFrame,
-    known: pd.DataFrame,
     accelerometer_parameters: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
     provenance: Mapping[str, Mapping[str, Any]],
@@ -67,16 +63,6 @@ def compensation(
     if facts["compensated"]:
         yield "findings", found.table_of([ALREADY])
         return
-    mounts = campaigns_of(
-        manoeuvres,
-        performed,
-        blocks,
-        noise,
-        known,
-        None,
-        accelerometer_parameters,
-        gyroscope_parameters,
-    )
     rows: list[Row] = []
     for data in mounts:
         rows += [check.row(data.mount) for check in checks(data)]
@@ -91,4 +77,4 @@ def compensation(
     yield "compensated_traces", envelope(compensated, traces)
 
 
-STAGE = Stage(compensation, DECLARED)
+STAGE = Stage(compensation, DECLARED, gathers={"mounts": campaigns_of})

@@ -1,6 +1,6 @@
 """Which physical effects the simulation lacks, by name."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -9,7 +9,6 @@ import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.equations import Campaign, campaign_of
-from inertial.campaign.records import rows_of
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.effects import CATALOGUE
 from inertial.tables.parquet import Stream
@@ -31,19 +30,8 @@ BLOCKS_SHARE = 0.9  # of the accepted chance of a false name; the rest is that o
 
 
 def criticism(
+    mounts: Sequence[CampaignData],
     simulated: Stream,
-    blocks: pd.DataFrame,
-    manoeuvres: pd.DataFrame,
-    performed: pd.DataFrame,
-    noise: pd.DataFrame,
-    known: pd.DataFrame,
-    clocks: pd.DataFrame,
-    accelerometer_parameters: pd.DataFrame,
-    accelerometer_positions: pd.DataFrame,
-    gyroscope_parameters: pd.DataFrame,
-    gyroscope_positions: pd.DataFrame,
-    accelerometer_fit: pd.DataFrame,
-    gyroscope_fit: pd.DataFrame,
     *,
     level: float,
     lowest_hz: float,
@@ -52,29 +40,15 @@ def criticism(
 
     `level` is the accepted chance of naming anything where nothing is missing.
     """
-    averaged = {row["log"] for row in rows_of(clocks) if row["clock"] == "GPS"}
     sought = {place: [e for e in CATALOGUE.values() if e.sought_in == place] for place in PLACES}
     in_blocks = sought["blocks"]
     others = [*sought["noise"], *sought["quality"]]
     made: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
-    for data in campaigns_of(
-        manoeuvres,
-        performed,
-        blocks,
-        noise,
-        known,
-        clocks,
-        accelerometer_parameters,
-        gyroscope_parameters,
-        accelerometer_positions,
-        gyroscope_positions,
-        accelerometer_fit,
-        gyroscope_fit,
-    ):
+    for data in mounts:
         suffix, degrees = data.named(""), data.noise.degrees
-        turns = steady_turns(data, simulated, averaged)
+        turns = steady_turns(data, simulated)
         found = heard(turns, level * (1 - BLOCKS_SHARE), lowest_hz)
-        quiet = without_lines(blocks, turns, found.lines)
+        quiet = without_lines(data.blocks, turns, found.lines)
         campaign = campaign_of(replace(data, blocks=quiet))
         judged = judge(campaign, in_blocks, level * BLOCKS_SHARE, degrees)
         left = tested(judged.campaign, judged.effects, degrees)
@@ -103,7 +77,7 @@ def criticism(
         made["findings"] += lines.findings()
         made["findings"] += residual_structure.findings(left, judged.consistent(), suffix)
         made["findings"] += unexplained(judged, suffix)
-        made["findings"] += temperature_findings.findings(blocks, data.plan, level, suffix)
+        made["findings"] += temperature_findings.findings(data.blocks, data.plan, level, suffix)
     return {
         name: pd.DataFrame(rows, columns=[column.name for column in table.columns])
         if rows
@@ -118,4 +92,4 @@ def _with(make: Callable[[], Further], data: CampaignData) -> Campaign:
     return campaign_of(replace(data, blocks=one.blocks, plan=one.plan, performed=one.performed))
 
 
-STAGE = Stage(criticism, DECLARED)
+STAGE = Stage(criticism, DECLARED, gathers={"mounts": campaigns_of})

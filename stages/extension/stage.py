@@ -1,7 +1,7 @@
 """The model with the effects that were named, refitted: what it gains, and whether it counts."""
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import pandas as pd
@@ -29,20 +29,13 @@ TWELVE = linear_names()
 
 
 def extension(
+    mounts: Sequence[CampaignData],
     simulated: Stream,
     criticism_findings: pd.DataFrame,
     effects: pd.DataFrame,
     walks: pd.DataFrame,
-    blocks: pd.DataFrame,
-    manoeuvres: pd.DataFrame,
-    performed: pd.DataFrame,
-    noise: pd.DataFrame,
-    known: pd.DataFrame,
-    clocks: pd.DataFrame,
     accelerometer_parameters: pd.DataFrame,
-    accelerometer_positions: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
-    gyroscope_positions: pd.DataFrame,
     accelerometer_fit: pd.DataFrame,
     gyroscope_fit: pd.DataFrame,
 ) -> Tables:
@@ -65,20 +58,7 @@ def extension(
     )
     made: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     covariances: list[pd.DataFrame] = []
-    for data in campaigns_of(
-        manoeuvres,
-        performed,
-        blocks,
-        noise,
-        known,
-        clocks,
-        accelerometer_parameters,
-        gyroscope_parameters,
-        accelerometer_positions,
-        gyroscope_positions,
-        accelerometer_fit,
-        gyroscope_fit,
-    ):
+    for data in mounts:
         mount, method, suffix = data.mount, data.named("joint"), data.named("")
         solution = data.result
         named = named_of(rows_of(criticism_findings), rows_of(effects), suffix)
@@ -114,7 +94,7 @@ def extension(
             if one_of is not None:
                 made["moved"] += moved(one_of, own, bool(fits[sensor, method]["scatter"]))
         if named.in_spectrum and solution.gyro is not None:
-            made["gain"] += _of_spectrum(data, named, simulated, clocks, solution.gyro)
+            made["gain"] += _of_spectrum(data, named, simulated, solution.gyro)
     written = {
         name: pd.DataFrame(rows, columns=[column.name for column in DECLARED.writes[name].columns])
         if rows
@@ -128,14 +108,12 @@ def _of_spectrum(
     data: CampaignData,
     named: Named,
     simulated: Stream,
-    clocks: pd.DataFrame,
     gyro: Triad,
 ) -> Iterator[Row]:
     """The gain of an oscillation, and of what goes with the table's angle."""
     for effect, values in named.in_spectrum.items():
         if effect != "oscillation":
-            averaged = {row["log"] for row in rows_of(clocks) if row["clock"] == "GPS"}
-            turns = steady_turns(data, simulated, averaged)
+            turns = steady_turns(data, simulated)
             yield from gain_of_ripple(turns, effect, values, data.mount)
         elif "frequency" in values:
             step_of = {m.name: data.clocks[m.log].step for m in data.plan}
@@ -143,4 +121,4 @@ def _of_spectrum(
             yield from gain_of_line(heard, step_of, values["frequency"], gyro, data.mount)
 
 
-STAGE = Stage(extension, DECLARED)
+STAGE = Stage(extension, DECLARED, gathers={"mounts": campaigns_of})

@@ -1,10 +1,11 @@
 """The gyros from turns and rests: bias, scale factors, cross terms, mounting, with covariance."""
 
+from collections.abc import Sequence
+
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.campaign_data import campaigns_of
+from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
 from inertial.campaign.gyroscope_methods import add_formulas, add_turn_and_stop
 from inertial.campaign.rate_segments import GyroInputs
@@ -21,12 +22,7 @@ CURES = {
 
 
 def gyroscope(
-    blocks: pd.DataFrame,
-    manoeuvres: pd.DataFrame,
-    performed: pd.DataFrame,
-    noise: pd.DataFrame,
-    known: pd.DataFrame,
-    clocks: pd.DataFrame,
+    mounts: Sequence[CampaignData],
     *,
     averaging_steps: int,
     wanted_bias: float,
@@ -36,7 +32,7 @@ def gyroscope(
     Each mount has parameters of its own, for its mounting rotation is one of them.
     """
     collected = Estimates("gyroscope")
-    for data in campaigns_of(manoeuvres, performed, blocks, noise, known, clocks):
+    for data in mounts:
         estimates, inputs = collected.on(data.mount), data.gyro_inputs
         add_free_gyros(estimates, data)
         if inputs.nothing:
@@ -65,4 +61,4 @@ def _channels(inputs: GyroInputs) -> NDArray[np.bool_]:
     return np.asarray(np.isfinite(np.array(readings)).any(axis=0))
 
 
-STAGE = Stage(gyroscope, DECLARED)
+STAGE = Stage(gyroscope, DECLARED, gathers={"mounts": campaigns_of})

@@ -31,32 +31,12 @@ NOTHING = Triad(np.full((3, 3), np.nan), np.full(3, np.nan))  # of a triad that 
 
 
 def simulation(
+    mounts: Sequence[CampaignData],
     samples: Stream,
-    blocks: pd.DataFrame,
     segments: pd.DataFrame,
-    manoeuvres: pd.DataFrame,
-    performed: pd.DataFrame,
-    noise: pd.DataFrame,
-    known: pd.DataFrame,
-    clocks: pd.DataFrame,
-    accelerometer_parameters: pd.DataFrame,
-    accelerometer_positions: pd.DataFrame,
-    gyroscope_parameters: pd.DataFrame,
-    gyroscope_positions: pd.DataFrame,
 ) -> Pieces:
     """Turns sample by sample, rests block by block, each with what is left of the reading."""
-    for data in campaigns_of(
-        manoeuvres,
-        performed,
-        blocks,
-        noise,
-        known,
-        clocks,
-        accelerometer_parameters,
-        gyroscope_parameters,
-        accelerometer_positions,
-        gyroscope_positions,
-    ):
+    for data in mounts:
         rests = list(_rests(data))
         if rests:
             yield "simulated", _frame([part for part, _ in rests])
@@ -204,4 +184,4 @@ def _table(rows: Iterable[Row]) -> pd.DataFrame:
     return pd.DataFrame(found) if found else tables.FIDELITY.empty()
 
 
-STAGE = Stage(simulation, DECLARED)
+STAGE = Stage(simulation, DECLARED, gathers={"mounts": campaigns_of})

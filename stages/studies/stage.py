@@ -1,6 +1,6 @@
 """S0's studies: parameters by epochs, running means and windows, and the table's time and angle."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
@@ -31,21 +31,15 @@ Row = dict[str, Any]
 
 
 def studies(
+    mounts: Sequence[CampaignData],
     samples: Stream,
     masks: pd.DataFrame,
-    clocks: pd.DataFrame,
     segments: pd.DataFrame,
-    blocks: pd.DataFrame,
-    manoeuvres: pd.DataFrame,
-    performed: pd.DataFrame,
-    noise: pd.DataFrame,
-    known: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
     gyroscope_fit: pd.DataFrame,
 ) -> Tables:
     """Every study of every mount; what cannot be studied, with the reason."""
     scatter = {row["method"]: row["scatter"] or 0.0 for row in rows_of(gyroscope_fit)}
-    mounts = campaigns_of(manoeuvres, performed, blocks, noise, known, clocks)
     rests = {data.mount: rests_of(data.plan, data.performed, segments) for data in mounts}
     turns = {
         data.mount: [r for r in data.gyro_inputs.recorded if not why_not(r)] for data in mounts
@@ -111,4 +105,4 @@ def _of_turns(
     return rows
 
 
-STAGE = Stage(studies, DECLARED)
+STAGE = Stage(studies, DECLARED, gathers={"mounts": campaigns_of})

@@ -16,12 +16,14 @@ from ruamel.yaml import YAML
 
 from inertial import tables
 from inertial.estimation.triad import linear_names
-from stages.accelerometer.stage import accelerometer
-from stages.gyroscope.stage import gyroscope
+from stages.accelerometer.stage import STAGE as ACCELEROMETER
+from stages.gyroscope.stage import STAGE as GYROSCOPE
 
 NAMES = [f"{s}/{n}" for s in ("accelerometer", "gyroscope") for n in linear_names()]
 RATE = 100.0  # samples per second
-CLOCKS = pd.DataFrame({"log": ["session.asc"], "clock": ["GPS"]})
+CLOCKS = pd.DataFrame(
+    {"log": ["session.asc"], "clock": ["GPS"], "interval": [1 / RATE], "step": [1 / RATE]}
+)
 MISALIGNED, BIAS = 5e-3, (0.01, 1e-5)  # spread of M; of the biases, m/s² and rad/s
 
 
@@ -75,7 +77,7 @@ def solved(plan: str, instrument: str, seed: int) -> tuple[np.ndarray, np.ndarra
         "clocks": CLOCKS,
     }
     inputs |= {"averaging_steps": 0, "wanted_bias": 1e-6}
-    found = pd.concat([stage(**inputs)["parameters"] for stage in (accelerometer, gyroscope)])
+    found = pd.concat([stage.result(inputs)["parameters"] for stage in (ACCELEROMETER, GYROSCOPE)])
     found = found.set_index("id")
     rows = [name.replace("/", "/joint/") for name in NAMES]
     true = np.append(unknowns[:9] - np.eye(3).ravel(), unknowns[9:12])

@@ -40,7 +40,8 @@ def recorded(folder: Path, until: str = "segment", **changes) -> chain.Results:
 
 def inputs_of(results: chain.Results, tables: dict[str, pd.DataFrame] | None = None) -> GyroInputs:
     """What the gyros' estimate takes; `tables`: other blocks and performed manoeuvres."""
-    (data,) = chain.mounts(results, **tables or {})
+    changed = {} if tables is None else {key: tables[key] for key in ("blocks", "performed")}
+    (data,) = chain.mounts(results, **changed)
     return data.gyro_inputs
 
 
