@@ -68,8 +68,8 @@ def _data(folder: Path) -> list[Path]:
 @cache
 def _imports(file: Path) -> list[str]:
     names = []
-    for module, told in IMPORT.findall(file.read_text(encoding="utf-8")):
-        names += [module, *(f"{module}.{name}" for name in re.findall(r"\w+", told))]
+    for module, imported in IMPORT.findall(file.read_text(encoding="utf-8")):
+        names += [module, *(f"{module}.{name}" for name in re.findall(r"\w+", imported))]
     parts = [name.split(".") for name in names]
     # With a module come the packages that it lies in.
     return sorted({".".join(part[:end]) for part in parts for end in range(1, len(part) + 1)})

@@ -15,5 +15,5 @@ class Refusal(Exception):  # noqa: N818 (a refusal is what it is, not what went 
 
     def __str__(self) -> str:
         where = f"{self.file}, {self.place}" if self.place else self.file
-        told = {"found": self.found, "expected": self.expected, "cure": self.cure}
-        return "\n".join([where, *(f"  {name + ':':<9} {text}" for name, text in told.items())])
+        parts = {"found": self.found, "expected": self.expected, "cure": self.cure}
+        return "\n".join([where, *(f"  {name + ':':<9} {text}" for name, text in parts.items())])

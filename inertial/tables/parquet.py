@@ -23,7 +23,7 @@ if TYPE_CHECKING:  # decode streams record batches and starts faster without pan
     import pandas as pd
 
 BATCH_ROWS = 65536  # rows that a stream holds in memory at a time
-AGAIN = "delete the file and run the campaign again"
+RERUN = "delete the file and run the campaign again"
 
 
 TYPES: dict[str, pa.DataType] = {
@@ -49,9 +49,9 @@ def schema_of(table: Table) -> pa.Schema:
 
 def _field(column: Column) -> pa.Field:
     kind = column.type
-    told = {"unit": column.unit, "frame": column.frame, "meaning": column.meaning}
+    metadata = {"unit": column.unit, "frame": column.frame, "meaning": column.meaning}
     of = TYPES[kind] if isinstance(kind, str) else pa.list_(pa.struct([_field(c) for c in kind]))
-    return pa.field(column.name, of, column.nullable, told)
+    return pa.field(column.name, of, column.nullable, metadata)
 
 
 def read(table: Table, path: Path) -> pd.DataFrame:
@@ -117,7 +117,7 @@ def _check(table: Table, path: Path) -> None:
     found = f"{written.get('table')} table of version {written.get('version')}"
     expected = f"{table.name} table of version {table.version}"
     if found != expected:
-        raise Refusal(str(path), "", found, expected, AGAIN)
+        raise Refusal(str(path), "", found, expected, RERUN)
 
 
 @dataclass(frozen=True)
@@ -144,7 +144,7 @@ def provenance(path: Path) -> dict[str, Any]:
     with _readable(path):
         metadata = pq.read_metadata(path).metadata or {}
     if b"made_by" not in metadata:
-        raise Refusal(str(path), "", "no word of what made it", "a table of a stage", AGAIN)
+        raise Refusal(str(path), "", "no word of what made it", "a table of a stage", RERUN)
     return dict(json.loads(metadata[b"made_by"]))
 
 
@@ -159,7 +159,7 @@ def _readable(path: Path) -> Iterator[None]:
         ) from None
     except (pa.ArrowException, OSError) as error:
         damage, *_ = str(error).splitlines() or [""]
-        raise Refusal(str(path), "", f"damage: {damage}", "a Parquet table", AGAIN) from None
+        raise Refusal(str(path), "", f"damage: {damage}", "a Parquet table", RERUN) from None
 
 
 class Writer:

@@ -20,9 +20,12 @@ from ruamel.yaml.scalarbool import ScalarBoolean
 from inertial.tables.errors import Refusal
 
 Key = Sequence[str | int]
-LARGEST = 4_000_000  # bytes; a campaign file of a person is a thousand times smaller
-MOST, DEEPEST = 100_000, 40  # values, and levels of them: a few lines of aliases make billions
-ABSURD = 1e15  # nothing that a laboratory writes down is larger, in whichever unit
+MAX_BYTES = 4_000_000  # a campaign file of a person is a thousand times smaller
+MAX_VALUES, MAX_DEPTH = (
+    100_000,
+    40,
+)  # values, and levels of them: a few lines of aliases make billions
+MAX_NUMBER = 1e15  # nothing that a laboratory writes down is larger, in whichever unit
 FOLDER = Path(__file__).parent
 
 
@@ -63,7 +66,7 @@ class YamlFile:
         return Refusal(str(self.path), self.place(key), shown(found), expected, cure)
 
     def check(self, schema: str, entries: str | None = None) -> None:
-        """Hold the content, or each of its entries, against `contracts/<schema>.schema.yaml`.
+        """Hold the content, or each of its entries, against `inertial/tables/<schema>.schema.yaml`.
 
         `entries` is the definition of that schema that every entry must follow.
         """
@@ -89,12 +92,15 @@ class YamlFile:
             found = f"the key {shown(unknown)}"
             return self.refuse_text([*key, unknown], found, f"one of {', '.join(allowed)}", cure)
         if error.validator == "required":
-            wanted: Any = error.validator_value
+            required: Any = error.validator_value
             instance: Any = error.instance
-            missing = next(k for k in wanted if k not in instance)
-            said = rule.get("properties", {}).get(missing, {}).get("description", "")
+            missing = next(k for k in required if k not in instance)
+            description = rule.get("properties", {}).get(missing, {}).get("description", "")
             return self.refuse_text(
-                key, f"no key {missing!r}", f"{missing}: {said}".rstrip(": "), f"add {missing}"
+                key,
+                f"no key {missing!r}",
+                f"{missing}: {description}".rstrip(": "),
+                f"add {missing}",
             )
         if key and key[-1] in ("serial", "date") and not isinstance(error.instance, str):
             found = f"the number {shown(error.instance)}, in which leading zeros are lost"
@@ -108,9 +114,9 @@ class YamlFile:
 
     def _load(self) -> Any:
         size = self.path.stat().st_size
-        if size > LARGEST:
+        if size > MAX_BYTES:
             raise Refusal(
-                str(self.path), "", f"{size} bytes", f"at most {LARGEST}", "is this a log?"
+                str(self.path), "", f"{size} bytes", f"at most {MAX_BYTES}", "is this a log?"
             )
         yaml = YAML(typ="rt", pure=True)
         yaml.Resolver = _DatesAreText
@@ -130,17 +136,17 @@ class YamlFile:
         except (YAMLError, ValueError) as error:
             raise Refusal(str(self.path), "", str(error), "YAML 1.2", "correct the file") from None
         except RecursionError:
-            raise self._too_much("levels without end", f"at most {DEEPEST} levels") from None
+            raise self._too_much("levels without end", f"at most {MAX_DEPTH} levels") from None
 
     def _too_much(self, found: str, expected: str) -> Refusal:
         return Refusal(str(self.path), "", found, expected, "write it out without aliases")
 
     def _plain(self, node: Any, key: tuple[str | int, ...]) -> Any:
         self._values += 1
-        if self._values > MOST:
-            raise self._too_much(f"more than {MOST} values, aliases written out", "fewer")
-        if len(key) > DEEPEST:
-            raise self._too_much("more levels", f"at most {DEEPEST} levels")
+        if self._values > MAX_VALUES:
+            raise self._too_much(f"more than {MAX_VALUES} values, aliases written out", "fewer")
+        if len(key) > MAX_DEPTH:
+            raise self._too_much("more levels", f"at most {MAX_DEPTH} levels")
         if getattr(getattr(node, "tag", None), "value", None):
             raise self.refuse(key, str(node), "text, a number, a list or keys", "remove its tag")
         if isinstance(node, CommentedMap):
@@ -163,8 +169,8 @@ class YamlFile:
         if isinstance(node, int | float):
             if not isfinite(node):
                 raise self.refuse(key, float(node), "a finite number", "correct the value")
-            if abs(node) > ABSURD:
-                raise self.refuse(key, node, f"at most {ABSURD:g}", "correct the value")
+            if abs(node) > MAX_NUMBER:
+                raise self.refuse(key, node, f"at most {MAX_NUMBER:g}", "correct the value")
             return int(node) if isinstance(node, int) else float(node)
         if node is None:
             return None
@@ -173,7 +179,7 @@ class YamlFile:
 
 @cache
 def schema_of(name: str) -> dict[str, Any]:
-    """The JSON schema `contracts/<name>.schema.yaml`."""
+    """The JSON schema `inertial/tables/<name>.schema.yaml`."""
     content = YAML(typ="safe", pure=True).load(FOLDER / f"{name}.schema.yaml")
     return dict(content)
 
