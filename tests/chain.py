@@ -70,7 +70,7 @@ def mounts(results: Results, **changes: Any) -> list[CampaignData]:
         "manoeuvres": "plan/manoeuvres",
         "performed": "segment/performed",
         "blocks": "segment/blocks",
-        "noise": "noise/noise",
+        "levels": "noise/levels",
         "known": "plan/known",
         "clocks": "decode/clocks",
     }

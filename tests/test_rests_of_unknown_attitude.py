@@ -18,7 +18,7 @@ from moved_by_hand import (
 
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import Estimates
-from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.noise_levels import NoiseLevels, effective_levels
 from inertial.campaign.records import Known, Manoeuvre
 from inertial.campaign.unknown_attitude import add_free_accelerometers, free_stills, in_words
 from inertial.estimation.multi_position import Unseen
@@ -45,16 +45,18 @@ PLAN = [manoeuvre("settle", "rest"), manoeuvre("by-hand", "positions")]
 def noise(imu):
     levels = {"accel": imu.noise[0], "gyro": imu.noise[1]}
     return NoiseLevels(
-        pd.DataFrame(
-            {
-                "manoeuvre": "settle",
-                "phase": "rest",
-                "channel": channel,
-                "white_noise": levels[channel[:-2]],
-                "sigma": 0.01 * levels[channel[:-2]],
-                "per_sample": 10 * levels[channel[:-2]],
-            }
-            for channel in CHANNELS
+        effective_levels(
+            pd.DataFrame(
+                {
+                    "manoeuvre": "settle",
+                    "phase": "rest",
+                    "channel": channel,
+                    "white_noise": levels[channel[:-2]],
+                    "sigma": 0.01 * levels[channel[:-2]],
+                    "per_sample": 10 * levels[channel[:-2]],
+                }
+                for channel in CHANNELS
+            )
         )
     )
 

@@ -104,7 +104,7 @@ def campaigns_of(
     manoeuvres: pd.DataFrame,
     performed: pd.DataFrame,
     blocks: pd.DataFrame,
-    noise: pd.DataFrame,
+    levels: pd.DataFrame,
     known: pd.DataFrame,
     clocks: pd.DataFrame | None = None,
     accelerometer_parameters: pd.DataFrame | None = None,
@@ -120,7 +120,7 @@ def campaigns_of(
     """
     plan = manoeuvres_of(manoeuvres)
     mounts = list(dict.fromkeys(m.mount for m in plan))
-    given, done, levels = known_of(known), performed_of(performed), NoiseLevels(noise)
+    given, done, noise = known_of(known), performed_of(performed), NoiseLevels(levels)
     times = {} if clocks is None else clocks_of(clocks)
     result = []
     for mount in mounts:
@@ -135,5 +135,5 @@ def campaigns_of(
             )
         own = [m for m in plan if m.mount == mount]
         shared = clocks is not None and share_a_clock(clocks)
-        result.append(CampaignData(own, done, blocks, levels, given, name, times, shared, solution))
+        result.append(CampaignData(own, done, blocks, noise, given, name, times, shared, solution))
     return result

@@ -1,4 +1,9 @@
-"""Which white noise each mean and each sum carries."""
+"""The effective white noise of each mean and each sum: that of the campaign, or a level of its own.
+
+A level is known to some per cent only, and a sensor alone has the same in every manoeuvre. So the
+level that is common to the campaign is taken, but for a manoeuvre and phase whose own level differs
+from it by more than three of its sigmas: there the table, or the air, adds to the noise.
+"""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -7,80 +12,103 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.records import rows_of
+from inertial import tables
+from inertial.campaign.records import Row, rows_of
 
 Array = NDArray[np.float64]
+Key = tuple[str | None, str | None, str]  # manoeuvre, phase, channel
 
-LOUD = 1.5  # times what white noise makes samples scatter, from which they oscillate
-UNLIKE = 3.0  # sigmas by which a manoeuvre's noise must differ from the others' to count as its own
+MIN_SCATTER_RATIO = 1.5  # of a rate segment to static positions, from which a channel oscillates
+MAX_COMMON_SIGMA = 3.0  # sigmas by which a level may differ from the common one and still be it
+OWN, COMMON = "own", "common"
+
+
+def effective_levels(noise: pd.DataFrame) -> pd.DataFrame:
+    """The table of effective levels, by the levels of all manoeuvres.
+
+    Weighted with w = (N/σ)², their relative precision, for else a level that came out low would
+    weigh more for it. Then the common level has the relative sigma (Σw)^−½, and Σw/2 degrees of
+    freedom: a variance known to √(2/ν).
+    """
+    by_channel: dict[str, list[Row]] = {}
+    for row in rows_of(noise):
+        by_channel.setdefault(row["channel"], []).append(row)
+    rows: list[Row] = []
+    for channel, own in by_channel.items():
+        white, sigma = np.array([(row["white_noise"], row["sigma"]) for row in own]).T
+        alike = np.abs(white - np.median(white)) <= MAX_COMMON_SIGMA * sigma
+        alike = alike if alike.any() else np.ones(len(white), bool)
+        weight = (white / sigma) ** 2
+        total = float(weight[alike].sum())
+        level = float(np.average(white[alike], weights=weight[alike]))
+        common = {"white_noise": level, "sigma": level * total**-0.5, "source": COMMON}
+        common["degrees"] = total / 2
+        elsewhere = dict.fromkeys(("manoeuvre", "phase", "measured", "per_sample"))
+        rows.append(elsewhere | {"channel": channel} | common)
+        for row, precision in zip(own, weight, strict=True):
+            differs = abs(row["white_noise"] - level) > MAX_COMMON_SIGMA * row["sigma"]
+            rows.append(
+                {key: row[key] for key in ("manoeuvre", "phase", "channel", "per_sample")}
+                | {"measured": row["white_noise"]}
+                | common
+                | (
+                    {"white_noise": row["white_noise"], "sigma": row["sigma"], "source": OWN}
+                    | {"degrees": float(precision) / 2}
+                    if differs
+                    else {}
+                )
+            )
+    return pd.DataFrame(rows) if rows else tables.LEVELS.empty()
 
 
 class NoiseLevels:
-    """White noise by manoeuvre, phase and channel, per √s.
+    """The effective levels by manoeuvre, phase and channel, per √s."""
 
-    A level is known to some per cent only, and a sensor alone has the same in every
-    manoeuvre. So the level that is common to the campaign is taken, but for a manoeuvre
-    and phase whose own level differs from it by more than three of its sigmas: there the
-    table, or the air, adds to the noise.
-    """
-
-    def __init__(self, noise: pd.DataFrame) -> None:
-        self._own: dict[tuple[str, str, str], tuple[float, float]] = {}
-        self._samples: dict[tuple[str, str, str], float] = {}
-        by_channel: dict[str, list[tuple[float, float]]] = {}
-        for row in rows_of(noise):
-            level = (row["white_noise"], row["sigma"])
-            self._own[row["manoeuvre"], row["phase"], row["channel"]] = level
-            self._samples[row["manoeuvre"], row["phase"], row["channel"]] = row["per_sample"]
-            by_channel.setdefault(row["channel"], []).append(level)
-        self._common: dict[str, float] = {}
-        self._relative = 0.0
-        for channel, levels in by_channel.items():
-            white, sigma = np.array(levels).T
-            alike = np.abs(white - np.median(white)) <= UNLIKE * sigma
-            alike = alike if alike.any() else np.ones(len(white), bool)
-            # Weights by relative sigma: else a level that came out low would weigh more for it.
-            weight = (white[alike] / sigma[alike]) ** 2
-            self._common[channel] = float(np.average(white[alike], weights=weight))
-            self._relative = max(self._relative, float(weight.sum() ** -0.5))
+    def __init__(self, levels: pd.DataFrame) -> None:
+        self._rows: dict[Key, Row] = {
+            (row["manoeuvre"], row["phase"], row["channel"]): row for row in rows_of(levels)
+        }
 
     @property
     def degrees(self) -> float:
-        """Degrees of freedom of the noise level itself: a variance known to √(2/ν)."""
-        return 0.5 / self._relative**2 if self._relative > 0 else np.inf
+        """Degrees of freedom of the least known common level; infinite where there is none."""
+        common = (row["degrees"] for row in self._rows.values() if row["source"] == COMMON)
+        return float(min(common, default=np.inf))
 
     def of(self, manoeuvre: str, phase: str, channels: Sequence[str]) -> Array:
         """The levels of some channels, rest or steady; NaN where nothing is known."""
-        return np.array([self._one(manoeuvre, phase, channel) for channel in channels])
+        return np.array([self._level(manoeuvre, phase, channel) for channel in channels])
 
     def of_samples(self, manoeuvre: str, phase: str, channels: Sequence[str]) -> Array:
-        """What the samples of some channels scatter in all, not per √s; NaN where not known."""
-        keys = [(manoeuvre, phase, channel) for channel in channels]
-        return np.array([self._samples.get(key, np.nan) for key in keys])
+        """The standard deviation of the samples of some channels; NaN where nothing is known."""
+        rows = [self._rows.get((manoeuvre, phase, channel)) for channel in channels]
+        return np.array([np.nan if row is None else row["per_sample"] for row in rows])
 
-    def rings(self, manoeuvre: str, channels: Sequence[str]) -> bool:
+    def oscillates(self, manoeuvre: str, channels: Sequence[str]) -> bool:
         """Whether a channel oscillates in the steady part of a turn, and not at rest."""
-        return any(self._ringing(manoeuvre, channel) for channel in channels)
+        return any(self._oscillates(manoeuvre, channel) for channel in channels)
 
-    def _ringing(self, manoeuvre: str, channel: str) -> bool:
-        turn = (manoeuvre, "steady", channel)
-        if turn not in self._own or channel not in self._at_rest:
+    def _oscillates(self, manoeuvre: str, channel: str) -> bool:
+        row = self._rows.get((manoeuvre, "steady", channel))
+        if row is None or channel not in self._at_rest:
             return False
-        return self._scatter(turn) > LOUD * self._at_rest[channel]
+        return _ratio(row) > MIN_SCATTER_RATIO * self._at_rest[channel]
 
     @cached_property
     def _at_rest(self) -> dict[str, float]:
-        """What the samples of each channel usually scatter at rest, in its white noise per √s."""
+        """The usual scatter of the samples of each channel at rest, in its white noise per √s."""
         rests: dict[str, list[float]] = {}
-        for key in self._own:
-            if key[1] == "rest":
-                rests.setdefault(key[2], []).append(self._scatter(key))
-        return {channel: float(np.median(scatters)) for channel, scatters in rests.items()}
+        for (_, phase, channel), row in self._rows.items():
+            if phase == "rest":
+                rests.setdefault(channel, []).append(_ratio(row))
+        return {channel: float(np.median(ratios)) for channel, ratios in rests.items()}
 
-    def _scatter(self, key: tuple[str, str, str]) -> float:
-        return self._samples[key] / self._own[key][0]
+    def _level(self, manoeuvre: str, phase: str, channel: str) -> float:
+        common = self._rows.get((None, None, channel))
+        row = self._rows.get((manoeuvre, phase, channel), common)
+        return np.nan if row is None else float(row["white_noise"])
 
-    def _one(self, manoeuvre: str, phase: str, channel: str) -> float:
-        common = self._common.get(channel, np.nan)
-        level, sigma = self._own.get((manoeuvre, phase, channel), (common, np.inf))
-        return level if abs(level - common) > UNLIKE * sigma else common
+
+def _ratio(row: Row) -> float:
+    """Scatter of the samples in units of the white noise that was measured beside it."""
+    return float(row["per_sample"] / row["measured"])

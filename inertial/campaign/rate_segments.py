@@ -265,7 +265,7 @@ def turn_of(one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma
         by_hand=bool((part.phase == "turning").any()),
         bridges=missing,
         bridged_sigma=sigma_of(part, missing, m.axis, m.name, noise, rate_sigma),
-        unsteady=np.flatnonzero(~part.steady).tolist() if noise.rings(m.name, GYRO) else (),
+        unsteady=np.flatnonzero(~part.steady).tolist() if noise.oscillates(m.name, GYRO) else (),
     )
 
 

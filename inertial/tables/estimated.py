@@ -19,6 +19,21 @@ NOISE = Table(
         Column("data_sheet", DOUBLE, "rad/√s, m/s/√s", "the data sheet's figure", nullable=True),
     ),
 )
+LEVELS = Table(
+    "levels",
+    1,
+    (
+        Column("manoeuvre", TEXT, "", "as in noise; none: all that have no row", nullable=True),
+        Column("phase", TEXT, "", "rest or steady; none as manoeuvre", nullable=True),
+        Column("channel", TEXT, "", "one of the six channels"),
+        Column("white_noise", DOUBLE, "rad/√s, m/s/√s", "effective: what every sigma rests on"),
+        Column("sigma", DOUBLE, "rad/√s, m/s/√s", "standard deviation of white_noise"),
+        Column("source", TEXT, "", "common: of the campaign; own: it differs by over 3 sigma"),
+        Column("degrees", DOUBLE, "1", "degrees of freedom of white_noise"),
+        Column("measured", DOUBLE, "rad/√s, m/s/√s", "as in noise", nullable=True),
+        Column("per_sample", DOUBLE, "rad/s, m/s²", "as in noise", nullable=True),
+    ),
+)
 PARAMETERS = Table(
     "parameters",
     1,

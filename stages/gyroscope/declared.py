@@ -8,7 +8,7 @@ DECLARED = Declared(
         "blocks": From("segment", tables.BLOCKS),
         "manoeuvres": From("plan", tables.MANOEUVRES),
         "performed": From("segment", tables.PERFORMED),
-        "noise": From("noise", tables.NOISE),
+        "levels": From("noise", tables.LEVELS),
         "known": From("plan", tables.KNOWN),
         "clocks": From("decode", tables.CLOCKS),
     },

@@ -14,6 +14,7 @@ DECLARED = Declared(
     },
     writes={
         "noise": tables.NOISE,
+        "levels": tables.LEVELS,
     },
     streams=("samples",),
 )

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.campaign.masked_samples import Masks, pieces
+from inertial.campaign.noise_levels import effective_levels
 from inertial.campaign.records import clocks_of, rows_of
 from inertial.estimation.spectrum import band_levels, white_level
 from inertial.tables.parquet import Stream
@@ -55,7 +56,8 @@ def noise(
         for (manoeuvre, phase), collected in spectra.items()
         for row in collected.rows(manoeuvre, phase)
     ]
-    return {"noise": pd.DataFrame(rows) if rows else tables.NOISE.empty()}
+    measured = pd.DataFrame(rows) if rows else tables.NOISE.empty()
+    return {"noise": measured, "levels": effective_levels(measured)}
 
 
 class _Spectra:

@@ -10,7 +10,7 @@ DECLARED = Declared(
         "segments": From("segment", tables.SEGMENTS),
         "manoeuvres": From("plan", tables.MANOEUVRES),
         "performed": From("segment", tables.PERFORMED),
-        "noise": From("noise", tables.NOISE),
+        "levels": From("noise", tables.LEVELS),
         "known": From("plan", tables.KNOWN),
         "clocks": From("decode", tables.CLOCKS),
         "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),

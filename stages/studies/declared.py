@@ -12,7 +12,7 @@ DECLARED = Declared(
         "blocks": From("segment", tables.BLOCKS),
         "manoeuvres": From("plan", tables.MANOEUVRES),
         "performed": From("segment", tables.PERFORMED),
-        "noise": From("noise", tables.NOISE),
+        "levels": From("noise", tables.LEVELS),
         "known": From("plan", tables.KNOWN),
         "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
         "gyroscope_fit": From("gyroscope", tables.FIT),

@@ -15,6 +15,7 @@ from cramer_rao import bound, densities
 from ruamel.yaml import YAML
 
 from inertial import tables
+from inertial.campaign.noise_levels import effective_levels
 from inertial.estimation.triad import linear_names
 from stages.accelerometer.stage import STAGE as ACCELEROMETER
 from stages.gyroscope.stage import STAGE as GYROSCOPE
@@ -72,7 +73,7 @@ def solved(plan: str, instrument: str, seed: int) -> tuple[np.ndarray, np.ndarra
         "blocks": _blocks(told.layout, means),
         "manoeuvres": told.manoeuvres,
         "performed": _performed(told.manoeuvres),
-        "noise": _noise(told.manoeuvres, density),
+        "levels": effective_levels(_noise(told.manoeuvres, density)),
         "known": told.known,
         "clocks": CLOCKS,
     }

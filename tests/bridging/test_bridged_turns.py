@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 from z_turns import ANGLE, NOISE, STEP, Z_SCALE
 
-from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.noise_levels import NoiseLevels, effective_levels
 from inertial.campaign.rate_segments import Recorded, turn_of
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.campaign.static_positions import Blocks
@@ -30,7 +30,8 @@ def levels() -> NoiseLevels:
         {"manoeuvre": "any", "phase": "rest", "channel": channel, "white_noise": NOISE}
         for channel in CHANNELS
     ]
-    return NoiseLevels(pd.DataFrame(rows).assign(sigma=NOISE / 100, per_sample=NOISE / STEP**0.5))
+    measured = pd.DataFrame(rows).assign(sigma=NOISE / 100, per_sample=NOISE / STEP**0.5)
+    return NoiseLevels(effective_levels(measured))
 
 
 def planned(name: str, axis: int, sign: int) -> Manoeuvre:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.equations import Campaign, campaign_of
-from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.noise_levels import NoiseLevels, effective_levels
 from inertial.campaign.records import Known, Manoeuvre, Performed
 from inertial.campaign.solution import Solution
 from inertial.physics.forward import Site, Triad, predict
@@ -153,7 +153,7 @@ class Plan:
                 self.manoeuvres,
                 done,
                 blocks,
-                NoiseLevels(self._noise()),
+                NoiseLevels(effective_levels(self._noise())),
                 known,
                 shared_clock=self.clock,
                 solution=solution,

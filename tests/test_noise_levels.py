@@ -1,0 +1,47 @@
+"""The effective noise levels: what is common to a campaign, and what differs from it."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from inertial.campaign.noise_levels import NoiseLevels, effective_levels
+
+TRUE, RELATIVE = 2e-5, 0.05  # rad/√s; sigma of each level
+
+
+@pytest.fixture(scope="module")
+def levels() -> pd.DataFrame:
+    rng = np.random.default_rng(4)
+    white = np.append(TRUE * (1 + rng.normal(0, RELATIVE, 20)), 1.5 * TRUE)
+    measured = pd.DataFrame(
+        {
+            "manoeuvre": [f"m{i}" for i in range(21)],
+            "phase": ["rest"] * 20 + ["steady"],
+            "channel": "gyro_x",
+            "white_noise": white,
+            "sigma": RELATIVE * white,
+            "per_sample": np.append(10 * white[:20], 50 * white[20]),
+        }
+    )
+    return effective_levels(measured)
+
+
+def test_the_common_level_is_known_as_well_as_the_mean_of_all_that_share_it(levels):
+    common = levels[levels["manoeuvre"].isna()].iloc[0]
+    assert common["sigma"] / common["white_noise"] == pytest.approx(RELATIVE / 20**0.5, rel=1e-9)
+    assert abs(common["white_noise"] - TRUE) < 3 * common["sigma"]
+    # A level from ν degrees of freedom is known to 1/√(2ν).
+    assert common["degrees"] == pytest.approx(20 / (2 * RELATIVE**2))
+    assert NoiseLevels(levels).degrees == common["degrees"]
+
+
+def test_what_differs_by_more_than_three_sigma_keeps_its_own_level(levels):
+    own = levels[levels["source"] == "own"]
+    assert list(own["manoeuvre"]) == ["m20"]
+    assert own["white_noise"].item() == pytest.approx(1.5 * TRUE)
+    assert own["degrees"].item() == pytest.approx(1 / (2 * RELATIVE**2))
+    effective = NoiseLevels(levels)
+    elsewhere = effective.of("m99", "rest", ["gyro_x", "gyro_y"])
+    assert elsewhere[0] == effective.of("m3", "rest", ["gyro_x"])[0] != levels["measured"][4]
+    assert np.isnan(elsewhere[1])
+    assert effective.oscillates("m20", ["gyro_x"]) and not effective.oscillates("m3", ["gyro_x"])
