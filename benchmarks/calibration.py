@@ -1,12 +1,13 @@
 """Calibration of clean data: how far off each method is, the bound, and how long it takes."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from benchmarks import bound
 from benchmarks.campaign import document, performed
@@ -68,8 +69,8 @@ def measured() -> list[Table]:
     return [_errors(runs), _times(runs)]
 
 
-def _solves(inputs: dict[str, dict[str, pd.DataFrame]], **changed: int) -> None:
-    """Both stages that solve, on tables in memory."""
+def _solves(inputs: Mapping[str, Mapping[str, Any]], **changed: int) -> None:
+    """Both stages that estimate parameters, on tables in memory."""
     for sensor, tables in inputs.items():
         run_again(sensor, tables, **changed)
 

@@ -85,16 +85,13 @@ def _of_binary(folder: Path) -> list[Reader]:
 
 
 def _ours(folder: Path, log: Path) -> list[Reader]:
-    campaign, plan, tables = (folder / f"{log.stem}{end}" for end in (".yaml", "-plan", "-tables"))
+    campaign, derived, size = folder / f"{log.stem}.yaml", folder / log.stem, log.stat().st_size
     write_campaign(campaign, log.name)
-    in_own("planning", campaign, log, plan)
-    logs, size = plan / "logs.parquet", log.stat().st_size
-    ours = [Reader(OURS, size, lambda: in_own("decoding", logs, log, tables))]
+    in_own("planning", campaign, log, derived)
+    ours = [Reader(OURS, size, lambda: in_own("decoding", derived, log))]
     if hasattr(os, "sched_setaffinity"):  # Linux
-        one = Reader(
-            f"{OURS}, one processor", size, lambda: in_own("decoding", logs, log, tables, "one")
-        )
-        ours.append(one)
+        name = f"{OURS}, one processor"
+        ours.append(Reader(name, size, lambda: in_own("decoding", derived, log, "one")))
     return ours
 
 

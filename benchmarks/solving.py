@@ -1,13 +1,12 @@
 """The project's own chain on a campaign: what it finds, what it says, and how long it takes."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import chain  # of the tests: the stages one after another in this process
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 import laboratory
@@ -81,17 +80,13 @@ def complaints(results: chain.Results) -> list[str]:
     return told
 
 
-def tables_for(derived: Path, stage: str) -> dict[str, pd.DataFrame]:
-    """The tables that a stage reads, as earlier stages left them under `derived`."""
-    made = {}
-    for earlier in chain.ORDER[: chain.ORDER.index(stage)]:
-        for table in import_module(f"stages.{earlier}").STAGE.writes:
-            made[table] = derived / earlier / f"{table}.parquet"
-    reads = import_module(f"stages.{stage}").STAGE.reads
-    return {table: contract.read(made[table]) for table, contract in reads.items()}
+def tables_for(derived: Path, stage: str) -> dict[str, Any]:
+    """The tables that a stage reads, by argument, from the folder of derived tables."""
+    own = chain.stage_of(stage)
+    return own.inputs(own.paths(derived))
 
 
-def run_again(stage: str, inputs: dict[str, pd.DataFrame], **changed: Any) -> Any:
+def run_again(stage: str, inputs: Mapping[str, Any], **changed: Any) -> Any:
     """A stage on tables in memory, nothing read or written; `changed`: settings."""
     settings = {**chain.SETTINGS.get(stage, {}), **changed}
-    return import_module(f"stages.{stage}").STAGE.function(**inputs, **settings)
+    return chain.stage_of(stage).result({**inputs, **settings})

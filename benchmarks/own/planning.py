@@ -1,6 +1,6 @@
-"""The stage `plan` of one campaign, in a process of its own, for its memory is no later stage's.
+"""The stage `plan` of one campaign, in a process of its own: its memory counts for no later stage.
 
-python -m benchmarks.own.planning <campaign.yaml> <log> <folder for the tables>
+python -m benchmarks.own.planning <campaign.yaml> <log> <folder of derived tables>
 """
 
 import sys
@@ -12,10 +12,10 @@ from stages.plan.stage import STAGE as PLAN
 INSTRUMENTS = Path(__file__).parents[2] / "data" / "instruments.yaml"
 
 
-def main(campaign: str, log: str, folder: str) -> None:
-    """Write the tables; answer with nothing."""
+def main(campaign: str, log: str, derived: str) -> None:
+    """Write the tables of the stage; answer with the memory alone."""
     files = {"campaign": [Path(campaign)], "raw": [Path(log)], "instruments": [INSTRUMENTS]}
-    PLAN.run({}, {name: files.get(name, []) for name in PLAN.files}, Path(folder), {})
+    PLAN.run(Path(derived), {name: files.get(name, []) for name in PLAN.declared.files}, {})
     answer()
 
 
