@@ -53,3 +53,8 @@ COMPENSATED_DOWN = np.array([-9.7933709, -9.7935387, -9.7935250])
 
 ANGLE_RANDOM_WALK = 0.1  # °/√h, of the data sheet
 VELOCITY_RANDOM_WALK = 0.03  # m/s/√h, of the data sheet
+
+
+def per_root_second(per_root_hour: float) -> float:
+    """A random walk of a data sheet, per √h, in SI, per √s: an hour has 60 roots of a second."""
+    return per_root_hour / 60

@@ -4,12 +4,18 @@ import numpy as np
 import pytest
 import s0
 
-from inertial.estimation.averaging_time import averaging_time, per_root_second
+from inertial.campaign.estimates import Wanted
 from inertial.physics.site import earth_rate
 
-RW = per_root_second(s0.VELOCITY_RANDOM_WALK)  # m/s/√s
+RW = s0.per_root_second(s0.VELOCITY_RANDOM_WALK)  # m/s/√s
 MILLIGAL = 1e-5  # m/s²
 DAY = 86400
+
+
+def averaging_time(walk: float, wanted: float, means: int = 1, floor: float = 0.0) -> float | None:
+    """Seconds for each of some means of white noise `walk`, as the estimates have them."""
+    in_a_second = Wanted(float(np.hypot(walk / np.sqrt(means), floor)), floor, 1.0)
+    return in_a_second.row(wanted)["wanted_seconds"]
 
 
 def test_t9_81_seconds_are_22_milliseconds():
@@ -30,13 +36,13 @@ def test_the_scale_factor_of_a_gyro_from_the_earth_rate_takes_weeks():
     """300 ppm of ω_e sinφ up and down; design study, 4.5 has 39.65 days, by rounding: 39.66."""
     up, _ = earth_rate(s0.LATITUDE)
     for walk, days in ((0.1, 39.66), (0.03, 3.57), (0.012, 0.57)):
-        seconds = averaging_time(per_root_second(np.radians(walk)), 300e-6 * up, means=2)
+        seconds = averaging_time(s0.per_root_second(np.radians(walk)), 300e-6 * up, means=2)
         assert seconds / DAY == pytest.approx(days, abs=0.005)
 
 
 def test_what_does_not_average_out_is_no_matter_of_time():
     tilt = 2 / 206265 * s0.GRAVITY  # 2″ are 95 µm/s²
-    assert averaging_time(RW, 5 * MILLIGAL, floor=tilt) == np.inf
+    assert averaging_time(RW, 5 * MILLIGAL, floor=tilt) is None
     assert averaging_time(RW, 0.2 * np.sqrt(1.25) * tilt * 5, floor=tilt) == pytest.approx(
         (RW / (0.5 * tilt)) ** 2
     )

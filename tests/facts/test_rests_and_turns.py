@@ -5,7 +5,6 @@ import pytest
 import s0
 from scipy.stats import chi2
 
-from inertial.estimation.averaging_time import per_root_second
 from inertial.estimation.consistency import shared_cause
 from inertial.estimation.gyroscope_formulas import Upright, two_positions
 from inertial.estimation.gyroscopes import Angle, Earth, Position, known_angle
@@ -18,14 +17,14 @@ DEGREE_PER_HOUR = np.radians(1 / 3600)
 
 def rests(walk: float, seconds: float) -> list[Upright]:
     """One axis up and down, with the noise of an angle random walk in °/√h."""
-    sigma = per_root_second(np.radians(walk)) / np.sqrt(seconds)
+    sigma = s0.per_root_second(np.radians(walk)) / np.sqrt(seconds)
     ups = {sign: Position(f"{sign}", np.array([sign, 0.0, 0.0])) for sign in (1.0, -1.0)}
     return [Upright(position, sign, UP * sign, sigma) for sign, position in ups.items()]
 
 
 def sigma_of_difference(walk: float) -> float:
     """Of a bias by turns of 40 s both ways less that by rests of 300 s."""
-    density = per_root_second(np.radians(walk))
+    density = s0.per_root_second(np.radians(walk))
     turns = [Angle(a, a, 1e-12, 40, 1, density) for a in (2 * np.pi, -2 * np.pi)]
     static = two_positions(rests(walk, 300), np.zeros(3), WUHAN, 0.0)
     return float(np.hypot(known_angle(turns, WUHAN).sigma[0], static.bias_sigma))

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import s0
 
-from inertial.estimation.averaging_time import per_root_second
 from inertial.estimation.triad import mounting_and_rest
 from inertial.physics.site import normal_gravity
 
@@ -31,7 +30,7 @@ def test_t6_the_symmetric_rest():
     # with it the rest of M = P R is:
     rest = mounting_and_rest(s0.ACCELEROMETER)[6:]
     np.testing.assert_allclose(rest, [-283.53e-6, 25.16e-6, -30.74e-6], atol=1e-8)
-    noise = per_root_second(s0.VELOCITY_RANDOM_WALK) / np.sqrt(2 * 300) / s0.GRAVITY
+    noise = s0.per_root_second(s0.VELOCITY_RANDOM_WALK) / np.sqrt(2 * 300) / s0.GRAVITY
     assert noise == pytest.approx(2.08e-6, abs=0.01e-6)  # of a cross term, two rests of 300 s
     assert abs(first_order[0]) / noise == pytest.approx(135, abs=1)
 

@@ -5,11 +5,9 @@ import pytest
 import s0
 
 from inertial.estimation.angle_windows import fencepost
-from inertial.estimation.averaging_time import per_root_second
 from inertial.estimation.consistency import beyond_chance, chance_of
 from inertial.estimation.gyroscopes import Earth, Position, Steady
 from inertial.estimation.rate_table import rate_table
-from inertial.estimation.table_speed import table_speed
 from inertial.estimation.time_angle import ripple_angle, ripple_scale
 from inertial.physics.site import earth_rate
 
@@ -17,7 +15,7 @@ UP, LEVEL = earth_rate(s0.LATITUDE)
 WUHAN = Earth(UP, 0.0, LEVEL)
 WINDOW = np.full(3, 1800.0)  # intervals of 10 ms in 180° at 10 °/s
 ROUNDED = s0.LAST_DIGIT / np.sqrt(12)  # rad/s, sigma of a printed rate
-WALK = per_root_second(np.radians(0.012))  # rad/√s, by the scatter of S0's own results
+WALK = s0.per_root_second(np.radians(0.012))  # rad/√s, by the scatter of S0's own results
 
 # Sigma of a scale factor by windows: noise of 18 s each way and of the turns of 40 s, and the 20 Hz
 # that both windows cut: 0.01 rad/s on x, 0.001 on y (F 5-14, 5-15); of z none is shown.
@@ -99,22 +97,24 @@ def test_t12_the_plateau_gives_the_scale_factors_of_the_whole_turns():
 def test_t12_t13_the_speed_of_the_table_is_not_what_the_windows_would_need():
     means = np.append(s0.STEADY_FORWARD, s0.STEADY_BACKWARD)
     rates = s0.RATE * np.repeat([1.0, -1.0], 3)
-    scale = (np.tile(s0.TURNS_SCALE, 2), np.full(6, 21e-6))  # 40 s both ways, 0.1 °/√h
-    offset = (np.tile(s0.TURNS_BIAS, 2) + UP, np.full(6, 3.3e-6))
-    noise = np.full(6, np.hypot(ROUNDED, per_root_second(np.radians(0.1)) / np.sqrt(34)))
-    found = table_speed(means, rates, noise, scale, offset)
+    scale, scale_sigma = np.tile(s0.TURNS_SCALE, 2), 21e-6  # 40 s both ways, 0.1 °/√h
+    offset, offset_sigma = np.tile(s0.TURNS_BIAS, 2) + UP, 3.3e-6
+    noise = np.full(6, np.hypot(ROUNDED, s0.per_root_second(np.radians(0.1)) / np.sqrt(34)))
+    # The rate of the table is (mean − b − ω_e sinφ) / (1 + s).
+    excess = (means - offset) / (1 + scale) / rates - 1
+    sigma = np.hypot(np.hypot(noise, offset_sigma) / rates, scale_sigma)
     # What the printed rates differ by from those of table 5-2, with bias and earth.
-    difference = found.excess * (1 + scale[0]) * rates
+    difference = excess * (1 + scale) * rates
     np.testing.assert_allclose(difference[:3], [-1.76e-5, 2.1e-6, -2.8e-6], atol=6e-8)
     np.testing.assert_allclose(difference[3:], [1.273e-3, 1.2e-5, -2.2e-5], atol=5e-7)
     # The windows of table 5-5 would need a table that is slow by 556 ppm, all six times.
     others = np.delete(np.arange(6), 3)
-    assert np.abs(found.excess[others]).max() < 130e-6
-    assert np.abs(found.excess[others] + 1 / 1800).min() / found.sigma.max() > 10
+    assert np.abs(excess[others]).max() < 130e-6
+    assert np.abs(excess[others] + 1 / 1800).min() / sigma.max() > 10
     # T13: x backward is a misprint, or a window that holds a ramp.
-    chances = [chance_of(e / s) for e, s in zip(found.excess, found.sigma, strict=True)]
+    chances = [chance_of(e / s) for e, s in zip(excess, sigma, strict=True)]
     assert list(np.flatnonzero(beyond_chance(chances, 1e-3))) == [3]
-    assert found.excess[3] == pytest.approx(-0.00729, abs=1e-5)
+    assert excess[3] == pytest.approx(-0.00729, abs=1e-5)
 
 
 def test_t23_what_20_hz_leave_in_a_window():
