@@ -1,30 +1,19 @@
 """Accelerometer biases that follow the temperature."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, Self
-
-import numpy as np
-
-from laboratory.arrays import Array
-from laboratory.effects.effect import Effect
+from laboratory.effects.effect import ArrayEffect
 from laboratory.sensor import Reading, Sensors
 from laboratory.truth import Truth
 from laboratory.units import MICROGRAVITY
 
 
-@dataclass(frozen=True)
-class AccelBiasTemperature(Effect):
+class AccelBiasTemperature(ArrayEffect):
     """f̃ += k ΔT, ΔT from the temperature at which the biases are as the laboratory says.
 
-    coefficient: k, (3,), (m/s²)/K.
+    value: k, (3,), (m/s²)/K.
     """
 
-    coefficient: Array
-
-    @classmethod
-    def specified(cls, parameters: Mapping[str, Any]) -> Self:
-        return cls(np.array(parameters["k_micro_g_k"], dtype=float) * MICROGRAVITY)
+    KEY = "k_micro_g_k"
+    UNIT = MICROGRAVITY
 
     def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        return Reading.of_accelerometers(truth.warmer[:, None] * self.coefficient)
+        return Reading.of_accelerometers(truth.warmer[:, None] * self.value)

@@ -1,6 +1,8 @@
 """What a hidden effect may do: an effect overrides what it does, and leaves the rest alone."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -93,3 +95,29 @@ class Effect:
     def limits(self, increments: Reading, interval: float) -> Reading:
         """What is left of the increments, noise included, (n, 3) m/s and (n, 3) rad."""
         return increments
+
+
+@dataclass
+class ScalarEffect(Effect):
+    """An effect of one number: that of KEY in the specification, given in UNIT."""
+
+    KEY: ClassVar[str]
+    UNIT: ClassVar[float]
+    value: float  # SI and radians
+
+    @classmethod
+    def specified(cls, parameters: Mapping[str, Any]) -> Self:
+        return cls(parameters[cls.KEY] * cls.UNIT)
+
+
+@dataclass
+class ArrayEffect(Effect):
+    """An effect of three numbers or a matrix: those of KEY in the specification, given in UNIT."""
+
+    KEY: ClassVar[str]
+    UNIT: ClassVar[float]
+    value: Array  # SI and radians
+
+    @classmethod
+    def specified(cls, parameters: Mapping[str, Any]) -> Self:
+        return cls(np.array(parameters[cls.KEY], dtype=float) * cls.UNIT)

@@ -1,15 +1,13 @@
 """Gyro biases that flicker: bias instability."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import exp, log, pi, sqrt
-from typing import Any, Self
 
 import numpy as np
 from scipy.signal import lfilter
 
 from laboratory.arrays import Array
-from laboratory.effects.effect import Effect
+from laboratory.effects.effect import ScalarEffect
 from laboratory.sensor import Reading
 from laboratory.truth import Truth
 from laboratory.units import DEGREE, HOUR
@@ -19,7 +17,7 @@ RATIO = sqrt(10.0)  # from one to the next
 
 
 @dataclass
-class GyroFlicker(Effect):
+class GyroFlicker(ScalarEffect):
     """1/f noise of the power spectral density B² / (π f), one-sided.
 
     It is the sum of exponentially correlated noises (Gauss-Markov) whose time constants τ follow
@@ -27,20 +25,18 @@ class GyroFlicker(Effect):
     4 σ² τ / (1 + (2πfτ)²) add up to 1/f, within 3 % from 30 µHz to 0.1 Hz, and fall off beyond
     2 µHz and 2 Hz. The Allan deviation is level at B √(2 ln 2 / π) = 0.664 B. It goes on in the
     pauses, and its value at the start is drawn.
-    instability: B, rad/s, the same for the three axes.
+    value: B, rad/s, the same for the three axes.
     Source: IEEE Std 952-2020, annex on noise models, "bias instability".
     """
 
-    instability: float
+    KEY = "instability_deg_h"
+    UNIT = DEGREE / HOUR
+
     _reached: float = field(default=0.0, init=False)  # s
     _values: Array | None = field(default=None, init=False)  # (time constants, 3), unit variance
 
-    @classmethod
-    def specified(cls, parameters: Mapping[str, Any]) -> Self:
-        return cls(parameters["instability_deg_h"] * DEGREE / HOUR)
-
     def scatters(self, truth: Truth, generator: np.random.Generator) -> Reading | None:
-        if self.instability == 0:
+        if self.value == 0:
             return None
         instants = truth.motion.instants
         fresh = generator.standard_normal((len(TIME_CONSTANTS), 3))
@@ -59,5 +55,5 @@ class GyroFlicker(Effect):
             # Over a sample, which is short beside the time constant, it goes straight.
             total += (ends + np.vstack([start, ends[:-1]])) / 2
             self._values[number] = ends[-1]
-        sigma = self.instability * sqrt(log(RATIO) / pi)
+        sigma = self.value * sqrt(log(RATIO) / pi)
         return Reading.of_gyros(sigma * instants.interval * total)
