@@ -6,7 +6,7 @@ import pandas as pd
 import pytest
 
 from inertial import tables
-from inertial.estimation.consistency import beyond_chance, chance_of
+from inertial.estimation.consistency import holm_rejections, normal_p_value
 from inertial.estimation.gyroscope_formulas import Upright, both_ways, two_positions
 from inertial.estimation.gyroscopes import Angle, Earth, Position, known_angle
 from inertial.physics.site import earth_rate
@@ -125,10 +125,10 @@ def test_the_sigma_of_forward_against_backward_counts_the_shared_data_once(secon
 def test_a_family_of_comparisons_is_judged_together():
     # Holm (1979); the smallest of four is held against 0.05/4, the next against 0.05/3.
     np.testing.assert_array_equal(
-        beyond_chance([0.01, 0.04, 0.03, 0.005], 0.05), [True, False, False, True]
+        holm_rejections([0.01, 0.04, 0.03, 0.005], 0.05), [True, False, False, True]
     )
-    assert beyond_chance([], 0.01).shape == (0,)
-    assert chance_of(-1.959964) == pytest.approx(0.05, abs=1e-6)
+    assert holm_rejections([], 0.01).shape == (0,)
+    assert normal_p_value(-1.959964) == pytest.approx(0.05, abs=1e-6)
 
 
 # ---- the stage, on simulated campaigns

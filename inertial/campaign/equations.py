@@ -18,7 +18,7 @@ from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.accelerometers import Rest
 from inertial.estimation.gyroscopes import Around
 from inertial.estimation.horizontal_earth_rate import said_of
-from inertial.estimation.least_squares import Reduced, System
+from inertial.estimation.least_squares import EffectInformation, System
 from inertial.estimation.sensitivities import Traces
 from inertial.model_selection.evidence import Evidence
 from inertial.physics.effect import Effect, Reading
@@ -321,7 +321,7 @@ def evidence(
     """
     pairs = zip(("gyro", "accel"), campaign.systems(effects, 1.0), strict=True)
     systems = [(sensor, system) for sensor, system in pairs if system is not None]
-    said = [(sensor, system.reduced()) for sensor, system in systems]
+    said = [(sensor, system.effect_information()) for sensor, system in systems]
     largest = np.array(
         [
             effect.largest if effect.sought_in == "blocks" else 0.0
@@ -339,7 +339,7 @@ def evidence(
     )
 
 
-def _only(reduced: Reduced, clear: Array) -> Reduced:
+def _only(reduced: EffectInformation, clear: Array) -> EffectInformation:
     """The same without what is said of columns that are not clear, (k,)."""
     return replace(
         reduced,

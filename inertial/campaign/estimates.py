@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from inertial import tables
 from inertial.campaign.records import Manoeuvre, with_mount
 from inertial.estimation import triad
-from inertial.estimation.least_squares import Estimate, Fitted
+from inertial.estimation.least_squares import Estimate
+from inertial.estimation.variance_components import ScatterFit
 
 # ---- How long the rests must last for a bias of a wanted sigma, by S0's formulas.
 #
@@ -148,7 +149,7 @@ class Estimates:
     def add_fit(
         self,
         method: str,
-        fitted: Fitted,
+        fitted: ScatterFit,
         used: list[str],
         left: list[str],
     ) -> None:
@@ -175,8 +176,8 @@ class Estimates:
                 "unit": UNIT[self.stage],
                 "used": ", ".join(used),
                 "left_out": "; ".join(left),
-                "random_walk": fitted.walk,
-                "random_walk_sigma": fitted.walk_sigma,
+                "random_walk": fitted.random_walk,
+                "random_walk_sigma": fitted.random_walk_sigma,
             }
         )
 

@@ -17,10 +17,10 @@ from inertial.campaign.estimates import NAMES, Estimates, Wanted
 from inertial.campaign.rate_segments import GyroInputs, angles_about, position_of
 from inertial.estimation import gyroscopes
 from inertial.estimation.gyroscope_formulas import Solution, Upright, two_positions
-from inertial.estimation.least_squares import Fitted
 from inertial.estimation.rate_table import rate_table
 from inertial.estimation.triad import BIAS, errors_of
 from inertial.estimation.turn_and_stop import UNKNOWN, turn_and_stop
+from inertial.estimation.variance_components import ScatterFit
 from inertial.tables import AXES
 
 Array = NDArray[np.float64]
@@ -30,7 +30,9 @@ SILENT = 1e-15  # rad/s, a sigma as good as none
 UNREAD = "the {axis} gyro is not recorded"
 
 
-def add_formulas(estimates: Estimates, data: CampaignData, joint: Fitted, wanted: float) -> None:
+def add_formulas(
+    estimates: Estimates, data: CampaignData, joint: ScatterFit, wanted: float
+) -> None:
     """The rows of every formula that the plan feeds, with the scatter of the joint estimate.
 
     `wanted`: rad/s, sigma of a bias for which the length of the rests is reckoned.

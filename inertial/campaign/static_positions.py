@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.records import Manoeuvre
-from inertial.estimation.random_walk import COMMON, Stretch
+from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
 from inertial.physics.motion import turned
 from inertial.tables import ACCEL, AXES, GYRO
 
@@ -213,7 +213,7 @@ def stretch_of(name: str, part: Blocks, shared_clock: bool) -> Stretch:
 
 def _stretch(name: str, log: str, time: Array, seconds: Array, shared_clock: bool) -> Stretch:
     start, end = _ends(time, seconds)
-    return Stretch(name, COMMON if shared_clock else log, start, end - start)
+    return Stretch(name, COMMON_CLOCK if shared_clock else log, start, end - start)
 
 
 def _ends(time: Array, seconds: Array) -> tuple[float, float]:

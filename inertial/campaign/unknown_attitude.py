@@ -18,7 +18,7 @@ from inertial.campaign.estimates import Estimates
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Manoeuvre
 from inertial.campaign.static_positions import Still
-from inertial.estimation.least_squares import Estimate, Fitted, with_scatter
+from inertial.estimation.least_squares import Estimate
 from inertial.estimation.multi_position import (
     FREE,
     NAMES,
@@ -29,6 +29,7 @@ from inertial.estimation.multi_position import (
     unseen,
 )
 from inertial.estimation.triad import CROSS, MOUNTING, SYMMETRIC
+from inertial.estimation.variance_components import ScatterFit, with_scatter
 from inertial.tables import ACCEL, AXES, GYRO
 
 Array = NDArray[np.float64]
@@ -119,7 +120,7 @@ def _still(
     )
 
 
-def fitted_to(data: CampaignData, found: Sequence[FreeStill]) -> Fitted:
+def fitted_to(data: CampaignData, found: Sequence[FreeStill]) -> ScatterFit:
     """P and bias of the accelerometers, with a scatter between rests where noise cannot explain."""
     gravity, rests = data.gravity, [one.rest for one in found]
     fit = partial(free_positions, rests, gravity.number, gravity.scatter)

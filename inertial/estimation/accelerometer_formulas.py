@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from inertial.estimation.accelerometers import Rest
 from inertial.estimation.gyroscope_formulas import Readings, Solution
-from inertial.estimation.least_squares import spanned
+from inertial.estimation.least_squares import pseudo_inverse
 from inertial.physics.motion import level_axes
 from inertial.physics.vectors import cross
 
@@ -113,7 +113,7 @@ def pooled_positions(
         return None
     ups = np.array([rest.up for rest in rests])
     attitudes, shares = pooling(ups)
-    span = spanned(np.column_stack([gravity * attitudes, np.ones(len(attitudes))]))
+    span = pseudo_inverse(np.column_stack([gravity * attitudes, np.ones(len(attitudes))]))
     means = np.array([rest.mean for rest in rests])
     if not span.determined.all() or not np.isfinite(means).all():
         return None

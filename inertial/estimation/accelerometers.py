@@ -12,12 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.elimination import Name, Part, eliminated, shorter
+from inertial.estimation.elimination import EquationBlock, Name, compressed, eliminate
 from inertial.estimation.gyroscope_rows import whitened
-from inertial.estimation.least_squares import Estimate, Fitted, System
-from inertial.estimation.random_walk import Stretch, drifting, times_of, trend, with_drift
+from inertial.estimation.least_squares import Estimate, System
+from inertial.estimation.random_walk import Stretch, linear_trend, with_drifts
 from inertial.estimation.sensitivities import NONE, Traces
 from inertial.estimation.triad import UNKNOWNS
+from inertial.estimation.variance_components import ScatterFit, walk_search, with_random_walk
 from inertial.physics.motion import all_level_axes
 from inertial.physics.vectors import cross
 
@@ -76,7 +77,7 @@ def fitted(
     position_sigma: float,
     noise_degrees: float = np.inf,
     wide: Mapping[str, float] | None = None,
-) -> Fitted:
+) -> ScatterFit:
     """The estimate with that scatter and that random walk which the data ask for."""
     given = (gravity, gravity_sigma, position_sigma)
     estimate = weighted(rests, *given, wide=wide)
@@ -97,12 +98,14 @@ def fitted(
         between([Stretch(str(np.round(rest.up, 3))) for rest in rests]),
     ]
     if stretches:
-        straight = trend(stretches)
+        straight = linear_trend(stretches)
         rivals.append(between([straight(rest.stretch or Stretch("")) for rest in rests]))
     noise = float(np.nanmedian([*(rest.sigma for rest in rests), np.full(3, np.nan)]))
-    found = with_drift(fit, SCATTER, times_of(stretches, noise, WALK), rivals, noise_degrees)
-    if found.scatter or found.walk:
-        estimate = weighted(rests, *given, found.scatter, found.walk, wide)
+    found = with_random_walk(
+        fit, SCATTER, walk_search(stretches, noise, WALK), rivals, noise_degrees
+    )
+    if found.scatter or found.random_walk:
+        estimate = weighted(rests, *given, found.scatter, found.random_walk, wide)
     return replace(found, estimate=estimate)
 
 
@@ -134,16 +137,16 @@ def equations(
     together: dict[tuple[str, Stretch | None], list[int]] = {}
     for i, rest in enumerate(rests):
         together.setdefault((rest.position, rest.stretch if drifts else None), []).append(i)
-    parts: list[tuple[Part, Stretch]] = []
+    parts: list[tuple[EquationBlock, Stretch]] = []
     sigma: dict[Name, float] = {}
     for number, ((position, stretch), some) in enumerate(together.items()):
         tilts = tuple((f"tilt {axis}", position) for axis in (0, 1))
         sigma |= dict.fromkeys(tilts, position_sigma)
         part = whitened(rows[some].reshape(-1, rows.shape[-1]), noise[some].ravel(), tilts)
-        part = replace(part, rows=shorter(part.rows))
+        part = replace(part, rows=compressed(part.rows))
         parts.append((part, stretch or Stretch(f"rest {number}")))
-    every, of_drifts = drifting(parts, len(prior), BIAS, scatter if drifts else 0.0, walk)
-    left, apart = eliminated(every, len(prior), sigma | of_drifts)
+    every, of_drifts = with_drifts(parts, len(prior), BIAS, scatter if drifts else 0.0, walk)
+    left, eliminated = eliminate(every, len(prior), sigma | of_drifts)
     return System(
         left[:, :-1],
         left[:, -1] + left[:, :-1] @ prior,
@@ -152,7 +155,7 @@ def equations(
         np.array([*PRIOR_SIGMA, gravity_sigma, *wide.values()]),
         UNKNOWNS,
         tuple(names),
-        apart,
+        eliminated,
     )
 
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.consistency import SharedCause, chance_of, shared_cause
-from inertial.estimation.probability import chi_squared_beyond
+from inertial.estimation.consistency import CommonCause, common_cause, normal_p_value
+from inertial.estimation.probability import chi2_sf
 
 # ---- Bias and scale factor of a gyro from a window of two turns, forward and backward.
 #
@@ -101,14 +101,14 @@ class Fencepost:
     """
 
     ratios: Array
-    cause: SharedCause
+    cause: CommonCause
     whole: int
     whole_chi_squared: float
 
     @property
     def p_whole(self) -> float:
         """Chance of such scale factors if just so many samples too many were summed."""
-        return float(chi_squared_beyond(self.whole_chi_squared, self.cause.k))
+        return float(chi2_sf(self.whole_chi_squared, self.cause.k))
 
     def told(self, level: float) -> bool:
         """Whether it is a fencepost.
@@ -117,7 +117,7 @@ class Fencepost:
         sigma of m is small enough that not any number would be near a whole one.
         """
         sharp = self.cause.sigma < 0.1
-        off = chance_of((self.cause.amount - self.whole) / self.cause.sigma)
+        off = normal_p_value((self.cause.amount - self.whole) / self.cause.sigma)
         chance = min(self.p_whole, off)
         return sharp and self.whole != 0 and self.cause.p_without < level <= chance
 
@@ -132,7 +132,7 @@ def fencepost(scales: Array, reference: Array, sigma: Array, samples: Array) -> 
     samples : (k,), N, how many intervals the window should have had
     """
     ratios = (1 + scales) / (1 + reference) - 1
-    cause = shared_cause(ratios, sigma, 1 / samples)
+    cause = common_cause(ratios, sigma, 1 / samples)
     whole = round(cause.amount)
     left = (ratios - whole / samples) / sigma
     return Fencepost(np.asarray(ratios), cause, whole, float(left @ left))

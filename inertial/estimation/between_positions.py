@@ -29,7 +29,7 @@ from scipy.spatial.transform import Rotation
 from inertial.estimation import multi_position as forces
 from inertial.estimation.attitude import carried
 from inertial.estimation.gyroscopes import PRIOR, PRIOR_SIGMA, Earth
-from inertial.estimation.least_squares import Estimate, System, settled
+from inertial.estimation.least_squares import Estimate, System, solve_iterated
 from inertial.estimation.multi_position import FreeRest, Upward, upward_of
 from inertial.estimation.triad import UNKNOWNS, design_of
 from inertial.physics.vectors import cross
@@ -92,7 +92,7 @@ def between_rests(
     recorded = _Recorded(stops, passages, given, scatter, sways, up)
     start = recorded.prior
     start[UNKNOWNS - 3 : UNKNOWNS] = np.nanmedian([stop.mean for stop in stops], axis=0)
-    return settled(partial(equations, recorded), start)
+    return solve_iterated(partial(equations, recorded), start)
 
 
 @dataclass(frozen=True)

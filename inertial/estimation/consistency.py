@@ -1,4 +1,4 @@
-"""Whether values agree within their sigmas: one by one, together, and outliers."""
+"""Whether values agree within their sigmas: p-values, multiple comparisons, outliers."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,25 +6,27 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.probability import chi_squared_beyond, student_beyond
+from inertial.estimation.probability import chi2_sf, t_sf
 from inertial.estimation.regression import basis
 
-# ---- Whether values agree within their sigmas, one by one and many together.
+Array = NDArray[np.float64]
+
+MIN_ONE_MINUS_LEVERAGE = 1e-9  # below it a reading has a column of its own and fits itself
 
 
-def chance_of(in_sigmas: float, degrees: float = np.inf) -> float:
-    """Chance that a normal error is at least so many sigmas, either way.
+def normal_p_value(in_sigmas: float, degrees: float = np.inf) -> float:
+    """Two-sided p-value of an error in units of its sigma.
 
     `degrees`: of freedom, where sigma is estimated (Student's t).
     """
-    return float(2 * student_beyond(abs(in_sigmas), degrees))
+    return float(2 * t_sf(abs(in_sigmas), degrees))
 
 
-def beyond_chance(p_values: Sequence[float], level: float) -> NDArray[np.bool_]:
-    """Which of n comparisons differ, (n,), when one false alarm in all of them has chance `level`.
+def holm_rejections(p_values: Sequence[float], level: float) -> NDArray[np.bool_]:
+    """Which of n comparisons differ, (n,), at a family-wise error rate of `level` (Holm 1979).
 
-    The smallest p-value is held against level/n, the next one against level/(n − 1), until one
-    is larger (Holm 1979).
+    The smallest p-value is compared with level/n, the next with level/(n − 1), until the first
+    that is larger.
     """
     p = np.asarray(p_values, dtype=np.float64)
     order = np.argsort(p)
@@ -34,18 +36,12 @@ def beyond_chance(p_values: Sequence[float], level: float) -> NDArray[np.bool_]:
     return result
 
 
-# ---- Whether differences that should be zero have one cause in common.
-#
-#     difference of axis i = amount · shape of axis i + noise
-#
-# The amount is that of smallest variance. What it leaves must be noise; what it explains must not.
-
-Array = NDArray[np.float64]
-
-
 @dataclass(frozen=True)
-class SharedCause:
-    """One amount for k differences, its sigma, and chi-squared without and with it."""
+class CommonCause:
+    """One amount for k differences, its sigma, and chi-squared without and with it.
+
+    difference of axis i = amount · shape of axis i + noise
+    """
 
     amount: float
     sigma: float
@@ -55,50 +51,44 @@ class SharedCause:
 
     @property
     def p_without(self) -> float:
-        """Chance of such differences if there is no cause at all."""
-        return float(chi_squared_beyond(self.without, self.k))
+        """p-value of the differences if there is no cause."""
+        return float(chi2_sf(self.without, self.k))
 
     @property
     def p_remaining(self) -> float:
-        """Chance of what remains if this is the only cause; 1 where nothing can remain."""
-        return float(chi_squared_beyond(self.remaining, self.k - 1)) if self.k > 1 else 1.0
+        """p-value of the residuals if this is the only cause; 1 for a single difference."""
+        return float(chi2_sf(self.remaining, self.k - 1)) if self.k > 1 else 1.0
 
 
-def shared_cause(differences: Array, sigma: Array, shape: Array | None = None) -> SharedCause:
-    """The amount of one cause; `differences`, `sigma`, `shape` (1 where left out): (k,)."""
-    like = np.ones_like(differences) if shape is None else shape
-    information = float(np.sum((like / sigma) ** 2))
-    amount = float(np.sum(like * differences / sigma**2)) / information
-    left = (differences - amount * like) / sigma
-    return SharedCause(
+def common_cause(differences: Array, sigma: Array, shape: Array | None = None) -> CommonCause:
+    """Estimate of smallest variance; `differences`, `sigma`, `shape` (1 by default): (k,)."""
+    shape = np.ones_like(differences) if shape is None else shape
+    information = float(np.sum((shape / sigma) ** 2))
+    amount = float(np.sum(shape * differences / sigma**2)) / information
+    residual = (differences - amount * shape) / sigma
+    return CommonCause(
         amount=amount,
         sigma=information**-0.5,
         without=float(np.sum((differences / sigma) ** 2)),
-        remaining=float(left @ left),
+        remaining=float(residual @ residual),
         k=len(differences),
     )
 
 
-# ---- Readings that do not belong to the others: studentised residuals after Bonferroni.
-#
-# Each residual is held against the scatter of a fit without it, t = e / (s₍₋ᵢ₎ √(1 − h)), and its
-# chance is multiplied by the number of readings among which the largest was looked for
-# (the mean shift model of Cook & Weisberg 1982).
-
-ALONE = 1e-9  # 1 − leverage below which a reading has a column of its own and fits itself
-
-
 @dataclass(frozen=True)
-class Outlying:
-    """The reading that stands out most: its row, t, and the chance after Bonferroni."""
+class Outlier:
+    """The largest studentised residual: its row, t, and its p-value after Bonferroni."""
 
     row: int
     in_sigmas: float
     p_value: float
 
 
-def most_outlying(design: Array, observed: Array, sigma: Array) -> Outlying | None:
-    """The reading that fits least; None where fewer than two degrees of freedom are left.
+def largest_outlier(design: Array, observed: Array, sigma: Array) -> Outlier | None:
+    """The reading that fits least; None for fewer than two degrees of freedom.
+
+    Each residual is compared with the scatter of a fit without it, t = e / (s₍₋ᵢ₎ √(1 − h)), and
+    its p-value is multiplied by the number of readings (mean shift model, Cook & Weisberg 1982).
 
     Parameters
     ----------
@@ -106,30 +96,30 @@ def most_outlying(design: Array, observed: Array, sigma: Array) -> Outlying | No
     sigma : (n,), in proportion to the noise of each row
     """
     own = basis(design / sigma[:, None])
-    free = 1 - np.sum(own**2, axis=1)
+    one_minus_leverage = 1 - np.sum(own**2, axis=1)
     degrees = len(observed) - own.shape[1] - 1
-    judged = free > ALONE
-    if degrees < 1 or not judged.any():
+    tested = one_minus_leverage > MIN_ONE_MINUS_LEVERAGE
+    if degrees < 1 or not tested.any():
         return None
-    rest = observed / sigma - own @ (own.T @ (observed / sigma))
-    share = np.where(judged, rest**2 / np.where(judged, free, 1.0), 0.0)
-    without = np.maximum(rest @ rest - share, np.finfo(float).tiny) / degrees
-    t = np.sign(rest) * np.sqrt(share / without)
+    residual = observed / sigma - own @ (own.T @ (observed / sigma))
+    share = np.where(tested, residual**2 / np.where(tested, one_minus_leverage, 1.0), 0.0)
+    without = np.maximum(residual @ residual - share, np.finfo(float).tiny) / degrees
+    t = np.sign(residual) * np.sqrt(share / without)
     row = int(np.argmax(np.abs(t)))
-    chance = 2 * float(student_beyond(abs(t[row]), degrees))
-    return Outlying(row, float(t[row]), min(chance * int(judged.sum()), 1.0))
+    p_value = normal_p_value(t[row], degrees) * int(tested.sum())
+    return Outlier(row, float(t[row]), min(p_value, 1.0))
 
 
-def outliers(design: Array, observed: Array, sigma: Array, level: float) -> list[Outlying]:
-    """The outlying readings, one after another, each judged after the earlier ones were left out.
+def outliers(design: Array, observed: Array, sigma: Array, level: float) -> list[Outlier]:
+    """The outliers one after another, each tested after removal of the earlier ones.
 
-    `level`: chance below which a reading, after Bonferroni, counts as outlying.
+    `level`: p-value after Bonferroni below which a reading is an outlier.
     """
-    found: list[Outlying] = []
+    result: list[Outlier] = []
     kept = np.arange(len(observed))
     while True:
-        one = most_outlying(design[kept], observed[kept], sigma[kept])
-        if one is None or one.p_value >= level:
-            return found
-        found.append(Outlying(int(kept[one.row]), one.in_sigmas, one.p_value))
-        kept = np.delete(kept, one.row)
+        outlier = largest_outlier(design[kept], observed[kept], sigma[kept])
+        if outlier is None or outlier.p_value >= level:
+            return result
+        result.append(Outlier(int(kept[outlier.row]), outlier.in_sigmas, outlier.p_value))
+        kept = np.delete(kept, outlier.row)

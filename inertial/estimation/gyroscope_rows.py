@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.estimation.attitude import all_turned
-from inertial.estimation.elimination import Name, Part, shorter
+from inertial.estimation.elimination import EquationBlock, Name, compressed
 from inertial.estimation.random_walk import Stretch
 from inertial.estimation.sensitivities import NONE, Traces
 from inertial.estimation.triad import UNKNOWNS, design_of
@@ -169,7 +169,7 @@ def of_rests(
     prior: Array,
     effects: Sequence[str],
     sigma: dict[Name, float],
-) -> list[tuple[str, Part, Stretch]]:
+) -> list[tuple[str, EquationBlock, Stretch]]:
     """Position, equations and stretch of every rest.
 
     Parameters
@@ -213,11 +213,11 @@ def of_rests(
     return found
 
 
-def whitened(rows: Array, sigma: Array, own: tuple[Name, ...]) -> Part:
+def whitened(rows: Array, sigma: Array, own: tuple[Name, ...]) -> EquationBlock:
     """Equations in units of their sigma, without channels that are not recorded."""
     there = np.isfinite(rows[:, -1]) & np.isfinite(sigma)
     deviance = 2 * float(np.sum(np.log(sigma[there])))
-    return Part(rows[there] / sigma[there, None], own, int(there.sum()), deviance)
+    return EquationBlock(rows[there] / sigma[there, None], own, int(there.sum()), deviance)
 
 
 def of_steady(
@@ -229,7 +229,7 @@ def of_steady(
     prior: Array,
     effects: Sequence[str],
     sigma: dict[Name, float],
-) -> Part:
+) -> EquationBlock:
     """The equations of a stretch at a known rate; arguments as in `of_rests`."""
     names = level_names(steady.position)
     angles, shares = steady.rate * steady.elapsed, steady.seconds / steady.seconds.sum()
@@ -284,7 +284,7 @@ def of_turn(
     prior: Array,
     effects: Sequence[str],
     sigma: dict[Name, float],
-) -> Part | None:
+) -> EquationBlock | None:
     """The equations of a turn in few rows; None where no recorded gyro feels it.
 
     Parameters
@@ -324,7 +324,7 @@ def of_turn(
         alone = turn.alone[some]
         noise = np.sqrt(turn.seconds[some][alone])
         pairs = np.einsum("dr,krc->kdc", across, seen[alone]) / noise[:, None, None]
-        rows.append(shorter(pairs.reshape(-1, pairs.shape[-1])))
+        rows.append(compressed(pairs.reshape(-1, pairs.shape[-1])))
         count += len(across) * int(alone.sum())
     if turn.by_hand:
         rows.append(across @ plain / np.sqrt(turn.seconds.sum()))
@@ -333,7 +333,7 @@ def of_turn(
     stacked = np.vstack(rows)
     if not np.isfinite(stacked[-1]).all():
         stacked, count = stacked[:-1], count - 1
-    return Part(shorter(stacked), tuple(own), count, 0.0)
+    return EquationBlock(compressed(stacked), tuple(own), count, 0.0)
 
 
 def _angles(

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.elimination import Name, Part, eliminated
+from inertial.estimation.elimination import EquationBlock, Name, eliminate
 from inertial.estimation.gyroscope_rows import (
     Around,
     Bridge,
@@ -20,9 +20,10 @@ from inertial.estimation.gyroscope_rows import (
     of_turn,
 )
 from inertial.estimation.horizontal_earth_rate import known_azimuths, sized
-from inertial.estimation.least_squares import Estimate, Fitted, System, solve
-from inertial.estimation.random_walk import Stretch, drifting, times_of, trend, with_drift
+from inertial.estimation.least_squares import Estimate, System, solve
+from inertial.estimation.random_walk import Stretch, linear_trend, with_drifts
 from inertial.estimation.triad import UNKNOWNS
+from inertial.estimation.variance_components import ScatterFit, walk_search, with_random_walk
 
 # ---- Bias and scale factor error of one gyro from whole turns about it, as S0 has it.
 
@@ -143,7 +144,7 @@ def fitted(
     earth: Earth,
     position_sigma: float,
     noise_degrees: float = np.inf,
-) -> Fitted:
+) -> ScatterFit:
     """The joint estimate with that scatter and that random walk which the data ask for."""
     rows = (turns, steadies, earth, position_sigma)
     estimate = joint(stills, *rows)
@@ -164,13 +165,15 @@ def fitted(
         alike(lambda position, _: Stretch(attitudes[position])),
     ]
     if stretches:
-        straight = trend(stretches)
+        straight = linear_trend(stretches)
         rivals.append(alike(lambda _, stretch: straight(stretch)))
     noises = [one.sigma for one in every if not isinstance(one, Turn)]
     noise = float(np.nanmedian([*noises, np.full(3, np.nan)])) if noises else 0.0
-    found = with_drift(fit, SCATTER, times_of(stretches, noise, WALK), rivals, noise_degrees)
-    if found.scatter or found.walk:
-        estimate = joint(stills, *rows, found.scatter, found.walk)
+    found = with_random_walk(
+        fit, SCATTER, walk_search(stretches, noise, WALK), rivals, noise_degrees
+    )
+    if found.scatter or found.random_walk:
+        estimate = joint(stills, *rows, found.scatter, found.random_walk)
     return replace(found, estimate=estimate)
 
 
@@ -199,7 +202,7 @@ class Linear:
     around: Around
     earth: Earth
     wide: Mapping[str, float]
-    parts: Sequence[tuple[str, Part, Stretch]]
+    parts: Sequence[tuple[str, EquationBlock, Stretch]]
     sigma: Mapping[Name, float]
 
     def system(
@@ -216,14 +219,14 @@ class Linear:
         prior = np.concatenate([PRIOR, [self.earth.up], np.zeros(len(self.wide))])
         sigma = dict(self.sigma)
         rests = of_rests(stills, self.around.matrix, self.earth, prior, list(self.wide), sigma)
-        by_position: dict[str, list[tuple[Part, Stretch]]] = {}
+        by_position: dict[str, list[tuple[EquationBlock, Stretch]]] = {}
         told = sized(self.around, self.earth, len(prior), sigma)
         for position, part, stretch in (*rests, *self.parts):
             one = stretch if alike is None else alike(position, stretch)
             by_position.setdefault(position, []).append((told(part), one))
         every = [one for some in by_position.values() for one in some]
-        parts, of_drifts = drifting(every, len(prior), BIAS, scatter, walk)
-        rows, apart = eliminated(parts, len(prior), sigma | of_drifts)
+        parts, of_drifts = with_drifts(every, len(prior), BIAS, scatter, walk)
+        rows, eliminated = eliminate(parts, len(prior), sigma | of_drifts)
         names = [("parameter", str(i)) for i in range(UNKNOWNS)]
         names += [("earth", "up"), *(("effect", name) for name in self.wide)]
         return System(
@@ -234,7 +237,7 @@ class Linear:
             np.array([*PRIOR_SIGMA, self.earth.up_sigma, *self.wide.values()]),
             UNKNOWNS,
             tuple(names),
-            apart,
+            eliminated,
         )
 
 
@@ -253,7 +256,7 @@ def about(
     wide = wide or {}
     prior = np.concatenate([PRIOR, [earth.up], np.zeros(len(wide))])
     sigma: dict[Name, float] = {}
-    parts: list[tuple[str, Part, Stretch]] = []
+    parts: list[tuple[str, EquationBlock, Stretch]] = []
     for number, turn in enumerate(turns):
         name = f"{turn.position.name} {number}"
         part = of_turn(turn, name, around, earth, position_sigma, prior, list(wide), sigma)

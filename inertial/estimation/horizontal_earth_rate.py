@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.elimination import Name, Part
+from inertial.estimation.elimination import EquationBlock, Name
 from inertial.estimation.gyroscope_rows import Around, Earth, Position
 from inertial.physics.motion import level_axes, turned_all
 from inertial.physics.vectors import cross
@@ -47,7 +47,7 @@ def said_of(levels: Mapping[Name, float], size: float) -> frozenset[str]:
 
 def sized(
     around: Around, earth: Earth, shared: int, sigma: dict[Name, float]
-) -> Callable[[Part], Part]:
+) -> Callable[[EquationBlock], EquationBlock]:
     """Adds the size of the level rate to the first part that sees it, for each known azimuth.
 
     `shared`: the number of shared unknowns; `sigma`: of the errors, where the parts become vague.
@@ -60,7 +60,7 @@ def sized(
     for name in left:
         sigma |= dict.fromkeys((("level 0", name), ("level 1", name)), VAGUE * earth.level)
 
-    def told(part: Part) -> Part:
+    def told(part: EquationBlock) -> EquationBlock:
         names = {name for kind, name in part.own if kind == "level 0"} & left
         for name in names:
             left.remove(name)
@@ -72,7 +72,7 @@ def sized(
             row[0, -1] = earth.level
             rows = np.vstack([part.rows, row / (EXACT * earth.level)])
             # The azimuth is fitted, so there is one degree of freedom less.
-            part = Part(rows, part.own, part.count - 1, part.deviance)
+            part = EquationBlock(rows, part.own, part.count - 1, part.deviance)
         return part
 
     return told

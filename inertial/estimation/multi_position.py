@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import qr, rq
 
-from inertial.estimation.least_squares import NARROWED, Estimate, System, settled
+from inertial.estimation.least_squares import MIN_SIGMA_REDUCTION, Estimate, System, solve_iterated
 from inertial.estimation.triad import BIAS, SYMMETRIC
 from inertial.physics.motion import level_axes
 
@@ -93,7 +93,7 @@ def free_positions(
     """
     up = upward_of(np.array([rest.mean for rest in rests]))
     about = partial(equations, rests, up, (gravity, gravity_sigma), scatter)
-    return settled(about, np.concatenate([PRIOR, np.zeros(2 * len(rests)), [gravity]]))
+    return solve_iterated(about, np.concatenate([PRIOR, np.zeros(2 * len(rests)), [gravity]]))
 
 
 def equations(
@@ -218,7 +218,7 @@ def unseen(estimate: Estimate) -> list[Unseen]:
     """What an estimate of `free_positions` does not tell."""
     shrunk = estimate.covariance[:FREE, :FREE] / np.outer(PRIOR_SIGMA, PRIOR_SIGMA)
     variance, axes = np.linalg.eigh(shrunk)
-    wide = axes[:, variance >= NARROWED**-2]
+    wide = axes[:, variance >= MIN_SIGMA_REDUCTION**-2]
     within = wide @ wide.T
     order = qr(within, mode="r", pivoting=True)[1][: wide.shape[1]]
     changes = lengths(estimate) * PRIOR_SIGMA

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 from scipy.optimize import minimize_scalar
 
-from inertial.estimation.probability import chi_squared_bound
+from inertial.estimation.probability import chi2_isf
 
 # ---- Ripples of a turntable: lines against its angle, with one phase in all turns.
 #
@@ -197,7 +197,7 @@ def log_chance(said: Orders, turned: float) -> Array:
     each = said.drop + said.apart
     turns = np.maximum(said.turns, 1)
     level = median_filter(each / (2 * turns), AROUND, mode="nearest")
-    level /= chi_squared_bound(0.5, 2 * turns) / (2 * turns)
+    level /= chi2_isf(0.5, 2 * turns) / (2 * turns)
     chance = -said.drop / 2 / np.maximum(level, 1.0)
     for i in np.flatnonzero(said.hertz < WHITE_FROM).tolist():
         degrees, left = _told_by_turns(said, i, turned)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-from inertial.estimation.probability import log_chi_squared_beyond
+from inertial.estimation.probability import chi2_logsf
 
 # ---- Oscillations in residuals: lines that stand out of the noise of a spectrum.
 
@@ -207,7 +207,7 @@ def pooled(
         power = np.abs(summed) ** 2
         drop += power * 2 * np.log(2) / np.median(power)
     degrees = 2 * len(records)
-    return frequency, drop, log_chi_squared_beyond(drop, degrees)
+    return frequency, drop, chi2_logsf(drop, degrees)
 
 
 # ---- Whether an oscillation is bound to time or to the table's angle.

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.estimation.accelerometers import Rest, equations
-from inertial.estimation.probability import chi_squared_beyond
+from inertial.estimation.probability import chi2_sf
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.motion import all_level_axes
 from inertial.physics.vectors import cross
@@ -59,13 +59,13 @@ def off_position(
     given = (gravity, gravity_sigma, position_sigma, 0.0, matrix)
     columns = [f"{position}/{i}" for position in positions for i in (0, 1)]
     traced, known = _traced(rests, gravity, matrix), dict(wide or {})
-    reduced = equations(traced, *given, known | dict.fromkeys(columns, FREE)).reduced()
+    reduced = equations(traced, *given, known | dict.fromkeys(columns, FREE)).effect_information()
     further = list(range(len(known)))
     base, _ = reduced.drop(further) if further else (0.0, 0)
     tilts = [[len(known) + 2 * i + k for k in (0, 1)] for i in range(len(positions))]
     drops = np.array([reduced.drop([*further, *pair])[0] - base for pair in tilts])
     best = int(np.argmax(drops))
-    p_value = min(float(chi_squared_beyond(drops[best], 2)) * len(positions), 1.0)
+    p_value = min(float(chi2_sf(drops[best], 2)) * len(positions), 1.0)
     if p_value >= LEVEL:
         return None
     alike = [positions[i] for i in np.argsort(-drops) if drops[i] > drops[best] - ALIKE]

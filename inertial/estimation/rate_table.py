@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from inertial.estimation.gyroscope_formulas import Readings, Solution
 from inertial.estimation.gyroscopes import Earth, Steady
 from inertial.estimation.horizontal_earth_rate import earth_seen
-from inertial.estimation.least_squares import spanned
+from inertial.estimation.least_squares import pseudo_inverse
 from inertial.estimation.triad import AXES, linear_names
 from inertial.physics.motion import level_axes
 from inertial.physics.vectors import cross
@@ -92,7 +92,7 @@ def rate_table(
     noise = np.hypot(np.array([run.sigma for run in runs]), scatter)
     there = np.isfinite(means) & np.isfinite(noise)
     design = np.column_stack([rates, np.ones(len(runs))])
-    spans = [spanned(design[there[:, gyro]]) for gyro in range(3)]
+    spans = [pseudo_inverse(design[there[:, gyro]]) for gyro in range(3)]
     weights = np.zeros((3, COLUMNS, len(runs)))
     for gyro, span in enumerate(spans):
         weights[gyro][:, there[:, gyro]] = span.inverse

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.probability import chance_of_ratio, ratio_beyond, ratio_bound
+from inertial.estimation.probability import f_isf, f_sf, quadratic_ratio_sf
 
 # ---- Whether further columns explain what least squares leaves: the F test of nested models.
 #
@@ -76,7 +76,7 @@ def added_columns(design: Array, columns: Array, observed: Array, sigma: Array) 
         statistic=statistic,
         columns=int(new.sum()),
         degrees=free,
-        p_value=float(ratio_beyond(statistic, int(new.sum()), free)),
+        p_value=float(f_sf(statistic, int(new.sum()), free)),
         scatter=float(np.sqrt(remains)),
     )
 
@@ -145,7 +145,7 @@ class Curve:
         if not degrees:
             return 1.0
         count = len(degrees)
-        return float(ratio_beyond(self.drop(degrees) / count, count, self.freedom))
+        return float(f_sf(self.drop(degrees) / count, count, self.freedom))
 
     def left(self, degree: int) -> float:
         """What the polynomial of this degree leaves, root of the mean square per freedom."""
@@ -161,7 +161,7 @@ class Curve:
         """Chance that noise alone is left by the highest degree, so much above its neighbours'."""
         freedom = len(self.at) - self.highest - 1
         rest = (np.eye(len(self.at)) - self.basis @ self.basis.T) / freedom
-        return chance_of_ratio(rest, self.off, (self.left(self.highest) / self.noise) ** 2)
+        return quadratic_ratio_sf(rest, self.off, (self.left(self.highest) / self.noise) ** 2)
 
     def coefficients(self, degree: int, about: float) -> tuple[Array, Array]:
         """k₁ … of Σ k_j (x − about)^j and their sigmas, (degree,) each.
@@ -245,7 +245,7 @@ def knee_of(at: Array, readings: Array) -> Knee | None:
     best = int(np.argmin(squares))
     freedom = len(at) - UNKNOWNS
     variance = squares[best] / freedom
-    bar = squares[best] + variance * ratio_bound(1 - CONFIDENCE, 1, freedom)
+    bar = squares[best] + variance * f_isf(1 - CONFIDENCE, 1, freedom)
     inside = places[squares <= bar]
     knee = float(places[best])
     lines = _lines(at, knee)

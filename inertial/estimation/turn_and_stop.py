@@ -26,7 +26,7 @@ from inertial.estimation.accelerometer_formulas import pooling
 from inertial.estimation.gyroscope_formulas import Readings, Solution
 from inertial.estimation.gyroscopes import Earth, Still, Turn
 from inertial.estimation.horizontal_earth_rate import EarthSeen, earth_seen
-from inertial.estimation.least_squares import spanned
+from inertial.estimation.least_squares import pseudo_inverse
 from inertial.physics.motion import level_axes, turned
 from inertial.physics.vectors import cross
 
@@ -124,7 +124,7 @@ def turn_and_stop(
     for row in range(len(pairs)):
         both = slice(2 * row, 2 * row + 2)
         of_along[row, both], of_offset[row, both] = _factors(*turns[both])
-    span = spanned(np.array([turn.about for turn in turns[::2]]).reshape(-1, 3))
+    span = pseudo_inverse(np.array([turn.about for turn in turns[::2]]).reshape(-1, 3))
     of_matrix = span.inverse @ of_along  # (3, n)
 
     sums = [turn.sums.sum(axis=0) for turn in turns] + [still.mean for still in stills]

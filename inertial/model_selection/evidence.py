@@ -8,8 +8,9 @@ from operator import add
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.least_squares import INCONSISTENT, MIN_INFORMATION_SHARE, Reduced
-from inertial.estimation.probability import chi_squared_beyond, ratio_beyond
+from inertial.estimation.least_squares import MIN_INFORMATION_SHARE, EffectInformation
+from inertial.estimation.probability import chi2_sf, f_sf
+from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
 
 # ---- What is sought: effects, each by its columns in the evidence.
 
@@ -53,7 +54,7 @@ class Evidence:
     over the sensors, (k,), for the reason why a column is not seen.
     """
 
-    sensors: tuple[Reduced, ...]
+    sensors: tuple[EffectInformation, ...]
     labels: tuple[str, ...]
     noise_degrees: tuple[float, ...] = ()
     raw: Array | None = None
@@ -64,7 +65,7 @@ class Evidence:
         return self.sensors[0].names if self.sensors else ()
 
     @property
-    def total(self) -> Reduced:
+    def total(self) -> EffectInformation:
         """All sensors together."""
         return reduce(add, self.sensors)
 
@@ -85,14 +86,16 @@ class Evidence:
         )
         return replace(self, sensors=sensors)
 
-    def left_over(self, sensor: Reduced, chosen: Sequence[int]) -> tuple[float, int, float]:
+    def left_over(
+        self, sensor: EffectInformation, chosen: Sequence[int]
+    ) -> tuple[float, int, float]:
         """What the chosen columns leave of a sensor: chi-squared, degrees, and its chance."""
         dropped, used = sensor.drop(chosen) if len(chosen) else (0.0, 0)
         rest, degrees = sensor.chi_squared - dropped, max(sensor.degrees - used, 1)
         noise = self.known_from(next(i for i, s in enumerate(self.sensors) if s is sensor))
         if np.isinf(noise):
-            return rest, degrees, float(chi_squared_beyond(rest, degrees))
-        return rest, degrees, float(ratio_beyond(rest / degrees, degrees, noise))
+            return rest, degrees, float(chi2_sf(rest, degrees))
+        return rest, degrees, float(f_sf(rest / degrees, degrees, noise))
 
     def known_from(self, number: int) -> float:
         """Degrees of freedom of the noise of a sensor."""
@@ -111,7 +114,7 @@ class Evidence:
         """
         sensor = self.sensors[self.sensor_of(of)]
         rest, degrees, p_value = self.left_over(sensor, chosen)
-        return (1.0, degrees) if p_value >= INCONSISTENT else (rest / degrees, degrees)
+        return (1.0, degrees) if p_value >= MIN_CONSISTENT_P_VALUE else (rest / degrees, degrees)
 
     def excesses(self, chosen: Sequence[int]) -> tuple[tuple[float, float], ...]:
         """For each sensor by how much its residuals exceed the noise, and from how many degrees.
@@ -122,7 +125,7 @@ class Evidence:
         found = []
         for number, sensor in enumerate(self.sensors):
             rest, degrees, p_value = self.left_over(sensor, chosen)
-            within = p_value >= INCONSISTENT or rest <= degrees
+            within = p_value >= MIN_CONSISTENT_P_VALUE or rest <= degrees
             found.append(
                 (1.0, self.known_from(number)) if within else (rest / degrees, float(degrees))
             )

@@ -10,11 +10,11 @@ from scipy.optimize import brentq
 from scipy.special import gammaln
 
 from inertial.estimation.probability import (
-    chi_squared_beyond,
-    chi_squared_bound,
-    noncentral_beyond,
-    ratio_beyond,
-    ratio_bound,
+    chi2_isf,
+    chi2_sf,
+    f_isf,
+    f_sf,
+    ncx2_sf,
 )
 from inertial.model_selection.evidence import Sought
 from inertial.model_selection.scan import Candidates
@@ -47,19 +47,19 @@ class Tail:
 
     def __call__(self, x: Array | float) -> Array:
         """Chance of a larger drop, after the search over the values of the scan."""
-        alone = chi_squared_beyond(x, self.degrees)
+        alone = chi2_sf(x, self.degrees)
         searched = alone + self.crossings * _density(x, self.degrees)
         return np.asarray(np.minimum(np.minimum(searched, self.values * alone), 1.0))
 
     def trials(self, x: float) -> float:
         """How many independent values would bring such a drop as often as the scan does."""
-        alone = float(chi_squared_beyond(x, self.degrees))
+        alone = float(chi2_sf(x, self.degrees))
         return float(self(x)) / alone if alone > 0 else float(self.values)
 
     def bound(self, chance: float) -> float:
         """The drop that noise exceeds with this chance."""
-        low = float(chi_squared_bound(chance, self.degrees))
-        high = float(chi_squared_bound(chance / self.values, self.degrees))
+        low = float(chi2_isf(chance, self.degrees))
+        high = float(chi2_isf(chance / self.values, self.degrees))
 
         def above(x: float) -> float:
             return float(self(x)) - chance
@@ -84,7 +84,7 @@ def tail(degrees: int, values: int, largest: Array) -> Tail:
         return Tail(degrees, 1, 0.0)
     rare = np.sort(largest)[::-1][: max(int(TAIL * len(largest)), 1)]
     chance = (np.arange(len(rare)) + 0.5) / len(largest)
-    beyond = np.sum(chance - chi_squared_beyond(rare, degrees)) / np.sum(_density(rare, degrees))
+    beyond = np.sum(chance - chi2_sf(rare, degrees)) / np.sum(_density(rare, degrees))
     return Tail(degrees, values, max(float(beyond), 0.0))
 
 
@@ -112,10 +112,10 @@ class Chance:
         if not degrees or not law.degrees:
             return 1.0
         if np.isinf(known_from):
-            alone = float(chi_squared_beyond(drop, degrees))
+            alone = float(chi2_sf(drop, degrees))
         else:
-            alone = float(ratio_beyond(drop / degrees, degrees, known_from))
-        return float(law(chi_squared_bound(alone, law.degrees)))
+            alone = float(f_sf(drop / degrees, degrees, known_from))
+        return float(law(chi2_isf(alone, law.degrees)))
 
     def after_search(self, p_value: float) -> float:
         """Chance that any effect of the catalogue reaches such a p-value."""
@@ -132,8 +132,8 @@ class Chance:
         bound = self.bounds[effect]
         if np.isinf(known_from):
             return bound
-        alone = float(chi_squared_beyond(bound, law.degrees))
-        return law.degrees * float(ratio_bound(alone, law.degrees, known_from))
+        alone = float(chi2_sf(bound, law.degrees))
+        return law.degrees * float(f_isf(alone, law.degrees, known_from))
 
 
 def chance(
@@ -205,10 +205,10 @@ def power_limit(
     the share of the level of one effect among `effects` and of one value among the `values` of
     its own scan (the number of independent ones; their count is a lower bound of the power).
     """
-    bound = chi_squared_bound(level / effects / values, degrees)
-    return np.asarray(noncentral_beyond(bound, degrees, np.asarray(snr) ** 2))
+    bound = chi2_isf(level / effects / values, degrees)
+    return np.asarray(ncx2_sf(bound, degrees, np.asarray(snr) ** 2))
 
 
 def power(snr: Array | float, degrees: int, price: float) -> Array:
     """The same where the drop from which on the effect is named is known, see `Chance.price`."""
-    return np.asarray(noncentral_beyond(price, degrees, np.asarray(snr) ** 2))
+    return np.asarray(ncx2_sf(price, degrees, np.asarray(snr) ** 2))

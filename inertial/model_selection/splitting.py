@@ -7,7 +7,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.least_squares import Reduced
+from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.cause import Cause
 from inertial.model_selection.evidence import Sought
 from inertial.model_selection.scan import Candidates
@@ -62,8 +62,8 @@ class Split:
 
 
 def split(
-    now: Reduced,
-    further: Mapping[str, Reduced],
+    now: EffectInformation,
+    further: Mapping[str, EffectInformation],
     effects: Sequence[Sought],
     causes: Sequence[Cause],
     number: int,
@@ -110,7 +110,7 @@ def split(
     return sorted(found, key=lambda one: one.rank, reverse=True)
 
 
-def _values(now: Reduced, columns: Sequence[int], beside: Sequence[int]) -> Array:
+def _values(now: EffectInformation, columns: Sequence[int], beside: Sequence[int]) -> Array:
     """The estimate of some columns beside others, 0 where the data do not show one, (w,)."""
     every = list(dict.fromkeys([*columns, *beside]))
     values, _ = now.estimate(every)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.probability import chi_squared_beyond, chi_squared_bound, ratio_beyond
+from inertial.estimation.probability import chi2_isf, chi2_sf, f_sf
 from inertial.model_selection.evidence import sought
 from inertial.model_selection.null_simulation import chance
 from inertial.model_selection.scan import SEEN, Candidates
@@ -254,7 +254,7 @@ def _tested(answer: Answer, seed: int) -> Structure | None:
     searched = min(alone * int(np.sum(degrees > 0)), 1.0)
     if len(question.groups) > 1 and not question.independent:
         law = chance(answer.information, [one], LEVEL, DRAWS, seed).tails[0]
-        searched = float(law(chi_squared_bound(alone, law.degrees)))
+        searched = float(law(chi2_isf(alone, law.degrees)))
     where = float(question.where[best])
     return Structure(
         answer.kind, answer.channel, where, drop, count, searched, True, False, answer, best
@@ -264,10 +264,10 @@ def _tested(answer: Answer, seed: int) -> Structure | None:
 def _alone(drop: float, count: int, answer: Answer) -> float:
     """Chance of such a drop, the sigma known beforehand and from what is left over."""
     if np.isinf(answer.noise_degrees):
-        return float(chi_squared_beyond(drop, count))
+        return float(chi2_sf(drop, count))
     left = max(answer.degrees - count, 0)
     degrees = left + answer.noise_degrees
     rest = max(answer.chi_squared - drop, 0.0)
     # Residuals that are larger than the noise all over are no structure.
     variance = max((rest + answer.noise_degrees) / degrees, rest / left if left else 0.0)
-    return float(ratio_beyond(drop / count / variance, count, degrees))
+    return float(f_sf(drop / count / variance, count, degrees))

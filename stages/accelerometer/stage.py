@@ -12,8 +12,8 @@ from inertial.campaign.static_positions import Still, averaging_times
 from inertial.campaign.unknown_attitude import add_free_accelerometers
 from inertial.estimation import accelerometers, triad
 from inertial.estimation.accelerometers import Rest, equations, weighted
-from inertial.estimation.least_squares import INCONSISTENT
 from inertial.estimation.position_outlier import off_position
+from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
 from inertial.tables.stage import Stage, Tables
 from stages.accelerometer.declared import DECLARED
 from stages.accelerometer.position_findings import findings
@@ -60,11 +60,11 @@ def accelerometer(
         used = [still.label for still in found] + list(dict.fromkeys(label for label, _ in turns))
         estimates.add_fit("joint", fitted, used, left)
         matrix = fitted.estimate.values[:9].reshape(3, 3)
-        if fitted.p_value < INCONSISTENT:
+        if fitted.p_value < MIN_CONSISTENT_P_VALUE:
             told += _off(rests, about, matrix, wide, data.mount)
         for seconds in averaging_times(found, averaging_steps):
             part = [*(_rest(still, seconds) for still in found), *moving]
-            shorter = equations(part, *about, fitted.scatter, matrix, wide, fitted.walk)
+            shorter = equations(part, *about, fitted.scatter, matrix, wide, fitted.random_walk)
             estimates.add_averaging("joint", seconds, shorter.solve_shared())
         stops = [_rest(still) for still in found]
         planned = [

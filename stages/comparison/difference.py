@@ -9,7 +9,7 @@ import pandas as pd
 
 from inertial import tables
 from inertial.campaign.records import Row, rows_of, with_mount
-from inertial.estimation.consistency import beyond_chance, chance_of
+from inertial.estimation.consistency import holm_rejections, normal_p_value
 from inertial.text.numbers import decimals_of, fixed, p_is, with_sigma
 from inertial.text.units import quantity
 
@@ -65,7 +65,7 @@ class Difference:
     @property
     def p_value(self) -> float | None:
         """Chance of a difference so large, either way, if the two are the same."""
-        return None if self.in_sigmas is None else chance_of(self.in_sigmas, self.degrees)
+        return None if self.in_sigmas is None else normal_p_value(self.in_sigmas, self.degrees)
 
     def sentence(self, beyond: bool, among: int) -> str:
         """The difference in the laboratory's unit, and whether it is more than chance."""
@@ -110,7 +110,7 @@ def table_of(differences: Sequence[Difference], level: float) -> pd.DataFrame:
     compared = np.array([d.p_value is not None for d in differences], dtype=np.bool_)
     among = int(compared.sum())
     beyond = np.zeros(len(differences), dtype=np.bool_)
-    beyond[compared] = beyond_chance(np.array(chances)[compared].tolist(), level)
+    beyond[compared] = holm_rejections(np.array(chances)[compared].tolist(), level)
     rows = [_row(d, bool(beyond[i]), among) for i, d in enumerate(differences)]
     return pd.DataFrame(rows) if rows else tables.DIFFERENCES.empty()
 

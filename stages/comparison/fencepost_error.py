@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.angle_windows import Fencepost, fencepost
-from inertial.estimation.consistency import shared_cause
+from inertial.estimation.consistency import common_cause
 from inertial.text.numbers import fixed, whole
 from inertial.text.units import PPM
 from stages.comparison.difference import Difference, Results
@@ -87,7 +87,7 @@ def _speed(motions: pd.DataFrame) -> tuple[float, float] | None:
         return None
     excess = np.array([r["value"] / r["set_value"] - 1 for r in rows])
     sigma = np.array([r["sigma"] / r["set_value"] for r in rows])
-    common = shared_cause(excess, sigma)
+    common = common_cause(excess, sigma)
     return common.amount, common.sigma
 
 

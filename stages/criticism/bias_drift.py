@@ -10,8 +10,13 @@ from inertial.estimation.accelerometers import WALK as LARGEST_OF_ACCELEROMETERS
 from inertial.estimation.accelerometers import Rest
 from inertial.estimation.gyroscope_rows import Still, Turn
 from inertial.estimation.gyroscopes import WALK as LARGEST_OF_GYROS
-from inertial.estimation.least_squares import LIKELIER
-from inertial.estimation.random_walk import Times, likeliest, sigma_of, times_of
+from inertial.estimation.variance_components import (
+    MIN_DEVIANCE_DROP,
+    WalkSearch,
+    most_likely,
+    sigma_of,
+    walk_search,
+)
 from inertial.physics.drift import without_clock
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
@@ -40,8 +45,8 @@ def _walk(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> float:
         return 0.0
     deviance = _deviance(campaign, sensor, effects)
     alone = deviance(0.0)
-    size, smallest = likeliest(deviance, times.walks, alone)
-    return size if alone - smallest >= LIKELIER else 0.0
+    size, smallest = most_likely(deviance, times.bounds, alone)
+    return size if alone - smallest >= MIN_DEVIANCE_DROP else 0.0
 
 
 @dataclass(frozen=True)
@@ -74,7 +79,7 @@ def _deviance(
     return deviance
 
 
-def _times(campaign: Campaign, sensor: str) -> Times | None:
+def _times(campaign: Campaign, sensor: str) -> WalkSearch | None:
     """What the times of a sensor's stretches can tell of a walk; None where they tell nothing."""
     parts: Sequence[Still | Turn | Rest]
     if sensor == "gyro":
@@ -87,7 +92,7 @@ def _times(campaign: Campaign, sensor: str) -> Times | None:
     if solved is None or not rests:
         return None
     stretches = [part.stretch for part in parts if part.stretch is not None]
-    return times_of(stretches, float(np.nanmedian([rest.sigma for rest in rests])), largest)
+    return walk_search(stretches, float(np.nanmedian([rest.sigma for rest in rests])), largest)
 
 
 # ---- A drift that could be anything: half waves over the campaign, of one sensor.

@@ -7,7 +7,7 @@ import numpy as np
 
 from inertial.campaign.equations import Campaign
 from inertial.effects import CATALOGUE
-from inertial.estimation.least_squares import INCONSISTENT
+from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Asked
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.physics.effect import Effect
@@ -303,7 +303,7 @@ def unexplained(judged: Judged, suffix: str) -> Iterator[Row]:
     chosen = list(dict.fromkeys(i for cause in judged.named.causes for i in cause.columns))
     for sensor, reduced in zip(judged.said.labels, judged.said.sensors, strict=True):
         rest, degrees, p_value = judged.said.left_over(reduced, chosen)
-        if p_value >= INCONSISTENT or rest <= EXCESS * degrees:
+        if p_value >= MIN_CONSISTENT_P_VALUE or rest <= EXCESS * degrees:
             continue
         times = float(np.sqrt(rest / degrees))
         yield {

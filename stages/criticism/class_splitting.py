@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inertial.campaign.equations import Campaign, evidence
 from inertial.campaign.records import Manoeuvre, Performed
-from inertial.estimation.least_squares import Reduced
+from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.splitting import TELLS, split
 from inertial.physics.effect import Effect
 from inertial.tables import GYRO
@@ -163,7 +163,7 @@ class Foreseen:
         return None if then is None else (now, then)
 
 
-def _mimicked(reduced: Reduced, effect: Effect, other: Effect) -> float | None:
+def _mimicked(reduced: EffectInformation, effect: Effect, other: Effect) -> float | None:
     """Which share of an effect another can mimic; None where either is not seen."""
     own, theirs = (
         [i for i, name in enumerate(reduced.names) if name.startswith(f"{one.label}.")]

@@ -180,9 +180,9 @@ def _left(
     whole[campaign.stretches(sensor)] = np.hstack(list(asked))
     system = campaign.system(sensor, [*named, Functions(sensor, axis, "asked", whole)], WIDE)
     assert system is not None  # else nothing is asked
-    rest, columns, raw = system.left(sum(len(effect.parameters) for effect in named))
+    rest, columns, raw = system.projected(sum(len(effect.parameters) for effect in named))
     fitted = np.sum(columns**2, axis=0) < SEEN * raw
-    return rest, np.where(fitted, 0.0, columns), system.rows - system.sought
+    return rest, np.where(fitted, 0.0, columns), system.rows - system.parameters
 
 
 def where_of(motion: Motion, some: slice, sensor: str, axis: int) -> Where:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from inertial.campaign.equations import Campaign, evidence
-from inertial.estimation.least_squares import LIKELIER
+from inertial.estimation.variance_components import MIN_DEVIANCE_DROP
 from inertial.model_selection.cause import UNKNOWN_STRUCTURE, Cause, Named
 from inertial.model_selection.detection_limits import Visible, visible
 from inertial.model_selection.evidence import Evidence, Sought, sought
@@ -84,7 +84,7 @@ class Judged:
         """
         sizes = [self._size(place) for place in _clear(self)]
         asked = len(sizes) + sum(map(bool, self.walks))
-        return self.campaign.deviance(self.effects, sizes) + LIKELIER * asked
+        return self.campaign.deviance(self.effects, sizes) + MIN_DEVIANCE_DROP * asked
 
     def _size(self, place: int) -> float:
         """How large a named effect is, in its typical sizes."""
@@ -125,7 +125,7 @@ def _likelier(still: Judged, walking: Judged) -> Judged:
     if not still.effects:
         return walking
     more = still.deviance() - walking.deviance()
-    if more < -LIKELIER:
+    if more < -MIN_DEVIANCE_DROP:
         return still
     return replace(walking, instead=_members(still)) if more < OCCAM else walking
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.least_squares import MIN_INFORMATION_SHARE, Reduced
+from inertial.estimation.least_squares import MIN_INFORMATION_SHARE, EffectInformation
 from stages.extension.models import SENSORS, Models, Told
 
 # ---- What a model foretells of manoeuvres that it has not seen.
@@ -62,14 +62,16 @@ def basis_of(information: Array) -> Array:
     return np.asarray(vectors[:, seen] / np.sqrt(values[seen]) / size[:, None])
 
 
-def snr_squared(whole: Reduced) -> float:
+def snr_squared(whole: EffectInformation) -> float:
     """The signal-to-noise ratio squared of the effects, what noise adds taken off; at least 0."""
     basis = basis_of(whole.information)
     along = basis.T @ whole.right
     return max(float(along @ along) - len(along), 0.0)
 
 
-def fold(manoeuvres: Sequence[str], whole: Reduced, training: Reduced | None) -> Fold:
+def fold(
+    manoeuvres: Sequence[str], whole: EffectInformation, training: EffectInformation | None
+) -> Fold:
     """Foretell `manoeuvres` from the training, which is all but them; None if that is nothing."""
     basis = basis_of(whole.information)
     information = np.zeros_like(whole.information) if training is None else training.information
@@ -90,7 +92,7 @@ def fold(manoeuvres: Sequence[str], whole: Reduced, training: Reduced | None) ->
     )
 
 
-def drop_of(beta: Array, told: Reduced) -> float:
+def drop_of(beta: Array, told: EffectInformation) -> float:
     """By how much chi-squared drops where the parameters are `beta`."""
     return float(2 * told.right @ beta - beta @ told.information @ beta)
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.steady_residuals import SteadyTurn
-from inertial.estimation.least_squares import Reduced, System
+from inertial.estimation.least_squares import EffectInformation, System
 from inertial.estimation.periodic_in_time import without_line
 from inertial.physics.forward import Triad
 from inertial.tables import AXES
@@ -73,7 +73,7 @@ def _of_channel(
     """The effects are as all channels have them; held-out: as those of the other manoeuvres."""
     shown = one.whole.effects.names
 
-    def told(but: Sequence[str]) -> tuple[float, int, Reduced] | None:
+    def told(but: Sequence[str]) -> tuple[float, int, EffectInformation] | None:
         some = [mean for mean in means if mean.manoeuvre not in but]
         system = system_of(some, names, channel, shown, walk)
         return None if system is None else _told(system)
@@ -93,9 +93,9 @@ def _of_channel(
     yield row_of(HELD_OUT, before, drop, rows)
 
 
-def _told(system: System) -> tuple[float, int, Reduced]:
+def _told(system: System) -> tuple[float, int, EffectInformation]:
     """Chi-squared and degrees without the effects, and what is said of them."""
-    reduced = system.reduced()
+    reduced = system.effect_information()
     kept = [i for i, (kind, _) in enumerate(system.names) if kind != "effect"]
     joint = System(
         system.design[:, kept],
@@ -103,13 +103,13 @@ def _told(system: System) -> tuple[float, int, Reduced]:
         system.sigma,
         system.prior[kept],
         system.prior_sigma[kept],
-        system.sought,
+        system.parameters,
         tuple(system.names[i] for i in kept),
     ).solve()
     return joint.chi_squared, joint.degrees, reduced
 
 
-def best_of(told: Reduced) -> np.ndarray:
+def best_of(told: EffectInformation) -> np.ndarray:
     """The parameters as the data have them; zero where they are not shown."""
     values, _ = told.estimate(range(len(told.names)))
     return np.asarray(np.nan_to_num(values))
@@ -218,8 +218,8 @@ def gain_of_ripple(
     squares = {n: float(np.sum(c.rest**2)) / c.sigma**2 for n, c in courses.items()}
     degrees = {n: len(c.record) - c.slow.shape[1] for n, c in courses.items()}
 
-    def told(names: Sequence[str]) -> Reduced:
-        return Reduced(
+    def told(names: Sequence[str]) -> EffectInformation:
+        return EffectInformation(
             ("a", "b"),
             sum((said[name][0] for name in names), np.zeros((2, 2))),
             sum((said[name][1] for name in names), np.zeros(2)),

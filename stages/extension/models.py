@@ -7,7 +7,12 @@ from functools import cached_property
 import numpy as np
 
 from inertial.campaign.equations import CLEAR, Campaign
-from inertial.estimation.least_squares import MIN_INFORMATION_SHARE, Estimate, Reduced, System
+from inertial.estimation.least_squares import (
+    MIN_INFORMATION_SHARE,
+    EffectInformation,
+    Estimate,
+    System,
+)
 from inertial.physics.effect import Effect
 
 WIDE = 1e4  # sigma of an effect's parameters beforehand, in their typical sizes
@@ -25,7 +30,7 @@ class Told:
     """
 
     plain: Estimate
-    effects: Reduced
+    effects: EffectInformation
     walked: float
 
 
@@ -88,13 +93,13 @@ def _told(system: System, walking: System | None) -> Told:
     """`walking`: the equations of the joint model where that has another walk."""
     plain = _with(system, frozenset()).solve_shared()
     walked = 0.0 if walking is None else plain.deviance - walking.solve_shared().deviance
-    return Told(plain, system.reduced(), walked)
+    return Told(plain, system.effect_information(), walked)
 
 
 def _shown(system: System | None, largest: np.ndarray) -> frozenset[str]:
     if system is None:
         return frozenset()
-    reduced = system.reduced()
+    reduced = system.effect_information()
     information = np.diag(reduced.information)
     seen = information > MIN_INFORMATION_SHARE * system.raw_information()
     clear = largest * np.sqrt(np.maximum(information, 0.0)) > CLEAR
@@ -111,5 +116,5 @@ def _with(system: System, shown: frozenset[str]) -> System:
         prior_sigma=system.prior_sigma[kept],
         names=tuple(system.names[i] for i in kept),
         # The errors that were eliminated are not asked for here, and hold the other columns.
-        apart=system.apart and replace(system.apart, told=()),
+        eliminated=system.eliminated and replace(system.eliminated, steps=()),
     )

@@ -18,7 +18,7 @@ from inertial.campaign.estimates import Estimates, reasons
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.unknown_attitude import METHOD, FreeStill, fitted_to, free_stills
 from inertial.estimation.between_positions import Given, Passage, Stop, between_rests
-from inertial.estimation.least_squares import with_scatter
+from inertial.estimation.variance_components import with_scatter
 from inertial.tables import GYRO
 
 Array = NDArray[np.float64]

@@ -45,7 +45,9 @@ def gyroscope(
         estimates.add_fit("joint", fitted, inputs.used, inputs.left_out)
         linear = gyroscopes.about(gyroscopes.around_of(fitted.estimate, inputs.earth), *moving)
         for seconds in averaging_times(inputs.stills, averaging_steps):
-            shorter = linear.system(inputs.first_of_rests(seconds), fitted.scatter, fitted.walk)
+            shorter = linear.system(
+                inputs.first_of_rests(seconds), fitted.scatter, fitted.random_walk
+            )
             estimates.add_averaging("joint", seconds, shorter.solve_shared())
         add_formulas(estimates, data, fitted, wanted_bias)
         if stops_between_turns(data.plan):

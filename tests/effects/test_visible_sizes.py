@@ -67,7 +67,7 @@ def visible():
     found = {}
     for letter, plan in PLANS.items():
         systems = plan(anew=True).campaign().systems(effects, 1.0)
-        gyro, accel = (system.reduced() for system in systems if system is not None)
+        gyro, accel = (system.effect_information() for system in systems if system is not None)
         with np.errstate(divide="ignore"):
             sizes = 5 / np.sqrt(np.diag((gyro + accel).information))
         for effect in effects:

@@ -30,7 +30,7 @@ def test_it_is_generalised_least_squares(walk):
     some = means(1, 5e-3, walk)
     system = system_of(some, NAMES, 1, NAMES, walk)
     assert system is not None
-    told = system.reduced()
+    told = system.effect_information()
     time = np.array([mean.time for mean in some])
     pairs = np.arange(12) // 2
     covariance = 1e-6 * np.eye(12) + TILT**2 * (pairs[:, None] == pairs)

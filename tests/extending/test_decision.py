@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from inertial.estimation.least_squares import Estimate, Reduced
+from inertial.estimation.least_squares import EffectInformation, Estimate
 from inertial.estimation.triad import linear_names
 from stages.extension.cross_validation import Fold, HeldOut
 from stages.extension.decision import decision, result
@@ -36,7 +36,7 @@ def estimate() -> Estimate:
 
 def found(drop: float, stake: float = 40.0, alone: str = "", walked: float = 0.0) -> HeldOut:
     """Four folds; `walked`: what a walk of the joint model explains of each."""
-    told = Told(estimate(), Reduced((), np.zeros((0, 0)), np.zeros(0), 9.0, 9), 0.0)
+    told = Told(estimate(), EffectInformation((), np.zeros((0, 0)), np.zeros(0), 9.0, 9), 0.0)
     whole = replace(told, walked=walked)
     folds = [(Fold((f"rest {i}",), 1.0, np.zeros(0), drop / 4, stake / 4), told) for i in range(4)]
     if alone:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from inertial.estimation.least_squares import Reduced, System
+from inertial.estimation.least_squares import EffectInformation, System
 from stages.extension.cross_validation import KEPT, fold, groups, snr_squared
 
 NAMES = tuple("abcdef")
@@ -20,7 +20,7 @@ def campaign(seed: int, size: float = 1.0, effects: int = 2) -> tuple[np.ndarray
     return nuisance, columns, nuisance @ [5.0, 1.0] + columns @ (size * TRUTH[:effects]) + noise
 
 
-def told(parts: tuple[np.ndarray, ...], only: np.ndarray, wide: float = 1e3) -> Reduced:
+def told(parts: tuple[np.ndarray, ...], only: np.ndarray, wide: float = 1e3) -> EffectInformation:
     nuisance, columns, observed = (part[only] for part in parts)
     k = columns.shape[1]
     names = [("parameter", "0"), ("parameter", "1"), *(("effect", str(i)) for i in range(k))]
@@ -32,7 +32,7 @@ def told(parts: tuple[np.ndarray, ...], only: np.ndarray, wide: float = 1e3) -> 
         np.array([1e4, 1e4, *[wide] * k]),
         2,
         tuple(names),
-    ).reduced()
+    ).effect_information()
 
 
 def manoeuvre(number: int) -> np.ndarray:

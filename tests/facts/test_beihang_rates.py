@@ -5,7 +5,7 @@ import pytest
 import s4
 from scipy.stats import f as f_distribution
 
-from inertial.estimation.consistency import most_outlying, outliers
+from inertial.estimation.consistency import largest_outlier, outliers
 from inertial.estimation.gyroscopes import Earth, Position, Steady
 from inertial.estimation.rate_linearity import columns_of, nonlinearities, own_axis
 from inertial.estimation.rate_table import rate_table
@@ -144,7 +144,7 @@ def test_t18_two_runs_of_y_do_not_belong_there():
 
     rows = [one.row for one in found]
     rest = data.less(rows)
-    last = most_outlying(np.delete(design, rows, axis=0), rest.mean, rest.sigma)
+    last = largest_outlier(np.delete(design, rows, axis=0), rest.mean, rest.sigma)
     assert NAMES[rest.run[last.row]] == "y+60" and last.p_value == pytest.approx(0.42, abs=0.005)
 
     after = nonlinearities(rest)

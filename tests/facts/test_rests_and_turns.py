@@ -5,7 +5,7 @@ import pytest
 import s0
 from scipy.stats import chi2
 
-from inertial.estimation.consistency import shared_cause
+from inertial.estimation.consistency import common_cause
 from inertial.estimation.gyroscope_formulas import Upright, two_positions
 from inertial.estimation.gyroscopes import Angle, Earth, Position, known_angle
 from inertial.physics.site import earth_rate
@@ -46,7 +46,7 @@ def test_the_biases_in_degrees_per_hour():
 def test_t14_turns_and_rests_differ_and_one_cause_suffices():
     sigma = np.full(3, sigma_of_difference(0.012))
     assert sigma[0] == pytest.approx(4.15e-7, abs=1e-9)
-    found = shared_cause(DIFFERENCE, sigma)
+    found = common_cause(DIFFERENCE, sigma)
     assert found.without == pytest.approx(18.44, abs=0.01)
     assert found.p_without == pytest.approx(3.6e-4, rel=0.02)
     assert found.amount == pytest.approx(9.17e-7, rel=1e-3)
@@ -54,7 +54,7 @@ def test_t14_turns_and_rests_differ_and_one_cause_suffices():
     assert found.remaining == pytest.approx(3.8, abs=0.05)
     assert found.p_remaining == pytest.approx(0.15, abs=0.005)
     # By the data sheet's noise there would be nothing to explain; suspiciously little.
-    spec = shared_cause(DIFFERENCE, np.full(3, sigma_of_difference(0.1)))
+    spec = common_cause(DIFFERENCE, np.full(3, sigma_of_difference(0.1)))
     assert spec.without == pytest.approx(0.27, abs=0.005) and spec.p_without > 0.95
 
 

@@ -5,7 +5,7 @@ import pytest
 import s0
 
 from inertial.estimation.angle_windows import fencepost
-from inertial.estimation.consistency import beyond_chance, chance_of
+from inertial.estimation.consistency import holm_rejections, normal_p_value
 from inertial.estimation.gyroscopes import Earth, Position, Steady
 from inertial.estimation.rate_table import rate_table
 from inertial.estimation.time_angle import ripple_angle, ripple_scale
@@ -112,8 +112,8 @@ def test_t12_t13_the_speed_of_the_table_is_not_what_the_windows_would_need():
     assert np.abs(excess[others]).max() < 130e-6
     assert np.abs(excess[others] + 1 / 1800).min() / sigma.max() > 10
     # T13: x backward is a misprint, or a window that holds a ramp.
-    chances = [chance_of(e / s) for e, s in zip(excess, sigma, strict=True)]
-    assert list(np.flatnonzero(beyond_chance(chances, 1e-3))) == [3]
+    chances = [normal_p_value(e / s) for e, s in zip(excess, sigma, strict=True)]
+    assert list(np.flatnonzero(holm_rejections(chances, 1e-3))) == [3]
     assert excess[3] == pytest.approx(-0.00729, abs=1e-5)
 
 

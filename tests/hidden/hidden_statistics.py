@@ -15,7 +15,7 @@ import numpy as np
 from hidden_sizes import Reference, code, reference
 from hidden_ways import POSITIVE, WAYS, Array
 
-from inertial.estimation.least_squares import Reduced
+from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.evidence import Evidence, Sought
 from inertial.model_selection.naming import causes
 from inertial.model_selection.scan import SEEN
@@ -128,7 +128,7 @@ def _roots(plan: str) -> list[tuple[Array, Array]]:
 def _drawn(plan: str, beta: Array, random: np.random.Generator) -> Evidence:
     """What a campaign of the plan says where β is true."""
     said = reference(plan).said
-    sensors: list[Reduced] = []
+    sensors: list[EffectInformation] = []
     for sensor, (root, inverse) in zip(said.sensors, _roots(plan), strict=True):
         right = sensor.information @ beta + root @ random.standard_normal(root.shape[1])
         left = random.chisquare(max(sensor.degrees - root.shape[1], 1))

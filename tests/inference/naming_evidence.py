@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.least_squares import Reduced
+from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.evidence import Evidence, Sought, sought
 from inertial.model_selection.scan import Candidates
 from inertial.model_selection.structure_tests import TESTS, Answer, Where
@@ -59,7 +59,7 @@ class Plan:
             # What lies along the columns, and what no column reaches.
             left = float(white @ white + rng.chisquare(degrees - root.shape[1]))
             left += float(np.dot(beta, right + noise))
-            sensors.append(Reduced(self.names, information, right, left, degrees))
+            sensors.append(EffectInformation(self.names, information, right, left, degrees))
         return Evidence(tuple(sensors), ("gyro", "accel"), raw=self.raw)
 
     @property

@@ -15,7 +15,6 @@ from moved_by_hand import (
     rests,
 )
 
-from inertial.estimation.least_squares import with_scatter
 from inertial.estimation.multi_position import (
     FREE,
     NAMES,
@@ -28,6 +27,7 @@ from inertial.estimation.multi_position import (
     upper_triangular,
 )
 from inertial.estimation.triad import mounting_and_rest
+from inertial.estimation.variance_components import with_scatter
 
 A_TENTH = np.radians(0.1)
 

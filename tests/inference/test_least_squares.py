@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from inertial.estimation.least_squares import solve, with_scatter
+from inertial.estimation.least_squares import solve
+from inertial.estimation.variance_components import with_scatter
 
 VAGUE = 1e6
 # NIST StRD, linear regression, Norris: the data.
@@ -23,7 +24,7 @@ def test_a_straight_line_meets_published_values():
     y = np.array(NORRIS_Y.split(), float)
     deviation = 0.884796396144373
     design = np.column_stack([np.ones_like(x), x])
-    fit = solve(design, y, np.full(36, deviation), np.zeros(2), np.full(2, VAGUE), sought=2)
+    fit = solve(design, y, np.full(36, deviation), np.zeros(2), np.full(2, VAGUE), parameters=2)
     np.testing.assert_allclose(fit.values, [-0.262323073774029, 1.00211681802045], rtol=1e-9)
     np.testing.assert_allclose(fit.sigma, [0.232818234301152, 0.429796848199937e-3], rtol=1e-8)
     assert fit.degrees == 34
@@ -38,7 +39,7 @@ def test_a_known_error_is_an_observation_of_zero():
     shared = np.kron(np.eye(3), np.ones((2, 1)))
     with_unknowns = solve(
         np.hstack([design, shared]), observed, np.ones(6),
-        np.zeros(5), np.array([VAGUE, VAGUE, 0.7, 0.7, 0.7]), sought=2,
+        np.zeros(5), np.array([VAGUE, VAGUE, 0.7, 0.7, 0.7]), parameters=2,
     )  # fmt: skip
     covariance = np.eye(6) + 0.49 * shared @ shared.T
     information = design.T @ np.linalg.solve(covariance, design)
@@ -52,7 +53,7 @@ def test_a_known_error_is_an_observation_of_zero():
 
 def test_a_parameter_that_no_row_shows_is_not_determined():
     design = np.column_stack([np.ones(5), np.zeros(5)])
-    fit = solve(design, np.ones(5), np.full(5, 0.1), np.zeros(2), np.ones(2), sought=2)
+    fit = solve(design, np.ones(5), np.full(5, 0.1), np.zeros(2), np.ones(2), parameters=2)
     assert fit.determined.tolist() == [True, False]
     assert fit.degrees == 4
 
@@ -64,7 +65,9 @@ def scattered(size: float, seed: int):
 
     def fit(scatter: float):
         sigma = np.full(12, np.hypot(0.01, scatter))
-        return solve(np.ones((12, 1)), observed, sigma, np.zeros(1), np.full(1, VAGUE), sought=1)
+        return solve(
+            np.ones((12, 1)), observed, sigma, np.zeros(1), np.full(1, VAGUE), parameters=1
+        )
 
     return with_scatter(fit, (1e-5, 10.0), np.inf)
 

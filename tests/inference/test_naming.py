@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from inertial.estimation.least_squares import Reduced
+from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Named
 from inertial.model_selection.evidence import Evidence, sought
 from inertial.model_selection.naming import causes, name_causes
@@ -243,6 +243,6 @@ def test_no_equations_name_nothing():
     found = name_causes(Evidence((), ()), [sought("one", [0])], LEVEL)
     assert not found.causes
     assert found.asked[0].degrees == 0
-    blind = Reduced(("a",), np.zeros((1, 1)), np.zeros(1), 10.0, 10)
+    blind = EffectInformation(("a",), np.zeros((1, 1)), np.zeros(1), 10.0, 10)
     found = name_causes(Evidence((blind,), ("gyro",)), [sought("one", [0])], LEVEL)
     assert (found.causes, found.asked[0].degrees) == ((), 0)

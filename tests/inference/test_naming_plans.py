@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from inertial.estimation.least_squares import Reduced
+from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.detection_limits import (
     ABSORBED,
     NOT_EXCITED,
@@ -48,7 +48,7 @@ def test_what_is_not_seen_has_a_reason():
 
 def test_parameters_that_are_seen_together_alone():
     information = np.ones((2, 2))
-    said = Reduced(("a", "b"), information, np.zeros(2), 5.0, 5)
+    said = EffectInformation(("a", "b"), information, np.zeros(2), 5.0, 5)
     seen = visible(Evidence((said,), ("gyro",), raw=np.ones(2)), [sought("pair", [0, 1])])
     assert [one.reason for one in seen] == [ONLY_TOGETHER] * 2
 

@@ -9,9 +9,9 @@ from scipy.stats import chi2
 
 from inertial.estimation import accelerometers
 from inertial.estimation.accelerometers import Rest
-from inertial.estimation.elimination import Part, eliminated
+from inertial.estimation.elimination import EquationBlock, eliminate
 from inertial.estimation.gyroscopes import around_of, equations, fitted, joint
-from inertial.estimation.random_walk import Stretch, drifting
+from inertial.estimation.random_walk import Stretch, with_drifts
 from inertial.estimation.sensitivities import Traces
 
 G, GRAVITY_SIGMA = 9.7936174, 1e-6
@@ -45,9 +45,9 @@ def test_the_covariance_of_the_stretches_is_that_of_the_walk():
     for i, mean in enumerate(observed):
         rows = np.column_stack([np.eye(3), mean]) / sigma
         stretch = Stretch(str(i), "", starts[i], seconds[i])
-        parts.append((Part(rows, (), 3, 6 * np.log(sigma)), stretch))
-    every, of_drifts = drifting(parts, 3, 0, scatter, walk)
-    rows, apart = eliminated(every, 3, of_drifts)
+        parts.append((EquationBlock(rows, (), 3, 6 * np.log(sigma)), stretch))
+    every, of_drifts = with_drifts(parts, 3, 0, scatter, walk)
+    rows, eliminated = eliminate(every, 3, of_drifts)
     found = np.linalg.lstsq(rows[:, :3], rows[:, 3])[0]
     np.testing.assert_allclose(found, expected, rtol=1e-3)
     np.testing.assert_allclose(
@@ -57,7 +57,7 @@ def test_the_covariance_of_the_stretches_is_that_of_the_walk():
     left = rows[:, 3] - rows[:, :3] @ found
     direct = 3 * np.linalg.slogdet(covariance)[1]
     direct += np.sum((observed - expected) * (information @ (observed - expected)))
-    assert left @ left + apart.deviance == pytest.approx(direct, rel=1e-3)
+    assert left @ left + eliminated.deviance == pytest.approx(direct, rel=1e-3)
 
 
 def test_a_walk_of_the_gyros_comes_back_and_the_bias_keeps_its_sigma():
@@ -65,12 +65,14 @@ def test_a_walk_of_the_gyros_comes_back_and_the_bias_keeps_its_sigma():
     size = 0.5 * UNIT
     runs = [campaign(seed, size) for seed in range(10)]
     fits = [fitted(run.stills, run.turns, [], EARTH, TILT) for run in runs]
-    assert sum(fit.walk > 0 for fit in fits) >= 9
-    found = [(run, fit) for run, fit in zip(runs, fits, strict=True) if fit.walk]
-    of_walk = np.array([(fit.walk - size) / fit.walk_sigma for _, fit in found])
+    assert sum(fit.random_walk > 0 for fit in fits) >= 9
+    found = [(run, fit) for run, fit in zip(runs, fits, strict=True) if fit.random_walk]
+    of_walk = np.array([(fit.random_walk - size) / fit.random_walk_sigma for _, fit in found])
     assert abs(of_walk.mean()) < 1
     assert 0.4 < of_walk.std() < 1.7
-    assert np.mean([fit.walk_sigma for _, fit in found]) == pytest.approx(0.25 * size, rel=0.4)
+    assert np.mean([fit.random_walk_sigma for _, fit in found]) == pytest.approx(
+        0.25 * size, rel=0.4
+    )
     pulls = [(f.estimate.values[9:12] - r.bias) / f.estimate.sigma[9:12] for r, f in found]
     assert 0.65 < np.std(pulls) < 1.4  # of some 30, which scatter by 13 %
     # With sigmas of noise alone they would be several times as large.
@@ -85,7 +87,7 @@ def test_clean_campaigns_have_no_walk():
     for seed in range(100, 108):
         run = campaign(seed)
         fit = fitted(run.stills, run.turns, [], EARTH, TILT)
-        assert fit.walk == 0
+        assert fit.random_walk == 0
         assert fit.scatter == 0
 
 
@@ -93,7 +95,7 @@ def test_clean_campaigns_have_no_walk():
 def test_what_differs_with_the_attitude_is_no_walk(one_clock):
     run = campaign(3, g_sensitivity=1.2 * DEGREE_PER_HOUR, one_clock=one_clock)
     fit = fitted(run.stills, run.turns, [], EARTH, TILT)
-    assert fit.walk == 0
+    assert fit.random_walk == 0
     assert fit.scatter > 1e-6
 
 
@@ -109,14 +111,14 @@ def test_a_steady_drift_is_no_walk():
         for one in run.turns
     ]
     fit = fitted(stills, turns, [], EARTH, TILT)
-    assert fit.walk == 0
+    assert fit.random_walk == 0
     assert fit.scatter > 1e-7
 
 
 def test_without_a_common_clock_a_walk_between_logs_is_a_scatter():
     run = campaign(4, UNIT, one_clock=False)
     fit = fitted(run.stills, run.turns, [], EARTH, TILT)
-    assert fit.walk == 0
+    assert fit.random_walk == 0
     assert fit.scatter > 0
 
 
@@ -137,7 +139,7 @@ def named(run, walk: float) -> bool:
     around = around_of(joint(run.stills, run.turns, [], EARTH, TILT), EARTH)
     wide = dict.fromkeys(names[:9], DEGREE_PER_HOUR) | dict.fromkeys(names[9:], 1e-9)
     system = equations(stills, turns, [], EARTH, (TILT, 0.0, walk), around, wide)
-    reduced = system.reduced()
+    reduced = system.effect_information()
     chances = [chi2.sf(*reduced.drop(some)) for some in (range(9), range(9, 12))]
     return min(chances) < 0.01 / 2
 
@@ -166,8 +168,8 @@ def test_a_walk_of_the_accelerometers_comes_back():
             time += 360.0
             drift = drift + size * np.sqrt(60.0) * rng.standard_normal(3)
         found.append(accelerometers.fitted(rests, G, GRAVITY_SIGMA, 1e-7))
-    walks = np.array([fit.walk for fit in found])
+    walks = np.array([fit.random_walk for fit in found])
     assert np.all(walks > 0)
-    pulls = np.array([(fit.walk - size) / fit.walk_sigma for fit in found])
+    pulls = np.array([(fit.random_walk - size) / fit.random_walk_sigma for fit in found])
     assert abs(pulls.mean()) < 1
     assert 0.4 < pulls.std() < 1.7

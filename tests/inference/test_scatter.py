@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from inertial.estimation.least_squares import Estimate, with_scatter
+from inertial.estimation.least_squares import Estimate
+from inertial.estimation.variance_components import with_scatter
 
 
 def fit_of(deviance):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from inertial.estimation.gyroscopes import Earth, Position, Still, Turn
-from inertial.estimation.random_walk import COMMON, Stretch
+from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
 from inertial.physics.site import earth_rate
 
 UP, LEVEL = earth_rate(np.radians(30.5278))
@@ -69,7 +69,9 @@ def campaign(
         stills.append(Still(position, mean, sigma, about, angle, stretch=stretch))
 
     def stretch(name, seconds):
-        return Stretch(name, COMMON if one_clock else name.partition(" ")[0], path.time, seconds)
+        return Stretch(
+            name, COMMON_CLOCK if one_clock else name.partition(" ")[0], path.time, seconds
+        )
 
     for axis in range(3):
         for sign in (1.0, -1.0):

@@ -1,0 +1,237 @@
+"""Differences between stretches beyond noise: scatter and random walk by restricted likelihood.
+
+Unmodelled effects make every stretch (a static position, a rate segment) differ from the others by
+more than the noise, and sigmas of noise alone would be too small. A scatter is an offset
+N(0, scatter²) of each stretch, independent of all others. A random walk moves the bias further the
+more time passes. The size of each is that of largest restricted likelihood (REML, Patterson &
+Thompson 1971), and each is included only if the deviance, −2 log likelihood, decreases by
+`MIN_DEVIANCE_DROP`. Stretches near in time are often alike for other reasons: at the same position
+or attitude, so that a sensor that responds to gravity resembles a random walk of its bias; and so
+does a steady drift. Where one of these alternatives is clearly more likely there is no random walk,
+and the stretches have a scatter.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize, minimize_scalar
+
+from inertial.estimation.least_squares import Estimate
+from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
+
+Array = NDArray[np.float64]
+Deviance = Callable[[float], float]  # as a function of one size
+
+MIN_CONSISTENT_P_VALUE = 0.01  # below it the residuals are larger than the noise
+MIN_DEVIANCE_DROP = 6.6  # for a further variance: 1 % of chi-squared of 1 degree of freedom
+MAX_DEVIANCE_RISE = 20.0  # above the smallest so far: where the search for the scatter ends
+MAX_GRID_LOSS = 3.0  # of the deviance: the minimum is at most so far below that of the grid
+GRID_RATIO = 4.0  # of one size to the next in the search for the largest likelihood
+SIZE_TOLERANCE = 0.05  # relative, of a size at the largest likelihood
+CURVATURE_STEP = 0.2  # relative change of a size, for the curvature of the likelihood
+MIN_SIZE, MAX_SIZE = 0.1, 1e3  # in units of the noise of a stretch
+MIN_STRETCHES = 4  # for a random walk
+
+
+@dataclass(frozen=True)
+class ScatterFit:
+    """An estimate with its variance components, and the p-value of the fit with noise alone.
+
+    `scatter`, in the unit of the readings; `random_walk`: of the bias, per √s, and its sigma.
+    """
+
+    estimate: Estimate
+    scatter: float
+    p_value: float
+    random_walk: float = 0.0
+    random_walk_sigma: float = 0.0
+
+
+def with_scatter(
+    fit: Callable[[float], Estimate], between: tuple[float, float], noise_degrees: float
+) -> ScatterFit:
+    """The fit with a scatter where noise alone cannot explain the residuals.
+
+    Of several local maxima of the restricted likelihood the smallest scatter is taken: with a
+    larger one nothing may be common to the stretches any more, and any parameters would fit.
+
+    Parameters
+    ----------
+    fit : the estimate as a function of the scatter
+    between : smallest and largest scatter, in the unit of the readings
+    noise_degrees : see `Estimate.p_value`
+    """
+    noise_only = fit(0.0)
+    p_value = noise_only.p_value(noise_degrees)
+    if p_value >= MIN_CONSISTENT_P_VALUE:
+        return ScatterFit(noise_only, 0.0, p_value)
+
+    grid = _grid(between)
+    deviances: list[float] = []
+    for size in grid:
+        deviances.append(fit(float(np.exp(size))).deviance)
+        if deviances[-1] > min(deviances) + MAX_DEVIANCE_RISE:
+            break
+    scatter, _ = _minimum(lambda size: fit(size).deviance, grid, int(np.argmin(deviances)))
+    scattered = fit(scatter)
+    if noise_only.deviance - scattered.deviance < MIN_DEVIANCE_DROP:
+        return ScatterFit(noise_only, 0.0, p_value)
+    return ScatterFit(scattered, scatter, p_value)
+
+
+@dataclass(frozen=True)
+class WalkSearch:
+    """Where a random walk is searched for, from the times of the stretches.
+
+    `noise`: of the mean reading of a stretch; `span`: s from first to last; `common_clock`: whether
+    all times are of one clock; `largest`: random walk, per √s: more, as by hand, is a scatter.
+    """
+
+    noise: float
+    span: float
+    common_clock: bool
+    largest: float = np.inf
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Smallest and largest random walk, per √s."""
+        unit = self.noise / float(np.sqrt(self.span))
+        return MIN_SIZE * unit, max(min(MAX_SIZE * unit, self.largest), 2 * MIN_SIZE * unit)
+
+
+def walk_search(stretches: Sequence[Stretch], noise: float, largest: float) -> WalkSearch | None:
+    """None where too few stretches have times; `noise`, `largest` as in `WalkSearch`."""
+    timed = [stretch for stretch in stretches if np.isfinite(stretch.end)]
+    if len(timed) < MIN_STRETCHES or not noise > 0:
+        return None
+    span = max(stretch.end for stretch in timed) - min(stretch.start for stretch in timed)
+    common = all(stretch.clock == COMMON_CLOCK for stretch in timed)
+    return WalkSearch(noise, span, common, largest)
+
+
+def with_random_walk(
+    fit: Callable[[float, float], Estimate],
+    between: tuple[float, float],
+    search: WalkSearch | None,
+    alternatives: Sequence[Deviance],
+    noise_degrees: float,
+) -> ScatterFit:
+    """The fit with the scatter and the random walk of largest restricted likelihood.
+
+    Parameters
+    ----------
+    fit : the estimate as a function of both
+    between : smallest and largest scatter, in the unit of the readings
+    search : None where the times are not known: then no random walk
+    alternatives : deviance by the size of other differences that resemble a random walk
+    noise_degrees : see `Estimate.p_value`
+    """
+    scattered = with_scatter(lambda scatter: fit(scatter, 0.0), between, noise_degrees)
+    if search is None:
+        return scattered
+    noise_only = fit(0.0, 0.0).deviance
+    walk, deviance = most_likely(lambda size: fit(0.0, size).deviance, search.bounds, noise_only)
+    if noise_only - deviance < MIN_DEVIANCE_DROP:
+        return scattered
+    # Without a common clock the times from log to log are unknown, and little distinguishes a
+    # random walk from the alternatives: then it must be clearly more likely than all of them.
+    margin = -MIN_DEVIANCE_DROP if search.common_clock else MIN_DEVIANCE_DROP
+    sizes = (MIN_SIZE * search.noise, MAX_SIZE * search.noise)
+    scatter, scatter_deviance = most_likely(lambda size: fit(size, 0.0).deviance, sizes, np.inf)
+    others = [most_likely(alternative, sizes, np.inf)[1] for alternative in alternatives]
+    if min(scatter_deviance, *others) - margin < deviance:
+        if scattered.scatter or noise_only - scatter_deviance < MIN_DEVIANCE_DROP:
+            return scattered
+        return replace(scattered, estimate=fit(scatter, 0.0), scatter=scatter)
+    scatter, walk = _joint_maximum(fit, (scattered.scatter or search.noise, walk), deviance)
+    return replace(
+        scattered,
+        estimate=fit(scatter, walk),
+        scatter=scatter,
+        random_walk=walk,
+        random_walk_sigma=_random_walk_sigma(fit, scatter, walk),
+    )
+
+
+def most_likely(
+    deviance: Deviance, bounds: tuple[float, float], noise_only: float
+) -> tuple[float, float]:
+    """The size of smallest deviance, and that deviance.
+
+    Only to the next grid point where `noise_only`, the deviance without, is about as small.
+    """
+    grid = _grid(bounds)
+    deviances = [deviance(float(np.exp(size))) for size in grid]
+    best = int(np.argmin(deviances))
+    if noise_only - deviances[best] < MIN_DEVIANCE_DROP - MAX_GRID_LOSS:
+        return float(np.exp(grid[best])), deviances[best]
+    return _minimum(deviance, grid, best)
+
+
+def _grid(bounds: tuple[float, float]) -> Array:
+    """Natural logarithms of the sizes that are tried."""
+    low, high = np.log(bounds)
+    return np.linspace(low, high, int(np.ceil((high - low) / np.log(GRID_RATIO))) + 1)
+
+
+def _minimum(deviance: Deviance, grid: Array, best: int) -> tuple[float, float]:
+    """The size of smallest deviance next to a grid point, and that deviance."""
+    minimum = minimize_scalar(
+        lambda size: deviance(float(np.exp(size))),
+        bounds=(grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]),
+        method="bounded",
+        options={"xatol": SIZE_TOLERANCE},
+    )
+    return float(np.exp(minimum.x)), float(minimum.fun)
+
+
+def sigma_of(deviance: Deviance, size: float) -> float:
+    """The sigma of a size by the curvature of its likelihood."""
+    factors = np.exp(CURVATURE_STEP * np.array([-1, 0, 1]))
+    below, here, above = (deviance(size * float(factor)) for factor in factors)
+    curvature = (above - 2 * here + below) / CURVATURE_STEP**2
+    return size * float(np.sqrt(2 / curvature)) if curvature > 0 else float("nan")
+
+
+def _joint_maximum(
+    fit: Callable[[float, float], Estimate], start: tuple[float, float], deviance: float
+) -> tuple[float, float]:
+    """Scatter and random walk of largest likelihood; no scatter unless it adds to that."""
+
+    def joint(sizes: Array) -> float:
+        return fit(float(np.exp(sizes[0])), float(np.exp(sizes[1]))).deviance
+
+    first = np.log(np.array(start))
+    if deviance - joint(first) < -MIN_DEVIANCE_DROP:
+        return 0.0, start[1]
+    minimum = minimize(
+        joint,
+        first,
+        method="Nelder-Mead",
+        options={"xatol": SIZE_TOLERANCE, "fatol": SIZE_TOLERANCE, "maxfev": 60},
+    )
+    if deviance - float(minimum.fun) < MIN_DEVIANCE_DROP:
+        return 0.0, start[1]
+    return float(np.exp(minimum.x[0])), float(np.exp(minimum.x[1]))
+
+
+def _random_walk_sigma(
+    fit: Callable[[float, float], Estimate], scatter: float, walk: float
+) -> float:
+    """The sigma of the random walk by the curvature of the likelihood, the scatter fitted too."""
+    sizes = np.array([walk, scatter] if scatter else [walk])
+
+    def deviance(steps: Array) -> float:
+        changed = [*(sizes * np.exp(CURVATURE_STEP * steps)).tolist(), 0.0]
+        return fit(changed[1], changed[0]).deviance
+
+    unit = np.eye(len(sizes))
+    curvature = np.zeros((len(sizes), len(sizes)))
+    for i, j in np.ndindex(curvature.shape):
+        mixed = deviance(unit[i] + unit[j]) + deviance(-unit[i] - unit[j])
+        mixed -= deviance(unit[i] - unit[j]) + deviance(unit[j] - unit[i])
+        curvature[i, j] = mixed / (2 * CURVATURE_STEP) ** 2
+    variance = float(2 * np.linalg.inv(curvature)[0, 0])
+    return walk * float(np.sqrt(variance)) if variance > 0 else float("nan")
