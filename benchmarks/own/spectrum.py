@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.answering import answer
 from benchmarks.timing import timed
 from inertial.estimation.spectrum import band_levels, white_level
-from stages.noise.stage import LONGEST
+from stages.noise.stage import MAX_SAMPLES
 
 BAND = (0.5, 5.0)  # Hz, as in config.yaml
 
@@ -20,8 +20,10 @@ def main(path: str, rate: str, runs: str) -> None:
     record = np.load(path)[:, None]
 
     def level() -> tuple[float, float]:
-        parts = [record[start : start + LONGEST] for start in range(0, len(record), LONGEST)]
-        found = [band_levels(part, float(rate), BAND) for part in parts if len(part) == LONGEST]
+        parts = [
+            record[start : start + MAX_SAMPLES] for start in range(0, len(record), MAX_SAMPLES)
+        ]
+        found = [band_levels(part, float(rate), BAND) for part in parts if len(part) == MAX_SAMPLES]
         white, sigma = white_level(np.concatenate(found))
         return float(white[0]), float(sigma[0])
 

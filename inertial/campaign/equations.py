@@ -28,13 +28,13 @@ from inertial.tables import ACCEL
 
 Array = NDArray[np.float64]
 
-USUAL = 10.0  # times its typical size: what an effect may be before the data are seen
-NOTHING = "Nothing is simulated, for the joint estimate determines no sensor wholly."
-CLEAR = 5.0  # sigmas of an effect that is seen
-PIECE = 30.0  # s of a rest that count as one
-MOST = 100  # pieces of all rests together
+USUAL_SIZE = 10.0  # prior sigma of an effect, in its typical sizes
+NOT_SIMULATED = "Nothing is simulated, for the joint estimate determines no sensor wholly."
+MIN_VISIBLE_SIGMA = 5.0  # of an effect at its largest size: less is not observable
+MIN_PIECE_S = 30.0  # s, of a static position that counts as one
+MAX_PIECES = 100  # pieces of all rests together
 SENSORS = ("gyro", "accel")
-MERGED = 5  # blocks of a turn that make one of the accelerometers, whose truth changes slowly
+MERGED_BLOCKS = 5  # blocks of a turn in one mean of the accelerometers: their input changes slowly
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class Campaign:
 
     def blind(self, effect: Effect) -> str:
         """Why this campaign cannot show an effect; empty where it may."""
-        return effect.blind(self.motion) if self._motions else NOTHING
+        return effect.blind(self.motion) if self._motions else NOT_SIMULATED
 
     def walking(self, walks: tuple[float, float]) -> "Campaign":
         """The same, the biases of gyros and accelerometers walking so, rad/s/√s and m/s²/√s."""
@@ -279,7 +279,7 @@ def campaign_of(data: CampaignData) -> Campaign:
 def _in_pieces(found: Sequence[Still]) -> list[Still]:
     """Rests so finely that what changes within them is seen, and no more equations than needed."""
     lasted = sum(float(still.seconds.sum()) for still in found)
-    return [one for still in found for one in still.pieces(max(PIECE, lasted / MOST))]
+    return [one for still in found for one in still.pieces(max(MIN_PIECE_S, lasted / MAX_PIECES))]
 
 
 def _rest(still: Still) -> Rest:
@@ -295,7 +295,7 @@ def _turning(
     assert m.up is not None  # else the turn is refused
     ups = mean_turned(m.up, m.axis, motion.angle, motion.rate * seconds)
     parts = []
-    pieces = [range(first, after, MERGED) for first, after in pairwise(edges)]
+    pieces = [range(first, after, MERGED_BLOCKS) for first, after in pairwise(edges)]
     starts = [start for piece in pieces for start in piece]
     for start, after in pairwise([*starts, len(read)]):
         some = slice(start, after)
@@ -330,7 +330,7 @@ def evidence(
         ]
     )
     information = sum((np.diag(reduced.information) for _, reduced in said), np.zeros(1))
-    clear = (largest * np.sqrt(information) > CLEAR).astype(np.float64)
+    clear = (largest * np.sqrt(information) > MIN_VISIBLE_SIGMA).astype(np.float64)
     return Evidence(
         tuple(_only(reduced, clear) for _, reduced in said),
         tuple(sensor for sensor, _ in said),

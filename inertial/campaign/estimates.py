@@ -14,20 +14,19 @@ from inertial.estimation import triad
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.variance_components import ScatterFit
 
-# ---- How long the rests must last for a bias of a wanted sigma, by S0's formulas.
-#
-# S0 (5-1), (5-2) ask for T ≥ (3 N/b)² with a bias b that is not known yet. What a laboratory
-# wants is a sigma: of the means by which a formula makes the bias,
-#
-#     σ² = a / T + floor²,   T = a / (σ² − floor²),
-#
-# where a is what white noise does and the floor what no time averages out: tilts of the positions,
-# gravity, the azimuth.
-
 
 @dataclass(frozen=True)
 class Wanted:
-    """The sigma of a bias by rests of so many seconds each, and its floor; SI."""
+    """The sigma of a bias by static positions of so many seconds each, and its floor; SI.
+
+    S0 (5-1), (5-2) require T ≥ (3 N/b)² with a bias b that is not known yet. A laboratory requires
+    a sigma instead: of the means from which a formula has the bias,
+
+        σ² = a / T + floor²,   T = a / (σ² − floor²),
+
+    with a from white noise, and the floor from what does not average out: tilts of the positions,
+    gravity, the azimuth.
+    """
 
     sigma: float
     floor: float
@@ -36,18 +35,16 @@ class Wanted:
     def row(self, wanted: float) -> dict[str, Any]:
         """The time for a `wanted` sigma; null where the floor is too high for any."""
         noise = (self.sigma**2 - self.floor**2) * self.seconds
-        room = wanted**2 - self.floor**2
+        above = wanted**2 - self.floor**2
         return {
             "seconds": self.seconds,
             "sigma": self.sigma,
             "floor": self.floor,
             "random_walk": float(np.sqrt(max(noise, 0.0))),
             "wanted": wanted,
-            "wanted_seconds": noise / room if room > 0 else None,
+            "wanted_seconds": noise / above if above > 0 else None,
         }
 
-
-# ---- Rows of the tables that every method of estimation writes: parameters, covariance, fit.
 
 Array = NDArray[np.float64]
 
@@ -151,9 +148,9 @@ class Estimates:
         method: str,
         fitted: ScatterFit,
         used: list[str],
-        left: list[str],
+        left_out: list[str],
     ) -> None:
-        """How well the method's model describes the data, from which manoeuvres, set how."""
+        """Goodness of fit, the manoeuvres used, and what was estimated of the positions."""
         for column, (kind, position) in enumerate(fitted.estimate.names):
             if kind.partition(" ")[0] in SET:
                 self.rows["positions"].append(
@@ -175,14 +172,14 @@ class Estimates:
                 "scatter": fitted.scatter,
                 "unit": UNIT[self.stage],
                 "used": ", ".join(used),
-                "left_out": "; ".join(left),
+                "left_out": "; ".join(left_out),
                 "random_walk": fitted.random_walk,
                 "random_walk_sigma": fitted.random_walk_sigma,
             }
         )
 
     def add_averaging(self, method: str, seconds: float, estimate: Estimate) -> None:
-        """What the method finds from so many seconds of each rest."""
+        """The estimate from the first seconds of each static position."""
         values = triad.errors_of(estimate.values[:12])
         self.rows["averaging"] += [
             {
@@ -195,10 +192,10 @@ class Estimates:
             if estimate.determined[i]
         ]
 
-    def add_wanted(self, method: str, axis: str, told: Wanted, wanted: float) -> None:
-        """How long the rests must last for a bias with the sigma `wanted`."""
+    def add_wanted(self, method: str, axis: str, required: Wanted, wanted: float) -> None:
+        """The length of static positions for a bias with the sigma `wanted`."""
         name = self._id(method, f"bias_{axis}")
-        self.rows["wanted"].append({"parameter": name} | told.row(wanted))
+        self.rows["wanted"].append({"parameter": name} | required.row(wanted))
 
     def tables(self) -> dict[str, pd.DataFrame]:
         """The six tables, with their columns even where there are no rows."""
@@ -258,4 +255,4 @@ def described(stage: str, name: str) -> tuple[str, str, str]:
         return "1", "body", f"the {axes[0]} {sensor}'s response to {sensed} along {axes[1]}"
     if kind == "mounting":
         return "rad", "body", f"rotation of the {sensor} triad against the case, about {axes}"
-    return "1", "sensor triad", f"symmetric rest of M without the mounting rotation, P_{axes} − I"
+    return "1", "sensor triad", f"symmetric part of M without the mounting rotation, P_{axes} − I"

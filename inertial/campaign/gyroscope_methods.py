@@ -25,9 +25,9 @@ from inertial.tables import AXES
 
 Array = NDArray[np.float64]
 
-UNTURNED = "no axis {axis} was turned about both ways over the same known angle: add such turns"
-SILENT = 1e-15  # rad/s, a sigma as good as none
-UNREAD = "the {axis} gyro is not recorded"
+NO_TURNS = "no axis {axis} was turned about both ways over the same known angle: add such turns"
+MIN_SIGMA = 1e-15  # rad/s, a sigma as good as none
+NOT_RECORDED = "the {axis} gyro is not recorded"
 
 
 def add_formulas(
@@ -77,7 +77,9 @@ def _add_static(
         reason = "the upward earth rate is not known well enough to be an input"
         why = {names[1]: reason} if found.scale is None else {}
         estimates.add("static", names, np.array(values), np.diag(sigmas**2), why)
-        ideal = two_positions([replace(rest, sigma=max(scatter, SILENT)) for rest in rests], *about)
+        ideal = two_positions(
+            [replace(rest, sigma=max(scatter, MIN_SIGMA)) for rest in rests], *about
+        )
         if ideal is not None:
             told = Wanted(found.bias_sigma, ideal.bias_sigma, float(np.mean(seconds)))
             estimates.add_wanted("static", axis, told, wanted)
@@ -112,7 +114,7 @@ def add_turn_and_stop(estimates: Estimates, inputs: GyroInputs, scatter: float) 
         bias = slice(NAMES.index(BIAS[0]), None)
         values, covariance = found.by_rests.values[bias], found.by_rests.covariance[bias, bias]
         missing = zip(BIAS, found.by_rests.determined[bias], strict=True)
-        why = {name: UNREAD.format(axis=name[-1]) for name, there in missing if not there}
+        why = {name: NOT_RECORDED.format(axis=name[-1]) for name, there in missing if not there}
         estimates.add("stops", BIAS, values, covariance, why)
 
 
@@ -121,7 +123,7 @@ def _untold(solution: Solution) -> dict[str, str]:
     why = {}
     for name, there in zip(NAMES, solution.determined, strict=True):
         if not there:
-            words = UNREAD if name in BIAS else UNTURNED
+            words = NOT_RECORDED if name in BIAS else NO_TURNS
             why[name] = words.format(axis=name[-1])
     return why
 

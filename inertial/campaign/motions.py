@@ -16,7 +16,7 @@ from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import Motion, Profile, turned_all, turning
 from inertial.tables import ACCEL
 
-# ---- How the table moved: in every rest, in the blocks of a turn, and sample by sample.
+# --- One static position, a rotation block by block, a rotation sample by sample ---
 
 Array = NDArray[np.float64]
 
@@ -162,10 +162,10 @@ def _filled(values: Array) -> Array:
     )
 
 
-# ---- How each stretch of a campaign moved, and when, how warm and how shaken it was.
+# --- The stretches of a campaign, with time, temperature and vibration ---
 
 MOVING, AFTER = 1 / 3, 2 / 3  # of a visit: the turn, and the rest behind it
-UPRIGHT = 1 - 1e-6  # cosine of an axis to the vertical
+MIN_UPRIGHT_COSINE = 1 - 1e-6  # cosine of an axis to the vertical
 
 
 class CampaignMotions:
@@ -202,7 +202,7 @@ class CampaignMotions:
         blocks = one.blocks
         time = blocks.time if self._data.shared_clock else np.full(len(blocks), np.nan)
         motion = in_blocks(self._data, one.plan, turn, time)
-        upright = abs(float(turn.position.up @ turn.about)) > UPRIGHT
+        upright = abs(float(turn.position.up @ turn.about)) > MIN_UPRIGHT_COSINE
         shaken = (
             self._data.noise.of_samples(name, "steady", ACCEL) if upright else np.full(3, np.nan)
         )

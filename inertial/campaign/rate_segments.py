@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Manoeuvre, Performed
-from inertial.campaign.static_positions import NONE, Blocks, Still, by_manoeuvre, stretch_of
+from inertial.campaign.static_positions import NO_BLOCKS, Blocks, Still, by_manoeuvre, stretch_of
 from inertial.estimation import gyroscopes
 from inertial.estimation.gyroscopes import Angle, Bridge, Earth, Position, Steady, Turn
 from inertial.estimation.spectrum import strays
@@ -21,27 +21,27 @@ from inertial.tables import GYRO
 if TYPE_CHECKING:
     from inertial.campaign.campaign_data import CampaignData
 
-# ---- What is missing of a turn, bridged by the blocks about it, and how sure the angle is.
+# --- Interpolation of missing samples of a rotation, and the sigma of its angle ---
 #
-# In the steady part the table turned by the mean rate of what is recorded of it, in a ramp by the
-# rate between the blocks beside. The noise of these blocks is in the equations; here is what else
-# the angle may be wrong by:
+# In the steady part the angle is the mean recorded rate times the missing time, in a ramp the
+# integral of the straight line between the neighbouring blocks. Their noise is in the equations;
+# the other errors of the angle are:
 #
-# - the mean rate over what is missing may be off the recorded one: by as much as the table's rate
-#   is stated to be known, or by as much as the data show that it strays, if that is more. Nothing
-#   is counted on to average out, and all that is missing in a turn is off alike;
-# - an oscillation of the case that is faster than a block is seen in the scatter of the samples
-#   alone: the recorded part may break off at any phase of it;
-# - a rate that changes may change its acceleration between the blocks beside: then a straight line
-#   is off by up to a quarter of the change of rate between them.
+# - the mean rate while samples are missing differs from the recorded one: by the stated sigma of
+#   the table's rate, or by the variation that the data show, whichever is larger. It is the same
+#   for all gaps of a rotation, and does not average out;
+# - an oscillation of the case faster than a block appears in the scatter of samples only: the
+#   recorded part may end at any phase of it;
+# - in a ramp the acceleration may change between the neighbouring blocks: the straight line is
+#   wrong by up to a quarter of the change of rate between them.
 
 Array = NDArray[np.float64]
 
 
 def bridges(part: Blocks) -> list[Bridge]:
-    """What is missing between the k blocks of a turn, each bridged by the blocks about it."""
+    """The gaps between the k blocks of a turn, interpolated from the blocks beside them."""
     seconds, steady = part.seconds, part.steady
-    found = []
+    gaps = []
     for i in np.flatnonzero(part.missing).tolist():
         gone = float(part.missing[i])
         shares = np.zeros(len(part))
@@ -51,39 +51,39 @@ def bridges(part: Blocks) -> list[Bridge]:
             # The straight line through the means of both blocks, at the middle of what is missing.
             nearer = (seconds[i - 1] + gone) / (seconds[i - 1] + 2 * gone + seconds[i])
             shares[i - 1 : i + 1] = gone * np.array([1 - nearer, nearer]) / seconds[i - 1 : i + 1]
-        found.append(Bridge(i, gone, shares))
-    return found
+        gaps.append(Bridge(i, gone, shares))
+    return gaps
 
 
 def sigma_of(
     part: Blocks,
-    found: Sequence[Bridge],
+    gaps: Sequence[Bridge],
     about: Array,
     name: str,
     noise: NoiseLevels,
     rate_sigma: float,
 ) -> float:
-    """The sigma of the angle that the table turned in all that is missing, rad, but for noise.
+    """The sigma of the interpolated angle of all gaps together, rad, without noise.
 
     Parameters
     ----------
     about : (3,), axis of the turn; `name` of its manoeuvre
     rate_sigma : relative, of the table's rate
     """
-    if not found:
+    if not gaps:
         return 0.0
     seconds, steady = part.seconds, part.steady
     rate = np.nan_to_num(part.gyro) @ about
     elapsed = np.cumsum(seconds + part.missing) - seconds / 2
     density = np.nan_to_num(noise.of(name, "steady", GYRO))
-    rings = _oscillation(name, noise, about, float(seconds.sum() / part.counts.sum()))
+    oscillation = _oscillation(name, noise, about, float(seconds.sum() / part.counts.sum()))
     # An oscillation slower than one period in a block shows in the blocks.
     longest = float(np.median(seconds)) / (2 * np.pi)
-    variance = sum(2 * (rings * min(one.seconds, longest)) ** 2 for one in found)
+    variance = sum(2 * (oscillation * min(gap.seconds, longest)) ** 2 for gap in gaps)
 
-    level = [one for one in found if steady[one.before - 1] and steady[one.before]]
+    level = [gap for gap in gaps if steady[gap.before - 1] and steady[gap.before]]
     if level:
-        longer = max(level, key=lambda one: one.seconds)
+        longer = max(level, key=lambda gap: gap.seconds)
         strayed = strays(
             rate[steady],
             seconds[steady],
@@ -93,24 +93,24 @@ def sigma_of(
             float(np.linalg.norm(about * density)),
         )
         stated = rate_sigma * abs(float(np.average(rate[steady], weights=seconds[steady])))
-        variance += (max(strayed, stated) * sum(one.seconds for one in level)) ** 2
+        variance += (max(strayed, stated) * sum(gap.seconds for gap in level)) ** 2
     change = np.abs(np.diff(rate)) / np.diff(elapsed)  # rad/s², from block to block
-    for one in found:
-        if not any(one is other for other in level):
-            near = change[max(one.before - 2, 0) : one.before + 1].max()
-            apart = elapsed[one.before] - elapsed[one.before - 1]
-            variance += (near * apart / 4 * one.seconds) ** 2
+    for gap in gaps:
+        if not any(gap is other for other in level):
+            near = change[max(gap.before - 2, 0) : gap.before + 1].max()
+            apart = elapsed[gap.before] - elapsed[gap.before - 1]
+            variance += (near * apart / 4 * gap.seconds) ** 2
     return float(np.sqrt(variance))
 
 
 def _oscillation(name: str, noise: NoiseLevels, about: Array, step: float) -> float:
-    """What the samples of the steady part scatter about the axis beyond white noise, rad/s."""
+    """Scatter of the samples of the steady part about the axis beyond white noise, rad/s."""
     white = noise.of(name, "steady", GYRO) ** 2 / step
     beyond = np.maximum(np.nan_to_num(noise.of_samples(name, "steady", GYRO) ** 2 - white), 0.0)
     return float(np.sqrt(about**2 @ beyond))
 
 
-# ---- Rests and turns as the equations of the gyros take them, and which turns are refused.
+# --- The inputs of the equations of the gyros; rotations that cannot be used ---
 
 TURNING = ("spin-up", "steady", "spin-down", "turning")
 
@@ -170,13 +170,13 @@ class GyroInputs:
 
 def gyro_inputs(data: "CampaignData") -> GyroInputs:
     """Gather the static positions and rate segments of one mount."""
-    found, left = data.gyro_positions
+    positions, left_out = data.gyro_positions
     recorded = list(_recorded_turns(data))
     usable = [one for one in recorded if not one.refusal]
     given = (data.noise, data.heading, data.rate_sigma)
     shared = data.shared_clock
     return GyroInputs(
-        found,
+        positions,
         recorded,
         [
             replace(turn_of(r, *given), stretch=stretch_of(r.plan.name, r.blocks, shared))
@@ -191,7 +191,7 @@ def gyro_inputs(data: "CampaignData") -> GyroInputs:
         data.earth,
         data.position_sigma,
         data.heading,
-        left + [f"{one.plan.name}: {one.refusal}" for one in recorded if one.refusal],
+        left_out + [f"{one.plan.name}: {one.refusal}" for one in recorded if one.refusal],
     )
 
 
@@ -200,7 +200,7 @@ def _recorded_turns(data: "CampaignData") -> Iterator[Recorded]:
     moving = by_manoeuvre(data.blocks[data.blocks["phase"].isin(TURNING)])
     for m in data.plan:
         if m.do == "turn":
-            done, part = data.performed[m.name], moving.get(m.name, NONE)
+            done, part = data.performed[m.name], moving.get(m.name, NO_BLOCKS)
             yield Recorded(m, done, part, refusal_of(m, done, part))
 
 
@@ -246,7 +246,7 @@ def still_of(still: Still, heading: float | None, seconds: float) -> gyroscopes.
 
 
 def turn_of(one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float) -> Turn:
-    """A turn from rest to rest with its blocks in motion; what is missing of it is bridged.
+    """A turn from rest to rest with its blocks in motion; gaps are interpolated.
 
     `rate_sigma`: relative, of the table's rate.
     """
@@ -288,10 +288,7 @@ def steady_of(
 
 
 def angles_about(data: "CampaignData", i: int) -> list[tuple[str, Angle]]:
-    """The whole turns about body axis i while it points up or down, as their own gyro saw them.
-
-    Each with the name of its manoeuvre. A turn that is bridged is not whole.
-    """
+    """The complete turns about body axis i while it is vertical, by their own gyro, with names."""
     usable = data.gyro_inputs.usable
     recorded = [r for r in usable if r.plan.recorded == "whole" and r.done.complete]
     whole = [r for r in recorded if _upright(r.plan, i)]

@@ -17,7 +17,7 @@ from inertial.tables import ACCEL, AXES, GYRO
 if TYPE_CHECKING:
     from inertial.campaign.campaign_data import CampaignData
 
-# ---- The blocks of one manoeuvre as arrays.
+# --- The blocks of one manoeuvre as arrays ---
 
 Array = NDArray[np.float64]
 Truths = NDArray[np.bool_]
@@ -54,7 +54,7 @@ class Blocks:
         return Blocks(*(getattr(self, field.name).T[..., which].T for field in fields(self)))
 
 
-NONE = Blocks(*(np.empty(0) for _ in range(7)), *(np.empty((0, 3)) for _ in range(2)))
+NO_BLOCKS = Blocks(*(np.empty(0) for _ in range(7)), *(np.empty((0, 3)) for _ in range(2)))
 
 
 def by_manoeuvre(table: pd.DataFrame) -> dict[str, Blocks]:
@@ -74,11 +74,11 @@ def _blocks(table: pd.DataFrame) -> Blocks:
     )
 
 
-# ---- The stretches of a campaign in which the IMU stands still, each with its attitude.
+# --- Static positions of known attitude ---
 
 UNTIMED = Stretch("")
-IN_BLOCKS = ("means", "counts", "seconds", "time", "temperature")
-OF_BLOCKS = ("count", "seconds", "time", "temperature")
+PER_BLOCK = ("means", "counts", "seconds", "time", "temperature")
+BLOCK_COLUMNS = ("count", "seconds", "time", "temperature")
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ class Still:
     def _piece(self, some: slice, number: int) -> "Still":
         start, end = _ends(self.time[some], self.seconds[some])
         stretch = Stretch(f"{self.label} {number}", self.stretch.clock, start, end - start)
-        each = {name: getattr(self, name)[some] for name in IN_BLOCKS}
+        each = {name: getattr(self, name)[some] for name in PER_BLOCK}
         return replace(self, stretch=stretch, **each)
 
     def during(self, seconds: float = np.inf) -> Stretch:
@@ -164,7 +164,7 @@ def stills(data: "CampaignData", sensor: str) -> tuple[list[Still], list[str]]:
     channels = [f"{sensor}_{axis}" for axis in AXES]
     at_rest = blocks[blocks["phase"].str.startswith("rest") & (blocks["count"] > 0)]
     read = at_rest[channels].to_numpy(np.float64)
-    each = {name: at_rest[name].to_numpy(np.float64) for name in OF_BLOCKS}
+    each = {name: at_rest[name].to_numpy(np.float64) for name in BLOCK_COLUMNS}
     logs = at_rest["log"].to_numpy()
     rows = at_rest.groupby(["manoeuvre", "phase"]).indices
     for m in data.plan:
@@ -176,7 +176,7 @@ def stills(data: "CampaignData", sensor: str) -> tuple[list[Still], list[str]]:
             part = rows.get((m.name, phase))
             if part is None or np.isnan(read[part]).all():
                 continue
-            count, seconds, time, temperature = (each[name][part] for name in OF_BLOCKS)
+            count, seconds, time, temperature = (each[name][part] for name in BLOCK_COLUMNS)
             density = data.noise.of(m.name, "rest", channels)
             label = m.name if phase == "rest" else f"{m.name} ({phase})"
             after, whole = phase == "rest-after", performed[m.name].complete

@@ -19,11 +19,11 @@ Array = NDArray[np.float64]
 
 RESIDUALS = [f"residual_{name}" for name in GYRO]
 RESTS = ("rest-before", "rest-after")
-FEW = 3  # samples in a row without which an oscillation is still the same
-FEWEST = 64  # samples of a steady part
-WHITE_FROM = 0.5  # Hz, from which on the noise is read
-ACROSS = 0.5  # cosine below which an axis is not that of the table
-UPRIGHT = 0.999  # cosine between axis and vertical, above which gravity does not go round
+MAX_LOST_SAMPLES = 3  # in a row: the phase of an oscillation is still known
+MIN_SAMPLES = 64  # of a steady part
+MIN_WHITE_HZ = 0.5  # from which the white noise is estimated
+MAX_ACROSS_COSINE = 0.5  # below which an axis is not that of the table
+MIN_UPRIGHT_COSINE = 0.999  # of axis and vertical, from which gravity is constant in the case
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class SteadyTurn:
 
         About the table's own they do not where the gyros themselves tell its angle.
         """
-        return bool(np.isfinite(self.rate) or abs(direction @ self.about) < ACROSS)
+        return bool(np.isfinite(self.rate) or abs(direction @ self.about) < MAX_ACROSS_COSINE)
 
     def along(self, direction: Array) -> Array:
         """The residual rate about an axis of the case, a unit vector, (n,), rad/s."""
@@ -78,7 +78,7 @@ class SteadyTurn:
     def sigma(self, direction: Array) -> float:
         """White noise of a sample about an axis of the case, rad/s."""
         rate = 1 / self.step
-        levels = band_levels(self.along(direction)[:, None], rate, (WHITE_FROM, rate / 2))
+        levels = band_levels(self.along(direction)[:, None], rate, (MIN_WHITE_HZ, rate / 2))
         return float(white_level(levels)[0][0] * np.sqrt(rate))
 
     def course(self, direction: Array) -> Course:
@@ -126,9 +126,9 @@ def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
         columns.append(rows[["time"]].to_numpy(np.float64))
         residuals, further = unbroken(np.hstack(columns)[steady])
         truth = residuals @ inverse.T
-        if len(truth) < FEWEST or not np.isfinite(truth).all():
+        if len(truth) < MIN_SAMPLES or not np.isfinite(truth).all():
             continue
-        tilted = m.up is None or abs(float(m.up @ m.axis)) < UPRIGHT
+        tilted = m.up is None or abs(float(m.up @ m.axis)) < MIN_UPRIGHT_COSINE
         found.append(
             SteadyTurn(
                 name,
@@ -197,7 +197,7 @@ def unbroken(rows: Array) -> tuple[Array, Array]:
     pause = np.diff(rows[:, 0])
     step = np.mean(pause[pause < 1.5 * np.median(pause)])
     passed = np.maximum(np.round(pause / step), 1).astype(np.int64)
-    edges = [0, *(np.flatnonzero(passed > FEW + 1) + 1).tolist(), len(rows)]
+    edges = [0, *(np.flatnonzero(passed > MAX_LOST_SAMPLES + 1) + 1).tolist(), len(rows)]
     first, after = max(pairwise(edges), key=lambda edge: edge[1] - edge[0])
     place = np.append(0, np.cumsum(passed[first : after - 1]))
     every = np.arange(place[-1] + 1)

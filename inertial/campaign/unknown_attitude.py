@@ -35,9 +35,9 @@ from inertial.tables import ACCEL, AXES, GYRO
 Array = NDArray[np.float64]
 
 METHOD = "free_positions"
-SCATTER = (1e-7, 1.0)  # m/s²: how much rests may differ beyond the noise
+SCATTER_RANGE = (1e-7, 1.0)  # m/s²: how much rests may differ beyond the noise
 UNKNOWN = np.full(3, np.nan)  # an attitude
-UNTOLD = (
+MOUNTING_UNDETERMINED = (
     "a rotation of the triad against the case changes no length, so |f| = g cannot tell it; the"
     " axes here are those square to each other that lie nearest to the sensors': add rests whose"
     " upward direction is known"
@@ -124,7 +124,7 @@ def fitted_to(data: CampaignData, found: Sequence[FreeStill]) -> ScatterFit:
     """P and bias of the accelerometers, with a scatter between rests where noise cannot explain."""
     gravity, rests = data.gravity, [one.rest for one in found]
     fit = partial(free_positions, rests, gravity.number, gravity.scatter)
-    return with_scatter(fit, between=SCATTER, noise_degrees=data.noise.degrees)
+    return with_scatter(fit, between=SCATTER_RANGE, noise_degrees=data.noise.degrees)
 
 
 def add_free_accelerometers(estimates: Estimates, data: CampaignData) -> None:
@@ -147,7 +147,7 @@ def add_symmetric(estimates: Estimates, method: str, estimate: Estimate) -> None
     unit = dict(zip(NAMES, np.eye(FREE), strict=True))
     jacobian = np.array([unit[told[n]] if n in told else np.zeros(FREE) for n in names])
     values = jacobian @ (estimate.values[:FREE] - PRIOR)  # P − I
-    why = dict.fromkeys(MOUNTING, UNTOLD)
+    why = dict.fromkeys(MOUNTING, MOUNTING_UNDETERMINED)
     lacks = unseen(estimate)
     for name, own in told.items():
         i = NAMES.index(own)

@@ -16,7 +16,7 @@ from inertial.text.units import quantity
 
 Array = NDArray[np.float64]
 
-NOTABLE = 1.0  # sigmas of the estimate by which a term must move to be named
+MIN_NOTABLE_SIGMA = 1.0  # sigmas of the estimate by which a term must move to be named
 WORDS = {
     "bias": "bias of the {row} accelerometer",
     "scale": "scale factor of the {row} accelerometer",
@@ -32,7 +32,7 @@ def findings(off: OffPosition, sigma: Array, mount: str) -> Iterator[Finding]:
     spoilt = [
         _moved(name, float(off.moved[i]))
         for i, name in enumerate(NAMES)
-        if abs(off.moved[i]) > NOTABLE * sigma[i]
+        if abs(off.moved[i]) > MIN_NOTABLE_SIGMA * sigma[i]
     ]
     size = fixed(degrees(off.tilt), 4)
     yield Finding(

@@ -23,7 +23,7 @@ from inertial.tables import ACCEL, AXES
 Array = NDArray[np.float64]
 
 LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU stands farther off
-ALIKE = np.radians(5)  # by how much the vertical may turn in the case within one mean
+MAX_TURN_IN_MEAN = np.radians(5)  # by how much the vertical may turn in the case within one mean
 
 
 def turning_rests(data: CampaignData) -> list[tuple[str, Rest]]:
@@ -61,7 +61,7 @@ def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[R
     level = np.linalg.norm(m.up - (m.up @ m.axis) * m.axis)
     rate = angle / seconds
     turns = abs(float(angle[steady].sum())) * float(level)
-    pieces = np.array_split(steady, max(1, int(np.ceil(turns / ALIKE))))
+    pieces = np.array_split(steady, max(1, int(np.ceil(turns / MAX_TURN_IN_MEAN))))
     rests = []
     for some in (piece for piece in pieces if len(piece)):
         share = seconds[some] / seconds[some].sum()

@@ -13,15 +13,13 @@ from inertial.estimation.consistency import holm_rejections, normal_p_value
 from inertial.text.numbers import decimals_of, fixed, p_is, with_sigma
 from inertial.text.units import quantity
 
-# ---- One difference between two values of a parameter, in units of its sigma, and the verdict.
-
 SENSORS = {"accelerometer": ("accelerometer", "force"), "gyroscope": ("gyro", "rate")}
 FORMS = {
     "cubic": "what all gyros read beyond a straight line, with the cube of the rate",
     "asymmetry": "what all gyros read beyond a straight line, with the size of the rate",
     "scale": "scale factors of the gyros",
 }
-NEAR = 2.0  # sigmas within which values simply agree
+MAX_AGREEING_SIGMAS = 2.0  # sigmas within which values simply agree
 
 
 @dataclass(frozen=True)
@@ -81,7 +79,7 @@ class Difference:
         remark = f" {self.remark}." if self.remark else ""
         if beyond:
             told = f"{one} and {other} differ by {far}: more than chance {chance}."
-        elif abs(self.in_sigmas) <= NEAR:
+        elif abs(self.in_sigmas) <= MAX_AGREEING_SIGMAS:
             told = f"{one} and {other} agree within their sigmas: they differ by {far} {chance}."
         else:
             told = (
@@ -131,9 +129,6 @@ def _row(d: Difference, beyond: bool, among: int) -> Row:
         "p_value": d.p_value,
         "sentence": d.sentence(beyond, among),
     }
-
-
-# ---- The parameters of one mount, by method and name.
 
 
 @dataclass(frozen=True)

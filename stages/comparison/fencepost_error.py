@@ -20,8 +20,8 @@ from stages.comparison.difference import Difference, Results
 Array = NDArray[np.float64]
 
 KIND = "fencepost"
-FEWEST = 2  # axes, for what is in common
-ALIKE = 3.0  # sigmas within which the speed of the table would explain it as well
+MIN_AXES = 2  # axes, for what is in common
+MAX_EXPLAINED_SIGMAS = 3.0  # sigmas within which the speed of the table would explain it as well
 
 
 def off_by_a_sample(
@@ -40,7 +40,7 @@ def off_by_a_sample(
     windows = [row for row in rows_of(growing) if row["by"] == "set rate"]
     scales = [r for r in rows_of(published) if r["parameter"].startswith("gyroscope/scale_")]
     cases = [one for row in scales for one in [_case(row, gyro, windows)] if one is not None]
-    if len(cases) < FEWEST:
+    if len(cases) < MIN_AXES:
         return
     told = all(row["samples"] is not None for row in scales)
     theirs, ours, sigma, samples = np.array(cases).T
@@ -95,7 +95,7 @@ def _explains(speed: tuple[float, float], found: Fencepost, samples: Array) -> b
     """Whether a window by time is off by the same amount for the speed of the table alone."""
     common = float(found.cause.amount / samples.mean())
     sigma = float(np.hypot(speed[1], found.cause.sigma / samples.mean()))
-    return abs(speed[0] - common) < ALIKE * sigma
+    return abs(speed[0] - common) < MAX_EXPLAINED_SIGMAS * sigma
 
 
 def _words(found: Fencepost, samples: Array, told: bool, speed: tuple[float, float] | None) -> str:

@@ -8,10 +8,10 @@ import pandas as pd
 from inertial.campaign.records import rows_of
 from stages.comparison.difference import Difference, Results
 
-# ---- The joint estimate against the formulas of the sources, which use the same data.
+# --- The joint estimate against the formulas of the sources, from the same data ---
 
 METHOD_AGAINST_METHOD = "method_against_method"
-ALIKE = 0.01  # relative difference of two sigmas below which two methods are one
+MIN_SIGMA_DIFFERENCE = 0.01  # relative difference of two sigmas below which two methods are one
 WORDS = {
     "six_position": "the six-position formula",
     "pooled_positions": "the formula for pooled positions",
@@ -33,7 +33,7 @@ def method_against_method(results: Results, method: str) -> Iterator[Difference]
         other, joint = results.of(method, name), results.determined("joint", name)
         if other is None or joint is None:
             continue
-        alike = abs(other["sigma"] / joint["sigma"] - 1) < ALIKE
+        alike = abs(other["sigma"] / joint["sigma"] - 1) < MIN_SIGMA_DIFFERENCE
         sigma = abs(other["sigma"] ** 2 - joint["sigma"] ** 2) ** 0.5
         yield Difference(
             kind=results.named(METHOD_AGAINST_METHOD),
@@ -55,7 +55,7 @@ def method_against_method(results: Results, method: str) -> Iterator[Difference]
         )
 
 
-# ---- What others published of this IMU against the joint estimate.
+# --- The joint estimate against published values ---
 
 PUBLISHED = "published"
 

@@ -12,7 +12,7 @@ from inertial.estimation.gyroscopes import Angle, known_angle
 from inertial.tables import AXES
 from stages.comparison.difference import Difference, Results
 
-# ---- Turns forward against turns backward about the same axis.
+# --- Rotation forward against backward about the same axis ---
 
 FORWARD_AGAINST_BACKWARD = "forward_against_backward"
 Pair = tuple[tuple[str, Angle], tuple[str, Angle]]
@@ -57,7 +57,7 @@ def _pairs(turns: list[tuple[str, Angle]]) -> list[Pair]:
     return pairs
 
 
-# ---- The gyros at rest against the gyros in turns: S0, tables 5-2 and 5-7.
+# --- Static positions against rate segments: S0, tables 5-2 and 5-7 ---
 
 STATIC_AGAINST_TURNS = "static_against_turns"
 UNKNOWN_CROSS = 0.01  # rad, a mounting askew by half a degree: a cross term that no one determined

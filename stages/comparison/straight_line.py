@@ -10,7 +10,7 @@ from inertial.estimation.rate_linearity import columns_of, nonlinearities, own_a
 from stages.comparison.difference import Difference
 
 KIND = "straight_line"
-OUTLYING = 0.05  # chance below which a run, after Bonferroni, is left out
+MAX_OUTLIER_P = 0.05  # chance below which a run, after Bonferroni, is left out
 FORMS = {"cubic": "s²/rad²", "asymmetry": "1"}
 
 
@@ -29,7 +29,7 @@ def straight_line(
     if not len(data.rate):
         return
     bent = np.hstack([data.straight, columns_of(data)["cubic"]])
-    apart = [one.row for one in outliers(bent, data.mean, data.sigma, OUTLYING)]
+    apart = [one.row for one in outliers(bent, data.mean, data.sigma, MAX_OUTLIER_P)]
     found = nonlinearities(data.less(apart))
     left_out = ", ".join(runs[data.run[row]].position.name for row in apart)
     for form, unit in FORMS.items():

@@ -33,7 +33,7 @@ UNITS = {
     "angle": ("the angle", DEGREES, SECONDS_OF_ARC),
 }
 SI = {"gravity": "m/s²", "force_up": "m/s²", "rate_up": "rad/s", "angle": "rad"}
-BEYOND = 3.0  # sigmas, from which a sentence says that the parameters do not tell all
+MAX_EXPECTED_SIGMAS = 3.0  # sigmas, from which a sentence says that the parameters do not tell all
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class Check:
             "within its sigma"
             if abs(far) <= 1
             else f"{fixed(abs(far), 1)} sigma"
-            if abs(far) <= BEYOND
+            if abs(far) <= MAX_EXPECTED_SIGMAS
             else f"{fixed(abs(far), 1)} sigma, so these parameters are not all there is"
         )
         value = fixed(unit.of(self.expected), 4) + (
@@ -124,7 +124,7 @@ def table_of(rows: list[Row]) -> pd.DataFrame:
     return frame.astype(dict.fromkeys(numbers, np.float64))
 
 
-# ---- at rest
+# --- Static positions ---
 
 
 def _forces(still: Still, triad: Triad, data: CampaignData) -> Iterator[Check]:
@@ -182,7 +182,7 @@ def _noise_along(direction: Array, triad: Triad, sigma: Array) -> float:
     return float(np.linalg.norm(np.where(weights == 0, 0.0, weights * sigma)))
 
 
-# ---- turns
+# --- Rotations ---
 
 
 def _angle(one: Recorded, triad: Triad, data: CampaignData) -> Iterator[Check]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from inertial.campaign.equations import USUAL, Campaign
+from inertial.campaign.equations import USUAL_SIZE, Campaign
 from inertial.estimation.accelerometers import WALK as LARGEST_OF_ACCELEROMETERS
 from inertial.estimation.accelerometers import Rest
 from inertial.estimation.gyroscope_rows import Still, Turn
@@ -69,7 +69,7 @@ def walks_with_sigmas(campaign: Campaign, effects: Sequence[Effect]) -> dict[str
 def _deviance(
     campaign: Campaign, sensor: str, effects: Sequence[Effect]
 ) -> Callable[[float], float]:
-    equations = campaign.walked(sensor, effects, USUAL)
+    equations = campaign.walked(sensor, effects, USUAL_SIZE)
 
     def deviance(size: float) -> float:
         system = equations(size)

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from inertial.campaign.equations import CLEAR, Campaign
+from inertial.campaign.equations import MIN_VISIBLE_SIGMA, Campaign
 from inertial.estimation.least_squares import (
     MIN_INFORMATION_SHARE,
     EffectInformation,
@@ -102,7 +102,7 @@ def _shown(system: System | None, largest: np.ndarray) -> frozenset[str]:
     reduced = system.effect_information()
     information = np.diag(reduced.information)
     seen = information > MIN_INFORMATION_SHARE * system.raw_information()
-    clear = largest * np.sqrt(np.maximum(information, 0.0)) > CLEAR
+    clear = largest * np.sqrt(np.maximum(information, 0.0)) > MIN_VISIBLE_SIGMA
     return frozenset(np.array(reduced.names)[seen & clear].tolist())
 
 

@@ -24,7 +24,7 @@ from inertial.tables import GYRO
 Array = NDArray[np.float64]
 
 BETWEEN = "between"  # phase of the blocks from one rest to the next
-SCATTER = (1e-11, 0.1)  # rad/s: how much rests and motions may differ beyond the noise
+SCATTER_RANGE = (1e-11, 0.1)  # rad/s: how much rests and motions may differ beyond the noise
 CURES = {
     "bias": "no rest shows it: add a rest",
     "matrix": "between the rests the IMU hardly turned about {axis} while {axis} lay level: add"
@@ -47,7 +47,7 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> None:
     fits = [
         with_scatter(
             partial(between_rests, stops, passages, given, sways=sways),
-            between=SCATTER,
+            between=SCATTER_RANGE,
             noise_degrees=data.noise.degrees,
         )
         for sways in (False, True)

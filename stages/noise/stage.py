@@ -19,10 +19,10 @@ from stages.noise.declared import DECLARED
 
 Array = NDArray[np.float64]
 
-LONGEST = 32768  # samples in one periodogram; bounds the memory of a long log
+MAX_SAMPLES = 32768  # of one periodogram: bounds the memory of a long log
 PHASES = {"rest": "rest", "rest-before": "rest", "rest-after": "rest", "steady": "steady"}
 _SENSORS = {"accel": slice(0, 3), "gyro": slice(3, 6)}
-SHORTEST = 16  # samples below which nothing is said about noise
+MIN_SAMPLES = 16  # fewer give no level
 
 
 def noise(
@@ -49,8 +49,8 @@ def noise(
             inside_it = (record >= row["from_record"]) & (record < row["to_record"])
             chosen = values[inside_it]
             collected = spectra.setdefault((row["manoeuvre"], PHASES[row["phase"]]), _Spectra())
-            for start in range(0, len(chosen), LONGEST):
-                collected.add(chosen[start : start + LONGEST], 1 / step, (from_hz, to_hz))
+            for start in range(0, len(chosen), MAX_SAMPLES):
+                collected.add(chosen[start : start + MAX_SAMPLES], 1 / step, (from_hz, to_hz))
     rows = [
         row | {"data_sheet": sheet[row["channel"]]}
         for (manoeuvre, phase), collected in spectra.items()
@@ -75,7 +75,7 @@ class _Spectra:
         for sensor, columns in _SENSORS.items():
             part = values[:, columns]
             part = part[np.isfinite(part).any(axis=1)]
-            if len(part) >= SHORTEST:
+            if len(part) >= MIN_SAMPLES:
                 whole = np.isfinite(part).all(axis=0)
                 levels = band_levels(np.where(whole, part, 0.0), rate, band)
                 self.levels.setdefault(sensor, []).append(np.where(whole, levels, np.nan))

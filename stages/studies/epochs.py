@@ -19,12 +19,14 @@ from stages.studies.stretches import Samples, Stretch
 Array = NDArray[np.float64]
 Row = dict[str, Any]
 
-MOST_SAMPLES = 60_000  # of each rest: ten minutes at 100 Hz
-MOST_EPOCHS = 200  # of the table, each a second or longer
-FEWEST = 64  # samples of a rest
-SHARE = 0.25  # of the longest rest, which a rest must have, for all are cut to the shortest
-ALIKE = 0.05  # by which sample intervals may differ from log to log
-FEWEST_EPOCHS = 8  # of which a variance is told
+MAX_SAMPLES = 60_000  # of each rest: ten minutes at 100 Hz
+MAX_EPOCHS = 200  # of the table, each a second or longer
+MIN_SAMPLES = 64  # samples of a rest
+MIN_LENGTH_SHARE = (
+    0.25  # of the longest rest, which a rest must have, for all are cut to the shortest
+)
+MAX_INTERVAL_DIFFERENCE = 0.05  # relative, of sample intervals from log to log
+MIN_EPOCHS = 8  # for a variance
 NEEDED = {
     "accelerometer": "four or more attitudes, of about the same length, that span all axes",
     "gyroscope": "an axis that points up and down, for about the same time",
@@ -55,8 +57,12 @@ def rests_of(
     }
     lengths = {m.name: spans[m.name][1] - spans[m.name][0] for m in usable if m.name in spans}
     longest = max(lengths.values(), default=0)
-    lengths = {name: n for name, n in lengths.items() if n >= FEWEST and n > SHARE * longest}
-    length = min([*lengths.values(), MOST_SAMPLES])
+    lengths = {
+        name: n
+        for name, n in lengths.items()
+        if n >= MIN_SAMPLES and n > MIN_LENGTH_SHARE * longest
+    }
+    length = min([*lengths.values(), MAX_SAMPLES])
     return {
         m.name: (m, Stretch(m.log, spans[m.name][0], spans[m.name][0] + length))
         for m in usable
@@ -99,9 +105,9 @@ def studied(
     there = {name: one for name, one in rests.items() if name in samples}
     length = min((len(samples[name].time) for name in there), default=0)
     step = np.array([data.clocks[m.log].step for m, _ in there.values()])
-    if length < FEWEST or np.ptp(step) > ALIKE * step.min():
-        short = f"no rest of known attitude and {FEWEST} samples or more was found"
-        reason = short if length < FEWEST else "the rests differ in their sample interval"
+    if length < MIN_SAMPLES or np.ptp(step) > MAX_INTERVAL_DIFFERENCE * step.min():
+        short = f"no rest of known attitude and {MIN_SAMPLES} samples or more was found"
+        reason = short if length < MIN_SAMPLES else "the rests differ in their sample interval"
         rows["not_studied"].append(_not_studied(data.named("rests"), reason))
         return rows
     ups = np.array([m.up for m, _ in there.values()])
@@ -147,8 +153,8 @@ def _add(
     unit = [described(named.stage, name)[0] for name in names]
     assert set(unit) <= {"1", *UNIT.values()}
 
-    length = max(round(1 / step), -(-len(readings) // MOST_EPOCHS), 1)
-    length = min(length, len(readings) // FEWEST_EPOCHS)
+    length = max(round(1 / step), -(-len(readings) // MAX_EPOCHS), 1)
+    length = min(length, len(readings) // MIN_EPOCHS)
     single, running = (formula.of(part) for part in in_epochs(readings, length))
     for k in range(len(single)):
         seconds = (k + 1) * length * step
@@ -165,7 +171,7 @@ def _add(
                     "running_sigma": sigma[i] / np.sqrt(k + 1),
                 }
             )
-    most = len(readings) // FEWEST_EPOCHS
+    most = len(readings) // MIN_EPOCHS
     lengths = [2**octave for octave in range(most.bit_length())]
     for one in spread(formula, readings, lengths):
         white = formula.sigma(density, one.samples * step) ** 2

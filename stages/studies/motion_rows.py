@@ -12,7 +12,7 @@ from stages.studies.table_motion import WholeMotion
 Array = NDArray[np.float64]
 Row = dict[str, Any]
 
-MOST = 400  # rows of a turn
+MAX_ROWS = 400  # rows of a turn
 
 
 def angles(motion: WholeMotion) -> list[Row]:
@@ -22,7 +22,7 @@ def angles(motion: WholeMotion) -> list[Row]:
     is faster shows neither as a slower one nor not at all; the first and the last are the ends.
     """
     table = motion.table
-    length = max(-(-len(table.time) // (MOST - 2)), 3)
+    length = max(-(-len(table.time) // (MAX_ROWS - 2)), 3)
     set_angle = _set_angle(motion)
     off = table.angle - np.nan_to_num(set_angle)
     # What bends like a parabola within a stretch is a ramp, and no swing.

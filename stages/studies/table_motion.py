@@ -24,9 +24,9 @@ from stages.studies.stretches import Samples, Stretch
 Array = NDArray[np.float64]
 
 UNKNOWN_CROSS = 0.01  # rad, a mounting askew by half a degree: a cross term that no one determined
-LOWEST = 2.0  # Hz, above which a turn rings; what is slower is the table's own motion
-LOUD = 1e-4  # chance below which it does
-LATE = 0.5  # of a step by which a sample may be late; more, and one is missing
+MIN_LINE_HZ = 2.0  # Hz, above which a turn rings; what is slower is the table's own motion
+MAX_LINE_P = 1e-4  # chance below which it does
+MAX_DELAY_STEPS = 0.5  # of a step by which a sample may be late; more, and one is missing
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ def motion_of(
     rates, time = samples.values[:, 3:], samples.time
     there = np.isfinite(rates) | ~np.isfinite(rates).any(axis=0)
     rates, time = rates[there.all(axis=1)], time[there.all(axis=1)]
-    even = np.abs(np.diff(time) / step - 1) < LATE
+    even = np.abs(np.diff(time) / step - 1) < MAX_DELAY_STEPS
     about = m.axis
     if not even.all() or len(time) < 2:
         return "its samples do not follow each other step by step"
@@ -216,8 +216,8 @@ def _line(increments: Array, step: float) -> Ringing | None:
     """
     if not np.isfinite(increments).all():
         return None
-    line = strongest(increments / step, 1 / step, LOWEST)
-    if line is None or line.p_value > LOUD:
+    line = strongest(increments / step, 1 / step, MIN_LINE_HZ)
+    if line is None or line.p_value > MAX_LINE_P:
         return None
     return Ringing(line.amplitude / float(np.sinc(line.frequency * step)), line.frequency)
 

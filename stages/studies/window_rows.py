@@ -27,9 +27,9 @@ Array = NDArray[np.float64]
 Row = dict[str, Any]
 
 HALF = pi  # rad, of a window, as S0 has it
-CLOSE = 1.0  # s, within which every start of a window is told
-STARTS = 200  # of windows over the whole steady part
-ENDS = 200  # of windows that grow
+CLOSE_STARTS_S = 1.0  # within which every start of a window has a row
+MAX_STARTS = 200  # of windows over the whole steady part
+MAX_ENDS = 200  # of windows that grow
 SHORTEST = pi / 36  # rad, of a window that grows
 
 
@@ -152,8 +152,10 @@ def sliding(pair: Pair, whole: Row) -> list[Row]:
     last = pair.samples - pair.half
     if last < 0:
         return []
-    close = np.arange(min(round(CLOSE / pair.step), last) + 1)
-    starts = np.unique(np.append(close, np.linspace(0, last, min(STARTS, last + 1)).astype(int)))
+    close = np.arange(min(round(CLOSE_STARTS_S / pair.step), last) + 1)
+    starts = np.unique(
+        np.append(close, np.linspace(0, last, min(MAX_STARTS, last + 1)).astype(int))
+    )
     window = at_set_rate(starts, pair.half, pair.step, pair.rate)
     own = pair.by_own_angle(window, whole)
     return [*pair.rows(window, "set rate", pair.rate_sigma), *own]
@@ -164,7 +166,7 @@ def growing(pair: Pair, whole: Row) -> list[Row]:
     shortest = max(round(SHORTEST / (pair.rate * pair.step)), 1)
     if pair.samples < shortest:
         return []
-    samples = np.unique(np.linspace(shortest, pair.samples, ENDS).astype(int))
+    samples = np.unique(np.linspace(shortest, pair.samples, MAX_ENDS).astype(int))
     window = at_set_rate(np.zeros_like(samples), samples, pair.step, pair.rate)
     own = pair.by_own_angle(window, whole)
     return [*pair.rows(window, "set rate", pair.rate_sigma, any_phase=True), *own]
