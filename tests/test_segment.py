@@ -77,7 +77,7 @@ def test_blocks_keep_every_increment(clean):
 
 def test_the_bins_of_a_long_campaign_are_longer_and_find_the_same(clean, monkeypatch):
     fine = clean[0]["segment/segments"]
-    monkeypatch.setattr(windows, "MOST", 8000)
+    monkeypatch.setattr(windows, "MAX_BINS", 8000)
     binned = windows.binned
     bins = []
 

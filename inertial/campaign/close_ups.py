@@ -2,34 +2,35 @@
 
 from collections.abc import Sequence
 
-import numpy as np
 import pandas as pd
 
 from inertial import tables
-from inertial.campaign.events import Told
-from inertial.campaign.masked_samples import pieces
+from inertial.campaign.findings import Detection
+from inertial.campaign.masked_samples import RecordIndex, rows_between
 from inertial.tables.parquet import Stream
 
-MOST = 40  # findings that are shown
-BESIDE = 60  # records on each side
-LONGEST = 400  # records of one; of a longer stretch its beginning is shown
+MAX_FINDINGS = 40  # that are shown
+MARGIN = 60  # records on each side
+MAX_RECORDS = 400  # of a close-up; of a longer stretch its beginning is shown
+COLUMNS = ["record", "line", "time", *tables.CHANNELS]
 
 
-def close_ups(samples: Stream, told: Sequence[Told]) -> pd.DataFrame:
-    """The records around the place that a finding tells of, the gravest findings first."""
-    graver = sorted(told, key=lambda one: -one.finding.severity)
-    wanted: dict[str, list[tuple[str, int, int]]] = {}
-    for one in [one for one in graver if one.events][:MOST]:
-        log, event = max(one.events, key=lambda pair: abs(pair[1].size))
-        wanted.setdefault(log, []).append((one.finding.id, event.first, event.after))
-    columns = ["record", "line", "time", *tables.CHANNELS]
+def close_ups(samples: Stream, index: RecordIndex, detections: Sequence[Detection]) -> pd.DataFrame:
+    """The records around the place of each finding, the most severe findings first.
+
+    Parameters
+    ----------
+    index : the rows of the records, from a pass over the samples
+    """
+    placed = [each for each in detections if each.events]
     frames = []
-    for log, piece in pieces(samples, columns):
-        for finding, first, after in wanted.get(log, ()):
-            end = min(after + BESIDE, first - BESIDE + LONGEST)
-            start, stop = np.searchsorted(piece["record"], [first - BESIDE, end])
-            if stop > start:
-                shown = pd.DataFrame({name: piece[name][start:stop] for name in columns})
-                inside = (shown["record"] >= first) & (shown["record"] < after)
-                frames.append(shown.assign(finding=finding, log=log, concerned=inside))
+    for detection in sorted(placed, key=lambda each: -each.finding.severity)[:MAX_FINDINGS]:
+        log, event = max(detection.events, key=lambda pair: abs(pair[1].size))
+        first = event.first - MARGIN
+        after = min(event.after + MARGIN, first + MAX_RECORDS)
+        for batch in rows_between(samples, *index.rows(log, first, after), COLUMNS):
+            shown = pd.DataFrame(batch.columns)
+            shown = shown[(shown["record"] >= first) & (shown["record"] < after)]
+            inside = (shown["record"] >= event.first) & (shown["record"] < event.after)
+            frames.append(shown.assign(finding=detection.finding.id, log=log, concerned=inside))
     return pd.concat(frames) if frames else tables.CLOSE_UPS.empty()

@@ -1,32 +1,33 @@
-"""What can be said of every log in one pass, before its records are looked at one by one."""
+"""Interval, resolution and noise of every log, known before its records are examined singly."""
+
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from inertial.campaign.masked_samples import extents, pieces, regular
-from inertial.campaign.records import clocks_of, known_of, rows_of
-from inertial.campaign.sums import sums_over
+from inertial.campaign.masked_samples import Array, Batch, regular
+from inertial.campaign.records import Row, clocks_of, known_of, rows_of
+from inertial.campaign.sums import SumsOver
 from inertial.physics.site import normal_gravity
-from inertial.signal.detector import Array, Given, Log, Windows
-from inertial.tables import CHANNELS
-from inertial.tables.parquet import Stream
+from inertial.signal.detector import Given, Log, Windows
+from inertial.tables import AXES, CHANNEL_STATISTICS, CHANNELS
 
-LOOKED_AT = 1 << 16  # readings of a piece from which its noise and smallest step are taken
-
-
+MAX_READINGS = 1 << 16  # of a batch, from which its noise and smallest step are taken
 WINDOW = 1.0  # s
-COMMON = 3  # logs that can have an interval in common
-SCATTER = 1.4826  # sigma of Gaussian values in units of the median of their absolute values
+MIN_COMMON_LOGS = 3  # logs that can have an interval in common
+MAD_TO_SIGMA = 1.4826  # sigma of Gaussian values in units of the median of their absolute values
+MIN_RELATIVE_STEP = 1e-9  # of the largest reading: smaller steps are rounding of equal ones
+SENSORS = ("accel",) * 3 + ("gyro",) * 3
 
 
 def given_by(
     campaign: pd.DataFrame, known: pd.DataFrame, count_sizes: pd.DataFrame, clocks: pd.DataFrame
 ) -> Given:
-    """What the campaign says of all its logs, and which interval they have in common."""
+    """What the campaign states of all its logs, and which interval they have in common."""
     (facts,) = rows_of(campaign)
-    taken = known_of(known)
-    gravity = taken["gravity"]
+    quantities = known_of(known)
+    gravity = quantities["gravity"]
     sizes: dict[str, dict[str, float]] = {}
     for row in rows_of(count_sizes):
         sizes.setdefault(row["instrument"], {})[row["sensor"]] = row["count_size"]
@@ -45,100 +46,155 @@ def given_by(
         count_sizes={
             name: (size["accel"], size["gyro"]) for name, size in sizes.items() if len(size) == 2
         },
-        position_sigma=taken["position"].scatter,
+        position_sigma=quantities["position"].scatter,
         **_in_common([clock.duration for clock in clocks_of(clocks).values() if clock.duration]),
     )
 
 
 def _in_common(intervals: list[float]) -> dict[str, float]:
-    """The interval of most logs, and how far the others are from it, as a sigma."""
-    if len(intervals) < COMMON:
+    """The interval of most logs, and the scatter of the others about it, as a sigma."""
+    if len(intervals) < MIN_COMMON_LOGS:
         return {}
     usual = np.median(intervals)
-    away = np.abs(np.array(intervals) / usual - 1)
-    return {"usual_interval": float(usual), "unlike": SCATTER * float(np.median(away))}
+    distance = np.abs(np.array(intervals) / usual - 1)
+    return {"usual_interval": float(usual), "unlike": MAD_TO_SIGMA * float(np.median(distance))}
+
+
+class ChannelStatistics:
+    """Resolution, noise and extremes of the channels of each log."""
+
+    columns = CHANNELS
+
+    def __init__(self) -> None:
+        self._by_log: dict[str, _Channels] = {}
+
+    def add(self, batch: Batch) -> None:
+        """Take in the next batch."""
+        self._by_log.setdefault(batch.log, _Channels()).add(batch.readings)
+
+    def table(self) -> pd.DataFrame:
+        """The table of these statistics, a row for each channel of each log."""
+        frames = [
+            pd.DataFrame(
+                {
+                    "log": log,
+                    "sensor": SENSORS,
+                    "axis": AXES * 2,
+                    "resolution": channels.resolution,
+                    "noise": channels.median_noise(),
+                    "unchanged_share": channels.unchanged / np.maximum(channels.pairs, 1),
+                    "smallest": channels.smallest,
+                    "largest": channels.largest,
+                }
+            )
+            for log, channels in self._by_log.items()
+        ]
+        return pd.concat(frames) if frames else CHANNEL_STATISTICS.empty()
+
+
+class _Channels:
+    """What is summed up of the channels of one log, (6,) each."""
+
+    def __init__(self) -> None:
+        self.pairs, self.unchanged = np.zeros(6), np.zeros(6)
+        self.smallest, self.largest = np.full(6, np.nan), np.full(6, np.nan)
+        self.resolution = np.full(6, np.nan)
+        self.noise: list[Array] = []
+
+    def add(self, readings: Array) -> None:
+        """Take in the next readings, (n, 6)."""
+        noise = np.full(6, np.nan)
+        for i, channel in enumerate(np.ascontiguousarray(readings.T)):
+            read = channel[np.isfinite(channel)]
+            if len(read) < 2:
+                continue
+            smallest, largest = read.min(), read.max()
+            self.smallest[i] = np.fmin(self.smallest[i], smallest)
+            self.largest[i] = np.fmax(self.largest[i], largest)
+            change = np.abs(np.diff(read))
+            self.pairs[i] += len(change)
+            self.unchanged[i] += len(change) - np.count_nonzero(change)
+            change = change[:MAX_READINGS]
+            # Equal steps of counts times their size differ in their last digits.
+            steps = change[change > MIN_RELATIVE_STEP * max(abs(smallest), abs(largest))]
+            if len(steps):
+                self.resolution[i] = np.fmin(self.resolution[i], steps.min())
+            # √2: from the scatter of differences to that of one reading.
+            noise[i] = MAD_TO_SIGMA / np.sqrt(2) * np.median(change, overwrite_input=True)
+        self.noise.append(noise)
+
+    def median_noise(self) -> Array:
+        """The median over the batches, (6,), NaN where a channel is not recorded."""
+        noise = np.array(self.noise)
+        recorded = np.isfinite(noise).any(axis=0)
+        return np.where(recorded, np.nanmedian(np.where(recorded, noise, 0.0), axis=0), np.nan)
+
+
+def windows_of(clocks: pd.DataFrame) -> SumsOver:
+    """The sums of every log over windows of 1 s."""
+    step = {log: clock.step for log, clock in clocks_of(clocks).items()}
+    ends = records_of(clocks)
+    return SumsOver({log: regular(end, round(WINDOW / step[log])) for log, end in ends.items()})
+
+
+def records_of(clocks: pd.DataFrame) -> dict[str, int]:
+    """For each log that has records the number after the last."""
+    return {row["log"]: row["to_record"] for row in rows_of(clocks) if row["to_record"]}
 
 
 def logs(
-    samples: Stream, clocks: pd.DataFrame, ranges: pd.DataFrame, given: Given
+    statistics: pd.DataFrame,
+    clocks: pd.DataFrame,
+    ranges: pd.DataFrame,
+    imu_types: pd.DataFrame,
+    given: Given,
+    windows: Mapping[str, Windows],
 ) -> dict[str, Log]:
-    """Every log that has records; `ranges`: what a count is and how far each channel reaches."""
-    clock, ends = clocks_of(clocks), extents(samples)
-    recorded_on = {row["log"]: row["recorded_on"] for row in rows_of(clocks)}
-    imu = {row["log"]: row["imu_types"] or "" for row in rows_of(clocks)}
-    cuts = {log: regular(end, round(WINDOW / clock[log].step)) for log, end in ends.items()}
-    windows = sums_over(samples, cuts)
-    totals: dict[str, _Total] = {}
-    for name, piece in pieces(samples, list(CHANNELS)):
-        values = np.column_stack([piece[channel] for channel in CHANNELS])
-        totals.setdefault(name, _Total()).add(values)
-    stated = {(row["log"], row["channel"]): row for row in rows_of(ranges)}
+    """Every log that has records, by name.
 
-    def by_channel(log: str, key: str, step: float, missing: float) -> Array:
-        rows = [stated.get((log, channel), {}) for channel in CHANNELS]
-        sizes = [row.get(key) for row in rows]
-        per = [step if key == "count" and row.get("increments") else 1.0 for row in rows]
-        return np.array([missing if s is None else s / p for s, p in zip(sizes, per, strict=True)])
-
-    return {
-        name: Log(
-            name=name,
+    Parameters
+    ----------
+    statistics, clocks, ranges, imu_types : tables; of each log the type of IMU in its messages
+    windows : means over windows of 1 s by log; a log may have none
+    """
+    stated = {(row["log"], row["sensor"], row["axis"]): row for row in rows_of(ranges)}
+    types: dict[str, list[int]] = {}
+    for row in rows_of(imu_types):
+        types.setdefault(row["log"], []).append(row["imu_type"])
+    rows = {row["log"]: row for row in rows_of(clocks)}
+    clock = clocks_of(clocks)
+    made = {}
+    for name, own in statistics.groupby("log", sort=False):
+        log = str(name)
+        channels = [
+            stated.get((log, sensor, axis), {})
+            for sensor, axis in zip(SENSORS, AXES * 2, strict=True)
+        ]
+        made[log] = Log(
+            name=log,
             given=given,
-            interval=clock[name].interval or np.nan,
-            recorded_on=recorded_on[name],
-            quantum=total.quantum,
-            noise=_middle(total.noise),
-            equal=total.equals / np.maximum(total.pairs, 1),
-            least=total.least,
-            most=total.most,
-            limit=by_channel(name, "limit", clock[name].step, np.inf),
-            count=by_channel(name, "count", clock[name].step, np.nan),
-            windows=Windows(sums.mean, sums.variance, sums.time, sums.temperature),
-            records=total.records,
-            step=clock[name].duration or np.nan,
-            increments=any(stated.get((name, c), {}).get("increments") for c in CHANNELS),
-            imu=tuple(int(number) for number in imu[name].split()),
+            interval=clock[log].interval or np.nan,
+            recorded_on=rows[log]["recorded_on"],
+            quantum=own["resolution"].to_numpy(np.float64),
+            noise=own["noise"].to_numpy(np.float64),
+            equal=own["unchanged_share"].to_numpy(np.float64),
+            least=own["smallest"].to_numpy(np.float64),
+            most=own["largest"].to_numpy(np.float64),
+            limit=np.array([_number(row.get("limit"), np.inf) for row in channels]),
+            count=np.array([_count(row, clock[log].step) for row in channels]),
+            windows=windows.get(log, Windows.none()),
+            records=rows[log]["records"],
+            step=clock[log].duration or np.nan,
+            increments=any(row.get("increments") for row in channels),
+            imu=tuple(types.get(log, ())),
         )
-        for name, total in totals.items()
-        for sums in [windows[name]]
-    }
+    return made
 
 
-class _Total:
-    """What is gathered while a log streams by, (6,) each."""
-
-    def __init__(self) -> None:
-        self.records = 0
-        self.pairs, self.equals = np.zeros(6), np.zeros(6)
-        self.least, self.most = np.full(6, np.nan), np.full(6, np.nan)
-        self.quantum = np.full(6, np.nan)
-        self.noise: list[Array] = []
-
-    def add(self, values: NDArray[np.float64]) -> None:
-        self.records += len(values)
-        noise = np.full(6, np.nan)
-        for i in range(6):
-            read = values[:, i]
-            read = read[np.isfinite(read)]
-            if len(read) < 2:
-                continue
-            self.least[i] = np.fmin(self.least[i], read.min())
-            self.most[i] = np.fmax(self.most[i], read.max())
-            change = np.abs(np.diff(read))
-            self.pairs[i] += len(change)
-            self.equals[i] += np.count_nonzero(change == 0)
-            some = change[:LOOKED_AT]
-            # 1.4826 / √2: from the median of |differences| to the sigma of one reading.
-            noise[i] = 1.4826 / np.sqrt(2) * np.median(some)
-            # Readings are counts times their size, so equal steps differ in their last digits.
-            steps = some[some > 1e-9 * np.abs(read).max()]
-            if len(steps):
-                self.quantum[i] = np.fmin(self.quantum[i], steps.min())
-        self.noise.append(noise)
+def _count(row: Row | dict[str, Any], step: float) -> float:
+    """What one count of a channel is, as a rate where it is an increment over `step`, s."""
+    return _number(row.get("count"), np.nan) / (step if row.get("increments") else 1.0)
 
 
-def _middle(noises: list[Array]) -> Array:
-    """The median of the pieces, NaN where a channel is recorded in none."""
-    together = np.array(noises)
-    there = np.isfinite(together).any(axis=0)
-    return np.where(there, np.nanmedian(np.where(there, together, 0.0), axis=0), np.nan)
+def _number(value: float | None, unknown: float) -> float:
+    return unknown if value is None else value

@@ -1,9 +1,10 @@
-"""The stream of samples, one log at a time, and what is masked of them."""
+"""The stream of samples in batches of one log each, and what is masked of them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import Any
+from functools import cached_property
+from itertools import chain, pairwise
+from typing import Any, Protocol
 
 import numpy as np
 import pandas as pd
@@ -13,23 +14,72 @@ from numpy.typing import NDArray
 from inertial.tables import CHANNELS
 from inertial.tables.parquet import Stream
 
-# ---- The stream of samples, one log at a time.
-
+Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
+Booleans = NDArray[np.bool_]
 Columns = dict[str, NDArray[Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class Batch:
+    """Consecutive records of one log, n of them: columns of the samples, (n,), NaN where empty."""
+
+    log: str
+    columns: Columns
+
+    def __len__(self) -> int:
+        return len(self.columns["record"])
+
+    def __getitem__(self, column: str) -> NDArray[Any]:
+        return self.columns[column]
+
+    @cached_property
+    def readings(self) -> Array:
+        """The six channels, (n, 6), in the order of CHANNELS; whoever changes them takes a copy."""
+        return np.column_stack([self.columns[channel] for channel in CHANNELS])
+
+
+class Accumulator(Protocol):
+    """What takes in the samples of all logs batch by batch, in their order, and sums them up."""
+
+    @property
+    def columns(self) -> Sequence[str]:
+        """The columns of the samples that it needs, `record` apart."""
+
+    def add(self, batch: Batch) -> None:
+        """Take in the next batch."""
+
+
+def read_once(samples: Stream, accumulators: Sequence[Accumulator]) -> None:
+    """One pass over the samples for any number of accumulators."""
+    columns = dict.fromkeys(chain(["record"], *(each.columns for each in accumulators)))
+    for log, piece in pieces(samples, list(columns)):
+        batch = Batch(log, piece)
+        for accumulator in accumulators:
+            accumulator.add(batch)
 
 
 def pieces(samples: Stream, columns: list[str]) -> Iterator[tuple[str, Columns]]:
     """Consecutive records of one log: its name, and the columns as arrays, NaN where empty."""
     for batch in samples.columns(["log", *columns]):
-        logs = batch.column("log").dictionary_encode()
-        names, index = logs.dictionary.to_pylist(), logs.indices.to_numpy()
-        starts = [0, *(np.flatnonzero(np.diff(index)) + 1), len(index)]
-        arrays = {name: _array(batch.column(name)) for name in columns}
-        for start, end in pairwise(starts):
-            if end > start:
-                name = names[index[start]]
-                yield name, {column: array[start:end] for column, array in arrays.items()}
+        yield from _by_log(batch, columns)
+
+
+def rows_between(samples: Stream, first: int, after: int, columns: list[str]) -> Iterator[Batch]:
+    """The rows [first, after) of the table, without a pass over the others."""
+    for part in samples.rows(first, after, ["log", *columns]):
+        for log, piece in _by_log(part, columns):
+            yield Batch(log, piece)
+
+
+def _by_log(batch: pa.RecordBatch, columns: list[str]) -> Iterator[tuple[str, Columns]]:
+    logs = batch.column("log").dictionary_encode()
+    names, index = logs.dictionary.to_pylist(), logs.indices.to_numpy()
+    starts = [0, *(np.flatnonzero(np.diff(index)) + 1), len(index)]
+    arrays = {name: _array(batch.column(name)) for name in columns}
+    for start, end in pairwise(starts):
+        if end > start:
+            yield names[index[start]], {name: array[start:end] for name, array in arrays.items()}
 
 
 def _array(column: pa.Array) -> NDArray[Any]:
@@ -38,23 +88,38 @@ def _array(column: pa.Array) -> NDArray[Any]:
     return np.asarray(column.to_numpy(zero_copy_only=False))
 
 
+class RecordIndex:
+    """Which rows of the table hold which records of a log."""
+
+    columns: Sequence[str] = ()
+
+    def __init__(self) -> None:
+        self._rows = 0
+        self._batches: dict[str, list[tuple[int, int, int, int]]] = {}
+
+    def add(self, batch: Batch) -> None:
+        """Note the first and the last record of a batch, and its rows."""
+        record, rows = batch["record"], self._rows
+        self._rows += len(batch)
+        own = self._batches.setdefault(batch.log, [])
+        own.append((int(record[0]), int(record[-1]) + 1, rows, self._rows))
+
+    def rows(self, log: str, first: int, after: int) -> tuple[int, int]:
+        """The rows among which the records [first, after) are; more where records are lacking."""
+        spans = []
+        for start, end, row, last_row in self._batches.get(log, ()):
+            if start < after and first < end:
+                # Records ascend, with gaps where lines were refused.
+                begin = row + max(first - start, 0) if end - start == last_row - row else row
+                stop = min(last_row, row + max(after - start, 0))
+                spans.append((begin, stop))
+        return (spans[0][0], spans[-1][1]) if spans else (0, 0)
+
+
 def regular(records: int, length: int) -> tuple[Integers, Integers]:
     """Stretches of `length` records that cover a log of `records`."""
     first = np.arange(0, records, max(length, 1), dtype=np.int64)
     return first, np.append(first[1:], records).astype(np.int64)
-
-
-def extents(samples: Stream) -> dict[str, int]:
-    """For each log the number after its last record."""
-    ends: dict[str, int] = {}
-    for log, piece in pieces(samples, ["record"]):
-        ends[log] = int(piece["record"][-1]) + 1
-    return ends
-
-
-# ---- What is not to be used of the samples, as every later stage honours it.
-
-Booleans = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -74,9 +139,13 @@ class Masked:
         """Records of which nothing is to be used, (n,)."""
         return self.lost | self.repeated
 
+    def part(self, places: Integers) -> "Masked":
+        """The same of some of the records."""
+        return Masked(self.lost[places], self.repeated[places], self.channels[places])
+
 
 class Masks:
-    """The masks of a campaign, asked log by log."""
+    """The masks of a campaign, by log."""
 
     def __init__(self, table: pd.DataFrame) -> None:
         self._by_log: dict[str, list[tuple[str, Integers, Integers]]] = {}

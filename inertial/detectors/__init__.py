@@ -39,7 +39,7 @@ from inertial.detectors.wrong_rate import WrongRate
 from inertial.detectors.wrong_scale_factor import WrongScaleFactor
 from inertial.detectors.wrong_scale_of_turns import WrongScaleOfTurns
 from inertial.signal.detector import Detector
-from inertial.signal.plan_detector import AgainstPlan
+from inertial.signal.plan_detector import PlanDetector
 
 # Without the plan, in every record of every log.
 OF_RECORDS: tuple[Detector, ...] = (
@@ -74,7 +74,7 @@ OF_RECORDS: tuple[Detector, ...] = (
 # Of the records of each rest, once the plan is found in the logs.
 OF_RESTS: tuple[Detector, ...] = (TableMoving(), BiasJump())
 # Of what was recorded of all manoeuvres, against the plan.
-OF_PLAN: tuple[AgainstPlan, ...] = (
+OF_PLAN: tuple[PlanDetector, ...] = (
     AxisSwapAgainstPlan(),
     SignFlipAgainstPlan(),
     WrongScaleOfTurns(),

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator
 
-from inertial.signal.detector import Words
+from inertial.signal.detector import Description
 from inertial.signal.misread_axes import deviation, misread_words
-from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
+from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 
 
-class AxisSwapAgainstPlan(AgainstPlan):
+class AxisSwapAgainstPlan(PlanDetector):
     """Rests, or turns, that fit the plan only if two axes of a sensor are read as each other.
 
     The directions of gravity at the rests, and the axes of the turns, must be a signed permutation
@@ -22,10 +22,10 @@ class AxisSwapAgainstPlan(AgainstPlan):
     unit = "manoeuvres"
     severity = 3
 
-    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         for one in recorded.misread:
             if not one.axes.in_place:
                 yield deviation(one, recorded)
 
-    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         return misread_words(deviation.facts, recorded)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.signal.detector import CHANNELS, UNITS, Detector, Event, Log, Piece, Words
+from inertial.signal.detector import CHANNELS, UNITS, Description, Detector, Event, Log, Piece
 from inertial.signal.level_jumps import Jump, jumps
 from inertial.signal.static_tilt import Resting
 from inertial.signal.steps import Step
@@ -50,13 +50,13 @@ class BiasJump(Detector):
     costs = "the mean of this rest, hence bias and scale factor of the axis"
     severity = 2
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         resting, every = jumps(piece, log)
         own = [one for one in every if not one.moved]
         for i in range(len(CHANNELS)):
             yield from _events(piece, log, resting, [one for one in own if one.channel == i])
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         told: Jumped = event.facts
         i = event.channel
         assert i is not None  # it is one channel that jumps
@@ -71,7 +71,7 @@ class BiasJump(Detector):
             f" (sigma {significant(told.jump.step.sigma, 2)}) at {place}{back};"
             f" {significant(abs(event.size) / told.noise, 2)} times the noise of a reading."
         )
-        if i >= 3 and not told.jump.agreement.tells:
+        if i >= 3 and not told.jump.agreement.conclusive:
             sentence += " A slow turn about the vertical would look the same."
         off = event.size * told.share
         consequence = (
@@ -91,7 +91,7 @@ class BiasJump(Detector):
                 f", and with it bias and cross-axis terms of the {axis} accelerometer as this rest"
                 " has them."
             )
-        return Words(
+        return Description(
             sentence,
             consequence,
             "The rest is used as it is. Record it again; see whether contact, supply or temperature"

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.signal.detector import Array, Detector, Event, Integers, Log, Piece, Words
+from inertial.signal.detector import Array, Description, Detector, Event, Integers, Log, Piece
 from inertial.signal.runs import joined
 from inertial.signal.stamps import PRINTED, stamps_of, unit_of
 from inertial.text.numbers import significant
@@ -53,7 +53,7 @@ class ClockJitter(Detector):
     severity = 1
     everywhere = True
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         stamps = stamps_of(piece, log)
         if len(stamps) < FEWEST:
             return
@@ -85,7 +85,7 @@ class ClockJitter(Detector):
                 severity=3 if abs(facts.biased) > BIASED else None,
             )
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         facts = event.facts
         rms = significant(event.size * 1e3, 2)
         if facts.unit:
@@ -113,7 +113,7 @@ class ClockJitter(Detector):
                 " much the other way."
             )
             action = "Nothing is corrected."
-        return Words(
+        return Description(
             sentence,
             consequence,
             f"{action} Let the logger stamp a sample when it is taken, in µs.",

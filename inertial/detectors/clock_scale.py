@@ -6,7 +6,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from inertial.signal.detector import Array, Detector, Event, Given, Integers, Log, Piece, Words
+from inertial.signal.detector import (
+    Array,
+    Description,
+    Detector,
+    Event,
+    Given,
+    Integers,
+    Log,
+    Piece,
+)
 from inertial.signal.sample_interval import Told, told_of_log, told_of_part
 from inertial.signal.stamps import MAX_RATE_ERROR, PRINTED, Stamps, stamps_of, unit_of
 from inertial.signal.steps import changes
@@ -68,7 +77,7 @@ class ClockScale(Detector):
     costs = "rates by the stamps, and with them all scale factors, are off by as much"
     unit = "ppm"
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         stamps = stamps_of(piece, log)
         steps, series = _intervals(stamps, log.interval)
         if len(series) < FEWEST:
@@ -102,7 +111,7 @@ class ClockScale(Detector):
                 ),
             )
 
-    def compares(self, logs: Mapping[str, Log]) -> Iterator[Event]:
+    def detect_between_logs(self, logs: Mapping[str, Log]) -> Iterator[Event]:
         if not logs:
             return
         given = next(iter(logs.values())).given
@@ -123,7 +132,7 @@ class ClockScale(Detector):
         )
         yield Event(0, 0, 0, np.nan, np.nan, away * 1e6, facts=facts)
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         facts = event.facts
         intervals = f"{_ms(facts.here)} from record to record, {_ms(facts.usual)} {facts.against}"
         size = _ppm(abs(event.size) * 1e-6)
@@ -143,7 +152,7 @@ class ClockScale(Detector):
             )
         else:
             sentence = f"{name}: {off}: {intervals}."
-        return Words(
+        return Description(
             f"{sentence} {_verdict(facts)}",
             _consequence(event, facts),
             "Nothing is changed. Compare the clock of the logger with another, such as GPS time."

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Detector, Event, Log, Piece, Words
+from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.stamps import stamps_of
 from inertial.text.numbers import fixed, significant
 
@@ -29,7 +29,7 @@ class ClockStep(Detector):
     unit = "s"
     severity = 1
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         stamps = stamps_of(piece, log)
         off = np.diff(stamps.time) - stamps.apart * log.interval
         off[stamps.apart != 1] = np.nan
@@ -52,10 +52,10 @@ class ClockStep(Detector):
                     facts=step > 0,
                 )
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         later = "later" if event.facts else "earlier"
         size = significant(event.size * 1e3, 3)
-        return Words(
+        return Description(
             f"{name}: from line {event.line} on, at {fixed(event.to_s, 3)} s, all stamps are"
             f" {size} ms {later} than an even clock says, and no sample is missing.",
             "What is taken against time is off by that much; angles and means hardly change.",

@@ -11,12 +11,12 @@ from inertial.signal.detector import (
     UNITS,
     Array,
     Booleans,
+    Description,
     Detector,
     Event,
     Integers,
     Log,
     Piece,
-    Words,
     channel_name,
 )
 from inertial.signal.roughness import ALIVE, BLOCK, roughness, smallest_step
@@ -59,7 +59,7 @@ class DeadAxis(Detector):
     severity = 3
     masks = True
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         channels = [piece.channel(i) for i in range(6)]
         runs = [_runs(values) for _, values in channels]
         noise = [_noise(values, *run) for (_, values), run in zip(channels, runs, strict=True)]
@@ -93,7 +93,7 @@ class DeadAxis(Detector):
                         ),
                     )
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         assert event.channel is not None
         facts, unit = event.facts, UNITS[event.channel]
         level, number = f"{significant(facts.level, 6)} {unit}", whole(event.size)
@@ -101,7 +101,7 @@ class DeadAxis(Detector):
         if event.channel >= 3 and np.isfinite(facts.seconds):
             angle = significant(facts.level * facts.seconds, 3)
             means = f"They add {angle} rad in {facts.seconds:.2f} s, whatever the IMU did"
-        return Words(
+        return Description(
             f"{name}: {channel_name(event.channel)} reads {level} "
             + (
                 f"in all {number} readings of the log."

@@ -5,7 +5,16 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.signal.detector import Array, Booleans, Detector, Event, Integers, Log, Piece, Words
+from inertial.signal.detector import (
+    Array,
+    Booleans,
+    Description,
+    Detector,
+    Event,
+    Integers,
+    Log,
+    Piece,
+)
 from inertial.signal.runs import runs
 from inertial.text.numbers import counted, fixed
 
@@ -30,19 +39,19 @@ class Duplicate(Detector):
     masks = True
     repeats = True
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         repeated = _repeated(piece)
         for start, end in runs(repeated):
             far = bool(piece.time[start] < np.nanmax(piece.time[:start]))
             yield piece.event(start, end, float(end - start), facts=far)
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         one = event.size == 1
         what = f"{counted(int(event.size), 'record')} from line {event.line}"
         does = "repeats" if one else "repeat"
         where = "earlier ones, stamps and all" if event.facts else "the one before, stamp and all"
         many = "it" if one else "them"
-        return Words(
+        return Description(
             f"{name}: {what} {does} {where}, at {fixed(event.from_s, 3)} s.",
             f"A sum over time would count {many} twice: the angle of a turn by the rate times"
             f" {counted(int(event.size), 'sample interval')}; the mean of a rest hardly moves.",

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Detector, Event, Log, Piece, Words
+from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.stamps import disorders, stamps_of
 from inertial.text.numbers import fixed
 
@@ -22,7 +22,7 @@ class Gap(Detector):
     unit = "samples"
     severity = 1
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         stamps = stamps_of(piece, log)
         # Stamps that are out of order make no gap, but their records are there.
         ordered = np.ones(len(stamps), bool)
@@ -47,9 +47,9 @@ class Gap(Detector):
                     float(missing),
                 )
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         missing = "1 sample is" if event.size == 1 else f"{event.size:.0f} samples are"
-        return Words(
+        return Description(
             f"{name}: {missing} missing between {fixed(event.from_s, 3)} s and"
             f" {fixed(event.to_s, 3)} s; line {event.line} is the first after them.",
             "A sum over this stretch lacks what was not recorded; means of a rest hardly change.",

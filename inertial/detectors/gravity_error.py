@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Detector, Event, Given, Words
+from inertial.signal.detector import Description, Detector, Event, Given
 from inertial.text.numbers import fixed, significant
 from inertial.text.units import STANDARD_GRAVITY
 
@@ -29,19 +29,19 @@ class GravityError(Detector):
     unit = "m/s²"
     sensor = "accel"
 
-    def judges(self, given: Given) -> Iterator[Event]:
+    def detect_in_campaign(self, given: Given) -> Iterator[Event]:
         off = given.gravity - given.normal_gravity
         sigma = float(np.hypot(given.gravity_sigma, ANOMALY))
         if abs(off) > CERTAIN * sigma:
             yield Event(0, 0, 0, np.nan, np.nan, off, facts=(given, sigma))
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         given, sigma = event.facts
         unit = abs(given.gravity - STANDARD_GRAVITY) < SAME
         why = " It is the size of the unit g, which is gravity of no place." if unit else ""
         times = significant(abs(event.size) / sigma, 2)
         parts = -event.size / given.gravity * 1e6
-        return Words(
+        return Description(
             f"Gravity is stated as {fixed(given.gravity, 5)} m/s²; at this latitude and height"
             f" normal gravity is {fixed(given.normal_gravity, 5)} m/s², from which it differs by"
             f" {significant(event.size / MGAL, 3)} mGal, {times} sigma of what the field of the"

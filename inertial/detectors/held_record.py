@@ -4,7 +4,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Array, Booleans, Detector, Event, Integers, Log, Piece, Words
+from inertial.signal.detector import (
+    Array,
+    Booleans,
+    Description,
+    Detector,
+    Event,
+    Integers,
+    Log,
+    Piece,
+)
 from inertial.signal.runs import runs
 from inertial.signal.stamps import kinds
 from inertial.text.numbers import counted, fixed, p_is
@@ -35,7 +44,7 @@ class HeldRecord(Detector):
     severity = 1
     masks = True
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         for places, channels in kinds(piece):
             telling = channels[log.least[channels] < log.most[channels]]
             if not len(telling) or not _any_equal(piece.values, places, telling):
@@ -49,11 +58,11 @@ class HeldRecord(Detector):
                     first, last, size = int(part[0]), int(part[-1]) + 1, float(len(part))
                     yield piece.event(first, last, size, p_value=chance, facts=len(telling))
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         one = event.size == 1
         records = counted(int(event.size), "record")
         at = f", {fixed(event.from_s, 3)} s," if np.isfinite(event.from_s) else ""
-        return Words(
+        return Description(
             f"{name}: {records} from line {event.line}{at}"
             f" {'has' if one else 'have'} the readings of the one before in all {event.facts}"
             f" channels, though time goes on; by chance that happens with"

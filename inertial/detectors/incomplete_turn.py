@@ -4,13 +4,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Words
-from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
+from inertial.signal.detector import Description
+from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.signal.scale_factor import MAX_RATIO_SPREAD, common_turn_ratio, turn_ratios
 from inertial.text.numbers import fixed, whole
 
 
-class IncompleteTurn(AgainstPlan):
+class IncompleteTurn(PlanDetector):
     """A turn that was not recorded from rest to rest, or not to the planned angle."""
 
     name = "incomplete_turn"
@@ -20,7 +20,7 @@ class IncompleteTurn(AgainstPlan):
     unit = "°"
     sensor = "gyro"
 
-    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         common = common_turn_ratio(recorded)
         _, angle = turn_ratios(recorded)
         # By other axes no turn is used, though it may be whole.
@@ -45,11 +45,11 @@ class IncompleteTurn(AgainstPlan):
                 }
             yield self.of(recorded, i, missing if np.isfinite(missing) else None, **place)
 
-    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at
         assert i is not None  # it is a turn that is not complete
         bridged = bool(recorded.bridged[i])
-        return Words(
+        return Description(
             f"{recorded.name[i]}: {recorded.said[i]}",
             _if_taken(recorded, i),
             "The joint estimate bridges what is missing; every formula that needs the whole angle"

@@ -5,14 +5,14 @@ from collections.abc import Iterator
 import numpy as np
 
 from inertial.signal.axis_permutations import AXES
-from inertial.signal.detector import Array, Words
-from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
+from inertial.signal.detector import Array, Description
+from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.text.numbers import fixed
 
 SAME = float(np.cos(np.radians(25)))  # directions that are the same
 
 
-class ManoeuvreMissing(AgainstPlan):
+class ManoeuvreMissing(PlanDetector):
     """A planned rest or turn of which the log has nothing, and nothing explains why."""
 
     name = "manoeuvre_missing"
@@ -20,15 +20,15 @@ class ManoeuvreMissing(AgainstPlan):
     source = "S0: a log that was not written whole"
     costs = "what it alone would determine"
 
-    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         for i, name in enumerate(recorded.name):
             if not recorded.found[i] and name not in recorded.explained:
                 yield self.of(recorded, i, None, sensor=None)
 
-    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at
         assert i is not None  # it is a manoeuvre that is missing
-        return Words(
+        return Description(
             recorded.said[i] + _instead(recorded, i),
             f"It is left out; the others are used. {_left(recorded, i)}",
             "Correct the plan, or record it.",

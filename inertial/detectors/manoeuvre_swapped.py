@@ -4,11 +4,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Words
-from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded, Swapped
+from inertial.signal.detector import Description
+from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded, Swapped
 
 
-class ManoeuvreSwapped(AgainstPlan):
+class ManoeuvreSwapped(PlanDetector):
     """Two logs under each other's names, or two manoeuvres of a log in each other's place.
 
     Each fits where the plan has the other, and not where the plan has it.
@@ -20,12 +20,12 @@ class ManoeuvreSwapped(AgainstPlan):
     costs = "the sign of a bias or scale factor, were they used"
     unit = "manoeuvres"
 
-    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         for one in recorded.swapped:
             i = list(recorded.name).index(one.names[0])
             yield self.of(recorded, i, float(len(one.names)), facts=one)
 
-    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         one: Swapped = deviation.facts
         half = len(one.names) // 2
         first, second = ", ".join(one.names[:half]), ", ".join(one.names[half:])
@@ -37,7 +37,7 @@ class ManoeuvreSwapped(AgainstPlan):
         else:
             sentence = f"In {one.logs[0]}, {first} and {second} stand in each other's place."
         own = [i for i, name in enumerate(recorded.name) if name in one.names]
-        return Words(
+        return Description(
             sentence + (_or_a_sign(recorded, own) if len(one.logs) == 2 else ""),
             _if_used(recorded, own),
             "Both are left out, for only the laboratory knows which is which. Correct the names, or"

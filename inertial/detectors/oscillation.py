@@ -5,7 +5,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.signal.detector import UNITS, Array, Detector, Event, Log, Piece, Words, channel_name
+from inertial.signal.detector import (
+    UNITS,
+    Array,
+    Description,
+    Detector,
+    Event,
+    Log,
+    Piece,
+    channel_name,
+)
 from inertial.signal.tones import Tone, tones
 from inertial.text.numbers import significant
 
@@ -50,7 +59,7 @@ class Oscillation(Detector):
     severity = 1
     everywhere = True
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         turning = _turning(piece, log)
         found = sorted(tones(piece, log), key=lambda tone: -tone.clear)
         for tone, besides in sorted(_apart(found), key=lambda one: one[0].start):
@@ -74,7 +83,7 @@ class Oscillation(Detector):
                 ),
             )
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         ringing: Ringing = event.facts
         tone = ringing.tone
         unit, rate = UNITS[tone.channel], tone.rate
@@ -82,7 +91,7 @@ class Oscillation(Detector):
             f"{channel_name(i)} by {significant(size, 2)} {UNITS[i]}" for i, size in tone.others
         )
         besides = " and ".join(f"{one:.2f} Hz" for one in ringing.besides)
-        return Words(
+        return Description(
             f"{name}: {channel_name(tone.channel)} oscillates at {tone.frequency:.2f} Hz by"
             f" {significant(event.size, 2)} {unit}, from {event.from_s:.2f} s to"
             f" {event.to_s:.2f} s{_when(ringing)}."

@@ -5,7 +5,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from inertial.signal.detector import CHANNELS, UNITS, Array, Detector, Event, Log, Piece, Words
+from inertial.signal.detector import (
+    CHANNELS,
+    UNITS,
+    Array,
+    Description,
+    Detector,
+    Event,
+    Log,
+    Piece,
+)
 from inertial.signal.roughness import BLOCK, in_blocks, roughness, smallest_step
 from inertial.text.numbers import significant
 
@@ -56,7 +65,7 @@ class Quantisation(Detector):
     severity = 1
     everywhere = True
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         told: dict[tuple[str, float], list[Event]] = {}
         for i in range(6):
             event = _of_channel(piece, log, i)
@@ -65,7 +74,7 @@ class Quantisation(Detector):
         for events in told.values():
             yield _together(events)
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         assert event.channel is not None
         facts, unit = event.facts, UNITS[event.channel]
         sensor = "accelerometer" if event.channel < 3 else "gyro"
@@ -88,7 +97,7 @@ class Quantisation(Detector):
                 f" off by {significant(off, 2)} {unit}: so uncertain is the bias, whatever its"
                 " sigma says."
             )
-        return Words(
+        return Description(
             f"{name}: the steps of {sensor} {', '.join(facts.axes)} are {step} {unit}{of_stated}.",
             consequence,
             "Nothing is changed. "

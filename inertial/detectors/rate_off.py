@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Detector, Event, Log, Words
+from inertial.signal.detector import Description, Detector, Event, Log
 from inertial.signal.stamps import MAX_RATE_ERROR
 from inertial.text.numbers import significant
 
@@ -22,15 +22,15 @@ class RateOff(Detector):
     severity = 1
     everywhere = True
 
-    def concludes(self, log: Log) -> Iterator[Event]:
+    def detect_in_log(self, log: Log) -> Iterator[Event]:
         factor = log.given.interval / log.step
         if np.isfinite(factor) and abs(factor - 1) > MAX_RATE_ERROR:
             facts = (1 / log.step, 1 / log.given.interval, log.given.instrument)
             yield log.event(factor, facts=facts)
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         rate, stated, instrument = event.facts
-        return Words(
+        return Description(
             f"{name}: {significant(rate)} samples per second by the stamps, but"
             f" {significant(stated)} are stated: {_factor(event.size)}.",
             "None where the stamps are right: sums over time, and rates of increments, are made"

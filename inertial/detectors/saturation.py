@@ -9,12 +9,12 @@ from scipy.special import bdtrc
 from inertial.signal.detector import (
     UNITS,
     Array,
+    Description,
     Detector,
     Event,
     Integers,
     Log,
     Piece,
-    Words,
     channel_name,
 )
 from inertial.signal.roughness import SCATTER
@@ -175,7 +175,7 @@ class Saturation(Detector):
     severity = 3
     masks = True
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         for i in range(6):
             places, values = piece.channel(i)
             clipped = np.zeros(len(values), bool)
@@ -200,12 +200,12 @@ class Saturation(Detector):
                     ),
                 )
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         assert event.channel is not None
         visit, many = event.facts, event.size > 1
         what, unit = ("velocity", "m/s") if event.channel < 3 else ("angle", "rad")
         percent = abs(visit.limit) * visit.seconds / 100
-        return Words(
+        return Description(
             f"{name}: {counted(round(event.size), 'reading')} of {channel_name(event.channel)}"
             f" {'stand' if many else 'stands'} at {significant(visit.limit, 6)}"
             f" {UNITS[event.channel]}, the end of the range, from line {event.line} on.",

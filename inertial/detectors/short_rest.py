@@ -4,14 +4,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Words
-from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
+from inertial.signal.detector import Description
+from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.text.numbers import fixed, significant
 
 SHORT = 1 / 3  # of the planned time
 
 
-class ShortRest(AgainstPlan):
+class ShortRest(PlanDetector):
     """A rest that lasts less than a third of what was planned."""
 
     name = "short_rest"
@@ -20,18 +20,18 @@ class ShortRest(AgainstPlan):
     costs = "the sigma of its mean"
     unit = "s"
 
-    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         for i, what in enumerate(recorded.do):
             short = recorded.duration[i] < SHORT * recorded.seconds[i]
             if what == "rest" and recorded.found[i] and recorded.duration[i] > 0 and short:
                 yield self.of(recorded, i, float(recorded.duration[i]))
 
-    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at
         assert i is not None and deviation.size is not None
         planned = float(recorded.seconds[i])
         times = significant(float(np.sqrt(planned / deviation.size)), 2)
-        return Words(
+        return Description(
             f"{recorded.name[i]} rests for {significant(deviation.size, 3)} s of the"
             f" {fixed(planned, 0)} s planned.",
             f"What white noise leaves in its mean is {times} times what was planned.",

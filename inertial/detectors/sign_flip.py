@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from inertial.signal.axis_permutations import exchange_words, exchanges_of
-from inertial.signal.detector import Detector, Event, Log, Piece, Words
+from inertial.signal.detector import Description, Detector, Event, Log, Piece
 
 
 class SignFlip(Detector):
@@ -23,12 +23,12 @@ class SignFlip(Detector):
     masks = True
     sensor = "accel"
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         for one in exchanges_of(piece, log, self.sensor):
             if one.permutation.in_place:
                 yield one.event(piece, log)
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         return exchange_words(event, name, self.sensor)
 
 

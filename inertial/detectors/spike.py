@@ -10,12 +10,12 @@ from inertial.signal.detector import (
     UNITS,
     Array,
     Booleans,
+    Description,
     Detector,
     Event,
     Integers,
     Log,
     Piece,
-    Words,
     channel_name,
 )
 from inertial.signal.outliers import LOUD, WIDEST, Channel
@@ -62,7 +62,7 @@ class Spikes(Detector):
     severity = 1
     masks = True
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         if not np.isfinite(log.interval):
             return  # nothing tells that one reading follows the other
         counts = np.fmax(np.nan_to_num(log.quantum), np.nan_to_num(log.count))
@@ -91,12 +91,12 @@ class Spikes(Detector):
                         facts=Spike(end - start, 1 / log.interval, len(channel.places)),
                     )
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         assert event.channel is not None
         unit, facts = UNITS[event.channel], event.facts
         many = facts.readings > 1
         moves = event.size * facts.readings
-        return Words(
+        return Description(
             f"{name}: {counted(facts.readings, 'reading')} of {channel_name(event.channel)}"
             f" {'are' if many else 'is'} off the neighbours by {_signed(event.size)} {unit},"
             f" at line {event.line}.",

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Detector, Event, Log, Piece, Words
+from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.runs import runs
 from inertial.text.numbers import counted, fixed
 
@@ -19,7 +19,7 @@ class StatusInvalid(Detector):
     unit = "records"
     masks = True
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         there = np.isfinite(piece.status)
         bits = np.where(there, piece.status, 0).astype(np.int64)
         lacks = ~bits & log.given.must_be_set
@@ -28,13 +28,13 @@ class StatusInvalid(Detector):
             facts = (int(bits[start]), int(lacks[start]), int(has[start]))
             yield piece.event(start, end, float(end - start), facts=facts)
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         status, lacks, has = event.facts
         one = event.size == 1
         at = f", {fixed(event.from_s, 3)} s," if np.isfinite(event.from_s) else ""
         why = [f"{_bits(lacks)} {'is' if lacks.bit_count() == 1 else 'are'} not set"] * bool(lacks)
         why += [f"{_bits(has)} {'is' if has.bit_count() == 1 else 'are'} set"] * bool(has)
-        return Words(
+        return Description(
             f"{name}: the instrument marks {counted(int(event.size), 'record')} from line"
             f" {event.line}{at} as invalid: status {status:08x}, {' and '.join(why)}.",
             "Their readings are not to be trusted, by up to the full range of the sensor.",

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import stdtr
 
-from inertial.signal.detector import SENSORS, Array, Detector, Event, Log, Piece, Words
+from inertial.signal.detector import SENSORS, Array, Description, Detector, Event, Log, Piece
 from inertial.signal.level_jumps import CHANCE, RESTS, Jump, jumps, shaken
 from inertial.signal.static_tilt import SCATTER, UNTOLD, Agreement, Resting
 from inertial.signal.steps import SIDE
@@ -76,7 +76,7 @@ class TableMoving(Detector):
     unit = "″"
     severity = 2
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         resting, own = jumps(piece, log)
         if not np.isfinite(log.interval):
             return
@@ -95,20 +95,20 @@ class TableMoving(Detector):
                 severity=1 if motion.kind == "knock" else None,
             )
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         moved: Moved = event.facts
         motion = moved.motion
         size = f"{significant(event.size, 3)}″"
         span = f"between {fixed(event.from_s, 2)} s and {fixed(event.to_s, 2)} s"
         if motion.kind == "knock":
-            return Words(
+            return Description(
                 f"{name}: the IMU is knocked {span}; it swings by {size} and stands again.",
                 "The mean of this rest hardly changes; its noise does.",
                 "The rest is used as it is. Keep off the table while it records.",
             )
         seen = (
             f"the gyros turn along ({motion.agreement.share:.0%} of it)"
-            if motion.agreement.tells
+            if motion.agreement.conclusive
             else "too slowly for the gyros to tell, and more than the biases of the accelerometers"
             " do by themselves"
         )
@@ -116,7 +116,7 @@ class TableMoving(Detector):
         off = motion.off / ARC_SECOND
         times = f", {significant(motion.off / moved.position, 2)} times the stated uncertainty of a"
         times = times + " position" if moved.position > 0 else ""
-        return Words(
+        return Description(
             f"{name}: the table {kind} by {size} {span}, while it should rest: the direction of"
             f" gravity turns in the case, {seen}.",
             f"The mean attitude of this rest is off by {significant(off, 3)}″{times}: its level"
@@ -194,13 +194,13 @@ def _creep(resting: Resting, own: list[Jump], position: float) -> Iterator[Motio
     _, _, drift = _farthest(upright[:, None])
     least = max(position, UPRIGHT * (drift - 5 * float(scatter[3])))
     agreement = _turned(resting, own, tilt, length)
-    if not agreement.tells:
+    if not agreement.conclusive:
         second = sigma * np.sqrt(length * resting.interval)
         least = max(least, STABLE, STABLE_IN_NOISE * second)
     elif not agreement.moved:
         return
     if size > least:
-        if not agreement.tells and _even(tilt, sigma):
+        if not agreement.conclusive and _even(tilt, sigma):
             first, after = 0, len(resting)
             slope = np.polynomial.polynomial.polyfit(np.arange(k) / k, tilt, 1)[1]
             size = float(np.linalg.norm(slope))

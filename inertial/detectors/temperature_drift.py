@@ -6,7 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import median_filter
 
-from inertial.signal.detector import CHANNELS, Array, Booleans, Detector, Event, Log, Windows, Words
+from inertial.signal.detector import (
+    CHANNELS,
+    Array,
+    Booleans,
+    Description,
+    Detector,
+    Event,
+    Log,
+    Windows,
+)
 from inertial.text.numbers import significant
 from inertial.text.units import DEGREE, STANDARD_GRAVITY
 
@@ -52,7 +61,7 @@ class TemperatureDrift(Detector):
     unit = "K"
     everywhere = True
 
-    def concludes(self, log: Log) -> Iterator[Event]:
+    def detect_in_log(self, log: Log) -> Iterator[Event]:
         temperature = log.windows.temperature
         lowest, highest = _range(temperature)
         if highest - lowest > ALLOWED:
@@ -60,7 +69,7 @@ class TemperatureDrift(Detector):
             facts = _Facts(lowest, highest, warms, _changes(log.windows))
             yield log.event(highest - lowest, facts=facts)
 
-    def compares(self, logs: Mapping[str, Log]) -> Iterator[Event]:
+    def detect_between_logs(self, logs: Mapping[str, Log]) -> Iterator[Event]:
         ranges = [_range(log.windows.temperature) for log in logs.values()]
         ranges = [own for own in ranges if np.isfinite(own[0])]
         if len(ranges) < 2:
@@ -71,7 +80,7 @@ class TemperatureDrift(Detector):
             facts = _Facts(lowest, highest, True, {}, len(ranges))
             yield Event(0, 0, 0, np.nan, np.nan, highest - lowest, facts=facts)
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         facts, kelvin = event.facts, event.size
         low, high = (f"{_celsius(value)} °C" for value in (facts.lowest, facts.highest))
         size = f"{significant(kelvin, 3)} K"
@@ -92,7 +101,7 @@ class TemperatureDrift(Detector):
         rates = " to ".join(significant(each * kelvin / DEGREE, 2) for each in rate)
         tactical = significant(TACTICAL[0] * kelvin, 2)
         slow = significant(TACTICAL[1] * kelvin / DEGREE * 3600, 2)
-        return Words(
+        return Description(
             f"{sentence}{seen}",
             "Biases and scale factors hold for the mean temperature. Over so much those of a"
             f" consumer MEMS typically move by {forces} m/s², {rates} °/s and"

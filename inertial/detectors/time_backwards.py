@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from inertial.signal.detector import Detector, Event, Log, Piece, Words
+from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.stamps import disorders
 from inertial.text.numbers import counted, fixed
 
@@ -33,7 +33,7 @@ class TimeBackwards(Detector):
     costs = "when these records were taken is not known"
     unit = "s"
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         # Nothing is left of a record that repeats an earlier one.
         replayed = np.asarray(np.isnan(piece.values).all(axis=1))
         for one in disorders(piece.time, piece.reached, log.interval):
@@ -45,7 +45,7 @@ class TimeBackwards(Detector):
             # Where it begins in an earlier piece this is its continuation.
             yield event if step == 0 else replace(event, from_s=stamp, to_s=stamp)
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         facts, records = event.facts, counted(event.after - event.first, "record")
         if facts.ahead:
             sentence = (
@@ -58,13 +58,13 @@ class TimeBackwards(Detector):
                 f" {fixed(facts.before, 3)} s to {fixed(event.from_s, 3)} s; {records} lie behind."
             )
         if facts.replayed == 1:
-            return Words(
+            return Description(
                 f"{sentence} They repeat earlier ones.",
                 "None beyond that of the repetition.",
                 "The repetition is masked. Look for logs that were joined.",
             )
         masked = "What repeats earlier ones is masked" if facts.replayed else "Nothing is masked"
-        return Words(
+        return Description(
             sentence,
             "Means and sums do not use the stamps and stand. When these records were taken is"
             f" unknown by {event.size:.3g} s: so is what depends on it, a drift of a bias and the"

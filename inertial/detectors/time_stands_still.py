@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Detector, Event, Log, Piece, Words
+from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.runs import runs
 from inertial.signal.stamps import kinds
 from inertial.text.numbers import counted, fixed
@@ -20,17 +20,17 @@ class TimeStandsStill(Detector):
     unit = "records"
     masks = True
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         still = np.zeros(len(piece), bool)
         for places, _ in kinds(piece):
             still[places[1:]] = np.diff(piece.time[places]) == 0
         for start, end in runs(still):
             yield piece.event(start, end, float(end - start), facts=log.interval)
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         one = event.size == 1
         time = event.size * event.facts
-        return Words(
+        return Description(
             f"{name}: {counted(int(event.size), 'record')} from line {event.line}"
             f" {'has' if one else 'have'} the stamp of the one before,"
             f" {fixed(event.from_s, 3)} s, but other readings.",

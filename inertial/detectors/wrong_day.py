@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from datetime import date
 
-from inertial.signal.detector import Detector, Event, Log, Words
+from inertial.signal.detector import Description, Detector, Event, Log
 from inertial.text.numbers import counted
 
 ZONES = 1  # day: between UTC and the laboratory's own time
@@ -20,7 +20,7 @@ class WrongDay(Detector):
     unit = "days"
     everywhere = True
 
-    def concludes(self, log: Log) -> Iterator[Event]:
+    def detect_in_log(self, log: Log) -> Iterator[Event]:
         recorded, stated = _day(log.recorded_on), _day(log.given.date)
         if recorded is None or stated is None:
             return
@@ -28,7 +28,7 @@ class WrongDay(Detector):
         if abs(apart) > ZONES:
             yield log.event(float(abs(apart)), facts=(recorded, stated))
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         recorded, stated = event.facts
         days = counted(int(event.size), "day")
         when = "before" if recorded < stated else "after"
@@ -37,7 +37,7 @@ class WrongDay(Detector):
             why = " That is 1024 weeks, after which receivers count from 0 again."
         elif event.size == 10:
             why = " One wrong digit would make that."
-        return Words(
+        return Description(
             f"{name}: its stamps say {recorded.isoformat()} (UTC), {days} {when} the stated"
             f" {stated.isoformat()}.{why}",
             "If the log is of another session, its biases are those of another switch-on; if the"

@@ -4,12 +4,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Words
-from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
+from inertial.signal.detector import Description
+from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.text.numbers import fixed
 
 
-class WrongDirection(AgainstPlan):
+class WrongDirection(PlanDetector):
     """A turn whose gyro says that it went against the planned direction."""
 
     name = "wrong_direction"
@@ -19,13 +19,13 @@ class WrongDirection(AgainstPlan):
     severity = 3
     sensor = "gyro"
 
-    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         for i, name in enumerate(recorded.name):
             ratio = ratio_of(recorded, i)
             if recorded.found[i] and ratio < 0 and name not in recorded.explained:
                 yield self.of(recorded, i, ratio)
 
-    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at
         assert i is not None and deviation.size is not None
         name, turned, wanted = recorded.name[i], recorded.moved[i], recorded.angle[i]
@@ -33,7 +33,7 @@ class WrongDirection(AgainstPlan):
         if not np.isfinite(turned * wanted):
             turned, wanted, unit = recorded.speed[i], recorded.rate[i], " °/s"
         far = [fixed(float(np.degrees(turned)), 2), fixed(float(np.degrees(wanted)), 0)]
-        return Words(
+        return Description(
             f"{name} turns against the planned direction: by {far[0]}{unit} in place of"
             f" {far[1]}{unit}.",
             f"Taken as planned, its scale error would be {fixed((deviation.size - 1) * 100, 0)} %;"

@@ -6,7 +6,7 @@ from math import radians
 
 import numpy as np
 
-from inertial.signal.detector import Detector, Event, Log, Words
+from inertial.signal.detector import Description, Detector, Event, Log
 from inertial.text.numbers import significant
 
 # ---- The types of IMU by the number that NovAtel's messages tell, and what a count of theirs is.
@@ -86,7 +86,7 @@ class WrongImuType(Detector):
     severity = 3
     everywhere = True
 
-    def concludes(self, log: Log) -> Iterator[Event]:
+    def detect_in_log(self, log: Log) -> Iterator[Event]:
         if len(log.imu) > 1:
             yield log.event(float(len(log.imu)), facts=None)
             return
@@ -100,16 +100,16 @@ class WrongImuType(Detector):
             if off.any():
                 yield log.event(float(ratios[off][0]), facts=(number, ratios))
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         if event.facts is None:
-            return Words(
+            return Description(
                 f"{name}: its messages tell {round(event.size)} types of IMU.",
                 "At most one of them is this instrument; the counts of the others are of another"
                 " size.",
                 "The log is used as one. Record each IMU in a log of its own.",
             )
         number, (gyro, force) = event.facts
-        return Words(
+        return Description(
             f"{name}: its messages tell IMU type {number}, {IMU_TYPES[number].name}; a count of"
             f" this campaign's instrument is {significant(float(gyro), 5)} times that type's in the"
             f" gyros and {significant(float(force), 5)} times in the accelerometers.",

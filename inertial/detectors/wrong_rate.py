@@ -4,13 +4,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Words
-from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
+from inertial.signal.detector import Description
+from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.signal.scale_factor import common_turn_ratio, turn_ratios
 from inertial.text.numbers import fixed, significant
 
 
-class WrongRate(AgainstPlan):
+class WrongRate(PlanDetector):
     """A turn whose rate is not the planned one, where no ratio explains all of them."""
 
     name = "wrong_rate"
@@ -19,7 +19,7 @@ class WrongRate(AgainstPlan):
     costs = "a scale factor, where the rate is the reference"
     sensor = "gyro"
 
-    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         if common_turn_ratio(recorded) is not None:
             return
         rate, angle = turn_ratios(recorded)
@@ -28,7 +28,7 @@ class WrongRate(AgainstPlan):
                 as_planned = abs(angle[i] - 1) <= recorded.tolerance
                 yield self.of(recorded, i, float(ratio), severity=1 if as_planned else 3)
 
-    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i, ratio = deviation.at, deviation.size
         assert i is not None and ratio is not None
         read, wanted = np.degrees([recorded.speed[i], recorded.rate[i]]).tolist()
@@ -47,7 +47,7 @@ class WrongRate(AgainstPlan):
             consequence = (
                 f"Taken as planned, its scale error would be {fixed((ratio - 1) * 100, 1)} %."
             )
-        return Words(
+        return Description(
             f"{recorded.name[i]} turns at {significant(read)} °/s, {significant(ratio, 5)} times"
             f" the planned {significant(wanted)} °/s; the other turns are not off by this ratio.",
             consequence,

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Detector, Event, Log, Words
+from inertial.signal.detector import Description, Detector, Event, Log
 from inertial.signal.scale_factor import MAX_SCALE_ERROR, explanation_of, force_at_rest
 from inertial.text.numbers import significant
 
@@ -22,7 +22,7 @@ class WrongScaleFactor(Detector):
     sensor = "accel"
     severity = 3
 
-    def concludes(self, log: Log) -> Iterator[Event]:
+    def detect_in_log(self, log: Log) -> Iterator[Event]:
         force = force_at_rest(log)
         ratio = force / log.given.gravity
         if np.isfinite(ratio) and abs(ratio - 1) > MAX_SCALE_ERROR["accel"]:
@@ -32,9 +32,9 @@ class WrongScaleFactor(Detector):
             cause = explanation_of(ratio, "accel", log.given, count) or UNKNOWN_CAUSE
             yield log.event(ratio, facts=(force, cause))
 
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         force, cause = event.facts
-        return Words(
+        return Description(
             f"{name}: at rest the specific force is {significant(force)} m/s²,"
             f" {significant(event.size)} times gravity: {cause}.",
             f"Bias, scale factors and cross-axis terms of the accelerometers are"

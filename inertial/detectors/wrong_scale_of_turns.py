@@ -4,13 +4,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Words
-from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
+from inertial.signal.detector import Description
+from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.signal.scale_factor import common_turn_ratio, turn_ratios
 from inertial.text.numbers import counted, fixed, significant
 
 
-class WrongScaleOfTurns(AgainstPlan):
+class WrongScaleOfTurns(PlanDetector):
     """All turns are off by one ratio, in rate and in angle."""
 
     name = "wrong_scale_factor"
@@ -20,7 +20,7 @@ class WrongScaleOfTurns(AgainstPlan):
     severity = 3
     sensor = "gyro"
 
-    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         common = common_turn_ratio(recorded)
         if common is not None:
             ratio, why = common
@@ -28,7 +28,7 @@ class WrongScaleOfTurns(AgainstPlan):
             number = int(np.isfinite(rate).sum())
             yield Deviation(None, "", ratio, self.sensor, count=number, facts=why)
 
-    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         ratio, why = deviation.size, deviation.facts
         assert ratio is not None
         rate, angle = turn_ratios(recorded)
@@ -39,7 +39,7 @@ class WrongScaleOfTurns(AgainstPlan):
             far = f" and by {fixed(float(np.degrees(recorded.moved[i])), 3)}°"
         turns = "The turn" if deviation.count == 1 else f"All {deviation.count} turns"
         verb = "is" if deviation.count == 1 else "are"
-        return Words(
+        return Description(
             f"{turns} {verb} {significant(ratio, 5)} times as fast and as far as planned"
             f" ({recorded.name[i]}: {read} °/s{far} in place of"
             f" {fixed(float(np.degrees(recorded.rate[i])), 0)} °/s): {why}.",

@@ -7,7 +7,7 @@ from itertools import permutations, product
 import numpy as np
 
 from inertial.physics.vectors import cross
-from inertial.signal.detector import SENSORS, Array, Event, Integers, Log, Piece, Words
+from inertial.signal.detector import SENSORS, Array, Description, Event, Integers, Log, Piece
 from inertial.signal.roughness import SCATTER
 from inertial.text.numbers import significant, whole
 
@@ -100,13 +100,13 @@ class Exchange:
         return replace(event, after=log.records, to_s=float(log.windows.time[-1]), size=number)
 
 
-def exchange_words(event: Event, name: str, sensor: str) -> Words:
+def exchange_words(event: Event, name: str, sensor: str) -> Description:
     """An exchange in words."""
     one: Exchange = event.facts
     unit, what = ("m/s²", "accelerometer") if sensor == "accel" else ("rad/s", "gyro")
     other = f" So do those of the gyros: {one.with_it.told}." if one.with_it else ""
     worst = int(np.argmax(np.abs(one.after - one.before)))
-    return Words(
+    return Description(
         f"{name}: from line {event.line} on, {'to the end, ' if one.lasting else ''}for"
         f" {whole(event.size)} records, the axes of the {what}s are others than in the records"
         f" before: {one.permutation.told}.{other} No motion does that from one record to the next.",

@@ -69,6 +69,11 @@ class Windows:
     time: Array
     temperature: Array
 
+    @classmethod
+    def none(cls) -> Self:
+        """No windows at all."""
+        return cls(np.empty((0, 6)), np.empty((0, 6)), np.empty(0), np.empty(0))
+
 
 @dataclass(frozen=True, eq=False)
 class Log:
@@ -183,7 +188,7 @@ class Event:
 
 
 @dataclass(frozen=True)
-class Words:
+class Description:
     """A finding for a person: what is wrong, what it does to which parameter, what to do."""
 
     sentence: str
@@ -211,22 +216,22 @@ class Detector(ABC):
     repeats: ClassVar[bool] = False
     everywhere: ClassVar[bool] = False
 
-    def finds(self, piece: Piece, log: Log) -> Iterator[Event]:
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         """What it sees in a piece of a log, in the order of the records."""
         yield from ()
 
-    def concludes(self, log: Log) -> Iterator[Event]:
+    def detect_in_log(self, log: Log) -> Iterator[Event]:
         """What it sees in a log as a whole."""
         yield from ()
 
-    def judges(self, given: Given) -> Iterator[Event]:
+    def detect_in_campaign(self, given: Given) -> Iterator[Event]:
         """What it sees in what the campaign says of itself."""
         yield from ()
 
-    def compares(self, logs: Mapping[str, Log]) -> Iterator[Event]:
+    def detect_between_logs(self, logs: Mapping[str, Log]) -> Iterator[Event]:
         """What it sees when the logs of the campaign, by name, lie side by side."""
         yield from ()
 
     @abstractmethod
-    def tells(self, event: Event, name: str) -> Words:
+    def describe(self, event: Event, name: str) -> Description:
         """One event in words; `name` is that of the log or rest, empty for the campaign."""

@@ -74,7 +74,7 @@ def _judged(i: int, step: Step, found: list[tuple[int, Step]], resting: Resting)
         agreement = resting.speeded(start, step.place, stop)
         return Jump(i, step, agreement, agreement.moved)
     _, agreement = resting.shifted(start, step.earliest, step.latest, stop)
-    if agreement.tells:
+    if agreement.conclusive:
         return Jump(i, step, agreement, agreement.moved)
     # Without a gyro that tells it: a jump of one axis is a bias, of both level axes a tilt.
     others = [one for j, one in found if j < 3 and j != i and abs(one.place - step.place) <= 2]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from inertial.signal.axis_permutations import AXES, Permutation
-from inertial.signal.detector import Words
+from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, Misread, Recorded
 from inertial.text.numbers import counted, significant
 
@@ -31,7 +31,7 @@ def deviation(one: Misread, recorded: Recorded) -> Deviation:
     )
 
 
-def misread_words(one: Misread, recorded: Recorded) -> Words:
+def misread_words(one: Misread, recorded: Recorded) -> Description:
     """A misread sensor in words."""
     sensor = SENSOR[one.sensor]
     where = f"in {one.log}" if one.log else "in all logs"
@@ -62,7 +62,7 @@ def misread_words(one: Misread, recorded: Recorded) -> Words:
             f" {'m/s²' if one.sensor == 'accel' else '°'}, for the other logs are not so."
         )
         action = "It is left out. See how this log was written, and correct it."
-    return Words(sentence, consequence, action)
+    return Description(sentence, consequence, action)
 
 
 def determinant(axes: Permutation) -> int:

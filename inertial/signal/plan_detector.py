@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from inertial.signal.axis_permutations import Permutation
-from inertial.signal.detector import Array, Booleans, Given, Integers, Words
+from inertial.signal.detector import Array, Booleans, Description, Given, Integers
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ class Deviation:
     severity: int | None = None
 
 
-class AgainstPlan(ABC):
+class PlanDetector(ABC):
     """One way in which a recording and its plan disagree; `severity` and `unit` as of a Detector.
 
     A class tells its name, its cause, its source, and what it costs.
@@ -139,11 +139,11 @@ class AgainstPlan(ABC):
     everywhere: ClassVar[bool] = False
 
     @abstractmethod
-    def finds(self, recorded: Recorded) -> Iterator[Deviation]:
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         """What it sees, in the order of the plan."""
 
     @abstractmethod
-    def tells(self, deviation: Deviation, recorded: Recorded) -> Words:
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         """It in words."""
 
     def of(self, recorded: Recorded, i: int, size: float | None, **more: Any) -> Deviation:

@@ -24,14 +24,14 @@ class Agreement:
     sigma: float
 
     @property
-    def tells(self) -> bool:
+    def conclusive(self) -> bool:
         """Whether the other sensor is good enough to tell."""
         return self.sigma < TELLING
 
     @property
     def moved(self) -> bool:
         """Whether both say that the IMU moved."""
-        return self.tells and 0.5 < self.share < 1.5
+        return self.conclusive and 0.5 < self.share < 1.5
 
 
 UNTOLD = Agreement(0.0, np.inf)

@@ -133,6 +133,18 @@ class Stream:
         """The same, of some columns only."""
         return self._batches(names)
 
+    def rows(self, first: int, after: int, names: list[str]) -> Iterator[pa.RecordBatch]:
+        """Some columns of the rows [first, after); only the row groups that hold them are read."""
+        with _readable(self.path), pq.ParquetFile(self.path, pre_buffer=False) as file:
+            end = 0
+            for group in range(file.num_row_groups):
+                start, end = end, end + file.metadata.row_group(group).num_rows
+                if start < after and first < end:
+                    part = file.read_row_group(group, columns=names)
+                    begin = max(first - start, 0)
+                    wanted = part.slice(begin, min(after, end) - start - begin)
+                    yield from wanted.combine_chunks().to_batches()
+
     def _batches(self, names: list[str] | None) -> Iterator[pa.RecordBatch]:
         # A buffer beforehand would hold all that is read, up to the end.
         with _readable(self.path), pq.ParquetFile(self.path, pre_buffer=False) as file:

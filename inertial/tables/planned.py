@@ -1,6 +1,6 @@
 """The plan: campaign, what is known, manoeuvres, what others published."""
 
-from inertial.tables.shared import BODY, LOG, vector
+from inertial.tables.shared import AS_CHANNEL, AXIS, BODY, LOG, SENSOR, vector
 from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
 
 CAMPAIGN = Table(
@@ -59,13 +59,14 @@ LOGS = Table(
 )
 RANGES = Table(
     "ranges",
-    1,
+    2,
     (
         LOG,
-        Column("channel", TEXT, "", "one of the six channels"),
-        Column("count", DOUBLE, "as the channel", "what one count is, if stated", nullable=True),
+        SENSOR,
+        AXIS,
+        Column("count", DOUBLE, AS_CHANNEL, "what one count is, if stated", nullable=True),
         Column("increments", TRUTH, "", "a count is an increment: its unit is times s"),
-        Column("limit", DOUBLE, "as the channel", "how far it reaches, if stated", nullable=True),
+        Column("limit", DOUBLE, AS_CHANNEL, "largest input, if stated", nullable=True),
     ),
 )
 COUNT_SIZES = Table(

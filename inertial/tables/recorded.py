@@ -1,6 +1,6 @@
 """What was recorded: samples, clocks, findings, masks, segments, blocks."""
 
-from inertial.tables.shared import BODY, LOG, PHASES, RECORDS, channels
+from inertial.tables.shared import AS_CHANNEL, AXIS, BODY, LOG, PHASES, RECORDS, SENSOR, channels
 from inertial.tables.table import DOUBLE, INTEGER, LABEL, TEXT, TRUTH, WORD, Column, Table
 
 # ---- Samples, the account of every byte, and the clocks.
@@ -53,7 +53,7 @@ ACCOUNTS = Table(
 )
 CLOCKS = Table(
     "clocks",
-    2,
+    3,
     (
         LOG,
         Column(
@@ -64,15 +64,37 @@ CLOCKS = Table(
         Column("from_s", DOUBLE, "s", "time of the first sample", nullable=True),
         Column("to_s", DOUBLE, "s", "time of the last sample", nullable=True),
         Column("records", INTEGER, "1", "number of decoded records"),
+        Column("to_record", INTEGER, "1", "number after that of the last decoded record, else 0"),
         Column("interval", DOUBLE, "s", "median sample interval", nullable=True),
         Column("step", DOUBLE, "s", "what a sample counts for in a sum over time", nullable=True),
+    ),
+)
+IMU_TYPES = Table(
+    "imu_types",
+    1,
+    (
+        LOG,
+        Column("imu_type", INTEGER, "", "a type of IMU in its messages, by NovAtel's list"),
+    ),
+)
+CHANNEL_STATISTICS = Table(
+    "channel_statistics",
+    1,
+    (
+        LOG,
+        SENSOR,
+        AXIS,
+        Column("resolution", DOUBLE, AS_CHANNEL, "smallest step of its readings", nullable=True),
         Column(
-            "imu_types",
-            TEXT,
-            "",
-            "types of IMU that its messages tell, by NovAtel's list",
+            "noise",
+            DOUBLE,
+            AS_CHANNEL,
+            "scatter of a reading about its neighbours, 1.4826/√2 × median of the absolute steps",
             nullable=True,
         ),
+        Column("unchanged_share", DOUBLE, "1", "share of readings equal to the one before"),
+        Column("smallest", DOUBLE, AS_CHANNEL, "smallest reading", BODY, nullable=True),
+        Column("largest", DOUBLE, AS_CHANNEL, "largest reading", BODY, nullable=True),
     ),
 )
 

@@ -42,3 +42,6 @@ RECORDS = (
     Column("from_record", INTEGER, "1", "first record"),
     Column("to_record", INTEGER, "1", "record after the last"),
 )
+SENSOR = Column("sensor", TEXT, "", "accel or gyro")
+AXIS = Column("axis", TEXT, "", "x, y or z, of the body")
+AS_CHANNEL = "m/s² of accel, rad/s of gyro"

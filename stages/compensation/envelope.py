@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 
 from inertial import tables
-from inertial.campaign.sums import sums_over
+from inertial.campaign.sums import extremes_over
 from stages.compensation.compensated_samples import CompensatedStream
 
 
@@ -20,6 +20,6 @@ def envelope(samples: CompensatedStream, traces: pd.DataFrame) -> pd.DataFrame:
             **{f"least_{c}": total.least[:, i] for i, c in enumerate(tables.CHANNELS)},
             **{f"most_{c}": total.most[:, i] for i, c in enumerate(tables.CHANNELS)},
         )
-        for log, total in sums_over(samples, edges).items()
+        for log, total in extremes_over(samples, edges).items()
     ]
     return pd.concat(frames) if frames else tables.TRACES.empty()

@@ -12,6 +12,7 @@ DECLARED = Declared(
         "refused": tables.REFUSED,
         "accounts": tables.ACCOUNTS,
         "clocks": tables.CLOCKS,
+        "imu_types": tables.IMU_TYPES,
     },
     streams=("logs",),
     files=("raw",),

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from inertial.tables import CLOCKS
+from inertial.tables import CLOCKS, IMU_TYPES
 from inertial.tables.parquet import BATCH_ROWS
 from inertial.tables.stage import Stage
 from stages.decode.column_log import ColumnLog
@@ -26,7 +26,7 @@ from stages.formats.arrow_arrays import batch_of_rows
 
 
 def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
-    """The tables samples, refused, accounts and clocks in pieces, log after log.
+    """The tables samples, refused, accounts, clocks and imu_types in pieces, log after log.
 
     Time is GPS time since the first sample of the campaign for the logs of a receiver; for a log of
     columns it is the time since its own first sample. Increments become rates with the log's own
@@ -58,9 +58,9 @@ def _open(row: Mapping[str, str], raw: list[Path]) -> ReceiverLog | ColumnLog:
 
 
 def _pieces_of(log: ReceiverLog | ColumnLog, origin: int, table: TableAngle | None) -> Pieces:
-    """All four tables of one log."""
+    """All tables of one log."""
     account = Account()
-    records = 0
+    records, to_record = 0, 0
     ends: list[float | None] = []
     imu_types: frozenset[int] = frozenset()
     for decoded, samples in ahead(_decoded(log, origin, table)):
@@ -71,6 +71,7 @@ def _pieces_of(log: ReceiverLog | ColumnLog, origin: int, table: TableAngle | No
             yield "samples", samples.slice(start, BATCH_ROWS)
         if len(samples):
             records += len(samples)
+            to_record = samples["record"][-1].as_py() + 1
             ends = [*ends[:1], samples["time"][0].as_py(), samples["time"][-1].as_py()]
     yield from account_of(log.name, account, [])
     clock = {
@@ -80,11 +81,13 @@ def _pieces_of(log: ReceiverLog | ColumnLog, origin: int, table: TableAngle | No
         "from_s": ends[0] if ends else None,
         "to_s": ends[-1] if ends else None,
         "records": records,
+        "to_record": to_record,
         "interval": log.interval,
         "step": log.step,
-        "imu_types": " ".join(map(str, sorted(imu_types))) or None,
     }
     yield "clocks", batch_of_rows([clock], CLOCKS.schema)
+    types = [{"log": log.name, "imu_type": number} for number in sorted(imu_types)]
+    yield "imu_types", batch_of_rows(types, IMU_TYPES.schema)
 
 
 def _decoded(

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -85,8 +86,9 @@ def sensors(entry: dict[str, Any]) -> Iterator[Row]:
             "source": gyro.get("source"),
         },
     }
-    for channel in tables.CHANNELS:
-        yield {"channel": channel, **figures[channel.partition("_")[0]]}
+    for sensor, own in figures.items():
+        for axis in tables.AXES:
+            yield {"channel": f"{sensor}_{axis}", **own}
 
 
 def ranges(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
@@ -95,17 +97,17 @@ def ranges(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
     keys = {"accel": ("accelerometer", "count_m_s"), "gyro": ("gyro", "count_rad")}
     for log, rows in by_log(manoeuvres).items():
         layout = rows[0]["layout"]
-        for channel in tables.CHANNELS:
-            key, increment = keys[channel.partition("_")[0]]
-            triad, full = layout.get(key) or {}, scales[channel]
-            increments = layout["kind"] == "rawimus"
+        increments = layout["kind"] == "rawimus"
+        for (sensor, (key, increment)), axis in product(keys.items(), tables.AXES):
+            triad, full = layout.get(key) or {}, scales[f"{sensor}_{axis}"]
             count, limit = entry.get(key, {}).get(increment) if increments else None, None
             if "counts_per_unit" in triad:
                 count = CHANNEL_UNITS[triad["unit"]] / triad["counts_per_unit"]
                 limit = triad["limit_counts"] * count if "limit_counts" in triad else None
             yield {
                 "log": log,
-                "channel": channel,
+                "sensor": sensor,
+                "axis": axis,
                 "count": count,
                 "increments": increments,
                 "limit": full if limit is None else limit,

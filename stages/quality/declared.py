@@ -7,6 +7,7 @@ DECLARED = Declared(
     reads={
         "samples": From("decode", tables.SAMPLES),
         "clocks": From("decode", tables.CLOCKS),
+        "imu_types": From("decode", tables.IMU_TYPES),
         "campaign": From("plan", tables.CAMPAIGN),
         "known": From("plan", tables.KNOWN),
         "ranges": From("plan", tables.RANGES),
@@ -16,6 +17,7 @@ DECLARED = Declared(
         "findings": tables.FINDINGS,
         "masks": tables.MASKS,
         "gaps": tables.GAPS,
+        "channel_statistics": tables.CHANNEL_STATISTICS,
         "close_ups": tables.CLOSE_UPS,
     },
     streams=("samples",),

@@ -1,18 +1,16 @@
-"""What can be said of a recording without the plan: its time, its values, its scale."""
-
-from itertools import chain
+"""What a recording shows without the plan: faults of its time, its readings, its scale."""
 
 import pandas as pd
 
 from inertial import tables
-from inertial.campaign import detection
 from inertial.campaign.close_ups import close_ups
-from inertial.campaign.detection import watch
-from inertial.campaign.events import tell
-from inertial.campaign.findings import table_of
-from inertial.campaign.log_properties import given_by, logs
+from inertial.campaign.detection import Examination, ExaminationOfLogs
+from inertial.campaign.findings import Detection, detections_of, masks_of, table_of
+from inertial.campaign.log_properties import ChannelStatistics, given_by, logs, windows_of
+from inertial.campaign.masked_samples import RecordIndex, read_once
 from inertial.detectors import OF_RECORDS
 from inertial.detectors.gap import Gap
+from inertial.signal.detector import Windows
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from stages.quality.declared import DECLARED
@@ -21,17 +19,43 @@ from stages.quality.declared import DECLARED
 def quality(
     samples: Stream,
     clocks: pd.DataFrame,
+    imu_types: pd.DataFrame,
     campaign: pd.DataFrame,
     known: pd.DataFrame,
     ranges: pd.DataFrame,
     count_sizes: pd.DataFrame,
 ) -> Tables:
-    """Findings of the detectors that need no plan, the records that they mask, and the gaps."""
+    """Findings of the detectors that need no plan, the records that they mask, and the gaps.
+
+    Two passes over the samples: detectors compare single readings with resolution and noise of
+    the whole log, which are known only after it was read once.
+    """
     given = given_by(campaign, known, count_sizes, clocks)
-    looked = logs(samples, clocks, ranges, given)
-    told = tell("quality", watch(OF_RECORDS, detection.of_logs(samples), looked, given))
-    masks = pd.DataFrame(chain.from_iterable(one.masks for one in told))
-    gaps = pd.DataFrame(
+    statistics, sums = ChannelStatistics(), windows_of(clocks)
+    read_once(samples, [statistics, sums])
+    windows = {
+        log: Windows(total.mean, total.variance, total.time, total.temperature)
+        for log, total in sums.result().items()
+    }
+    channel_statistics = statistics.table()
+    by_name = logs(channel_statistics, clocks, ranges, imu_types, given, windows)
+
+    examination = ExaminationOfLogs(Examination(OF_RECORDS, by_name, given))
+    index = RecordIndex()
+    read_once(samples, [examination, index])
+    detections = detections_of("quality", examination.events(), by_name)
+    return {
+        "findings": table_of([each.finding for each in detections]),
+        "masks": masks_of(detections),
+        "gaps": _gaps(detections),
+        "channel_statistics": channel_statistics,
+        "close_ups": close_ups(samples, index, detections),
+    }
+
+
+def _gaps(detections: list[Detection]) -> pd.DataFrame:
+    """Every single gap, though many may be one finding."""
+    rows = [
         {
             "log": log,
             "record": event.first,
@@ -39,16 +63,11 @@ def quality(
             "to_s": event.to_s,
             "missing": round(event.size),
         }
-        for one in told
-        if isinstance(one.detector, Gap)
-        for log, event in one.events
-    )
-    return {
-        "findings": table_of([one.finding for one in told]),
-        "masks": masks if len(masks) else tables.MASKS.empty(),
-        "gaps": gaps if len(gaps) else tables.GAPS.empty(),
-        "close_ups": close_ups(samples, told),
-    }
+        for each in detections
+        if isinstance(each.detector, Gap)
+        for log, event in each.events
+    ]
+    return pd.DataFrame(rows) if rows else tables.GAPS.empty()
 
 
 STAGE = Stage(quality, DECLARED)

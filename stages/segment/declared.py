@@ -12,8 +12,10 @@ DECLARED = Declared(
         "count_sizes": From("plan", tables.COUNT_SIZES),
         "manoeuvres": From("plan", tables.MANOEUVRES),
         "clocks": From("decode", tables.CLOCKS),
+        "imu_types": From("decode", tables.IMU_TYPES),
         "gaps": From("quality", tables.GAPS),
         "masks": From("quality", tables.MASKS),
+        "channel_statistics": From("quality", tables.CHANNEL_STATISTICS),
     },
     writes={
         "segments": tables.SEGMENTS,

@@ -2,23 +2,24 @@
 
 from collections.abc import Sequence
 
-from inertial.campaign.events import Told
-from inertial.campaign.findings import Finding
+from inertial.campaign.findings import Detection, Finding
 from inertial.signal.detector import Event
-from inertial.signal.plan_detector import AgainstPlan, Deviation, Recorded
+from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 
 
-def compare(stage: str, detectors: Sequence[AgainstPlan], recorded: Recorded) -> list[Told]:
+def compare(stage: str, detectors: Sequence[PlanDetector], recorded: Recorded) -> list[Detection]:
     """Everything in which the recording is not as planned, in the order of detectors and plan."""
     return [
         _told(stage, detector, deviation, recorded)
         for detector in detectors
-        for deviation in detector.finds(recorded)
+        for deviation in detector.detect(recorded)
     ]
 
 
-def _told(stage: str, detector: AgainstPlan, deviation: Deviation, recorded: Recorded) -> Told:
-    words = detector.tells(deviation, recorded)
+def _told(
+    stage: str, detector: PlanDetector, deviation: Deviation, recorded: Recorded
+) -> Detection:
+    words = detector.describe(deviation, recorded)
     manoeuvre = None if deviation.at is None else recorded.name[deviation.at]
     place = [manoeuvre] if manoeuvre else [deviation.log] if deviation.log else []
     # A sensor as a whole may be concerned as well as the other one.
@@ -47,4 +48,4 @@ def _told(stage: str, detector: AgainstPlan, deviation: Deviation, recorded: Rec
             deviation.first, deviation.after, 0, times[0], times[1], deviation.size or 0.0
         )
         events = [(deviation.log, event)]
-    return Told(finding, events, detector)
+    return Detection(finding, events, detector)

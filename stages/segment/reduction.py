@@ -1,17 +1,15 @@
 """The samples reduced to what later stages use: segments, blocks of means, traces for figures."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import fields
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.masked_samples import Integers, Masks, pieces, regular
+from inertial.campaign.masked_samples import Batch, Integers, Masks, regular
 from inertial.campaign.records import Clock
-from inertial.campaign.sums import Sums, sums_over
-from inertial.tables.parquet import Stream
+from inertial.campaign.sums import ExtremesOver, SumsOver, TimesOver
 from stages.segment.matching import BETWEEN, Part
 
 Floats = NDArray[np.float64]
@@ -19,84 +17,152 @@ Floats = NDArray[np.float64]
 TRACE_POINTS = 1200  # per log, what a figure shows
 
 
-def segments(samples: Stream, parts: Sequence[Part]) -> pd.DataFrame:
+class _Spans:
+    """The spans of records of a table, and their places in the sums of each log, which ascend."""
+
+    def __init__(self, spans: pd.DataFrame) -> None:
+        first, after = (spans[name].to_numpy() for name in ("from_record", "to_record"))
+        self.places = {
+            str(log): place[np.argsort(first[place], kind="stable")]
+            for log, place in spans.groupby("log", sort=False).indices.items()
+        }
+        self.stretches = {log: (first[place], after[place]) for log, place in self.places.items()}
+
+    def in_order(self, by_log: Mapping[str, Floats]) -> Floats:
+        """The sums of all logs, (k,) or (k, 6) each, in the order of the spans."""
+        both = np.concatenate(list(by_log.values()))
+        places = np.concatenate([self.places[log] for log in by_log])
+        made = np.empty_like(both)
+        made[places] = both
+        return made
+
+
+class Segments(TimesOver):
     """The phases of all manoeuvres with their records and times."""
-    if not parts:
-        return tables.SEGMENTS.empty()
-    table = _spans(parts, [(np.array([p.first]), np.array([p.after])) for p in parts])
-    total = _over(samples, table)
-    return table.assign(from_s=total["first"], to_s=total["last"])
+
+    def __init__(self, parts: Sequence[Part]) -> None:
+        self._table = _spans(parts, [(np.array([p.first]), np.array([p.after])) for p in parts])
+        self._spans = _Spans(self._table)
+        super().__init__(self._spans.stretches)
+
+    def table(self) -> pd.DataFrame:
+        """The table of segments, once every batch was added."""
+        if self._table.empty:
+            return tables.SEGMENTS.empty()
+        times = self.result()
+        first, last = (
+            self._spans.in_order({log: both[end] for log, both in times.items()}) for end in (0, 1)
+        )
+        return self._table.assign(from_s=first, to_s=last)
 
 
-def blocks(
-    samples: Stream,
-    parts: Sequence[Part],
-    gaps: pd.DataFrame,
-    masks: Masks,
-    clocks: Mapping[str, Clock],
-    rest_block: float,
-    turn_block: float,
-) -> pd.DataFrame:
+class Blocks(SumsOver):
     """Every part in blocks of equal length; none reaches across a gap, or masked gyros in a turn.
 
     A turn has no blocks where its gyros are masked: what is missing stands in the block behind.
+
+    Parameters
+    ----------
+    of_means : logs whose records are means of many samples; each of these is a block
+    rest_block, turn_block : s, length of a block
     """
-    hidden = _hidden(parts, masks)
-    of_means = _of_means(samples, clocks)
-    edges: list[tuple[Integers, Integers]] = []
-    for part in parts:
-        seconds = rest_block if part.phase.startswith("rest") else turn_block
-        length = max(1, round(seconds / clocks[part.log].step))
-        # A hand turns about ever other axes; of records that are means already, each is a block.
-        if part.phase == BETWEEN or part.log in of_means:
-            length = 1
-        unseen = hidden.get(part.manoeuvre, np.array([], np.int64))
-        cuts = (
-            np.arange(part.first, part.after, length),
-            gaps.loc[gaps["log"] == part.log, "record"].to_numpy(np.int64),
-            unseen[np.diff(unseen, prepend=-2) > 1],
-            unseen[np.diff(unseen, append=np.iinfo(np.int64).max) > 1] + 1,
+
+    def __init__(
+        self,
+        parts: Sequence[Part],
+        gaps: pd.DataFrame,
+        masks: Masks,
+        clocks: Mapping[str, Clock],
+        of_means: set[str],
+        rest_block: float,
+        turn_block: float,
+    ) -> None:
+        self._gaps = {
+            str(log): rows["record"].to_numpy(np.int64) for log, rows in gaps.groupby("log")
+        }
+        self._clocks = clocks
+        hidden = _hidden(parts, masks)
+        edges: list[tuple[Integers, Integers]] = []
+        for part in parts:
+            seconds = rest_block if part.phase.startswith("rest") else turn_block
+            length = max(1, round(seconds / clocks[part.log].step))
+            # A hand turns about ever other axes.
+            if part.phase == BETWEEN or part.log in of_means:
+                length = 1
+            unseen = hidden.get(part.manoeuvre, np.array([], np.int64))
+            edges.append(_edges(part, length, self._gaps_of(part.log), unseen))
+        self._table = _spans(parts, edges)
+        self._spans = _Spans(self._table)
+        super().__init__(self._spans.stretches, masks)
+
+    def _gaps_of(self, log: str) -> Integers:
+        return self._gaps.get(log, np.array([], np.int64))
+
+    def table(self) -> pd.DataFrame:
+        """The table of blocks, once every batch was added."""
+        table = self._table
+        if table.empty:
+            return tables.BLOCKS.empty()
+        sums = self.result()
+
+        def column(name: str) -> Floats:
+            return self._spans.in_order({log: getattr(own, name) for log, own in sums.items()})
+
+        step = {log: clock.duration or np.nan for log, clock in self._clocks.items()}
+        count, records = column("count"), column("records")
+        table = table.assign(
+            time=column("time"),
+            seconds=count * table["log"].map(step).to_numpy(np.float64),
+            count=count,
+            missing_s=0.0,
+            **dict(zip(tables.CHANNELS, column("mean").T, strict=True)),
+            table_angle=column("table_angle"),
+            temperature=column("temperature"),
+            mask_share=column("masked") / np.maximum(records, 1),
+            first=column("first"),
+            last=column("last"),
         )
-        starts = np.unique(np.concatenate(cuts))
-        starts = starts[(part.first <= starts) & (starts < part.after)]
-        ends = np.append(starts[1:], part.after)
-        seen = ~np.isin(starts, unseen)
-        edges.append((starts[seen], ends[seen]))
-    table = _spans(parts, edges)
-    if table.empty:
-        return tables.BLOCKS.empty()
-    total = _over(samples, table, masks)
-    duration = table["log"].map({log: clock.duration or np.nan for log, clock in clocks.items()})
-    table = table.assign(
-        time=total["time"],
-        seconds=total["count"] * duration.to_numpy(np.float64),
-        count=total["count"],
-        missing_s=0.0,
-        **dict(zip(tables.CHANNELS, total["mean"].T, strict=True)),
-        table_angle=total["table_angle"],
-        temperature=total["temperature"],
-        mask_share=total["masked"] / np.maximum(total["records"], 1),
-        first=total["first"],
-        last=total["last"],
+        rest = table["phase"].str.startswith("rest")
+        table = table[(records > 0) | rest].reset_index(drop=True)
+        for _, turn in table[~table["phase"].str.startswith("rest")].groupby("manoeuvre"):
+            log = turn["log"].iloc[0]
+            after_gap = turn["from_record"].isin(self._gaps_of(log))
+            table.loc[turn.index, "missing_s"] = _missing(turn, after_gap, self._clocks[log])
+        return table.drop(columns=["first", "last"])
+
+
+def _edges(part: Part, length: int, gaps: Integers, unseen: Integers) -> tuple[Integers, Integers]:
+    """The first records of the blocks of a part, and those after their last.
+
+    gaps : the first records after gaps
+    unseen : records that are to be in no block
+    """
+    cuts = (
+        np.arange(part.first, part.after, length),
+        gaps,
+        unseen[np.diff(unseen, prepend=-2) > 1],
+        unseen[np.diff(unseen, append=np.iinfo(np.int64).max) > 1] + 1,
     )
-    table = table[(total["records"] > 0) | table["phase"].str.startswith("rest")]
-    table = table.reset_index(drop=True)
-    for _, turn in table[~table["phase"].str.startswith("rest")].groupby("manoeuvre"):
-        log = turn["log"].iloc[0]
-        after_gap = turn["from_record"].isin(gaps.loc[gaps["log"] == log, "record"])
-        table.loc[turn.index, "missing_s"] = _missing(turn, after_gap, clocks[log])
-    return table.drop(columns=["first", "last"])
+    starts = np.unique(np.concatenate(cuts))
+    starts = starts[(part.first <= starts) & (starts < part.after)]
+    ends = np.append(starts[1:], part.after)
+    seen = ~np.isin(starts, unseen)
+    return starts[seen], ends[seen]
 
 
-def _of_means(samples: Stream, clocks: Mapping[str, Clock]) -> set[str]:
+class LogsOfMeans:
     """The logs without time whose records are means of many samples."""
-    if all(clock.duration for clock in clocks.values()):
-        return set()
-    return {
-        log
-        for log, piece in pieces(samples, ["mean_of"])
-        if clocks[log].duration is None and bool((np.nan_to_num(piece["mean_of"]) > 1).any())
-    }
+
+    columns = ("mean_of",)
+
+    def __init__(self, clocks: Mapping[str, Clock]) -> None:
+        self._untimed = {log for log, clock in clocks.items() if clock.duration is None}
+        self.names: set[str] = set()
+
+    def add(self, batch: Batch) -> None:
+        """Take in the next batch."""
+        if batch.log in self._untimed and (np.nan_to_num(batch["mean_of"]) > 1).any():
+            self.names.add(batch.log)
 
 
 def _hidden(parts: Sequence[Part], masks: Masks) -> dict[str, Integers]:
@@ -137,24 +203,35 @@ def _missing(turn: pd.DataFrame, after_gap: pd.Series, clock: Clock) -> Floats:
     return missing
 
 
-def traces(samples: Stream, ends: Mapping[str, int]) -> pd.DataFrame:
-    """The extremes of every channel in so many stretches of each log."""
-    edges = {log: regular(n, -(-n // TRACE_POINTS)) for log, n in ends.items()}
-    frames = [
-        pd.DataFrame(
-            {
-                "log": log,
-                "from_record": edges[log][0],
-                "to_record": edges[log][1],
-                "from_s": total.first,
-                "to_s": total.last,
-                **{f"least_{c}": total.least[:, i] for i, c in enumerate(tables.CHANNELS)},
-                **{f"most_{c}": total.most[:, i] for i, c in enumerate(tables.CHANNELS)},
-            }
-        )
-        for log, total in sums_over(samples, edges).items()
-    ]
-    return pd.concat(frames) if frames else tables.TRACES.empty()
+class Traces(ExtremesOver):
+    """The extremes of every channel in as many stretches of each log as a figure shows.
+
+    Parameters
+    ----------
+    ends : of each log the number after its last record
+    """
+
+    def __init__(self, ends: Mapping[str, int]) -> None:
+        self._edges = {log: regular(end, -(-end // TRACE_POINTS)) for log, end in ends.items()}
+        super().__init__(self._edges)
+
+    def table(self) -> pd.DataFrame:
+        """The table of traces, once every batch was added."""
+        frames = [
+            pd.DataFrame(
+                {
+                    "log": log,
+                    "from_record": self._edges[log][0],
+                    "to_record": self._edges[log][1],
+                    "from_s": extremes.first,
+                    "to_s": extremes.last,
+                    **{f"least_{c}": extremes.least[:, i] for i, c in enumerate(tables.CHANNELS)},
+                    **{f"most_{c}": extremes.most[:, i] for i, c in enumerate(tables.CHANNELS)},
+                }
+            )
+            for log, extremes in self.result().items()
+        ]
+        return pd.concat(frames) if frames else tables.TRACES.empty()
 
 
 def _spans(parts: Sequence[Part], edges: Sequence[tuple[Integers, Integers]]) -> pd.DataFrame:
@@ -168,20 +245,3 @@ def _spans(parts: Sequence[Part], edges: Sequence[tuple[Integers, Integers]]) ->
     first = np.concatenate([none, *(starts for starts, _ in edges)])
     after = np.concatenate([none, *(ends for _, ends in edges)])
     return pd.DataFrame({**names, "from_record": first, "to_record": after})
-
-
-def _over(samples: Stream, spans: pd.DataFrame, masks: Masks | None = None) -> dict[str, Floats]:
-    """What `Sums` tells of each of n spans, (n,) or (n, 6)."""
-    first, after = (spans[name].to_numpy() for name in ("from_record", "to_record"))
-    places = {
-        str(log): place[np.argsort(first[place], kind="stable")]
-        for log, place in spans.groupby("log", sort=False).indices.items()
-    }
-    stretches = {log: (first[place], after[place]) for log, place in places.items()}
-    told: dict[str, Floats] = {}
-    for log, sums in sums_over(samples, stretches, masks).items():
-        for field in fields(Sums):
-            values = getattr(sums, field.name)
-            whole = told.setdefault(field.name, np.empty((len(spans), *values.shape[1:])))
-            whole[places[log]] = values
-    return told

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from inertial.campaign.close_ups import close_ups
 from inertial.campaign.findings import table_of
-from inertial.campaign.log_properties import given_by, logs
-from inertial.campaign.masked_samples import Masks, extents
+from inertial.campaign.log_properties import given_by, logs, records_of
+from inertial.campaign.masked_samples import Masks, RecordIndex, read_once
 from inertial.campaign.records import Manoeuvre, Performed, clocks_of, known_of, manoeuvres_of
 from inertial.detectors import OF_PLAN, OF_RESTS
 from inertial.signal.detector import Log
@@ -19,17 +19,17 @@ from inertial.tables.stage import Stage, Tables
 from stages.segment import completeness, reduction
 from stages.segment.declared import DECLARED
 from stages.segment.detection_against_plan import compare
-from stages.segment.detection_in_positions import rests_of, screen
-from stages.segment.explanations import explain
+from stages.segment.detection_in_positions import ExaminationOfRests
+from stages.segment.explanations import Explained, explain
 from stages.segment.locating import AS_NAMED, Located, shown
 from stages.segment.matching import Part, between_parts, position_parts, rest_part, turn_parts
 from stages.segment.motion import rest_level
 from stages.segment.recorded import recorded_of
-from stages.segment.windows import Binned, binned, windows
+from stages.segment.windows import Binned, Bins, Selection, Window, windows
 
-SLOWEST = 0.05  # of the slowest planned rate: what counts as motion
-UNLIKE_NOISE = 6.0  # times the scatter of the gyros at rest: what is no noise
-BY_HAND = np.radians(2.0)  # rad/s: what counts as motion where no rate is planned
+MIN_RATE_SHARE = 0.05  # of the slowest planned rate: what counts as motion
+MIN_MOTION_SIGMA = 6.0  # scatters of the gyros at rest: what cannot be noise
+MIN_HAND_RATE = np.radians(2.0)  # rad/s: what counts as motion where no rate is planned
 
 Array = NDArray[np.float64]
 
@@ -42,53 +42,41 @@ def segment(
     count_sizes: pd.DataFrame,
     manoeuvres: pd.DataFrame,
     clocks: pd.DataFrame,
+    imu_types: pd.DataFrame,
     gaps: pd.DataFrame,
     masks: pd.DataFrame,
+    channel_statistics: pd.DataFrame,
     *,
     rest_block: float,
     turn_block: float,
     margin: float,
     angle_tolerance: float,
 ) -> Tables:
-    """Segments, what was performed of each manoeuvre, blocks, traces, findings and close-ups."""
-    plan, clock, ends = manoeuvres_of(manoeuvres), clocks_of(clocks), extents(samples)
-    masked = Masks(masks)
-    every = list(binned(samples, windows(samples, plan, ends), clock, masked))
-    level, scatter = _rest_level(every)
-    rates = [abs(m.rate) for m in plan if m.rate]
-    noise = UNLIKE_NOISE * scatter
-    threshold = max(SLOWEST * min(rates) if rates else BY_HAND, noise)
-    earth = known_of(known)["earth_rate_up"].number
-    explained = explain([shown(one, level, threshold, noise) for one in every], earth)
+    """Segments, what was performed of each manoeuvre, blocks, traces, findings and close-ups.
 
-    parts: list[Part] = []
-    turns: list[tuple[Located, int, Manoeuvre]] = []
-    performed: dict[str, Performed] = {}
-    left = dict(completeness.left_out(explained, plan))
-    for located in explained.located:
-        one, found, matched = located.one, located.found, located.matched
-        first = len(parts)
-        for m in located.plan:
-            place = matched.get(m.name)
-            if m.name in left:
-                new = []
-                performed[m.name] = left[m.name]
-            elif m.do == "positions":
-                new = list(position_parts(one, found, m, matched, margin))
-                performed[m.name] = completeness.positions(m, len(new))
-            elif place is None:
-                new = []
-                performed[m.name] = completeness.not_found(m)
-            elif m.do == "rest":
-                new = [rest_part(one, found[place], m.name, margin)]
-                performed[m.name] = completeness.rest(one, m, found[place])
-            else:
-                new = list(turn_parts(one, found, m, matched, level, margin))
-                turns.append((located, place, m))
-            parts += new
-        if any(m.do == "positions" for m in located.plan):
-            parts += between_parts([p for p in parts[first:] if p.phase.startswith("rest")])
-    blocks = reduction.blocks(samples, parts, gaps, masked, clock, rest_block, turn_block)
+    Two passes over the samples: blocks and the records of a rest are known only after manoeuvres
+    were found in short means. Where the plan selects records by time or label, one of these two
+    columns before.
+    """
+    plan, clock, masked = manoeuvres_of(manoeuvres), clocks_of(clocks), Masks(masks)
+    given = given_by(campaign, known, count_sizes, clocks)
+    by_name = logs(channel_statistics, clocks, ranges, imu_types, given, {})
+    ends = records_of(clocks)
+
+    bins = Bins(_windows(samples, plan, ends), clock, masked)
+    traces, of_means = reduction.Traces(ends), reduction.LogsOfMeans(clock)
+    read_once(samples, [bins, traces, of_means])
+    binned = list(bins.binned())
+    level, explained = _explained(binned, plan, known_of(known)["earth_rate_up"].number)
+    parts, performed, turns = _parts(explained, plan, level, margin)
+
+    block_sums = reduction.Blocks(
+        parts, gaps, masked, clock, of_means.names, rest_block, turn_block
+    )
+    segment_times = reduction.Segments(parts)
+    rests, index = ExaminationOfRests(OF_RESTS, parts, by_name, masked), RecordIndex()
+    read_once(samples, [block_sums, segment_times, rests, index])
+    blocks, segments = block_sums.table(), segment_times.table()
     in_motion = dict(list(blocks[~blocks["phase"].str.startswith("rest")].groupby("manoeuvre")))
     for located, place, m in turns:
         own = in_motion.get(m.name, blocks.iloc[:0])
@@ -97,24 +85,69 @@ def segment(
         )
         as_named = located.axes.gyro == AS_NAMED
         performed[m.name] = done if as_named else completeness.by_other_axes(done)
-    segments = reduction.segments(samples, parts)
-    given = given_by(campaign, known, count_sizes, clocks)
-    looked = logs(samples, clocks, ranges, given)
     recorded = recorded_of(
-        plan, explained, performed, segments, gaps, _counts(looked), given, angle_tolerance
+        plan, explained, performed, segments, gaps, _counts(by_name), given, angle_tolerance
     )
-    told = [
-        *compare("segment", OF_PLAN, recorded),
-        *screen("segment", OF_RESTS, samples, rests_of(segments), masked, looked),
-    ]
+    detections = [*compare("segment", OF_PLAN, recorded), *rests.detections("segment")]
     return {
         "segments": segments,
         "performed": pd.DataFrame([asdict(performed[m.name]) for m in plan]),
         "blocks": blocks,
-        "traces": reduction.traces(samples, ends),
-        "findings": table_of([one.finding for one in told]),
-        "close_ups": close_ups(samples, told),
+        "traces": traces.table(),
+        "findings": table_of([each.finding for each in detections]),
+        "close_ups": close_ups(samples, index, detections),
     }
+
+
+def _windows(samples: Stream, plan: Sequence[Manoeuvre], ends: Mapping[str, int]) -> list[Window]:
+    """The parts of logs in which manoeuvres are sought."""
+    selection = Selection(plan)
+    if selection.manoeuvres:
+        read_once(samples, [selection])
+    return windows(plan, ends, selection)
+
+
+def _explained(
+    binned: Sequence[Binned], plan: Sequence[Manoeuvre], earth_rate_up: float
+) -> tuple[Array, Explained]:
+    """What the gyros read at rest, (3,), rad/s, and where the manoeuvres are."""
+    level, scatter = _rest_level(binned)
+    rates = [abs(m.rate) for m in plan if m.rate]
+    noise = MIN_MOTION_SIGMA * scatter
+    threshold = max(MIN_RATE_SHARE * min(rates) if rates else MIN_HAND_RATE, noise)
+    ways = [shown(window, level, threshold, noise) for window in binned]
+    return level, explain(ways, earth_rate_up)
+
+
+def _parts(
+    explained: Explained, plan: Sequence[Manoeuvre], level: Array, margin: float
+) -> tuple[list[Part], dict[str, Performed], list[tuple[Located, int, Manoeuvre]]]:
+    """The phases of all manoeuvres; what was performed of those that do not turn; the turns."""
+    parts: list[Part] = []
+    turns: list[tuple[Located, int, Manoeuvre]] = []
+    performed: dict[str, Performed] = dict(completeness.left_out(explained, plan))
+    for located in explained.located:
+        binned, stretches, matched = located.one, located.found, located.matched
+        first = len(parts)
+        for m in located.plan:
+            place = matched.get(m.name)
+            if m.name in performed:
+                continue
+            if m.do == "positions":
+                own = list(position_parts(binned, stretches, m, matched, margin))
+                parts += own
+                performed[m.name] = completeness.positions(m, len(own))
+            elif place is None:
+                performed[m.name] = completeness.not_found(m)
+            elif m.do == "rest":
+                parts.append(rest_part(binned, stretches[place], m.name, margin))
+                performed[m.name] = completeness.rest(binned, m, stretches[place])
+            else:
+                parts += turn_parts(binned, stretches, m, matched, level, margin)
+                turns.append((located, place, m))
+        if any(m.do == "positions" for m in located.plan):
+            parts += between_parts([p for p in parts[first:] if p.phase.startswith("rest")])
+    return parts, performed, turns
 
 
 def _counts(looked: Mapping[str, Log]) -> dict[str, float]:

@@ -6,15 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.campaign.masked_samples import Integers, Masks, pieces, regular
+from inertial.campaign.masked_samples import Batch, Integers, Masks, regular
 from inertial.campaign.records import Clock, Manoeuvre
-from inertial.campaign.sums import means_over
-from inertial.tables.parquet import Stream
+from inertial.campaign.sums import MeansOver
 
 Array = NDArray[np.float64]
 
 BIN = 0.1  # s, of the short means in which motion is looked for
-MOST = 2_000_000  # of them in a campaign; one of more than two days has longer ones
+MAX_BINS = 2_000_000  # of them in a campaign; one of more than two days has longer ones
 
 
 @dataclass(frozen=True)
@@ -75,71 +74,87 @@ class Binned:
         return float(np.nan_to_num(self.last_s[after - 1] - self.first_s[first]))
 
 
-def windows(
-    samples: Stream, manoeuvres: Sequence[Manoeuvre], ends: Mapping[str, int]
-) -> list[Window]:
-    """A window for each manoeuvre that the plan selects, and one for all others of a log."""
-    found = []
-    for log in dict.fromkeys(m.log for m in manoeuvres if not m.selected):
-        others = [m for m in manoeuvres if m.log == log and not m.selected]
-        found.append(Window(log, 0, ends.get(log, 0), others))
-    selected = [m for m in manoeuvres if m.selected]
-    spans = _selected(samples, selected) if selected else {}
-    found += [Window(m.log, *spans.get(m.name, (0, 0)), [m]) for m in selected]
-    return sorted(found, key=lambda window: (window.log, window.first))
-
-
-def _selected(samples: Stream, manoeuvres: Sequence[Manoeuvre]) -> dict[str, tuple[int, int]]:
+class Selection:
     """For each manoeuvre the records that its span, rows or label select."""
-    found: dict[str, tuple[int, int]] = {}
-    for log, piece in pieces(samples, ["record", "time", "label"]):
-        for m in manoeuvres:
-            if m.log != log:
+
+    columns = ("time", "label")
+
+    def __init__(self, manoeuvres: Sequence[Manoeuvre]) -> None:
+        self.manoeuvres = [m for m in manoeuvres if m.selected]
+        self.records: dict[str, tuple[int, int]] = {}
+
+    def add(self, batch: Batch) -> None:
+        """Take in the next batch."""
+        for m in self.manoeuvres:
+            if m.log != batch.log:
                 continue
             if m.from_row is not None:
-                inside = (piece["record"] >= m.from_row) & (piece["record"] < m.to_row)
+                inside = (batch["record"] >= m.from_row) & (batch["record"] < m.to_row)
             elif m.from_s is not None:
-                inside = (piece["time"] >= m.from_s) & (piece["time"] < m.to_s)
+                inside = (batch["time"] >= m.from_s) & (batch["time"] < m.to_s)
             else:
-                inside = piece["label"] == m.label
-            records = piece["record"][inside]
+                inside = batch["label"] == m.label
+            records = batch["record"][inside]
             if len(records):
-                first, _ = found.get(m.name, (int(records[0]), 0))
-                found[m.name] = (first, int(records[-1]) + 1)
-    return found
+                first, _ = self.records.get(m.name, (int(records[0]), 0))
+                self.records[m.name] = (first, int(records[-1]) + 1)
 
 
-def binned(
-    samples: Stream, found: Sequence[Window], clocks: Mapping[str, Clock], masks: Masks
-) -> Iterator[Binned]:
-    """Every window in bins, all in one pass over the samples; windows ascend within a log."""
-    cut: dict[str, list[tuple[Integers, Integers]]] = {}
-    shortest = -(-sum(window.after - window.first for window in found) // MOST)
-    for window in found:
-        short = round(BIN / clocks[window.log].step) if window.log in clocks else 1
-        length = max(1, short, shortest)
-        first, after = regular(window.after - window.first, length)
-        cut.setdefault(window.log, []).append((window.first + first, window.first + after))
-    stretches = {
-        log: (np.concatenate([f for f, _ in cuts]), np.concatenate([a for _, a in cuts]))
-        for log, cuts in cut.items()
-    }
-    means = means_over(samples, stretches, masks)
-    used = dict.fromkeys(cut, 0)
-    for window in found:
-        first, after = cut[window.log].pop(0)
-        part = slice(used[window.log], used[window.log] + len(first))
-        used[window.log] += len(first)
-        total = means[window.log]
-        yield Binned(
-            window,
-            np.append(first, after[-1:]),
-            _straight(total.mean[part, 3:]),
-            total.mean[part, :3],
-            total.count[part] * clocks[window.log].step if len(first) else np.array([]),
-            total.first[part],
-            total.last[part],
+def windows(
+    manoeuvres: Sequence[Manoeuvre], ends: Mapping[str, int], selection: Selection
+) -> list[Window]:
+    """A window for each manoeuvre that the plan selects, and one for all others of a log."""
+    made = []
+    for log in dict.fromkeys(m.log for m in manoeuvres if not m.selected):
+        others = [m for m in manoeuvres if m.log == log and not m.selected]
+        made.append(Window(log, 0, ends.get(log, 0), others))
+    for m in selection.manoeuvres:
+        made.append(Window(m.log, *selection.records.get(m.name, (0, 0)), [m]))
+    return sorted(made, key=lambda window: (window.log, window.first))
+
+
+class Bins(MeansOver):
+    """Every window in bins; windows ascend within a log."""
+
+    def __init__(
+        self, windows: Sequence[Window], clocks: Mapping[str, Clock], masks: Masks
+    ) -> None:
+        records = sum(window.after - window.first for window in windows)
+        self._edges: list[tuple[Integers, Integers]] = []
+        by_log: dict[str, list[tuple[Integers, Integers]]] = {}
+        for window in windows:
+            bin_records = round(BIN / clocks[window.log].step) if window.log in clocks else 1
+            length = max(1, bin_records, -(-records // MAX_BINS))
+            first, after = regular(window.after - window.first, length)
+            self._edges.append((window.first + first, window.first + after))
+            by_log.setdefault(window.log, []).append(self._edges[-1])
+        super().__init__(
+            {
+                log: (np.concatenate([f for f, _ in own]), np.concatenate([a for _, a in own]))
+                for log, own in by_log.items()
+            },
+            masks,
         )
+        self._windows = windows
+        self._clocks = clocks
+
+    def binned(self) -> Iterator[Binned]:
+        """The windows, once every batch was added."""
+        means = self.result()
+        used = dict.fromkeys(means, 0)
+        for window, (first, after) in zip(self._windows, self._edges, strict=True):
+            part = slice(used[window.log], used[window.log] + len(first))
+            used[window.log] += len(first)
+            own = means[window.log]
+            yield Binned(
+                window,
+                np.append(first, after[-1:]),
+                _straight(own.mean[part, 3:]),
+                own.mean[part, :3],
+                own.count[part] * self._clocks[window.log].step if len(first) else np.array([]),
+                own.first[part],
+                own.last[part],
+            )
 
 
 def _straight(rates: Array) -> Array:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from inertial.tables import ACCOUNTS, CHANNELS, CLOCKS, LOGS, REFUSED, SAMPLES
+from inertial.tables import ACCOUNTS, CHANNELS, CLOCKS, IMU_TYPES, LOGS, REFUSED, SAMPLES
 from stages.decode.stage import decode
 
 S0_FIRST = b"2283,42699.880;2283,42699.879998762,00000077,64188,-64,465,-16100,-2,873"
@@ -38,7 +38,13 @@ def decoded(*logs: tuple[str, Path, dict]) -> dict[str, dict[str, dict[str, list
     ]
     half = len(rows) // 2  # a stream has more than one batch
     stream = [pa.RecordBatch.from_pylist(some, LOGS.schema) for some in (rows[:half], rows[half:])]
-    tables = {"samples": SAMPLES, "refused": REFUSED, "accounts": ACCOUNTS, "clocks": CLOCKS}
+    tables = {
+        "samples": SAMPLES,
+        "refused": REFUSED,
+        "accounts": ACCOUNTS,
+        "clocks": CLOCKS,
+        "imu_types": IMU_TYPES,
+    }
     found = {
         name: {log: {column.name: [] for column in table.columns} for log, *_ in logs}
         for name, table in tables.items()

@@ -53,9 +53,9 @@ def test_without_time_there_is_no_clock(tmp_path):
         "from_s": None,
         "to_s": None,
         "records": 2,
+        "to_record": 2,
         "interval": None,
         "step": None,
-        "imu_types": None,
     }
 
 

@@ -85,7 +85,7 @@ def test_the_types_of_imu_that_a_log_tells(tmp_path):
         + log_bytes(sent, "RAWIMUSXB", "00000077", imu_type=13)
         + log_bytes(sent, "RAWIMUSXB", "00000077", imu_type=0)  # unknown
     )
-    assert one(path, SPAN_CPT)["clocks"]["imu_types"] == ["13 33"]
+    assert one(path, SPAN_CPT)["imu_types"]["imu_type"] == [13, 33]
 
 
 @pytest.mark.parametrize(

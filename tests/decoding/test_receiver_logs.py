@@ -30,10 +30,11 @@ def test_the_printed_lines_in_metres_degrees_and_seconds(tmp_path):  # T2
         "from_s": [0.0],
         "to_s": [11.979999994],
         "records": [7],
+        "to_record": [7],
         "interval": [pytest.approx(0.01, abs=1e-9)],
         "step": [pytest.approx(0.01, abs=1e-9)],
-        "imu_types": [None],
     }
+    assert tables["imu_types"]["imu_type"] == []
 
 
 def test_a_count_of_the_fsas_is_smaller_by_a_radian_in_degrees(tmp_path):  # T3

@@ -109,7 +109,7 @@ def seen(
 ) -> list[Event]:
     """What a detector sees in a log that is this piece; its words must be whole sentences."""
     whole = log(one, campaign, **of_log)
-    events = [*detector.finds(one, whole), *detector.concludes(whole)]
+    events = [*detector.detect(one, whole), *detector.detect_in_log(whole)]
     for event in events:
         assert_told(detector, event, whole.name)
     return events
@@ -117,7 +117,7 @@ def seen(
 
 def assert_told(detector: Detector, event: Event, name: str) -> None:
     """What it says of an event is in whole sentences, without a number that is none."""
-    words = detector.tells(event, name)
+    words = detector.describe(event, name)
     for text in (words.sentence, words.consequence, words.action):
         assert text.endswith("."), text
         assert not re.search(r"\b(nan|inf)\b|  |(?<!\d)-\d|—", text), text

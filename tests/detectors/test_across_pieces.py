@@ -5,8 +5,8 @@ import pytest
 from on_a_table import recorded, rest, turn
 from recorded_by_hand import COUNT, INTERVAL, NOISE
 
-from inertial.campaign.detection import watch
-from inertial.campaign.events import tell
+from inertial.campaign.detection import Examination
+from inertial.campaign.findings import detections_of
 from inertial.detectors import OF_RECORDS
 
 LENGTH, BESIDE = 6000, 2000
@@ -30,7 +30,10 @@ def cut(one):
 
 def told(values):
     one, log = recorded(values)
-    return tell("quality", watch(OF_READINGS, cut(one), {"log": log}, log.given))
+    examination = Examination(OF_READINGS, {"log": log}, log.given)
+    for name, part in cut(one):
+        examination.examine(name, part)
+    return detections_of("quality", examination.events(), {"log": log})
 
 
 def spoiled(first, after):
@@ -85,7 +88,7 @@ def test_an_oscillation_of_several_turns_is_one_finding_of_the_log():
         values[start : start + 3400, 3] += 0.01 * np.sin(2 * np.pi * 20 * time)
     (one,) = told(values)
     assert (one.finding.cause, one.finding.count, len(one.events)) == ("oscillation", 3, 3)
-    assert "This happens 3 times in this log" in one.finding.sentence
+    assert "This occurs 3 times in this log" in one.finding.sentence
 
 
 def test_both_sensors_exchanged_at_once_are_one_finding_that_names_both():

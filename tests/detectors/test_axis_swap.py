@@ -17,7 +17,7 @@ def found(values, **of_log):
     one, log = recorded(values, **of_log)
     seen = []
     for detector in EACH:
-        events = list(detector.finds(one, log))
+        events = list(detector.detect(one, log))
         for event in events:
             assert_told(detector, event, "log")
         seen += [(detector.name, detector.sensor, event.first, event.after) for event in events]
@@ -61,8 +61,8 @@ def test_what_stays_exchanged_lasts_to_the_end():
     values = swapped(rest(3000), "accel", (1, 2), 1500, 3000)
     assert found(values) == [("axis_swap", "accel", 1500, 3000)]
     one, log = recorded(values)
-    (event,) = AxisSwap().finds(one, log)
-    words = AxisSwap().tells(event, "up.asc")
+    (event,) = AxisSwap().detect(one, log)
+    words = AxisSwap().describe(event, "up.asc")
     assert "from line 1501 on, to the end, for 1\u202f500 records" in words.sentence
     assert "y reads z and z reads y" in words.sentence
     assert "would be 9.75" in words.consequence
@@ -74,7 +74,7 @@ def test_in_a_log_of_several_pieces_all_to_its_end_is_masked():
     fields = {name: getattr(whole, name)[:6000] for name in ("record", "line", "time", "values")}
     fields |= {name: getattr(whole, name)[:6000] for name in ("status", "temperature")}
     first = whole.__class__(**fields, first=0, after=5000)
-    (event,) = AxisSwap().finds(first, log)
+    (event,) = AxisSwap().detect(first, log)
     assert (event.first, event.after) == (4000, 9000)
 
 
@@ -99,8 +99,8 @@ def test_after_a_gap_the_imu_may_stand_otherwise():
     time = one.time.copy()
     time[2000:] += 60.0
     moved = one.__class__(**{**vars(one), "time": time})
-    assert list(AxisSwap().finds(one, log)) != []
-    assert list(AxisSwap().finds(moved, log)) == []
+    assert list(AxisSwap().detect(one, log)) != []
+    assert list(AxisSwap().detect(moved, log)) == []
 
 
 def test_of_all_signed_permutations_each_has_its_inverse():

@@ -10,7 +10,7 @@ from inertial.detectors.dead_axis import DeadAxis
 
 def found(values, **of_log):
     one, log = recorded(values, **of_log)
-    events = list(DeadAxis().finds(one, log))
+    events = list(DeadAxis().detect(one, log))
     for event in events:
         assert_told(DeadAxis(), event, "log")
     return events
@@ -36,7 +36,7 @@ def test_zeros_in_a_turn_are_found_however_short(samples):
     values[2000 : 2000 + samples, 5] = 0.0
     (event,) = found(values)
     assert (event.channel, event.first, event.after) == (5, 2000, 2000 + samples)
-    assert "gyro z reads 0 rad/s" in DeadAxis().tells(event, "log").sentence
+    assert "gyro z reads 0 rad/s" in DeadAxis().describe(event, "log").sentence
 
 
 def test_an_axis_that_never_changes_is_measured_by_the_other_axes():
@@ -44,7 +44,7 @@ def test_an_axis_that_never_changes_is_measured_by_the_other_axes():
     values[:, 1] = 0.0
     (event,) = found(values)
     assert (event.channel, event.first, event.after) == (1, 0, 3000)
-    words = DeadAxis().tells(event, "up.asc")
+    words = DeadAxis().describe(event, "up.asc")
     assert "accelerometer y reads 0 m/s² in all 3\u202f000 readings" in words.sentence
     assert "Their mean is 0 m/s²" in words.consequence
 

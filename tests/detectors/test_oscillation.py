@@ -11,7 +11,7 @@ from inertial.signal.spectral_lines import in_windows, lines, windows
 
 def found(values, **of_log):
     one, log = recorded(values, **of_log)
-    events = list(Oscillation().finds(one, log))
+    events = list(Oscillation().detect(one, log))
     for event in events:
         assert_told(Oscillation(), event, "log")
     return events
@@ -48,7 +48,7 @@ def test_what_it_does_to_an_angle_is_told_as_s0_has_it():
     # S0, figure 5-14: 20 Hz and 0.01 rad/s swing by 7.96e-5 rad, 25.33 ppm of 180°.
     values = ringing(turn(about=0), 3, 20.0, 0.01, 1300, 4300)
     (event,) = found(values)
-    words = Oscillation().tells(event, "x.asc")
+    words = Oscillation().describe(event, "x.asc")
     assert "gyro x oscillates at 20.00 Hz by 0.010 rad/s" in words.sentence
     assert "while the IMU turns, and not at rest" in words.sentence
     assert "80.00 or 120.00 Hz would look the same" in words.sentence
@@ -66,7 +66,7 @@ def test_other_axes_in_step_are_named_with_their_part():
     assert set(others) == {0, 4}
     assert others[4] == pytest.approx(2.4e-4, rel=0.03)
     assert others[0] == pytest.approx(8e-3, rel=0.03)
-    assert ", at rest." in Oscillation().tells(event, "log").sentence
+    assert ", at rest." in Oscillation().describe(event, "log").sentence
 
 
 def test_an_oscillation_through_a_gap_and_lost_samples_keeps_its_phase():
@@ -78,7 +78,7 @@ def test_an_oscillation_through_a_gap_and_lost_samples_keeps_its_phase():
     fields = {name: getattr(one, name)[kept] for name in ("line", "time", "values")}
     fields |= {name: getattr(one, name)[kept] for name in ("status", "temperature")}
     less = one.__class__(record=np.arange(kept.sum()), first=0, after=int(kept.sum()), **fields)
-    (event,) = Oscillation().finds(less, log)
+    (event,) = Oscillation().detect(less, log)
     assert event.facts.tone.frequency == pytest.approx(20.3, abs=0.002)
     assert abs(event.from_s - 10.0) <= 0.04
     assert abs(event.to_s - 69.99) <= 0.04

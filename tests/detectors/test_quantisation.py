@@ -11,7 +11,7 @@ from inertial.signal.roughness import roughness
 
 def found(values, **of_log):
     one, log = recorded(values, **of_log)
-    events = list(Quantisation().finds(one, log))
+    events = list(Quantisation().detect(one, log))
     for event in events:
         assert_told(Quantisation(), event, "log")
     return events
@@ -24,7 +24,7 @@ def test_steps_of_several_counts_are_named_with_their_number(times):
     (event,) = found(values)
     assert event.size == pytest.approx(times * COUNT[0])
     assert event.p_value < 1e-6
-    words = Quantisation().tells(event, "log")
+    words = Quantisation().describe(event, "log")
     assert "accelerometer x, y, z" in words.sentence
     assert f"{times} times the stated count" in words.sentence
 
@@ -46,7 +46,7 @@ def test_a_mean_is_off_by_as_much_as_is_told(noise):
     drift = np.repeat(np.linspace(0, 3, 200), 100)
     values[:, 0] = np.rint(drift + noise * generator.standard_normal(20_000)) * COUNT[0]
     one, log = recorded(values)
-    (event,) = Quantisation().finds(one, log.__class__(**{**vars(log), "increments": False}))
+    (event,) = Quantisation().detect(one, log.__class__(**{**vars(log), "increments": False}))
     told = float(np.exp(-2 * (np.pi * event.facts.noise) ** 2)) / np.pi
     assert event.severity == 2
     # An upper bound: without noise the largest error is half a count, where the first harmonic
@@ -60,7 +60,7 @@ def test_increments_lose_nothing_and_it_is_said():
     accelerometers, gyros = found(values)
     assert (accelerometers.severity, gyros.severity) == (1, 1)
     assert accelerometers.facts.axes == gyros.facts.axes == "xyz"
-    assert "good to one step" in Quantisation().tells(gyros, "log").consequence
+    assert "good to one step" in Quantisation().describe(gyros, "log").consequence
     assert abs(values[:, 3].sum() - level[:, 3].sum()) < 60 * COUNT[3]  # the noise, not 0.12 × n
 
 

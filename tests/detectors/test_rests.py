@@ -19,9 +19,9 @@ def seen(values: np.ndarray, position: float = 2.0) -> list[tuple[str, Event]]:
     """What both detectors see in a rest; `position`: arc seconds, how well it was set."""
     one = piece(values, stamps(len(values)))
     known = log(one, given(position_sigma=position * ARC_SECOND))
-    found = [(d, e) for d in (TableMoving(), BiasJump()) for e in d.finds(one, known)]
+    found = [(d, e) for d in (TableMoving(), BiasJump()) for e in d.detect(one, known)]
     for detector, event in found:
-        words = detector.tells(event, "z-up")
+        words = detector.describe(event, "z-up")
         assert words.sentence.startswith("z-up:") and "nan" not in str(words)
     return [(detector.name, event) for detector, event in found]
 
@@ -79,14 +79,14 @@ def test_a_jump_that_goes_back_is_one_event():
     ((name, event),) = seen(jumping(1, 10, until=K + 150))
     assert name == "bias_jump"
     assert abs(event.first - K) <= 2 and abs(event.after - (K + 150)) <= 2
-    words = BiasJump().tells(event, "z-up")
+    words = BiasJump().describe(event, "z-up")
     assert "and back" in words.sentence
     assert event.facts.share == pytest.approx(0.05, abs=0.002)
 
 
 def test_the_consequence_is_the_jump_times_its_share():
     ((_, event),) = seen(jumping(2, 10))
-    words = BiasJump().tells(event, "z-up")
+    words = BiasJump().describe(event, "z-up")
     # 10 × 1.07e-3 m/s² over 60 %; half of it is bias of the pair, and over 2 g ppm of scale.
     off = float(event.size) * 0.6
     assert off == pytest.approx(6.4e-3, rel=0.03)
@@ -177,7 +177,7 @@ def test_a_sudden_tilt_is_the_table_and_no_bias(arc_seconds, axis):
     assert event.size == pytest.approx(arc_seconds, rel=0.15)
     assert event.from_s == pytest.approx(K * INTERVAL, abs=1.1)
     assert event.to_s == pytest.approx(K * INTERVAL, abs=2.1)
-    assert "the gyros turn along" in TableMoving().tells(event, "z-up").sentence
+    assert "the gyros turn along" in TableMoving().describe(event, "z-up").sentence
 
 
 @pytest.mark.parametrize("arc_seconds", [50, 200, 2000])
@@ -185,7 +185,7 @@ def test_a_slow_creep_is_told_by_the_accelerometers(arc_seconds):
     ((name, event),) = seen(tilting(arc_seconds))
     assert (name, event.first, event.after) == ("table_moving", 0, N)
     assert event.size == pytest.approx(arc_seconds, rel=0.05, abs=3)
-    assert "too slowly for the gyros" in TableMoving().tells(event, "z-up").sentence
+    assert "too slowly for the gyros" in TableMoving().describe(event, "z-up").sentence
 
 
 @pytest.mark.parametrize("arc_seconds", [100, 1000])
@@ -194,7 +194,7 @@ def test_a_creep_that_begins_is_told_by_both(arc_seconds):
     assert name == "table_moving"
     assert event.size == pytest.approx(arc_seconds, rel=0.1)
     assert event.from_s == pytest.approx(15, abs=1.5)
-    assert "the gyros turn along" in TableMoving().tells(event, "z-up").sentence
+    assert "the gyros turn along" in TableMoving().describe(event, "z-up").sentence
 
 
 def test_what_only_the_accelerometers_show_and_the_gyros_deny_is_no_motion():
@@ -220,7 +220,7 @@ def test_a_knock_is_told_and_is_no_jump():
     values[K : K + 40, 1] += 0.5 * knock
     ((name, event),) = seen(values)
     assert name == "table_moving" and event.severity == 1
-    assert "knocked" in TableMoving().tells(event, "z-up").sentence
+    assert "knocked" in TableMoving().describe(event, "z-up").sentence
     assert event.from_s == pytest.approx(K * INTERVAL, abs=0.2)
 
 
@@ -237,7 +237,7 @@ def test_a_jump_of_a_level_gyro_is_told_from_a_turn():
 def test_a_jump_about_the_vertical_says_what_it_may_be_as_well():
     ((name, event),) = seen(jumping(5, 10))
     assert name == "bias_jump"
-    assert "about the vertical would look the same" in BiasJump().tells(event, "z-up").sentence
+    assert "about the vertical would look the same" in BiasJump().describe(event, "z-up").sentence
 
 
 def test_masked_readings_do_not_count():
@@ -250,5 +250,5 @@ def test_a_rest_without_time_is_not_judged():
     values = jumping(0, 50)
     one = piece(values)
     known = log(one, given())
-    assert not list(BiasJump().finds(one, known))
-    assert not list(TableMoving().finds(one, known))
+    assert not list(BiasJump().detect(one, known))
+    assert not list(TableMoving().detect(one, known))

@@ -10,7 +10,7 @@ from inertial.detectors.saturation import Saturation
 
 def found(values, **of_log):
     one, log = recorded(values, **of_log)
-    events = list(Saturation().finds(one, log))
+    events = list(Saturation().detect(one, log))
     for event in events:
         assert_told(Saturation(), event, "log")
     return events
@@ -50,7 +50,7 @@ def test_what_is_lost_of_a_smooth_crest_is_told():
     (event,) = found(after, limit=limits(4, 4.5))
     lost = float(np.sum(values[:, 4] - after[:, 4])) * INTERVAL
     assert event.facts.lost == pytest.approx(lost, rel=0.15)
-    words = Saturation().tells(event, "log")
+    words = Saturation().describe(event, "log")
     assert "the end of the range" in words.sentence
     assert f"about {event.facts.lost:.4f}"[:11] in words.consequence
 

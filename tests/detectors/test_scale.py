@@ -37,7 +37,7 @@ def test_a_wrong_scale_factor_is_explained(ratio, said):
     one = piece(up(ratio * GRAVITY), stamps(1000))
     (event,) = seen(WrongScaleFactor(), one, recorded_on=None)
     assert event.size == pytest.approx(ratio, rel=1e-3)
-    assert said in WrongScaleFactor().tells(event, "log").sentence
+    assert said in WrongScaleFactor().describe(event, "log").sentence
     assert (WrongScaleFactor.severity, WrongScaleFactor.sensor) == (3, "accel")
 
 
@@ -91,10 +91,10 @@ def test_a_ratio_of_no_unit_is_not_explained():
 
 
 def test_a_gravity_that_is_not_of_the_place_is_named():
-    (event,) = GravityError().judges(given(gravity=9.80665, gravity_sigma=5e-5))
+    (event,) = GravityError().detect_in_campaign(given(gravity=9.80665, gravity_sigma=5e-5))
     assert_told(GravityError(), event, "")
     assert event.size == pytest.approx(9.80665 - 9.7935882)
-    words = GravityError().tells(event, "")
+    words = GravityError().describe(event, "")
     assert "the size of the unit g" in words.sentence
     assert "off by −1332 ppm" in words.consequence
 
@@ -102,12 +102,12 @@ def test_a_gravity_that_is_not_of_the_place_is_named():
 @pytest.mark.parametrize("off", [-150, -60, 0, 60, 150])
 def test_what_geology_makes_is_no_error(off):
     """Free-air anomalies: 42 mGal rms over the earth."""
-    assert not list(GravityError().judges(given(gravity=9.7935882 + off * 1e-5)))
+    assert not list(GravityError().detect_in_campaign(given(gravity=9.7935882 + off * 1e-5)))
 
 
 def test_without_a_place_or_with_a_large_sigma_nothing_is_said():
-    assert not list(GravityError().judges(given(normal_gravity=np.nan, gravity=9.9)))
-    assert not list(GravityError().judges(given(gravity=9.80, gravity_sigma=0.02)))
+    assert not list(GravityError().detect_in_campaign(given(normal_gravity=np.nan, gravity=9.9)))
+    assert not list(GravityError().detect_in_campaign(given(gravity=9.80, gravity_sigma=0.02)))
 
 
 # ---- temperature
@@ -131,7 +131,7 @@ def test_a_warming_is_named_with_what_moves_with_it():
     values[:, 4] += 1e-4 * (temperature - 295.0)
     (event,) = seen(TemperatureDrift(), piece(values, stamps(6000), temperature=temperature))
     assert event.size == pytest.approx(8.0, abs=0.2)
-    words = TemperatureDrift().tells(event, "log")
+    words = TemperatureDrift().describe(event, "log")
     assert "goes from 21.9 °C to 29.8 °C" in words.sentence
     assert list(event.facts.changes) == [4]
     assert event.facts.changes[4] == pytest.approx(1e-4 * 8.0 * 2 / 3, rel=0.05)
@@ -141,7 +141,7 @@ def test_a_cooling_is_told_in_its_order():
     temperature = warming(5.0)[::-1]
     one = piece(rest(6000), stamps(6000), temperature=temperature)
     (event,) = seen(TemperatureDrift(), one)
-    assert "goes from 26.8 °C to 21.9 °C" in TemperatureDrift().tells(event, "log").sentence
+    assert "goes from 26.8 °C to 21.9 °C" in TemperatureDrift().describe(event, "log").sentence
 
 
 def test_single_wrong_readings_of_the_thermometer_are_no_drift():
@@ -157,7 +157,7 @@ def test_a_table_of_means_without_time_is_compared_row_by_row():
     one = piece(rest(29), temperature=temperature)
     (event,) = seen(TemperatureDrift(), one)
     assert event.size == pytest.approx(64.1)
-    assert "from 1.40 °C to 65.5 °C" in TemperatureDrift().tells(event, "log").sentence
+    assert "from 1.40 °C to 65.5 °C" in TemperatureDrift().describe(event, "log").sentence
 
 
 def test_logs_at_different_temperatures_are_one_finding():
@@ -166,7 +166,7 @@ def test_logs_at_different_temperatures_are_one_finding():
         for name, start in (("a", 0.0), ("b", 3.0), ("c", 6.0))
     }
     logs = {name: log(one) for name, one in ones.items()}
-    (event,) = TemperatureDrift().compares(logs)
+    (event,) = TemperatureDrift().detect_between_logs(logs)
     assert_told(TemperatureDrift(), event, "")
     assert event.size == pytest.approx(6.1, abs=0.2)
-    assert not list(TemperatureDrift().compares({"a": logs["a"]}))
+    assert not list(TemperatureDrift().detect_between_logs({"a": logs["a"]}))

@@ -15,7 +15,7 @@ def found(values):
     one, log = recorded(values)
     seen = []
     for detector in EACH:
-        events = list(detector.finds(one, log))
+        events = list(detector.detect(one, log))
         for event in events:
             assert_told(detector, event, "log")
         seen += [(detector.name, detector.sensor, event.first, event.after) for event in events]
@@ -46,8 +46,8 @@ def test_a_flipped_gyro_is_found_while_the_table_turns(about, samples):
 def test_its_words_name_the_axis_and_the_numbers():
     values = flipped(rest(3000), 2, 1500, 3000)
     one, log = recorded(values)
-    (event,) = SignFlip().finds(one, log)
-    words = SignFlip().tells(event, "up.asc")
+    (event,) = SignFlip().detect(one, log)
+    words = SignFlip().describe(event, "up.asc")
     assert "z reads −z" in words.sentence
     assert "on z would be −9.75" in words.consequence
     assert "in place of 9.75" in words.consequence

@@ -10,7 +10,7 @@ from inertial.detectors.spike import Spikes, chance
 
 def found(values, **of_log):
     one, whole = recorded(values, **of_log)
-    events = list(Spikes().finds(one, whole))
+    events = list(Spikes().detect(one, whole))
     for event in events:
         assert_told(Spikes(), event, "log")
     return events
@@ -49,7 +49,7 @@ def test_its_words_tell_what_it_would_have_moved():
     values = rest(3000)
     values[1000, 2] += 30.0
     (event,) = found(values)
-    words = Spikes().tells(event, "up.asc")
+    words = Spikes().describe(event, "up.asc")
     assert "1 reading of accelerometer z is off the neighbours by +30.0 m/s²" in words.sentence
     assert "line 1001" in words.sentence
     assert "that of 1 s by +0.300 m/s²" in words.consequence
@@ -135,4 +135,4 @@ def test_a_log_without_time_is_not_judged():
     values = rest(100)
     values[50] += GRAVITY
     one = piece(values)
-    assert list(Spikes().finds(one, log(one))) == []
+    assert list(Spikes().detect(one, log(one))) == []

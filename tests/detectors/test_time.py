@@ -48,7 +48,7 @@ def causes(one, campaign=None, **of_log):
     found = {}
     whole = log(one, campaign, **of_log)
     for detector in OF_TIME:
-        events = [*detector.finds(one, whole), *detector.concludes(whole)]
+        events = [*detector.detect(one, whole), *detector.detect_in_log(whole)]
         for event in events:
             assert_told(detector, event, "log")
         if events:
@@ -133,7 +133,8 @@ def test_a_replay_is_masked(back, length):
     (event,) = found["duplicate"]
     assert (event.first, event.after) == (900, 900 + length)
     assert (
-        "repeat earlier ones" in TimeBackwards().tells(found["time_backwards"][0], "log").sentence
+        "repeat earlier ones"
+        in TimeBackwards().describe(found["time_backwards"][0], "log").sentence
     )
 
 
@@ -188,12 +189,12 @@ def test_what_the_instrument_calls_invalid_is_masked():
     one.status[300:310] = 0x76
     (event,) = seen(StatusInvalid(), one)
     assert (event.first, event.after, event.size) == (300, 310, 10)
-    told = StatusInvalid().tells(event, "log").sentence
+    told = StatusInvalid().describe(event, "log").sentence
     assert "status 00000076, bit 0 is not set" in told
     one.status[:] = float(0x80000000)
     failed = given(must_be_set=0, must_be_clear=0xF8000000)
     (event,) = seen(StatusInvalid(), one, failed)
-    assert "bit 31 is set" in StatusInvalid().tells(event, "log").sentence
+    assert "bit 31 is set" in StatusInvalid().describe(event, "log").sentence
 
 
 # ---- the order of time
@@ -268,7 +269,7 @@ def test_stamps_of_whole_milliseconds_are_told_as_rounded():
     whole = given(interval=11.88e-3)
     (event,) = seen(ClockJitter(), one, whole, recorded_on=None, step=11.88e-3)
     assert event.size == pytest.approx(1e-3 / np.sqrt(12), rel=0.1)
-    told = ClockJitter().tells(event, "log").sentence
+    told = ClockJitter().describe(event, "log").sentence
     assert "rounded to 1 ms: 11 ms and 12 ms take turns, where 11.88 ms pass" in told
     assert set(causes(one, whole, recorded_on=None, step=11.88e-3)) == {"clock_jitter"}
 
@@ -335,11 +336,11 @@ def test_increments_tell_whether_the_stamps_are_off_or_the_sampling():
     values = rest(4000, noise=NOISE, count=COUNT * 1e-6)
     (event,) = seen(ClockScale(), piece(values, np.round(slower, 9)))
     assert event.facts.told.stamps is True
-    assert "the stamps run fast by 200 ppm" in ClockScale().tells(event, "log").sentence
+    assert "the stamps run fast by 200 ppm" in ClockScale().describe(event, "log").sentence
     values[1001:2001] *= 1 + excess  # the samples do take longer
     (event,) = seen(ClockScale(), piece(values, np.round(slower, 9)))
     assert event.facts.told.stamps is False
-    assert "the sampling is off, not the stamps" in ClockScale().tells(event, "log").sentence
+    assert "the sampling is off, not the stamps" in ClockScale().describe(event, "log").sentence
     (event,) = seen(ClockScale(), piece(values, np.round(slower, 9)), recorded_on=None)
     assert event.facts.told.stamps is None
 
@@ -367,12 +368,14 @@ def test_a_whole_campaign_that_is_off_is_one_finding():
     one.values[:] /= 1.005
     usual = given(usual_interval=INTERVAL * 1.005, unlike=0.0)
     logs = {name: log(one, usual) for name in ("a", "b", "c")}
-    assert not any(list(ClockScale().finds(one, own)) for own in logs.values())
-    (event,) = ClockScale().compares(logs)
+    assert not any(list(ClockScale().detect(one, own)) for own in logs.values())
+    (event,) = ClockScale().detect_between_logs(logs)
     assert_told(ClockScale(), event, "")
     assert event.size == pytest.approx(5000)
     assert event.facts.told.stamps is True
-    assert not list(ClockScale().compares({"a": log(one, given(usual_interval=INTERVAL))}))
+    assert not list(
+        ClockScale().detect_between_logs({"a": log(one, given(usual_interval=INTERVAL))})
+    )
 
 
 def test_logs_that_are_unlike_anyway_are_not_compared():
@@ -384,7 +387,7 @@ def test_logs_that_are_unlike_anyway_are_not_compared():
 def test_another_rate_is_named_with_its_factor(stated, said):
     (event,) = seen(RateOff(), piece(rest(500), stamps(500)), given(interval=1 / stated))
     assert event.size == pytest.approx(100 / stated)
-    assert said in RateOff().tells(event, "log").sentence
+    assert said in RateOff().describe(event, "log").sentence
 
 
 @pytest.mark.parametrize(
@@ -405,7 +408,7 @@ def test_another_day_is_named(recorded, stated, days):
     events = seen(WrongDay(), one, given(date=stated), recorded_on=recorded)
     assert [event.size for event in events] == [days] * (days is not None)
     if days == 7168:
-        assert "1024 weeks" in WrongDay().tells(events[0], "log").sentence
+        assert "1024 weeks" in WrongDay().describe(events[0], "log").sentence
 
 
 # ---- a clock that is set

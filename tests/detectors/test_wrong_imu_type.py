@@ -13,7 +13,7 @@ def concluded(*imu: int, count: np.ndarray | None = None):
     one = piece(rest(500), stamps(500))
     counts = {} if count is None else {"count": count}
     whole = log(one, None, imu=imu, increments=True, **counts)
-    events = list(WrongImuType().concludes(whole))
+    events = list(WrongImuType().detect_in_log(whole))
     for event in events:
         assert_told(WrongImuType(), event, "log")
     return events
@@ -28,7 +28,7 @@ def test_another_type_is_off_by_a_radian_in_degrees_and_told_by_name():
     """S0 takes its IMU for an iMAR-FSAS; its gyro counts are 57.3 times as large."""
     (event,) = concluded(FSAS)
     assert event.size == pytest.approx(180 / np.pi, rel=1e-6)
-    assert "iMAR iIMU-FSAS" in WrongImuType().tells(event, "log").sentence
+    assert "iMAR iIMU-FSAS" in WrongImuType().describe(event, "log").sentence
 
 
 def test_two_types_in_one_log_are_named():

@@ -166,6 +166,7 @@ def clocks(manoeuvres: Rows) -> Rows:
             "from_s": 0.0,
             "to_s": seconds_of(row),
             "records": round(seconds_of(row) / INTERVAL),
+            "to_record": round(seconds_of(row) / INTERVAL),
             "interval": INTERVAL,
         }
         for row in manoeuvres
