@@ -78,15 +78,15 @@ def test_blocks_keep_every_increment(clean):
 def test_the_bins_of_a_long_campaign_are_longer_and_find_the_same(clean, monkeypatch):
     fine = clean[0]["segment/segments"]
     monkeypatch.setattr(windows, "MAX_BINS", 8000)
-    binned = windows.binned
+    binned = windows.Bins.binned
     bins = []
 
-    def counted(*arguments):
-        for one in binned(*arguments):
-            bins.append(one.bins)
-            yield one
+    def counted(self):
+        for window in binned(self):
+            bins.append(window.bins)
+            yield window
 
-    monkeypatch.setattr("stages.segment.binned", counted)
+    monkeypatch.setattr(windows.Bins, "binned", counted)
     coarse = chain.again(clean[0], "segment")
     assert sum(bins) <= 8000 + len(bins)  # each window may begin another one
     assert coarse["performed"]["complete"].all()
