@@ -1,0 +1,1 @@
+"""Stage `pdf`: the report for print."""

@@ -1,0 +1,272 @@
+"""How a figure is drawn: colours, type and lines, and the SVG that goes into the page.
+
+The same figure gives the same bytes on every machine: letters are set in
+matplotlib's own DejaVu Sans, which the page brings along, and neither a date nor
+a random identifier enters.
+"""
+
+from __future__ import annotations
+
+import io
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
+from numpy.typing import NDArray
+
+from inertial.text.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, MILLIMETRES, Unit
+from stages.report.identifiers import at_rest
+from stages.report.light_svg import light
+from stages.report.tables import Record
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+
+Array = NDArray[np.float64]
+
+WIDTH = 7.1  # inches: the text width of the printed page
+
+INK = "#1f2933"
+QUIET = "#5f6c7b"
+RULE = "#d5dbe2"
+# Okabe and Ito, "Color Universal Design" (2008): distinct with every kind of colour vision.
+AXIS_COLOUR = {"x": "#d55e00", "y": "#009e73", "z": "#0072b2"}
+AXIS_MARK = {"x": "o", "y": "s", "z": "^"}
+PHASE_COLOUR = {
+    "rest": "#e6eaef",
+    "spin-up": "#fbe3b8",
+    "steady": "#dcecf8",
+    "spin-down": "#fbe3b8",
+}
+GRID_COLUMNS = 3
+SMALL_RATE = 0.2 * DEGREES_PER_SECOND.size
+MISSING = "#8e2a5b"
+MASKED = "#aeb7c2"
+
+_STYLE: Any = {
+    "axes.axisbelow": True,
+    "axes.edgecolor": QUIET,
+    "axes.grid": True,
+    "axes.labelcolor": INK,
+    "axes.labelsize": 7.5,
+    "axes.linewidth": 0.6,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlelocation": "left",
+    "axes.titlepad": 4,
+    "axes.titlesize": 7.5,
+    "axes.titley": 1.0,  # titles stand still, which saves measuring every label
+    "axes.unicode_minus": True,
+    "font.family": "DejaVu Sans",
+    "font.size": 7.5,
+    "grid.color": RULE,
+    "grid.linewidth": 0.4,
+    "hatch.linewidth": 0.4,
+    "legend.fontsize": 7,
+    "legend.frameon": False,
+    "lines.linewidth": 1.0,
+    "patch.linewidth": 0.0,
+    "svg.fonttype": "none",  # letters stay letters: searchable, and light
+    "text.color": INK,
+    "text.parse_math": False,  # a name may hold a dollar sign
+    "xtick.color": QUIET,
+    "xtick.labelsize": 7,
+    "xtick.major.size": 2.5,
+    "xtick.major.width": 0.5,
+    "xtick.minor.size": 1.5,
+    "xtick.minor.width": 0.4,
+    "ytick.color": QUIET,
+    "ytick.labelsize": 7,
+    "ytick.major.size": 2.5,
+    "ytick.major.width": 0.5,
+    "ytick.minor.size": 1.5,
+    "ytick.minor.width": 0.4,
+}
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """Draw within this: the report's type, lines and colours, whatever matplotlibrc says."""
+    with mpl.rc_context(), warnings.catch_warnings():
+        # A name may hold letters that the font lacks; they are drawn as boxes.
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font")
+        mpl.rcdefaults()
+        mpl.rcParams.update(_STYLE)
+        yield
+
+
+@dataclass(frozen=True)
+class Margins:
+    """Space around and between panels, inches."""
+
+    left: float = 0.46
+    right: float = 0.1
+    top: float = 0.22
+    bottom: float = 0.4
+    across: float = 0.62
+    down: float = 0.24
+
+
+def panels(
+    rows: int, columns: int, height: float, margins: Margins, *, sharex: bool = True
+) -> tuple[Figure, list[list[Axes]]]:
+    """An empty figure of panels, row by row; `height` of one panel in inches."""
+    total = margins.top + rows * height + (rows - 1) * margins.down + margins.bottom
+    figure = Figure(figsize=(WIDTH, total))
+    FigureCanvasSVG(figure)
+    width = (WIDTH - margins.left - margins.right - (columns - 1) * margins.across) / columns
+    figure.subplots_adjust(
+        left=margins.left / WIDTH,
+        right=1 - margins.right / WIDTH,
+        top=1 - margins.top / total,
+        bottom=margins.bottom / total,
+        wspace=margins.across / width,
+        hspace=margins.down / height,
+    )
+    axes = figure.subplots(rows, columns, sharex=sharex, squeeze=False)
+    return figure, [list(row) for row in axes]
+
+
+def side_by_side(
+    widths: Sequence[float], height: float, margins: Margins
+) -> tuple[Figure, list[Axes]]:
+    """An empty figure of panels in one row, whose widths are as `widths` to each other."""
+    total = margins.top + height + margins.bottom
+    figure = Figure(figsize=(WIDTH, total))
+    FigureCanvasSVG(figure)
+    room = WIDTH - margins.left - margins.right - (len(widths) - 1) * margins.across
+    axes = []
+    left = margins.left
+    for share in widths:
+        width = room * share / sum(widths)
+        place = (left / WIDTH, margins.bottom / total, width / WIDTH, height / total)
+        axes.append(figure.add_axes(place))
+        left += width + margins.across
+    return figure, axes
+
+
+def grid(
+    names: Sequence[str],
+    draw: Callable[[Axes, str], None],
+    height: float,
+    margins: Margins,
+    label: str,
+    key: str,
+) -> str:
+    """A panel for each name, three in a row, `label` below the lowest of each column."""
+    lines = -(-len(names) // GRID_COLUMNS)
+    with style():
+        figure, axes = panels(lines, GRID_COLUMNS, height, margins)
+        each = [panel for line in axes for panel in line]
+        for panel, name in zip(each, names, strict=False):
+            draw(panel, name)
+        for panel in each[len(names) :]:
+            panel.set_visible(False)
+        for panel in each[max(0, len(names) - GRID_COLUMNS) : len(names)]:
+            panel.tick_params(labelbottom=True)
+            panel.set_xlabel(label)
+        return svg(figure, key)
+
+
+def band(
+    panel: Axes, x: Sequence[float] | Array, low: Array, high: Array, colour: str, **look: Any
+) -> None:
+    """The area from `low` to `high`."""
+    panel.fill_between(x, low, high, color=colour, **{"linewidth": 0.5} | look)
+
+
+def ticks(panel: Axes, y: int, x: int | None = None) -> None:
+    """At most so many ticks on each axis."""
+    panel.yaxis.set_major_locator(MaxNLocator(y))
+    if x is not None:
+        panel.xaxis.set_major_locator(MaxNLocator(x))
+
+
+def readable(sensor: str, largest: float, most_per_hour: float = SMALL_RATE) -> Unit:
+    """The unit in which the largest of some readings, rad/s or m/s², has few digits."""
+    if sensor == "gyro":
+        return DEGREES_PER_HOUR if largest < most_per_hour else DEGREES_PER_SECOND
+    return MILLIMETRES if largest < 1.0 else METRES
+
+
+def name_axis(panel: Axes, axis: str, text: str = "") -> None:
+    """The axis of the sensor, in its colour, above a panel."""
+    panel.set_title(text or axis, loc="right", color=AXIS_COLOUR[axis], fontsize=6.5, pad=2)
+
+
+def write_inside(panel: Axes, text: str) -> None:
+    """Why a panel is empty."""
+    panel.annotate(
+        text, (0.5, 0.5), xycoords="axes fraction", ha="center", va="center", color=QUIET
+    )
+
+
+def plain_numbers(axis: Axis) -> None:
+    """Tick labels of a logarithmic axis as plain numbers, at 1, 2 and 5 of a decade."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=12))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+
+
+def svg(figure: Figure, key: str) -> str:
+    """`figure` as an element of the page; `key`, a plain word, keeps its identifiers apart."""
+    text = io.StringIO()
+    with mpl.rc_context({"svg.hashsalt": key}):
+        nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+        figure.savefig(text, format="svg", metadata=nothing, transparent=True)
+    return light(text.getvalue(), key)
+
+
+def shade(axes: Axes, phases: Sequence[Record], start: str = "start", end: str = "end") -> None:
+    """Mark the phases of the table behind the curves; `start`, `end`: the keys of their span."""
+    for row in phases:
+        phase = "rest" if at_rest(row["phase"]) else row["phase"]
+        colour = PHASE_COLOUR.get(phase, RULE)
+        axes.axvspan(row[start], row[end], color=colour, zorder=0, linewidth=0)
+
+
+def hatch_missing(
+    axes: Axes, start: float, end: float, *, ymin: float = 0.0, ymax: float = 1.0
+) -> None:
+    """Mark a stretch that was not recorded; between heights in shares of the panel."""
+    axes.axvspan(
+        start,
+        end,
+        ymin,
+        ymax,
+        facecolor="#f6ebf1",
+        edgecolor=MISSING,
+        hatch="///",
+        linewidth=0.6,
+        zorder=3,
+    )
+
+
+def hatch_masked(axes: Axes, start: float, end: float) -> None:
+    """Mark a stretch that was recorded but is not used."""
+    axes.axvspan(
+        start, end, facecolor="#f1f3f5", edgecolor=MASKED, hatch="||", linewidth=0, zorder=1
+    )
+
+
+def mark_place(axes: Axes, start: float, end: float) -> None:
+    """Mark a place in a curve: a band, and above it a wedge for where it is narrow."""
+    axes.axvspan(start, end, color=MISSING, alpha=0.18, linewidth=0.8, zorder=1.5)
+    axes.plot(
+        (start + end) / 2,
+        1.0,
+        marker="v",
+        markersize=4.5,
+        color=MISSING,
+        transform=axes.get_xaxis_transform(),
+        clip_on=False,
+        zorder=5,
+    )

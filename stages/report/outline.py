@@ -1,0 +1,223 @@
+"""The outline of the report as data: sections with a title, what they show and how to read it.
+
+What a part looks like is decided by report.html alone; a part only says what it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Literal
+
+from inertial.text.numbers import whole
+from stages.report.tables import Tables
+
+# What a column holds, hence how it is set: text; name (in one line); number (digits under
+# digits); sigma (the number after ±); unit; symbol (`b_x` with its index below); code;
+# identifier (code in one line); note (small); mark (✓ or ✗).
+Kind = Literal[
+    "text", "name", "number", "sigma", "unit", "symbol", "code", "identifier", "note", "mark"
+]
+# How grave a row, a paragraph or a figure is. Never by colour alone: a word says it too.
+Tone = Literal["", "good", "fair", "poor"]
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table: its heading and what it holds; neighbours may share a `group`."""
+
+    heading: str
+    kind: Kind = "text"
+    group: str = ""
+
+
+def columns(kind: Kind, *headings: str, group: str = "") -> tuple[Column, ...]:
+    """Columns of one kind, below a common heading where `group` is given."""
+    return tuple(Column(heading, kind, group) for heading in headings)
+
+
+def value_and_sigma(group: str = "", value: str = "value", *, unit: bool = False) -> list[Column]:
+    """The columns of a value, its sigma, and its unit where that differs from row to row."""
+    both = [Column(value, "number", group), Column("± σ", "sigma", group)]
+    return [*both, Column("unit", "unit", group)] if unit else both
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of a table; one with `heads` stands above the rows it names."""
+
+    cells: tuple[str, ...]
+    anchor: str = ""
+    tone: Tone = ""
+    heads: bool = False
+
+
+def table_row(*cells: str, anchor: str = "", tone: Tone = "") -> Row:
+    """A row of these cells."""
+    return Row(cells, anchor, tone)
+
+
+def head(name: str) -> Row:
+    """The name of the rows below it."""
+    return Row((name,), heads=True)
+
+
+def more(count: int, where: str) -> str:
+    """That `count` rows are left out, `where` says which; or nothing."""
+    return f"{whole(count)} more{where}." if count > 0 else ""
+
+
+class Part:
+    """A piece of a section; `kind` says how the page shows it."""
+
+    @property
+    def kind(self) -> str:
+        """The macro of the page."""
+        return type(self).__name__.lower()
+
+
+@dataclass(frozen=True)
+class Table(Part):
+    """A table with its caption; without rows, the words in `empty`."""
+
+    caption: str
+    columns: Sequence[Column]
+    rows: Sequence[Row]
+    empty: str = "None."
+    note: str = ""
+
+    @property
+    def groups(self) -> tuple[tuple[str, int], ...]:
+        """The headings above the headings, each with how many columns it spans; or nothing."""
+        if not any(column.group for column in self.columns):
+            return ()
+        spans = groupby(column.group for column in self.columns)
+        return tuple((group, len(list(own))) for group, own in spans)
+
+
+@dataclass(frozen=True)
+class Figure(Part):
+    """A drawing with its caption; `drawn` is SVG, `words` say it to who cannot see it."""
+
+    caption: str
+    drawn: str
+    words: str
+    tone: Tone = ""
+
+
+@dataclass(frozen=True)
+class Paragraph(Part):
+    """Plain sentences."""
+
+    text: str
+    tone: Tone = ""
+
+
+@dataclass(frozen=True)
+class Heading(Part):
+    """The name of what follows within a section."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Sentences(Part):
+    """Sentences, one below the other."""
+
+    items: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Facts(Part):
+    """Names and what they are: instrument, serial, date."""
+
+    pairs: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class Equation(Part):
+    """An equation in words and signs, with what it says."""
+
+    text: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """A matrix or a vector, digits under digits."""
+
+    name: str
+    entries: tuple[tuple[str, ...], ...]
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class Matrices(Part):
+    """Matrices side by side."""
+
+    caption: str
+    items: tuple[Matrix, ...]
+
+
+@dataclass(frozen=True)
+class Level(Part):
+    """The verdict in one of three words."""
+
+    word: str
+    tone: Tone
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Link:
+    """Words that lead to another place of the page."""
+
+    words: str
+    anchor: str
+
+
+Pairs = tuple[tuple[str, str], ...]  # the answer to each question of one or two words
+
+
+@dataclass(frozen=True)
+class Finding(Part):
+    """What was found: a sentence, what it does and what to do, the figures that show it.
+
+    One about the `model` has its figures below the answers, one about the recording above.
+    """
+
+    anchor: str
+    title: str
+    grade: str  # how grave or how sure it is, in words
+    sentence: str
+    answers: Pairs
+    facts: Pairs = ()
+    parts: Sequence[Figure | Table] = ()
+    links: Sequence[Link] = ()
+    tone: Tone = ""
+    model: bool = False
+
+
+@dataclass(frozen=True)
+class Section:
+    """One numbered section: what it shows, how to read it, which tables it reads, its parts."""
+
+    key: str
+    title: str
+    shows: str
+    reading: str
+    reads: tuple[str, ...]
+    parts: Callable[[Tables], Iterable[Part]]
+
+
+@dataclass(frozen=True)
+class Report:
+    """The whole report: its title page and its sections in order, each with its parts."""
+
+    title: str
+    campaign: str
+    instrument: str  # with its serial
+    running: str  # what stands on top of every printed page
+    simulated: bool
+    sections: Sequence[tuple[Section, Sequence[Part]]]

@@ -1,0 +1,100 @@
+"""The report as one HTML page: the outline poured into its template, with style and fonts.
+
+The letters are matplotlib's DejaVu fonts, cut to those that are used. They travel inside the
+page, so that it looks the same on every machine, without network and installed fonts.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import string
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from html import unescape
+from pathlib import Path
+
+import matplotlib as mpl
+from fontTools.subset import Options, Subsetter  # type: ignore[import-untyped]
+from fontTools.ttLib import TTFont  # type: ignore[import-untyped]
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+
+from stages.report.outline import Report
+
+FOLDER = Path(__file__).parent
+MOST_LETTERS = {"code": 64}  # of a word that a cell of this kind has room for: a hash
+MOST_LETTERS_ELSE = 24
+FONTS = (
+    ("Report", 400, "normal", "DejaVuSans.ttf"),
+    ("Report", 700, "normal", "DejaVuSans-Bold.ttf"),
+    ("Report", 400, "italic", "DejaVuSans-Oblique.ttf"),
+    ("Report Mono", 400, "normal", "DejaVuSansMono.ttf"),
+)
+# In every report, whether its words happen to need them or not.
+ALWAYS = frozenset(
+    string.printable
+    + "".join(map(chr, range(0xA0, 0x100)))  # Latin-1: ° ± × µ ² ³
+    + "αβγδεωρσφχΔΩ₀₁₂₃₄₅₆₇₈₉ₓ⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺√−–—…’“”≥≤≈→✓✗●◐○�\u2007\u2008\u202f"
+)
+
+
+def page(report: Report) -> str:
+    """One file: text, tables, figures, style and fonts; no network, no script.
+
+    Whatever came from outside is escaped; only the figures, which are drawn here,
+    and the style go in as they are.
+    """
+    environment = Environment(
+        loader=FileSystemLoader(FOLDER, encoding="utf-8"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["drawn"] = Markup
+    environment.tests["long"] = _long
+    style = Markup((FOLDER / "report.css").read_text(encoding="utf-8"))
+    template = environment.get_template("report.html")
+    plain = unescape(template.render(report=report, style=style, fonts=[]))
+    fonts = _fonts("".join(sorted(ALWAYS.union(plain))))
+    return template.render(report=report, style=style, fonts=fonts)
+
+
+def _long(text: str, kind: str) -> bool:
+    """Whether a cell holds a word that must be broken anywhere."""
+    return any(len(word) > MOST_LETTERS.get(kind, MOST_LETTERS_ELSE) for word in text.split())
+
+
+@dataclass(frozen=True)
+class Font:
+    """A font of the page: its family, weight and style, and its file as base64."""
+
+    family: str
+    weight: int
+    style: str
+    data: str
+
+
+@lru_cache(maxsize=4)
+def _fonts(letters: str) -> tuple[Font, ...]:
+    return tuple(_subsets(letters))
+
+
+def _subsets(letters: str) -> Iterator[Font]:
+    """Each font with these letters only."""
+    folder = Path(mpl.get_data_path()) / "fonts" / "ttf"
+    for family, weight, style, file in FONTS:
+        options = Options(flavor="woff2", layout_features=["kern"])
+        options.name_IDs = [1, 2]
+        options.notdef_outline = True
+        options.drop_tables += ["FFTM"]  # a time stamp of FontForge
+        with TTFont(folder / file, recalcTimestamp=False) as font:
+            subsetter = Subsetter(options)
+            subsetter.populate(text=letters)
+            subsetter.subset(font)
+            font.flavor = "woff2"
+            written = io.BytesIO()
+            font.save(written)
+        yield Font(family, weight, style, base64.b64encode(written.getvalue()).decode())

@@ -1,0 +1,303 @@
+"""The parameters by every method, which results are final, and how a parameter is written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from inertial.campaign.final_result import EXTENDED, extended_methods
+from inertial.campaign.final_result import counting as with_extended
+from inertial.tables import AXES
+from inertial.text import numbers, units
+from inertial.text.cause_names import in_words
+from stages.report.identifiers import (
+    at_mount,
+    kind_and_axes,
+    listed_names,
+    method_and_mount,
+    method_of_sensor,
+    of_effect,
+)
+from stages.report.outline import Tone
+from stages.report.tables import Record, Tables, once
+from stages.report.words import SENSOR_OF_STAGE, capital, sensor_of_stage, with_mount
+
+ESTIMATE_TABLES = (
+    "accelerometer_parameters",
+    "accelerometer_fit",
+    "gyroscope_parameters",
+    "gyroscope_fit",
+)
+RESULT_TABLES = (*ESTIMATE_TABLES, "extended_parameters", "extended_fit", "decision")
+JOINT, FREE = "joint", "free_positions"
+METHOD = {
+    JOINT: "joint fit of all manoeuvres",
+    "six_position": "six positions, S0",
+    FREE: "static positions of unknown attitude, by |f| = g",
+    "up_and_down": "two positions with tilt, S1",
+    "pooled_positions": "static positions at one attitude pooled, S3",
+    "static": "static positions up and down, S0",
+    "turns": "turns forward and backward, S0",
+    "turn_and_stop": "turn and stop, S3: M, and the bias by turns",
+    "stops": "turn and stop, S3: the bias by static positions",
+    "rate_table": "rate table, S4",
+}
+KIND = {
+    "bias": "Bias",
+    "scale": "Scale error",
+    "cross": "Cross-axis terms",
+    "mounting": "Mounting rotation of the sensor triad against the case",
+    "symmetric": "Non-orthogonality: the symmetric part P of M = P R",
+}
+SYMBOL = {"bias": "b", "scale": "s", "cross": "m", "mounting": "ρ", "symmetric": "p"}
+CALIBRATION = frozenset(
+    [f"{kind}_{axis}" for kind in ("bias", "scale") for axis in AXES]
+    + [f"cross_{row}{column}" for row in AXES for column in AXES if row != column]
+)
+MIN_P = 0.01  # of a fit that describes its data
+MISFIT = "the model does not describe the data within the noise; the σ include noise only"
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The parameters that one method estimated, with its fit."""
+
+    stage: str
+    method: str
+    parameters: tuple[Record, ...] = ()
+    fit: Record | None = None
+
+    @property
+    def kind(self) -> str:
+        """The method without the mount that a parameter set may be of: joint of joint@upright."""
+        return method_and_mount(self.method)[0]
+
+    @property
+    def mount(self) -> str:
+        """The mount of its parameters where there are several."""
+        return method_and_mount(self.method)[1]
+
+    @property
+    def place(self) -> tuple[str, str]:
+        """The stage of its sensor, and its mount."""
+        return self.stage, self.mount
+
+    @property
+    def sensor(self) -> str:
+        """The sensor in words, with the mount where there are several."""
+        return with_mount(sensor_of_stage(self.stage), self.mount)
+
+    @property
+    def name(self) -> str:
+        """Sensor and method in words."""
+        return f"{self.sensor}, {METHOD.get(self.kind, self.kind)}"
+
+    @property
+    def determined(self) -> list[Record]:
+        """The parameters that have a value."""
+        return [row for row in self.parameters if row["value"] is not None]
+
+    @property
+    def calibration(self) -> dict[str, Record]:
+        """Those of the twelve parameters of a sensor that have a value, by name."""
+        own = {row["parameter"]: row for row in self.determined}
+        return {name: row for name, row in own.items() if name in CALIBRATION}
+
+    @property
+    def misfit(self) -> bool:
+        """Whether the residuals are larger than the noise allows."""
+        p_value = self.fit["p_value"] if self.fit else None
+        return p_value is not None and bool(p_value < MIN_P)
+
+    def fit_in_words(self) -> tuple[str, Tone]:
+        """Whether the model describes the data, plainly; nothing where no fit was made."""
+        fit = self.fit
+        if fit is None:
+            return "", ""
+        p_is = numbers.p_is(fit["p_value"])
+        if not self.misfit:
+            if not fit["degrees"]:
+                return "no degree of freedom is left to test the model", "fair"
+            return f"the model describes the data within the noise ({p_is})", "good"
+        if not (fit["scatter"] or fit["random_walk"]):
+            return f"{MISFIT} ({p_is})", "poor"
+        if not fit["scatter"]:
+            return (
+                f"noise alone does not describe the data ({p_is}), noise and a random walk of the "
+                "bias do"
+            ), "fair"
+        unit = units.quantity("bias", fit["unit"]).laboratory
+        scatter = f"{numbers.significant(unit.of(fit['scatter']), 2)} {unit.name}"
+        return (
+            f"the model does not describe the data within the noise ({p_is}); manoeuvres scatter "
+            f"by {scatter} beyond it, which the σ include"
+        ), "poor"
+
+
+@once
+def estimates(tables: Tables) -> list[Estimate]:
+    """Every method of both sensors, in the order of the tables; a fit without parameters too."""
+    results = []
+    for stage in SENSOR_OF_STAGE:
+        fits = {row["method"]: row for row in tables.rows(f"{stage}_fit")}
+        rows = tables.rows(f"{stage}_parameters")
+        for method in dict.fromkeys([*(row["method"] for row in rows), *fits]):
+            own = by_kind(row for row in rows if row["method"] == method)
+            results.append(Estimate(stage, method, tuple(own), fits.get(method)))
+    return results
+
+
+@once
+def extended_estimates(tables: Tables) -> list[Estimate]:
+    """The results of the extension, one for each sensor and mount; its effects left out."""
+    fits = {row["method"]: row for row in tables.rows("extended_fit")}
+    rows = tables.rows("extended_parameters")
+    results = []
+    for method in dict.fromkeys(row["method"] for row in rows):
+        stage, mount = method_and_mount(method)
+        own = (r for r in rows if r["method"] == method and not of_effect(r["parameter"]))
+        results.append(Estimate(stage, at_mount(EXTENDED, mount), tuple(own), fits.get(method)))
+    return results
+
+
+@once
+def replaced_methods(tables: Tables) -> set[str]:
+    """The sensors and mounts whose extended result is the final one, as the extension has them."""
+    return extended_methods(tables.rows("decision"))
+
+
+def is_replaced(tables: Tables, estimate: Estimate) -> bool:
+    """Whether the extended result is final in place of this joint one."""
+    method = at_mount(estimate.stage, estimate.mount)
+    return estimate.kind == JOINT and method in replaced_methods(tables)
+
+
+@once
+def final_results(tables: Tables) -> list[Estimate]:
+    """The final results of both sensors, one per mount; an empty one where there is none.
+
+    They are of the joint fits, or of those with effects in the model. Where no attitude is known,
+    the fit to static positions of unknown attitude takes its place.
+    """
+    extended = {result.place: result for result in extended_estimates(tables)}
+    each = estimates(tables)
+    free = {result.place: result for result in each if result.kind == FREE}
+    final = [
+        extended.get(result.place, result) if is_replaced(tables, result) else result
+        for result in each
+        if result.kind in (JOINT, EXTENDED)
+    ]
+    final = [result if result.determined else free.get(result.place, result) for result in final]
+    missing = [stage for stage in SENSOR_OF_STAGE if all(result.stage != stage for result in final)]
+    final += [Estimate(stage, JOINT) for stage in missing]
+    return sorted(final, key=lambda result: list(SENSOR_OF_STAGE).index(result.stage))
+
+
+@once
+def final_parameters(tables: Tables) -> list[Record]:
+    """The parameters of all methods; with value and sigma of the extended fit where it is final."""
+    rows = [row for stage in SENSOR_OF_STAGE for row in tables.rows(f"{stage}_parameters")]
+    replaced = replaced_methods(tables)
+    better = [row for row in tables.rows("extended_parameters") if row["method"] in replaced]
+    return with_extended(rows, better)
+
+
+def effects_in(tables: Tables, estimate: Estimate) -> list[str]:
+    """The effects in the model of an estimate, in words; none of a joint fit."""
+    if estimate.kind != EXTENDED:
+        return []
+    method = at_mount(estimate.stage, estimate.mount)
+    own = [row for row in tables.rows("decision") if method_of_sensor(row) == method]
+    return [in_words(name) for row in own for name in listed_names(row["effects"])]
+
+
+@dataclass(frozen=True)
+class Shift:
+    """A parameter by the extended and by the joint fit; the sensor and mount it is of."""
+
+    method: str
+    extended: Record
+    joint: Record | None
+
+    @property
+    def sigmas(self) -> float | None:
+        """How far apart they are, in sigmas of the joint fit; none where one has no value."""
+        new, old = self.extended, self.joint
+        if old is None or new["value"] is None or not old["sigma"]:
+            return None
+        return float((new["value"] - old["value"]) / old["sigma"])
+
+    @property
+    def name(self) -> str:
+        """The parameter in words, a sentence beginning with it."""
+        kind, axes = kind_and_axes(self.extended["parameter"])
+        return capital(f"{KIND.get(kind, kind).lower()} {axes} of the {self.sensor.lower()}")
+
+    @property
+    def sensor(self) -> str:
+        """The sensor in words, with the mount where there are several."""
+        stage, mount = method_and_mount(self.method)
+        return with_mount(sensor_of_stage(stage), mount)
+
+
+@once
+def shifts(tables: Tables) -> dict[str, list[Shift]]:
+    """Each parameter of the extended model with its like in the joint fit, by sensor and mount."""
+    joint = {
+        (estimate.stage, estimate.method, row["parameter"]): row
+        for estimate in estimates(tables)
+        for row in estimate.determined
+    }
+    by_method: dict[str, list[Shift]] = {}
+    rows = tables.rows("extended_parameters")
+    for row in by_kind(row for row in rows if not of_effect(row["parameter"])):
+        stage, mount = method_and_mount(row["method"])
+        like = joint.get((stage, at_mount(JOINT, mount), row["parameter"]))
+        by_method.setdefault(row["method"], []).append(Shift(row["method"], row, like))
+    return by_method
+
+
+# ---- how a parameter is written
+
+
+def kind_of(parameter: str) -> str:
+    """What a parameter is one of: bias, scale, cross, mounting, symmetric."""
+    return kind_and_axes(parameter)[0]
+
+
+def by_kind(rows: Iterable[Record]) -> list[Record]:
+    """Bias first, then scale, cross-axis terms and the rest; within, as they come."""
+    order = {kind: place for place, kind in enumerate(KIND)}
+    return sorted(rows, key=lambda row: order.get(kind_of(row["parameter"]), len(order)))
+
+
+def symbol(parameter: str) -> str:
+    """The parameter's sign with its axes: b_x, s_x, m_xy; its name where it has none."""
+    kind, axes = kind_and_axes(parameter)
+    return f"{SYMBOL[kind]}_{axes}" if kind in SYMBOL and axes else parameter
+
+
+def quantity_of(row: Record) -> units.Quantity:
+    """The units that a parameter is written in."""
+    return units.quantity(row["parameter"], row["unit"])
+
+
+def written(group: Sequence[Record]) -> list[tuple[str, ...]]:
+    """Value and sigma of parameters of one kind, in the laboratory's unit and in the SI's."""
+    quantities = [quantity_of(row) for row in group]
+    laboratory = in_units(group, [quantity.laboratory for quantity in quantities])
+    si = in_units(group, [quantity.si for quantity in quantities])
+    return [(*pair, *si_pair) for pair, si_pair in zip(laboratory, si, strict=True)]
+
+
+def in_units(group: Sequence[Record], each: Sequence[units.Unit]) -> list[tuple[str, str]]:
+    """Values and sigmas, with common decimals where the unit is the same."""
+    sigmas = [unit.of(row["sigma"]) for row, unit in zip(group, each, strict=True)]
+    by_unit: dict[str, list[float | None]] = {}
+    for sigma, unit in zip(sigmas, each, strict=True):
+        by_unit.setdefault(unit.name, []).append(sigma)
+    decimals = {name: numbers.common_decimals(those) for name, those in by_unit.items()}
+    return [
+        numbers.with_sigma(unit.of(row["value"]), sigma, decimals[unit.name])
+        for row, sigma, unit in zip(group, sigmas, each, strict=True)
+    ]

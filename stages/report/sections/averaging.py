@@ -1,0 +1,304 @@
+"""Parameters against averaging time: as more of each rest is used, and epoch by epoch."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import sqrt
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from inertial.text.numbers import counted, fixed, significant, whole
+from inertial.text.units import RANDOM_WALK, Unit, quantity
+from stages.report import drawing, outline
+from stages.report.identifiers import group_and_parameter, stage_and_method, stage_of
+from stages.report.results import Estimate, by_kind, kind_of
+from stages.report.tables import Record, Tables
+from stages.report.words import SENSOR_OF_STAGE, plain, sensor_of_stage
+
+MOST_PANELS = 24
+MOST_EPOCH_PANELS = 12
+BIAS_UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
+SENSOR = {"accelerometer": "accel", "gyroscope": "gyro"}
+KINDS = {"bias": "bias", "scale": "scale", "cross": "cross-axis terms"}
+SHOWN_SIGMAS = 4  # of a single epoch
+
+
+def parts(tables: Tables) -> Iterator[outline.Part]:
+    """One figure per sensor and method, one panel per parameter; the time for a wanted sigma."""
+    for stage, name in SENSOR_OF_STAGE.items():
+        yield outline.Heading(name)
+        unit_of = {row["id"]: row["unit"] for row in tables.rows(f"{stage}_parameters")}
+        groups = _curves(tables.rows(f"{stage}_averaging"))
+        for number, (group, curves) in enumerate(groups.items(), 1):
+            units = {
+                parameter: quantity(parameter, _unit(stage, parameter, group, unit_of)).laboratory
+                for parameter in curves
+            }
+            yield _figure(group, f"averaging-{stage}-{number}", curves, units)
+        if not groups:
+            yield outline.Paragraph(
+                "None: the parameters were not followed over the averaging time."
+            )
+    yield _wanted([row for stage in SENSOR for row in tables.rows(f"{stage}_wanted")])
+
+
+SECTION = outline.Section(
+    "averaging",
+    "Parameters against averaging time",
+    "Each parameter as estimated from the first seconds of each static position only, relative to "
+    "its final value.",
+    "The band is value ± σ. Where it narrows about zero, longer static positions would still help; "
+    "where the line leaves the band and stays outside, something drifts.",
+    tuple(
+        f"{stage}_{table}" for stage in SENSOR for table in ("parameters", "averaging", "wanted")
+    ),
+    parts,
+)
+
+
+def _curves(rows: Sequence[Record]) -> dict[str, dict[str, list[Record]]]:
+    """The rows by group and by parameter, the biases first."""
+    named = []
+    for row in rows:
+        group, parameter = group_and_parameter(row["parameter"])
+        named.append(row | {"group": group, "parameter": parameter})
+    groups: dict[str, dict[str, list[Record]]] = {row["group"]: {} for row in named}
+    for row in by_kind(named):
+        groups[row["group"]].setdefault(row["parameter"], []).append(row)
+    return groups
+
+
+def _unit(stage: str, parameter: str, group: str, unit_of: Mapping[str, str]) -> str:
+    usual = BIAS_UNIT[stage] if kind_of(parameter) == "bias" else "1"
+    return unit_of.get(f"{group}/{parameter}") or usual
+
+
+def _figure(
+    group: str, key: str, curves: Mapping[str, Sequence[Record]], units: Mapping[str, Unit]
+) -> outline.Figure:
+    def panel_of(panel: Axes, name: str) -> None:
+        rows = sorted(curves[name], key=lambda row: float(row["seconds"]))
+        seconds, value, sigma = _arrays(rows, "seconds", "value", "sigma")
+        away, sigma = (value - value[-1]) / units[name].size, sigma / units[name].size
+        panel.axhline(0, color=drawing.INK, linewidth=0.6)
+        drawing.band(
+            panel, seconds, away - sigma, away + sigma, _colour(name), alpha=0.22, linewidth=0
+        )
+        panel.plot(seconds, away, color=_colour(name), marker="o", markersize=1.8)
+        panel.set_xscale("log")
+        drawing.plain_numbers(panel.xaxis)
+        panel.set_title(f"{plain(name)}, {units[name].name}", pad=3)
+        drawing.ticks(panel, 4)
+
+    title = Estimate(*stage_and_method(group)).name
+    shown = list(curves)[:MOST_PANELS]
+    margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
+    rest = outline.more(len(curves) - len(shown), " in the averaging table")
+    return outline.Figure(
+        f"{title}: value ± σ against averaging time, relative to the final value. {rest}".rstrip(),
+        drawing.grid(shown, panel_of, 0.95, margins, "Time per static position, s", key),
+        f"{counted(len(shown), 'curve')} of {title}, each within its band of sigma.",
+    )
+
+
+def _arrays(rows: Sequence[Record], *keys: str) -> Iterator[drawing.Array]:
+    """Columns of the rows, a gap as NaN."""
+    for key in keys:
+        yield np.array([np.nan if row[key] is None else row[key] for row in rows], np.float64)
+
+
+def _colour(parameter: str) -> str:
+    return drawing.AXIS_COLOUR.get(parameter.rpartition("_")[2][:1], drawing.INK)
+
+
+def _wanted(rows: Sequence[Record]) -> outline.Table:
+    """How long each static position must last for a bias of a required sigma."""
+    return outline.Table(
+        "Duration of each static position for a required σ of the bias, by the formulas of S0.",
+        (
+            outline.Column("Bias"),
+            outline.Column("random walk", "number"),
+            outline.Column("unit", "unit"),
+            *outline.columns("number", "σ", "duration", group="Recorded"),
+            outline.Column("floor", "number"),
+            outline.Column("σ", "number", "Required"),
+            outline.Column("unit", "unit", "Required"),
+            outline.Column("duration", "number", "Required"),
+        ),
+        [_wanted_row(row) for row in rows],
+        "None: no formula of S0 gives a bias here.",
+        "σ² = N²/T + floor², with the random walk N of the bias and positions of duration T. The "
+        "floor is what averaging does not reduce: tilts of the positions, gravity, an unknown "
+        "azimuth, and the scatter between manoeuvres.",
+    )
+
+
+def _wanted_row(row: Record) -> outline.Row:
+    group, parameter = group_and_parameter(row["parameter"])
+    stage, method = stage_and_method(group)
+    unit = quantity(parameter, BIAS_UNIT[stage]).laboratory
+    walk = RANDOM_WALK[SENSOR[stage]]
+    sigma, floor, wanted = (
+        significant(unit.of(row[which]), 2) for which in ("sigma", "floor", "wanted")
+    )
+    seconds = row["wanted_seconds"]
+    return outline.table_row(
+        f"{plain(parameter)}, {Estimate(stage, method).name}",
+        *(significant(walk.of(row["random_walk"]), 2), walk.name),
+        *(sigma, f"{significant(row['seconds'], 3)} s"),
+        *(floor, wanted, unit.name),
+        "not attainable" if seconds is None else f"{significant(seconds, 2)} s",
+    )
+
+
+# ---- epoch by epoch, for the section of studies
+
+
+def epoch_parts(tables: Tables) -> Iterator[outline.Part]:
+    """A figure of the values per sensor, one of their scatter, and the variances as a table."""
+    groups = _curves(tables.rows("epochs"))
+    for number, (group, curves) in enumerate(groups.items(), 1):
+        yield _epochs(group, f"epochs-{number}", curves)
+    if spreads := tables.rows("spreads"):
+        yield _scatter(spreads)
+        seconds = [row["seconds"] for row in spreads]
+        extremes = dict.fromkeys((min(seconds), max(seconds)))
+        yield outline.Paragraph(" ".join(_scatter_at(spreads, length) for length in extremes))
+        yield _spreads(spreads)
+
+
+def _epochs(group: str, key: str, curves: Mapping[str, Sequence[Record]]) -> outline.Figure:
+    def panel_of(panel: Axes, name: str) -> None:
+        rows = curves[name]
+        unit = quantity(name, rows[0]["unit"]).laboratory
+        seconds, *each = _arrays(rows, "seconds", "single", "running", "running_sigma")
+        single, running, sigma = (values / unit.size for values in each)
+        final, colour = rows[-1]["running"] / unit.size, _colour(name)
+        panel.plot(seconds, single - final, color=drawing.QUIET, linewidth=0.35, alpha=0.6)
+        away = running - final
+        drawing.band(panel, seconds, away - sigma, away + sigma, colour, alpha=0.25, linewidth=0)
+        panel.plot(seconds, away, color=colour, linewidth=0.9)
+        height = SHOWN_SIGMAS * rows[0]["single_sigma"] / unit.size
+        if height > 0:
+            panel.set_ylim(-height, height)
+        panel.set_xlim(0, float(seconds[-1]))
+        panel.set_title(f"{plain(name)}, {unit.name}", pad=3)
+        drawing.ticks(panel, 4)
+
+    shown = list(curves)[:MOST_EPOCH_PANELS]
+    first = next(iter(curves.values()))[0]["seconds"]
+    margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
+    return outline.Figure(
+        f"{Estimate(*stage_and_method(group)).sensor}: by single epochs of {significant(first, 3)} "
+        "s (grey) and by running means (colour, with ± σ of white noise), relative to the final "
+        "value. The panels show ± 4 σ of a single epoch.",
+        drawing.grid(shown, panel_of, 0.78, margins, "Time per static position, s", key),
+        f"{counted(len(shown), 'parameter')} against the time per static position.",
+    )
+
+
+def _name(row: Record) -> str:
+    return group_and_parameter(row["parameter"])[1]
+
+
+def _ratio(row: Record) -> float:
+    """Standard deviation by single epochs over that of white noise."""
+    return sqrt(row["single"] / row["white"]) if row["white"] > 0 else float("nan")
+
+
+def _scatter(rows: Sequence[Record]) -> outline.Figure:
+    panels_of: dict[tuple[str, str], list[Record]] = {}
+    for row in rows:
+        place = (stage_of(row["parameter"]), kind_of(_name(row)))
+        panels_of.setdefault(place, []).append(row)
+    places = sorted(panels_of, key=lambda place: (place[0], list(KINDS).index(place[1])))
+    with drawing.style():
+        figure, [axes] = drawing.panels(
+            1, len(places), 1.25, drawing.Margins(left=0.45, across=0.34, top=0.24)
+        )
+        for panel, (stage, kind) in zip(axes, places, strict=True):
+            _scatter_panel(panel, panels_of[stage, kind])
+            panel.set_title(f"{sensor_of_stage(stage)}, {KINDS[kind]}", pad=3, fontsize=6.8)
+            panel.set_xlabel("Epoch, s")
+        axes[0].set_ylabel("σ / σ of white noise")
+        drawn = drawing.svg(figure, "spreads")
+    return outline.Figure(
+        "Standard deviation of the values by single epochs over what white noise gives, against "
+        "the length of an epoch; band: ± 2 σ of chance alone. A rise with the length is drift; a "
+        "fall to 1 is an oscillation that averages out.",
+        drawn,
+        "Scatter of single epochs in units of that of white noise.",
+    )
+
+
+def _scatter_panel(panel: Axes, rows: Sequence[Record]) -> None:
+    lengths = sorted({row["seconds"]: row["epochs"] for row in rows}.items())
+    seconds, epochs = (np.array(each) for each in zip(*lengths, strict=True))
+    chance = 1 / np.sqrt(2.0 * np.maximum(epochs - 1, 1))
+    drawing.band(
+        panel, seconds, 1 - 2 * chance, 1 + 2 * chance, drawing.QUIET, alpha=0.18, linewidth=0
+    )
+    panel.axhline(1, color=drawing.INK, linewidth=0.6)
+    for name in dict.fromkeys(row["parameter"] for row in rows):
+        own = sorted((row["seconds"], _ratio(row)) for row in rows if row["parameter"] == name)
+        x, y = zip(*own, strict=True)
+        panel.plot(x, y, color=_colour(name), marker="o", markersize=1.8, linewidth=0.8)
+    panel.set_xscale("log")
+    drawing.plain_numbers(panel.xaxis)
+    panel.set_xticks([t for t in (0.01, 0.1, 1.0, 10.0, 100.0) if seconds[0] <= t <= seconds[-1]])
+    panel.set_ylim(0, max(2.0, 1.1 * max(map(_ratio, rows))))
+
+
+def _scatter_at(rows: Sequence[Record], seconds: float) -> str:
+    """How far the scatter is off that of white noise, at epochs of one length."""
+    own = [row for row in rows if row["seconds"] == seconds]
+    ratios = sorted((_ratio(row), _name(row), stage_of(row["parameter"])) for row in own)
+    epochs = own[0]["epochs"]
+    chance = 1 / sqrt(2 * max(epochs - 1, 1))
+    (smallest, *_), (largest, name, stage) = ratios[0], ratios[-1]
+    return (
+        f"Epochs of {significant(seconds, 3)} s ({whole(epochs)} of them) scatter "
+        f"{fixed(smallest, 2)} to {fixed(largest, 2)} times as much as white "
+        f"noise, most the {plain(name)} of the {stage}; chance alone gives 1 ± "
+        f"{fixed(chance, 3 if chance < 0.01 else 2)}."
+    )
+
+
+def _spreads(rows: Sequence[Record]) -> outline.Table:
+    shortest = {}
+    for row in sorted(rows, key=lambda row: -float(row["seconds"])):
+        shortest[row["parameter"]] = row
+    named = by_kind(
+        row | {"stage": stage_of(name), "parameter": _name(row)} for name, row in shortest.items()
+    )
+    epoch = significant(min(row["seconds"] for row in rows), 3)
+    return outline.Table(
+        f"Scatter of the values epoch by epoch, epochs of one sample ({epoch} s).",
+        (
+            *outline.columns("name", "Parameter", "Sensor"),
+            outline.Column("unit", "unit", "Standard deviation"),
+            *outline.columns(
+                "number",
+                "single epochs",
+                "white noise",
+                "running means",
+                group="Standard deviation",
+            ),
+            *outline.columns("number", "single epochs", "running means", group="Variance, SI"),
+        ),
+        [_spread(row) for row in named],
+        note="The variance of the running means describes their variation on the way, not the "
+        "uncertainty of the last one: its σ is that of white noise over the whole position.",
+    )
+
+
+def _spread(row: Record) -> outline.Row:
+    unit = quantity(row["parameter"], row["unit"]).laboratory
+    return outline.table_row(
+        plain(row["parameter"]),
+        SENSOR_OF_STAGE.get(row["stage"], ""),
+        unit.name,
+        *(significant(sqrt(row[key]) / unit.size, 3) for key in ("single", "white", "running")),
+        *(significant(row[key], 3) for key in ("single", "running")),
+    )

@@ -1,0 +1,356 @@
+"""What a calibration rests on: the manoeuvres and bytes recorded, known quantities, provenance."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from inertial.tables import AXES
+from inertial.text import numbers, units
+from stages.report.declared import DECLARED
+from stages.report.identifiers import assumed, file_of
+from stages.report.outline import (
+    Column,
+    Heading,
+    Paragraph,
+    Part,
+    Row,
+    Section,
+    Table,
+    Tone,
+    columns,
+    more,
+    table_row,
+)
+from stages.report.tables import Record, Tables
+
+KINDS = ("decoded", "other message", "header", "blank", "not selected", "refused")
+MOST_LINES = 20
+MOST_REASONS = 20
+NUMBERS = slice(3, 10)  # of the cells of a manoeuvre
+UNIT_VECTOR = 1e-9  # by which the length along an axis may be off 1
+
+
+def recorded_parts(tables: Tables) -> Iterator[Part]:
+    """One row per manoeuvre of the plan."""
+    done = {row["manoeuvre"]: row for row in tables.rows("performed")}
+    rows = [_manoeuvre(row, done.get(row["manoeuvre"])) for row in tables.rows("manoeuvres")]
+    cells = [
+        numbers.aligned(column) for column in zip(*(r.cells[NUMBERS] for r in rows), strict=True)
+    ]
+    yield Table(
+        f"{numbers.counted(len(rows), 'manoeuvre')} of the plan.".capitalize(),
+        (
+            Column("", "mark"),
+            *columns("name", "Manoeuvre", "Set"),
+            *columns("number", "plan", "recorded", "missing", group="Angle, °"),
+            *columns("number", "plan", "recorded", group="Rate, °/s"),
+            *columns("number", "plan", "recorded", group="Time, s"),
+            Column("Remarks", "note"),
+        ),
+        [
+            table_row(*line.cells[:3], *own, *line.cells[10:], tone=line.tone)
+            for line, own in zip(rows, zip(*cells, strict=True), strict=True)
+        ],
+        "None: the plan has no manoeuvre.",
+    )
+
+
+RECORDED = Section(
+    "recorded",
+    "Recorded manoeuvres",
+    "Every manoeuvre of the plan, and what its log contains of it.",
+    "✓ recorded from rest to rest as planned; ◐ incomplete; ✗ not found. Angle and rate are about "
+    "the axis of the turn, right-hand rule. The angle is a sum of increments.",
+    ("manoeuvres", "performed"),
+    recorded_parts,
+)
+
+
+def _manoeuvre(plan: Record, done: Record | None) -> Row:
+    mark, tone = _mark(done)
+    done = done or dict.fromkeys(("angle", "missing_angle", "rate", "seconds", "sentence"))
+    turn = done if plan["do"] == "turn" else dict.fromkeys(done)
+    return table_row(
+        mark,
+        numbers.shortened(plan["manoeuvre"], 28),
+        attitude(plan),
+        _number(units.DEGREES.of(plan["angle"]), 1),
+        _number(units.DEGREES.of(turn["angle"]), 2),
+        _number(units.DEGREES.of(turn["missing_angle"]) or None, 2),
+        _number(units.DEGREES_PER_SECOND.of(plan["rate"]), 1),
+        _number(units.DEGREES_PER_SECOND.of(turn["rate"]), 4),
+        _number(plan["seconds"], 1),
+        _number(done["seconds"], 1),
+        numbers.shortened(done["sentence"] or "not found", 300),
+        tone=tone,
+    )
+
+
+def _mark(done: Record | None) -> tuple[str, Tone]:
+    if done is None or not done["found"]:
+        return "✗", "poor"
+    return ("✓", "") if done["complete"] else ("◐", "fair")
+
+
+def _number(value: float | None, decimals: int) -> str:
+    return "" if value is None else numbers.fixed(value, decimals)
+
+
+def attitude(plan: Record) -> str:
+    """A manoeuvre in a few words: rest, +x up; turn about +x."""
+    if plan["do"] == "turn":
+        return f"turn about {_direction(plan, 'about')}"
+    if plan["do"] == "positions":
+        return "positions, attitudes unknown"
+    return f"{plan['do']}, {_direction(plan, 'up')} up"
+
+
+def _direction(plan: Record, stem: str) -> str:
+    """A unit vector in words: +x, or its three components; unknown where it is not stated."""
+    vector = [plan[f"{stem}_{axis}"] for axis in AXES]
+    if any(value is None for value in vector):
+        return "unknown"
+    for axis, value in zip(AXES, vector, strict=True):
+        if abs(abs(value) - 1) < UNIT_VECTOR:
+            return ("+" if value > 0 else "−") + axis
+    return f"({', '.join(numbers.fixed(value, 2) for value in vector)})"
+
+
+# ---- data accounting
+
+
+def account_parts(tables: Tables) -> Iterator[Part]:
+    """Lines by kind per log, bytes against the size of the file, and the refused lines."""
+    rows, refused = tables.rows("accounts"), tables.rows("refused")
+    size = {row["file"]: row["size"] for row in tables.rows("inputs")}
+    yield Table(
+        "Lines of each log by kind.",
+        (
+            Column("Log"),
+            *columns("number", *(kind.capitalize() for kind in KINDS), "Bytes", "Size of the file"),
+            Column("", "mark"),
+        ),
+        [_log(log, rows, size) for log in dict.fromkeys(row["log"] for row in rows)],
+        "None: no log was read.",
+    )
+    if others := [row for row in rows if row["kind"] == "other message"]:
+        yield _other_messages(others)
+    yield Heading("Refused lines")
+    if refused:
+        yield from _refused(refused)
+    else:
+        yield Paragraph("Refused lines: none.", "good")
+
+
+ACCOUNT = Section(
+    "account",
+    "Data accounting",
+    "What became of every line of the logs, so that no byte is lost without notice.",
+    "✓ the bytes of all kinds add up to the size of the file.",
+    ("accounts", "refused", "inputs"),
+    account_parts,
+)
+
+
+def _log(log: str, rows: Sequence[Record], size: dict[str, int]) -> Row:
+    own = [row for row in rows if row["log"] == log]
+    lines: Counter[str] = Counter()
+    for row in own:
+        lines[row["kind"]] += row["lines"]
+    accounted = sum(row["bytes"] for row in own)
+    expected = size.get(log, size.get(file_of(log)))
+    difference = "" if expected is None else f" {numbers.whole(accounted - expected)}"
+    balanced = accounted == expected
+    return table_row(
+        numbers.shortened(log, 60),
+        *(numbers.whole(lines[kind]) if lines[kind] else "" for kind in KINDS),
+        numbers.whole(accounted),
+        numbers.whole(expected),
+        "✓" if balanced else f"✗ does not add up{difference}",
+        tone="" if balanced else "poor",
+    )
+
+
+def _other_messages(rows: Sequence[Record]) -> Table:
+    lines: Counter[str] = Counter()
+    size: Counter[str] = Counter()
+    for row in rows:
+        name = row["name"] or "without a name"
+        lines[name] += row["lines"]
+        size[name] += row["bytes"]
+    return Table(
+        "Messages that the calibration does not use, all logs together.",
+        (Column("Message"), *columns("number", "Lines", "Bytes")),
+        [
+            table_row(
+                numbers.shortened(name, 60), numbers.whole(lines[name]), numbers.whole(size[name])
+            )
+            for name in sorted(lines)[:MOST_LINES]
+        ],
+    )
+
+
+def _refused(lines: Sequence[Record]) -> Iterator[Table]:
+    where = " in the table of refused lines"
+    reasons = Counter((row["log"], row["reason"]) for row in lines)
+    yield Table(
+        f"{numbers.counted(len(lines), 'refused line')}, by log and reason.",
+        (*columns("text", "Log", "Reason"), Column("Lines", "number")),
+        [
+            table_row(
+                numbers.shortened(log, 60), numbers.shortened(reason, 300), numbers.whole(count)
+            )
+            for (log, reason), count in reasons.most_common(MOST_REASONS)
+        ],
+        note=more(len(reasons) - MOST_REASONS, where),
+    )
+    yield Table(
+        "The first of them, as they begin.",
+        (Column("Log"), *columns("number", "Line", "Byte"), Column("Text", "code")),
+        [
+            table_row(
+                numbers.shortened(row["log"], 60),
+                numbers.whole(row["line"]),
+                numbers.whole(row["offset"]),
+                numbers.shortened(row["text"], 110) or "(empty)",
+            )
+            for row in lines[:MOST_LINES]
+        ],
+        note=more(len(lines) - MOST_LINES, where),
+    )
+
+
+# ---- known quantities and provenance
+
+NAME = {
+    "gravity": "gravity",
+    "earth_rate_up": "earth rate, vertical component",
+    "earth_rate_level": "earth rate, horizontal component",
+    "heading": "azimuth of the table's zero mark",
+    "position": "attitude of a set position",
+    "turn_angle": "angle of a turn",
+    "turn_rate": "rate of the table, relative",
+}
+UNIT = {
+    "earth_rate_up": units.DEGREES_PER_HOUR,
+    "earth_rate_level": units.DEGREES_PER_HOUR,
+    "heading": units.DEGREES,
+    "position": units.SECONDS_OF_ARC,
+    "turn_angle": units.SECONDS_OF_ARC,
+    "turn_rate": units.PPM,
+}
+# Known as exactly what was set: only how far it may be off says something.
+ERRORS = ("position", "turn_angle", "turn_rate")
+
+
+def known_parts(tables: Tables) -> Iterator[Part]:
+    """One row per quantity."""
+    yield Table(
+        "Known quantities.",
+        (
+            Column("Quantity"),
+            Column("Value", "number"),
+            Column("± σ", "sigma"),
+            Column("Unit", "unit"),
+            Column("Origin"),
+        ),
+        list(_quantities(tables.rows("known"))),
+    )
+
+
+KNOWN = Section(
+    "known",
+    "Known quantities",
+    "The quantities that were given to the estimation.",
+    "The σ of the parameters include those of these quantities; one without σ is taken as exact. "
+    "Stated: by the campaign file; computed: from what is stated; assumed: by the pipeline, "
+    "in the absence of a statement.",
+    ("known",),
+    known_parts,
+)
+
+
+def _quantities(known: list[Record]) -> Iterator[Row]:
+    cells = [_cells(row) for row in known]
+    columns_of = [numbers.aligned(column) for column in zip(*cells, strict=True)]
+    for row, (value, sigma) in zip(known, zip(*columns_of, strict=True), strict=True):
+        yield table_row(
+            NAME.get(row["quantity"]) or numbers.shortened(row["quantity"], 60),
+            value,
+            sigma,
+            _unit(row).name,
+            numbers.shortened(row["origin"], 300),
+            anchor=f"known/{row['quantity']}",
+            tone="fair" if assumed(row) else "",
+        )
+
+
+def _unit(row: Record) -> units.Unit:
+    return UNIT.get(row["quantity"]) or units.Unit(row["unit"], 1.0)
+
+
+def _cells(row: Record) -> tuple[str, str]:
+    unit = _unit(row)
+    value, sigma = unit.of(row["value"]), unit.of(row["sigma"])
+    decimals = numbers.decimals_of(sigma)
+    if value is None:
+        return "not known", "—"
+    if row["quantity"] in ERRORS:
+        return "as set", numbers.significant(sigma, 2) if sigma else "—"
+    if decimals is None:
+        return numbers.significant(value, 7), "—"
+    return numbers.fixed(value, decimals), numbers.fixed(sigma, decimals)
+
+
+def provenance_parts(tables: Tables) -> Iterator[Part]:
+    """The inputs with their SHA-256; the stages with settings and code."""
+    yield Table(
+        "Inputs.",
+        (Column("File"), Column("Bytes", "number"), Column("SHA-256", "code")),
+        [
+            table_row(numbers.shortened(row["file"], 60), numbers.whole(row["size"]), row["sha256"])
+            for row in tables.rows("inputs")
+        ],
+    )
+    stages: dict[str, tuple[Mapping[str, Any], list[str]]] = {}
+    for name in (*DECLARED.reads, "report"):
+        maker = tables.maker(name)
+        stages.setdefault(str(maker.get("stage", "unknown")), (maker, []))[1].append(name)
+    yield Table(
+        "Stages.",
+        (
+            Column("Stage", "name"),
+            *columns("text", "Tables in this report", "Settings"),
+            Column("SHA-256 of its code", "code"),
+        ),
+        [
+            table_row(
+                stage,
+                ", ".join(name.replace("_", " ") for name in names),
+                _settings(maker.get("settings")),
+                str(maker.get("code", "unknown")),
+            )
+            for stage, (maker, names) in stages.items()
+        ],
+    )
+
+
+PROVENANCE = Section(
+    "provenance",
+    "Provenance",
+    "The inputs, and per stage its settings and the hash of its code.",
+    "The same inputs, settings and code give this report again, byte for byte. A hash is "
+    "SHA-256; that of a stage covers every module it uses and the lock file of the libraries.",
+    ("inputs",),
+    provenance_parts,
+)
+
+
+def _settings(settings: object) -> str:
+    if not isinstance(settings, Mapping) or not settings:
+        return "none"
+    stated = "; ".join(f"{name}: {json.dumps(value)}" for name, value in settings.items())
+    return numbers.shortened(stated, 400)

@@ -1,0 +1,255 @@
+"""The results against each other, against published values and against earlier calibrations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import hypot
+
+from matplotlib.axes import Axes
+
+from inertial.tables import AXES
+from inertial.text import numbers, units
+from inertial.text.units import quantity
+from stages.report import outline
+from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks
+from stages.report.identifiers import (
+    beyond_chance,
+    group_and_parameter,
+    joint_parameter,
+    method_and_mount,
+)
+from stages.report.results import KIND, RESULT_TABLES, final_parameters
+from stages.report.tables import Record, Tables
+from stages.report.words import SENSOR_OF_STAGE, capital, with_mount
+
+KINDS = {
+    "static_against_turns": "Static, rotation",
+    "forward_against_backward": "Forward, backward",
+    "method_against_method": "Two methods",
+    "straight_line": "Rates, straight line",
+    "published": "Published, this one",
+    "fencepost": "Published, this one",
+}
+MOST_DIFFERENCES = 120
+
+
+def comparison_parts(tables: Tables) -> Iterator[outline.Part]:
+    """Every difference in units of its sigma with the verdict in words, worst first."""
+    rows = sorted(tables.rows("differences"), key=_worst_first)
+    compared = [row for row in rows if row["in_sigmas"] is not None]
+    beyond = sum(map(_beyond, compared))
+    if compared:
+        verb = "differs" if beyond == 1 else "differ"
+        values = capital(numbers.counted(beyond, "value"))
+        pairs = numbers.counted(len(compared), "comparison")
+        yield outline.Paragraph(
+            f"{values} of {pairs} {verb} by more than chance.", "fair" if beyond else "good"
+        )
+    for row in filter(_fencepost, rows):
+        yield outline.Paragraph(capital(str(row["sentence"])), "fair")
+    yield _differences(rows)
+    if rows and not any(_kind(row) == "published" for row in rows):
+        yield outline.Paragraph("Published values: none is known for this instrument.")
+
+
+COMPARISONS = outline.Section(
+    "comparisons",
+    "Comparisons",
+    "Static against rotation, forward against backward, method against method, published values "
+    "against these: the same parameter by two ways that should agree.",
+    "Worst first, the difference in units of its σ. p is the probability of a difference this "
+    "large if the two are equal; among many comparisons some are large by chance, which the "
+    "verdict takes into account.",
+    ("differences",),
+    comparison_parts,
+)
+
+
+def _worst_first(row: Record) -> tuple[bool, bool, float, str]:
+    size = row["in_sigmas"]
+    return not _fencepost(row), size is None, -abs(size or 0.0), row["id"]
+
+
+def _kind(row: Record) -> str:
+    return method_and_mount(str(row["kind"]))[0]
+
+
+def _fencepost(row: Record) -> bool:
+    """Whether it says why published values are wrong, rather than that they are."""
+    return _kind(row) == "fencepost"
+
+
+def _beyond(row: Record) -> bool:
+    return beyond_chance(row) or _fencepost(row)
+
+
+def _differences(rows: Sequence[Record]) -> outline.Table:
+    shown = rows[:MOST_DIFFERENCES]
+    sigmas = numbers.aligned([numbers.fixed(row["in_sigmas"], 1) for row in shown])
+    return outline.Table(
+        f"Differences: {numbers.counted(len(rows), 'pair')} of values.",
+        (
+            *outline.columns("text", "Compared", "Verdict"),
+            *outline.columns("number", "first", "second", group="Values"),
+            outline.Column("unit", "unit", "Values"),
+            *outline.columns("number", "in σ", "p"),
+        ),
+        [_difference(row, sigma) for row, sigma in zip(shown, sigmas, strict=True)],
+        "None: no parameter was estimated in two ways that could be compared.",
+        outline.more(len(rows) - len(shown), " in the table of differences"),
+    )
+
+
+def _difference(row: Record, sigma: str) -> outline.Row:
+    kind, mount = _kind(row), method_and_mount(str(row["kind"]))[1]
+    unit = units.quantity(group_and_parameter(row["parameter"])[1], row["unit"]).laboratory
+    decimals = numbers.decimals_of(unit.of(row["sigma"]))
+    first, second = (
+        numbers.significant(value, 5) if decimals is None else numbers.fixed(value, decimals)
+        for value in (unit.of(row["first_value"]), unit.of(row["second_value"]))
+    )
+    return outline.table_row(
+        with_mount(KINDS.get(kind, numbers.shortened(kind, 60)), mount),
+        capital(numbers.shortened(row["sentence"], 600)),
+        *(first, second, unit.name, sigma, numbers.probability(row["p_value"])),
+        anchor=row["id"],
+        tone="fair" if _beyond(row) else "",
+    )
+
+
+# ---- earlier calibrations of the same instrument
+
+FOLDER = "data/history"
+MOST_DRAWN = 12
+MOST_CALIBRATIONS = 40
+THIS = "this one"
+BIAS_UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
+Calibration = Mapping[str, Record]  # the parameters by identifier
+
+
+def history_parts(tables: Tables) -> Iterator[outline.Part]:
+    """The earlier ones as a table, bias and scale over the dates, and this one's archive file."""
+    now = {row["id"]: row for row in final_parameters(tables) if row["value"] is not None}
+    by_file: dict[str, list[Record]] = {}
+    for row in tables.rows("earlier"):
+        by_file.setdefault(row["file"], []).append(row)
+    calibrations = sorted(by_file.values(), key=_date)
+    if calibrations:
+        yield _calibrations(calibrations, now)
+        date = tables.row("campaign")["date"] or "unknown"
+        yield _figure(calibrations[-MOST_DRAWN + 1 :], now, date)
+    else:
+        yield outline.Paragraph(
+            "None: the archive holds no earlier calibration of this instrument."
+        )
+    for row in tables.rows("archived"):
+        text = f"This calibration is kept in the archive as {FOLDER}/{row['file']}"
+        text += f"; it supersedes {row['supersedes']}" if row["supersedes"] else ""
+        yield outline.Paragraph(
+            numbers.shortened(f"{text}. SHA-256 of the file: {row['sha256']}.", 900)
+        )
+    if not tables.rows("archived"):
+        yield outline.Paragraph("This calibration is not in the archive.", "fair")
+
+
+HISTORY = outline.Section(
+    "history",
+    "Earlier calibrations",
+    "Earlier results of the same instrument, by its serial number, and the file of this one.",
+    "Each point is value ± σ of the final result, of the joint fit or of the fit with effects in "
+    "the model, relative to the last value. A bias may change from one switch-on to the next; a "
+    "scale error should not.",
+    (*RESULT_TABLES, "campaign", "earlier", "archived"),
+    history_parts,
+)
+
+
+def _date(rows: Sequence[Record]) -> tuple[bool, str, str]:
+    """Unknown dates first, then by date."""
+    date = rows[0]["date"]
+    return date[:1].isdigit(), date, rows[0]["file"]
+
+
+def _calibrations(calibrations: Sequence[Sequence[Record]], now: Calibration) -> outline.Table:
+    count = numbers.counted(len(calibrations), "earlier calibration").capitalize()
+    return outline.Table(
+        f"{count}, the latest last.",
+        (
+            outline.Column("Date", "name"),
+            outline.Column("Campaign"),
+            *outline.columns("number", "Parameters", "Largest change since, in σ"),
+            outline.Column("of"),
+            outline.Column("File", "code"),
+        ),
+        [_calibration(rows, now) for rows in calibrations[-MOST_CALIBRATIONS:]],
+        note=outline.more(len(calibrations) - MOST_CALIBRATIONS, " before these"),
+    )
+
+
+def _calibration(rows: Sequence[Record], now: Calibration) -> outline.Row:
+    changes = [
+        (abs(now[row["id"]]["value"] - row["value"]) / both, row["id"])
+        for row in rows
+        if row["id"] in now and (both := hypot(row["sigma"], now[row["id"]]["sigma"] or 0.0)) > 0
+    ]
+    largest, identifier = max(changes, default=(None, ""))
+    return outline.table_row(
+        numbers.shortened(rows[0]["date"], 20),
+        numbers.shortened(rows[0]["campaign"], 80),
+        numbers.whole(len(rows)),
+        numbers.fixed(largest, 1),
+        numbers.shortened(identifier, 80) or "—",
+        numbers.shortened(rows[0]["file"], 200),
+    )
+
+
+def _figure(
+    calibrations: Sequence[Sequence[Record]], now: Calibration, date: str
+) -> outline.Figure:
+    """Bias and scale of each sensor, one panel each, x, y and z beside each other."""
+    each = [{row["id"]: row for row in rows} for rows in calibrations] + [now]
+    labels = [numbers.shortened(rows[0]["date"], 12) for rows in calibrations]
+    labels.append(f"{numbers.shortened(date, 12)}\n{THIS}")
+    with style():
+        figure, axes = panels(2, 2, 0.95, Margins(left=0.6, across=0.7, bottom=0.5, down=0.3))
+        for stage, line in zip(SENSOR_OF_STAGE, axes, strict=True):
+            for kind, panel in zip(("bias", "scale"), line, strict=True):
+                _panel(panel, stage, kind, each)
+                panel.set_xticks(range(len(labels)), labels)
+                panel.tick_params(axis="x", labelrotation=0 if len(labels) < 5 else 60)
+        drawn = svg(figure, "history")
+    return outline.Figure(
+        "Bias and scale error over the calibrations, each with its σ, relative to the last value: "
+        "x orange circles, y green squares, z blue triangles.",
+        drawn,
+        "Bias and scale error of both sensors against the dates of the calibrations.",
+    )
+
+
+def _panel(panel: Axes, stage: str, kind: str, each: Sequence[Calibration]) -> None:
+    unit = quantity(f"{kind}_x", "1" if kind == "scale" else BIAS_UNIT[stage]).laboratory
+    for place, axis in enumerate(AXES):
+        name = joint_parameter(stage, f"{kind}_{axis}")
+        points = [
+            (number + (place - 1) * 0.12, own[name])
+            for number, own in enumerate(each)
+            if name in own
+        ]
+        # A change is small beside the value itself, so it is drawn from the last value.
+        last = points[-1][1]["value"] if points else 0.0
+        panel.errorbar(
+            [x for x, _ in points],
+            [(row["value"] - last) / unit.size for _, row in points],
+            [(row["sigma"] or 0.0) / unit.size for _, row in points],
+            color=AXIS_COLOUR[axis],
+            marker=AXIS_MARK[axis],
+            markersize=3,
+            linestyle="none",
+            elinewidth=0.8,
+            capsize=2,
+        )
+    name = f"{SENSOR_OF_STAGE[stage]}, {KIND[kind].lower()} relative to its last value"
+    panel.set_title(f"{name}, {unit.name}", loc="left", pad=2)
+    panel.axhline(0, color=INK, linewidth=0.4)
+    panel.set_xlim(-0.5, len(each) - 0.5)
+    ticks(panel, 4)

@@ -1,0 +1,306 @@
+"""Effects in sentences: how certain the name is, what an effect in the model improves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from inertial.text import numbers
+from inertial.text.cause_names import in_words
+from inertial.text.numbers import decimals_of, fixed, shortened, significant, whole, with_sigma
+from stages.report.identifiers import (
+    finding_of_effect,
+    listed_names,
+    mount_of,
+    random_walk,
+    sensor_and_axis,
+)
+from stages.report.results import Shift, quantity_of
+from stages.report.tables import Record, Tables, once
+from stages.report.words import SENSORS, listed, with_mount
+
+Kind = Literal["found", "class", "structure", "consistent", "walk", "unexplained"]
+# The clearest first, each with its words in a line.
+GRADES: dict[Kind, str] = {
+    "found": "identified",
+    "class": "one of a class",
+    "structure": "not identified",
+    "consistent": "consistent, not identified",
+    "walk": "consistent, not identified",
+    "unexplained": "not explained",
+}
+MOST_MEMBERS = 8
+
+
+@dataclass(frozen=True)
+class Tested:
+    """An effect of the catalogue that was tested: its score, and its parameters."""
+
+    score: Record
+    parameters: tuple[Record, ...]
+    mount: str  # of which mount, where there are several
+
+    @property
+    def effect(self) -> str:
+        """Its name in the catalogue."""
+        return str(self.score["effect"])
+
+    @property
+    def name(self) -> str:
+        """The effect in words."""
+        return with_mount(in_words(self.effect), self.mount)
+
+    @property
+    def finding(self) -> str:
+        """The identifier of the finding that names it."""
+        return finding_of_effect(self.effect, self.mount)
+
+
+@once
+def tested_effects(tables: Tables) -> list[Tested]:
+    """Every effect with its parameters; of several mounts each by itself, as they come."""
+    groups: dict[str, dict[str, list[Record]]] = {}
+    for row in tables.rows("effects"):
+        own = groups.setdefault(row["effect"], {})
+        own.setdefault(mount_of(row["id"]), []).append(row)
+    effects = []
+    for score in tables.rows("scores"):
+        mounts = groups.get(score["effect"], {})
+        mount = next(iter(mounts), "")
+        effects.append(Tested(score, tuple(mounts.pop(mount, ())), mount))
+    return effects
+
+
+def tested_effect(tables: Tables, effect: str, mount: str) -> Tested | None:
+    """An effect by its name in the catalogue and its mount."""
+    by_name = {(effect.effect, effect.mount): effect for effect in tested_effects(tables)}
+    return by_name.get((effect, mount))
+
+
+def effect_of(tables: Tables, finding: Record) -> Tested | None:
+    """The effect that a finding names; none of a second one of its kind."""
+    effect = tested_effect(tables, finding["cause"], mount_of(finding["id"]))
+    return effect if effect is not None and effect.finding == finding["id"] else None
+
+
+def kind_of(row: Record) -> Kind:
+    """Of what kind a finding of criticism is."""
+    if row["cause"] == "unexplained":
+        return "unexplained"
+    if random_walk(row["cause"]):
+        return "walk"
+    if row["cause"] == "unknown_structure":
+        return "structure"
+    verdicts: dict[str, Kind] = {"found": "found", "one_of_class": "class"}
+    return verdicts.get(row.get("verdict") or "", "consistent")
+
+
+def grade_of(row: Record) -> Kind:
+    """The same; a random walk that may be an effect as well is one of a class."""
+    kind = kind_of(row)
+    return "class" if kind == "walk" and alternatives(row) else kind
+
+
+def clearest_first(rows: Sequence[Record]) -> list[Record]:
+    """Findings of criticism: what is identified, then what is less sure; within, by SNR."""
+    order = list(GRADES)
+    return sorted(
+        rows, key=lambda row: (order.index(kind_of(row)), -(row.get("snr") or 0.0), row["id"])
+    )
+
+
+def name_of(row: Record) -> str:
+    """What was found, in words, with its mount where there are several."""
+    kind, sensors = kind_of(row), SENSORS.get(row["sensor"] or "", "")
+    name = in_words(row["cause"])
+    if sensors and kind == "structure":
+        name = f"unidentified structure in the residuals of the {sensors}"
+    if sensors and kind == "unexplained":
+        name = f"unexplained residuals of the {sensors}"
+    return with_mount(name, mount_of(row["id"]))
+
+
+def alternatives(row: Record) -> list[str]:
+    """The effects that it may be instead, by name in the catalogue."""
+    return [name for name in listed_names(row.get("members")) if name != row["cause"]][
+        :MOST_MEMBERS
+    ]
+
+
+def certainty(row: Record) -> str:
+    """The degree of certainty in a sentence, and the significance."""
+    names = [in_words(name) for name in (row["cause"], *alternatives(row))]
+    sentence = {
+        "found": "Identified: no other effect of the catalogue has the same signature in these "
+        "data.",
+        "class": f"One of a class: this campaign cannot distinguish {listed(names)}.",
+        "structure": "Not identified: no effect of the catalogue explains this structure.",
+        "consistent": "Consistent with the data, but not identified: the name is not certain.",
+        "walk": "Consistent with the data, but not identified: other slow changes have much the "
+        "same signature.",
+        "unexplained": "Not explained by any effect of the catalogue.",
+    }[grade_of(row)]
+    if row.get("snr"):
+        sentence += f" Signal-to-noise ratio: {numbers.significant(row['snr'], 2)}."
+    if row["p_value"] is not None:
+        sentence += f" Probability under noise alone: {numbers.p_is(row['p_value'])}."
+    return sentence
+
+
+def summary(rows: Sequence[Record]) -> Iterator[str]:
+    """The unmodelled effects, a sentence for each degree of certainty; none where none are."""
+    groups = {kind: [row for row in rows if kind_of(row) == kind] for kind in GRADES}
+    if own := groups["found"]:
+        yield f"Detected: {_names(own)}."
+    for row in groups["class"]:
+        either = _or(name_of(row), row)
+        yield f"Detected: {either}, which this campaign cannot distinguish."
+    if own := groups["structure"]:
+        yield f"The residuals of the {_sensors(own)} have a structure that is not identified."
+    if own := groups["consistent"]:
+        each = _distinct(_or(name_of(row), row) for row in own)
+        yield f"Consistent with the data, but not identified: {each}."
+    for row in groups["walk"]:
+        sentence = f"The biases of the {_sensors([row])} follow a random walk"
+        if alternatives(row):
+            sentence = f"{_or(sentence, row)}, which this campaign cannot distinguish"
+        yield f"{sentence}."
+    if own := groups["unexplained"]:
+        sensors = _sensors(own)
+        yield f"The residuals of the {sensors} exceed the noise, which no known effect explains."
+
+
+def _distinct(names: Iterable[str]) -> str:
+    return listed(list(dict.fromkeys(names)))
+
+
+def _names(rows: Sequence[Record]) -> str:
+    return _distinct(map(name_of, rows))
+
+
+def _or(name: str, row: Record) -> str:
+    return " or ".join([name, *map(in_words, alternatives(row))])
+
+
+def _sensors(rows: Sequence[Record]) -> str:
+    return _distinct(SENSORS.get(row["sensor"] or "", "readings") for row in rows)
+
+
+# ---- what an effect in the model improves
+
+MIN_SNR_SQUARED = 9.0  # below which held-out data do not test an effect: three sigma
+FITTED, HELD_OUT = "fitted", "held-out"
+MOTIONS = {"rest": "at rest", "turn": "while it turns"}
+ERRORS = (("attitude", "mrad"), ("velocity", "mm/s"))
+PER_THOUSAND = 1e-3  # rad and m/s in mrad and mm/s
+
+
+def about_effect(rows: Sequence[Record], effect: str, mount: str) -> list[Record]:
+    """The rows of gain or decision that are about an effect, of one mount."""
+    return [
+        row
+        for row in rows
+        if (row["mount"] or "") == mount and effect in listed_names(row["effects"])
+    ]
+
+
+def reductions(effect: str, mount: str, gain: Sequence[Record]) -> Iterator[str]:
+    """The reduction of χ² and of the residuals with an effect in the model."""
+    own = about_effect(gain, effect, mount)
+    for sensor in SENSORS:
+        by_scope = {row["scope"]: row for row in own if row["sensor"] == sensor}
+        if HELD_OUT in by_scope:
+            yield _on_held_out(by_scope[HELD_OUT])
+        if FITTED in by_scope:
+            yield f"In the fit, χ² {_change(by_scope[FITTED])}."
+    for row in own:
+        if row["unit"] != "sigma" and row["scope"] == HELD_OUT:
+            _, axis = sensor_and_axis(row["sensor"])
+            gyro = f"{axis} gyro" if axis else "gyros"
+            before, after = (significant(row[f"rms_{at}"], 3) for at in ("before", "after"))
+            unit = shortened(row["unit"], 20)
+            yield (
+                f"The residuals of the {gyro} fall from {before} {unit} to {after} {unit} rms "
+                "in held-out turns."
+            )
+
+
+def _on_held_out(row: Record) -> str:
+    effects = listed_names(row["effects"])
+    if not row["counted"] and row["folds"]:
+        return (
+            "No manoeuvre can be predicted from the others, so the improvement on held-out data is "
+            "not known."
+        )
+    together = f", with {listed([in_words(name) for name in effects])} in the model"
+    sentence = (
+        f"On held-out data{together if len(effects) > 1 else ''}, χ² of the "
+        f"{SENSORS[row['sensor']]} {_change(row)}"
+    )
+    attainable = row["snr_squared"]
+    if attainable is not None and attainable >= MIN_SNR_SQUARED:
+        share = fixed(100 * row["drop"] / attainable, 1)
+        sentence += f", which captures {share} % of the attainable reduction"
+    elif attainable is not None:
+        sentence += "; the attainable reduction is too small to judge it by"
+    if left_out := (row["left_out"] or ""):
+        names = shortened(left_out, 200)
+        sentence += f"; not predicted, since the others hardly observe the effect: {names}"
+    return f"{sentence}."
+
+
+def _change(row: Record) -> str:
+    size = abs(row["drop"])
+    way = "falls" if row["drop"] >= 0 else "grows"
+    return f"{way} by {whole(size) if size >= 100 else fixed(size, 1)} of {whole(row['before'])}"
+
+
+def worth(effects: Sequence[str], rows: Sequence[Record]) -> str:
+    """What a user of the joint result loses by the effects, at rest and turning; or nothing."""
+    joint: list[str] = []
+    remaining: list[str] = []
+    for motion, where in MOTIONS.items():
+        own = [row for row in rows if row["motion"] == motion]
+        shown = [pair for pair in ERRORS if any(row[f"{pair[0]}_joint"] for row in own)]
+        if shown:
+            pairs = [_largest(own, *pair) for pair in shown]
+            joint.append(" and ".join(before for before, _ in pairs) + f" {where}")
+            remaining.append(" and ".join(after for _, after in pairs) + f" {where}")
+    if not joint:
+        return ""
+    names = listed([in_words(name) for name in effects])
+    due = f", due to {names}" if len(effects) > 1 else ""
+    return (
+        f"After {whole(rows[0]['seconds'])} s of free inertial navigation from a known attitude, "
+        f"the error with the joint result is up to {', '.join(joint)}{due}. With the extended "
+        f"result, an uncertainty of at most {', '.join(remaining)} remains."
+    )
+
+
+def _largest(rows: Sequence[Record], what: str, unit: str) -> tuple[str, str]:
+    """The largest error with the joint result, and what the extended one leaves there at most."""
+    entry = max(rows, key=lambda row: float(row[f"{what}_joint"]))
+    value, sigma = (entry[f"{what}_joint{more}"] / PER_THOUSAND for more in ("", "_sigma"))
+    text = " ± ".join(with_sigma(value, sigma, decimals_of(sigma, 1)))
+    remaining = max(row[f"{what}_extended"] for row in rows) / PER_THOUSAND
+    return f"{text} {unit}", f"{significant(remaining, 2)} {unit}"
+
+
+def largest_shift(shifts: Sequence[Shift]) -> str:
+    """Which parameter of a sensor moves most with the effects in the model; or nothing."""
+    moved = [(shift, shift.sigmas) for shift in shifts if shift.sigmas is not None]
+    if not moved:
+        return ""
+    most, sigmas = max(moved, key=lambda pair: abs(pair[1]))
+    assert most.joint is not None  # for it has moved
+    unit = quantity_of(most.joint).laboratory
+    before, after = (
+        " ± ".join(with_sigma(unit.of(row["value"]), sigma, decimals_of(sigma)))
+        for row in (most.joint, most.extended)
+        for sigma in [unit.of(row["sigma"])]
+    )
+    return (
+        f"{most.name} changes most of the parameters: from {before} to {after} {unit.name}, by "
+        f"{fixed(sigmas, 1)} σ of the joint fit."
+    )

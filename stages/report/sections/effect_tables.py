@@ -1,0 +1,309 @@
+"""Effects as tables: their parameters, the extended result, detection limits, structure tests."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+
+from inertial.text import numbers
+from inertial.text.cause_names import in_words
+from stages.report import outline
+from stages.report.identifiers import (
+    at_mount,
+    beyond_size,
+    method_and_mount,
+    reason_in,
+    sensor_and_axis,
+)
+from stages.report.results import (
+    KIND,
+    Shift,
+    in_units,
+    kind_of,
+    quantity_of,
+    shifts,
+    symbol,
+    written,
+)
+from stages.report.sections.effect_sentences import Tested
+from stages.report.tables import Record, Tables
+from stages.report.words import SENSOR, capital, count_in_words, listed, with_mount
+
+MIN_SIGMAS = 3.0  # from which a parameter is listed and a shift is marked
+VISIBLE = "visible"
+TESTS = {
+    "time": "time",
+    "angle": "the angle of the table",
+    "rate": "the rate of the turns",
+    "attitude": "the attitude",
+    "temperature": "the temperature",
+    "change": "a change in time",
+}
+
+# ---- parameters of an effect
+
+
+def parameters(title: str, rows: Sequence[Record]) -> outline.Table:
+    """Those beyond 3 σ in the units of the laboratory and of the SI; how many others there are."""
+    clear = [row for row in rows if _clear(row)]
+    others = sum(row["value"] is not None and bool(row["sigma"]) for row in rows) - len(clear)
+    gaps = sum(row["value"] is None for row in rows)
+    notes = [f"{numbers.counted(others, 'parameter')} within 3 σ of zero not listed"] * bool(others)
+    notes += [f"{numbers.counted(gaps, 'parameter')} not determined"] * bool(gaps)
+    return outline.Table(
+        f"{capital(title)}: the parameters beyond 3 σ.",
+        (
+            outline.Column("", "symbol"),
+            *outline.value_and_sigma("Laboratory", unit=True),
+            *outline.value_and_sigma("SI", unit=True),
+            outline.Column("in σ", "number"),
+            outline.Column("Meaning", "note"),
+        ),
+        [_parameter(row, cells) for row, cells in zip(clear, written(clear), strict=True)],
+        "None individually: the parameters are significant only together.",
+        capital("; ".join(notes) + ".") if notes else "",
+    )
+
+
+def _clear(row: Record) -> bool:
+    value, sigma = row["value"], row["sigma"]
+    return value is not None and bool(sigma) and bool(abs(value) > MIN_SIGMAS * sigma)
+
+
+def _parameter(row: Record, cells: Sequence[str]) -> outline.Row:
+    value, sigma, si_value, si_sigma = cells
+    unit = quantity_of(row)
+    return outline.table_row(
+        symbol(row["parameter"]),
+        *(value, sigma, unit.laboratory.name),
+        *(si_value, si_sigma, unit.si.name),
+        numbers.significant(row["value"] / row["sigma"], 3),
+        numbers.shortened(row["meaning"] or "", 160),
+        anchor=row["id"],
+    )
+
+
+# ---- the extended result
+
+
+def extended(tables: Tables) -> Iterator[outline.Part]:
+    """The joint fit beside the extended one, a table for each sensor that shows an effect."""
+    by_method = shifts(tables)
+    if by_method:
+        yield outline.Heading("Parameters with the effects in the model")
+    for own in by_method.values():
+        yield outline.Table(
+            f"{own[0].sensor}: the joint fit, and the fit with the effects in the model.",
+            (
+                outline.Column("", "symbol"),
+                *outline.value_and_sigma("Joint fit"),
+                *outline.value_and_sigma("Extended"),
+                outline.Column("unit", "unit"),
+                outline.Column("Shift, in σ of the joint fit", "number"),
+                outline.Column("Meaning", "note"),
+            ),
+            list(_shifts(own)),
+        )
+
+
+def _shifts(each: Sequence[Shift]) -> Iterator[outline.Row]:
+    cells: list[tuple[str, str]] = []
+    kinds = {
+        kind: list(own)
+        for kind, own in groupby(each, lambda shift: kind_of(shift.extended["parameter"]))
+    }
+    for own in kinds.values():
+        gap = {"value": None, "sigma": None}
+        both = [r for shift in own for r in (shift.extended, shift.joint or shift.extended | gap)]
+        units = [quantity_of(shift.extended).laboratory for shift in own for _ in range(2)]
+        cells += in_units(both, units)
+    extended, joint = cells[::2], cells[1::2]
+    sides = [column for side in (joint, extended) for column in zip(*side, strict=True)]
+    sigmas = numbers.aligned([numbers.fixed(shift.sigmas, 1) for shift in each])
+    lines = iter(zip(sigmas, *map(numbers.aligned, sides), strict=True))
+    for kind, own in kinds.items():
+        yield outline.head(KIND.get(kind, kind))
+        for shift, (text, *line) in zip(own, lines, strict=False):
+            far = shift.sigmas is not None and abs(shift.sigmas) > MIN_SIGMAS
+            yield outline.table_row(
+                symbol(shift.extended["parameter"]),
+                *line,
+                quantity_of(shift.extended).laboratory.name,
+                text,
+                numbers.shortened(shift.extended["meaning"], 160),
+                anchor=shift.extended["id"],
+                tone="fair" if far else "",
+            )
+
+
+# ---- detection limits
+
+
+def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterator[outline.Table]:
+    """What would have been detected, an effect a row; and what not, by the reason.
+
+    `tested`: the effects that no finding names.
+    """
+    by_name = {at_mount(effect.effect, effect.mount): effect for effect in tested}
+    own = [row for row in rows if row["effect"] in by_name]
+    seen = [row for row in own if row["reason"] == VISIBLE and row["visible"] is not None]
+    hidden = [row for row in own if row not in seen]
+    # An effect that is not sought in equations and turns: its score says how.
+    hidden += [
+        {"effect": name, "parameter": "", "sentence": f": {effect.score['sentence']}"}
+        for name, effect in by_name.items()
+        if name not in {row["effect"] for row in own}
+    ]
+    yield outline.Table(
+        "Of each effect that was tested and not detected, the smallest size that this campaign "
+        "would have detected (5 σ), along the least and the most sensitive axis.",
+        (
+            outline.Column("Effect"),
+            outline.Column("worst axis", "number", "Detected from"),
+            outline.Column("parameter", "symbol", "Detected from"),
+            outline.Column("best axis", "number", "Detected from"),
+            outline.Column("unit", "unit", "Detected from"),
+            outline.Column("p", "number"),
+            outline.Column("Meaning", "note"),
+        ),
+        [
+            _limit(by_name[name], name, list(group))
+            for (name, _), group in groupby(seen, lambda row: (row["effect"], row["unit"]))
+        ],
+        "None: every effect that this campaign makes observable was detected.",
+        "p: the probability of such data under noise alone.",
+    )
+    if hidden:
+        yield outline.Table(
+            "Effects that this campaign does not make observable, or that are reported elsewhere.",
+            outline.columns("text", "Reason", "Effects"),
+            list(_hidden(hidden, [*seen, *hidden])),
+        )
+
+
+def _limit(tested: Tested, name: str, rows: Sequence[Record]) -> outline.Row:
+    rows = sorted(rows, key=lambda row: -(row["worst"] or row["visible"]))
+    first, unit = rows[0], quantity_of(rows[0]).laboratory
+    worst = numbers.significant(unit.of(max(first["visible"], first["worst"] or 0.0)), 2)
+    best = min(min(row["visible"], row["best"] or row["visible"]) for row in rows)
+    least = numbers.significant(unit.of(best), 2)
+    beyond = dict.fromkeys(beyond_size(row["sentence"]) for row in rows)
+    meaning = f"{capital(numbers.shortened(tested.score['cause'], 160))}."
+    return outline.table_row(
+        capital(tested.name),
+        worst,
+        symbol(first["parameter"]),
+        least if least != worst else "",
+        unit.name,
+        numbers.probability(tested.score["p_value"]),
+        f"{meaning} {numbers.shortened(' '.join(beyond).strip(), 300)}".strip(),
+        anchor=f"limit/{name}/{first['parameter']}",
+    )
+
+
+def _hidden(rows: Sequence[Record], every: Sequence[Record]) -> Iterator[outline.Row]:
+    """Effects that are not seen for the same reason in one row; `every`: all limits."""
+    by_reason: dict[str, dict[str, list[str]]] = {}
+    for row in rows:
+        reason = capital(numbers.shortened(reason_in(row["sentence"]), 300))
+        effects = by_reason.setdefault(reason, {})
+        effects.setdefault(row["effect"], []).append(row["parameter"])
+    for reason, effects in by_reason.items():
+        names = [_named(name, own, every) for name, own in effects.items()]
+        yield outline.table_row(reason, f"{capital('; '.join(names))}.")
+
+
+def _named(name: str, own: Sequence[str], every: Sequence[Record]) -> str:
+    """The effect, and its parameters where not all of them are concerned."""
+    effect, mount = method_and_mount(name)
+    words = with_mount(in_words(effect), mount)
+    if len(own) == sum(row["effect"] == name for row in every):
+        return words
+    return f"{words} ({', '.join(numbers.shortened(each, 30) for each in own)})"
+
+
+# ---- tests for structure
+
+
+def structure_tests(rows: Sequence[Record]) -> Iterator[outline.Part]:
+    """The six tests of each mount: in a line where none is significant, else as a table."""
+    for method in dict.fromkeys(row["method"] for row in rows):
+        own = [row for row in rows if row["method"] == method]
+        where = with_mount("", method_and_mount(method)[1])
+        if any(row["fires"] for row in own):
+            yield _tests(own, where)
+        elif any(row["degrees"] for row in own):
+            yield outline.Paragraph(_insignificant(own, where), "good")
+        else:
+            yield outline.Paragraph(f"No test for structure in the residuals was possible{where}.")
+
+
+def _insignificant(rows: Sequence[Record], where: str) -> str:
+    least = min((row for row in rows if row["degrees"]), key=lambda row: float(row["p_value"]))
+    sentence = (
+        f"{_count(rows)} tests for structure in the residuals of the model with the identified "
+        f"effects{where}, against {listed([test_name(row) for row in rows])}: none is significant, "
+        f"smallest {numbers.p_is(least['p_value'])} ({test_name(least)}, {channel(least)})."
+    )
+    if idle := [test_name(row) for row in rows if not row["degrees"]]:
+        sentence += f" Not tested against {listed(idle)}, which the recording does not contain."
+    return sentence
+
+
+def _count(rows: Sequence[Record]) -> str:
+    return capital(count_in_words(len(rows)))
+
+
+def _tests(rows: Sequence[Record], where: str) -> outline.Table:
+    """The tests, the significant ones first."""
+    return outline.Table(
+        f"{_count(rows)} tests for structure in the residuals of the model with the identified "
+        f"effects{where}. By chance one of them is significant in one campaign of a hundred.",
+        (
+            *outline.columns("text", "Against", "Most significant in", "Place"),
+            *outline.columns("number", "Reduction of χ²", "p"),
+            outline.Column("Outcome"),
+        ),
+        [
+            outline.table_row(
+                test_name(row).capitalize(),
+                channel(row),
+                place(row),
+                *_outcome(row),
+                tone="fair" if row["fires"] else "",
+            )
+            for row in sorted(rows, key=lambda row: (not row["fires"], row["p_value"]))
+        ],
+    )
+
+
+def _outcome(row: Record) -> tuple[str, str, str]:
+    if not row["degrees"]:
+        return "—", "—", "not recorded"
+    outcome = "significant" if row["fires"] else "not significant"
+    return numbers.significant(row["statistic"]), numbers.probability(row["p_value"]), outcome
+
+
+def test_name(row: Record) -> str:
+    """What the residuals are tested against."""
+    return TESTS.get(row["kind"]) or numbers.shortened(row["kind"], 30)
+
+
+def channel(row: Record) -> str:
+    """Sensor and axis in words: x gyro."""
+    sensor, axis = sensor_and_axis(row["channel"])
+    return f"{axis} {SENSOR.get(sensor, sensor)}" if axis else "—"
+
+
+def place(row: Record) -> str:
+    """Where along time or angle the structure is."""
+    at = row["place"]
+    if at is None or not row["degrees"]:
+        return "—"
+    if row["kind"] == "change":
+        return f"at {numbers.fixed(at / 60, 1)} min"
+    if row["kind"] == "angle":
+        return f"{numbers.significant(at, 3)} times in a turn" if at > 0 else "smooth"
+    if row["kind"] == "time":
+        return f"every {numbers.significant(1 / at, 3)} s" if at > 0 else "smooth"
+    return "—"

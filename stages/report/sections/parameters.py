@@ -1,0 +1,237 @@
+"""The parameters, each with its sigma in two units, and what could not be determined."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.tables import AXES
+from inertial.text import units
+from inertial.text.numbers import aligned, counted, fixed, shortened, significant
+from stages.report.outline import (
+    Column,
+    Equation,
+    Heading,
+    Matrices,
+    Matrix,
+    Paragraph,
+    Part,
+    Row,
+    Section,
+    Table,
+    columns,
+    head,
+    table_row,
+    value_and_sigma,
+)
+from stages.report.results import (
+    ESTIMATE_TABLES,
+    KIND,
+    Estimate,
+    estimates,
+    is_replaced,
+    kind_of,
+    quantity_of,
+    symbol,
+    written,
+)
+from stages.report.tables import Record, Tables
+
+REPLACED = (
+    "These are not the final parameters: those of the fit with effects in the model replace them, "
+    "in “Unmodelled effects”, in the archive and in the export."
+)
+MAX_LETTERS = 40  # of an identifier that stays in one line
+MAX_SYMBOLS = 18
+
+
+def parts(tables: Tables) -> Iterator[Part]:
+    """The model, and every method with its fit, its parameters and its matrices."""
+    yield Equation(
+        "reading = M · truth + bias",
+        "M = I + S + N: scale errors sₓ… on the diagonal; off the diagonal, the cross-axis "
+        "term m with indices i, j is the response of sensor i to an input along axis j.",
+    )
+    yield Equation("truth = M⁻¹ · (reading − bias)", "the compensation of a reading.")
+    for estimate in estimates(tables):
+        yield from _estimate(estimate)
+        if is_replaced(tables, estimate):
+            yield Paragraph(REPLACED, "fair")
+    if not any(estimate.parameters for estimate in estimates(tables)):
+        yield Paragraph("None: no method estimated a parameter.", "poor")
+
+
+PARAMETERS = Section(
+    "parameters",
+    "Parameters",
+    "Bias, scale error and cross-axis terms of both sensors, by each method that the plan allows.",
+    "Each value stands with its standard deviation σ, first in the unit of the laboratory, "
+    "then in the SI. Specific force: the axis that points up reads +g. Rotations follow the "
+    "right-hand rule. The joint fit is the final result, unless a note beside it says that the "
+    "fit with effects in the model replaces it; the other methods are given for comparison.",
+    (*ESTIMATE_TABLES, "decision"),
+    parts,
+)
+
+
+def _estimate(estimate: Estimate) -> Iterator[Part]:
+    yield Heading(estimate.name)
+    if estimate.fit is not None:
+        yield _fit(estimate, estimate.fit)
+    long = any(len(row["id"]) > MAX_LETTERS for row in estimate.determined)
+    yield Table(
+        f"Determined: {counted(len(estimate.determined), 'parameter')}.",
+        (
+            Column("", "symbol"),
+            *value_and_sigma("Laboratory", unit=True),
+            *value_and_sigma("SI", unit=True),
+            Column("Meaning", "note"),
+            Column("Identifier", "code" if long else "identifier"),
+        ),
+        list(_rows(estimate.determined)),
+        "None is determined; “Undetermined parameters” states the reasons.",
+    )
+    if matrices := _matrices(estimate):
+        yield matrices
+
+
+def _fit(estimate: Estimate, fit: Record) -> Paragraph:
+    words, tone = estimate.fit_in_words()
+    terms = {"scatter": "scatter between manoeuvres", "random_walk": "random walk of the bias"}
+    there = [name for size, name in terms.items() if fit[size]]
+    included = f", including {' and '.join(there)}" if there else ""
+    return Paragraph(
+        f"χ² = {significant(fit['chi_squared'])} with {counted(fit['degrees'], 'degree')} of "
+        f"freedom{included}: {words}.{_random_walk(fit)}",
+        tone,
+    )
+
+
+def _random_walk(fit: Record) -> str:
+    """The random walk of the bias; nothing where it has none."""
+    if not fit["random_walk"]:
+        return ""
+    unit = units.quantity("bias", fit["unit"]).laboratory
+    size, sigma = (
+        significant(unit.of(units.HOUR**0.5 * (fit[key] or 0.0)), 2)
+        for key in ("random_walk", "random_walk_sigma")
+    )
+    return (
+        f" The random walk of the bias is {size} ± {sigma} {unit.name}/√h; the bias is stated for "
+        "the middle of the campaign, and the σ include the random walk."
+    )
+
+
+def _rows(parameters: Sequence[Record]) -> Iterator[Row]:
+    """One row per parameter below the name of its kind, digits under digits."""
+    kinds = groupby(parameters, lambda row: kind_of(row["parameter"]))
+    groups = {kind: list(own) for kind, own in kinds}
+    cells = [line for group in groups.values() for line in written(group)]
+    lines = iter(zip(*map(aligned, zip(*cells, strict=True)), strict=True))
+    for kind, group in groups.items():
+        name = KIND.get(kind, shortened(kind, 60).capitalize())
+        frames = " and ".join(dict.fromkeys(row["frame"] for row in group))
+        yield head(f"{name}; frame: {shortened(frames, 60)}")
+        for row, (value, sigma, si_value, si_sigma) in zip(group, lines, strict=False):
+            unit = quantity_of(row)
+            yield table_row(
+                symbol(row["parameter"]),
+                *(value, sigma, unit.laboratory.name),
+                *(si_value, si_sigma, unit.si.name),
+                shortened(row["meaning"], 160),
+                row["id"],
+                anchor=row["id"],
+            )
+
+
+def _matrices(estimate: Estimate) -> Matrices | None:
+    """M, its inverse and the bias as numbers, where all twelve parameters are determined."""
+    known = estimate.calibration
+    matrix, bias = np.eye(3), np.zeros(3)
+    try:
+        for i, axis in enumerate(AXES):
+            bias[i] = known[f"bias_{axis}"]["value"]
+            for j, other in enumerate(AXES):
+                name = f"scale_{axis}" if i == j else f"cross_{axis}{other}"
+                matrix[i, j] += known[name]["value"]
+        inverse = np.linalg.inv(matrix)
+    except (KeyError, np.linalg.LinAlgError):
+        return None
+    unit = known["bias_x"]["unit"]
+    return Matrices(
+        f"{estimate.name}: ready for use.",
+        (
+            Matrix("M", _entries(matrix, 7)),
+            Matrix("M⁻¹", _entries(inverse, 7)),
+            Matrix("bias", _entries(bias[:, np.newaxis], 7 if unit == "m/s²" else 10), unit),
+        ),
+    )
+
+
+def _entries(matrix: NDArray[np.floating[Any]], decimals: int) -> tuple[tuple[str, ...], ...]:
+    return tuple(tuple(fixed(float(entry), decimals) for entry in line) for line in matrix)
+
+
+# ---- not determined, and excluded
+
+
+def undetermined_parts(tables: Tables) -> Iterator[Part]:
+    """Parameters without a value with the reason; manoeuvres without a part in the fit."""
+    if not estimates(tables):
+        yield Paragraph("Nothing was determined: no method found the manoeuvres it needs.", "poor")
+        return
+    yield Table(
+        "Parameters that are not determined.",
+        (
+            Column("Sensor, method"),
+            Column("Parameters", "symbol"),
+            Column("Reason, and what would help"),
+        ),
+        [line for estimate in estimates(tables) for line in _undetermined(estimate)],
+        "None: every parameter of every method has a value.",
+    )
+    yield Table(
+        "Manoeuvres by fit.",
+        columns("text", "Sensor, method", "Used", "Excluded, with the reason"),
+        [
+            table_row(
+                estimate.name,
+                shortened(fit["used"] or "none", 1500),
+                shortened(fit["left_out"] or "none", 1500),
+                tone="fair" if fit["left_out"] else "",
+            )
+            for estimate in estimates(tables)
+            if (fit := estimate.fit)
+        ],
+        "No fit was made.",
+    )
+
+
+UNDETERMINED = Section(
+    "undetermined",
+    "Undetermined parameters",
+    "Parameters that the plan or the recording cannot determine, and manoeuvres that a fit "
+    "excludes.",
+    "A parameter that is not determined has no value anywhere in this report; it is not zero. "
+    "Each reason names the manoeuvre that would help.",
+    ESTIMATE_TABLES,
+    undetermined_parts,
+)
+
+
+def _undetermined(estimate: Estimate) -> Iterator[Row]:
+    """One row per reason, its parameters together."""
+    gaps = [row for row in estimate.parameters if row["value"] is None]
+    for reason, group in groupby(gaps, lambda row: row["reason"]):
+        each = [symbol(row["parameter"]) for row in group]
+        rest = f" and {len(each) - MAX_SYMBOLS} more" if len(each) > MAX_SYMBOLS else ""
+        yield table_row(
+            estimate.name,
+            ", ".join(each[:MAX_SYMBOLS]) + rest,
+            shortened(reason or "no reason is stated", 600),
+            tone="fair",
+        )

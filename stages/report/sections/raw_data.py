@@ -1,0 +1,276 @@
+"""The raw data of every log: envelope over time, phases, and what is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from inertial.tables import AXES, CHANNELS
+from inertial.text.numbers import counted, fixed, shortened
+from inertial.text.units import DEGREES_PER_SECOND, METRES, Unit
+from stages.report import drawing
+from stages.report.identifiers import at_rest
+from stages.report.outline import Figure, Paragraph, Part, Section
+from stages.report.tables import Record, Tables, once
+
+Stretch = tuple[float, float]
+
+MOST_MISSING = 50  # stretches that are marked in one log
+
+
+@dataclass(frozen=True)
+class Log:
+    """One log as it is drawn: envelope over time, phases, missing stretches."""
+
+    name: str
+    start: drawing.Array  # of each row of the envelope, s, or records where there is no time
+    end: drawing.Array
+    least: dict[str, drawing.Array]
+    most: dict[str, drawing.Array]
+    phases: tuple[Record, ...]
+    missing: tuple[Stretch, ...]  # the longest of them
+    lost: float  # s, of all gaps, from the record before to the one after
+    timed: bool
+    records: int
+
+    @property
+    def static(self) -> bool:
+        """Whether the plan has the table at rest all through."""
+        return bool(self.phases) and all(at_rest(row["phase"]) for row in self.phases)
+
+    @property
+    def extent(self) -> Stretch:
+        """From its first to its last sample."""
+        return (float(self.start.min()), float(self.end.max())) if len(self.start) else (0.0, 0.0)
+
+    def rows(self, index: NDArray[np.integer[Any]]) -> Log:
+        """The rows of the envelope that `index` lists, as often as it does."""
+        return replace(
+            self,
+            start=self.start[index],
+            end=self.end[index],
+            least={name: values[index] for name, values in self.least.items()},
+            most={name: values[index] for name, values in self.most.items()},
+        )
+
+
+@once
+def logs(tables: Tables) -> list[Log]:
+    """Every log with its envelope, the phases of its manoeuvres and what is missing."""
+    clock = {row["log"]: row for row in tables.rows("clocks")}
+    gaps = tables.frame("gaps")
+    stated = gaps[["from_s", "to_s"]].to_numpy(dtype=np.float64)
+    each = []
+    for name, rows in tables.frame("traces").groupby("log", sort=False, observed=True):
+        log = str(name)
+        timed = not bool(rows["from_s"].isna().any() or rows["to_s"].isna().any())
+        columns = ("from_s", "to_s") if timed else ("from_record", "to_record")
+        start, end = (rows[column].to_numpy(dtype=np.float64) for column in columns)
+        interval = clock.get(log, {}).get("interval")
+        own_gaps = stated[(gaps["log"] == log).to_numpy()]
+        missing = _missing(start, end, interval, own_gaps) if timed else []
+        longest = tuple(sorted(_longest(missing, MOST_MISSING)))
+        lost = sum(b - a for a, b in missing)
+        least, most = (
+            {name: rows[f"{which}_{name}"].to_numpy(dtype=np.float64) for name in CHANNELS}
+            for which in ("least", "most")
+        )
+        own = tuple(
+            row | {"start": row[columns[0]], "end": row[columns[1]]}
+            for row in tables.rows("segments")
+            if row["log"] == log and row[columns[0]] is not None and row[columns[1]] is not None
+        )
+        count = int(clock.get(log, {}).get("records") or rows["to_record"].max())
+        drawn = Log(log, start, end, least, most, own, longest, lost, timed, count)
+        each.append(_cut(drawn))
+    return each
+
+
+def _missing(
+    start: drawing.Array, end: drawing.Array, interval: float | None, gaps: drawing.Array
+) -> list[Stretch]:
+    """Stretches without samples: the gaps, and wherever else the envelope breaks off."""
+    step = interval or (float(np.median(start[1:] - end[:-1])) if len(start) > 1 else np.inf)
+    breaks = np.flatnonzero(start[1:] - end[:-1] > 2.5 * step)
+    seen = np.column_stack([end[breaks], start[breaks + 1]])
+    gaps = gaps[np.argsort(gaps[:, 0])]
+    before = np.searchsorted(gaps[:, 0], seen[:, 1]) - 1  # the last gap that begins before its end
+    stated = np.zeros(len(seen), bool)
+    if len(gaps):
+        stated = (before >= 0) & (gaps[before, 1] > seen[:, 0])
+    return [(float(a), float(b)) for a, b in np.concatenate([gaps, seen[~stated]])]
+
+
+def _longest(stretches: Sequence[Stretch], most: int) -> list[Stretch]:
+    return sorted(stretches, key=lambda stretch: (stretch[0] - stretch[1], stretch[0]))[:most]
+
+
+def _cut(log: Log) -> Log:
+    """The same log with rows of the envelope cut where a missing stretch lies inside them."""
+    if not log.missing:
+        return log
+    keep: list[int] = []
+    start: list[float] = []
+    end: list[float] = []
+    for i, (a, b) in enumerate(zip(log.start.tolist(), log.end.tolist(), strict=True)):
+        inside = [(c, d) for c, d in log.missing if c < b and d > a]
+        edges = [a, *(edge for stretch in inside for edge in stretch), b]
+        for left, right in zip(edges[::2], edges[1::2], strict=True):
+            if left <= right:
+                keep.append(i)
+                start.append(left)
+                end.append(right)
+    return replace(log.rows(np.array(keep)), start=np.array(start), end=np.array(end))
+
+
+def envelope(
+    log: Log, channel: str, points: int
+) -> tuple[drawing.Array, drawing.Array, drawing.Array]:
+    """Middle, smallest and largest of about `points` stretches; a nan where the log breaks off."""
+    count = len(log.start)
+    broken = np.zeros(count, dtype=np.int64)
+    for a, b in log.missing:
+        broken += log.start >= (a + b) / 2
+    groups = broken * (points + 1) + np.arange(count) * min(points, count) // max(count, 1)
+    first = np.flatnonzero(np.diff(groups, prepend=groups[0] - 1 if count else 0))
+    last = np.append(first[1:], count) - 1
+    middle = (log.start[first] + log.end[last]) / 2
+    low = np.fmin.reduceat(log.least[channel], first)
+    high = np.fmax.reduceat(log.most[channel], first)
+    between = np.flatnonzero(np.diff(broken[first])) + 1
+    return (
+        np.insert(middle, between, middle[between]),
+        np.insert(low, between, np.nan),
+        np.insert(high, between, np.nan),
+    )
+
+
+# ---- the section
+
+MOST_POINTS = 45_000  # of all figures together: what a page may weigh
+POINTS_PER_CURVE = (60, 380)
+MANY_LOGS = 24  # from here on the figures are small, x, y and z in one panel
+MOST_LOGS = 110
+MOST_MANOEUVRES = 6  # named below a figure
+ABSOLUTE = {"gyro": DEGREES_PER_SECOND, "accel": METRES}
+NAMES = {"gyro": "Angular rate", "accel": "Specific force"}
+
+
+def parts(tables: Tables) -> Iterator[Part]:
+    """One figure per log."""
+    each = logs(tables)
+    points = int(np.clip(MOST_POINTS / (6 * max(len(each), 1)), *POINTS_PER_CURVE))
+    for number, log in enumerate(each[:MOST_LOGS], 1):
+        yield _figure(log, f"log-{number}", points, small=len(each) > MANY_LOGS)
+    if len(each) > MOST_LOGS:
+        more = counted(len(each) - MOST_LOGS, "further log")
+        yield Paragraph(f"{more} not drawn, to keep the page light.")
+    if not each:
+        yield Paragraph("None: no log gave samples that could be drawn.", "poor")
+    elif not any(log.missing for log in each):
+        yield Paragraph("Missing stretches: none.", "good")
+
+
+SECTION = Section(
+    "raw-data",
+    "Raw data",
+    "Gyroscope and accelerometer of every log, as recorded.",
+    "Each band runs from the smallest to the largest sample of a short stretch, so no spike is "
+    "lost. Logs at rest are drawn relative to the median, so that deviations show. Behind the "
+    "curves, x orange, y green, z blue: rest grey, spin-up and spin-down yellow, steady turn "
+    "blue; hatched: not recorded, close up among the findings.",
+    ("traces", "segments", "clocks", "gaps"),
+    parts,
+)
+
+
+def _figure(log: Log, key: str, points: int, *, small: bool) -> Figure:
+    manoeuvres = list(dict.fromkeys(row["manoeuvre"] for row in log.phases))
+    named = ", ".join(manoeuvres[:MOST_MANOEUVRES])
+    if len(manoeuvres) > MOST_MANOEUVRES:
+        named += f" and {len(manoeuvres) - MOST_MANOEUVRES} more"
+    length = log.extent[1] - log.extent[0]
+    lasting = f", {fixed(length, 1)} s" if log.timed else ", without time stamps"
+    view = "each channel relative to its median" if log.static else "as recorded"
+    caption = (
+        f"{shortened(log.name, 80)}: {shortened(named, 160) or 'no manoeuvre found'}; "
+        f"{counted(log.records, 'sample')}{lasting}; {view}."
+    )
+    if log.missing:
+        caption += f" Gaps of {fixed(log.lost, 2)} s in all, from record to record."
+    words = f"Six curves over time: rates and specific forces of x, y and z of the log {log.name}."
+    drawn = _draw(log, key, points, small=small)
+    return Figure(caption, drawn, words, "fair" if log.missing else "")
+
+
+def _draw(log: Log, key: str, points: int, *, small: bool) -> str:
+    """Gyroscope on the left, accelerometer on the right, one panel per axis."""
+    with drawing.style():
+        lines, height = (1, 0.75) if small else (3, 0.62)
+        figure, axes = drawing.panels(lines, 2, height, drawing.Margins())
+        for column, sensor in enumerate(ABSOLUTE):
+            middles = {a: _middle(log, f"{sensor}_{a}") if log.static else 0.0 for a in AXES}
+            unit = _unit(log, sensor, middles) if log.static else ABSOLUTE[sensor]
+            own = [row[column] for row in axes]
+            for panel in own:
+                draw_phases(panel, log)
+                drawing.ticks(panel, 4)
+                panel.ticklabel_format(axis="y", useOffset=False)
+            for panel, axis in zip(own * 3 if small else own, AXES, strict=True):
+                channel = f"{sensor}_{axis}"
+                if not len(log.start) or not np.isfinite(log.least[channel]).any():
+                    drawing.write_inside(panel, "not recorded")
+                else:
+                    draw_channel(panel, log, channel, points, unit, middles[axis])
+                if not small:
+                    drawing.name_axis(panel, axis, _label(axis, middles[axis], sensor, log))
+            own[0].set_title(f"{NAMES[sensor]}, {unit.name}", loc="left", pad=2)
+            own[-1].set_xlabel("Time, s" if log.timed else "Record")
+        if len(log.start):
+            left, right = log.extent
+            axes[0][0].set_xlim(left, right if right > left else left + 1.0)
+        return drawing.svg(figure, key)
+
+
+def draw_phases(panel: Axes, log: Log) -> None:
+    """The phases behind the curves, and what is missing."""
+    drawing.shade(panel, log.phases)
+    for start, end in log.missing:
+        drawing.hatch_missing(panel, start, end)
+
+
+def draw_channel(
+    panel: Axes, log: Log, channel: str, points: int, unit: Unit, middle: float
+) -> None:
+    """One channel as the band from its smallest to its largest samples, relative to `middle`."""
+    time, low, high = envelope(log, channel, points)
+    low, high = (low - middle) / unit.size, (high - middle) / unit.size
+    drawing.band(panel, time, low, high, drawing.AXIS_COLOUR[channel[-1]], zorder=2)
+
+
+def _label(axis: str, middle: float, sensor: str, log: Log) -> str:
+    if not log.static or not np.isfinite(middle):
+        return axis
+    unit = ABSOLUTE[sensor]
+    return f"{axis}, about {fixed(unit.of(middle), 5)} {unit.name}"
+
+
+def _middle(log: Log, channel: str) -> float:
+    both = (log.least[channel] + log.most[channel]) / 2
+    return float(np.nanmedian(both)) if np.isfinite(both).any() else float("nan")
+
+
+def _unit(log: Log, sensor: str, middles: dict[str, float]) -> Unit:
+    """The unit in which the largest deviation of a log at rest has few digits."""
+    deviations = (
+        float(np.nanmax(np.abs(values[f"{sensor}_{axis}"] - middles[axis])))
+        for values in (log.least, log.most)
+        for axis in AXES
+        if np.isfinite(middles[axis])
+    )
+    return drawing.readable(sensor, max(deviations, default=0.0))

@@ -1,0 +1,257 @@
+"""Residuals of the joint model: by manoeuvre, without and with effects, and their structure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from inertial.tables import AXES
+from inertial.text.numbers import p_is, shortened
+from inertial.text.units import DEGREE, DEGREES_PER_HOUR, MICRO_G, Unit
+from stages.report import drawing
+from stages.report.identifiers import at_mount, sensor_and_axis
+from stages.report.outline import Figure
+from stages.report.results import JOINT
+from stages.report.sections.effect_sentences import FITTED, HELD_OUT, about_effect
+from stages.report.sections.effect_tables import TESTS, channel, place
+from stages.report.tables import Record, Tables, once
+from stages.report.words import SENSORS
+
+UNIT = {"gyro": DEGREES_PER_HOUR, "accel": MICRO_G}
+MOST_NAMES = 24  # manoeuvres whose names have room below each other
+PIECES = 5  # of a rest, so that what changes within it is seen
+APART = 0.04  # of a manoeuvre, between its axes
+MOST_STRUCTURES = 3
+MAX_USUAL_SIGMAS = 3.0  # from which a point does not stretch the picture
+ICE_POINT = 273.15  # K
+# What a picture of each test goes along, its unit, and where that begins in SI.
+ALONG = {
+    "time": ("Time", Unit("min", 60.0), 0.0),
+    "angle": ("Angle of the table", Unit("°", DEGREE), 0.0),
+    "rate": ("Rate", Unit("°/s", DEGREE), 0.0),
+    "attitude": ("Angle of the axis from the vertical", Unit("°", DEGREE), 0.0),
+    "temperature": ("Temperature", Unit("°C", 1.0), ICE_POINT),
+    "change": ("Time", Unit("min", 60.0), 0.0),
+}
+
+
+@dataclass(frozen=True)
+class Residual:
+    """Mean residuals of a sensor in one manoeuvre, of a rest in a few pieces.
+
+    `mean`, `sigma`: (pieces, 3), and what noise alone would give.
+    """
+
+    manoeuvre: str
+    mean: drawing.Array
+    sigma: drawing.Array
+
+
+@once
+def mean_residuals(tables: Tables) -> dict[str, list[Residual]]:
+    """By sensor, in the order of the plan: means over whole turns and over pieces of rests."""
+    noise = {(r["manoeuvre"], r["channel"]): r["noise_rms"] for r in tables.rows("fidelity")}
+    channels = [f"{sensor}_{axis}" for sensor in UNIT for axis in AXES]
+    residuals = [f"residual_{name}" for name in channels]
+    sums: dict[
+        str, list[tuple[drawing.Array, drawing.Array]]
+    ] = {}  # of each manoeuvre sums and counts, (k, 6)
+    for batch in tables.stream("simulated").columns(["manoeuvre", "phase", *residuals]):
+        for name, own in batch.to_pandas().groupby("manoeuvre", sort=False):
+            values = own[residuals].to_numpy(np.float64)
+            counts = np.isfinite(values).astype(np.float64)
+            if (own["phase"] != "rest").any():  # samples of a turn
+                values = np.nansum(values, axis=0)[np.newaxis]
+                counts = counts.sum(axis=0)[np.newaxis]
+            sums.setdefault(str(name), []).append((values, counts))
+    by_sensor: dict[str, list[Residual]] = {sensor: [] for sensor in UNIT}
+    for name in tables.frame("manoeuvres")["manoeuvre"]:
+        if name not in sums:
+            continue
+        values, counts = (np.concatenate(each) for each in zip(*sums[name], strict=True))
+        pieces = [np.arange(len(values))] if (counts > 1).any() else _pieces(len(values))
+        totals, counts = (
+            np.array([np.nansum(each[piece], axis=0) for piece in pieces])
+            for each in (values, counts)
+        )
+        level = np.array([noise.get((name, each), np.nan) for each in channels], np.float64)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean, sigma = totals / counts, level / np.sqrt(counts)
+        for sensor, columns in (("gyro", slice(3)), ("accel", slice(3, 6))):
+            by_sensor[sensor].append(Residual(name, mean[:, columns], sigma[:, columns]))
+    return by_sensor
+
+
+def _pieces(blocks: int) -> list[NDArray[np.int64]]:
+    """The blocks of a rest in a few pieces of equal length."""
+    return [piece for piece in np.array_split(np.arange(blocks), PIECES) if len(piece)]
+
+
+def by_manoeuvre(tables: Tables, finding: Record, mount: str, key: str) -> Figure | None:
+    """The residuals of each manoeuvre, and those of each axis without and with effects."""
+    sensor = finding["sensor"] or ""
+    mounts = {row["manoeuvre"]: row["mount"] for row in tables.rows("manoeuvres")}
+    shown = [
+        residual
+        for residual in mean_residuals(tables).get(sensor, ())
+        if np.isfinite(residual.mean).any()
+        and (not mount or mounts.get(residual.manoeuvre) == mount)
+    ]
+    if not shown:
+        return None
+    changes = _changes(about_effect(tables.rows("gain"), finding["cause"], mount), sensor)
+    caption = (
+        f"Residuals of the {SENSORS[sensor]} with the joint model: means over turns and over "
+        "fifths of static positions, ± σ of the noise alone."
+    )
+    if changes:
+        scope = "held out" if any(row["scope"] == HELD_OUT for row in changes.values()) else FITTED
+        caption += (
+            " Right: the residuals of each axis without (hollow) and with effects in the model "
+            f"(filled), root mean square over static positions and whole turns that were {scope}; "
+            "dashed: noise alone."
+        )
+    named = len(shown) <= MOST_NAMES
+    margins = drawing.Margins(top=0.2, bottom=0.75 if named else 0.4, left=0.5, across=0.5)
+    with drawing.style():
+        drawn, panels = drawing.side_by_side([2.6, 1.0] if changes else [1.0], 1.35, margins)
+        _manoeuvres(panels[0], sensor, shown, named)
+        if changes:
+            _axes(panels[1], changes)
+        picture = drawing.svg(drawn, key)
+    words = "Mean residuals of each manoeuvre, and residuals of each axis before and after."
+    return Figure(caption, picture, words)
+
+
+def _changes(gain: Sequence[Record], sensor: str) -> dict[str, Record]:
+    """By axis the row of the gain: on held-out data where there is one."""
+    changes: dict[str, Record] = {}
+    for scope in (FITTED, HELD_OUT):
+        for row in gain:
+            own, axis = sensor_and_axis(row["sensor"])
+            known = None not in (row["rms_before"], row["rms_after"])
+            if known and (own, row["scope"], row["unit"]) == (sensor, scope, "sigma"):
+                changes[axis] = row
+    return {axis: changes[axis] for axis in AXES if axis in changes}
+
+
+def _manoeuvres(panel: Axes, sensor: str, shown: Sequence[Residual], named: bool) -> None:
+    unit = UNIT[sensor]
+    for column, axis in enumerate(AXES):
+        for number, residual in enumerate(shown):
+            pieces = len(residual.mean)
+            within = (np.arange(pieces) + 0.5) / pieces - 0.5
+            panel.errorbar(
+                number + 0.8 * within + APART * (column - 1),
+                residual.mean[:, column] / unit.size,
+                yerr=residual.sigma[:, column] / unit.size,
+                fmt=drawing.AXIS_MARK[axis],
+                linestyle="-",
+                linewidth=0.5,
+                color=drawing.AXIS_COLOUR[axis],
+                markersize=2.4,
+                elinewidth=0.6,
+                label="_" if number else axis,
+            )
+    panel.axhline(0, color=drawing.QUIET, linewidth=0.5)
+    panel.set_title(f"Residual, {unit.name}", pad=4)
+    panel.legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=3, handletextpad=0.1)
+    drawing.ticks(panel, 5)
+    panel.set_xlim(-0.6, len(shown) - 0.4)
+    if named:
+        names = [shortened(residual.manoeuvre, 12) for residual in shown]
+        panel.set_xticks(range(len(shown)), names, rotation=90)
+    else:
+        panel.set_xlabel("Manoeuvre, in the order of the plan")
+
+
+def _axes(panel: Axes, changes: dict[str, Record]) -> None:
+    for axis, row in changes.items():
+        line, colour = AXES.index(axis), drawing.AXIS_COLOUR[axis]
+        before, after = row["rms_before"], row["rms_after"]
+        panel.plot([before, after], [line, line], color=colour, linewidth=0.9)
+        panel.plot(before, line, marker="o", color=colour, fillstyle="none", markersize=5)
+        panel.plot(after, line, marker="o", color=colour, markersize=5)
+    panel.axvline(1.0, color=drawing.QUIET, linewidth=0.7, dashes=(4, 2))
+    panel.set_yticks(range(len(AXES)), list(AXES))
+    panel.set_ylim(len(AXES) - 0.5, -0.5)
+    panel.set_xlim(left=0.0)
+    panel.xaxis.set_major_locator(MaxNLocator(5))
+    panel.set_title("Without → with, σ", pad=4)
+
+
+# ---- structure
+
+
+def structures(tables: Tables, finding: Record, mount: str, key: str) -> Iterator[Figure]:
+    """The residuals of the sensor of a finding against what a test is about, the clearest first."""
+    firing = [
+        row
+        for row in tables.rows("structures")
+        if row["method"] == at_mount(JOINT, mount)
+        and row["fires"]
+        and sensor_and_axis(row["channel"])[0] == finding["sensor"]
+    ]
+    firing.sort(key=lambda row: float(row["p_value"]))
+    same = ("method", "kind", "channel")
+    for number, row in enumerate(firing[:MOST_STRUCTURES], 1):
+        own = [
+            point
+            for point in tables.rows("structure_points")
+            if all(point[name] == row[name] for name in same)
+        ]
+        if own and row["kind"] in ALONG:
+            yield _structure(row, own, f"{key}-structure-{number}")
+
+
+def _structure(row: Record, points: Sequence[Record], key: str) -> Figure:
+    along, at = TESTS[row["kind"]], place(row)
+    where = f" ({at})" if at not in ("—", "smooth") else ""
+    return Figure(
+        f"Residuals of the {channel(row)} against {along}{where}: points ± σ, one for each bin of "
+        "readings, all other terms as fitted; line: the structure that the test detects "
+        f"({p_is(row['p_value'])}).",
+        _draw_structure(row, points, key),
+        f"Residuals of the {channel(row)} against {along}, and the structure in them.",
+    )
+
+
+def _draw_structure(row: Record, points: Sequence[Record], key: str) -> str:
+    sensor, axis = sensor_and_axis(row["channel"])
+    name, unit, zero = ALONG[row["kind"]]
+    size = UNIT[sensor]
+    points = sorted(points, key=lambda point: float(point["x"]))
+    x, residual, sigma, structure = (
+        np.array([point[column] for point in points], np.float64)
+        for column in ("x", "left", "sigma", "structure")
+    )
+    x = (x - zero) / unit.size
+    with drawing.style():
+        drawn, [panel] = drawing.side_by_side([1.0], 1.25, drawing.Margins(top=0.12, left=0.6))
+        panel.errorbar(
+            x,
+            residual / size.size,
+            yerr=sigma / size.size,
+            fmt="o",
+            color=drawing.AXIS_COLOUR.get(axis, drawing.QUIET),
+            markersize=2.6,
+            elinewidth=0.7,
+            capsize=0,
+        )
+        panel.axhline(0, color=drawing.QUIET, linewidth=0.5)
+        panel.plot(x, structure / size.size, color=drawing.INK, linewidth=1.1)
+        # As high as the points that tell something: one of few readings does not stretch it.
+        usual = sigma <= MAX_USUAL_SIGMAS * np.median(sigma)
+        reach = (np.abs(residual[usual]) + sigma[usual], np.abs(structure))
+        most = max(float(np.max(row, initial=0.0)) for row in reach) / size.size
+        if most > 0:
+            panel.set_ylim(-1.1 * most, 1.1 * most)
+        drawing.ticks(panel, 5, 9)
+        panel.set_ylabel(f"Residual, {size.name}", labelpad=2)
+        panel.set_xlabel(f"{name}, {unit.name}")
+        return drawing.svg(drawn, key)

@@ -1,0 +1,289 @@
+"""Unmodelled effects: each with its certainty, what it does and what to do; detection limits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from inertial.campaign.final_result import EXTENDED
+from inertial.text.cause_names import in_words
+from inertial.text.numbers import p_is, shortened, significant
+from stages.report import outline
+from stages.report.identifiers import (
+    listed_names,
+    method_of_sensor,
+    mount_of,
+    parameters_in,
+    states_sigmas,
+)
+from stages.report.results import RESULT_TABLES, shifts
+from stages.report.sections import effect_tables, periodic_figures, residual_figures
+from stages.report.sections.effect_sentences import (
+    GRADES,
+    Tested,
+    about_effect,
+    alternatives,
+    certainty,
+    clearest_first,
+    effect_of,
+    grade_of,
+    kind_of,
+    largest_shift,
+    name_of,
+    reductions,
+    summary,
+    tested_effect,
+    tested_effects,
+    worth,
+)
+from stages.report.sections.findings import (
+    FINDING_TABLES,
+    LINES,
+    POSITION,
+    related_findings,
+    title_of,
+)
+from stages.report.tables import Record, Tables, once
+from stages.report.words import capital, count_in_words
+
+MAX_LETTERS = 1500  # of a sentence
+MIN_SPLIT_SIGMA = 3.3  # at which the likelier member is right in 95 of 100 campaigns
+IDENTIFIED = frozenset({"found", "class"})
+
+
+@once
+def effect_findings(tables: Tables) -> list[Record]:
+    """The findings of criticism, the clearest first."""
+    return clearest_first(tables.rows("criticism_findings"))
+
+
+def parts(tables: Tables) -> Iterator[outline.Part]:
+    """A block for each finding, the tests for structure, and the detection limits."""
+    yield _summary(tables)
+    yield from _decisions(tables)
+    tests = list(effect_tables.structure_tests(tables.rows("structures")))
+    firing = any(row["fires"] for row in tables.rows("structures"))
+    yield from () if firing else tests
+    yield from _blocks(tables)
+    yield from tests if firing else ()
+    yield from effect_tables.extended(tables)
+    if missed := list(_not_detected(tables)):
+        yield outline.Heading("Detection limits")
+        yield from effect_tables.detection_limits(tables.rows("blind_spots"), missed)
+
+
+SECTION = outline.Section(
+    "unmodelled-effects",
+    "Unmodelled effects",
+    "Physical effects beyond bias, scale and cross-axis terms that the data reveal: how certain "
+    "each is, what it does and what to do; and the detection limits of those not detected.",
+    "The clearest comes first. Identified: significant, and no other effect of the catalogue has "
+    "the same signature. One of a class: others have the same signature in these data. "
+    "Consistent: the name is not certain. The reduction of χ² is stated for the data that were "
+    "fitted and for held-out data, where each manoeuvre is predicted from the others with and "
+    "without the effects; an effect that only fits noise reduces nothing there. The attainable "
+    "reduction is that of exactly known effects.",
+    (
+        *RESULT_TABLES,
+        *FINDING_TABLES,
+        *("manoeuvres", "segments", "simulated", "fidelity", "scores", "effects", "lines"),
+        *("blind_spots", "structures", "structure_points", "gain", "worth"),
+    ),
+    parts,
+)
+
+
+def _summary(tables: Tables) -> outline.Paragraph:
+    if sentences := list(summary(effect_findings(tables))):
+        return outline.Paragraph(" ".join(sentences), "fair")
+    tested = tested_effects(tables)
+    if not tested:
+        return outline.Paragraph("No effect was tested: the joint fits determine no model.", "fair")
+    every = len({effect.effect for effect in tested})
+    observable = len({effect.effect for effect in tested if effect.score["degrees"]})
+    if not observable:
+        return outline.Paragraph(
+            f"This plan makes none of the {count_in_words(every)} effects observable.", "fair"
+        )
+    sentence = f"None detected: none of the {count_in_words(observable)} effects is significant."
+    if observable < every:
+        sentence = (
+            f"None detected: none of the {count_in_words(observable)} effects that this plan makes "
+            f"observable is significant; {count_in_words(every - observable)} are not observable."
+        )
+    return outline.Paragraph(sentence, "good")
+
+
+def _decisions(tables: Tables) -> Iterator[outline.Paragraph]:
+    """The decision of every sensor that shows an effect, or beside which something is wrong."""
+    for row in tables.rows("decision"):
+        if row["effects"] or row["alarms"]:
+            mount = f"Mount {row['mount']}: " if row["mount"] else ""
+            tone: outline.Tone = "good" if row["result"] == EXTENDED else "fair"
+            yield outline.Paragraph(shortened(mount + row["sentence"], 900), tone)
+
+
+def _not_detected(tables: Tables) -> Iterator[Tested]:
+    """The effects that no finding is about, nor may be instead."""
+    named = {
+        (name, mount_of(row["id"]))
+        for row in effect_findings(tables)
+        for name in (row["cause"], *alternatives(row))
+    }
+    return (
+        effect for effect in tested_effects(tables) if (effect.effect, effect.mount) not in named
+    )
+
+
+# ---- the block of a finding
+
+
+def _blocks(tables: Tables) -> Iterator[outline.Finding]:
+    """A block for each finding; what several would show alike is shown by the first of them."""
+    first: dict[tuple[str | None, str], Record] = {}
+    for number, row in enumerate(effect_findings(tables), 1):
+        key, mount = f"effect-{number}", mount_of(row["id"])
+        place = (row["sensor"], mount)
+        shown: list[outline.Figure | outline.Table] = [*_parameters(tables, row)]
+        links = [
+            outline.Link(f"Findings: {title_of(other)}", f"finding/{other['id']}")
+            for other in related_findings(tables).get(row["id"], ())
+        ]
+        residuals = None
+        if row["cause"] not in LINES:
+            residuals = residual_figures.by_manoeuvre(tables, row, mount, key)
+        if residuals and place in first and not list(_reductions(tables, row)):
+            like = first[place]
+            links.insert(0, outline.Link(f"{_title(like)}: figure", f"effect/{like['id']}"))
+        elif residuals:
+            shown.append(residuals)
+            first.setdefault(place, row)
+        shown += _own_figures(tables, row, key)
+        yield outline.Finding(
+            f"effect/{row['id']}",
+            _title(row),
+            GRADES[grade_of(row)],
+            shortened(row["sentence"], MAX_LETTERS),
+            answers=tuple(_answers(tables, row)),
+            parts=shown,
+            links=links,
+            tone="" if kind_of(row) == "walk" else "fair",
+            model=True,
+        )
+
+
+def _title(row: Record) -> str:
+    name = capital(name_of(row))
+    return f"{name} · {shortened(row['manoeuvre'], 60)}" if row["manoeuvre"] else name
+
+
+def _parameters(tables: Tables, row: Record) -> Iterator[outline.Table]:
+    """Its parameters; of a random walk none, for its only number is in the sentence."""
+    tested = effect_of(tables, row)
+    known: Sequence[Record] = tested.parameters if tested else ()
+    if not any(each["value"] is not None for each in known):
+        meanings = {each["parameter"]: each["meaning"] for each in known}
+        known = [
+            each | {"id": "", "meaning": meanings.get(each["parameter"], "")}
+            for each in parameters_in(row["parameters"])
+        ]
+    if known and kind_of(row) != "walk":
+        yield effect_tables.parameters(name_of(row), known)
+
+
+def _own_figures(tables: Tables, row: Record, key: str) -> Iterator[outline.Figure]:
+    """What shows this one alone: an oscillation over time or angle, or a structure."""
+    tested = effect_of(tables, row) if row["cause"] in LINES else None
+    figure = None
+    if tested and row["cause"] == "oscillation":
+        figure = periodic_figures.over_time(tables, row["cause"], key)
+    elif tested:
+        orders = [each["value"] for each in tested.parameters if each["parameter"] == "n"]
+        order = next((value for value in orders if value is not None), 1.0)
+        figure = periodic_figures.over_angle(tables, order, key)
+    if figure:
+        yield figure
+    if kind_of(row) == "structure":
+        yield from residual_figures.structures(tables, row, mount_of(row["id"]), key)
+
+
+def _answers(tables: Tables, row: Record) -> outline.Pairs:
+    mount, kind = mount_of(row["id"]), kind_of(row)
+    answers = [("Certainty", certainty(row))]
+    if kind in ("consistent", "walk") and (what := _meaning(tables, row["cause"], mount)):
+        answers.append(("Cause", f"{capital(what)}."))
+    if others := alternatives(row):
+        each = (
+            in_words(name) + (f" ({what})" if (what := _meaning(tables, name, mount)) else "")
+            for name in others
+        )
+        label = "Candidates" if kind == "structure" else "Alternatives"
+        answers.append((label, f"{capital('; '.join(each))}."))
+    answers += [
+        ("Ruled out", " ".join(_positions(tables, row, mount))),
+        ("To distinguish", _split(row) if row["split_manoeuvre"] else ""),
+        ("Improvement", " ".join(_gain(tables, row, mount))),
+        ("Consequence", shortened(row["consequence"] or "", 900)),
+    ]
+    if row["cause"] == "oscillation" and effect_of(tables, row):
+        answers.append(("Magnitude", " ".join(periodic_figures.angle(tables, row["cause"]))))
+    answers += [
+        ("Navigation", _worth(tables, row, mount)),
+        ("Action", shortened(row["action"] or "", 600)),
+    ]
+    return tuple((name, text) for name, text in answers if text)
+
+
+def _meaning(tables: Tables, effect: str, mount: str) -> str:
+    tested = tested_effect(tables, effect, mount) or tested_effect(tables, effect, "")
+    return shortened(tested.score["cause"], 300) if tested else ""
+
+
+def _positions(tables: Tables, row: Record, mount: str) -> Iterator[str]:
+    """That no position error is significant beside it, where the joint fit has one for it."""
+    tested = tested_effect(tables, POSITION, mount)
+    if row["sensor"] != "accel" or kind_of(row) not in IDENTIFIED:
+        return
+    if tested is None or tested.score["named"] or POSITION in (row["cause"], *alternatives(row)):
+        return
+    for off in tables.rows("accelerometer_findings"):
+        if off["cause"] == POSITION and mount_of(off["id"]) == mount:
+            yield (
+                f"The joint fit attributes it to a position error in "
+                f"{shortened(off['manoeuvre'] or 'a manoeuvre', 60)}; with the effect in the model "
+                f"no position error is significant ({p_is(tested.score['p_value'])})."
+            )
+
+
+def _split(row: Record) -> str:
+    """The manoeuvre that would split the class, unless the action states it with its sigmas."""
+    manoeuvre, action = shortened(row["split_manoeuvre"], 400), row["action"] or ""
+    stated = row["split_manoeuvre"] in action
+    if row["split_snr"] is None:
+        return "" if stated else f"{capital(manoeuvre)}."
+    if stated and states_sigmas(action):
+        return ""
+    clear = f"{significant(row['split_snr'], 2)} σ"
+    if row["split_snr"] < MIN_SPLIT_SIGMA:
+        return f"No manoeuvre considered would; the best, {manoeuvre}, reaches {clear}."
+    return f"{capital(manoeuvre)}: expected to distinguish them at {clear}."
+
+
+def _reductions(tables: Tables, row: Record) -> Iterator[str]:
+    return reductions(row["cause"], mount_of(row["id"]), tables.rows("gain"))
+
+
+def _gain(tables: Tables, row: Record, mount: str) -> Iterator[str]:
+    """The gain, and how far the parameters of the sensor move."""
+    if kind_of(row) in IDENTIFIED:
+        yield from _reductions(tables, row)
+        for decision in about_effect(tables.rows("decision"), row["cause"], mount):
+            yield largest_shift(shifts(tables).get(method_of_sensor(decision), ()))
+
+
+def _worth(tables: Tables, row: Record, mount: str) -> str:
+    if not about_effect(tables.rows("decision"), row["cause"], mount):
+        return ""
+    decisions = [each for each in tables.rows("decision") if (each["mount"] or "") == mount]
+    together = dict.fromkeys(name for each in decisions for name in listed_names(each["effects"]))
+    own = [each for each in tables.rows("worth") if (each["mount"] or "") == mount]
+    return worth(list(together), own)

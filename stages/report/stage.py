@@ -1,0 +1,67 @@
+"""The calibration report: the result, how sure it is, and where every number comes from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from inertial.tables.stage import Stage
+from inertial.text.numbers import shortened
+from stages.report.declared import DECLARED
+from stages.report.outline import Report
+from stages.report.page import page
+from stages.report.sections import (
+    averaging,
+    basis,
+    comparisons,
+    compensation,
+    findings,
+    noise,
+    parameters,
+    raw_data,
+    residuals,
+    studies,
+    unmodelled_effects,
+    verdict,
+)
+from stages.report.tables import Tables
+
+SECTIONS = (
+    verdict.SECTION,
+    parameters.PARAMETERS,
+    unmodelled_effects.SECTION,
+    findings.SECTION,
+    parameters.UNDETERMINED,
+    residuals.SECTION,
+    comparisons.COMPARISONS,
+    compensation.SECTION,
+    comparisons.HISTORY,
+    basis.RECORDED,
+    raw_data.SECTION,
+    noise.SECTION,
+    averaging.SECTION,
+    studies.SECTION,
+    basis.KNOWN,
+    basis.ACCOUNT,
+    basis.PROVENANCE,
+)
+
+
+def report(provenance: Mapping[str, Mapping[str, Any]], **read: Any) -> dict[str, str]:
+    """The report of one campaign as a page, and its verdict as plain text."""
+    tables = Tables(read, provenance)
+    about = tables.row("campaign")
+    name, serial = (shortened(about[key], 80) for key in ("campaign", "serial"))
+    instrument = f"{shortened(about['instrument'], 80)} · serial {serial}"
+    outline = Report(
+        title=f"Calibration report: {name} · {instrument}",
+        campaign=name,
+        instrument=instrument,
+        running=f"{name} · {instrument}" + (" · simulated" if about["simulated"] else ""),
+        simulated=bool(about["simulated"]),
+        sections=[(section, list(section.parts(tables))) for section in SECTIONS],
+    )
+    return {"html": page(outline), "txt": verdict.as_text(tables)}
+
+
+STAGE = Stage(report, DECLARED)

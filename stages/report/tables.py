@@ -1,0 +1,79 @@
+"""The tables of a campaign as every section gets them: by name, with what made each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import wraps
+from typing import Any, TypeVar
+
+import pandas as pd
+
+from inertial.tables.parquet import Stream
+
+Record = dict[str, Any]
+Result = TypeVar("Result")
+
+
+class Tables:
+    """The tables by name, as frames, as rows or as streams, and what made each of them."""
+
+    def __init__(
+        self, tables: Mapping[str, Any], provenance: Mapping[str, Mapping[str, Any]]
+    ) -> None:
+        self._tables, self._provenance = tables, provenance
+        self._rows: dict[str, list[Record]] = {}
+        self._results: dict[Callable[[Tables], Any], Any] = {}
+
+    def frame(self, name: str) -> pd.DataFrame:
+        """A whole table."""
+        frame: pd.DataFrame = self._tables[name]
+        return frame
+
+    def stream(self, name: str) -> Stream:
+        """A table that is too long for memory, batch by batch."""
+        stream: Stream = self._tables[name]
+        return stream
+
+    def rows(self, name: str) -> list[Record]:
+        """The rows of a table as plain values, its gaps as None."""
+        if name not in self._rows:
+            self._rows[name] = records(self.frame(name))
+        return self._rows[name]
+
+    def row(self, name: str) -> Record:
+        """The single row of a table that has one; an empty table gives an empty row."""
+        rows = self.rows(name)
+        return rows[0] if rows else dict.fromkeys(map(str, self.frame(name).columns))
+
+    def maker(self, name: str) -> Mapping[str, Any]:
+        """What made a table, or a stage that makes none: stage, settings and code."""
+        return self._provenance[name]
+
+    def once(self, function: Callable[[Tables], Result]) -> Result:
+        """The result of `function`, computed at its first use."""
+        if function not in self._results:
+            self._results[function] = function(self)
+        result: Result = self._results[function]
+        return result
+
+
+def once(function: Callable[[Tables], Result]) -> Callable[[Tables], Result]:
+    """What several sections need of the same tables, computed once for all of them."""
+
+    @wraps(function)
+    def cached(tables: Tables) -> Result:
+        return tables.once(function)
+
+    return cached
+
+
+def records(frame: pd.DataFrame) -> list[Record]:
+    """One dict per row; whatever stands for a gap in a column becomes None."""
+    columns = {
+        str(name): [
+            None if gap else value
+            for value, gap in zip(column.tolist(), column.isna(), strict=True)
+        ]
+        for name, column in frame.items()
+    }
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]

@@ -1,1 +1,0 @@
-"""The lab report: its outline as data, its figures, its templates."""

@@ -1,0 +1,199 @@
+"""What the made-up campaign gives, beside other results and earlier ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from inertial import tables
+from tests.report.synthetic_values import AXES, BIAS, CROSS, GRAVITY, PAIRS, REST_S, SCALE, Rows
+
+
+def parameters(stage: str, method: str) -> Rows:
+    sensor = {"accelerometer": "accel", "gyroscope": "gyro"}[stage]
+    unit = tables.UNITS[sensor]
+    sigma = {"bias": {"accel": 1.1e-5, "gyro": 2.1e-8}[sensor], "scale": 2.2e-6, "cross": 4.1e-6}
+    joint = method == "joint"
+    entries: list[tuple[str, float | None, str, str]] = []
+    for i, axis in enumerate(AXES):
+        entries.append(
+            (f"bias_{axis}", BIAS[sensor][i], unit, f"reading at no input, {axis} sensor")
+        )
+    for i, axis in enumerate(AXES):
+        entries.append(
+            (f"scale_{axis}", SCALE[sensor][i], "1", f"scale error of the {axis} sensor")
+        )
+    for (i, j), value in zip(PAIRS, CROSS, strict=True):
+        given = value if joint or sensor == "accel" else None
+        name = f"cross_{AXES[i]}{AXES[j]}"
+        entries.append((name, given, "1", f"the {AXES[i]} sensor's response to {AXES[j]} input"))
+    if joint:
+        for axis, value in zip(AXES, (0.00074, 0.00758, -0.00246), strict=True):
+            entries.append(
+                (f"mounting_{axis}", value, "rad", f"rotation of the triad about {axis}")
+            )
+        for pair, value in zip(("xy", "xz", "yz"), (-280.6e-6, 24.8e-6, -41.2e-6), strict=True):
+            entries.append((f"symmetric_{pair}", value, "rad", f"{pair} out of square"))
+    return [
+        {
+            "id": f"{stage}/{method}/{name}",
+            "stage": stage,
+            "method": method,
+            "parameter": name,
+            "value": value,
+            "sigma": None if value is None else sigma.get(name.partition("_")[0], 5e-6),
+            "unit": unit_of,
+            "frame": "body",
+            "meaning": meaning,
+            "reason": ""
+            if value is not None
+            else "the turns fix only the axis that turns; rests in six positions would help",
+        }
+        for name, value, unit_of, meaning in entries
+    ]
+
+
+def fit(stage: str, other: str) -> Rows:
+    left_out = "z-backward: 119.8° of 360° are missing" if stage == "gyroscope" else ""
+    p_value = 2.4e-9 if stage == "gyroscope" else 0.41
+    chi_squared = 812.4 if stage == "gyroscope" else 603.1
+    used = "x-up, x-down, y-up, y-down, z-up, z-down, x-forward, x-backward, y-forward"
+    noise = {"scatter": 0.0, "random_walk": 0.0, "random_walk_sigma": 0.0}
+    noise |= {"unit": tables.UNITS["accel" if stage == "accelerometer" else "gyro"]}
+    row = {"chi_squared": chi_squared, "degrees": 594, "p_value": p_value, "used": used}
+    plain = {"chi_squared": 5.1, "degrees": 6, "p_value": 0.53, "used": "x-up, x-down, y-up"}
+    return [
+        {"method": "joint", "left_out": left_out, **row, **noise},
+        {"method": other, "left_out": left_out, **plain, **noise},
+    ]
+
+
+def averaging(parameters: Rows, generator: np.random.Generator) -> Rows:
+    rows: Rows = []
+    for parameter in parameters:
+        if parameter["method"] != "joint" or parameter["value"] is None:
+            continue
+        if parameter["parameter"].partition("_")[0] not in ("bias", "scale", "cross"):
+            continue
+        for seconds in np.geomspace(5, REST_S, 20):
+            sigma = parameter["sigma"] * float(np.sqrt(REST_S / seconds))
+            spread = np.sqrt(max(sigma**2 - parameter["sigma"] ** 2, 0.0))
+            value = parameter["value"] + spread * generator.standard_normal() * 0.8
+            rows.append(
+                {"parameter": parameter["id"], "seconds": seconds, "value": value, "sigma": sigma}
+            )
+    return rows
+
+
+def wanted(stage: str, method: str) -> Rows:
+    sigma, floor = (9e-5, 3e-5) if stage == "accelerometer" else (7e-7, 0.0)
+    row = {"seconds": REST_S, "sigma": sigma, "floor": floor, "random_walk": sigma * REST_S**0.5}
+    times = {"x": (2 * sigma, 60.0), "y": (sigma / 2, 1200.0), "z": (floor / 2, None)}
+    return [
+        {"parameter": f"{stage}/{method}/bias_{axis}", "wanted": wanted, "wanted_seconds": time}
+        | row
+        for axis, (wanted, time) in times.items()
+    ]
+
+
+def differences() -> Rows:
+    def row(
+        kind: str, parameter: str, unit: str, sigmas: float | None, said: str
+    ) -> dict[str, Any]:
+        one = {
+            "id": f"comparison/{kind}/{parameter}",
+            "kind": kind,
+            "parameter": parameter,
+            "unit": unit,
+            "first": "this",
+            "second": "that",
+            "first_value": 2e-6,
+            "second_value": 1e-6,
+            "sentence": said,
+        }
+        if sigmas is None:
+            return one
+        sigma = abs(1e-6 / sigmas)
+        p_value = 1e-9 if abs(sigmas) > 5 else 0.4
+        difference = {"difference": np.sign(sigmas) * 1e-6, "sigma": sigma}
+        return one | difference | {"in_sigmas": sigmas, "p_value": p_value}
+
+    return [
+        row("method_against_method", "gyroscope/bias_y", "rad/s", 0.9, "bias: they agree."),
+        row("method_against_method", "gyroscope/scale_x", "1", None, "nothing to compare."),
+        row(
+            "static_against_turns",
+            "gyroscope/bias_x",
+            "rad/s",
+            -13.2,
+            "bias of the x gyro: rests and turns differ by 0.2 °/h: more than chance.",
+        ),
+    ]
+
+
+def checks(manoeuvres: Rows) -> Rows:
+    rows: Rows = []
+    for row in manoeuvres:
+        quantities = (
+            (("gravity", "m/s²", GRAVITY, 5e-3, 6e-6), ("rate_up", "rad/s", 3.7e-5, 1e-5, 2e-7))
+            if row["do"] == "rest"
+            else (("angle", "rad", row["angle"], 4e-3, 2.4e-5),)
+        )
+        for quantity, unit, expected, before, sigma in quantities:
+            off = 7.0 if quantity == "angle" and row["about_x"] else 0.4
+            rows.append(
+                {
+                    "id": f"compensation/{quantity}/{row['manoeuvre']}",
+                    "manoeuvre": row["manoeuvre"],
+                    "quantity": quantity,
+                    "unit": unit,
+                    "expected": expected,
+                    "expected_sigma": sigma / 10,
+                    "before": expected + before,
+                    "after": expected + off * sigma,
+                    "after_sigma": sigma,
+                    "in_sigmas_after": off,
+                    "sentence": f"{row['manoeuvre']}: {quantity}.",
+                }
+            )
+    return rows
+
+
+def compensated(traces: pd.DataFrame) -> pd.DataFrame:
+    """The same envelopes with the biases taken out."""
+    after = traces.copy()
+    for sensor, biases in BIAS.items():
+        for axis, bias in zip(AXES, biases, strict=True):
+            columns = [f"least_{sensor}_{axis}", f"most_{sensor}_{axis}"]
+            after[columns] = after[columns] - bias
+    return after
+
+
+def archived() -> dict[str, Any]:
+    return {
+        "file": "simulated/NovAtel+SPAN-CPT/SIM-001/2026-11-02-made-up.parquet",
+        "sha256": "5a" * 32,
+        "content": "c3" * 32,
+        "supersedes": "",
+    }
+
+
+def earlier(made: dict[str, Any], generator: np.random.Generator) -> Rows:
+    rows: Rows = []
+    for date in ("2025-06-30", "unknown"):
+        for stage in ("accelerometer", "gyroscope"):
+            for row in made[f"{stage}_parameters"].query("method == 'joint'").itertuples():
+                rows.append(
+                    {
+                        "campaign": f"campaign of {date}",
+                        "date": date,
+                        "file": f"simulated/NovAtel+SPAN-CPT/SIM-001/{date}.parquet",
+                        "id": row.id,
+                        "value": row.value + row.sigma * generator.standard_normal(),
+                        "sigma": row.sigma,
+                        "unit": row.unit,
+                    }
+                )
+    return rows

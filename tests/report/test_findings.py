@@ -1,0 +1,142 @@
+"""The page of findings: each with what shows it, and what it costs in numbers."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import Any
+
+import pandas as pd
+import pytest
+
+from stages.report.sections import evidence
+from tests.report import synthetic, synthetic_faults
+from tests.report.synthetic_values import GAP_FINDING, RINGING_FINDING
+
+FINDING = re.compile(r'<article class="finding[^"]*" id="finding/([^"]+)">(.*?)</article>', re.S)
+
+
+def articles(made: dict[str, Any]) -> dict[str, str]:
+    """Each finding of a report by its identifier, as HTML, in the order of the page."""
+    return dict(FINDING.findall(synthetic.report_on(made)["html"]))
+
+
+@cache
+def faulty() -> dict[str, str]:
+    return articles(synthetic_faults.faulty())
+
+
+def test_the_worst_comes_first_and_says_so() -> None:
+    grades = re.compile(r'class="grade">([^<]+)<')
+    found = [grade for html in faulty().values() for grade in grades.findall(html)]
+    order = ("spoils a result", "weakens a result", "good to know")
+    assert len(found) == len(faulty())
+    assert found == sorted(found, key=order.index)
+
+
+@pytest.mark.parametrize("fault", synthetic_faults.FAULTS, ids=lambda fault: fault.cause)
+def test_a_fault_with_a_place_is_shown_where_it_is(fault: synthetic_faults.Fault) -> None:
+    html = faulty()[fault.identifier]
+    first = f"{fault.shown[0] + 1:,}".replace(",", "\u202f")
+    assert html.count("<svg") == 1
+    assert f"{fault.manoeuvre}.asc" in html
+    assert f"lines {first} to " in html
+    assert ("Ruled: masked" in html) == (fault.masks and fault.cause != "duplicate")
+    few = fault.inside[1] - fault.inside[0] <= 40
+    assert ("Ringed: affected" in html) == few
+
+
+def test_what_has_no_place_has_no_close_up() -> None:
+    assert "<svg" not in faulty()["quality/wrong_day"]
+    assert "close up" not in faulty()["quality/rate_off"]
+
+
+@pytest.mark.parametrize(
+    ("identifier", "said"),
+    [
+        ("quality/rate_off", "50.00 Hz measured, 100.0 Hz expected"),
+        # 0.10197 is 1 m/s² in units of 9.80665 m/s²
+        ("quality/wrong_scale_factor", "0.9987 m/s² measured, 9.794 m/s² expected"),
+        ("quality/gravity_error", "9.793617 m/s² stated, 9.780617 m/s² expected"),
+        ("segment/incomplete/z-backward", "−240.2° measured, −360.0° expected"),
+    ],
+)
+def test_a_number_stands_beside_what_was_expected(identifier: str, said: str) -> None:
+    assert said in faulty()[identifier]
+
+
+def test_a_gap_is_shown_by_its_two_lines() -> None:
+    html = faulty()[GAP_FINDING]
+    rows = re.findall(r"<tr><td[^>]*>(before|after)</td>(.*?)</tr>", html)
+    cells = {side: re.findall(r"<td[^>]*>([^<]*)</td>", row) for side, row in rows}
+    assert cells["before"][:2] == ["2\u202f192", "21.890"]
+    assert cells["after"][:2] == ["2\u202f193", "33.870"]
+    assert [len(row) for row in cells.values()] == [8, 8]  # line, time and six readings
+    assert "11.980 s apart" in html
+    assert "Hatched: not recorded" in html
+
+
+def test_a_gap_and_the_turn_it_is_in_lead_to_each_other() -> None:
+    turn = "segment/incomplete/z-backward"
+    assert f'href="#finding/{turn}"' in faulty()[GAP_FINDING]
+    assert f'href="#finding/{GAP_FINDING}"' in faulty()[turn]
+
+
+def test_samples_that_a_worse_finding_has_shown_are_not_shown_again() -> None:
+    made = synthetic.brief("z-backward.asc")
+    turn = made["segment_findings"]["id"].iloc[0]
+    close_ups = made["quality_close_ups"].query("finding == @GAP_FINDING")
+    made["segment_close_ups"] = close_ups.assign(finding=turn)
+    found = articles(made)
+    assert "11.980 s apart" in found[turn]
+    assert "The record before the gap" in found[turn]
+    assert "<svg" not in found[GAP_FINDING]
+    assert f'href="#finding/{turn}"' in found[GAP_FINDING]
+
+
+def test_an_oscillation_of_recording_and_model_leads_to_both_and_to_unmodelled_effects() -> None:
+    found = articles(synthetic.brief())
+    model, recording = (found[name] for name in ("criticism/oscillation", RINGING))
+    assert f'href="#finding/{RINGING}"' in model
+    assert 'href="#finding/criticism/oscillation"' in recording
+    assert 'href="#effect/criticism/oscillation"' in model
+    assert "<svg" not in model
+
+
+RINGING = RINGING_FINDING
+
+
+def test_every_link_leads_somewhere() -> None:
+    for made in (
+        synthetic.documents()["html"],
+        synthetic.report_on(synthetic_faults.faulty())["html"],
+    ):
+        targets = re.findall(r'<a href="#([^"]+)"', made)
+        assert not {target for target in targets if f'id="{target}"' not in made}
+
+
+def test_a_storm_of_findings_keeps_the_page_light() -> None:
+    made = synthetic_faults.faulty()
+    spikes = made["quality_findings"].query("cause == 'spike'")
+    close_up = made["quality_close_ups"].query("finding == @spikes.id.iloc[0]")
+    many = [f"quality/spike/x-up.asc/{number}" for number in range(60)]
+    made["quality_findings"] = pd.concat([spikes.assign(id=name) for name in many])
+    made["quality_close_ups"] = pd.concat(
+        close_up.assign(finding=name, record=close_up["record"] + number)
+        for number, name in enumerate(many)
+    )
+    found = articles(made)
+    pictures = sum(html.count("<svg") for html in found.values())
+    assert pictures == evidence.MOST_PICTURES
+    assert max(len(html.encode()) for html in found.values()) < 40_000
+
+
+def test_samples_without_time_are_drawn_over_their_lines() -> None:
+    made = synthetic_faults.faulty()
+    for name in ("traces", "segments", "clocks", "quality_findings"):
+        made[name][["from_s", "to_s"]] = float("nan")
+    made["quality_close_ups"]["time"] = float("nan")
+    html = articles(made)["quality/spike/x-up.asc/accel_x"]
+    assert html.count("<svg") == 1
+    assert ">Record<" in html
+    assert ">Line<" in html

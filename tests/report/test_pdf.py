@@ -1,0 +1,134 @@
+"""The report for print: pages, text, the same bytes, and nothing from outside."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import time
+import zlib
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from stages.pdf.stage import STAGE, as_pdf
+from tests.report import synthetic
+
+try:
+    import weasyprint
+except OSError:
+    weasyprint = None
+needs_pango = pytest.mark.skipif(weasyprint is None, reason="Pango is not installed")
+
+
+@cache
+def page() -> str:
+    """A report on the accelerometer alone, with the raw data of a turn that is not whole."""
+    whole = synthetic.brief("z-backward.asc")
+    kept = ("accelerometer_parameters", "accelerometer_fit", "traces", "segments", "clocks")
+    return synthetic.report_on(synthetic.poor() | {name: whole[name] for name in kept})["html"]
+
+
+@cache
+def printed() -> bytes:
+    """The same for print."""
+    return as_pdf(page())
+
+
+def unpacked(document: bytes) -> bytes:
+    """The PDF with its compressed streams in the open."""
+    streams = re.findall(rb"stream\r?\n(.*?)\r?\nendstream", document, flags=re.DOTALL)
+    opened = []
+    for stream in streams:
+        try:
+            opened.append(zlib.decompress(stream))
+        except zlib.error:
+            opened.append(stream)
+    return document + b"\n".join(opened)
+
+
+@needs_pango
+def test_it_is_a_pdf_of_several_pages() -> None:
+    assert printed().startswith(b"%PDF-")
+    assert len(re.findall(rb"/Type /Page\b", unpacked(printed()))) > 3
+
+
+@needs_pango
+def test_it_holds_text(tmp_path: Path) -> None:
+    if shutil.which("pdftotext") is None:
+        pytest.skip("pdftotext is not installed (Debian package poppler-utils)")
+    file = tmp_path / "report.pdf"
+    file.write_bytes(printed())
+    done = subprocess.run(["pdftotext", "-layout", file, "-"], capture_output=True, check=True)
+    text = " ".join(done.stdout.decode().split())
+    assert "Calibrated in part" in text
+    assert "accelerometer/joint/bias_x" in text
+    assert "z-backward.asc" in text
+    assert "made-up · NovAtel SPAN-CPT · serial SIM-001 · simulated" in text  # on every page
+    assert re.search(r"\b2 ?/ ?\d+", text)
+
+
+@needs_pango
+def test_a_figure_says_in_words_what_it_shows() -> None:
+    (words,) = re.findall(r'role="img" aria-label="([^"]*)"', page())
+    assert f"/Alt ({words})".encode() in unpacked(printed())
+
+
+@needs_pango
+def test_the_same_page_gives_the_same_bytes() -> None:
+    assert as_pdf(page()) == printed()
+
+
+@needs_pango
+def test_also_where_fonttools_makes_the_subsets_of_fonts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It marks them with the time; so it does where the system lacks HarfBuzz's."""
+    monkeypatch.setattr(weasyprint.pdf.fonts, "harfbuzz_subset", None)
+    today = as_pdf(page())
+    monkeypatch.setattr(time, "time", lambda: 2e9)
+    assert as_pdf(page()) == today
+
+
+@needs_pango
+def test_it_tells_neither_the_time_nor_the_machine() -> None:
+    content = unpacked(printed())
+    for word in (b"CreationDate", b"ModDate", str(Path.cwd()).encode(), b"file://"):
+        assert word not in content
+
+
+@needs_pango
+def test_nothing_is_fetched_from_network_or_disk(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    secret = tmp_path / "secret.svg"
+    secret.write_text('<svg xmlns="http://www.w3.org/2000/svg"><text>secret</text></svg>')
+    html = f'<img src="{secret.as_uri()}" alt="a"><img src="http://127.0.0.1:9/b.png" alt="b">'
+    assert as_pdf(html).startswith(b"%PDF-")
+    assert caplog.text.count("URI uses disallowed protocol") == 2
+
+
+def test_missing_pango_is_named_with_its_packages(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def fail(name: str) -> ModuleType:
+        raise OSError("cannot load library 'libpango-1.0-0': no such file\nfurther lines")
+
+    monkeypatch.setattr("stages.pdf.stage.importlib.import_module", fail)
+    html = tmp_path / "a.html"
+    html.write_text("<p>a</p>")
+    with pytest.raises(SystemExit) as refused:
+        STAGE.command_line([str(tmp_path), "--html", str(html), "--documents", str(tmp_path / "a")])
+    message = str(refused.value)
+    assert "cannot load library 'libpango-1.0-0'" in message
+    assert "apt-get install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0" in message
+    assert "the report is there as a page" in message
+    assert not (tmp_path / "a.pdf").exists()
+
+
+@needs_pango
+def test_the_command_writes_beside_and_moves(tmp_path: Path) -> None:
+    html = tmp_path / "a.html"
+    html.write_text("<p>a</p>")
+    STAGE.command_line([str(tmp_path), "--html", str(html), "--documents", str(tmp_path / "new/a")])
+    assert [path.name for path in (tmp_path / "new").iterdir()] == ["a.pdf"]

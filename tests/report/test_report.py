@@ -1,0 +1,441 @@
+"""The report as a reader of the page sees it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+
+from stages.report.stage import SECTIONS, STAGE
+from tests.report import synthetic, synthetic_unmodelled
+from tests.report.synthetic_values import Held
+
+TITLES = [
+    "Verdict",
+    "Parameters",
+    "Unmodelled effects",
+    "Findings",
+    "Undetermined parameters",
+    "Residuals",
+    "Comparisons",
+    "Compensation",
+    "Earlier calibrations",
+    "Recorded manoeuvres",
+    "Raw data",
+    "Noise",
+    "Parameters against averaging time",
+    "Studies",
+    "Known quantities",
+    "Data accounting",
+    "Provenance",
+]
+HOSTILE = '<script>alert("1")</script>&$x_1$</style><img src=x onerror=alert(1)>'
+
+
+class Page(HTMLParser):
+    """The elements of a page, the cells of rows by identifier, and its text."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.attributes: list[tuple[str, str | None]] = []
+        self.rows: dict[str, list[str]] = {}
+        self.text = ""
+        self.headings: list[str] = []
+        self._row: list[str] | None = None
+        self._heading = False
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attrs: Sequence[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.attributes += attrs
+        if tag == "tr":
+            identifier = dict(attrs).get("id")
+            self._row = self.rows.setdefault(identifier, []) if identifier else None
+        if tag == "td" and self._row is not None:
+            self._row.append("")
+        if tag == "h2":
+            self.headings.append("")
+            self._heading = True
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag == "tr":
+            self._row = None
+        if tag == "h2":
+            self._heading = False
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+        if self._row:
+            self._row[-1] += data
+        if self._heading:
+            self.headings[-1] += data
+
+
+def number(cell: str) -> float:
+    """What a cell says, its padding and signs of typography taken off."""
+    for letter in "\u2007\u2008\u202f±":
+        cell = cell.replace(letter, "")
+    return float(cell.replace("−", "-"))
+
+
+def test_sections_stand_in_their_order() -> None:
+    page = Page(synthetic.documents()["html"])
+    assert [heading.lstrip("0123456789 ") for heading in page.headings] == TITLES
+
+
+def test_every_determined_parameter_stands_with_its_sigma_and_unit() -> None:
+    page = Page(synthetic.documents()["html"])
+    # laboratory's unit: its size in SI, by the definitions of µg, °/h, ppm and arcsec
+    size = {
+        "µg": 9.80665e-6,
+        "°/h": np.pi / 180 / 3600,
+        "ppm": 1e-6,
+        "arcsec": np.pi / 180 / 3600,
+        "10⁻³ m/s²": 1e-3,
+        "10⁻⁶ rad/s": 1e-6,
+        "10⁻⁶": 1e-6,
+        "µrad": 1e-6,
+    }
+    tables = synthetic.campaign()
+    both = pd.concat([tables["accelerometer_parameters"], tables["gyroscope_parameters"]])
+    for row in both.dropna(subset=["value"]).itertuples():
+        _, value, sigma, unit, si_value, si_sigma, si_unit, _, identifier = page.rows[row.id]
+        assert identifier == row.id
+        for shown, shown_sigma, name in ((value, sigma, unit), (si_value, si_sigma, si_unit)):
+            assert number(shown) * size[name] == pytest.approx(row.value, abs=0.06 * row.sigma)
+            assert number(shown_sigma) * size[name] == pytest.approx(row.sigma, rel=0.06)
+
+
+def test_what_is_not_determined_has_its_reason_and_no_value() -> None:
+    page = Page(synthetic.documents()["html"])
+    assert "gyroscope/turns/cross_xy" not in page.rows
+    assert "rests in six positions would help" in page.text
+
+
+def test_the_verdict_says_plainly_that_the_model_does_not_fit() -> None:
+    tables = synthetic.brief()
+    tables["decision"] = tables["decision"].iloc[:0]  # the joint result counts
+    text = " ".join(synthetic.report_on(tables)["txt"].split())
+    assert "Verdict: calibrated in part" in text
+    assert (
+        "Gyroscope: the model does not describe the data within the noise; the σ include noise only"
+        in text
+    )
+    assert "SIMULATED" in text
+    assert "not complete: z-backward" in text
+    assert "Findings: 5;" in text
+
+
+def test_where_the_extended_result_is_final_its_sigmas_and_its_fit_are_stated() -> None:
+    tables = synthetic.brief()
+    tables["extended_parameters"]["sigma"] /= 10
+    text = " ".join(synthetic.report_on(tables)["txt"].split())
+    assert "Verdict: calibrated All 24 parameters" in text
+    said = "Gyroscope: all 12 parameters are determined, with gyro g-sensitivity in the model."
+    # 2.1e-8 rad/s are 0.0043 °/h, 2.2e-6 are 2.2 ppm
+    assert f"{said} Largest σ: bias 0.00043 °/h; scale error 0.22 ppm" in text
+    assert "Gyroscope: the model describes the data within the noise (p = 0.54)" in text
+
+
+def test_compensation_says_that_it_has_the_joint_result() -> None:
+    said = "The readings are corrected with the joint result, although the extended result of the"
+    assert said in Page(synthetic.documents()["html"]).text
+    assert (
+        said not in Page(synthetic.report_on(synthetic_unmodelled.without_effects())["html"]).text
+    )
+
+
+def test_a_scatter_that_the_sigmas_include_is_stated() -> None:
+    tables = synthetic.brief()
+    tables["decision"] = tables["decision"].iloc[:0]
+    tables["gyroscope_fit"]["scatter"] = 0.5 * np.pi / 180 / 3600
+    words = "manoeuvres scatter by 0.50 °/h beyond it, which the σ include"
+    assert words in " ".join(synthetic.report_on(tables)["txt"].split())
+
+
+def test_mounts_stand_apart() -> None:
+    tables = synthetic.brief()
+    for name in ("parameters", "fit"):
+        upright = tables[f"accelerometer_{name}"].query("method == 'joint'")
+        lying = upright.assign(method="joint@lying")
+        if name == "parameters":
+            lying = lying.assign(id=lying["id"].str.replace("joint", "joint@lying"), value=np.nan)
+        tables[f"accelerometer_{name}"] = pd.concat([upright, lying], ignore_index=True)
+    verdict = synthetic.report_on(tables)["txt"]
+    assert "Accelerometer: all 12 parameters are determined." in verdict
+    assert "Accelerometer (mount lying): nothing is determined." in verdict
+
+
+def test_all_determined_and_a_good_fit_is_calibrated() -> None:
+    tables = synthetic.brief()
+    tables["gyroscope_fit"]["p_value"] = 0.2
+    tables["campaign"]["simulated"] = False
+    verdict = synthetic.report_on(tables)["txt"]
+    assert "Verdict: calibrated\n" in verdict
+    assert "SIMULATED" not in verdict
+
+
+def test_findings_come_worst_first() -> None:
+    text = Page(synthetic.documents()["html"]).text
+    places = [
+        text.index(sentence)
+        for sentence in (
+            "Of z-backward 240.2° of 360° were recorded.",
+            "Between lines 2192 and 2193 of z-backward.asc",
+            "The x gyro oscillates at 20.0 Hz",
+        )
+    ]
+    assert places[0] < min(places[1:])  # the turn that is lost before what is good to know
+
+
+def test_an_unmodelled_effect_is_named_with_its_numbers() -> None:
+    documents = synthetic.documents()
+    page = Page(documents["html"])
+    assert "Detected: gyro g-sensitivity and oscillation." in page.text
+    assert "Detected: gyro g-sensitivity and oscillation. “Unmodelled effects”" in (
+        " ".join(documents["txt"].split())
+    )
+    # 6.92e-7 (rad/s)/(m/s²) is 6.92e-7 · 9.80665 m/s² · 3600 s · 180°/π = 1.3998 °/h/g
+    cells = page.rows["criticism/gyro_g_sensitivity/g_xx"]
+    assert number(cells[1]) == pytest.approx(1.3998, abs=0.002)
+    assert cells[3] == "°/h/g"
+    assert number(cells[7]) == pytest.approx(6.92e-7 / 1.38e-8, abs=0.1)
+    assert "criticism/gyro_g_sensitivity/g_xy" not in page.rows  # within 3 σ
+    assert "6 parameters within 3 σ of zero not listed." in page.text
+
+
+def test_detection_limits_say_what_would_have_been_detected() -> None:
+    page = Page(synthetic.documents()["html"])
+    effect, worst, _, best, unit, *_ = page.rows["limit/lever_arm/r_y"]  # the worst of three axes
+    assert [effect, worst, best, unit] == ["Lever arm", "1.6", "0.90", "mm"]
+    assert "limit/table_tilt/north" not in page.rows
+    assert "limit/gyro_g_sensitivity/g_xx" not in page.rows  # it was named
+    assert "No manoeuvre excites it.Table tilt." in page.text
+
+
+def test_a_shift_of_the_extended_model_is_in_sigmas_of_the_joint_fit() -> None:
+    page = Page(synthetic.documents()["html"])
+    assert number(page.rows["extension/gyroscope/bias_x"][6]) == 4.0
+    assert number(page.rows["extension/gyroscope/bias_y"][6]) == 0.0
+
+
+def test_which_result_is_final_is_stated_beside_the_effects_and_the_joint_parameters() -> None:
+    text = Page(synthetic.documents()["html"]).text
+    assert "The extended result of the gyros counts, with gyro g-sensitivity." in text
+    assert text.count("These are not the final parameters") == 1
+    assert "The joint result of the accelerometers counts" not in text  # they show no effect
+
+
+def test_the_error_of_navigation_is_stated_in_mrad_and_mm_per_second() -> None:
+    text = " ".join(Page(synthetic.documents()["html"]).text.split())
+    # 1 °/h for 60 s: 1/60° are 0.291 mrad, and 9.8 · ψ t / 2 are 86 mm/s; a tenth in turns.
+    assert "is up to 0.291 ± 0.001 mrad and 85.5 ± 0.3 mm/s at rest, 0.029" in text
+
+
+def test_no_effect_is_detected() -> None:
+    tables = synthetic_unmodelled.without_effects()
+    tables["scores"]["degrees"] = 3
+    documents = synthetic.report_on(tables)
+    assert "None detected: none of the five effects is significant." in Page(documents["html"]).text
+    assert "Detected" not in documents["txt"]
+
+
+def test_an_effect_of_two_mounts_stands_twice() -> None:
+    tables = synthetic.brief()
+    for name in ("scores", "effects", "criticism_findings", "blind_spots"):
+        both = [tables[name], tables[name].copy()]
+        if name == "effects":
+            both[1]["id"] = both[1]["id"].str.replace(r"/(\w+)/", r"/\1@lying/", regex=True)
+        if name == "criticism_findings":
+            both[1]["id"] += "@lying"
+        if name == "blind_spots":
+            both[1]["effect"] += "@lying"
+        tables[name] = pd.concat(both, ignore_index=True)
+    page = Page(synthetic.report_on(tables)["html"])
+    assert "Oscillation (mount lying)" in page.text
+    twice = [page.rows[f"limit/lever_arm{mount}/r_y"][1:] for mount in ("@lying", "")]
+    assert twice[0] == twice[1]
+
+
+def test_comparisons_come_worst_first() -> None:
+    page = Page(synthetic.documents()["html"])
+    places = [row for row in page.rows if row.startswith("comparison/")]
+    assert places == [
+        "comparison/static_against_turns/gyroscope/bias_x",
+        "comparison/method_against_method/gyroscope/bias_y",
+        "comparison/method_against_method/gyroscope/scale_x",
+    ]
+    assert "1 value of 2 comparisons differs by more than chance." in page.text
+
+
+def test_checks_stand_before_and_after() -> None:
+    page = Page(synthetic.documents()["html"])
+    cells = page.rows["compensation/gravity/x-up"]
+    # 5e-3 m/s² before, 0.4 · 6e-6 m/s² after, in µg of 9.80665e-6 m/s²
+    assert number(cells[2]) == pytest.approx(509.86, abs=0.01)
+    assert number(cells[3]) == pytest.approx(0.245, abs=0.01)
+    assert number(page.rows["compensation/angle/x-forward"][5]) == 7.0
+
+
+def test_earlier_calibrations_and_the_archive_are_named() -> None:
+    text = Page(synthetic.documents()["html"]).text
+    assert "2 earlier calibrations, the latest last." in text
+    assert "campaign of 2025-06-30" in text
+    assert "data/history/simulated/NovAtel+SPAN-CPT/SIM-001/2026-11-02-made-up.parquet" in text
+
+
+def test_texts_from_outside_are_harmless() -> None:
+    tables = synthetic.brief("x-up.asc")
+    for table in ("campaign", "known", "inputs", "manoeuvres", "accounts", "refused", "performed"):
+        for column in tables[table].columns:
+            if isinstance(tables[table][column].dtype, pd.StringDtype):
+                tables[table][column] = HOSTILE
+    for table in ("traces", "segments", "clocks", "quality_findings"):
+        tables[table]["log"] = HOSTILE
+        if "manoeuvre" in tables[table]:
+            tables[table]["manoeuvre"] = HOSTILE
+    whole = synthetic.campaign(logs=("x-up.asc",))
+    tables["noise"] = whole["noise"].assign(manoeuvre=HOSTILE)
+    tables["fidelity"] = whole["fidelity"].assign(manoeuvre=HOSTILE, profile=HOSTILE)
+    tables["simulated"] = Held(whole["simulated"].frame.assign(manoeuvre=HOSTILE))
+    tables["compensated_traces"] = whole["compensated_traces"].assign(log=HOSTILE)
+    tables["scores"][["cause", "sentence"]] = HOSTILE
+    tables["effects"]["meaning"] = HOSTILE
+    tables["lines"]["manoeuvre"] = HOSTILE
+    tables["gain"]["effects"] = HOSTILE
+    tables["blind_spots"][["sentence", "parameter"]] = HOSTILE
+    tables["decision"]["sentence"] = HOSTILE
+    tables["structures"][["method", "kind", "channel"]] = HOSTILE
+    told = ["sentence", "consequence", "action", "manoeuvre", "members", "parameters"]
+    tables["criticism_findings"][[*told, "split_manoeuvre"]] = HOSTILE
+    tables["differences"][["kind", "sentence"]] = HOSTILE
+    tables["checks"]["manoeuvre"] = HOSTILE
+    tables["archived"]["file"] = HOSTILE
+    tables["earlier"] = whole["earlier"].assign(campaign=HOSTILE, file=HOSTILE, date=HOSTILE)
+    page = Page(synthetic.report_on(tables)["html"])
+    assert "script" not in page.tags
+    assert "img" not in page.tags
+    assert not [name for name, _ in page.attributes if name.startswith("on")]
+    assert HOSTILE in page.text
+
+
+def test_nothing_is_loaded_from_elsewhere() -> None:
+    html = synthetic.documents()["html"]
+    page = Page(html)
+    assert not {"script", "link", "img", "iframe", "object"} & set(page.tags)
+    targets = [value or "" for name, value in page.attributes if name.endswith(("href", "src"))]
+    assert all(target.startswith("#") for target in targets)
+    assert html.count("url(") == html.count("url(#") + html.count('url("data:font/woff2;base64,')
+    assert str(Path.cwd()) not in html
+    assert len(html.encode()) < 4_000_000
+
+
+def test_identifiers_are_unique() -> None:
+    identifiers = [v for name, v in Page(synthetic.documents()["html"]).attributes if name == "id"]
+    assert len(identifiers) == len(set(identifiers))
+
+
+def test_the_same_tables_give_the_same_bytes() -> None:
+    first, second = (synthetic.report_on(synthetic.brief("z-backward.asc")) for _ in range(2))
+    assert first == second
+
+
+def test_a_campaign_that_gave_nothing_says_so_in_words() -> None:
+    documents = synthetic.report_on(synthetic.poor())
+    page = Page(documents["html"])
+    assert [heading.lstrip("0123456789 ") for heading in page.headings] == TITLES
+    assert "Verdict: not calibrated" in documents["txt"]
+    assert "None: no method estimated a parameter." in page.text
+    assert "None: no log gave samples that could be drawn." in page.text
+    assert "No effect was tested" in page.text
+    assert "No whole turn was simulated." in page.text
+    assert "None: no parameter was estimated in two ways" in page.text
+    assert "None: no compensated reading could be checked." in page.text
+    assert "None: the archive holds no earlier calibration" in page.text
+    assert "None: there are no static positions that could be studied." in page.text
+
+
+def test_one_sensor_without_time_stamps_or_turns() -> None:
+    tables = synthetic.brief("x-up.asc", "y-up.asc")
+    for axis in "xyz":
+        tables["traces"][[f"least_gyro_{axis}", f"most_gyro_{axis}"]] = np.nan
+    for table in ("traces", "segments", "clocks", "quality_findings", "segment_findings"):
+        tables[table][["from_s", "to_s"]] = np.nan
+    noise = synthetic.campaign(logs=())["noise"]
+    tables["noise"] = noise.query("channel.str.startswith('accel')")
+    tables["manoeuvres"] = tables["manoeuvres"].query("do == 'rest'")
+    for table in ("parameters", "fit", "averaging"):
+        tables[f"gyroscope_{table}"] = tables[f"gyroscope_{table}"].iloc[:0]
+    tables["campaign"]["serial"] = "unknown"
+    documents = synthetic.report_on(tables)
+    assert "Gyroscope: nothing is determined." in documents["txt"]
+    assert "without time stamps" in documents["html"]
+    assert "not recorded" in documents["html"]
+
+
+def test_a_hundred_manoeuvres_in_one_log() -> None:
+    tables = synthetic.brief("x-up.asc")
+    names = [f"tumble-{number:03d}" for number in range(102)]
+    for table in ("manoeuvres", "performed"):
+        rows = tables[table].iloc[[0] * len(names)].reset_index(drop=True)
+        tables[table] = rows.assign(manoeuvre=names)
+    segments = tables["segments"].iloc[[0] * len(names)].reset_index(drop=True)
+    start = np.arange(len(names)) * 2.9
+    tables["segments"] = segments.assign(manoeuvre=names, from_s=start, to_s=start + 2)
+    noise = synthetic.campaign(logs=())["noise"].query("manoeuvre == 'x-up'")
+    tables["noise"] = pd.concat([noise.assign(manoeuvre=name) for name in names])
+    page = Page(synthetic.report_on(tables)["html"])
+    assert "tumble-101" in page.text
+    assert "and 96 more" in page.text
+
+
+def test_the_command_writes_page_and_verdict(tmp_path: Path) -> None:
+    write(synthetic.brief("x-up.asc"), tmp_path / "derived")
+    STAGE.command_line([str(tmp_path / "derived"), "--documents", str(tmp_path / "reports/a")])
+    page, verdict = tmp_path / "reports/a.html", tmp_path / "reports/a.txt"
+    assert page.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+    assert "Verdict: calibrated\n" in verdict.read_text(encoding="utf-8")
+    assert sorted(path.name for path in page.parent.iterdir()) == ["a.html", "a.txt"]
+
+
+def test_a_table_of_another_version_is_refused(tmp_path: Path) -> None:
+    write(synthetic.brief("x-up.asc"), tmp_path)
+    path = STAGE.paths(tmp_path)["noise"]
+    table = pq.read_table(path)
+    pq.write_table(table.replace_schema_metadata({"table": "noise", "version": "0"}), path)
+    with pytest.raises(SystemExit) as refused:
+        STAGE.command_line([str(tmp_path), "--documents", "a"])
+    assert str(refused.value) == (
+        f"report: {path}\n"
+        "  found:    noise table of version 0\n"
+        "  expected: noise table of version 1\n"
+        "  cure:     delete the file and run the campaign again"
+    )
+
+
+def write(tables: dict[str, Any], derived: Path) -> None:
+    """The tables as stages leave them."""
+    for name, path in STAGE.paths(derived).items():
+        given = tables[name]
+        rows = given.frame if name in STAGE.declared.streams else given
+        arrow: pa.Table = STAGE.reads[name].arrow(rows)
+        made_by = {"made_by": json.dumps(tables["provenance"][name])}
+        path.parent.mkdir(parents=True, exist_ok=True)
+        pq.write_table(arrow.replace_schema_metadata({**arrow.schema.metadata, **made_by}), path)
+
+
+def test_a_section_reads_no_table_but_those_it_declares() -> None:
+    made = synthetic.campaign(logs=("z-backward.asc",))
+    assert {name for section in SECTIONS for name in section.reads} == set(STAGE.reads)
+    for section in SECTIONS:
+        own = {name: made[name] for name in (*section.reads, "provenance")}
+        assert list(section.parts(synthetic.tables_of(own))), section.key

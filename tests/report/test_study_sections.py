@@ -1,0 +1,82 @@
+"""The page of studies: what it says in numbers, and what of it is left where there is little."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from inertial import tables
+from stages.report.outline import Figure, Paragraph, Part, Section, Sentences, Table
+from stages.report.sections import comparisons, studies
+from stages.studies.declared import DECLARED
+from tests.report import synthetic
+from tests.report.synthetic_studies import studies as synthetic_studies
+from tests.report.synthetic_values import rows_as
+
+
+@pytest.fixture
+def made() -> dict[str, pd.DataFrame]:
+    rows = synthetic_studies(np.random.default_rng(1))
+    return {name: rows_as(DECLARED.writes[name], rows[name]) for name in DECLARED.writes}
+
+
+def built(section: Section, made: dict[str, pd.DataFrame]) -> list[Part]:
+    return list(section.parts(synthetic.tables_of(made)))
+
+
+def of(section: list[Part], kind: type) -> list:
+    return [part for part in section if isinstance(part, kind)]
+
+
+def text(section: list[Part]) -> str:
+    return " ".join(part.text for part in of(section, Paragraph))
+
+
+def test_every_study_has_its_figure_and_a_sentence_with_numbers(made):
+    section = built(studies.SECTION, made)
+    # Two sensors by epochs, their scatter, windows, growing angle, time and angle.
+    assert len(of(section, Figure)) == 6
+    said = text(section)
+    assert "scatter 1.10 to 1.10 times as much as white noise" in said
+    assert "x gyro, x-forward and x-backward: with the start of the 180° the scale" in said
+    assert "± 3.0 ppm at 180°" in said
+    assert "deviated from its set rate by 2.0 to 2.0 ppm" in said
+    assert "common scale factor and the table's speed are one unknown" in said
+    (left,) = of(section, Sentences)
+    assert left.items == ("z-backward: 240.38° of 360° recorded",)
+
+
+def test_the_middle_of_the_turns_is_held_against_the_whole(made):
+    section = built(studies.SECTION, made)
+    *_, middle = of(section, Table)
+    by = {(row.cells[0][0], row.cells[1]): row.cells for row in middle.rows}
+    assert len(by) == 8
+    whole = by["x", "the whole turn"]
+    assert whole[2:] == ("615.1", "3.0", "—", "—")
+    by_time = by["x", "180° by time, at the set rate"]
+    assert by_time[3] == "100.0" and by_time[5] == "4.2"
+
+
+@pytest.mark.parametrize("name", [*DECLARED.writes, "all"])
+def test_without_a_table_the_rest_of_the_page_is_there(made, name):
+    empty = DECLARED.writes if name == "all" else {name: DECLARED.writes[name]}
+    section = built(studies.SECTION, made | {one: table.empty() for one, table in empty.items()})
+    drawn = len(of(section, Figure))
+    assert drawn == 0 if name == "all" else drawn >= 4
+    assert bool(of(section, Sentences)) == (name not in ("not_studied", "all"))
+
+
+def test_a_fencepost_stands_on_top_of_the_comparisons():
+    named = {"kind": "fencepost", "parameter": "gyroscope/scale", "unit": "1", "first": "ours"}
+    named |= {"id": "comparison/fencepost/gyroscope/scale", "second": "others"}
+    named |= {"sentence": "scale factors of the gyros: fencepost."}
+    other = named | {"id": "comparison/published/gyroscope/scale_x", "kind": "published"}
+    other |= {"parameter": "gyroscope/scale_x", "first_value": 1e-3, "second_value": 1.5e-3}
+    other |= {"difference": -5e-4, "sigma": 1e-5, "in_sigmas": -50.0, "p_value": 0.0}
+    other |= {"sentence": "scale factor of the x gyro: they differ: more than chance."}
+    section = built(
+        comparisons.COMPARISONS, {"differences": rows_as(tables.DIFFERENCES, [other, named])}
+    )
+    assert "1 value of 1 comparison" in text(section) or "1 value of one" in text(section)
+    assert "Scale factors of the gyros: fencepost." in text(section)
+    (table,) = of(section, Table)
+    assert table.rows[0].anchor == named["id"] and table.rows[0].tone == "fair"

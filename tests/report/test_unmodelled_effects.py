@@ -1,0 +1,202 @@
+"""Unmodelled effects: each finding of criticism with what a reader asks, in the right words."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import pandas as pd
+
+from inertial import tables
+from tests.report import synthetic, synthetic_unmodelled
+from tests.report.synthetic_values import RINGING_FINDING, Held, rows_as
+
+CAUSE = re.compile(r'<article class="finding cause[^"]*" id="effect/([^"]+)">(.*?)</article>', re.S)
+
+
+@cache
+def of(make: Callable[..., dict[str, Any]], *arguments: str) -> dict[str, str]:
+    """The report on a made-up campaign."""
+    return synthetic.report_on(make(*arguments))
+
+
+def blocks(made: dict[str, str]) -> dict[str, str]:
+    """Each block by the identifier of its finding, as HTML with single spaces, in its order."""
+    return {name: " ".join(html.split()) for name, html in CAUSE.findall(made["html"])}
+
+
+def section(made: dict[str, str]) -> str:
+    """The section without marks."""
+    html = made["html"]
+    part = html[html.index('<section id="unmodelled-effects">') :]
+    return " ".join(re.sub(r"<[^>]+>", " ", part[: part.index("</section>")]).split())
+
+
+def demo() -> dict[str, str]:
+    return blocks(of(synthetic.brief))
+
+
+def no_name() -> dict[str, str]:
+    return blocks(of(synthetic_unmodelled.of_no_name, "angle", "change"))
+
+
+def test_what_is_identified_says_how_sure_it_is_what_it_gains_and_what_to_do() -> None:
+    html = demo()["criticism/gyro_g_sensitivity"]
+    assert (
+        "Identified: no other effect of the catalogue has the same signature in these data." in html
+    )
+    assert "Signal-to-noise ratio: 77. Probability under noise alone: p &lt; 10⁻³⁰⁰." in html
+    assert "χ² of the gyros falls by 12 070 of 12 897, which captures 99." in html
+    assert "mass unbalance" not in html.partition("Certainty")[0]  # the sentence is criticism's own
+    assert "<dt>Action</dt><dd>Look at it.</dd>" in html
+
+
+def test_what_changes_most_is_stated_in_the_units_of_the_laboratory() -> None:
+    html = demo()["criticism/gyro_g_sensitivity"]
+    # 1.3e-6 rad/s are 0.2681 °/h; four sigma of 2.1e-8 rad/s more are 0.2855 °/h
+    said = "Bias x of the gyroscope changes most of the parameters: from 0.2681 ± 0.0043 to 0.2855"
+    assert said in html
+    assert "by 4.0 σ of the joint fit." in html
+
+
+def test_residuals_stand_before_and_after() -> None:
+    html = demo()["criticism/gyro_g_sensitivity"]
+    assert html.count("<svg") == 1
+    assert "without (hollow) and with effects in the model (filled)" in html
+
+
+def test_an_oscillation_is_shown_as_s0_shows_it() -> None:
+    html = demo()["criticism/oscillation"]
+    shown = "x gyro in x-forward, a turn about x; y gyro in y-forward, a turn about y; x gyro in"
+    assert shown in html
+    assert html.count("20.000 Hz, 0.0100 rad/s") == 2
+    assert html.count("no significant line") == 1
+
+
+def test_an_oscillation_says_in_numbers_what_it_costs() -> None:
+    html = demo()["criticism/oscillation"]
+    # 0.01 rad/s / (2π · 20 Hz) = 7.958e-5 rad, 16.4 arcsec; against 2π rad 12.7 ppm
+    assert "7.96 × 10⁻⁵ rad, 16.4 arcsec: 13 ppm of 360°" in html
+    assert "the σ of the scale factor of the x gyro is 2.2 ppm" in html
+    assert "fall from 0.00662 rad/s to 3.50 × 10⁻⁵ rad/s rms in held-out turns" in html
+
+
+def test_the_clearest_comes_first_and_leads_to_what_the_recording_shows() -> None:
+    assert [*demo()] == ["criticism/gyro_g_sensitivity", "criticism/oscillation"]
+    assert f'href="#finding/{RINGING_FINDING}"' in demo()["criticism/oscillation"]
+
+
+def test_a_class_names_its_members_and_the_manoeuvre_that_would_split_it() -> None:
+    made = of(synthetic_unmodelled.of_a_class)
+    html = blocks(made)["criticism/accel_quadratic"]
+    assert "cannot distinguish accelerometer quadratic term and lever arm." in html
+    assert "Lever arm (the accelerometers stand beside the axis of the table)." in html
+    assert (
+        "Rest also with two axes at 45° to the vertical: expected to distinguish them at 24 σ."
+        in html
+    )
+    # 2e-5 (m/s²)/(m/s²)² are 196 µg/g²
+    assert re.search(r"196\.1.*±.*3\.9.*µg/g²", html)
+    said = "Detected: accelerometer quadratic term or lever arm, which this campaign cannot"
+    assert said in section(made)
+    assert said in " ".join(made["txt"].split())
+
+
+def test_an_effect_that_was_taken_for_a_position_that_is_off_says_so() -> None:
+    made = synthetic_unmodelled.of_a_class()
+    score = made["scores"].iloc[1:2].assign(effect="table_position_error", p_value=0.44)
+    made["scores"] = pd.concat([made["scores"], score])
+    off = {"id": "accelerometer/table_position_error/z-down", "cause": "table_position_error"}
+    off |= {"sensor": "accel", "unit": "rad", "manoeuvre": "z-down", "count": 1, "severity": 3}
+    off |= {"sentence": "It is off.", "consequence": "It matters.", "action": "Set it again."}
+    made["accelerometer_findings"] = rows_as(tables.FINDINGS, [off])
+    html = blocks(synthetic.report_on(made))["criticism/accel_quadratic"]
+    assert "position error in z-down; with the effect in the model no position error is" in html
+    assert f'href="#finding/{off["id"]}"' in html
+
+
+def test_a_structure_without_a_name_comes_before_what_it_is_consistent_with() -> None:
+    assert [*no_name()] == [
+        "criticism/unknown_structure/gyro",
+        "criticism/gyro_bias_jump",
+        "criticism/gyro_random_walk",
+    ]
+    html = no_name()["criticism/unknown_structure/gyro"]
+    assert "Not identified: no effect of the catalogue explains this structure." in html
+    assert html.count("<svg") == 3  # what is left of each manoeuvre, and two tests that fire
+    assert "x gyro against the angle of the table: points ± σ" in html
+    assert "against a change in time (at 20.0 min)" in html
+    for words in ("Angle of the table, °", "Time, min", "Residual, °/h"):
+        assert words in html
+
+
+def test_what_is_only_consistent_is_never_said_to_be_detected() -> None:
+    made = of(synthetic_unmodelled.of_no_name, "angle", "change")
+    verdict = " ".join(made["txt"].split())
+    for text in (verdict, section(made)):
+        assert "Detected:" not in text
+        assert "The residuals of the gyros have a structure that is not identified." in text
+        assert "Consistent with the data, but not identified: gyro bias jump." in text
+        assert "The biases of the gyros follow a random walk." in text
+    jump = no_name()["criticism/gyro_bias_jump"]
+    assert "Consistent with the data, but not identified: the name is not certain." in jump
+    assert "changes most" not in jump
+    walk = no_name()["criticism/gyro_random_walk"]
+    assert "other slow changes have much the same signature" in walk
+    assert "<svg" not in walk
+    assert 'href="#effect/criticism/unknown_structure/gyro">' in walk  # where its picture is
+
+
+def test_six_tests_are_a_line_where_none_is_and_a_table_where_one_is_significant() -> None:
+    silent = section(of(synthetic_unmodelled.without_effects))
+    assert "none is significant, smallest p = 0.090 (time, x gyro)" in silent
+    assert "Not tested against the temperature" in silent
+    firing = section(of(synthetic_unmodelled.of_no_name, "change"))
+    assert "none is significant" not in firing
+    assert "A change in time x gyro at 20.0 min 75.00 1 × 10⁻⁹ significant" in firing
+    assert "The temperature — — — — not recorded" in firing
+
+
+def test_what_nothing_explains_is_a_block_too() -> None:
+    made = of(synthetic_unmodelled.unexplained)
+    html = blocks(made)["criticism/unexplained/accel"]
+    assert "Unexplained residuals of the accelerometers" in html
+    assert "Not explained by any effect of the catalogue." in html
+    assert "exceed the noise, which no known effect explains" in section(made)
+
+
+def test_a_manoeuvre_that_would_not_split_a_class_is_not_recommended() -> None:
+    made = synthetic_unmodelled.of_a_class()
+    made["criticism_findings"]["split_snr"] = 0.0013
+    html = blocks(synthetic.report_on(made))["criticism/accel_quadratic"]
+    assert "No manoeuvre considered would; the best, rest also with two axes" in html
+    assert "expected to distinguish" not in html
+
+
+def test_a_ripple_is_shown_against_the_angle_of_the_table() -> None:
+    made = synthetic.brief()
+    turn = made["simulated"].frame["manoeuvre"].str.contains("forward")
+    made["simulated"] = Held(made["simulated"].frame[turn])
+    findings = made["criticism_findings"]
+    findings[["id", "cause"]] = findings[["id", "cause"]].replace(
+        "oscillation", "table_ripple", regex=True
+    )
+    made["scores"]["effect"] = made["scores"]["effect"].replace("oscillation", "table_ripple")
+    html = blocks(synthetic.report_on(made))["criticism/table_ripple"]
+    assert "z gyro in z-forward" in html
+    assert "Angle turned, °" in html
+    assert "As an angle, A/(2πf)" not in html
+
+
+def test_a_walk_that_may_be_an_effect_is_one_of_a_class() -> None:
+    made = synthetic_unmodelled.of_no_name()
+    walk = made["criticism_findings"].iloc[:1].assign(verdict="one_of_class")
+    members = "gyro_random_walk, gyro_bias_ramp"
+    made = synthetic.report_on(made | {"criticism_findings": walk.assign(members=members)})
+    html = blocks(made)["criticism/gyro_random_walk"]
+    assert "cannot distinguish random walk of the gyro biases and gyro bias ramp." in html
+    assert ">one of a class<" in html
+    said = "follow a random walk or gyro bias ramp, which this campaign cannot distinguish."
+    assert said in section(made)
