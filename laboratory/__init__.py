@@ -1,9 +1,10 @@
-"""The simulated laboratory: an IMU on a turntable, hidden effects, byte-true logs.
+"""The simulated laboratory: an IMU on a turntable, hidden effects, logs to the byte.
 
     recording = perform(read("data/simulated/demo.yaml"))
     write(recording, Path("data/raw/demo"))
 
-It shares no code with stages/, so what hides effects cannot agree with what finds them by mistake.
+It shares no code with stages/ and inertial/, so that hiding effects is independent of detecting
+them.
 """
 
 from laboratory.errors import Complaint, SpecificationError

@@ -8,9 +8,9 @@ from laboratory import SpecificationError, perform, read, write
 
 
 def main() -> int:
-    """Perform one campaign into its folder."""
+    """Simulate one campaign and write its folder."""
     parser = argparse.ArgumentParser(
-        prog="python -m laboratory", description="Perform a campaign in the simulated laboratory."
+        prog="python -m laboratory", description="Simulate a campaign and write its logs."
     )
     parser.add_argument("specification", type=Path, help="data/simulated/<campaign>.yaml")
     parser.add_argument("folder", type=Path, help="data/raw/<campaign>, made if missing")

@@ -1,4 +1,4 @@
-"""The one kind of array that the laboratory reckons with: double precision."""
+"""The types of arrays in the laboratory."""
 
 from typing import TypeAlias
 

@@ -1,6 +1,6 @@
-"""Everything that falls by chance in the laboratory, drawn from the one seed of a campaign.
+"""Random numbers of the laboratory, all from the seed of a campaign.
 
-Each purpose ("tilts", "x-up") has a stream of its own, so that one more effect or one more log
+Each purpose ("table_tilt", "x-up") has a stream of its own, so that another effect or another log
 does not change the noise of the others: two campaigns that differ in an effect differ in nothing
 else.
 """
@@ -17,6 +17,6 @@ class Chance:
     seed: int
 
     def stream(self, *purpose: str) -> np.random.Generator:
-        """The random numbers for one purpose: the same ones whenever it is asked for."""
+        """The random numbers for one purpose: the same at every call."""
         words = [int.from_bytes(word.encode(), "little") for word in purpose]
         return np.random.default_rng([self.seed, len(words), *words])

@@ -19,6 +19,6 @@ def column_of(sensor: str, axis: str) -> int:
 
 
 def in_its_unit(parameters: Mapping[str, Any], word: str) -> float:
-    """What `word` says of the channel, m/s² or rad/s: its key ends with the unit."""
+    """The value of `word` for the channel, m/s² or rad/s: its key ends with the unit."""
     sensor = str(parameters["channel"]).partition("_")[0]
     return float(parameters[f"{word}_{UNITS[sensor]}"])

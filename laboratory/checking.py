@@ -1,4 +1,4 @@
-"""Is a specification complete, and are all its words known? Held against simulated.schema.yaml."""
+"""Validation of a specification against simulated.schema.yaml."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
@@ -24,7 +24,7 @@ def the_schema() -> dict[str, Any]:
 
 
 def check(document: object, source: str) -> None:
-    """Refuse, by name, what the schema does not know; `source` is the file in the message."""
+    """Refuse what the schema does not allow; `source` is the file in the message."""
     complaints = list(not_finite(document, "")) or [
         complaint
         for error in sorted(
@@ -37,7 +37,7 @@ def check(document: object, source: str) -> None:
 
 
 def complaints_of(error: ValidationError) -> Iterator[Complaint]:
-    """The schema's verdict in words."""
+    """What is wrong according to the schema, in words."""
     place = place_of(error.absolute_path)
     schema: dict[str, Any] = error.schema  # type: ignore[assignment]  # none of ours is a bare true
     found: Any = error.instance
@@ -56,7 +56,7 @@ def complaints_of(error: ValidationError) -> Iterator[Complaint]:
 
 
 def described(schema: Mapping[str, Any]) -> str:
-    """What the schema wants, in the words of its description or else in its own."""
+    """What the schema expects: its description, or else its type."""
     if "$ref" in schema:
         definition = schema["$ref"].removeprefix("#/$defs/")
         schema = {**the_schema()["$defs"][definition], **schema}
@@ -95,7 +95,7 @@ KINDS = {
 
 
 def not_finite(value: object, place: str) -> Iterator[Complaint]:
-    """Numbers that are none: .nan and .inf are YAML, but nothing a laboratory can set."""
+    """Numbers that are not finite: .nan and .inf are valid YAML."""
     if isinstance(value, float) and not isfinite(value):
         yield Complaint(place, str(value), "a finite number")
     elif isinstance(value, Mapping):

@@ -1,4 +1,4 @@
-"""Increments as an IMU gives them: whole counts, and what is left over goes to the next sample."""
+"""Increments of an IMU: whole counts, the rounding error is carried to the next sample."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ def count(running: Array, size: float) -> Counts:
     """counts_k = round(S_k / q) − round(S_{k−1} / q),  S₀ = 0.
 
     running: the running integral S₁ … S_n of the reading, (n, …), rad or m/s; size: one count q,
-    same unit. The sum of any stretch of counts is off by one count at most, however long it is.
+    same unit. The sum of any segment of counts is off by one count at most, however long it is.
     """
     whole = np.rint(running / size).astype(np.int64)
     return np.diff(whole, axis=0, prepend=np.zeros((1, *whole.shape[1:]), dtype=np.int64))

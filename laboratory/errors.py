@@ -1,4 +1,4 @@
-"""What the laboratory says when it cannot do as it is told."""
+"""Errors of a specification."""
 
 from typing import NamedTuple
 

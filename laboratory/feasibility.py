@@ -1,4 +1,4 @@
-"""What the schema allows and no laboratory can do."""
+"""Specifications that the schema allows and that are not feasible."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import reduce
@@ -17,7 +17,7 @@ Document = Mapping[str, Any]
 def impossible(
     document: Document, manoeuvres: Sequence[Manoeuvre], effects: Sequence[Effect]
 ) -> Iterator[Complaint]:
-    """What is wrong with a specification besides its plan and its faults."""
+    """What is not feasible in a specification, apart from its plan and its faults."""
     yield from of_the_table(document["handling"], manoeuvres)
     yield from of_the_truth(document, manoeuvres)
     yield from of_the_instrument(document)
@@ -26,31 +26,31 @@ def impossible(
 
 
 def of_the_table(handling: Document, manoeuvres: Sequence[Manoeuvre]) -> Iterator[Complaint]:
-    """Ways from one position to the next that nothing is said of."""
+    """Changes of position that are not specified."""
     pairs = [pair for log in logs_of(manoeuvres).values() for pair in pairwise(log)]
     if "change_s" not in handling and any(changes_between(*pair) for pair in pairs):
         expected = "the time from one position to the next, s, since a log has several"
         yield Complaint("handling.change_s", "nothing", expected)
     if "step" not in handling and any(steps_between(*pair) for pair in pairs):
-        expected = "how fast the table goes from one rest of a tumble to the next"
+        expected = "rate and acceleration of the table between two rests of a tumble"
         yield Complaint("handling.step", "nothing", expected)
 
 
 def of_the_truth(document: Document, manoeuvres: Sequence[Manoeuvre]) -> Iterator[Complaint]:
-    """A place that is not known, mounts that the plan does not use."""
+    """An unknown latitude, mounts that the plan does not use."""
     truth, campaign = document["truth"], document["campaign"]
     if truth.get("latitude_deg", campaign["site"].get("latitude_deg")) is None:
-        expected = "the true latitude, degrees north, since the campaign does not tell it"
+        expected = "the true latitude, degrees north, since the campaign does not state it"
         yield Complaint("truth.latitude_deg", "nothing", expected)
     mounts = list(dict.fromkeys(manoeuvre.mount for manoeuvre in manoeuvres))
     for name in truth.get("mounts", {}):
         if name not in mounts:
             expected = "a mount of the plan: " + ", ".join(mounts)
-            yield Complaint(f"truth.mounts.{name}", "a mount that the plan has not", expected)
+            yield Complaint(f"truth.mounts.{name}", "a mount that is not in the plan", expected)
 
 
 def of_the_instrument(document: Document) -> Iterator[Complaint]:
-    """Columns of text that no instrument of the list writes."""
+    """Columns of text from an instrument that writes none."""
     instrument = document["campaign"]["instrument"]
     if document["receiver"]["message"] == "columns" and not isinstance(instrument, Mapping):
         expected = (
@@ -60,7 +60,7 @@ def of_the_instrument(document: Document) -> Iterator[Complaint]:
 
 
 def of_the_effects(document: Document) -> Iterator[Complaint]:
-    """Effects that need what the rest of the specification does not have."""
+    """Effects that require what the specification lacks."""
     effects, campaign = document.get("effects", {}), document["campaign"]
     for name, effect in effects.items():
         if "to_s" in effect and effect["to_s"] <= effect["from_s"]:
@@ -76,13 +76,13 @@ def of_the_effects(document: Document) -> Iterator[Complaint]:
 def of_the_turns(
     handling: Document, manoeuvres: Sequence[Manoeuvre], effects: Sequence[Effect]
 ) -> Iterator[Complaint]:
-    """Turns that effects make too long for the rest behind them."""
-    late = sum(effect.delays() for effect in effects)
+    """Turns that effects make longer than the rest after them allows."""
+    delay = sum(effect.gyro_delay() for effect in effects)
     for manoeuvre in manoeuvres:
         planned = manoeuvre.profile
-        made = reduce(lambda profile, effect: effect.sets(profile), effects, planned)
-        if isinstance(planned, Trapezoid) and isinstance(made, Trapezoid):
-            needed = made.seconds - planned.seconds + late
+        actual = reduce(lambda profile, effect: effect.actual_profile(profile), effects, planned)
+        if isinstance(planned, Trapezoid) and isinstance(actual, Trapezoid):
+            needed = actual.seconds - planned.seconds + delay
             if needed > planned.start:
-                expected = f"at least {needed:.6g} s, by which effects put off {manoeuvre.name}"
+                expected = f"at least {needed:.6g} s, by which effects delay {manoeuvre.name}"
                 yield Complaint("handling.still_s", f"{handling['still_s']}", expected)

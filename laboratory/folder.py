@@ -1,4 +1,4 @@
-"""The folder data/raw/<campaign>/ as the laboratory hands it over."""
+"""Writing of the folder data/raw/<campaign>/."""
 
 import io
 import os
@@ -17,9 +17,9 @@ QUOTED = ("serial", "date", "laboratory", "operator", "notes")
 
 
 def write(recording: Recording, folder: Path) -> None:
-    """Write the logs and, last, campaign.yaml: where that one stands, all logs are whole.
+    """Write the logs and, last, campaign.yaml: where it exists, all logs are complete.
 
-    The campaign.yaml of an earlier performance goes first, before any of its logs changes.
+    The campaign.yaml of an earlier run is deleted before any of its logs changes.
     """
     folder.mkdir(parents=True, exist_ok=True)
     (folder / CAMPAIGN_FILE).unlink(missing_ok=True)
@@ -29,7 +29,7 @@ def write(recording: Recording, folder: Path) -> None:
 
 
 def put(path: Path, content: bytes) -> None:
-    """Write a file beside its place and move it there, so that it is whole or not there."""
+    """Write a file under a temporary name and rename it, so that it is complete or missing."""
     part = path.with_name(path.name + ".part")
     with part.open("wb") as file:
         file.write(content)

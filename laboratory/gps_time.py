@@ -1,4 +1,4 @@
-"""GPS time in whole nanoseconds since 6 January 1980: exact, across the end of a week too."""
+"""GPS time in whole nanoseconds since 6 January 1980: exact, also across the end of a week."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What goes round with the table: an angle that depends on how far it has turned."""
+"""Angles that are periodic in the angle of the table."""
 
 from dataclasses import dataclass, replace
 
@@ -7,12 +7,12 @@ import numpy as np
 from laboratory.arrays import Array
 from laboratory.motion import Turning
 
-LEVEL = 1e-9  # an axis that leans down by less is level
+LEVEL = 1e-9  # an axis that points down by less is horizontal
 
 
 @dataclass(frozen=True)
 class Harmonic:
-    """ψ(θ) = c (cos nθ − 1) + s sin nθ, so that it begins with 0. order: n; c, s: rad."""
+    """ψ(θ) = c (cos nθ − 1) + s sin nθ, zero at θ = 0. order: n; c, s: rad."""
 
     order: float
     cosine: float
@@ -55,9 +55,9 @@ class Harmonic:
 
 
 def across(axis: Array) -> tuple[Array, Array]:
-    """East and north, (3,) each, turned on the shortest way that takes up into an axis, or down.
+    """East and north, (3,) each, after the shortest rotation from up, or down, to an axis.
 
-    axis: unit vector, (3,), level frame. Of an axis that points down, its other end counts.
+    axis: unit vector, (3,), level frame. An axis that points down is reversed.
     """
     x, y, z = axis if axis[2] >= -LEVEL else -axis
     # Rodrigues' formula for the rotation from (0, 0, 1) to (x, y, z).

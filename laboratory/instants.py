@@ -1,4 +1,4 @@
-"""The instants at which the truth is reckoned: the ends of every sample interval, two between.
+"""The instants at which the truth is computed: the ends of every sample interval, two between.
 
 They are the four nodes of Lobatto's rule, which is exact for polynomials of degree 5:
 ∫ y dt ≈ h/12 (y₀ + 5 y₁ + 5 y₂ + y₃), nodes at 0, (1 ∓ 1/√5)/2, 1 of the interval h. For a
@@ -20,16 +20,16 @@ INNER_NODES = (0.5 - 0.5 / sqrt(5), 0.5 + 0.5 / sqrt(5))
 
 @dataclass(frozen=True)
 class Instants:
-    """The instants of `samples` sample intervals that follow each other; m = 3 samples + 1."""
+    """The instants of `samples` consecutive sample intervals; m = 3 samples + 1."""
 
     start: float  # s since the campaign's first sample: where the first interval begins
     samples: int
     interval: float  # s
-    late: float = 0.0  # s: all of it so much earlier, as a sensor that lags behind reads it
+    late: float = 0.0  # s: all instants earlier by this delay of a sensor
 
     @cached_property
     def elapsed(self) -> Array:
-        """Time since the start, (m,), s; from -late on."""
+        """Time since the start, (m,), s; it begins at -late."""
         nodes = np.array([0.0, *INNER_NODES])
         inside = (np.arange(self.samples)[:, None] + nodes).ravel()
         return np.append(inside, self.samples) * self.interval - self.late
@@ -42,7 +42,7 @@ class Instants:
     def since(self, moment: float) -> Array:
         """0 before a moment, s since the campaign's first sample, and 1 from it on: (m,).
 
-        The inner nodes of the interval that holds it are such that the integral is exact.
+        The values at the inner nodes of its interval are such that the integral is exact.
         """
         after = (self.time >= moment).astype(float)
         ends = self.time[::NODES_PER_INTERVAL]

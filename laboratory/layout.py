@@ -1,4 +1,4 @@
-"""What is in every log, stretch by stretch: manoeuvres, and the way from one to the next."""
+"""The segments of every log: manoeuvres, and changes of position between them."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,15 +18,15 @@ SETTLED = 0.1  # s at rest after every step of a tumble
 
 @dataclass(frozen=True)
 class Handling:
-    """How the table goes from one position to the next within a log."""
+    """How the table changes from one position to the next within a log."""
 
     interval: float  # s, of a sample
-    change: float  # s; 0 where none does
+    change: float  # s; 0 where there is none
     step_rate: float  # rad/s, of the steps of a tumble
     step_acceleration: float  # rad/s²
 
     def samples(self, seconds: float) -> int:
-        """Whole samples that hold so many seconds."""
+        """Number of whole samples in a time."""
         return ceil(seconds / self.interval - 1e-6)
 
     def step(self, angle: float) -> Trapezoid:
@@ -39,10 +39,10 @@ class Handling:
 
 
 @dataclass(frozen=True)
-class Stretch:
-    """A piece of a log in which the table does one thing."""
+class Segment:
+    """Part of a log with one profile of the table."""
 
-    manoeuvre: str | None  # its name; None on the way from one position to the next
+    manoeuvre: str | None  # its name; None for a change of position
     samples: int
     attitude: Array  # level from body, (3, 3), at the start
     axis: Array  # the table's axis, (3,), body axes
@@ -63,7 +63,7 @@ def logs_of(manoeuvres: Sequence[Manoeuvre]) -> dict[str, list[Manoeuvre]]:
 
 
 def changes_between(before: Manoeuvre, after: Manoeuvre) -> bool:
-    """Whether the table has to bring the IMU to another attitude, steps of a tumble left out."""
+    """Whether the table changes the attitude between them, steps of a tumble excluded."""
     if steps_between(before, after):
         return False
     return before.position != after.position or not before.comes_back
@@ -72,8 +72,8 @@ def changes_between(before: Manoeuvre, after: Manoeuvre) -> bool:
 def steps_between(before: Manoeuvre, after: Manoeuvre) -> list[float]:
     """The steps from one rest of a tumble to the next, rad about its axis.
 
-    Where the way back begins, the table first goes on by one step, so that it comes to every
-    rest of the way back from the other side, to the last one too.
+    Where the direction reverses, the table first continues by one step, so that it approaches every
+    rest on the way back from the other side, the first one too.
     """
     one, other = before.step, after.step
     if one is None or other is None or one.tumble != other.tumble:
@@ -96,47 +96,49 @@ def lay_out(
     manoeuvres: Sequence[Manoeuvre],
     placements: Mapping[str, Placement],
     handling: Handling,
-    carried_out: Callable[[Profile], Profile],
-) -> list[Stretch]:
-    """The stretches of one log. A change of position is one rotation about one axis.
+    actual_profiles: Callable[[Profile], Profile],
+) -> list[Segment]:
+    """The segments of one log. A change of position is one rotation about one axis.
 
-    carried_out: what the table makes of the turn that it is set to.
+    actual_profile: the actual course of a turn, by the course that is set.
     """
-    stretches: list[Stretch] = []
+    segments: list[Segment] = []
     before: Manoeuvre | None = None
     for manoeuvre in manoeuvres:
         placement = placements[manoeuvre.position]
         axis = placement.true_axis(manoeuvre.about)
         if before is not None and changes_between(before, manoeuvre):
-            stretches.append(change(stretches[-1].end, placement.attitude, handling))
+            segments.append(change(segments[-1].end, placement.attitude, handling))
         elif before is not None and (steps := steps_between(before, manoeuvre)):
-            for planned in steps[:-1]:  # beyond the rest before which the table turns back
-                start = stretches[-1].end
+            for planned in steps[:-1]:  # beyond the rest at which the direction reverses
+                start = segments[-1].end
                 turned = rotation_about(axis, np.asarray(planned))
-                stretches.append(step(start, start @ turned, axis, planned, handling))
-            start = stretches[-1].end
-            stretches.append(step(start, placement.attitude, axis, steps[-1], handling))
+                segments.append(step(start, start @ turned, axis, planned, handling))
+            start = segments[-1].end
+            segments.append(step(start, placement.attitude, axis, steps[-1], handling))
         samples = manoeuvre.samples(handling.interval)
-        profile = carried_out(manoeuvre.profile)
-        stretches.append(Stretch(manoeuvre.name, samples, placement.attitude, axis, profile))
+        profile = actual_profiles(manoeuvre.profile)
+        segments.append(Segment(manoeuvre.name, samples, placement.attitude, axis, profile))
         before = manoeuvre
-    return stretches
+    return segments
 
 
-def change(start: Array, end: Array, handling: Handling) -> Stretch:
-    """The way from one attitude to another."""
+def change(start: Array, end: Array, handling: Handling) -> Segment:
+    """The change from one attitude to another."""
     axis, angle = axis_and_angle(start.T @ end)
     samples = handling.samples(handling.change)
-    return Stretch(None, samples, start, axis, Change(angle, handling.change))
+    return Segment(None, samples, start, axis, Change(angle, handling.change))
 
 
-def step(start: Array, end: Array, about: Array, planned: float, handling: Handling) -> Stretch:
+def step(start: Array, end: Array, about: Array, planned: float, handling: Handling) -> Segment:
     """A step of a tumble: from one attitude to another, by about the planned angle about `about`.
 
     The axis is the one that leads to the end exactly, position errors included.
     """
     axis, angle = axis_and_angle(start.T @ end)
-    if angle > pi / 2 and axis @ about * planned < 0:  # half a turn and a little: the other way
+    if (
+        angle > pi / 2 and axis @ about * planned < 0
+    ):  # little more than half a turn: the other direction
         axis, angle = -axis, 2 * pi - angle
     samples = handling.step_samples(planned)
-    return Stretch(None, samples, start, axis, handling.step(angle))
+    return Segment(None, samples, start, axis, handling.step(angle))

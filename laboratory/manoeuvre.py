@@ -1,4 +1,4 @@
-"""One thing that the table does: a rest, or a turn."""
+"""A manoeuvre of the table: a rest, or a turn."""
 
 from dataclasses import dataclass
 from math import ceil, pi
@@ -13,7 +13,7 @@ AS_MOUNTED: Final = "as mounted"  # the mount that a plan does not name
 
 @dataclass(frozen=True)
 class Step:
-    """How a rest of a tumble is reached."""
+    """The step of a tumble that leads to a rest."""
 
     tumble: str  # its id
     angle: float  # rad, about the tumble's axis, since its start
@@ -27,24 +27,24 @@ class Manoeuvre:
 
     name: str
     log: str
-    position: str  # manoeuvres with the same one stand alike, errors included
-    shares: str  # name of a position whose error is the same, though come to from elsewhere
-    mount: str  # how the IMU is bolted to the table
+    position: str  # the same for manoeuvres of the same attitude, errors included
+    shares: str  # name of the position with the same error, though approached from elsewhere
+    mount: str  # how the IMU is fixed to the table
     up: Array  # unit vector, (3,), body axes: points up at the start
-    mark: Array  # body axes, not vertical: its azimuth at the start is known, or drawn
-    azimuth: str | None  # None: the mark points at the table's zero mark; else: as drawn by name
+    mark: Array  # body axes, not vertical: its azimuth at the start is known, or random
+    azimuth: str | None  # None: that of the table's zero mark; else random, by this name
     about: Array  # unit vector, (3,), body axes: axis of the turn, or of the tumble
     profile: Profile
     seconds: float  # with the rest before and after a turn
     step: Step | None = None  # of a rest in a tumble
 
     def samples(self, interval: float) -> int:
-        """Whole samples that hold the manoeuvre."""
+        """Number of samples of the manoeuvre."""
         return ceil(self.seconds / interval - 1e-6)
 
     @property
     def comes_back(self) -> bool:
-        """Whether the IMU stands at the end as it stood at the start."""
+        """Whether the attitude at the end is that at the start."""
         turns = self.profile.angle / (2 * pi)
         return abs(turns - round(turns)) < 1e-12
 

@@ -1,4 +1,4 @@
-"""What a sensor keeps of its past."""
+"""Memory of a sensor: the sign of its last large input."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from laboratory.arrays import Array
 
 
 def last_sign(values: Array, least: float, before: Array) -> Array:
-    """The sign of each column when it was last beyond ±least, (m, k).
+    """The sign of each column when its magnitude last exceeded `least`, (m, k).
 
     values: (m, k), one instant after another; before: (k,), the signs before the first.
     """

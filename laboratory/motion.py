@@ -1,4 +1,4 @@
-"""How the case of the IMU moves: rotations one on top of the other, the table's own first."""
+"""Motion of the case of the IMU: a product of rotations, that of the table first."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ from laboratory.rotation import rotation_about, seen_from
 
 @dataclass(frozen=True)
 class Turning:
-    """One rotation about an axis that stands still in the body it carries."""
+    """A rotation about an axis that is fixed in the rotated body."""
 
-    axis: Array  # unit vector, (3,), axes of what it carries
+    axis: Array  # unit vector, (3,), axes of the rotated body
     angle: Array  # rad, (m,), right-hand rule
     rate: Array  # rad/s, (m,)
     acceleration: Array  # rad/s², (m,)
     steady_rate: float  # rad/s, greatest magnitude of the rate
-    planned: bool = True  # False of the table's on its way from one position to the next
+    planned: bool = True  # False for a change of position
 
 
 @dataclass(frozen=True)
@@ -31,11 +31,11 @@ class Motion:
     rate: Array  # rad/s, (m, 3), without the earth's own
     acceleration: Array  # rad/s², (m, 3)
     turned: Array  # rad, (n, 3): integral of the rate over every sample
-    stands: bool  # nothing turns at all
+    at_rest: bool  # there is no rotation
 
     def seen(self, vector: Array) -> Array:
         """A vector of the level frame, (3,), in the axes of the case at the instants, (m, 3)."""
-        if self.stands:
+        if self.at_rest:
             return np.broadcast_to(seen_from(self.attitude[0], vector), self.rate.shape)
         return seen_from(self.attitude, vector)
 
@@ -46,13 +46,12 @@ class Motion:
 
 
 def move(instants: Instants, attitude: Array, turnings: Sequence[Turning]) -> Motion:
-    """The motion of a case that stands at `attitude`, (3, 3), before it is turned.
+    """The motion of a case from `attitude`, (3, 3), by rotations.
 
     C = C₀ R₁ R₂ …; with each further turning by angle ψ about axis a
         ω ← Rᵀ ω + a ψ′,   ω′ ← Rᵀ ω′ + (Rᵀ ω) × a ψ′ + a ψ″.
-    The integral of ω takes Σ a ψ′ exactly, as differences of angles, and leaves to quadrature
-    only what a turning does to the axes of those before it: the corners of a rate that ramps
-    cost nothing then.
+    The part Σ a ψ′ of ω is integrated exactly, by differences of angles; only the rotation of the
+    axes of earlier rotations is integrated by quadrature, so corners of the rate cause no error.
     """
     m = len(instants.elapsed)
     rate, acceleration, plain = np.zeros((3, m, 3))

@@ -1,4 +1,4 @@
-"""How the IMU stands at every position of the plan: as it was set, and as it truly stands."""
+"""Attitude of the IMU at every position of the plan: as set, and true."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,10 +15,10 @@ from laboratory.rotation import rotation_of
 class Placement:
     """One position. Matrices (3, 3), level (east, north, up) from body."""
 
-    set_attitude: Array  # as the plan says, at the azimuth that it truly had, on a level table
+    set_attitude: Array  # as the plan says, at the true azimuth, on a level table
     tilt: Array  # (3, 3), level frame: the error of the position
-    base: Array  # (3, 3), level frame: how the whole table leans, its axis included
-    mounting: Array  # (3, 3): what takes vectors of the case to the axes that the plan names
+    base: Array  # (3, 3), level frame: tilt of the whole table, its axis included
+    mounting: Array  # (3, 3): from the axes of the case to those that the plan names
 
     @property
     def attitude(self) -> Array:
@@ -28,9 +28,8 @@ class Placement:
     def true_axis(self, about: Array) -> Array:
         """The table's axis in body axes, (3,), where the plan names `about`.
 
-        The table turns about the axis that it has, base · set attitude · about; the case leans
-        against it by the position's error. So up stays where the table has it, and the case's
-        own axis goes round it.
+        The table turns about its own axis, base · set attitude · about, against which the case is
+        tilted by the error of the position, so that the axis of the case describes a cone.
         """
         in_level = self.base @ self.set_attitude @ about
         return self.attitude.T @ in_level
@@ -51,9 +50,9 @@ def place(
     heading: azimuth of the table's zero mark, rad clockwise from north; None: drawn, the same for
     all positions with a mark. A position without mark stands at an azimuth of its own, drawn; the
     rests of a tumble share one. position_sigma: rad, of the rotation about east and about north
-    that the position is off. leaning: how the table leans at a set attitude; missed: by how much it
-    misses that besides; both rotations in the level frame. mountings: by mount, where it is not
-    as the plan says.
+    of the position error. leaning: tilt of the table at a set attitude; missed: further position
+    error there; both rotations in the level frame. mountings: by mount, where it differs from the
+    plan.
     """
     if heading is None:
         heading = azimuth(chance, "the table's zero mark")
@@ -74,7 +73,7 @@ def place(
 
 
 def azimuth(chance: Chance, name: str) -> float:
-    """An azimuth by chance, rad."""
+    """A random azimuth, rad."""
     return float(chance.stream("azimuth", name).uniform(0.0, 2 * np.pi))
 
 

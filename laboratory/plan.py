@@ -1,4 +1,4 @@
-"""The plan of a campaign, manoeuvre by manoeuvre, with its shorthand written out."""
+"""The plan of a campaign as a list of manoeuvres, its shorthand expanded."""
 
 from collections.abc import Mapping, Sequence
 from math import sqrt
@@ -14,7 +14,7 @@ from laboratory.tumble import rests_of
 from laboratory.units import DEGREE
 
 
-def written_out(campaign: Mapping[str, Any], still: float) -> list[Manoeuvre]:
+def expanded_plan(campaign: Mapping[str, Any], still: float) -> list[Manoeuvre]:
     """The manoeuvres of a campaign; `still`: rest before and after a whole turn, s."""
     manoeuvres: list[Manoeuvre] = []
     for index, written in enumerate(campaign["plan"]):
@@ -24,8 +24,8 @@ def written_out(campaign: Mapping[str, Any], still: float) -> list[Manoeuvre]:
             expected = "the manoeuvre's log, or a default log in campaign.log"
             raise PlanError(Complaint(f"{place}.log", "nothing", expected))
         check_keys(written, place)
-        one = stated(written, log, place, still)
-        for manoeuvre in rests_of(one, written, place) if written["do"] == "tumble" else [one]:
+        first = manoeuvre_of(written, log, place, still)
+        for manoeuvre in rests_of(first, written, place) if written["do"] == "tumble" else [first]:
             if manoeuvre.name in (other.name for other in manoeuvres):
                 raise PlanError(Complaint(f"{place}.id", f"{manoeuvre.name} again", "another id"))
             check_position(manoeuvre, manoeuvres, place)
@@ -35,18 +35,20 @@ def written_out(campaign: Mapping[str, Any], still: float) -> list[Manoeuvre]:
     return manoeuvres
 
 
-def stated(written: Mapping[str, Any], log: str, place: str, still: float) -> Manoeuvre:
-    """A manoeuvre as it is written; of a tumble its first rest."""
+def manoeuvre_of(written: Mapping[str, Any], log: str, place: str, still: float) -> Manoeuvre:
+    """The manoeuvre of an item of the plan; of a tumble its first rest."""
     turns = written["do"] == "turn"
-    profile, seconds = turning(written, place, still) if turns else resting(written, place)
+    profile, seconds = (
+        turn_profile(written, place, still) if turns else rest_profile(written, place)
+    )
     up = direction(written["up"])
     about = direction(written.get("about", written["up"]))
     position = written.get("position", f"of {written['id']}")
     azimuth = None if "mark" in written else position
-    across = np.eye(3)[np.argmin(np.abs(up))]  # any will do where the azimuth is by chance
+    across = np.eye(3)[np.argmin(np.abs(up))]  # any direction where the azimuth is random
     mark = direction(written["mark"]) if "mark" in written else across
     if np.linalg.norm(np.cross(up, mark)) < 1e-6:
-        expected = "a direction that is not the vertical, for it gives the azimuth"
+        expected = "a direction that is not vertical, because it defines the azimuth"
         raise PlanError(Complaint(f"{place}.mark", str(written["mark"]), expected))
     mount = written.get("mount", AS_MOUNTED)
     return Manoeuvre(
@@ -54,37 +56,37 @@ def stated(written: Mapping[str, Any], log: str, place: str, still: float) -> Ma
     )
 
 
-KEYS: Final = {  # that not every manoeuvre has
+SPECIFIC_KEYS: Final = {  # by kind of manoeuvre
     "rest": {"seconds"},
     "turn": {"about", "degrees", "rate_deg_s", "accel_deg_s2", "seconds", "recorded"},
     "tumble": {"about", "step_degrees", "steps", "and_back", "seconds"},
 }
-NEEDED: Final = {"tumble": ("about", "step_degrees", "steps")}
+REQUIRED_KEYS: Final = {"tumble": ("about", "step_degrees", "steps")}
 
 
 def check_keys(written: Mapping[str, Any], place: str) -> None:
     """Keys that belong to another kind of manoeuvre, or that are missing."""
-    known = set().union(*KEYS.values())
+    known = set().union(*SPECIFIC_KEYS.values())
     for key in written:
-        if key in known - KEYS[written["do"]]:
+        if key in known - SPECIFIC_KEYS[written["do"]]:
             found, expected = str(written[key]), f"nothing: a {written['do']}"
             raise PlanError(Complaint(f"{place}.{key}", found, expected))
-    for key in NEEDED.get(written["do"], ()):
+    for key in REQUIRED_KEYS.get(written["do"], ()):
         if key not in written:
             raise PlanError(Complaint(f"{place}.{key}", "nothing", f"{key} of a tumble"))
 
 
-def resting(written: Mapping[str, Any], place: str) -> tuple[Profile, float]:
+def rest_profile(written: Mapping[str, Any], place: str) -> tuple[Profile, float]:
     """The profile and the seconds of a rest."""
     if "seconds" not in written:
         raise PlanError(Complaint(f"{place}.seconds", "nothing", "the length of the rest, s"))
     return Standing(), written["seconds"]
 
 
-def turning(written: Mapping[str, Any], place: str, still: float) -> tuple[Profile, float]:
+def turn_profile(written: Mapping[str, Any], place: str, still: float) -> tuple[Profile, float]:
     """The profile and the seconds of a turn, from two of its angle, rate and duration.
 
-    With ramps the duration T, the angle A, the rate r and the acceleration a of a turn are bound
+    With ramps the duration T, the angle A, the rate r and the acceleration a of a turn are related
     by A = r (T − r/a); without, by A = r T.
     """
     given = [key for key in ("degrees", "rate_deg_s", "seconds") if key in written]
@@ -103,12 +105,12 @@ def turning(written: Mapping[str, Any], place: str, still: float) -> tuple[Profi
         raise PlanError(Complaint(f"{place}.accel_deg_s2", "nothing", expected))
     acceleration = written["accel_deg_s2"] * DEGREE
     if not rate:
-        spare = (acceleration * seconds) ** 2 - 4 * acceleration * abs(angle)
-        if spare < 0:
+        root = (acceleration * seconds) ** 2 - 4 * acceleration * abs(angle)
+        if root < 0:
             least = 2 * sqrt(abs(angle) / acceleration)
             expected = f"at least {least:.6g} s for this angle and acceleration"
             raise PlanError(Complaint(f"{place}.seconds", f"{seconds}", expected))
-        rate = (acceleration * seconds - sqrt(spare)) / 2
+        rate = (acceleration * seconds - sqrt(root)) / 2
     if not angle:
         angle = rate * (seconds - abs(rate) / acceleration)
         if angle * rate <= 0 or seconds < 2 * abs(rate) / acceleration:
@@ -119,7 +121,7 @@ def turning(written: Mapping[str, Any], place: str, still: float) -> tuple[Profi
 
 
 def check_position(manoeuvre: Manoeuvre, others: Sequence[Manoeuvre], place: str) -> None:
-    """The same position name, the same attitude."""
+    """Manoeuvres of the same position name have the same attitude."""
     for other in others:
         if other.position == manoeuvre.position and not (
             np.allclose(other.up, manoeuvre.up)
@@ -132,7 +134,7 @@ def check_position(manoeuvre: Manoeuvre, others: Sequence[Manoeuvre], place: str
 
 
 def check_mount(manoeuvre: Manoeuvre, others: Sequence[Manoeuvre], place: str) -> None:
-    """The IMU is not unscrewed while a log is written."""
+    """The mount does not change within a log."""
     for other in others:
         if other.log == manoeuvre.log and other.mount != manoeuvre.mount:
             found = f"{manoeuvre.log}, in which {other.name} has another mount"
@@ -140,7 +142,7 @@ def check_mount(manoeuvre: Manoeuvre, others: Sequence[Manoeuvre], place: str) -
 
 
 def check_steady(manoeuvres: Sequence[Manoeuvre]) -> None:
-    """A table that turns before the log begins leaves no room for another manoeuvre in it."""
+    """A turn of which only the steady part is recorded has a log of its own."""
     for index, manoeuvre in enumerate(manoeuvres):
         alone = sum(other.log == manoeuvre.log for other in manoeuvres) == 1
         if isinstance(manoeuvre.profile, Steady) and not alone:

@@ -1,6 +1,6 @@
-"""How far the table has turned: angle, rate and acceleration as functions of time.
+"""Profiles of a rotation of the table: angle, rate and acceleration as functions of time.
 
-A profile answers for any time, before and after it too: there the table stands.
+A profile is defined at any time; before and after the rotation the table is at rest.
 """
 
 from dataclasses import dataclass
@@ -21,11 +21,11 @@ class Course(NamedTuple):
 
 
 class Profile(Protocol):
-    """A way of turning."""
+    """A rotation as a function of time."""
 
     @property
     def angle(self) -> float:
-        """The whole turn, rad, signed."""
+        """The total angle, rad, signed."""
         ...
 
     @property
@@ -34,13 +34,13 @@ class Profile(Protocol):
         ...
 
     def course(self, elapsed: Array) -> Course:
-        """Where the table is after `elapsed`, (m,), s."""
+        """Angle, rate and acceleration after `elapsed`, (m,), s."""
         ...
 
 
 @dataclass(frozen=True)
 class Standing:
-    """The table stands."""
+    """The table is at rest."""
 
     angle: float = 0.0
     steady_rate: float = 0.0
@@ -51,7 +51,7 @@ class Standing:
 
 @dataclass(frozen=True)
 class Steady:
-    """The table turns at one rate, from before the log until after it."""
+    """The table turns at constant rate, from before the log until after it."""
 
     rate: float  # rad/s, signed
     seconds: float
@@ -92,7 +92,7 @@ class Trapezoid:
 
     @property
     def seconds(self) -> float:
-        """The whole turn, without any rest."""
+        """Duration of the turn, without the rests."""
         return abs(self.angle) / self.steady_rate + self.spin_up
 
     def course(self, elapsed: Array) -> Course:
@@ -112,7 +112,7 @@ class Trapezoid:
 
 @dataclass(frozen=True)
 class Change:
-    """The table brings the IMU to its next position, smoothly and within the time given.
+    """A smooth change to the next position, within a given time.
 
     Angle × s(x), s = x³ (10 − 15 x + 6 x²), x = time / seconds.
     """
@@ -134,7 +134,7 @@ class Change:
 
 
 def smooth_step(x: Array) -> tuple[Array, Array, Array]:
-    """From 0 at x ≤ 0 to 1 at x ≥ 1 without a corner: s = x³ (10 − 15 x + 6 x²), s′, s″."""
+    """From 0 at x ≤ 0 to 1 at x ≥ 1, twice differentiable: s = x³ (10 − 15 x + 6 x²), s′, s″."""
     x = np.clip(x, 0.0, 1.0)
     value = x**3 * (10 - 15 * x + 6 * x**2)
     slope = 30 * x**2 * (1 - x) ** 2

@@ -59,7 +59,7 @@ REST = [("seconds", "<f8"), ("status", "<u4"), ("counts", "<6i4")]
 
 @dataclass(frozen=True)
 class Samples:
-    """What the receiver has got from the IMU: time and counts of n samples."""
+    """What the receiver gets from the IMU: time and counts of n samples."""
 
     stamps: Counts  # ns since the start of GPS time, (n,): the end of every sample
     accelerometer: Counts  # (n, 3), x y z
@@ -70,7 +70,7 @@ class Samples:
         """As sent: z, −y, x, the accelerometers first, (n, 6)."""
         signs, order = np.array([1, -1, 1]), [2, 1, 0]
         both = (self.accelerometer, self.gyro)
-        return np.hstack([(signs * one)[:, order] for one in both])
+        return np.hstack([(signs * counts)[:, order] for counts in both])
 
 
 def checksum(text: bytes) -> int:

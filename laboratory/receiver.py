@@ -1,4 +1,4 @@
-"""What writes the logs: times, counts of the six channels, and where it can the temperature."""
+"""The receiver: it writes times, counts of the six channels and, as columns, the temperature."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ COLUMNS = "columns"  # the message that is a table of text
 
 @dataclass(frozen=True)
 class Receiver:
-    """What writes the logs."""
+    """The receiver that writes the logs."""
 
     message: str
     step: int  # ns from sample to sample
@@ -25,7 +25,7 @@ class Receiver:
     accelerometer_count: float  # m/s
     status: str
     line_end: bytes
-    imu_type: int  # by NovAtel's list; the messages with X tell it
+    imu_type: int  # by NovAtel's list; in the messages with X
 
     @classmethod
     def specified(cls, written: Mapping[str, Any]) -> "Receiver":
@@ -60,12 +60,12 @@ class Receiver:
         """A log as it is written; start: ns since the start of GPS time, the campaign's first."""
         if self.message == COLUMNS:
             return columns.log_bytes(records, start, self.line_end)
-        told = (self.message, self.status, self.line_end, self.imu_type)
-        return rawimu.log_bytes(records.samples, *told)
+        fixed = (self.message, self.status, self.line_end, self.imu_type)
+        return rawimu.log_bytes(records.samples, *fixed)
 
     @property
     def format(self) -> dict[str, Any] | None:
-        """How a campaign file describes its logs; None where the instrument tells it."""
+        """How a campaign file describes its logs; None where the instrument does."""
         if self.message != COLUMNS:
             return None
         rate, force = self.interval / self.gyro_count, self.interval / self.accelerometer_count

@@ -1,4 +1,4 @@
-"""What a performance leaves: the logs and the campaign's file, and the truth, for tests only."""
+"""Result of a simulation: the logs, the campaign file, and the truth, for tests only."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from laboratory.sensor import Reading
 
 @dataclass(frozen=True)
 class LogTruth:
-    """What truly happened during one log, before any fault; n samples."""
+    """The truth during one log, before any fault; n samples."""
 
     time: Array  # s since the campaign's first sample, (n,): when every sample truly ended
     rate: Array  # rad/s, (n, 3), body axes: true mean rate over every sample
@@ -29,15 +29,15 @@ class LogTruth:
 
 @dataclass(frozen=True)
 class Spoiled:
-    """Consecutive records of a log, as it was written, that one fault has touched.
+    """Consecutive records of a log, as written, that one fault has changed.
 
     Records are numbered from 0, so that record k is in line k + 1. Where records are missing, or
-    time goes back, it is the one record behind the jump of the stamps. What a later fault takes
-    away is not told; what it writes over is.
+    time goes back, it is the one record after the jump of the stamps. Records that a later fault
+    removes are not listed; those that it overwrites are.
     """
 
     fault: str  # its name in the specification
-    log: str  # under the name under which it was handed over
+    log: str  # the name under which it was written
     first: int
     after: int  # the record after the last
     first_stamp: int  # ns since the start of GPS time, as written
@@ -54,11 +54,11 @@ class Recording:
     records: Mapping[str, Records]  # name → what is written, in the order of writing
     truth: Mapping[str, LogTruth]  # by log, before any fault: also before an exchange of names
     placements: Mapping[str, Placement]  # by position ("of <id>" where the plan names none)
-    spoiled: Sequence[Spoiled]  # by log, then by fault as they struck, then by record
+    spoiled: Sequence[Spoiled]  # by log, then by fault in order, then by record
 
     @cached_property
     def logs(self) -> dict[str, bytes]:
-        """The bytes of every log; they are written when they are first asked for."""
+        """The bytes of every log, computed at first use."""
         return {
             log: self.receiver.log_bytes(records, self.start)
             for log, records in self.records.items()

@@ -1,4 +1,4 @@
-"""A log between the receiver and the disk: its records, and what faults have done to them."""
+"""The records of a log before they are written, and the faults that changed them."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -10,10 +10,10 @@ from laboratory.arrays import Array, Counts
 from laboratory.rawimu import Samples
 
 
-class Touch(NamedTuple):
-    """Records that one fault has touched, numbered from 0 in the log as it is now.
+class Mark(NamedTuple):
+    """Records that one fault has changed, numbered from 0 in the present log.
 
-    Where first = after no record is touched, but the stamps jump before that record.
+    Where first = after no record is changed, but the stamps jump before that record.
     """
 
     fault: str  # its name
@@ -31,7 +31,7 @@ class Records:
     temperature: Array  # K, (n,): of the IMU at the end of the sample
     units: Array  # (6,): the mean reading over a sample that makes one count, m/s² and rad/s
     interval: float  # s, of a sample
-    touches: tuple[Touch, ...] = ()
+    marks: tuple[Mark, ...] = ()
 
     def __len__(self) -> int:
         return len(self.stamps)
@@ -42,41 +42,41 @@ class Records:
         return Samples(self.stamps, self.counts[:, :3], self.counts[:, 3:])
 
     def at(self, rows: Counts) -> "Records":
-        """Its records `rows`, (k,), which never decrease; one that comes twice is there twice.
+        """The records `rows`, (k,), not decreasing; a row given twice is repeated.
 
-        What faults have touched before stays with the records, and a jump before the first
-        record that was behind it.
+        The marks of earlier faults stay with their records, that of a jump with the first
+        remaining record after it.
         """
-        touches = []
-        for touch in self.touches:
-            first, after = np.searchsorted(rows, [touch.first, touch.after]).tolist()
-            if first < after or touch.first == touch.after:
-                touches.append(Touch(touch.fault, first, after))
+        marks = []
+        for mark in self.marks:
+            first, after = np.searchsorted(rows, [mark.first, mark.after]).tolist()
+            if first < after or mark.first == mark.after:
+                marks.append(Mark(mark.fault, first, after))
         return replace(
             self,
             stamps=self.stamps[rows],
             counts=self.counts[rows],
             ends=self.ends[rows],
             temperature=self.temperature[rows],
-            touches=tuple(touches),
+            marks=tuple(marks),
         )
 
     def without(self, fault: str, rows: Counts) -> "Records":
-        """What is left when a fault takes the records `rows`, (k,), away."""
+        """The log without the records `rows`, (k,), which a fault removes."""
         kept = np.ones(len(self), dtype=bool)
         kept[rows] = False
         behind = np.unique(np.cumsum(kept)[~kept])  # the records after the gaps
         return self.at(np.flatnonzero(kept)).jumped(fault, behind.tolist())
 
-    def touched(self, fault: str, rows: Counts) -> "Records":
-        """The same records, told that a fault has touched `rows`, (k,)."""
+    def marked(self, fault: str, rows: Counts) -> "Records":
+        """The same records, with `rows`, (k,), marked as changed by a fault."""
         inside = np.zeros(len(self) + 2, dtype=np.int8)  # with one more at both ends
         inside[rows + 1] = 1
         edges = np.flatnonzero(np.diff(inside)).reshape(-1, 2)
-        touches = [Touch(fault, first, after) for first, after in edges.tolist()]
-        return replace(self, touches=(*self.touches, *touches))
+        marks = [Mark(fault, first, after) for first, after in edges.tolist()]
+        return replace(self, marks=(*self.marks, *marks))
 
     def jumped(self, fault: str, rows: Iterable[int]) -> "Records":
-        """The same records, told that a fault made the stamps jump before each of `rows`."""
-        touches = [Touch(fault, row, row) for row in rows]
-        return replace(self, touches=(*self.touches, *touches))
+        """The same records, with a jump of the stamps by a fault marked before each of `rows`."""
+        marks = [Mark(fault, row, row) for row in rows]
+        return replace(self, marks=(*self.marks, *marks))

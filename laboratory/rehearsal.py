@@ -1,4 +1,4 @@
-"""Faults are rehearsed on empty samples, to find those of logs and lines that are not there."""
+"""Faults are applied to empty logs first, to find those of logs and lines that do not exist."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -11,18 +11,18 @@ from laboratory.records import Records
 
 
 def rehearse(faults: Sequence[Fault], logs: Mapping[str, Records]) -> Iterator[Complaint]:
-    """What is wrong with faults that strike one after another; `logs`: of the right lengths.
+    """What is wrong with faults that are applied in order; `logs`: of the right lengths.
 
-    One that is refused does not strike, so that those after it are still judged.
+    A fault that is refused is not applied, so that those after it are still checked.
     """
-    generators = {log: np.random.default_rng(0) for log in logs}  # their numbers count for nothing
+    generators = {log: np.random.default_rng(0) for log in logs}  # their numbers do not matter
     lengths = {log: len(records) for log, records in logs.items()}
     for index, fault in enumerate(faults):
         place = f"faults[{index}].{fault.name}"
         wrong = list(unknown(fault, place, logs)) or list(out_of_reach(fault, place, logs, lengths))
         yield from wrong
         if not wrong:
-            logs = fault.strikes(logs, generators)
+            logs = fault.apply(logs, generators)
 
 
 def unknown(fault: Fault, place: str, logs: Mapping[str, Records]) -> Iterator[Complaint]:
@@ -37,7 +37,7 @@ def unknown(fault: Fault, place: str, logs: Mapping[str, Records]) -> Iterator[C
 def out_of_reach(
     fault: Fault, place: str, logs: Mapping[str, Records], before: Mapping[str, int]
 ) -> Iterator[Complaint]:
-    """Lines that a log does not have; `before`: how many it had before any fault."""
+    """Lines that a log does not have; `before`: its number of lines before any fault."""
     for log, records in logs.items():
         if (log in fault.logs or ALL in fault.logs) and fault.last_line > len(records):
             then = "" if len(records) == before[log] else " after the faults before this one"

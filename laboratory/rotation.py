@@ -1,4 +1,4 @@
-"""Rotations, exact at any angle: no small-angle form anywhere in the laboratory."""
+"""Rotations, exact at any angle: the laboratory uses no small-angle approximation."""
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -7,7 +7,7 @@ from laboratory.arrays import Array
 
 
 def cross_matrix(vector: Array) -> Array:
-    """The matrix that does `vector` ×, (3, 3)."""
+    """The matrix of the cross product with `vector`, (3, 3)."""
     x, y, z = vector
     return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 

@@ -1,4 +1,4 @@
-"""What the IMU makes of the truth: reading = M · truth + bias, and whatever its effects add."""
+"""Sensor model: reading = M · truth + bias, plus the errors of effects."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -19,8 +19,8 @@ class Triad:
     matrix: Array
     bias: Array
 
-    def feels(self, truth: Array) -> Array:
-        """M · truth, (…, 3): what each sensor has along its own axis, scale factor included."""
+    def project(self, truth: Array) -> Array:
+        """M · truth, (…, 3): the input along the axis of each sensor, scale factor included."""
         return truth @ self.matrix.T
 
 
@@ -34,40 +34,40 @@ class Sensors:
 
 @dataclass(frozen=True)
 class Reading:
-    """What the six sensors read, or what one cause adds to it; any number of rows, sensor axes."""
+    """Readings of the six sensors, or one contribution to them; any number of rows, sensor axes."""
 
     accelerometer: Array  # (…, 3)
     gyro: Array  # (…, 3)
 
     @classmethod
     def of_gyros(cls, added: Array) -> Self:
-        """Nothing but what the gyros read."""
+        """A reading of the gyros alone."""
         return cls(np.zeros_like(added), added)
 
     @classmethod
     def of_accelerometers(cls, added: Array) -> Self:
-        """Nothing but what the accelerometers read."""
+        """A reading of the accelerometers alone."""
         return cls(added, np.zeros_like(added))
 
     def __add__(self, other: "Reading") -> "Reading":
         return Reading(self.accelerometer + other.accelerometer, self.gyro + other.gyro)
 
 
-def nothing(rows: int) -> Reading:
-    """The reading that adds nothing."""
+def zero_reading(rows: int) -> Reading:
+    """A reading of zeros."""
     return Reading(*np.zeros((2, rows, 3)))
 
 
 def read(sensors: Sensors, truth: Truth, added: Reading) -> Reading:
     """Increments of a noiseless IMU over every sample, (n, 3) m/s and (n, 3) rad.
 
-    `added` is what effects add to the reading at the instants, (m, 3) m/s² and (m, 3) rad/s.
-    The linear part goes by the exact integrals of the truth, only the rest by quadrature.
+    added: errors of the readings at the instants, (m, 3) m/s² and (m, 3) rad/s. The linear part
+    is computed from the exact integrals of the truth, only the rest by quadrature.
     """
     instants = truth.motion.instants
     accelerometer, gyro = sensors.accelerometer, sensors.gyro
     return Reading(
-        accelerometer.feels(truth.velocity)
+        accelerometer.project(truth.velocity)
         + instants.integral(accelerometer.bias + added.accelerometer),
-        gyro.feels(truth.turned) + instants.integral(gyro.bias + added.gyro),
+        gyro.project(truth.turned) + instants.integral(gyro.bias + added.gyro),
     )

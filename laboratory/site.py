@@ -1,4 +1,4 @@
-"""Where the laboratory stands: gravity and the rotation of the earth in the level frame.
+"""The site: gravity and the rotation of the earth in the level frame.
 
 Level frame: east, north, up.
 """
@@ -15,12 +15,12 @@ EARTH_RATE = 7.292115e-5  # rad/s, WGS 84
 
 @dataclass(frozen=True)
 class Site:
-    """The place as it truly is."""
+    """The true site."""
 
     latitude: float  # rad
     gravity: float  # m/s²
-    heading: float | None  # rad clockwise from north: the table's zero mark; None: by chance
-    spin: float = 1.0  # share of the earth's rotation that the gyros have in their readings
+    heading: float | None  # rad clockwise from north: the table's zero mark; None: random
+    spin: float = 1.0  # fraction of the earth rate in the readings of the gyros
 
     @property
     def earth_rate(self) -> Array:
@@ -29,7 +29,7 @@ class Site:
 
     @property
     def reaction(self) -> Array:
-        """What holds the IMU up against gravity, (3,), m/s²: +g upwards."""
+        """Specific force at rest, (3,), m/s²: +g upwards."""
         return np.array([0.0, 0.0, self.gravity])
 
 

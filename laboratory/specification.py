@@ -1,4 +1,4 @@
-"""What is to be simulated: a file data/simulated/<campaign>.yaml, checked and in SI and radians."""
+"""Specification of a simulation: data/simulated/<campaign>.yaml, checked, in SI and radians."""
 
 from collections.abc import Mapping
 from copy import deepcopy
@@ -24,7 +24,7 @@ from laboratory.feasibility import impossible
 from laboratory.gps_time import NANOSECONDS, gps_nanoseconds
 from laboratory.layout import Handling, length, logs_of
 from laboratory.manoeuvre import Manoeuvre, PlanError
-from laboratory.plan import written_out
+from laboratory.plan import expanded_plan
 from laboratory.rawimu import Samples
 from laboratory.receiver import Receiver
 from laboratory.records import Records
@@ -45,12 +45,12 @@ class Specification:
 
     @property
     def document(self) -> dict[str, Any]:
-        """A copy of what was written, to vary and to `specify` again."""
+        """A copy of the document, to vary and to `specify` again."""
         return deepcopy(self._document)
 
     @property
     def campaign(self) -> dict[str, Any]:
-        """What the laboratory tells the pipeline."""
+        """The campaign file that is written."""
         campaign: dict[str, Any] = {**self.document["campaign"], "simulated": True}
         if self.receiver.format is not None:
             campaign["instrument"] = {**campaign["instrument"], "format": self.receiver.format}
@@ -58,16 +58,16 @@ class Specification:
 
     @cached_property
     def manoeuvres(self) -> list[Manoeuvre]:
-        return written_out(self._document["campaign"], self._document["handling"]["still_s"])
+        return expanded_plan(self._document["campaign"], self._document["handling"]["still_s"])
 
     @cached_property
     def handling(self) -> Handling:
-        """How positions are changed within a log, by true time."""
+        """How positions are changed within a log, in true time."""
         written = self._document["handling"]
         step = written.get("step", {"rate_deg_s": 1.0, "accel_deg_s2": 1.0})
-        ticks = prod(effect.ticks() for effect in self.effects().values())
+        clock_ratio = prod(effect.clock_ratio() for effect in self.effects().values())
         return Handling(
-            self.receiver.interval * ticks,
+            self.receiver.interval * clock_ratio,
             float(written.get("change_s", 0.0)),
             step["rate_deg_s"] * DEGREE,
             step["accel_deg_s2"] * DEGREE,
@@ -99,7 +99,7 @@ class Specification:
 
     @property
     def mountings(self) -> dict[str, Array]:
-        """By mount, what takes vectors of the case to the axes that the plan names, (3, 3)."""
+        """By mount, the matrix from the axes of the case to those that the plan names, (3, 3)."""
         mounts = self._document["truth"].get("mounts", {})
         return {
             name: rotation_of(np.array(mount["rotation_mrad"], float) * MILLIRADIAN)
@@ -108,25 +108,25 @@ class Specification:
 
     @property
     def temperature(self) -> Temperature:
-        """The course of the temperature; an even one where nothing is said."""
+        """The course of the temperature; constant where it is not specified."""
         written = self._document.get("temperature", {"start_deg_c": 20.0})
         return Temperature.specified(written)
 
     @property
     def site(self) -> Site:
-        """The true place: what `truth` says, else the campaign, else normal gravity."""
+        """The true site: from `truth`, else from the campaign, else normal gravity."""
         site, truth = self._document["campaign"]["site"], self._document["truth"]
         latitude = truth.get("latitude_deg", site.get("latitude_deg")) * DEGREE
         gravity = truth.get("gravity_m_s2", site.get("gravity_m_s2"))
         if gravity is None:
             gravity = normal_gravity(latitude, site.get("height_m", 0.0))
-        said = self._document["campaign"]["table"].get("heading_deg")
-        heading = truth.get("heading_deg", said)
+        stated = self._document["campaign"]["table"].get("heading_deg")
+        heading = truth.get("heading_deg", stated)
         return Site(latitude, gravity, None if heading is None else heading * DEGREE)
 
     @property
     def position_sigma(self) -> float:
-        """Standard deviation of both tilts of a position, rad."""
+        """Standard deviation of both table_tilt of a position, rad."""
         return float(self._document["campaign"]["table"]["position_sigma_arcsec"]) * ARCSECOND
 
     @property
@@ -134,7 +134,7 @@ class Specification:
         return Chance(self._document["seed"])
 
     def effects(self) -> dict[str, Effect]:
-        """Noise and hidden effects by name, new ones at every call: some remember."""
+        """Noise and hidden effects by name, new objects at every call: some have a state."""
         hidden = self._document.get("effects", {})
         return {
             **{
@@ -147,7 +147,7 @@ class Specification:
 
     @property
     def faults(self) -> list[Fault]:
-        """Faults in the order in which they strike."""
+        """Faults in the order in which they are applied."""
         return [
             FAULTS[name].specified(parameters)
             for fault in self._document.get("faults", [])
@@ -156,7 +156,7 @@ class Specification:
 
     @property
     def empty_logs(self) -> dict[str, Records]:
-        """The logs in their full length, before any fault, with nothing but zeros in them."""
+        """The logs in their full length, before any fault, filled with zeros."""
         logs = {}
         for log, manoeuvres in logs_of(self.manoeuvres).items():
             zeros = np.zeros((length(manoeuvres, self.handling), 3), dtype=np.int64)
@@ -177,7 +177,7 @@ def read(path: Path | str) -> Specification:
 
 
 def specify(document: Mapping[str, Any], source: str = "specification") -> Specification:
-    """A specification from what such a file would hold; `source` is its name in messages."""
+    """A specification from the content of such a file; `source` is its name in messages."""
     check(document, source)
     specification = Specification(source, deepcopy(dict(document)))
     try:

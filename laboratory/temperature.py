@@ -1,4 +1,4 @@
-"""How warm the IMU is in the course of a campaign."""
+"""Temperature of the IMU in the course of a campaign."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class Temperature:
     time_constant: float  # s
     step: float  # K
     moment: float  # s
-    reference: float  # K: where M and bias of the sensors are as `truth` says
+    reference: float  # K: at which `truth` specifies M and bias
 
     @classmethod
     def specified(cls, written: Mapping[str, Any]) -> Self:
@@ -46,8 +46,8 @@ class Temperature:
     def course(self, instants: Instants) -> Array:
         """T at the instants, (m,), K."""
         time = instants.time
-        warmed = self.rise * -np.expm1(-time / self.time_constant)
-        course: Array = self.start + self.slope * time + warmed
+        warm_up = self.rise * -np.expm1(-time / self.time_constant)
+        course: Array = self.start + self.slope * time + warm_up
         return course + self.step * instants.since(self.moment) if self.step else course
 
     def above(self, instants: Instants) -> Array:

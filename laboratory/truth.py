@@ -1,4 +1,4 @@
-"""What a perfect IMU would sense on the moving case."""
+"""The input of the sensors: rate and specific force of the moving case."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -9,11 +9,11 @@ from laboratory.site import Site
 
 
 @dataclass(frozen=True)
-class Pull:
-    """A specific force beyond gravity's: at the instants, and over every sample; body axes."""
+class ExtraForce:
+    """A specific force in addition to that at rest, body axes."""
 
-    force: Array  # m/s², (m, 3)
-    velocity: Array  # m/s, (n, 3): its integral, exact where the force jumps
+    force: Array  # m/s², (m, 3), at the instants
+    velocity: Array  # m/s, (n, 3): its integral over every sample, exact where the force jumps
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Truth:
     force: Array  # m/s², (m, 3), +g on the axis that points up
     turned: Array  # rad, (n, 3): integral of the rate over every sample
     velocity: Array  # m/s, (n, 3): integral of the force over every sample
-    warmer: Array  # K, (m,): than where M and bias of the sensors hold
+    temperature_rise: Array  # K, (m,): above the reference of M and bias
 
     @property
     def time(self) -> Array:
@@ -33,13 +33,15 @@ class Truth:
         return self.motion.instants.time
 
 
-def sense(motion: Motion, site: Site, pulls: Iterable[Pull], warmer: Array) -> Truth:
-    """ω = ω_table + Cᵀ ω_e,  f = Cᵀ (0, 0, g) + whatever else pulls at the case."""
+def sense(
+    motion: Motion, site: Site, extra_forces: Iterable[ExtraForce], temperature_rise: Array
+) -> Truth:
+    """ω = ω_table + Cᵀ ω_e,  f = Cᵀ (0, 0, g) + extra forces."""
     integral = motion.instants.integral
     earth, force = motion.seen(site.earth_rate), motion.seen(site.reaction)
     velocity = integral(force)
-    for pull in pulls:
-        force = force + pull.force
-        velocity = velocity + pull.velocity
+    for extra in extra_forces:
+        force = force + extra.force
+        velocity = velocity + extra.velocity
     turned = motion.turned + integral(earth)
-    return Truth(motion, motion.rate + earth, force, turned, velocity, warmer)
+    return Truth(motion, motion.rate + earth, force, turned, velocity, temperature_rise)

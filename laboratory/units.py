@@ -1,4 +1,4 @@
-"""The units in which a laboratory writes its numbers, each as its value in SI and radians.
+"""The units of specifications, each as its value in SI and radians.
 
 A number is multiplied by its unit when it is read: `rate = 10 * DEGREE`.
 """

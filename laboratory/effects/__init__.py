@@ -61,7 +61,7 @@ from laboratory.effects.table_tilt import TableTilt
 from laboratory.effects.table_wobble import TableWobble
 from laboratory.effects.white_noise import WhiteNoise
 
-# Those that move the case go by the order of this list, not by that of the campaign's file.
+# Effects that move the case act in the order of this list, not of the specification.
 EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     # the site and the clock
     "gravity_error": GravityError.specified,
@@ -118,7 +118,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "accel_saturation": AccelSaturation.specified,
 }
 
-# The noise of every campaign: effects too, but with a section of their own.
+# The noise of every campaign: effects too, but specified in a section of their own.
 NOISE: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "white_noise": WhiteNoise.specified,
     "bias_random_walk": BiasRandomWalk.specified,

@@ -1,4 +1,4 @@
-"""Accelerometer biases that jump."""
+"""Jump of the accelerometer biases."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -28,6 +28,6 @@ class AccelBiasJump(Effect):
         size = np.array(parameters["size_micro_g"], dtype=float) * MICROGRAVITY
         return cls(size, parameters["at_s"])
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
         since = truth.motion.instants.since(self.moment)
         return Reading.of_accelerometers(since[:, None] * self.size)

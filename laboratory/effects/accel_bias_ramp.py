@@ -1,4 +1,4 @@
-"""An accelerometer bias that drifts evenly."""
+"""Linear drift of the accelerometer biases."""
 
 from laboratory.effects.effect import ArrayEffect
 from laboratory.sensor import Reading, Sensors
@@ -15,5 +15,5 @@ class AccelBiasRamp(ArrayEffect):
     KEY = "ramp_m_s2_h"
     UNIT = 1 / HOUR
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
         return Reading.of_accelerometers(truth.time[:, None] * self.value)

@@ -1,4 +1,4 @@
-"""Accelerometer biases that follow the temperature."""
+"""Temperature coefficient of the accelerometer biases."""
 
 from laboratory.effects.effect import ArrayEffect
 from laboratory.sensor import Reading, Sensors
@@ -7,7 +7,7 @@ from laboratory.units import MICROGRAVITY
 
 
 class AccelBiasTemperature(ArrayEffect):
-    """f̃ += k ΔT, ΔT from the temperature at which the biases are as the laboratory says.
+    """f̃ += k ΔT, ΔT from the temperature at which `truth` specifies the biases.
 
     value: k, (3,), (m/s²)/K.
     """
@@ -15,5 +15,5 @@ class AccelBiasTemperature(ArrayEffect):
     KEY = "k_micro_g_k"
     UNIT = MICROGRAVITY
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        return Reading.of_accelerometers(truth.warmer[:, None] * self.value)
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        return Reading.of_accelerometers(truth.temperature_rise[:, None] * self.value)

@@ -1,4 +1,4 @@
-"""An accelerometer that answers to products of forces."""
+"""Cross-coupling of an accelerometer: sensitivity to products of specific forces."""
 
 import numpy as np
 
@@ -18,6 +18,6 @@ class AccelCrossProducts(ArrayEffect):
     KEY = "matrix_micro_g_g2"
     UNIT = MICROGRAVITY / STANDARD_GRAVITY**2
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
         x, y, z = truth.force.T
         return Reading.of_accelerometers(np.column_stack([y * z, z * x, x * y]) @ self.value.T)

@@ -1,4 +1,4 @@
-"""An accelerometer that answers to the third power of its force."""
+"""Cubic nonlinearity of an accelerometer."""
 
 from laboratory.effects.effect import ArrayEffect
 from laboratory.sensor import Reading, Sensors
@@ -15,6 +15,6 @@ class AccelCubic(ArrayEffect):
     KEY = "k3_micro_g_g3"
     UNIT = MICROGRAVITY / STANDARD_GRAVITY**3
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        felt = sensors.accelerometer.feels(truth.force)
-        return Reading.of_accelerometers(self.value * felt * felt**2)
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        force = sensors.accelerometer.project(truth.force)
+        return Reading.of_accelerometers(self.value * force * force**2)

@@ -1,4 +1,4 @@
-"""Accelerometer biases that depend on which way up they were last."""
+"""Hysteresis of the accelerometers: a bias that depends on the previous orientation."""
 
 from dataclasses import dataclass, field
 
@@ -11,15 +11,16 @@ from laboratory.sensor import Reading, Sensors
 from laboratory.truth import Truth
 from laboratory.units import MICROGRAVITY, STANDARD_GRAVITY
 
-LEAST = 0.5 * STANDARD_GRAVITY  # m/s²: beyond it an axis points up or down
+MIN_VERTICAL_FORCE = 0.5 * STANDARD_GRAVITY  # m/s², of an axis that points up or down
 
 
 @dataclass
 class AccelHysteresis(ArrayEffect):
     """f̃_i += h_i s_i (1 − |f_i|/g), s_i the sign of the force when axis i last pointed up or down.
 
-    A loop that is closed at 1 g up and down, and widest where the axis is level: there it still
-    reads the side from which it came. s is 0 before it has been on one. offset: h, (3,), m/s².
+    A loop that is closed at 1 g up and down, and widest where the axis is horizontal: there the
+    error still has the sign of the previous orientation. s is 0 before the first.
+    value: h, (3,), m/s².
     Source: IEEE Std 528-2019, "hysteresis error".
     """
 
@@ -28,9 +29,9 @@ class AccelHysteresis(ArrayEffect):
 
     _sign: Array = field(default_factory=lambda: np.zeros(3), init=False)
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        felt = sensors.accelerometer.feels(truth.force)
-        signs = last_sign(felt, LEAST, self._sign)
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        force = sensors.accelerometer.project(truth.force)
+        signs = last_sign(force, MIN_VERTICAL_FORCE, self._sign)
         self._sign = signs[-1]
-        width = np.clip(1 - np.abs(felt) / STANDARD_GRAVITY, 0.0, None)
+        width = np.clip(1 - np.abs(force) / STANDARD_GRAVITY, 0.0, None)
         return Reading.of_accelerometers(signs * width * self.value)

@@ -1,4 +1,4 @@
-"""An accelerometer that answers to the square of its force."""
+"""Quadratic nonlinearity of an accelerometer."""
 
 from laboratory.effects.effect import ArrayEffect
 from laboratory.sensor import Reading, Sensors
@@ -15,5 +15,7 @@ class AccelQuadratic(ArrayEffect):
     KEY = "k2_micro_g_g2"
     UNIT = MICROGRAVITY / STANDARD_GRAVITY**2
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        return Reading.of_accelerometers(self.value * sensors.accelerometer.feels(truth.force) ** 2)
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        return Reading.of_accelerometers(
+            self.value * sensors.accelerometer.project(truth.force) ** 2
+        )

@@ -1,4 +1,4 @@
-"""Accelerometers at the end of their range."""
+"""Saturation of the accelerometers."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from laboratory.units import STANDARD_GRAVITY
 
 
 class AccelSaturation(ArrayEffect):
-    """|f̃_i| of a sample cannot go beyond a limit; bias and noise are in it.
+    """|f̃_i| of a sample, bias and noise included, cannot exceed a limit.
 
     value: (3,), m/s².
     """
@@ -18,6 +18,6 @@ class AccelSaturation(ArrayEffect):
     KEY = "limit_g"
     UNIT = STANDARD_GRAVITY
 
-    def limits(self, increments: Reading, interval: float) -> Reading:
+    def limit_increments(self, increments: Reading, interval: float) -> Reading:
         most = self.value * interval
         return replace(increments, accelerometer=np.clip(increments.accelerometer, -most, most))

@@ -1,4 +1,4 @@
-"""An accelerometer whose scale factor is not the same up and down."""
+"""Scale factor asymmetry of an accelerometer."""
 
 import numpy as np
 
@@ -17,6 +17,6 @@ class AccelScaleAsymmetry(ArrayEffect):
     KEY = "asymmetry_micro_g_g"
     UNIT = MICROGRAVITY / STANDARD_GRAVITY
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        felt = sensors.accelerometer.feels(truth.force)
-        return Reading.of_accelerometers(self.value * np.abs(felt))
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        force = sensors.accelerometer.project(truth.force)
+        return Reading.of_accelerometers(self.value * np.abs(force))

@@ -1,4 +1,4 @@
-"""Accelerometer scale factors that follow the temperature."""
+"""Temperature coefficient of the accelerometer scale factors."""
 
 from laboratory.effects.effect import ArrayEffect
 from laboratory.sensor import Reading, Sensors
@@ -15,6 +15,6 @@ class AccelScaleTemperature(ArrayEffect):
     KEY = "k_ppm_k"
     UNIT = PPM
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        felt = sensors.accelerometer.feels(truth.force)
-        return Reading.of_accelerometers(truth.warmer[:, None] * self.value * felt)
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        force = sensors.accelerometer.project(truth.force)
+        return Reading.of_accelerometers(truth.temperature_rise[:, None] * self.value * force)

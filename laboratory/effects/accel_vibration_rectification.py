@@ -1,4 +1,4 @@
-"""Accelerometers that make a bias of a vibration."""
+"""Vibration rectification of the accelerometers."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,10 +16,10 @@ from laboratory.units import MICROGRAVITY, STANDARD_GRAVITY
 
 @dataclass(frozen=True)
 class AccelVibrationRectification(Effect):
-    """While something near shakes the table, f̃_i += v + k_i σ²: a white vibration and its bias.
+    """While the table is shaken, f̃_i += v + k_i σ²: a white vibration and its bias.
 
-    coefficient: k, (3,), (m/s²)/(m/s²)²; vibration: σ, m/s², standard deviation of a sample, of
-    each axis for itself; start, end: s since the campaign's first sample.
+    coefficient: k, (3,), (m/s²)/(m/s²)²; vibration: σ, m/s², standard deviation of a sample,
+    independent for each axis; start, end: s since the campaign's first sample.
     Source: IEEE Std 1293-2018, "vibration rectification error".
     """
 
@@ -39,14 +39,14 @@ class AccelVibrationRectification(Effect):
         )
 
     def shaken(self, instants: Instants) -> Array:
-        """1 while it shakes, (m,)."""
+        """1 during the vibration, (m,)."""
         return instants.since(self.start) - instants.since(self.end)
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
         shift = self.coefficient * self.vibration**2
         return Reading.of_accelerometers(self.shaken(truth.motion.instants)[:, None] * shift)
 
-    def scatters(self, truth: Truth, generator: np.random.Generator) -> Reading:
+    def noise(self, truth: Truth, generator: np.random.Generator) -> Reading:
         instants = truth.motion.instants
         seconds = instants.integral(self.shaken(instants))[:, None]
         noise = generator.standard_normal((instants.samples, 3))

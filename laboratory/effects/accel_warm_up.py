@@ -1,4 +1,4 @@
-"""Accelerometer biases that settle after the start."""
+"""Warm-up of the accelerometer biases."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -28,6 +28,6 @@ class AccelWarmUp(Effect):
         start = np.array(parameters["start_micro_g"], dtype=float) * MICROGRAVITY
         return cls(start, parameters["time_constant_s"])
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        left = np.exp(-truth.time / self.time_constant)
-        return Reading.of_accelerometers(left[:, None] * self.start)
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        decay = np.exp(-truth.time / self.time_constant)
+        return Reading.of_accelerometers(decay[:, None] * self.start)

@@ -19,13 +19,13 @@ class BiasRandomWalk(Effect):
     """The bias is integrated white noise: its variance grows by K² per second, from 0 at time 0.
 
     rate: K of the gyros, (rad/s)/√s; force: of the accelerometers, (m/s²)/√s; the same for the
-    three axes. The walk goes on in the pauses between the logs.
+    three axes. It continues in the pauses between the logs.
     Source: IEEE Std 952-2020, annex on noise models, "rate random walk".
     """
 
     rate: float
     force: float
-    _reached: float = field(default=0.0, init=False)  # s, how far the walk has come
+    _reached: float = field(default=0.0, init=False)  # s, the end of the last segment
     _bias: Array = field(default_factory=lambda: np.zeros(6), init=False)  # in units of K
 
     @classmethod
@@ -35,7 +35,7 @@ class BiasRandomWalk(Effect):
             noise["accelerometer_random_walk_m_s2_sqrt_h"] / ROOT_HOUR,
         )
 
-    def scatters(self, truth: Truth, generator: np.random.Generator) -> Reading | None:
+    def noise(self, truth: Truth, generator: np.random.Generator) -> Reading | None:
         if self.rate == 0 and self.force == 0:
             return None
         instants = truth.motion.instants

@@ -1,11 +1,11 @@
-"""A receiver whose clock runs fast."""
+"""Rate error of the receiver clock."""
 
 from laboratory.effects.effect import ScalarEffect
 from laboratory.units import PPM
 
 
 class ClockScale(ScalarEffect):
-    """While its clock says 1 + ε seconds, only one has passed: samples are shorter than stamped.
+    """The receiver clock advances by 1 + ε s per second: samples are shorter than their stamps say.
 
     value: ε, 1.
     """
@@ -13,5 +13,5 @@ class ClockScale(ScalarEffect):
     KEY = "fast_ppm"
     UNIT = PPM
 
-    def ticks(self) -> float:
+    def clock_ratio(self) -> float:
         return 1 / (1 + self.value)

@@ -1,4 +1,4 @@
-"""A receiver whose clock is set."""
+"""Step of the receiver clock."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from laboratory.units import MILLISECOND
 
 @dataclass(frozen=True)
 class ClockStep(Effect):
-    """From a moment on all stamps are later by a step, and no sample is missing.
+    """After a moment all stamps are later by a step, and no sample is missing.
 
     moment, step: ns, the moment since the campaign's first sample.
     """

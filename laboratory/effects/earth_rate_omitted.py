@@ -1,4 +1,4 @@
-"""Gyros from which somebody took the rotation of the earth."""
+"""Earth rate removed from the readings of the gyros."""
 
 from dataclasses import replace
 
@@ -7,13 +7,13 @@ from laboratory.site import Site
 
 
 class EarthRateOmitted(ScalarEffect):
-    """A share of the earth's rate is missing in what the gyros feel, as if it stood still.
+    """A fraction of the earth rate is missing in the readings of the gyros.
 
-    value: 1: all of it, 0: nothing.
+    value: fraction, 1: all of it.
     """
 
     KEY = "share"
     UNIT = 1.0
 
-    def stands(self, site: Site) -> Site:
+    def true_site(self, site: Site) -> Site:
         return replace(site, spin=site.spin * (1 - self.value))

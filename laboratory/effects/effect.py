@@ -1,4 +1,4 @@
-"""What a hidden effect may do: an effect overrides what it does, and leaves the rest alone."""
+"""What a hidden effect may change: each effect overrides the methods it needs."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,61 +14,63 @@ from laboratory.motion import Motion, Turning
 from laboratory.profiles import Profile
 from laboratory.sensor import Reading, Sensors
 from laboratory.site import Site
-from laboratory.truth import Pull, Truth
+from laboratory.truth import ExtraForce, Truth
 
 
 class Effect:
     """One way in which the IMU, its table or its site is not ideal.
 
-    An effect is made anew for every performance, from parameters in SI and radians, and is asked
-    stretch by stretch in the order of time. Zero parameters mean that it is absent.
+    An effect is created for every simulation, from parameters in SI and radians, and is called
+    segment by segment in the order of time. With zero parameters it is absent.
     """
 
     # ---- the site and the clock
 
-    def stands(self, site: Site) -> Site:
-        """The place as it truly is, where the laboratory takes it for `site`."""
+    def true_site(self, site: Site) -> Site:
+        """The true site, where the campaign states `site`."""
         return site
 
-    def ticks(self) -> float:
-        """Seconds that truly pass while the receiver's clock says one."""
+    def clock_ratio(self) -> float:
+        """True seconds per second of the receiver clock."""
         return 1.0
 
     def stamps(self, stamps: Counts) -> Counts:
-        """The times that are written, (n,), ns since the campaign's first sample."""
+        """The written time stamps, (n,), ns since the campaign's first sample."""
         return stamps
 
     # ---- the table
 
-    def tilts(self, manoeuvre: Manoeuvre, set_attitude: Array) -> Array:
-        """How the table, its axis included, leans in the level frame: a rotation, (3, 3).
+    def table_tilt(self, manoeuvre: Manoeuvre, set_attitude: Array) -> Array:
+        """Tilt of the table, its axis included, in the level frame: a rotation, (3, 3).
 
-        Asked once for every position; set_attitude: of the IMU, level from body, (3, 3).
+        Called once for every position; set_attitude: of the IMU, level from body, (3, 3).
         """
         return np.eye(3)
 
-    def misses(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
-        """How far the IMU stands from its set attitude on the table: a rotation, (3, 3), as above.
+    def position_error(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
+        """Error of the attitude of the IMU on the table: a rotation, (3, 3), as above.
 
-        Unlike a lean of the table it goes along with a turn.
+        Unlike a tilt of the table it turns with the IMU.
         """
         return np.eye(3)
 
-    def sets(self, profile: Profile) -> Profile:
-        """The turn that the table makes when it is set to `profile`."""
+    def actual_profile(self, profile: Profile) -> Profile:
+        """The actual course of a turn that is set to `profile`."""
         return profile
 
-    def moves(self, turnings: Sequence[Turning], instants: Instants) -> Sequence[Turning]:
-        """The rotations of the case, given those that the plan and the effects before it ask for.
+    def change_rotations(
+        self, turnings: Sequence[Turning], instants: Instants
+    ) -> Sequence[Turning]:
+        """The rotations of the case, given those of the plan and of the effects before it.
 
-        The table's own is the first; there is none while the table stands.
+        That of the table is the first; there is none while the table is at rest.
         """
         return turnings
 
-    def carries(
+    def table_rotations(
         self, turnings: Sequence[Turning], attitude: Array, instants: Instants
     ) -> Sequence[Turning]:
-        """Rotations of the whole table, what stands on it included; axes in the level frame.
+        """Rotations of the whole table with the IMU; axes in the level frame.
 
         turnings: those of the case; attitude: of the case before them, (3, 3), level from body.
         """
@@ -76,24 +78,24 @@ class Effect:
 
     # ---- the IMU
 
-    def delays(self) -> float:
-        """Seconds by which the gyros lag behind."""
+    def gyro_delay(self) -> float:
+        """Delay of the gyros, s."""
         return 0.0
 
-    def pulls(self, motion: Motion, sensors: Sensors) -> Pull | None:
-        """A specific force that the motion causes."""
+    def extra_force(self, motion: Motion, sensors: Sensors) -> ExtraForce | None:
+        """Additional specific force that the motion causes."""
         return None
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading | None:
-        """What it adds to the reading at the instants: (m, 3) m/s² and (m, 3) rad/s."""
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading | None:
+        """Error of the readings at the instants: (m, 3) m/s² and (m, 3) rad/s."""
         return None
 
-    def scatters(self, truth: Truth, generator: np.random.Generator) -> Reading | None:
-        """Noise that it adds to the increments of the samples: (n, 3) m/s and (n, 3) rad."""
+    def noise(self, truth: Truth, generator: np.random.Generator) -> Reading | None:
+        """Noise of the increments of the samples: (n, 3) m/s and (n, 3) rad."""
         return None
 
-    def limits(self, increments: Reading, interval: float) -> Reading:
-        """What is left of the increments, noise included, (n, 3) m/s and (n, 3) rad."""
+    def limit_increments(self, increments: Reading, interval: float) -> Reading:
+        """The increments of the samples within the range of the sensors, noise included."""
         return increments
 
 

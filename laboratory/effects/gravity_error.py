@@ -1,4 +1,4 @@
-"""Gravity that is not what the laboratory takes it for."""
+"""Error of the stated gravity."""
 
 from dataclasses import replace
 
@@ -8,7 +8,7 @@ from laboratory.units import MILLIGAL
 
 
 class GravityError(ScalarEffect):
-    """True gravity is so much greater than the stated one.
+    """Difference of true gravity from the stated value.
 
     value: m/s².
     """
@@ -16,5 +16,5 @@ class GravityError(ScalarEffect):
     KEY = "error_mgal"
     UNIT = MILLIGAL
 
-    def stands(self, site: Site) -> Site:
+    def true_site(self, site: Site) -> Site:
         return replace(site, gravity=site.gravity + self.value)

@@ -1,4 +1,4 @@
-"""Gyros that do not stand square with the accelerometers."""
+"""Misalignment between the triads of gyros and accelerometers."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,9 +16,9 @@ from laboratory.units import MILLIRADIAN
 
 @dataclass(frozen=True)
 class GyroAccelMisalignment(Effect):
-    """The triad of the gyros is turned in the case: ω̃ = M Rᵀ ω.
+    """Rotation of the triad of the gyros in the case: ω̃ = M Rᵀ ω.
 
-    rotation: R, (3, 3), of the rotation vector from where M has the gyros, body axes.
+    rotation: R, (3, 3), of the rotation vector from the triad given by M, body axes.
     """
 
     rotation: Array
@@ -27,5 +27,5 @@ class GyroAccelMisalignment(Effect):
     def specified(cls, parameters: Mapping[str, Any]) -> Self:
         return cls(rotation_of(np.array(parameters["rotation_mrad"], dtype=float) * MILLIRADIAN))
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        return Reading.of_gyros(sensors.gyro.feels(truth.rate @ self.rotation - truth.rate))
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        return Reading.of_gyros(sensors.gyro.project(truth.rate @ self.rotation - truth.rate))

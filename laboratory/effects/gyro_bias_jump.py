@@ -1,4 +1,4 @@
-"""Gyro biases that jump."""
+"""Jump of the gyro biases."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -28,6 +28,6 @@ class GyroBiasJump(Effect):
         size = np.array(parameters["size_deg_h"], dtype=float) * DEGREE / HOUR
         return cls(size, parameters["at_s"])
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
         since = truth.motion.instants.since(self.moment)
         return Reading.of_gyros(since[:, None] * self.size)

@@ -1,4 +1,4 @@
-"""A gyro bias that drifts evenly."""
+"""Linear drift of the gyro biases."""
 
 from laboratory.effects.effect import ArrayEffect
 from laboratory.sensor import Reading, Sensors
@@ -15,5 +15,5 @@ class GyroBiasRamp(ArrayEffect):
     KEY = "ramp_deg_h_h"
     UNIT = DEGREE / HOUR**2
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
         return Reading.of_gyros(truth.time[:, None] * self.value)

@@ -1,4 +1,4 @@
-"""Gyro biases that follow the temperature."""
+"""Temperature coefficient of the gyro biases."""
 
 from laboratory.effects.effect import ArrayEffect
 from laboratory.sensor import Reading, Sensors
@@ -7,7 +7,7 @@ from laboratory.units import DEGREE, HOUR
 
 
 class GyroBiasTemperature(ArrayEffect):
-    """ω̃ += k ΔT, ΔT from the temperature at which the biases are as the laboratory says.
+    """ω̃ += k ΔT, ΔT from the temperature at which `truth` specifies the biases.
 
     value: k, (3,), (rad/s)/K.
     """
@@ -15,5 +15,5 @@ class GyroBiasTemperature(ArrayEffect):
     KEY = "k_deg_h_k"
     UNIT = DEGREE / HOUR
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        return Reading.of_gyros(truth.warmer[:, None] * self.value)
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        return Reading.of_gyros(truth.temperature_rise[:, None] * self.value)

@@ -1,4 +1,4 @@
-"""Gyro biases that drift with the third power of time."""
+"""Cubic drift of the gyro biases."""
 
 from laboratory.effects.effect import ArrayEffect
 from laboratory.sensor import Reading, Sensors
@@ -15,5 +15,5 @@ class GyroCubicDrift(ArrayEffect):
     KEY = "k_deg_h_h3"
     UNIT = DEGREE / HOUR**4
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
         return Reading.of_gyros(truth.time[:, None] ** 3 * self.value)

@@ -1,4 +1,4 @@
-"""A gyro that does not answer to small rates."""
+"""Dead band of a gyro."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from laboratory.units import DEGREE, HOUR
 
 
 class GyroDeadBand(ArrayEffect):
-    """The rate that gyro i feels counts for nothing while |ω_i| is below a width: lock-in.
+    """The output of gyro i is zero while |ω_i| is below a width: lock-in.
 
     It acts on the rate along the gyro's axis, M ω; bias and noise are added afterwards.
     value: (3,), rad/s. Source: IEEE Std 528-2019, "dead band".
@@ -18,6 +18,6 @@ class GyroDeadBand(ArrayEffect):
     KEY = "width_deg_h"
     UNIT = DEGREE / HOUR
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        felt = sensors.gyro.feels(truth.rate)
-        return Reading.of_gyros(np.where(np.abs(felt) < self.value, -felt, 0.0))
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        rate = sensors.gyro.project(truth.rate)
+        return Reading.of_gyros(np.where(np.abs(rate) < self.value, -rate, 0.0))

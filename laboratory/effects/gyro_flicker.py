@@ -1,4 +1,4 @@
-"""Gyro biases that flicker: bias instability."""
+"""Bias instability of the gyros: flicker noise."""
 
 from dataclasses import dataclass, field
 from math import exp, log, pi, sqrt
@@ -23,8 +23,8 @@ class GyroFlicker(ScalarEffect):
     It is the sum of exponentially correlated noises (Gauss-Markov) whose time constants τ follow
     each other in one ratio q and which all have the variance B² ln q / π: their densities
     4 σ² τ / (1 + (2πfτ)²) add up to 1/f, within 3 % from 30 µHz to 0.1 Hz, and fall off beyond
-    2 µHz and 2 Hz. The Allan deviation is level at B √(2 ln 2 / π) = 0.664 B. It goes on in the
-    pauses, and its value at the start is drawn.
+    2 µHz and 2 Hz. The Allan deviation is constant at B √(2 ln 2 / π) = 0.664 B. It continues in
+    the pauses, and its initial value is random.
     value: B, rad/s, the same for the three axes.
     Source: IEEE Std 952-2020, annex on noise models, "bias instability".
     """
@@ -35,7 +35,7 @@ class GyroFlicker(ScalarEffect):
     _reached: float = field(default=0.0, init=False)  # s
     _values: Array | None = field(default=None, init=False)  # (time constants, 3), unit variance
 
-    def scatters(self, truth: Truth, generator: np.random.Generator) -> Reading | None:
+    def noise(self, truth: Truth, generator: np.random.Generator) -> Reading | None:
         if self.value == 0:
             return None
         instants = truth.motion.instants
@@ -52,7 +52,7 @@ class GyroFlicker(ScalarEffect):
             drive = sqrt(1 - kept_one**2) * generator.standard_normal((instants.samples, 3))
             start = self._values[number]
             ends, _ = lfilter([1], [1, -kept_one], drive, axis=0, zi=kept_one * start[None])
-            # Over a sample, which is short beside the time constant, it goes straight.
+            # Linear over a sample, which is short compared with the time constant.
             total += (ends + np.vstack([start, ends[:-1]])) / 2
             self._values[number] = ends[-1]
         sigma = self.value * sqrt(log(RATIO) / pi)

@@ -1,4 +1,4 @@
-"""A gyro that feels acceleration."""
+"""Sensitivity of a gyro to specific force (g-sensitivity)."""
 
 from laboratory.effects.effect import ArrayEffect
 from laboratory.sensor import Reading, Sensors
@@ -16,5 +16,5 @@ class GyroGSensitivity(ArrayEffect):
     KEY = "matrix_deg_h_g"
     UNIT = DEGREE / HOUR / STANDARD_GRAVITY
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
         return Reading.of_gyros(truth.force @ self.value.T)

@@ -1,4 +1,4 @@
-"""Gyro biases that depend on the way of the last turn."""
+"""Hysteresis of the gyros: a bias that depends on the direction of the last turn."""
 
 from dataclasses import dataclass, field
 
@@ -11,7 +11,7 @@ from laboratory.sensor import Reading, Sensors
 from laboratory.truth import Truth
 from laboratory.units import DEGREE, HOUR
 
-LEAST = DEGREE  # rad/s: what counts as a turn
+MIN_TURN_RATE = DEGREE  # rad/s
 
 
 @dataclass
@@ -26,7 +26,7 @@ class GyroHysteresis(ArrayEffect):
 
     _sign: Array = field(default_factory=lambda: np.zeros(3), init=False)
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        signs = last_sign(sensors.gyro.feels(truth.rate), LEAST, self._sign)
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        signs = last_sign(sensors.gyro.project(truth.rate), MIN_TURN_RATE, self._sign)
         self._sign = signs[-1]
         return Reading.of_gyros(signs * self.value)

@@ -1,4 +1,4 @@
-"""Gyros at the end of their range."""
+"""Saturation of the gyros."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from laboratory.units import DEGREE
 
 
 class GyroSaturation(ArrayEffect):
-    """|ω̃_i| of a sample cannot go beyond a limit; bias and noise are in it.
+    """|ω̃_i| of a sample, bias and noise included, cannot exceed a limit.
 
     value: (3,), rad/s.
     """
@@ -18,6 +18,6 @@ class GyroSaturation(ArrayEffect):
     KEY = "limit_deg_s"
     UNIT = DEGREE
 
-    def limits(self, increments: Reading, interval: float) -> Reading:
+    def limit_increments(self, increments: Reading, interval: float) -> Reading:
         most = self.value * interval
         return replace(increments, gyro=np.clip(increments.gyro, -most, most))

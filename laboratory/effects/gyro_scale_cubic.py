@@ -1,4 +1,4 @@
-"""A gyro whose scale factor changes with the square of the rate."""
+"""Cubic nonlinearity of a gyro."""
 
 from laboratory.effects.effect import ArrayEffect
 from laboratory.sensor import Reading, Sensors
@@ -16,6 +16,6 @@ class GyroScaleCubic(ArrayEffect):
     KEY = "k3_ppm_per_deg_s_2"
     UNIT = PPM / DEGREE**2
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        felt = sensors.gyro.feels(truth.rate)
-        return Reading.of_gyros(self.value * felt * felt**2)
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        rate = sensors.gyro.project(truth.rate)
+        return Reading.of_gyros(self.value * rate * rate**2)

@@ -1,4 +1,4 @@
-"""A gyro whose scale factor changes with the force along its axis."""
+"""Dependence of a gyro scale factor on the specific force along its axis."""
 
 from laboratory.effects.effect import ArrayEffect
 from laboratory.sensor import Reading, Sensors
@@ -15,6 +15,6 @@ class GyroScaleGDependence(ArrayEffect):
     KEY = "k_ppm_g"
     UNIT = PPM / STANDARD_GRAVITY
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        felt = sensors.gyro.feels(truth.rate)
-        return Reading.of_gyros(self.value * felt * truth.force)
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        rate = sensors.gyro.project(truth.rate)
+        return Reading.of_gyros(self.value * rate * truth.force)

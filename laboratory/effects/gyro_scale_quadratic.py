@@ -1,4 +1,4 @@
-"""A gyro whose scale factor changes evenly with the rate."""
+"""Quadratic nonlinearity of a gyro, odd in the rate."""
 
 import numpy as np
 
@@ -18,6 +18,6 @@ class GyroScaleQuadratic(ArrayEffect):
     KEY = "k2_ppm_per_deg_s"
     UNIT = PPM / DEGREE
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        felt = sensors.gyro.feels(truth.rate)
-        return Reading.of_gyros(self.value * felt * np.abs(felt))
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        rate = sensors.gyro.project(truth.rate)
+        return Reading.of_gyros(self.value * rate * np.abs(rate))

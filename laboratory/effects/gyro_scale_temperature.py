@@ -1,4 +1,4 @@
-"""Gyro scale factors that follow the temperature."""
+"""Temperature coefficient of the gyro scale factors."""
 
 from laboratory.effects.effect import ArrayEffect
 from laboratory.sensor import Reading, Sensors
@@ -15,6 +15,6 @@ class GyroScaleTemperature(ArrayEffect):
     KEY = "k_ppm_k"
     UNIT = PPM
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        felt = sensors.gyro.feels(truth.rate)
-        return Reading.of_gyros(truth.warmer[:, None] * self.value * felt)
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        rate = sensors.gyro.project(truth.rate)
+        return Reading.of_gyros(truth.temperature_rise[:, None] * self.value * rate)

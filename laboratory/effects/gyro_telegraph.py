@@ -1,4 +1,4 @@
-"""Gyro biases that jump to and fro between two levels."""
+"""Telegraph noise of the gyro biases: random jumps between two levels."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ class GyroTelegraph(Effect):
     """The bias is +b or −b, and changes its sign at random: popcorn noise, a loose contact.
 
     height: b, (3,), rad/s; dwell: mean time between two changes, s, exponentially distributed.
-    It goes on in the pauses. The integral over a sample is exact.
+    It continues in the pauses. The integral over a sample is exact.
     """
 
     height: Array
@@ -31,7 +31,7 @@ class GyroTelegraph(Effect):
         height = np.array(parameters["height_deg_h"], dtype=float) * DEGREE / HOUR
         return cls(height, parameters["dwell_s"])
 
-    def scatters(self, truth: Truth, generator: np.random.Generator) -> Reading:
+    def noise(self, truth: Truth, generator: np.random.Generator) -> Reading:
         instants = truth.motion.instants
         edges = instants.start + np.arange(instants.samples + 1) * instants.interval
         changes, signs = [edges[0]], [self._sign]

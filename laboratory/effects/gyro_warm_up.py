@@ -1,4 +1,4 @@
-"""Gyro biases that settle after the start."""
+"""Warm-up of the gyro biases."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -28,6 +28,6 @@ class GyroWarmUp(Effect):
         start = np.array(parameters["start_deg_h"], dtype=float) * DEGREE / HOUR
         return cls(start, parameters["time_constant_s"])
 
-    def reads(self, truth: Truth, sensors: Sensors) -> Reading:
-        left = np.exp(-truth.time / self.time_constant)
-        return Reading.of_gyros(left[:, None] * self.start)
+    def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
+        decay = np.exp(-truth.time / self.time_constant)
+        return Reading.of_gyros(decay[:, None] * self.start)

@@ -1,4 +1,4 @@
-"""A zero mark of the table that points elsewhere."""
+"""Error of the stated azimuth of the zero mark."""
 
 from dataclasses import replace
 
@@ -8,7 +8,7 @@ from laboratory.units import DEGREE
 
 
 class HeadingError(ScalarEffect):
-    """The true azimuth of the zero mark is so much greater, clockwise, than the stated one.
+    """Difference of the true azimuth of the zero mark, clockwise, from the stated value.
 
     value: rad.
     """
@@ -16,5 +16,5 @@ class HeadingError(ScalarEffect):
     KEY = "error_deg"
     UNIT = DEGREE
 
-    def stands(self, site: Site) -> Site:
+    def true_site(self, site: Site) -> Site:
         return replace(site, heading=None if site.heading is None else site.heading + self.value)

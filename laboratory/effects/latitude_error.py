@@ -1,4 +1,4 @@
-"""A laboratory that does not stand at its latitude."""
+"""Error of the stated latitude."""
 
 from dataclasses import replace
 
@@ -8,7 +8,7 @@ from laboratory.units import DEGREE
 
 
 class LatitudeError(ScalarEffect):
-    """The true latitude is so much farther north than the stated one; gravity is as stated.
+    """Difference of the true latitude, north positive, from the stated value; gravity as stated.
 
     value: rad.
     """
@@ -16,5 +16,5 @@ class LatitudeError(ScalarEffect):
     KEY = "error_deg"
     UNIT = DEGREE
 
-    def stands(self, site: Site) -> Site:
+    def true_site(self, site: Site) -> Site:
         return replace(site, latitude=site.latitude + self.value)

@@ -1,4 +1,4 @@
-"""A case that rings about one of its axes while the table turns."""
+"""Oscillation of the case about one of its axes while the table turns."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -20,16 +20,16 @@ from laboratory.units import DEGREE
 class Oscillation(Effect):
     """A vibration of the case by the angle ψ = A/(2πf) w sin(2πf t + phase) about `axis`.
 
-    A: amplitude, rad/s; f: frequency, Hz; t: from the start of the manoeuvre; w: how fast the
-    table turns, as a share of its steady rate and without corners, so 0 at rest: over a whole
-    turn the vibration adds no angle. Bound to the table it is A/(n r) w sin(nθ + phase), n times
-    in every revolution, θ the angle of the table and r its steady rate. It is a motion like any
-    other: it tilts gravity, shakes a lever arm, and reaches the other sensors through M. Seen in
-    S0, figures 5-14 to 5-16.
+    A: amplitude, rad/s; f: frequency, Hz; t: from the start of the manoeuvre; w: the rate of the
+    table as a fraction of its steady rate, smoothed (`smooth_step`), so 0 at rest: over a whole
+    turn the vibration adds no angle. Periodic in the angle of the table it is
+    A/(n r) w sin(nθ + phase), n periods per revolution, θ the angle of the table and r its steady
+    rate. It is a motion like any other: it tilts gravity, acts on a lever arm, and reaches the
+    other sensors through M. Observed in S0, figures 5-14 to 5-16.
     """
 
-    frequency: float | None  # Hz; None: bound to the table
-    order: float  # n, where it is
+    frequency: float | None  # Hz; None: periodic in the angle of the table
+    order: float  # n, where periodic in the angle
     amplitude: float
     axis: Array  # unit vector, (3,), body axes
     phase: float  # rad
@@ -44,7 +44,9 @@ class Oscillation(Effect):
             parameters.get("phase_deg", 0.0) * DEGREE,
         )
 
-    def moves(self, turnings: Sequence[Turning], instants: Instants) -> Sequence[Turning]:
+    def change_rotations(
+        self, turnings: Sequence[Turning], instants: Instants
+    ) -> Sequence[Turning]:
         if not turnings or self.amplitude == 0:
             return turnings
         table = turnings[0]
@@ -52,19 +54,19 @@ class Oscillation(Effect):
         w, slope, bend = smooth_step(np.abs(table.rate) / table.steady_rate)
         w1, w2 = slope * per_second, bend * per_second**2
         if self.frequency is None:
-            swing, swung = self.order * table.angle, self.order * table.rate
+            argument, speed = self.order * table.angle, self.order * table.rate
             change, steady = self.order * table.acceleration, self.order * table.steady_rate
         else:
             steady = 2 * pi * self.frequency
-            swing, swung, change = steady * instants.elapsed, np.asarray(steady), np.asarray(0.0)
-        sine, cosine = np.sin(swing + self.phase), np.cos(swing + self.phase)
+            argument, speed, change = steady * instants.elapsed, np.asarray(steady), np.asarray(0.0)
+        sine, cosine = np.sin(argument + self.phase), np.cos(argument + self.phase)
         size = self.amplitude / steady
         vibration = Turning(
             self.axis,
             angle=size * w * sine,
-            rate=size * (w1 * sine + w * swung * cosine),
+            rate=size * (w1 * sine + w * speed * cosine),
             acceleration=size
-            * (w2 * sine + 2 * w1 * swung * cosine + w * (change * cosine - swung**2 * sine)),
+            * (w2 * sine + 2 * w1 * speed * cosine + w * (change * cosine - speed**2 * sine)),
             steady_rate=self.amplitude,
         )
         return [*turnings, vibration]

@@ -1,4 +1,4 @@
-"""A table whose degrees are too large."""
+"""Scale error of the table angle."""
 
 from dataclasses import replace
 
@@ -22,13 +22,13 @@ class TableAngleScale(ScalarEffect):
     KEY = "scale_ppm"
     UNIT = PPM
 
-    def sets(self, profile: Profile) -> Profile:
+    def actual_profile(self, profile: Profile) -> Profile:
         if isinstance(profile, Steady):
             return replace(profile, rate=profile.rate * (1 + self.value))
         if isinstance(profile, Trapezoid):
             return replace(profile, angle=profile.angle * (1 + self.value))
         return profile
 
-    def misses(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
+    def position_error(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
         further = 0.0 if manoeuvre.step is None else self.value * manoeuvre.step.angle
         return rotation_about(set_attitude @ manoeuvre.about, np.asarray(further))

@@ -1,4 +1,4 @@
-"""A table whose axes are not square."""
+"""Non-orthogonality of the axes of the table."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -18,16 +18,16 @@ from laboratory.units import ARCSECOND, DEGREE
 
 @dataclass(frozen=True)
 class TableAxisNonOrthogonality(Effect):
-    """The level middle axis of the table leans, so faces that it brings up are not level.
+    """The horizontal middle axis of the table is inclined, so faces that it turns up are not level.
 
-    The middle axis m carries the body axis `home` from the top to where the plan has it, by the
-    angle φ: m = up × home. It leans upwards by δ; home itself was made level. So the case misses
-    its attitude by R(m′, φ′) R(m, φ)ᵀ, m′ the leaning axis, φ′ = φ + ε sin φ. A tumble about m
-    turns φ further; about another axis it does not. lean: δ, rad; quarter: ε, rad, by which a
-    quarter turn about m is too large; home: unit vector, (3,), body axes.
+    The middle axis m turns the body axis `home` from the top to its direction in the plan, by the
+    angle φ: m = up × home. It is inclined upwards by δ; the table was levelled with home up. So
+    the error of the attitude is R(m′, φ′) R(m, φ)ᵀ, m′ the inclined axis, φ′ = φ + ε sin φ. A
+    tumble about m changes φ; about another axis it does not. inclination: δ, rad; quarter: ε, rad,
+    by which a quarter turn about m is too large; home: unit vector, (3,), body axes.
     """
 
-    lean: float
+    inclination: float
     quarter: float
     home: Array
 
@@ -37,7 +37,7 @@ class TableAxisNonOrthogonality(Effect):
         quarter = parameters.get("quarter_arcsec", 0.0)
         return cls(parameters["lean_arcsec"] * ARCSECOND, quarter * ARCSECOND, home)
 
-    def misses(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
+    def position_error(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
         step = manoeuvre.step
         turned = 0.0 if step is None else step.angle
         back = rotation_about(manoeuvre.about, np.asarray(turned))
@@ -50,8 +50,8 @@ class TableAxisNonOrthogonality(Effect):
         about = float(middle @ manoeuvre.about)
         if abs(about) > cos(DEGREE):
             angle += about * turned
-        begun = set_attitude @ rotation_about(manoeuvre.about, np.asarray(-turned))
-        axis = begun @ middle
-        leaning = cos(self.lean) * axis + sin(self.lean) * np.array([0.0, 0.0, 1.0])
-        come = np.asarray(angle + self.quarter * sin(angle))
-        return rotation_about(leaning, come) @ rotation_about(axis, np.asarray(angle)).T
+        at_start = set_attitude @ rotation_about(manoeuvre.about, np.asarray(-turned))
+        axis = at_start @ middle
+        inclined = cos(self.inclination) * axis + sin(self.inclination) * np.array([0.0, 0.0, 1.0])
+        true_angle = np.asarray(angle + self.quarter * sin(angle))
+        return rotation_about(inclined, true_angle) @ rotation_about(axis, np.asarray(angle)).T

@@ -1,4 +1,4 @@
-"""A table that turns slowly while it should rest."""
+"""Slow rotation of the table while it should be at rest."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,12 +15,12 @@ from laboratory.units import DEGREE, HOUR
 
 @dataclass(frozen=True)
 class TableCreep(Effect):
-    """The whole table turns about a level or the vertical axis, and stays where it has come to.
+    """The whole table turns about a horizontal or the vertical axis, and keeps the angle reached.
 
     The angle is r (t − t₀) from t₀ = `start` to `end`, s since the campaign's first sample, and
     constant before and after: through all logs, turns and pauses. axis: unit vector, (3,), level
-    frame; rate: r, rad/s, right-hand rule. It is a motion like any other: gyros and accelerometers
-    feel it.
+    frame; rate: r, rad/s, right-hand rule. It is a motion like any other, sensed by gyros and
+    accelerometers.
     """
 
     axis: Array
@@ -37,7 +37,7 @@ class TableCreep(Effect):
             parameters["to_s"],
         )
 
-    def carries(
+    def table_rotations(
         self, turnings: Sequence[Turning], attitude: Array, instants: Instants
     ) -> Sequence[Turning]:
         if self.rate == 0 or instants.time[-1] <= self.start:

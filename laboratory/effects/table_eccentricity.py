@@ -3,12 +3,12 @@
 from collections.abc import Mapping
 from typing import Any, Self
 
-from laboratory.effects.periodic_angle_error import PeriodicAngleError
+from laboratory.effects.periodic_angle import PeriodicAngle
 from laboratory.harmonic import Harmonic
 from laboratory.units import ARCSECOND
 
 
-class TableEccentricity(PeriodicAngleError):
+class TableEccentricity(PeriodicAngle):
     """ψ = s sin θ + c (cos θ − 1), the harmonic of order 1: zero after a whole turn."""
 
     @classmethod

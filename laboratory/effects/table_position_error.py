@@ -1,4 +1,4 @@
-"""A table that misses its positions."""
+"""Position error and backlash of the table."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,11 +16,11 @@ from laboratory.units import ARCSECOND
 
 @dataclass(frozen=True)
 class TablePositionError(Effect):
-    """Every position is tilted by chance, and a tumble has backlash.
+    """Every position has a random tilt, and a tumble has backlash.
 
-    sigma: rad, standard deviation of two tilts, about east and about north, beside those that the
-    campaign states; backlash: rad, by which the rests of a tumble differ that are come to from one
-    side and from the other, half of it each, always short of the set angle.
+    sigma: rad, standard deviation of two tilts, about east and about north, in addition to those
+    that the campaign states; backlash: rad, difference between the rests of a tumble approached
+    from one side and from the other, half of it each, always short of the set angle.
     """
 
     sigma: float
@@ -31,9 +31,9 @@ class TablePositionError(Effect):
         backlash = parameters.get("backlash_arcsec", 0.0)
         return cls(parameters["sigma_arcsec"] * ARCSECOND, backlash * ARCSECOND)
 
-    def misses(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
+    def position_error(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
         stream = chance.stream("table_position_error", manoeuvre.shares)
         east, north = stream.normal(0.0, self.sigma, 2)
-        short = 0.0 if manoeuvre.step is None else -manoeuvre.step.way * self.backlash / 2
-        lost = rotation_about(set_attitude @ manoeuvre.about, np.asarray(short))
-        return rotation_of(np.array([east, north, 0.0])) @ lost
+        offset = 0.0 if manoeuvre.step is None else -manoeuvre.step.way * self.backlash / 2
+        backlash = rotation_about(set_attitude @ manoeuvre.about, np.asarray(offset))
+        return rotation_of(np.array([east, north, 0.0])) @ backlash

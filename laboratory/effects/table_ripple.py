@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from math import cos, sin
 from typing import Any, Self
 
-from laboratory.effects.periodic_angle_error import PeriodicAngleError
+from laboratory.effects.periodic_angle import PeriodicAngle
 from laboratory.harmonic import Harmonic
 from laboratory.units import ARCSECOND, DEGREE
 
 
-class TableRipple(PeriodicAngleError):
+class TableRipple(PeriodicAngle):
     """ψ = A (sin(nθ + φ) − sin φ), the harmonic of order n > 0, whole or not.
 
     Where a turn does not close, the next manoeuvre starts from its set position all the same.

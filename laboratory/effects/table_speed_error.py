@@ -1,4 +1,4 @@
-"""A table that turns faster than it is set to."""
+"""Rate error of the table."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from laboratory.units import PPM
 
 @dataclass(frozen=True)
 class TableSpeedError(Effect):
-    """Rate and ramps are off by a share; the angle of a whole turn stays exact.
+    """Relative errors of rate and acceleration; the angle of a whole turn stays exact.
 
     rate: 1, of the steady rate; ramp: 1, of the acceleration.
     """
@@ -23,7 +23,7 @@ class TableSpeedError(Effect):
     def specified(cls, parameters: Mapping[str, Any]) -> Self:
         return cls(parameters["rate_ppm"] * PPM, parameters.get("ramp_ppm", 0.0) * PPM)
 
-    def sets(self, profile: Profile) -> Profile:
+    def actual_profile(self, profile: Profile) -> Profile:
         if isinstance(profile, Steady):
             return replace(profile, rate=profile.rate * (1 + self.rate))
         if isinstance(profile, Trapezoid):

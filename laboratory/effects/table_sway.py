@@ -1,4 +1,4 @@
-"""A table that sways: noise that only the level axes see."""
+"""Horizontal vibration of the table: noise of the horizontal axes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,27 +17,27 @@ from laboratory.units import ROOT_HOUR
 
 @dataclass(frozen=True)
 class TableSway(Effect):
-    """The table shakes level: every increment of velocity scatters with the variance N² dt.
+    """Random horizontal vibration: every velocity increment has the variance N² dt.
 
-    level: N towards east, north and up, (3,), (m/s)/√s, none towards up. An accelerometer feels
-    what falls along its axis at the end of the sample, so one that points up feels nothing; the
-    mounting is left out, a hundredth of it. Seen in S0, tables 5-3 and 5-4: 6 to 9 mm/s² per 10 ms
-    on a level y axis beside 1 mm/s² on an upright one, which is 0.04 to 0.05 m/s/√h.
+    density: N towards east, north and up, (3,), (m/s)/√s, none towards up. An accelerometer senses
+    the component along its axis at the end of the sample, so a vertical one senses nothing; the
+    mounting is neglected, a hundredth of it. Observed in S0, tables 5-3 and 5-4: 6 to 9 mm/s² per
+    10 ms on a horizontal y axis, 1 mm/s² on a vertical one, which is 0.04 to 0.05 m/s/√h.
     """
 
-    level: Array
+    density: Array
 
     @classmethod
     def specified(cls, noise: Mapping[str, Any]) -> Self:
         east, north = noise.get("table_sway_m_s_sqrt_h", (0.0, 0.0))
         return cls(np.array([east, north, 0.0]) / ROOT_HOUR)
 
-    def scatters(self, truth: Truth, generator: np.random.Generator) -> Reading | None:
-        if not self.level.any():
+    def noise(self, truth: Truth, generator: np.random.Generator) -> Reading | None:
+        if not self.density.any():
             return None
         instants = truth.motion.instants
         velocity = (
-            self.level
+            self.density
             * np.sqrt(instants.interval)
             * generator.standard_normal((instants.samples, 3))
         )

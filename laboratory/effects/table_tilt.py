@@ -1,4 +1,4 @@
-"""A table that is not level."""
+"""Tilt of the table."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from laboratory.units import ARCSECOND
 
 @dataclass(frozen=True)
 class TableTilt(Effect):
-    """The base of the table, and with it all its axes, leans towards north and east.
+    """The base of the table, with all its axes, is tilted towards north and east.
 
     north, east: rad, where the table's vertical points: (east, north, 1) in the level frame, to
     first order. The rotation vector is (−north, east, 0).
@@ -28,5 +28,5 @@ class TableTilt(Effect):
     def specified(cls, parameters: Mapping[str, Any]) -> Self:
         return cls(parameters["north_arcsec"] * ARCSECOND, parameters["east_arcsec"] * ARCSECOND)
 
-    def tilts(self, manoeuvre: Manoeuvre, set_attitude: Array) -> Array:
+    def table_tilt(self, manoeuvre: Manoeuvre, set_attitude: Array) -> Array:
         return rotation_of(np.array([-self.north, self.east, 0.0]))

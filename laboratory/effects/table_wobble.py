@@ -1,4 +1,4 @@
-"""A table whose axis wobbles as it turns."""
+"""Wobble of the table axis."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,12 +18,12 @@ from laboratory.units import ARCSECOND
 
 @dataclass(frozen=True)
 class TableWobble(Effect):
-    """The axis leans, and its lean goes round n times while the table turns once.
+    """The axis is tilted, and the direction of the tilt rotates n times per revolution.
 
-    east, north: rad, where the upper end of the axis points at the start of a turn or tumble, and
-    at every other position; order: n, 2 where the bearing is oval, below 0 against the table's own
-    sense. In the mean of a turn the axis is upright. Of one that is not, east and north are what
-    they become when up is turned into it on the shortest way.
+    east, north: rad, tilt of the upper end of the axis at the start of a turn or tumble, and
+    at every other position; order: n, 2 for an oval bearing, negative against the sense of the
+    table. The mean of the tilt over a turn is zero. For an axis that is not vertical, east and
+    north are rotated by the shortest rotation from up to that axis.
     """
 
     east: float
@@ -38,26 +38,26 @@ class TableWobble(Effect):
             parameters.get("order", 2.0),
         )
 
-    def towards(self, axis: Array) -> tuple[Harmonic, Harmonic]:
-        """The lean towards east and towards north, beyond that at the start; axis: (3,), level."""
+    def tilt_change(self, axis: Array) -> tuple[Harmonic, Harmonic]:
+        """Change of the tilt towards east and north since the start; axis: (3,), level frame."""
         order = self.order if axis[2] >= -LEVEL else -self.order
         return (
             Harmonic(order, cosine=self.east, sine=-self.north),
             Harmonic(order, cosine=self.north, sine=self.east),
         )
 
-    def carries(
+    def table_rotations(
         self, turnings: Sequence[Turning], attitude: Array, instants: Instants
     ) -> Sequence[Turning]:
         if not turnings or not turnings[0].planned:
             return []
         axis = attitude @ turnings[0].axis
-        (east, north), (to_east, to_north) = across(axis), self.towards(axis)
+        (east, north), (to_east, to_north) = across(axis), self.tilt_change(axis)
         return [to_north.turning(-east, turnings[0]), to_east.turning(north, turnings[0])]
 
-    def tilts(self, manoeuvre: Manoeuvre, set_attitude: Array) -> Array:
+    def table_tilt(self, manoeuvre: Manoeuvre, set_attitude: Array) -> Array:
         axis = set_attitude @ manoeuvre.about
-        (east, north), (to_east, to_north) = across(axis), self.towards(axis)
+        (east, north), (to_east, to_north) = across(axis), self.tilt_change(axis)
         angle = np.asarray(0.0 if manoeuvre.step is None else manoeuvre.step.angle)
         to_north_now, to_east_now = (
             self.north + to_north.value(angle),

@@ -15,7 +15,7 @@ from laboratory.units import DEGREE, ROOT_HOUR
 
 @dataclass(frozen=True)
 class WhiteNoise(Effect):
-    """Every increment scatters with the variance N² dt, whatever the sample rate.
+    """Every increment has noise of the variance N² dt, at any sample rate.
 
     angle: rad/√s; velocity: (m/s)/√s; the same for the three axes.
     Source: IEEE Std 952-2020, annex on noise models, "angle random walk".
@@ -31,7 +31,7 @@ class WhiteNoise(Effect):
             noise["velocity_random_walk_m_s_sqrt_h"] / ROOT_HOUR,
         )
 
-    def scatters(self, truth: Truth, generator: np.random.Generator) -> Reading:
+    def noise(self, truth: Truth, generator: np.random.Generator) -> Reading:
         root = sqrt(truth.motion.instants.interval)
         velocity, angle = generator.standard_normal((2, *truth.turned.shape))
         return Reading(self.velocity * root * velocity, self.angle * root * angle)

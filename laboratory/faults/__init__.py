@@ -1,4 +1,4 @@
-"""What the laboratory can do to a recording.
+"""The faults of a recording that the laboratory can simulate.
 
 To add a fault, write its file beside this one, list it here, and describe its parameters under
 `faults` in simulated.schema.yaml.

@@ -1,4 +1,4 @@
-"""A channel that cannot read beyond a limit."""
+"""Saturation of a channel."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ from laboratory.records import Records
 class Clip(Fault):
     """What is beyond ± `limit`, m/s² or rad/s, reads the limit, to the next count.
 
-    Touched: the records that read something else before.
+    Marked: the records that read something else before.
     """
 
     name: ClassVar[str] = "clip"
@@ -32,10 +32,10 @@ class Clip(Fault):
             in_its_unit(parameters, "limit"),
         )
 
-    def spoils(self, records: Records) -> Records:
+    def change(self, records: Records) -> Records:
         rows = self.lines.rows(len(records))
         counts = records.counts.copy()
         limit = int(np.rint(self.limit / records.units[self.channel]))
         counts[rows, self.channel] = np.clip(counts[rows, self.channel], -limit, limit)
         clipped = np.flatnonzero(counts[:, self.channel] != records.counts[:, self.channel])
-        return replace(records, counts=counts).touched(self.name, clipped)
+        return replace(records, counts=counts).marked(self.name, clipped)

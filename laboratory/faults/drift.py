@@ -1,4 +1,4 @@
-"""Time tags that run fast."""
+"""Time stamps with a rate error."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -15,8 +15,8 @@ from laboratory.records import Records
 class Drift(Fault):
     """For `samples` intervals after the record of `line` the stamps run fast by `excess`, 1.
 
-    Afterwards they run right again, and keep the offset. Touched: the records at the ends of
-    these intervals; that of `line` still has its right stamp.
+    Afterwards they run at the right rate with that offset. Marked: the records at the ends of
+    these intervals; the stamp of `line` is still right.
     """
 
     name: ClassVar[str] = "drift"
@@ -30,10 +30,10 @@ class Drift(Fault):
     def last_line(self) -> int:
         return self.lines.last if self.lines.onwards else self.lines.last + 1
 
-    def spoils(self, records: Records) -> Records:
+    def change(self, records: Records) -> Records:
         rows = self.lines.rows(len(records))
         first, last = int(rows[0]), min(int(rows[-1]) + 1, len(records) - 1)
         inside = records.stamps[np.clip(np.arange(len(records)), first, last)]
         offset = np.rint(self.excess * (inside - records.stamps[first])).astype(np.int64)
         fast = replace(records, stamps=records.stamps + offset)
-        return fast.touched(self.name, np.arange(first + 1, last + 1))
+        return fast.marked(self.name, np.arange(first + 1, last + 1))

@@ -1,4 +1,4 @@
-"""Single records that were never written."""
+"""Single missing records."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -9,9 +9,9 @@ from laboratory.records import Records
 
 @dataclass(frozen=True)
 class Drop(Fault):
-    """Each of `lines` is missing; time goes on without them. Touched: the record after each gap."""
+    """Each of `lines` is missing; time continues. Marked: the record after each gap."""
 
     name: ClassVar[str] = "drop"
 
-    def spoils(self, records: Records) -> Records:
+    def change(self, records: Records) -> Records:
         return records.without(self.name, self.lines.rows(len(records)))

@@ -1,4 +1,4 @@
-"""Two logs under each other's names."""
+"""Exchanged names of two logs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,10 +13,10 @@ from laboratory.records import Records
 
 @dataclass(frozen=True)
 class Exchange(Fault):
-    """The log of one name is handed over under the other's, and the other way round.
+    """Each of two logs is written under the name of the other.
 
-    Faults after it that name a log find under this name what is handed over under it.
-    Touched: all records of both.
+    Later faults that name a log refer to the name under which it is written.
+    Marked: all records of both.
     """
 
     name: ClassVar[str] = "exchange"
@@ -35,10 +35,10 @@ class Exchange(Fault):
     def last_line(self) -> int:
         return 0  # also an empty log can be exchanged
 
-    def strikes(
+    def apply(
         self, logs: Mapping[str, Records], generators: Mapping[str, np.random.Generator]
     ) -> dict[str, Records]:
         one, other = (
-            logs[name].touched(self.name, np.arange(len(logs[name]))) for name in self.logs
+            logs[name].marked(self.name, np.arange(len(logs[name]))) for name in self.logs
         )
         return {**logs, self.log: other, self.other: one}

@@ -1,4 +1,4 @@
-"""What can go wrong with a recording after the IMU has done its work."""
+"""What a fault of the recording may change, after the IMU has measured."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ ALL: Final = "all"  # in place of a log's name
 
 @dataclass(frozen=True)
 class Fault:
-    """One fault of a recording: it overrides what it does, and leaves the rest alone.
+    """One fault of a recording: each class overrides the methods it needs.
 
-    Faults strike one after another, and each finds the logs as those before have left them.
+    Faults are applied one after another, each to the logs as changed by those before.
     """
 
     name: ClassVar[str]
-    log: str  # the log that it spoils, or `all`: each of them
+    log: str  # the log that it changes, or `all`: each of them
     lines: Lines
 
     @classmethod
@@ -38,21 +38,21 @@ class Fault:
         """The last line that each of its logs must have."""
         return self.lines.last
 
-    def strikes(
+    def apply(
         self, logs: Mapping[str, Records], generators: Mapping[str, np.random.Generator]
     ) -> dict[str, Records]:
-        """All logs of the campaign after it; what falls by chance has a generator by log."""
+        """All logs of the campaign after the fault; `generators`: of random numbers, by log."""
         return {
-            name: self.scatters(self.spoils(records), generators[name])
+            name: self.change_randomly(self.change(records), generators[name])
             if self.log in (ALL, name)
             else records
             for name, records in logs.items()
         }
 
-    def spoils(self, records: Records) -> Records:
-        """What it makes of one log."""
+    def change(self, records: Records) -> Records:
+        """One log after the fault."""
         return records
 
-    def scatters(self, records: Records, generator: np.random.Generator) -> Records:
-        """What it makes of one log by chance."""
+    def change_randomly(self, records: Records, generator: np.random.Generator) -> Records:
+        """One log after the random part of the fault."""
         return records

@@ -1,4 +1,4 @@
-"""An axis with the wrong sign."""
+"""Wrong sign of an axis."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -12,7 +12,7 @@ from laboratory.records import Records
 
 @dataclass(frozen=True)
 class Flip(Fault):
-    """One axis of the accelerometers or of the gyros counts with the other sign."""
+    """One axis of the accelerometers or of the gyros has the wrong sign."""
 
     name: ClassVar[str] = "flip"
     channel: int
@@ -22,8 +22,8 @@ class Flip(Fault):
         channel = column_of(parameters["sensor"], parameters["axis"])
         return cls(parameters["log"], Lines.specified(parameters), channel)
 
-    def spoils(self, records: Records) -> Records:
+    def change(self, records: Records) -> Records:
         rows = self.lines.rows(len(records))
         counts = records.counts.copy()
         counts[rows, self.channel] *= -1
-        return replace(records, counts=counts).touched(self.name, rows)
+        return replace(records, counts=counts).marked(self.name, rows)

@@ -1,4 +1,4 @@
-"""Stamps that scatter, or that are rounded."""
+"""Jitter or rounding of the time stamps."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -14,9 +14,9 @@ from laboratory.records import Records
 
 @dataclass(frozen=True)
 class Jitter(Fault):
-    """Every stamp is off by chance, or is the nearest multiple of `unit`; the samples are not.
+    """Every stamp has a random error, or is the nearest multiple of `unit`; samples are unchanged.
 
-    sigma: standard deviation of a stamp, ns, each for itself, normal; unit: ns. Zero: none.
+    sigma: standard deviation of a stamp, ns, independent, normal; unit: ns. Zero: none.
     """
 
     name: ClassVar[str] = "jitter"
@@ -32,7 +32,7 @@ class Jitter(Fault):
             round(parameters.get("rounded_to_s", 0.0) * NANOSECONDS),
         )
 
-    def scatters(self, records: Records, generator: np.random.Generator) -> Records:
+    def change_randomly(self, records: Records, generator: np.random.Generator) -> Records:
         rows = self.lines.rows(len(records))
         stamps = records.stamps.copy()
         if self.sigma:
@@ -40,4 +40,4 @@ class Jitter(Fault):
             stamps[rows] += scatter.astype(np.int64)
         if self.unit:
             stamps[rows] = (stamps[rows] + self.unit // 2) // self.unit * self.unit
-        return replace(records, stamps=stamps).touched(self.name, rows)
+        return replace(records, stamps=stamps).marked(self.name, rows)

@@ -12,7 +12,7 @@ from laboratory.records import Records
 
 @dataclass(frozen=True)
 class Kill(Fault):
-    """From `line` on one channel counts nothing, or, frozen, over and over what `line` counts."""
+    """From `line` on one channel has zero counts or, frozen, always those of `line`."""
 
     name: ClassVar[str] = "kill"
     channel: int
@@ -27,8 +27,8 @@ class Kill(Fault):
             parameters["reads"] == "frozen",
         )
 
-    def spoils(self, records: Records) -> Records:
+    def change(self, records: Records) -> Records:
         rows = self.lines.rows(len(records))
         counts = records.counts.copy()
         counts[rows, self.channel] = counts[rows[0], self.channel] if self.frozen else 0
-        return replace(records, counts=counts).touched(self.name, rows)
+        return replace(records, counts=counts).marked(self.name, rows)

@@ -1,4 +1,4 @@
-"""Which lines of a log a fault spoils."""
+"""Which lines of a log a fault changes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,10 +11,10 @@ from laboratory.arrays import Counts
 
 @dataclass(frozen=True)
 class Lines:
-    """Lines of a log, counted from 1 in the log as the fault finds it."""
+    """Lines of a log, counted from 1 in the log before the fault."""
 
     numbers: Sequence[int]  # ascending, at least one
-    onwards: bool  # from the one number on to the end of the log
+    onwards: bool  # from that single number to the end of the log
 
     @classmethod
     def specified(cls, parameters: Mapping[str, Any]) -> Self:

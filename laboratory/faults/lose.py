@@ -1,4 +1,4 @@
-"""A stretch of samples that was never written."""
+"""A gap: consecutive missing samples."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -9,12 +9,12 @@ from laboratory.records import Records
 
 @dataclass(frozen=True)
 class Lose(Fault):
-    """The lines `line` … `line + samples − 1` are missing; time goes on without them.
+    """The lines `line` … `line + samples − 1` are missing; time continues.
 
-    Touched: the record after the gap, which no one is at the end of a log.
+    Marked: the record after the gap; none at the end of a log.
     """
 
     name: ClassVar[str] = "lose"
 
-    def spoils(self, records: Records) -> Records:
+    def change(self, records: Records) -> Records:
         return records.without(self.name, self.lines.rows(len(records)))

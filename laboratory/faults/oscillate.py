@@ -1,4 +1,4 @@
-"""A channel with a hum."""
+"""Oscillation of a channel."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -20,8 +20,8 @@ class Oscillate(Fault):
     """A sin(2πf t) on one channel, t from the start of the sample of `line`.
 
     A: amplitude, m/s² or rad/s; f: frequency, Hz. A sample gets the mean over its interval, exact:
-    A (cos 2πf t₀ − cos 2πf t₁) / (2πf Δt), t₀ and t₁ its ends by the true time, whatever the
-    stamps say. What a count leaves over goes to the next sample.
+    A (cos 2πf t₀ − cos 2πf t₁) / (2πf Δt), t₀ and t₁ its true ends, independent of the
+    stamps. The rounding error of a count is carried to the next sample.
     """
 
     name: ClassVar[str] = "oscillate"
@@ -39,12 +39,12 @@ class Oscillate(Fault):
             in_its_unit(parameters, "amplitude"),
         )
 
-    def spoils(self, records: Records) -> Records:
+    def change(self, records: Records) -> Records:
         rows = self.lines.rows(len(records))
         dt, angular = records.interval, 2 * pi * self.frequency
         start = (records.ends[rows] - records.ends[rows[0]]) / NANOSECONDS
-        swing = np.cos(angular * start) - np.cos(angular * (start + dt))
-        mean = self.amplitude * swing / (angular * dt)
+        difference = np.cos(angular * start) - np.cos(angular * (start + dt))
+        mean = self.amplitude * difference / (angular * dt)
         counts = records.counts.copy()
         counts[rows, self.channel] += count(np.cumsum(mean), records.units[self.channel])
-        return replace(records, counts=counts).touched(self.name, rows)
+        return replace(records, counts=counts).marked(self.name, rows)

@@ -1,4 +1,4 @@
-"""A record that is written again and again."""
+"""Repeated records."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -13,10 +13,10 @@ from laboratory.records import Records
 
 @dataclass(frozen=True)
 class Repeat(Fault):
-    """The record of `line` comes `samples` more times, right after itself.
+    """The record of `line` is written `samples` more times, directly after itself.
 
-    running: False: with the same stamp, and the log is longer by so many lines; True: in place
-    of the readings of the records that follow, whose stamps go on. Touched: the repetitions.
+    running: False: with the same stamp, and the log is longer by `samples` lines; True: instead
+    of the readings of the following records, whose stamps continue. Marked: the repetitions.
     """
 
     name: ClassVar[str] = "repeat"
@@ -31,7 +31,7 @@ class Repeat(Fault):
     def last_line(self) -> int:
         return self.lines.last + 1 if self.running else self.lines.numbers[0]
 
-    def spoils(self, records: Records) -> Records:
+    def change(self, records: Records) -> Records:
         repetitions = self.lines.rows(len(records)) + 1
         row = int(repetitions[0]) - 1
         if self.running:
@@ -41,4 +41,4 @@ class Repeat(Fault):
         else:
             rows = np.arange(len(records))
             repeated = records.at(np.insert(rows, row, np.full(len(repetitions), row)))
-        return repeated.touched(self.name, repetitions)
+        return repeated.marked(self.name, repetitions)

@@ -1,4 +1,4 @@
-"""Single readings that are far off."""
+"""Outliers: single wrong readings."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -14,7 +14,7 @@ from laboratory.records import Records
 
 @dataclass(frozen=True)
 class Spikes(Fault):
-    """In each of `lines` one channel reads `size` too much, m/s² or rad/s, to the next count."""
+    """In each of `lines` one channel reads `size` too much, m/s² or rad/s, in whole counts."""
 
     name: ClassVar[str] = "spikes"
     channel: int
@@ -29,8 +29,8 @@ class Spikes(Fault):
             in_its_unit(parameters, "size"),
         )
 
-    def spoils(self, records: Records) -> Records:
+    def change(self, records: Records) -> Records:
         rows = self.lines.rows(len(records))
         counts = records.counts.copy()
         counts[rows, self.channel] += int(np.rint(self.size / records.units[self.channel]))
-        return replace(records, counts=counts).touched(self.name, rows)
+        return replace(records, counts=counts).marked(self.name, rows)

@@ -1,4 +1,4 @@
-"""A bias that jumps."""
+"""Jump of the bias of a channel."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -17,7 +17,7 @@ from laboratory.records import Records
 class Step(Fault):
     """From `line` on one channel reads `size` more, m/s² or rad/s.
 
-    What a count leaves over goes to the next sample.
+    The rounding error of a count is carried to the next sample.
     """
 
     name: ClassVar[str] = "step"
@@ -33,9 +33,9 @@ class Step(Fault):
             in_its_unit(parameters, "size"),
         )
 
-    def spoils(self, records: Records) -> Records:
+    def change(self, records: Records) -> Records:
         rows = self.lines.rows(len(records))
         running = self.size * np.arange(1.0, len(rows) + 1)
         counts = records.counts.copy()
         counts[rows, self.channel] += count(running, records.units[self.channel])
-        return replace(records, counts=counts).touched(self.name, rows)
+        return replace(records, counts=counts).marked(self.name, rows)

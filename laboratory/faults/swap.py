@@ -1,4 +1,4 @@
-"""Two axes in each other's place."""
+"""Exchanged axes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -12,7 +12,7 @@ from laboratory.records import Records
 
 @dataclass(frozen=True)
 class Swap(Fault):
-    """Of the accelerometers or of the gyros two axes are written in each other's place."""
+    """Two axes of the accelerometers or of the gyros are exchanged."""
 
     name: ClassVar[str] = "swap"
     channels: tuple[int, int]
@@ -22,9 +22,9 @@ class Swap(Fault):
         one, other = (column_of(parameters["sensor"], axis) for axis in parameters["axes"])
         return cls(parameters["log"], Lines.specified(parameters), (one, other))
 
-    def spoils(self, records: Records) -> Records:
+    def change(self, records: Records) -> Records:
         rows = self.lines.rows(len(records))
         one, other = self.channels
         counts = records.counts.copy()
         counts[rows, one], counts[rows, other] = records.counts[rows][:, [other, one]].T
-        return replace(records, counts=counts).touched(self.name, rows)
+        return replace(records, counts=counts).marked(self.name, rows)

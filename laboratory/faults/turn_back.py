@@ -1,4 +1,4 @@
-"""A clock that is set back."""
+"""Clock set back."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -12,7 +12,7 @@ from laboratory.records import Records
 
 @dataclass(frozen=True)
 class TurnBack(Fault):
-    """From `line` on all stamps are earlier by `back`, ns. Touched: the record of `line`."""
+    """From `line` on all stamps are earlier by `back`, ns. Marked: the record of `line`."""
 
     name: ClassVar[str] = "turn_back"
     back: int
@@ -22,7 +22,7 @@ class TurnBack(Fault):
         back = round(parameters["seconds"] * NANOSECONDS)
         return cls(parameters["log"], Lines.specified(parameters), back)
 
-    def spoils(self, records: Records) -> Records:
+    def change(self, records: Records) -> Records:
         rows = self.lines.rows(len(records))
         stamps = records.stamps.copy()
         stamps[rows] -= self.back

@@ -43,8 +43,8 @@ WRONG: list[tuple[Change, str]] = [
     ),
     (
         lambda d: d["campaign"]["plan"][0].update(mark="-x"),
-        "campaign.plan[0].mark: found -x; expected a direction that is not the vertical, "
-        "for it gives the azimuth",
+        "campaign.plan[0].mark: found -x; expected a direction that is not vertical, "
+        "because it defines the azimuth",
     ),
     (
         lambda d: [m.update(log="all.asc") for m in d["campaign"]["plan"]] and d["faults"].clear(),
@@ -76,7 +76,7 @@ WRONG: list[tuple[Change, str]] = [
     (
         lambda d: d["campaign"]["site"].update(latitude_deg=None),
         "truth.latitude_deg: found nothing; expected the true latitude, degrees north, "
-        "since the campaign does not tell it",
+        "since the campaign does not state it",
     ),
     (
         lambda d: d["truth"]["gyro"].update(bias_rad_s=[0, float("nan"), 0]),

@@ -16,17 +16,19 @@ from laboratory.rotation import rotation_about
 
 
 @dataclass(frozen=True)
-class PeriodicAngleError(Effect):
+class PeriodicAngle(Effect):
     """The true angle is θ + ψ(θ), θ the angle of the scale since the start; error: ψ, rad."""
 
     error: Harmonic
 
-    def moves(self, turnings: Sequence[Turning], instants: Instants) -> Sequence[Turning]:
+    def change_rotations(
+        self, turnings: Sequence[Turning], instants: Instants
+    ) -> Sequence[Turning]:
         if not turnings or not turnings[0].planned:
             return turnings
         return [self.error.added_to(turnings[0]), *turnings[1:]]
 
-    def misses(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
+    def position_error(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
         angle = 0.0 if manoeuvre.step is None else manoeuvre.step.angle
         further = self.error.value(np.asarray(angle))
         return rotation_about(set_attitude @ manoeuvre.about, further)
