@@ -15,7 +15,7 @@ DEGREE_PER_HOUR = np.radians(1 / 3600)  # rad/s
 PPM, MICRO_G = 1e-6, 1e-6 * G
 HIDDEN = {
     # effect: (how the laboratory hides it, what must come back in SI). Most are about ten times
-    # what this plan can see at 5 sigma, see `visible`.
+    # what this plan can see at 5 sigma, see `detection_limit`.
     "gyro_bias_ramp": (
         {"ramp_deg_h_h": [-7.0, 0, 0]},
         {"c_x": -7.0 * DEGREE_PER_HOUR / 3600},
@@ -75,7 +75,9 @@ def test_the_demo_names_what_is_hidden_in_it_and_nothing_else(demo_criticised):
             found = effects.loc["gyro_g_sensitivity", f"g_{row}{column}"]
             assert abs(found["value"] - hidden[i, j]) < 3.5 * found["sigma"], (row, column)
     # Ten times what the plan can see: the smallest of the three is still seven times.
-    assert 5 * effects.loc["gyro_g_sensitivity", "g_yy"]["visible"] < 1.0 * DEGREE_PER_HOUR / G
+    assert (
+        5 * effects.loc["gyro_g_sensitivity", "g_yy"]["detection_limit"] < 1.0 * DEGREE_PER_HOUR / G
+    )
     ringing = effects.loc["oscillation"]
     assert abs(ringing.loc["frequency", "value"] - 20) < 3 * ringing.loc["frequency", "sigma"]
     assert abs(ringing.loc["amplitude", "value"] - 0.01) < 3 * ringing.loc["amplitude", "sigma"]
@@ -93,7 +95,10 @@ def test_on_clean_data_nothing_is_named(criticised, seed):
 def test_what_is_hidden_is_named_alone_with_its_number(criticised, effect):
     results = criticised(effect, 51)
     (cause,) = results["criticism/findings"].to_dict("records")
-    assert set(cause["members"].split(", ")) == {effect} | CLASS.get(effect, set())
+    members = results["criticism/members"]
+    assert set(members["finding"]) == {cause["id"]}
+    assert set(members["effect"]) == {effect} | CLASS.get(effect, set())
+    assert members["probability"].between(0, 1).all() and members["captured"].max() > 0.9
     assert cause["verdict"] == ("one_of_class" if effect in CLASS else "found")
     assert named(results) == {cause["cause"]} and cause["p_value"] < 1e-6
     if cause["cause"] != effect:
@@ -103,7 +108,7 @@ def test_what_is_hidden_is_named_alone_with_its_number(criticised, effect):
         found = effects.loc[effect, parameter]
         assert abs(found["value"] - hidden) < 3.5 * found["sigma"], parameter
         if hidden:
-            assert 3 < abs(hidden) / found["visible"] < 30
+            assert 3 < abs(hidden) / found["detection_limit"] < 30
 
 
 def test_the_manoeuvre_that_splits_a_class_is_named(criticised):
@@ -127,19 +132,19 @@ def test_a_jump_is_told_with_its_time(criticised):
 
 
 def test_what_this_plan_cannot_see_is_said_with_the_reason(demo_criticised):
-    told = demo_criticised["criticism/blind_spots"].set_index(["effect", "parameter"])
+    told = demo_criticised["criticism/detection_limits"].set_index(["effect", "parameter"])
     assert set(told.index.get_level_values(0)) == {
         name for name, effect in CATALOGUE.items() if effect.sought_in in ("blocks", "spectrum")
     }
-    assert (told["visible"].notna() == (told["reason"] == "visible")).all()
+    assert (told["limit"].notna() == (told["reason"] == "visible")).all()
     for effect, words in {
         "gyro_bias_temperature": "no temperature is recorded",
-        "gyro_scale_cubic": "do the very same",
-        "table_speed_error": "it is taken for the angle of the table",
+        "gyro_scale_cubic": "cannot be separated",
+        "table_speed_error": "it is absorbed by the angle of the table",
         "heading_error": "no heading",
     }.items():
         rows = told.loc[effect]
-        assert rows["visible"].isna().all() and rows["sentence"].str.contains(words).all(), effect
+        assert rows["limit"].isna().all() and rows["sentence"].str.contains(words).all(), effect
 
 
 def test_why_an_effect_is_not_named_is_true(demo_criticised):
@@ -147,7 +152,7 @@ def test_why_an_effect_is_not_named_is_true(demo_criticised):
     # The g-sensitivity that is named does what a wrong latitude would do; by itself it is seen.
     assert "beside what is named" in told["latitude_error"]
     # One rate alone: the scale factor does the same.
-    assert "estimated anyway do the very same" in told["gyro_scale_cubic"]
+    assert "cannot be separated here from the parameters" in told["gyro_scale_cubic"]
     assert "scale factors of the accelerometers" in told["gravity_error"]
     assert not told.str.contains("No manoeuvre excites it").any()
 

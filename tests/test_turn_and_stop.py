@@ -85,7 +85,7 @@ def test_the_methods_agree(session):
 
 def test_the_same_rate_with_the_axis_down_is_advised_with_its_gain(session):
     """S3 turns up at one rate and down at another: what goes with the rate or with the force?"""
-    told = session["criticism/blind_spots"].set_index("effect")["sentence"]
+    told = session["criticism/detection_limits"].set_index("effect")["sentence"]
     (advice,) = (one for one in told["gyro_scale_g_dependence"] if "turn also" in one)
     assert "turn also at the same rate with the axis down, and it is 0 %" in advice
     assert session["criticism/findings"].empty

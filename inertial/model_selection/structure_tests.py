@@ -175,13 +175,14 @@ DRAWS = 2000
 class Answer:
     """What the residuals of one sensor say of the functions of a question, on one of its axes.
 
-    `kind`: of the test; `channel`: such as gyro x; `information`: T'(I − H)T, (k, k), zero of
+    `kind`: of the test; `sensor`: gyro or accel; `information`: T'(I − H)T, (k, k), zero of
     what was fitted; `right`: T'e, (k,); `chi_squared` of `degrees`: the residuals themselves;
     `noise_degrees`: from which their sigma was estimated.
     """
 
     kind: str
-    channel: str
+    sensor: str
+    axis: str
     question: Question
     information: Array
     right: Array
@@ -194,14 +195,15 @@ class Answer:
 class Structure:
     """One test of structure.
 
-    `kind`: time, angle, rate, attitude, temperature, or change; `channel` where it is clearest;
-    `where`: the time of a change, the frequency of an oscillation, the order of a ripple, else
-    NaN; `p_value`: its own search over channels and scan paid for; `fires`: at the level shared
-    among all tests; `answer`, `group`: the functions that explain the residuals best.
+    `kind`: time, angle, rate, attitude, temperature, or change; `sensor`, `axis`: where it is
+    clearest; `where`: the time of a change, the frequency of an oscillation, the order of a
+    ripple, else NaN; `p_value`: its own search over channels and scan accounted for; `fires`: at
+    the level that all tests share; `answer`, `group`: the functions that explain most.
     """
 
     kind: str
-    channel: str
+    sensor: str
+    axis: str
     where: float
     statistic: float
     degrees: int
@@ -235,7 +237,7 @@ def structures(answers: Sequence[Answer], level: float = LEVEL, seed: int = 0) -
 def _together(kind: str, some: list[Structure], level: float) -> Structure:
     """The clearest of some answers, at a price for each of them."""
     if not some:
-        return Structure(kind, "", np.nan, 0.0, 0, 1.0, False, False)
+        return Structure(kind, "", "", np.nan, 0.0, 0, 1.0, False, False)
     best = min(some, key=lambda one: one.p_value)
     p_value = min(best.p_value * len(some), 1.0)
     return replace(best, p_value=p_value, fires=p_value < level)
@@ -257,7 +259,17 @@ def _tested(answer: Answer, seed: int) -> Structure | None:
         searched = float(law(chi2_isf(alone, law.degrees)))
     where = float(question.where[best])
     return Structure(
-        answer.kind, answer.channel, where, drop, count, searched, True, False, answer, best
+        answer.kind,
+        answer.sensor,
+        answer.axis,
+        where,
+        drop,
+        count,
+        searched,
+        True,
+        False,
+        answer,
+        best,
     )
 
 

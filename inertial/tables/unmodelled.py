@@ -1,10 +1,10 @@
-"""The simulation, the effects that it lacks, and the model extended by them."""
+"""The simulation, its unmodelled effects, and the model extended by them."""
 
 from inertial.tables.recorded import FINDINGS
 from inertial.tables.shared import BODY, LOG, PHASES, channels
 from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
 
-# ---- What should have been recorded.
+# ---- The simulated readings and their residuals.
 
 SIMULATED = Table(
     "simulated",
@@ -33,24 +33,111 @@ FIDELITY = Table(
 )
 
 
-# ---- What the model lacks: causes, scores, effects, lines, random walks and structures.
+# ---- Unmodelled effects: findings, scores, parameters, detection limits, and structure.
+
+MOUNT = Column("mount", TEXT, "", "mount of the IMU, where there are several; else empty")
+FINDING = Column("finding", TEXT, "", "id of the finding that names it", nullable=True)
 
 CAUSES = Table(
     "causes",
-    1,
+    2,
     (
         *FINDINGS.columns,
+        MOUNT,
         Column("verdict", TEXT, "", "found, one_of_class, unknown_structure", nullable=True),
+        Column(
+            "statistic",
+            DOUBLE,
+            "1",
+            "reduction of chi-squared by it beside the other causes",
+            nullable=True,
+        ),
+        Column("degrees", INTEGER, "1", "degrees of freedom of the statistic", nullable=True),
+        Column("snr", DOUBLE, "1", "signal-to-noise ratio: √(statistic − degrees)", nullable=True),
+        Column(
+            "split_manoeuvre",
+            TEXT,
+            "",
+            "the further manoeuvre that best distinguishes the members of its class",
+            nullable=True,
+        ),
+        Column(
+            "split_snr",
+            DOUBLE,
+            "1",
+            "signal-to-noise ratio with which that manoeuvre would distinguish them",
+            nullable=True,
+        ),
+        # Lists, which `members` and `effects` hold; until nothing reads them.
         Column("members", TEXT, "", "those that cannot be told apart", nullable=True),
-        Column("statistic", DOUBLE, "1", "drop of chi-squared beside the others", nullable=True),
-        Column("degrees", INTEGER, "1", "of freedom of the drop", nullable=True),
-        Column("snr", DOUBLE, "1", "root of the drop less what noise adds", nullable=True),
         Column("parameters", TEXT, "SI", "name = value ± sigma unit, each", nullable=True),
-        Column("split_manoeuvre", TEXT, "", "what would tell the members apart", nullable=True),
-        Column("split_snr", DOUBLE, "1", "how clearly it would, in sigmas", nullable=True),
     ),
 )
-BLIND_SPOTS = Table(
+MEMBERS = Table(
+    "members",
+    1,
+    (
+        Column("finding", TEXT, "", "id of the finding"),
+        MOUNT,
+        Column("rank", INTEGER, "1", "1 for the most probable effect of the class"),
+        Column("effect", TEXT, "", "name in the catalogue of an effect that it may be"),
+        Column(
+            "probability",
+            DOUBLE,
+            "1",
+            "posterior probability, every effect being equally probable beforehand; none where"
+            " probabilities were not compared",
+            nullable=True,
+        ),
+        Column(
+            "captured",
+            DOUBLE,
+            "1",
+            "share of the signal of the effect of rank 1 that this one can mimic",
+            nullable=True,
+        ),
+    ),
+)
+CAUSE_POSITIONS = Table(
+    "cause_positions",
+    1,
+    (
+        Column("finding", TEXT, "", "id of a finding about an effect of a single position"),
+        MOUNT,
+        Column("rank", INTEGER, "1", "1 for the most likely position"),
+        Column("position", TEXT, "", "as in manoeuvres: a position that the effect may be at"),
+        Column("statistic", DOUBLE, "1", "reduction of chi-squared by the effect at this position"),
+    ),
+)
+DETECTION_LIMITS = Table(
+    "detection_limits",
+    1,
+    (
+        MOUNT,
+        Column("effect", TEXT, "", "name in the catalogue"),
+        Column("parameter", TEXT, "", "name within the effect"),
+        Column("limit", DOUBLE, "as unit", "size that is detected with 5 sigma", nullable=True),
+        Column(
+            "smallest",
+            DOUBLE,
+            "as unit",
+            "the limit at that value of the scanned variable at which it is smallest",
+            nullable=True,
+        ),
+        Column("largest", DOUBLE, "as unit", "and where it is largest", nullable=True),
+        Column("unit", TEXT, "", "unit of the limits"),
+        Column(
+            "reason",
+            TEXT,
+            "",
+            "visible; or why there is none: not_excited, absorbed, only_together",
+        ),
+        Column("explanation", TEXT, "", "why there is none, in words", nullable=True),
+        Column("remark", TEXT, "", "what else to know of it, in words", nullable=True),
+        Column("sentence", TEXT, "", "all of this in words"),
+    ),
+)
+BLIND_SPOTS = Table(  # `detection_limits` before mount was a column; until nothing reads it
     "blind_spots",
     1,
     (
@@ -66,160 +153,290 @@ BLIND_SPOTS = Table(
 )
 SCORES = Table(
     "scores",
-    2,
+    3,
     (
+        MOUNT,
         Column("effect", TEXT, "", "name in the catalogue"),
         Column("cause", TEXT, "", "its physical cause"),
         Column("sought_in", TEXT, "", "blocks, spectrum, noise or quality"),
-        Column("statistic", DOUBLE, "1", "drop of chi-squared beyond what was named before it"),
-        Column("degrees", INTEGER, "1", "of freedom: what the plan excites of the effect"),
-        Column("p_value", DOUBLE, "1", "chance of such a statistic, or peak, by noise alone"),
-        Column("named", TRUTH, "", "below the family-wise level"),
+        FINDING,
+        Column(
+            "statistic",
+            DOUBLE,
+            "1",
+            "reduction of chi-squared by it beside the named effects; none where it is not tested",
+            nullable=True,
+        ),
+        Column(
+            "degrees",
+            INTEGER,
+            "1",
+            "degrees of freedom of the statistic; none where it is not tested",
+            nullable=True,
+        ),
+        Column(
+            "p_value",
+            DOUBLE,
+            "1",
+            "probability of such a statistic by noise alone, all searches accounted for; none"
+            " where it is not tested",
+            nullable=True,
+        ),
+        Column("named", TRUTH, "", "whether the effect is named"),
         Column("verdict", TEXT, "", "found, one_of_class, unknown_structure; empty: not needed"),
-        Column("members", TEXT, "", "all causes that cannot be told apart, likeliest first"),
-        Column("snr", DOUBLE, "1", "signal-to-noise ratio of what is named", nullable=True),
-        Column("at", DOUBLE, "", "value of what is scanned of the effect", nullable=True),
-        Column("sentence", TEXT, "", "what is said of it"),
+        Column("snr", DOUBLE, "1", "signal-to-noise ratio of a named effect", nullable=True),
+        Column(
+            "scan_value",
+            DOUBLE,
+            "as scan_unit",
+            "value of the scanned variable at which the statistic is largest",
+            nullable=True,
+        ),
+        Column("scan_unit", TEXT, "", "unit of the scanned variable", nullable=True),
+        Column("sentence", TEXT, "", "the verdict in words"),
+        Column("members", TEXT, "", "as a list; until nothing reads it"),
+        Column("at", DOUBLE, "", "scan_value; until nothing reads it", nullable=True),
     ),
 )
 EFFECTS = Table(
     "effects",
-    1,
+    2,
     (
-        Column("id", TEXT, "", "stable identifier: criticism/effect/parameter"),
+        Column("id", TEXT, "", "stable identifier of a number; no code reads anything from it"),
+        MOUNT,
+        FINDING,
         Column("effect", TEXT, "", "name in the catalogue"),
         Column("parameter", TEXT, "", "name within the effect"),
-        Column("value", DOUBLE, "as unit", "estimate beside all named effects", nullable=True),
+        Column(
+            "value", DOUBLE, "as unit", "estimate, fitted with all named effects", nullable=True
+        ),
         Column("sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
-        Column("visible", DOUBLE, "as unit", "5 sigma: what can be seen", nullable=True),
-        Column("unit", TEXT, "", "unit of these"),
+        Column(
+            "detection_limit",
+            DOUBLE,
+            "as unit",
+            "size that is detected with 5 sigma",
+            nullable=True,
+        ),
+        Column("unit", TEXT, "", "unit of value, sigma and detection limit"),
         Column("meaning", TEXT, "", "what it is"),
+        Column("visible", DOUBLE, "as unit", "the limit; until nothing reads it", nullable=True),
     ),
 )
 LINES = Table(
     "lines",
-    2,
+    3,
     (
         Column("manoeuvre", TEXT, "", "as in manoeuvres"),
+        MOUNT,
         Column("axis", TEXT, "", "gyro axis, of the case", BODY),
-        Column("frequency", DOUBLE, "Hz", "of the strongest line, or an alias of it"),
+        Column("frequency", DOUBLE, "Hz", "of the strongest spectral line, or an alias of it"),
         Column("frequency_sigma", DOUBLE, "Hz", "its standard deviation"),
-        Column("amplitude", DOUBLE, "rad/s", "of the rate, the averaging of a sample undone"),
+        Column(
+            "amplitude",
+            DOUBLE,
+            "rad/s",
+            "of the rate, corrected for averaging over a sample interval",
+        ),
         Column("amplitude_sigma", DOUBLE, "rad/s", "its standard deviation"),
-        Column("p_value", DOUBLE, "1", "chance of such a peak by noise, the search paid for"),
-        Column("order", DOUBLE, "1", "periods in one turn of the table", nullable=True),
-        Column("effect", TEXT, "", "that it is taken for; empty: none stands out", nullable=True),
+        Column(
+            "p_value",
+            DOUBLE,
+            "1",
+            "probability of such a peak by noise alone, the search accounted for",
+        ),
+        Column("order", DOUBLE, "1", "periods per revolution of the table", nullable=True),
+        FINDING,
+        Column("effect", TEXT, "", "effect that causes it; none: not significant", nullable=True),
     ),
 )
-WALKS = Table(
-    "walks",
+RANDOM_WALKS = Table(
+    "random_walks",
     1,
     (
-        Column("method", TEXT, "", "joint, with @ and the mount where there are several"),
+        MOUNT,
         Column("sensor", TEXT, "", "gyro or accel"),
-        Column("walk", DOUBLE, "SI/√s", "random walk of the biases beside the named effects"),
-        Column("sigma", DOUBLE, "SI/√s", "its standard deviation; none: not known", nullable=True),
+        Column("value", DOUBLE, "as unit", "random walk of the biases beside the named effects"),
+        Column(
+            "sigma", DOUBLE, "as unit", "its standard deviation, where it is known", nullable=True
+        ),
+        Column("unit", TEXT, "", "rad/s/√s or m/s²/√s"),
+        Column("finding", TEXT, "", "id of the finding that reports it"),
     ),
 )
 STRUCTURES = Table(
     "structures",
-    1,
+    2,
     (
+        MOUNT,
+        Column(
+            "kind",
+            TEXT,
+            "",
+            "what the residuals are tested against: time, angle, rate, attitude, temperature, or"
+            " change in time",
+        ),
+        Column("sensor", TEXT, "", "gyro or accel, where it is clearest", nullable=True),
+        Column("axis", TEXT, "", "axis where it is clearest", BODY, nullable=True),
+        Column(
+            "scan_value",
+            DOUBLE,
+            "as scan_unit",
+            "time of a change, frequency of an oscillation, or order of a ripple",
+            nullable=True,
+        ),
+        Column("scan_unit", TEXT, "", "s, Hz, or cycles per revolution", nullable=True),
+        Column(
+            "statistic",
+            DOUBLE,
+            "1",
+            "reduction of chi-squared by the functions of the test; none where it is not possible",
+            nullable=True,
+        ),
+        Column("degrees", INTEGER, "1", "degrees of freedom of the statistic", nullable=True),
+        Column(
+            "p_value",
+            DOUBLE,
+            "1",
+            "probability by noise alone, the search over channels and scan accounted for",
+            nullable=True,
+        ),
+        Column("detected", TRUTH, "", "below the significance level that all tests share"),
+        # Until nothing reads them.
         Column("method", TEXT, "", "joint, with @ and the mount where there are several"),
-        Column("kind", TEXT, "", "time, angle, rate, attitude, temperature or change"),
-        Column("channel", TEXT, "", "where it is clearest: sensor and axis; empty: none asked"),
-        Column("place", DOUBLE, "", "s of a change, Hz, cycles per turn", nullable=True),
-        Column("statistic", DOUBLE, "1", "drop of chi-squared with the functions of the test"),
-        Column("degrees", INTEGER, "1", "of freedom of the drop"),
-        Column("p_value", DOUBLE, "1", "after the search over channels and what is scanned"),
-        Column("fires", TRUTH, "", "below the level that all six share"),
+        Column("channel", TEXT, "", "sensor and axis; empty: none tested"),
+        Column("place", DOUBLE, "", "scan_value", nullable=True),
+        Column("fires", TRUTH, "", "detected"),
     ),
 )
 STRUCTURE_POINTS = Table(
     "structure_points",
-    1,
+    2,
     (
-        Column("method", TEXT, "", "as in structures"),
+        MOUNT,
         Column("kind", TEXT, "", "as in structures"),
-        Column("channel", TEXT, "", "as in structures"),
-        Column("x", DOUBLE, "as x_unit", "what the readings are a function of, mean of a bin"),
+        Column("sensor", TEXT, "", "gyro or accel"),
+        Column("axis", TEXT, "", "axis of the sensor", BODY),
+        Column("x", DOUBLE, "as x_unit", "mean of a bin of what the residuals are tested against"),
         Column("x_unit", TEXT, "", "unit of x"),
-        Column("left", DOUBLE, "as unit", "what the model leaves there, all else as fitted"),
+        Column("residual", DOUBLE, "as unit", "mean residual in the bin, all else as fitted"),
         Column("sigma", DOUBLE, "as unit", "its standard deviation"),
-        Column("structure", DOUBLE, "as unit", "what the structure would be there"),
+        Column("structure", DOUBLE, "as unit", "the same by the functions of the test, fitted"),
         Column("unit", TEXT, "", "rad/s or m/s²"),
+        # Until nothing reads them.
+        Column("method", TEXT, "", "joint, with @ and the mount where there are several"),
+        Column("channel", TEXT, "", "sensor and axis"),
+        Column("left", DOUBLE, "as unit", "residual"),
     ),
 )
 
 
-# ---- The tables of the extension: what it gains, what it moves, what it is worth, and what
-# counts.
+# ---- The extended model: its gain, the change of the parameters, and the decision.
 
-_MOUNT = Column("mount", TEXT, "", "the mount, where there are several; else empty")
+_MODEL = Column(
+    "model",
+    TEXT,
+    "",
+    "the effects that are fitted together: blocks, all that are fitted to the means of blocks; or"
+    " the name of an effect that is fitted to the full-rate residuals",
+)
 
 GAIN = Table(
     "gain",
-    2,
+    3,
     (
-        Column("sensor", TEXT, "", "gyro or accel; with an axis: that channel by itself"),
-        _MOUNT,
-        Column("effects", TEXT, "", "the effects that were added, by name in the catalogue"),
+        MOUNT,
+        Column("sensor", TEXT, "", "gyro or accel"),
+        Column("axis", TEXT, "", "of a single channel; none: of all three", BODY, nullable=True),
+        _MODEL,
         Column(
             "scope", TEXT, "", "fitted: all manoeuvres; held-out: each by the fit to the others"
         ),
         Column("rows", INTEGER, "1", "degrees of freedom without the effects; or samples"),
         Column("before", DOUBLE, "unit²", "chi-squared without the effects; or mean square"),
         Column("after", DOUBLE, "unit²", "the same with them"),
-        Column("drop", DOUBLE, "unit²", "before less after"),
+        Column("drop", DOUBLE, "unit²", "before − after"),
         Column(
             "snr_squared",
             DOUBLE,
             "1",
-            "of the effects, noise taken off; held-out: the part that the counted folds took away,"
-            " so the drop if the effects were known exactly",
+            "of the effects, without the part of noise; held-out: what the counted folds hold of"
+            " it, so the reduction if the effects were known exactly",
             nullable=True,
         ),
         Column(
             "walked",
             DOUBLE,
             "1",
-            "how much of the drop a walk of the biases brings too, where the joint fit has found"
-            " one and the effects stand for it; else 0",
+            "part of the reduction that a random walk of the biases achieves as well, where the"
+            " joint fit has one that the effects replace; else 0",
             nullable=True,
         ),
-        Column("folds", INTEGER, "1", "groups of manoeuvres, each foretold", nullable=True),
+        Column("folds", INTEGER, "1", "groups of manoeuvres, each predicted", nullable=True),
         Column(
             "counted",
             INTEGER,
             "1",
-            "those whose training keeps half of the signal: only these are in the numbers",
+            "folds whose training keeps half of the signal: only these are in the numbers",
             nullable=True,
         ),
-        Column("taken_away", TEXT, "", "the manoeuvres that were foretold", nullable=True),
-        Column("left_out", TEXT, "", "those that alone show the effects", nullable=True),
         Column("rms_before", DOUBLE, "as unit", "of the residuals without", nullable=True),
         Column("rms_after", DOUBLE, "as unit", "and with the effects", nullable=True),
         Column("unit", TEXT, "", "sigma, or the unit of the channel"),
+        # Lists, which `gain_effects` and `held_out` hold; until nothing reads them.
+        Column("effects", TEXT, "", "the effects that were added, by name in the catalogue"),
+        Column("taken_away", TEXT, "", "the manoeuvres that were predicted", nullable=True),
+        Column("left_out", TEXT, "", "those that alone show the effects", nullable=True),
+    ),
+)
+GAIN_EFFECTS = Table(
+    "gain_effects",
+    1,
+    (
+        MOUNT,
+        Column("sensor", TEXT, "", "gyro or accel"),
+        _MODEL,
+        Column("effect", TEXT, "", "an effect of the model that the sensor shows"),
+    ),
+)
+HELD_OUT = Table(
+    "held_out",
+    1,
+    (
+        MOUNT,
+        Column("sensor", TEXT, "", "gyro or accel"),
+        _MODEL,
+        Column("fold", INTEGER, "1", "number of the group of manoeuvres, from 1"),
+        Column("manoeuvre", TEXT, "", "as in manoeuvres: predicted by the fit to the other groups"),
+        Column(
+            "counted",
+            TRUTH,
+            "",
+            "whether the other groups keep half of the signal; if not, the fold is in no number",
+        ),
     ),
 )
 MOVED = Table(
     "moved",
-    1,
+    2,
     (
         Column("id", TEXT, "", "of the parameter by the extended fit"),
         Column("joint_id", TEXT, "", "of the same by the joint fit"),
+        MOUNT,
+        Column("sensor", TEXT, "", "gyro or accel"),
         Column("parameter", TEXT, "", "its name"),
         Column("unit", TEXT, "", "unit of the values"),
         Column("joint", DOUBLE, "as unit", "value of the joint fit", nullable=True),
         Column("joint_sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
         Column("extended", DOUBLE, "as unit", "value with the effects in the model", nullable=True),
         Column("extended_sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
-        Column("difference", DOUBLE, "as unit", "extended less joint", nullable=True),
+        Column("difference", DOUBLE, "as unit", "extended − joint", nullable=True),
         Column(
             "difference_sigma",
             DOUBLE,
             "as unit",
-            "root of the difference of the variances; none where the joint fit allows for more",
+            "root of the difference of the variances; none where the joint fit has a scatter of"
+            " the manoeuvres",
             nullable=True,
         ),
         Column("in_sigmas", DOUBLE, "1", "difference in sigmas of the joint fit", nullable=True),
@@ -230,31 +447,51 @@ WORTH = Table(
     1,
     (
         Column("manoeuvre", TEXT, "", "as in manoeuvres"),
-        _MOUNT,
+        MOUNT,
         Column("motion", TEXT, "", "rest or turn"),
         Column("rate", DOUBLE, "rad/s", "of the table, mean magnitude"),
-        Column("seconds", DOUBLE, "s", "of free inertial navigation, as if it went on so long"),
+        Column("seconds", DOUBLE, "s", "of free inertial navigation with the motion continued"),
         Column("attitude_joint", DOUBLE, "rad", "error with the joint result"),
         Column("attitude_joint_sigma", DOUBLE, "rad", "its standard deviation"),
-        Column("attitude_extended", DOUBLE, "rad", "what the extended one leaves uncertain, rms"),
+        Column("attitude_extended", DOUBLE, "rad", "uncertainty of the extended result, rms"),
         Column("velocity_joint", DOUBLE, "m/s", "error with the joint result"),
         Column("velocity_joint_sigma", DOUBLE, "m/s", "its standard deviation"),
-        Column("velocity_extended", DOUBLE, "m/s", "what the extended one leaves uncertain, rms"),
+        Column("velocity_extended", DOUBLE, "m/s", "uncertainty of the extended result, rms"),
     ),
 )
 DECISION = Table(
     "decision",
-    1,
+    2,
     (
+        MOUNT,
         Column("sensor", TEXT, "", "gyro or accel"),
-        _MOUNT,
-        Column("result", TEXT, "", "joint or extended: which counts from now on"),
-        Column("effects", TEXT, "", "the effects that this sensor shows, of those named"),
+        Column("result", TEXT, "", "the final result: joint or extended"),
         Column("drop", DOUBLE, "1", "held-out, as in gain, less walked", nullable=True),
         Column("snr_squared", DOUBLE, "1", "held-out, as in gain", nullable=True),
         Column("folds", INTEGER, "1", "as in gain", nullable=True),
         Column("counted", INTEGER, "1", "as in gain", nullable=True),
-        Column("alarms", TEXT, "", "causes of findings that say that something else is wrong"),
         Column("sentence", TEXT, "", "the reason in words"),
+        # Lists, which `decision_effects` and `alarms` hold; until nothing reads them.
+        Column("effects", TEXT, "", "the effects that this sensor shows, of those named"),
+        Column("alarms", TEXT, "", "causes of findings that say that something else is wrong"),
+    ),
+)
+DECISION_EFFECTS = Table(
+    "decision_effects",
+    1,
+    (
+        MOUNT,
+        Column("sensor", TEXT, "", "gyro or accel"),
+        Column("effect", TEXT, "", "a named effect that the extended model of the sensor has"),
+    ),
+)
+ALARMS = Table(
+    "alarms",
+    1,
+    (
+        MOUNT,
+        Column("sensor", TEXT, "", "gyro or accel"),
+        Column("finding", TEXT, "", "id of a finding that no named effect explains"),
+        Column("cause", TEXT, "", "its cause"),
     ),
 )

@@ -1,322 +1,347 @@
-"""Rows of the effects that are selected from block means."""
+"""Rows of the effects that are selected from block means, and of those sought elsewhere."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
 
 from inertial.campaign.equations import Campaign
 from inertial.effects import CATALOGUE
 from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
-from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Asked
+from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Asked, Cause
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.physics.effect import Effect
 from inertial.text.cause_names import in_words
 from inertial.text.numbers import decimals_of, with_sigma
 from inertial.text.units import DEGREE_PER_HOUR, MICRO_G
-from stages.criticism import block_sentences
+from stages.criticism import block_sentences as sentences
 from stages.criticism.bias_drift import Walk
 from stages.criticism.class_splitting import TURNED_OVER, Foreseen
+from stages.criticism.finding_rows import (
+    SENSORS,
+    Estimated,
+    Row,
+    TableRow,
+    finding_id,
+    member_rows,
+    parameter_row,
+)
 from stages.criticism.selection import Judged
 
-# ---- The rows that criticism writes of causes: scores, parameters, blind spots and findings.
-
-Row = dict[str, Any]
-
-BOTH_SENSORS = ("gyro", "accel")
 NAMED = (FOUND, ONE_OF_CLASS)
-ALIKE = 6.0  # drop of chi-squared by which a position must exceed another: 95 % of 2 degrees
-OF_FINDINGS = {"severity": 2, "count": 1, "unit": "sigma"}
+MAX_RIVAL_DROP = 6.0  # of chi-squared between two positions that are both possible: 95 % of 2
+WALK = "gyro_random_walk"
+WALK_UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
+# Effects by the beginning of their names that change the readings of a sensor though not its own.
+SHARED_EFFECTS = {"gyro": ("earth", "latitude", "heading"), "accel": ("lever", "size", "table")}
+MIN_EXCESS = 1.2  # of chi-squared per degree; the uncertainty of the noise level explains less
+
+NOT_TESTED = "Not detected."
+OF_NOISE = {
+    "gyro_flicker": "One campaign does not distinguish it from a random walk, which is estimated.",
+}
+OF_QUALITY = "Sought in the quality of the samples: findings “{finding}”."
+WALK_SCORE = "The biases of the gyros follow a random walk of {size}, which the sigmas allow for."
+WALK_OR = (
+    "The biases of the {sensors} change as by a random walk of {size}. It may also be {others}:"
+    " this campaign cannot distinguish them."
+)
+WALK_ALONE = (
+    "The biases of the {sensors} change as by a random walk of {size}. Any other change without a"
+    " law would look much the same."
+)
+WALK_CONSEQUENCE = "The sigmas of all parameters allow for it."
+REPEAT = (
+    "Record the positions once more, in another order, to distinguish a random walk from others."
+)
+SHORTEN = "A shorter campaign, or turns there and back, reduce its influence."
+UNEXPLAINED = (
+    "The residuals of the {sensors} are {ratio:.1f} times as large as noise, and no effect of the"
+    " catalogue explains it."
+)
+SCATTER = "The joint estimate allows for it as a scatter between manoeuvres."
+INSPECT = "Look at the residuals of each manoeuvre, and how the positions were set."
 
 
-class Rows:
-    """What is said of one mount, row by row."""
+class BlockResults:
+    """The rows of one mount."""
 
-    def __init__(self, campaign: Campaign, judged: Judged, foreseen: Foreseen, suffix: str) -> None:
-        self.campaign, self.judged, self.suffix = campaign, judged, suffix
+    def __init__(self, campaign: Campaign, judged: Judged, foreseen: Foreseen, mount: str) -> None:
+        self.campaign, self.judged, self.mount = campaign, judged, mount
         self.foreseen = foreseen
         self.causes = {cause.effect: cause for cause in judged.named.causes}
 
-    def scores(self) -> Iterator[Row]:
-        """How every effect that is sought in blocks was judged."""
-        reasons = {one.effect: one.reason for one in reversed(self.judged.visible)}
-        for asked in self._asked():
-            effect = self.judged.effect(asked.effect, asked.value)
-            cause = self.causes.get(asked.effect)
-            if cause is None:
-                reason = reasons.get(asked.effect, NOT_EXCITED)
-                told = block_sentences.of_silence(
-                    effect, asked, reason, self.campaign.blind(effect)
-                )
-            else:
-                rows = self._parameters(effect, cause.value)
-                told = block_sentences.of_cause(cause, effect, rows, self._position(effect))
-            named = cause is not None and cause.verdict in NAMED
-            yield {
+    def rows(self) -> Iterator[TableRow]:
+        """Scores and parameters of every effect, detection limits, and findings."""
+        for test in self.judged.named.asked:
+            if test.effect in self.judged.families:
+                yield from self._of_effect(test)
+        yield from self._limits()
+        for number, cause in enumerate(self.judged.named.causes):
+            yield from self._finding(number, cause)
+
+    def _of_effect(self, test: Asked) -> Iterator[TableRow]:
+        cause = self.causes.get(test.effect)
+        value = cause.value if cause else test.value
+        effect = self.judged.effect(test.effect, value)
+        identifier = finding_id(effect.name, self.mount)
+        parameters = self._parameters(effect, value)
+        if cause is None:
+            reasons = [one.reason for one in self.judged.visible if one.effect == test.effect]
+            sentence = sentences.not_named_sentence(
+                effect, test, next(iter(reasons), NOT_EXCITED), self.campaign.blind(effect)
+            )
+        else:
+            sentence = sentences.cause_sentence(
+                cause, effect, parameters, [name for name, _ in self._positions(effect)]
+            )
+        yield (
+            "scores",
+            {
+                "mount": self.mount,
                 "effect": effect.name,
                 "cause": effect.cause,
                 "sought_in": "blocks",
-                "statistic": cause.statistic if cause else asked.statistic,
-                "degrees": cause.degrees if cause else asked.degrees,
-                "p_value": cause.p_value if cause else asked.after_search,
-                "named": named,
+                "finding": identifier if cause else None,
+                "statistic": _tested(test, cause.statistic if cause else test.statistic),
+                "degrees": cause.degrees if cause else test.degrees or None,
+                "p_value": _tested(test, cause.p_value if cause else test.after_search),
+                "named": cause is not None and cause.verdict in NAMED,
                 "verdict": cause.verdict if cause else "",
-                "members": ", ".join(cause.members) if cause else "",
                 "snr": cause.snr if cause else None,
-                "at": effect.at,
-                "sentence": told,
-            }
+                "scan_value": effect.at,
+                "scan_unit": effect.scan.unit if effect.scan and effect.at is not None else None,
+                "sentence": sentence,
+            },
+        )
+        for one in parameters:
+            finding = identifier if cause else None
+            yield parameter_row(self.mount, effect.name, one, finding, identifier)
 
-    def effects(self) -> Iterator[Row]:
-        """The parameters of every effect beside all that are named, and what could be seen."""
-        for asked in self._asked():
-            cause = self.causes.get(asked.effect)
-            value = cause.value if cause else asked.value
-            yield from self._parameters(self.judged.effect(asked.effect, value), value)
+    def _limits(self) -> Iterator[TableRow]:
+        """What this campaign could have detected of each parameter, or why nothing."""
+        for limit in self.judged.visible:
+            effect = CATALOGUE[limit.effect]
+            parameter = effect.parameters[limit.parameter]
+            visible = limit.reason == VISIBLE
+            why = sentences.explanation(effect, limit.reason, self.campaign.blind(effect))
+            remark = self._same_rate(effect, parameter.name)
+            sentence = sentences.limit_sentence(effect, limit, why)
+            yield (
+                "detection_limits",
+                {
+                    "mount": self.mount,
+                    "effect": effect.name,
+                    "parameter": parameter.name,
+                    "limit": limit.size if visible else None,
+                    "smallest": limit.best if visible else None,
+                    "largest": limit.worst if visible else None,
+                    "unit": parameter.unit,
+                    "reason": limit.reason,
+                    "explanation": why,
+                    "remark": remark,
+                    "sentence": f"{sentence} {remark}" if remark else sentence,
+                },
+            )
 
-    def blind_spots(self) -> Iterator[Row]:
-        """What this campaign could have seen of each parameter, or why nothing."""
-        for one in self.judged.visible:
-            effect = CATALOGUE[one.effect]
-            parameter = effect.parameters[one.parameter]
-            yield {
-                "effect": f"{effect.name}{self.suffix}",
-                "parameter": parameter.name,
-                "visible": one.size if one.reason == VISIBLE else None,
-                "best": one.best if one.reason == VISIBLE else None,
-                "worst": one.worst if one.reason == VISIBLE else None,
-                "unit": parameter.unit,
-                "reason": one.reason,
-                "sentence": block_sentences.of_blindness(effect, one, self.campaign.blind(effect))
-                + self._advice(effect, parameter.name),
-            }
-
-    def findings(self) -> Iterator[Row]:
-        """One finding for each cause, the columns of every finding and those of a cause."""
-        for number, cause in enumerate(self.judged.named.causes):
-            split = self.foreseen.splitting(number)
-            free = cause.effect not in self.judged.families
-            effect = None if free else self.judged.effect(cause.effect, cause.value)
-            rows = [] if effect is None else self._parameters(effect, cause.value)
-            place = self._position(effect)
-            told = block_sentences.of_cause(cause, effect, rows, place)
-            clear = cause.verdict in NAMED
-            yield OF_FINDINGS | {
-                "id": f"criticism/{cause.effect}{self.suffix}",
+    def _finding(self, number: int, cause: Cause) -> Iterator[TableRow]:
+        split = self.foreseen.splitting(number)
+        free = cause.effect not in self.judged.families
+        effect = None if free else self.judged.effect(cause.effect, cause.value)
+        parameters = [] if effect is None else self._parameters(effect, cause.value)
+        positions = self._positions(effect)
+        identifier = finding_id(cause.effect, self.mount)
+        clear = cause.verdict in NAMED
+        action = sentences.ACTION + sentences.split_sentence(split)
+        yield (
+            "findings",
+            {
+                "id": identifier,
+                "mount": self.mount,
                 "cause": cause.effect,
                 "sensor": self.judged.sensor(cause),
-                "manoeuvre": place or None,
+                "count": 1,
                 "size": cause.snr,
+                "unit": "sigma",
                 "p_value": cause.p_value,
-                "sentence": told,
-                "consequence": "Without it bias, scale factors and cross terms take up a part of it"
-                " and do not hold in other motions; the extension tells how much that is."
+                "severity": 2,
+                "sentence": sentences.cause_sentence(
+                    cause, effect, parameters, [name for name, _ in positions]
+                ),
+                "consequence": sentences.CONSEQUENCE
                 if clear
-                else "The joint estimate holds it as a random walk or as a scatter.",
-                "action": block_sentences.ACTION + block_sentences.of_split(split)
-                if clear
-                else "Look at the residuals against time; record again, the IMU switched on long"
-                " before.",
+                else sentences.CONSEQUENCE_WITHOUT_LAW,
+                "action": action if clear else sentences.ACTION_WITHOUT_LAW,
                 "verdict": cause.verdict,
-                "members": ", ".join(cause.members),
                 "statistic": cause.statistic,
                 "degrees": cause.degrees,
                 "snr": cause.snr,
                 "split_manoeuvre": split.manoeuvre if split else None,
                 "split_snr": split.separation if split else None,
-                "parameters": "; ".join(_in_si(row) for row in rows if row["sigma"]),
-            }
+            },
+        )
+        yield from member_rows(identifier, self.mount, cause.members, cause.weights, cause.captured)
+        for rank, (position, statistic) in enumerate(positions, 1):
+            row = {"finding": identifier, "mount": self.mount, "rank": rank}
+            yield "cause_positions", row | {"position": position, "statistic": statistic}
 
-    def _position(self, effect: Effect | None) -> str:
-        """The positions that it may be, where positions are scanned; else empty."""
+    def _positions(self, effect: Effect | None) -> list[tuple[str, float]]:
+        """The positions that an effect of a single position may be at, and its χ² drop there."""
         if effect is None or effect.at is None or effect.scan is None or effect.scan.between:
-            return ""
-        said, family = self.judged.said, self.judged.families[effect.name]
+            return []
+        total, family = self.judged.said.total, self.judged.families[effect.name]
         others = [i for n, c in self.causes.items() if n != effect.name for i in c.columns]
-        asked = next(one for one in self.judged.asked if one.name == effect.name)
-        drops = [said.total.drop([*columns, *others])[0] for columns in asked.candidates]
-        near = [i for i in np.argsort(drops)[::-1] if drops[i] > max(drops) - ALIKE]
-        return " or ".join(self.campaign.positions[int(family[i].at or 0)] for i in near)
+        searched = next(one for one in self.judged.asked if one.name == effect.name)
+        drops = [total.drop([*columns, *others])[0] for columns in searched.candidates]
+        near = [i for i in np.argsort(drops)[::-1] if drops[i] > max(drops) - MAX_RIVAL_DROP]
+        return [(self.campaign.positions[int(family[i].at or 0)], float(drops[i])) for i in near]
 
-    def _advice(self, effect: Effect, parameter: str) -> str:
+    def _same_rate(self, effect: Effect, parameter: str) -> str | None:
         """S3 turns up at one rate and down at another: what the same rate would bring."""
         if effect.name != "gyro_scale_g_dependence" or parameter != effect.parameters[0].name:
-            return ""
+            return None
         shares = self.foreseen.mimicry(effect.name, "gyro_scale_quadratic", TURNED_OVER)
-        if shares is None:
-            return ""
-        return block_sentences.of_same_rate(*shares)
+        return None if shares is None else sentences.same_rate_sentence(*shares)
 
-    def _asked(self) -> Sequence[Asked]:
-        return [one for one in self.judged.named.asked if one.effect in self.judged.families]
-
-    def _parameters(self, effect: Effect, value: int) -> list[Row]:
+    def _parameters(self, effect: Effect, value: int) -> list[Estimated]:
         """An effect's parameters, estimated with those of the causes."""
-        said = self.judged.said
-        if not said.sensors:
-            nothing = {"value": None, "sigma": None, "visible": None}
-            told = ((one.name, one.unit, one.meaning) for one in effect.parameters)
-            return [self._row(effect, *one) | nothing for one in told]
-        place = {name: i for i, name in enumerate(said.names)}
+        evidence = self.judged.said
+        if not evidence.sensors:
+            return [Estimated(one.name, one.unit, one.meaning) for one in effect.parameters]
+        place = {name: i for i, name in enumerate(evidence.names)}
         own = [place[f"{effect.label}.{parameter.name}"] for parameter in effect.parameters]
         others = [c.columns for c in self.judged.named.causes if c.effect != effect.name]
         chosen = list(dict.fromkeys([*own, *(i for columns in others for i in columns)]))
-        values, covariance = said.total.estimate(chosen)
-        sizes = {
+        values, covariance = evidence.total.estimate(chosen)
+        limits = {
             effect.parameters[one.parameter].name: one.size
             for one in self.judged.visible
             if one.effect == effect.name and one.reason == VISIBLE
         }
-        rows = [
-            self._row(effect, parameter.name, parameter.unit, parameter.meaning)
-            | _estimate(float(values[i]), float(covariance[i, i]))
-            | {"visible": sizes.get(parameter.name)}
-            for i, parameter in enumerate(effect.parameters)
-        ]
+        parameters = []
+        for i, one in enumerate(effect.parameters):
+            variance = float(covariance[i, i])
+            known = np.isfinite(variance) and variance > 0
+            estimate = float(values[i]) if known else None
+            sigma = float(np.sqrt(variance)) if known else None
+            limit = limits.get(one.name)
+            parameters.append(Estimated(one.name, one.unit, one.meaning, estimate, sigma, limit))
         if effect.scan is not None and effect.name in self.causes:
-            at = effect.at or 0.0
+            scan, at = effect.scan, effect.at or 0.0
             apart = [abs((one.at or 0.0) - at) for one in self.judged.families[effect.name]]
             step = min((one for one in apart if one), default=0.0)
-            rows.append(
-                self._row(effect, effect.scan.name, effect.scan.unit, effect.scan.meaning)
-                | {"value": at, "visible": None}
-                | {"sigma": step / 12**0.5 if effect.scan.between else None}
-            )
-        return rows
-
-    def _row(self, effect: Effect, name: str, unit: str, meaning: str) -> Row:
-        return {
-            "id": f"criticism/{effect.name}{self.suffix}/{name}",
-            "effect": effect.name,
-            "parameter": name,
-            "unit": unit,
-            "meaning": meaning,
-        }
+            sigma = step / 12**0.5 if scan.between else None  # uniform within a step
+            parameters.append(Estimated(scan.name, scan.unit, scan.meaning, at, sigma))
+        return parameters
 
 
-def _estimate(value: float, variance: float) -> Row:
-    seen = np.isfinite(variance) and variance > 0
-    return {
-        "value": value if seen else None,
-        "sigma": float(np.sqrt(variance)) if seen else None,
-    }
+def _tested(test: Asked, number: float) -> float | None:
+    """A number of a test; None where the effect was not tested, for no reading depends on it."""
+    return number if test.degrees else None
 
 
-def _in_si(row: Row) -> str:
-    return f"{row['parameter']} = {row['value']:.6g} ± {row['sigma']:.2g} {row['unit']}"
-
-
-# ---- Effects that are not sought in means of blocks: in the noise, and in the quality of samples.
-
-WALK = "gyro_random_walk"
-SENSOR_WORDS = {"gyro": "gyros", "accel": "accelerometers"}
-UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
-TABLE_AND_SITE = {"gyro": ("earth", "latitude", "heading"), "accel": ("lever", "size", "table")}
-ELSEWHERE = {
-    "gyro_flicker": "In one campaign it is not told from a random walk, which is estimated.",
-}
-
-
-def noise_scores(effects: Sequence[Effect], walk: Walk | None) -> Iterator[Row]:
-    """One row for each; `walk`: of the gyros, if there is one."""
-    for effect in effects:
-        found = effect.name == WALK and walk is not None
+def other_scores(walk: Walk | None, mount: str) -> Iterator[TableRow]:
+    """Effects sought in the noise, then in the quality of samples; `walk`: of the gyros, if any."""
+    others = [effect for effect in CATALOGUE.values() if effect.sought_in in ("noise", "quality")]
+    for effect in sorted(others, key=lambda one: one.sought_in):  # noise comes before quality
+        named = effect.name == WALK and walk is not None
         if effect.name == WALK and walk is not None:
-            size = _walk("gyro", walk)
-            told = f"The biases of the gyros walk by {size}, which the sigmas allow for."
+            sentence = WALK_SCORE.format(size=_walk_size("gyro", walk))
         elif effect.sought_in == "quality":
-            told = f"The quality of the samples tells it: findings “{in_words(effect.finding)}”."
+            sentence = OF_QUALITY.format(finding=in_words(effect.finding))
         else:
-            told = ELSEWHERE.get(effect.name, "The data ask for none.")
-        yield {
-            "effect": effect.name,
-            "cause": effect.cause,
-            "sought_in": effect.sought_in,
-            "statistic": 0.0,
-            "degrees": 1 if found else 0,
-            "p_value": 0.0 if found else 1.0,
-            "named": found,
-            "verdict": UNKNOWN_STRUCTURE if found else "",
-            "members": effect.name if found else "",
-            "snr": None,
-            "at": None,
-            "sentence": told,
-        }
+            sentence = OF_NOISE.get(effect.name, NOT_TESTED)
+        yield (
+            "scores",
+            {
+                "mount": mount,
+                "effect": effect.name,
+                "cause": effect.cause,
+                "sought_in": effect.sought_in,
+                "finding": finding_id(effect.name, mount) if named else None,
+                "statistic": None,
+                "degrees": None,
+                "p_value": None,
+                "named": named,
+                "verdict": UNKNOWN_STRUCTURE if named else "",
+                "snr": None,
+                "scan_value": None,
+                "scan_unit": None,
+                "sentence": sentence,
+            },
+        )
 
 
-def walk_findings(
-    sensor: str, walk: Walk, instead: Sequence[str], suffix: str, *, structured: bool
-) -> Iterator[Row]:
-    """The random walk of a sensor, `gyro` or `accel`, with the effects that may be it instead.
+def random_walk_rows(
+    sensor: str, walk: Walk, alternatives: Sequence[str], mount: str, *, structured: bool
+) -> Iterator[TableRow]:
+    """The random walk of a sensor, `gyro` or `accel`, and the effects that may be it as well.
 
     With these it is one of a class. Without them it is never certain: what changes by no law, such
-    as telegraph noise, looks much the same; nor where what is left of the sensor is `structured`.
+    as telegraph noise, looks much the same; nor where the residuals of the sensor are `structured`.
     """
     cause = f"{sensor}_random_walk"
-    others = [name for name in instead if name.startswith((sensor, *TABLE_AND_SITE[sensor]))]
-    told = f"The biases of the {SENSOR_WORDS[sensor]} change as by a random walk of"
-    told += f" {_walk(sensor, walk)}."
-    if others:
-        names = " or ".join(in_words(name) for name in others)
-        told += f" Instead it may be {names}: this campaign cannot tell them apart."
-    else:
-        told += " Any other change without a law would look much the same."
-    yield {
-        "id": f"criticism/{cause}{suffix}",
-        "cause": cause,
-        "sensor": sensor,
-        "count": 1,
-        "size": walk.size,
-        "unit": UNITS[sensor],
-        "severity": 1,
-        "sentence": told,
-        "consequence": "The sigmas of all parameters allow for it.",
-        "action": "Record the positions once more, in another order, to tell a walk from others."
-        if others
-        else "A shorter campaign, or turns there and back, lessen what it does.",
-        "verdict": ONE_OF_CLASS if others and not structured else UNKNOWN_STRUCTURE,
-        "members": ", ".join([cause, *others]),
-        "parameters": f"K = {walk.size:.3g} ± {walk.sigma:.2g} {UNITS[sensor]}",
-    }
-
-
-def walk_row(method: str, sensor: str, walk: Walk) -> Row:
-    """The random walk as the extension takes it."""
+    identifier = finding_id(cause, mount)
+    others = [name for name in alternatives if name.startswith((sensor, *SHARED_EFFECTS[sensor]))]
+    sentence = (WALK_OR if others else WALK_ALONE).format(
+        sensors=SENSORS[sensor],
+        size=_walk_size(sensor, walk),
+        others=" or ".join(in_words(name) for name in others),
+    )
+    unit = WALK_UNITS[sensor]
+    yield (
+        "findings",
+        {
+            "id": identifier,
+            "mount": mount,
+            "cause": cause,
+            "sensor": sensor,
+            "count": 1,
+            "size": walk.size,
+            "unit": unit,
+            "severity": 1,
+            "sentence": sentence,
+            "consequence": WALK_CONSEQUENCE,
+            "action": REPEAT if others else SHORTEN,
+            "verdict": ONE_OF_CLASS if others and not structured else UNKNOWN_STRUCTURE,
+        },
+    )
+    yield from member_rows(identifier, mount, [cause, *others])
     sigma = walk.sigma if np.isfinite(walk.sigma) else None
-    return {"method": method, "sensor": sensor, "walk": walk.size, "sigma": sigma}
+    size = Estimated("K", unit, "random walk of the biases", walk.size, sigma)
+    yield parameter_row(mount, cause, size, identifier, identifier)
+    row: Row = {"mount": mount, "sensor": sensor, "value": walk.size, "sigma": sigma, "unit": unit}
+    yield "random_walks", {**row, "finding": identifier}
 
 
-def _walk(sensor: str, walk: Walk) -> str:
+def _walk_size(sensor: str, walk: Walk) -> str:
     # By K per √s a bias walks by 60 K in the root of an hour.
     size, unit = (DEGREE_PER_HOUR, "°/h") if sensor == "gyro" else (MICRO_G.size, "µg")
     value, sigma = (np.array([walk.size, walk.sigma]) / size * 60).tolist()
     return f"{' ± '.join(with_sigma(value, sigma, decimals_of(sigma)))} {unit}/√h"
 
 
-# ---- What is left of the residuals when everything that was named is taken out.
-
-EXCESS = 1.2  # chi-squared per degree that the uncertainty of the noise level does not explain
-
-
-def unexplained(judged: Judged, suffix: str) -> Iterator[Row]:
-    """A finding for each sensor that the named effects do not explain."""
+def unexplained_rows(judged: Judged, mount: str) -> Iterator[TableRow]:
+    """A finding for each sensor whose residuals the named effects do not explain."""
     chosen = list(dict.fromkeys(i for cause in judged.named.causes for i in cause.columns))
     for sensor, reduced in zip(judged.said.labels, judged.said.sensors, strict=True):
         rest, degrees, p_value = judged.said.left_over(reduced, chosen)
-        if p_value >= MIN_CONSISTENT_P_VALUE or rest <= EXCESS * degrees:
+        if p_value >= MIN_CONSISTENT_P_VALUE or rest <= MIN_EXCESS * degrees:
             continue
-        times = float(np.sqrt(rest / degrees))
-        yield {
-            "id": f"criticism/unexplained/{sensor}{suffix}",
-            "cause": "unexplained",
-            "sensor": sensor,
-            "count": 1,
-            "size": times,
-            "unit": "sigma",
-            "p_value": p_value,
-            "severity": 2,
-            "sentence": f"The residuals of the {SENSOR_WORDS[sensor]} are {times:.1f} times what"
-            " noise would leave, and no effect of the catalogue explains it.",
-            "consequence": "The joint estimate holds it as a scatter between manoeuvres.",
-            "action": "Look at the residuals of each manoeuvre, and how the positions were set.",
-        }
+        ratio = float(np.sqrt(rest / degrees))
+        yield (
+            "findings",
+            {
+                "id": finding_id(f"unexplained/{sensor}", mount),
+                "mount": mount,
+                "cause": "unexplained",
+                "sensor": sensor,
+                "count": 1,
+                "size": ratio,
+                "unit": "sigma",
+                "p_value": p_value,
+                "severity": 2,
+                "sentence": UNEXPLAINED.format(sensors=SENSORS[sensor], ratio=ratio),
+                "consequence": SCATTER,
+                "action": INSPECT,
+            },
+        )

@@ -1,7 +1,6 @@
-"""Sentences about effects that are selected from block means."""
+"""Sentences about effects that are selected from block means: each a template with named values."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, Asked, Cause
 from inertial.model_selection.detection_limits import (
@@ -16,104 +15,149 @@ from inertial.text.cause_names import in_words
 from inertial.text.numbers import decimals_of, p_is, significant, with_sigma
 from inertial.text.units import quantity
 from stages.criticism.class_splitting import TURNED_OVER, Splitting
+from stages.criticism.finding_rows import Estimated
 
-Row = Mapping[str, Any]
-
-ACTION = "Take the extended model's parameters where they foretell unseen data."
-CLEAR = 3.0  # sigmas from which a parameter is told
+MIN_SIGMAS = 3.0  # from which a parameter is given in a sentence, if any reaches it
 REASONS = {
     NOT_EXCITED: "no manoeuvre of this plan changes a reading by it",
-    ABSORBED: "the parameters that are estimated anyway do the very same here",
-    ONLY_TOGETHER: "only combinations of its parameters are seen, none by itself",
+    ABSORBED: "it cannot be separated here from the parameters that are always estimated",
+    ONLY_TOGETHER: "only combinations of its parameters are determined, none by itself",
 }
 
+ACTION = (
+    "Use the parameters of the extended model where they predict data that it was not fitted to."
+)
+ACTION_WITHOUT_LAW = (
+    "Look at the residuals against time; record again with the IMU switched on long before."
+)
+CONSEQUENCE = (
+    "Without it bias, scale factors and cross terms absorb a part of it and do not hold in other"
+    " motions; the extension tells how much that is."
+)
+CONSEQUENCE_WITHOUT_LAW = (
+    "The joint estimate allows for it as a random walk or as a scatter of the manoeuvres."
+)
 
-def of_cause(cause: Cause, effect: Effect | None, rows: Sequence[Row], place: str = "") -> str:
-    """A cause in a sentence or two, with its numbers; or its class; none: a course without a law.
+DETECTED = "Detected: {effect}{place}: {cause}. {numbers}."
+DETECTED_CLASS = (
+    "Detected: {effect}{place} ({cause}), or {others}: this campaign cannot distinguish them. As"
+    " {effect}: {numbers}."
+)
+CONSISTENT = (
+    "The data are consistent with {effects}; no more can be said, for the remaining residuals, or a"
+    " random walk, follow no law. As {effect}: {numbers}."
+)
+DRIFT = "The biases drift in a way that no effect of the catalogue explains{nearest}."
+NO_NUMBER = "no parameter by itself"
 
-    `place`: the position that is meant, if it is one.
+NOT_SIGNIFICANT = "{effect}: not significant ({p_value})."
+NOTHING_BESIDE = "{effect}: no signal of its own beside what is named."
+NOT_OBSERVABLE = "{effect}: not observable in this campaign, for {reason}."
+ABSORBED_BY = "it is absorbed by {parameters}"
+
+LIMIT = "{parameter}: detected from {size} on."
+LIMIT_SCANNED = (
+    "{parameter}: detected from {size} on, from {smallest} to {largest} depending on {scanned}."
+)
+NO_LIMIT = "{parameter}: not observable, for {reason}."
+SAME_RATE = (
+    "{now:.0f} % of it could as well be a scale factor that depends on the rate;"
+    " {manoeuvre}, and it is {then:.0f} %."
+)
+
+SPLIT = " To distinguish them, {manoeuvre}: expected separation {sigmas} sigma."
+SPLIT_TOO_WEAK = " Not even this would distinguish them: {manoeuvre} ({sigmas} sigma)."
+
+
+def cause_sentence(
+    cause: Cause, effect: Effect | None, parameters: Sequence[Estimated], positions: Sequence[str]
+) -> str:
+    """A detected cause or its class, with numbers; `effect` None: a drift that follows no law.
+
+    `positions`: those that it may be at, if it is an effect of a single position.
     """
+    title = in_words(cause.effect)
     others = [in_words(member) for member in cause.members if member != cause.effect]
     if effect is None:
-        near = f"; nearest is {', '.join(others)}" if others else ""
-        return f"The data drift in a way that no effect of the catalogue explains{near}."
-    at = f" at {place}" if place else ""
-    numbers = "; ".join(_number(row) for row in _told(rows)) or "no parameter by itself"
+        return DRIFT.format(nearest=f"; nearest is {', '.join(others)}" if others else "")
+    values = {
+        "effect": title,
+        "place": f" at {' or '.join(positions)}" if positions else "",
+        "cause": effect.cause,
+        "others": " or ".join(others),
+        "numbers": "; ".join(map(_number, _significant(parameters))) or NO_NUMBER,
+    }
     if cause.verdict == FOUND:
-        return f"The data ask for {in_words(cause.effect)}{at}: {effect.cause}. {numbers}."
+        return DETECTED.format_map(values)
     if cause.verdict == ONE_OF_CLASS:
-        return (
-            f"The data ask for {in_words(cause.effect)}{at} ({effect.cause}), or for"
-            f" {' or '.join(others)}: this campaign cannot tell them apart. As"
-            f" {in_words(cause.effect)}: {numbers}."
-        )
-    like = " or ".join([f"{in_words(cause.effect)}{at}", *others])
-    return (
-        f"The data are consistent with {like}, and no more is said, for what is left of them or a"
-        f" random walk has no law. As {in_words(cause.effect)}: {numbers}."
-    )
+        return DETECTED_CLASS.format_map(values)
+    values["effects"] = " or ".join([title + values["place"], *others])
+    return CONSISTENT.format_map(values)
 
 
-def of_silence(effect: Effect, asked: Asked, reason: str, blind: str) -> str:
-    """Why an effect is not named; `reason`: that of its first parameter in `visible`."""
-    title = in_words(effect.name)
-    if asked.degrees:
-        return f"No {title} is needed ({p_is(asked.after_search)})."
+def not_named_sentence(effect: Effect, test: Asked, reason: str, blind: str) -> str:
+    """Why an effect is not named; `reason`: that of the limit of its first parameter."""
+    title = _capital(in_words(effect.name))
+    if test.degrees:
+        return NOT_SIGNIFICANT.format(effect=title, p_value=p_is(test.after_search))
     if reason == VISIBLE:
-        return f"Nothing is left that {title} could explain beside what is named."
-    return f"This campaign cannot show {title}: {_why_not(effect, reason, blind)}."
+        return NOTHING_BESIDE.format(effect=title)
+    return NOT_OBSERVABLE.format(effect=title, reason=_reason(effect, reason, blind))
 
 
-def _why_not(effect: Effect, reason: str, blind: str) -> str:
+def explanation(effect: Effect, reason: str, blind: str) -> str | None:
+    """Why a parameter is not observable; None where it is."""
+    return None if reason == VISIBLE else _reason(effect, reason, blind)
+
+
+def limit_sentence(effect: Effect, limit: Visible, why: str | None) -> str:
+    """From which size on a parameter is detected, or `why` it is not observable."""
+    parameter = effect.parameters[limit.parameter]
+    title = f"{in_words(effect.name)}, {parameter.name}"
+    if why is not None:
+        return NO_LIMIT.format(parameter=title, reason=why)
+    unit = quantity(parameter.name, parameter.unit).laboratory
+    values = {"parameter": title, "size": f"{significant(unit.of(limit.size), 2)} {unit.name}"}
+    if limit.best >= limit.worst:
+        return LIMIT.format_map(values)
+    values |= {"smallest": significant(unit.of(limit.best), 2)}
+    values |= {"largest": significant(unit.of(limit.worst), 2)}
+    values["scanned"] = "the scanned value" if effect.scan is None else effect.scan.meaning
+    return LIMIT_SCANNED.format_map(values)
+
+
+def split_sentence(split: Splitting | None) -> str:
+    """The manoeuvre that would distinguish the members of a class."""
+    if split is None:
+        return ""
+    template = SPLIT if split.tells else SPLIT_TOO_WEAK
+    return template.format(manoeuvre=split.manoeuvre, sigmas=significant(split.separation, 2))
+
+
+def same_rate_sentence(now: float, then: float) -> str:
+    """What turning at the same rate with the axis down would bring; shares of the signal."""
+    return SAME_RATE.format(now=100 * now, then=100 * then, manoeuvre=TURNED_OVER)
+
+
+def _reason(effect: Effect, reason: str, blind: str) -> str:
     if effect.absorbed_by and not blind:
-        return f"it is taken for {effect.absorbed_by}"
+        return ABSORBED_BY.format(parameters=effect.absorbed_by)
     why = blind.rstrip(".") or REASONS[reason]
     return why[:1].lower() + why[1:]
 
 
-def of_blindness(effect: Effect, one: Visible, blind: str) -> str:
-    """What of a parameter could have been seen, or why nothing."""
-    parameter = effect.parameters[one.parameter]
-    title = f"{in_words(effect.name)}, {parameter.name}"
-    if one.reason in REASONS:
-        return f"{title}: not seen, for {_why_not(effect, one.reason, blind)}."
+def _significant(parameters: Sequence[Estimated]) -> list[Estimated]:
+    known = [one for one in parameters if one.value is not None and one.sigma]
+    clear = [one for one in known if abs(one.value or 0.0) > MIN_SIGMAS * (one.sigma or 0.0)]
+    return clear or known
+
+
+def _number(parameter: Estimated) -> str:
     unit = quantity(parameter.name, parameter.unit).laboratory
-    size = f"{significant(unit.of(one.size), 2)} {unit.name}"
-    if one.best < one.worst:
-        span = [significant(unit.of(x), 2) for x in (one.best, one.worst)]
-        return f"{title}: seen from {size} on, from {span[0]} to {span[1]} by {_scanned(effect)}."
-    return f"{title}: seen from {size} on."
+    sigma = unit.of(parameter.sigma or 0.0)
+    value = " ± ".join(with_sigma(unit.of(parameter.value or 0.0), sigma, decimals_of(sigma)))
+    return f"{parameter.name} = {value} {unit.name}"
 
 
-def of_split(split: Splitting | None) -> str:
-    """What would tell the members of a class apart."""
-    if split is None:
-        return ""
-    clear = f"{significant(split.separation, 2)} sigma"
-    if split.tells:
-        return f" To tell them apart, {split.manoeuvre}: that would do it by {clear}."
-    return f" Not even this would tell them apart: {split.manoeuvre} ({clear})."
-
-
-def of_same_rate(now: float, then: float) -> str:
-    """What turns at the same rate with the axis down would bring."""
-    return (
-        f" {100 * now:.0f} % of it could as well be a scale factor that goes with the rate;"
-        f" {TURNED_OVER}, and it is {100 * then:.0f} %."
-    )
-
-
-def _scanned(effect: Effect) -> str:
-    return "what is scanned" if effect.scan is None else effect.scan.meaning
-
-
-def _told(rows: Sequence[Row]) -> list[Row]:
-    clear = [r for r in rows if r["sigma"] and abs(r["value"]) > CLEAR * r["sigma"]]
-    return clear or [r for r in rows if r["sigma"]]
-
-
-def _number(row: Row) -> str:
-    unit = quantity(row["parameter"], row["unit"]).laboratory
-    sigma = unit.of(row["sigma"])
-    value = " ± ".join(with_sigma(unit.of(row["value"]), sigma, decimals_of(sigma)))
-    return f"{row['parameter']} = {value} {unit.name}"
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -22,12 +22,15 @@ DECLARED = Declared(
     writes={
         "scores": tables.SCORES,
         "effects": tables.EFFECTS,
-        "blind_spots": tables.BLIND_SPOTS,
+        "detection_limits": tables.DETECTION_LIMITS,
         "lines": tables.LINES,
-        "walks": tables.WALKS,
+        "random_walks": tables.RANDOM_WALKS,
         "structures": tables.STRUCTURES,
         "structure_points": tables.STRUCTURE_POINTS,
         "findings": tables.CAUSES,
+        "members": tables.MEMBERS,
+        "cause_positions": tables.CAUSE_POSITIONS,
+        "blind_spots": tables.BLIND_SPOTS,
     },
     streams=("simulated",),
 )

@@ -14,11 +14,11 @@ from inertial.tables import AXES
 
 # ---- Oscillations in the residuals of the rate segments, fitted in time and in angle.
 
-# ---- What stands out of the noise of the turns, before it is known what it is.
+# ---- A detection, before its cause is known.
 
 
 @dataclass(frozen=True)
-class Stands:
+class Detection:
     """An order against the table's angle, or else a frequency in time."""
 
     drop: float  # of chi-squared
@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Ringing:
+class TurnLine:
     """A line of one axis of the case in one turn; amplitude in rad/s of true rate.
 
     `drop`: of chi-squared by it.
@@ -46,7 +46,7 @@ class Ringing:
     drop: float
 
 
-def ringing(turn: SteadyTurn, lowest: float, taken: Sequence[Taken] = ()) -> list[Ringing]:
+def strongest_lines(turn: SteadyTurn, lowest: float, taken: Sequence[Taken] = ()) -> list[TurnLine]:
     """The strongest line about each axis of the case; nothing below `lowest`, Hz."""
     found = []
     for i, axis in enumerate(AXES):
@@ -55,12 +55,12 @@ def ringing(turn: SteadyTurn, lowest: float, taken: Sequence[Taken] = ()) -> lis
         line = strongest(turn.truth[:, i], 1 / turn.step, lowest, taken)
         if line is not None:
             drop = (line.amplitude / line.sigma_amplitude) ** 2
-            found.append(Ringing(turn.name, axis, turn.whole(line), drop))
+            found.append(TurnLine(turn.name, axis, turn.whole(line), drop))
     return found
 
 
 @dataclass(frozen=True)
-class Oscillating:
+class MeanLine:
     """One oscillation over all turns that show it: axis, frequency, amplitude, with sigmas."""
 
     axis: str
@@ -71,12 +71,12 @@ class Oscillating:
     amplitude_sigma: float
 
 
-def together(same: Sequence[Ringing]) -> Oscillating:
-    """Turns that ring about one axis at one frequency are one oscillation."""
+def together(same: Sequence[TurnLine]) -> MeanLine:
+    """Lines of several turns about one axis at one frequency are one oscillation."""
     frequency = _weighted([(o.line.frequency, o.line.sigma_frequency) for o in same])
     amplitude = _weighted([(o.line.amplitude, o.line.sigma_amplitude) for o in same])
     names = tuple(one.manoeuvre for one in same)
-    return Oscillating(same[0].axis, names, *frequency, *amplitude)
+    return MeanLine(same[0].axis, names, *frequency, *amplitude)
 
 
 def _weighted(values: Sequence[tuple[float, float]]) -> tuple[float, float]:
@@ -86,14 +86,14 @@ def _weighted(values: Sequence[tuple[float, float]]) -> tuple[float, float]:
     return float(np.average(numbers, weights=weights)), float(weights.sum() ** -0.5)
 
 
-# ---- What stands out against time: in one axis of one turn, and in one axis of all turns.
+# ---- Detection in time: in one axis of one turn, and in one axis of all turns.
 
 
-def in_turns(rings: Sequence[Ringing], turns: Sequence[SteadyTurn]) -> list[Stands]:
+def in_turns(rings: Sequence[TurnLine], turns: Sequence[SteadyTurn]) -> list[Detection]:
     """The strongest line of each axis in each turn, the search over all of them paid for."""
     place = {turn.name: turn for turn in turns}
     return [
-        Stands(
+        Detection(
             ring.drop,
             min(ring.line.p_value * len(rings), 1.0),
             None,
@@ -106,44 +106,46 @@ def in_turns(rings: Sequence[Ringing], turns: Sequence[SteadyTurn]) -> list[Stan
 
 def in_all(
     turns: Sequence[SteadyTurn], taken: Mapping[str, Sequence[Taken]], lowest: float
-) -> list[Stands]:
-    """The frequency that stands out most of each axis in all turns; one turn is no more than it.
+) -> list[Detection]:
+    """The most significant frequency of each axis in all turns, at least two.
 
-    What may be left of a line that was taken out of any turn is none.
+    What may remain of a line that was removed from any turn is not counted.
     """
     found = []
     for i in range(len(AXES)):
-        told = [turn for turn in turns if turn.tells(np.eye(3)[i])]
-        if len(told) < 2:
+        visible = [turn for turn in turns if turn.tells(np.eye(3)[i])]
+        if len(visible) < 2:
             continue
         frequency, drop, chance = pooled(
-            [turn.truth[:, i] for turn in told], [1 / turn.step for turn in told], lowest
+            [turn.truth[:, i] for turn in visible], [1 / turn.step for turn in visible], lowest
         )
         if not len(frequency):
             continue
-        for turn in told:
+        for turn in visible:
             noise = turn.sigma(np.eye(3)[i]) * np.sqrt(2 / len(turn.truth))
             for one in taken[turn.name]:
                 leaks = one.leaks(frequency, turn.seconds) / noise
-                chance = np.where(drop > len(told) * leaks**2, chance, 0.0)
+                chance = np.where(drop > len(visible) * leaks**2, chance, 0.0)
         best = int(np.argmin(chance))
         trials = len(AXES) * len(frequency)
         p_value = float(np.exp(min(chance[best] + np.log(trials), 0.0)))
-        found.append(Stands(float(drop[best]), p_value, None, float(frequency[best]), told[0]))
+        found.append(
+            Detection(float(drop[best]), p_value, None, float(frequency[best]), visible[0])
+        )
     return found
 
 
-# ---- What stands out in the turns against the table's angle.
+# ---- Detection against the table's angle.
 
-ECCENTRIC = 1.0  # the order of an encoder off its axis
+ECCENTRICITY_ORDER = 1.0  # of an encoder off its axis
 
 
 def best_orders(
     turns: Sequence[SteadyTurn], said: Orders, taken: Mapping[str, Sequence[Taken]]
-) -> list[Stands]:
+) -> list[Detection]:
     """The order 1, and the best of all others: two searches."""
     chance = log_chance(said, shortest(turns))
-    # What may be left of a line that was taken out of any turn is no ripple.
+    # What may remain of a line that was removed from any turn is no ripple.
     amplitude = np.sqrt(said.drop) * np.where(said.turns > 0, said.sigma, 0.0)
     for turn in turns:
         for one in taken[turn.name]:
@@ -151,11 +153,11 @@ def best_orders(
             stands = amplitude * said.order * abs(turn.rate) > leaks
             chance = np.where(stands, chance, 0.0)
     found = []
-    others = np.where(said.order > ECCENTRIC, chance, 0.0)
+    others = np.where(said.order > ECCENTRICITY_ORDER, chance, 0.0)
     for i, trials in ((0, 1.0), (int(np.argmin(others)), float(len(others)))):
         p_value = float(np.exp(min(chance[i] + np.log(trials), 0.0)))
         order, turn = float(said.order[i]), turns[0]
-        found.append(Stands(float(said.drop[i]), p_value, order, turn.hertz(order), turn))
+        found.append(Detection(float(said.drop[i]), p_value, order, turn.hertz(order), turn))
     return found
 
 
@@ -164,11 +166,11 @@ def shortest(turns: Sequence[SteadyTurn]) -> float:
     return min(turn.seconds * turn.hertz(1.0) for turn in turns)
 
 
-# ---- What the other axes of the case see of an oscillation about one of them.
+# ---- Coupling of an oscillation about one axis of the case into the others.
 
 TABLE = "table"  # the axis that the table turns about
-CLEAR = 5.0  # sigmas from which an axis has more than coupling
-TERM = 1e-4  # rad, 20″: what a cross term may be off
+MIN_EXCESS_SIGMA = 5.0  # from which an axis has more than coupling
+MAX_CROSS_TERM_ERROR = 1e-4  # rad, 20″
 
 
 @dataclass(frozen=True)
@@ -199,24 +201,24 @@ def coupled(
     turns: Sequence[SteadyTurn], axis: str, frequencies: Mapping[str, float]
 ) -> list[Coupled]:
     """The other axes; of an oscillation about the table's axis none, for it differs by turn."""
-    heard = [turn for turn in turns if turn.name in frequencies]
-    if axis == TABLE or not heard:
+    known = [turn for turn in turns if turn.name in frequencies]
+    if axis == TABLE or not known:
         return []
     source = AXES.index(axis)
-    truth = np.array([_phasors(turn, frequencies[turn.name]) for turn in heard])
-    matrix = heard[0].matrix
+    truth = np.array([_phasors(turn, frequencies[turn.name]) for turn in known])
+    matrix = known[0].matrix
     read = _rms(truth @ matrix.T)
     size = _rms(truth)
-    noise = np.array([[_sigma(turn, i) for i in range(len(AXES))] for turn in heard])
+    noise = np.array([[_sigma(turn, i) for i in range(len(AXES))] for turn in known])
     # What noise leaves of the mean square of k amplitudes scatters by 2 σ²/√k.
-    sigma = np.sqrt(2 * np.mean(noise**2, axis=0) / np.sqrt(len(heard)))
+    sigma = np.sqrt(2 * np.mean(noise**2, axis=0) / np.sqrt(len(known)))
     found = []
     for i, name in enumerate(AXES):
         if i == source:
             continue
         tips = [
             _tipping(turn, truth[k, source], frequencies[turn.name], source, i)
-            for k, turn in enumerate(heard)
+            for k, turn in enumerate(known)
         ]
         left = float(np.sqrt(max(size[i] ** 2 - 2 * np.mean(noise[:, i] ** 2), 0.0)))
         found.append(
@@ -227,7 +229,10 @@ def coupled(
                 left,
                 float(sigma[i]),
                 float(_rms(np.array(tips))),
-                bool(left > max(np.sqrt(CLEAR) * sigma[i], TERM * size[source])),
+                bool(
+                    left
+                    > max(np.sqrt(MIN_EXCESS_SIGMA) * sigma[i], MAX_CROSS_TERM_ERROR * size[source])
+                ),
             )
         )
     return found

@@ -22,109 +22,113 @@ from inertial.estimation.periodic_in_time import (
 )
 from inertial.tables import AXES, GYRO
 from stages.criticism.oscillation_fits import (
-    ECCENTRIC,
+    ECCENTRICITY_ORDER,
     TABLE,
     Coupled,
-    Oscillating,
-    Ringing,
-    Stands,
+    Detection,
+    MeanLine,
+    TurnLine,
     best_orders,
     coupled,
     direction,
     in_all,
     in_turns,
-    ringing,
     shortest,
+    strongest_lines,
     together,
 )
 
 Array = NDArray[np.float64]
 
-# ---- To what an oscillation is bound: time or the table's angle; and about which axis it arises.
+# ---- Whether an oscillation is periodic in time or in angle, and about which axis it arises.
 
-TOLERANCE = 1e-5  # rad, 2″: at what angle a table starts a turn
-WIDTH = 0.5  # bins by which an order may be off where it was seen first
-FREER = 9.0  # drop of chi-squared that an order other than 1 must bring beside 1
-REFINED = 30.0  # drop of chi-squared from which a turn tells its frequency itself
-PERIODS = 3.0  # in a turn, without which it does not
+MAX_START_ERROR = 1e-5  # rad, 2″, of the angle at which the table starts a turn
+MAX_ORDER_SHIFT = 0.5  # bins between an order in the search and refined
+MIN_FREE_ORDER_DROP = 9.0  # of chi-squared, by an order other than 1
+MIN_REFINED_DROP = 30.0  # of chi-squared, from which a turn has a frequency of its own
+MIN_PERIODS = 3.0  # in a turn, for a frequency of its own
 TIME, ANGLE = "time", "angle"
 
 
 @dataclass(frozen=True)
-class Bound:
+class Oscillation:
     """An oscillation over all turns.
 
-    bound : to time or to the angle, whichever is likelier; axis : x, y or z of the case, or the
+    periodic_in : time or angle, whichever is likelier; axis : x, y or z of the case, or the
     table's, about which it arises; log_odds : natural logarithm of its odds against the other
-    frequencies : Hz, in each turn; oscillating : as one in time; ripple : as one against the angle,
-    None where no angle is known; shown : its line in each turn; through : the other axes of the
-    case; eccentric : whether of the order 1
+    frequencies : Hz, in each turn; mean : over the turns, as one in time; ripple : as one against
+    the angle, None where no angle is known; lines : its line in each turn; coupled : the other
+    axes of the case; eccentric : whether of the order 1
     """
 
-    bound: str
+    periodic_in: str
     axis: str
     log_odds: float
     p_value: float
     frequencies: Mapping[str, float]
-    oscillating: Oscillating
+    mean: MeanLine
     ripple: Ripple | None
-    shown: Sequence[Ringing]
-    through: Sequence[Coupled]
+    lines: Sequence[TurnLine]
+    coupled: Sequence[Coupled]
 
     @property
-    def told(self) -> bool:
-        """Whether the data tell time from angle."""
+    def decided(self) -> bool:
+        """Whether the data distinguish time from angle."""
         return self.log_odds >= TELLS
 
 
-def explained(seed: Stands, turns: Sequence[SteadyTurn], lowest: float, level: float) -> Bound:
-    """Both explanations of what stands out, and the better one."""
-    angle_score, axis_of_ripple, ripple = _in_angle(seed, turns)
-    time_score, axis, lines = _in_time(seed, turns, lowest)
+def explanation_of(
+    detection: Detection, turns: Sequence[SteadyTurn], lowest: float, level: float
+) -> Oscillation:
+    """Both explanations of a detection, and the better one."""
+    angle_score, axis_of_ripple, ripple = _in_angle(detection, turns)
+    time_score, axis, lines = _in_time(detection, turns, lowest)
     rates = [turn for turn in turns if np.isfinite(turn.rate)]
-    bound, frequencies = TIME, {one.manoeuvre: one.line.frequency for one in lines}
+    periodic_in, frequencies = TIME, {one.manoeuvre: one.line.frequency for one in lines}
     if ripple is not None and angle_score > time_score:
-        bound, axis = ANGLE, axis_of_ripple
+        periodic_in, axis = ANGLE, axis_of_ripple
         frequencies = {turn.name: turn.hertz(ripple.order) for turn in rates}
         lines = _lines(turns, axis, frequencies, lowest, fixed=True)
     clear = _clear(lines, turns, level)
-    oscillating = together(clear)
-    if bound == TIME:
+    mean = together(clear)
+    if periodic_in == TIME:
         own = {one.manoeuvre: one.line.frequency for one in clear}
-        frequencies = {turn.name: own.get(turn.name, oscillating.frequency) for turn in turns}
+        frequencies = {turn.name: own.get(turn.name, mean.frequency) for turn in turns}
     names = [one.manoeuvre for one in clear]
-    return Bound(
-        bound,
+    return Oscillation(
+        periodic_in,
         axis,
         abs(angle_score - time_score),
-        seed.p_value,
+        detection.p_value,
         frequencies,
-        oscillating,
+        mean,
         ripple,
-        lines if bound == ANGLE else clear,
+        lines if periodic_in == ANGLE else clear,
         coupled([turn for turn in turns if turn.name in names], axis, frequencies),
     )
 
 
-def _in_angle(seed: Stands, turns: Sequence[SteadyTurn]) -> tuple[float, str, Ripple | None]:
+def _in_angle(
+    detection: Detection, turns: Sequence[SteadyTurn]
+) -> tuple[float, str, Ripple | None]:
     """The best score of one order about any axis, the axis, and the ripple."""
     known = [turn for turn in turns if np.isfinite(turn.rate)]
-    order = seed.order
-    if order is None and np.isfinite(seed.turn.rate):
-        order = seed.frequency / seed.turn.hertz(1.0)
+    order = detection.order
+    if order is None and np.isfinite(detection.turn.rate):
+        order = detection.frequency / detection.turn.hertz(1.0)
     best: tuple[float, str, Ripple | None] = (-np.inf, TABLE, None)
     if order is None:
         return best
     for axis in (TABLE, *AXES):
         courses = [turn.course(direction(turn, axis)) for turn in known]
-        width = WIDTH / max(one.turned for one in courses)
+        width = MAX_ORDER_SHIFT / max(one.turned for one in courses)
         ripple = fitted(courses, order, width)
         trials = float(len(grid(courses)) * (1 + len(AXES)))
-        if axis == TABLE and abs(ripple.order - ECCENTRIC) < 2 * width:
-            eccentric = fitted(courses, ECCENTRIC, 0.0)
-            if ripple.drop - eccentric.drop < FREER:
+        if axis == TABLE and abs(ripple.order - ECCENTRICITY_ORDER) < 2 * width:
+            eccentric = fitted(courses, ECCENTRICITY_ORDER, 0.0)
+            if ripple.drop - eccentric.drop < MIN_FREE_ORDER_DROP:
                 ripple, trials = eccentric, 1.0
-        drop = ripple.drop + ripple.apart - ripple.beyond(TOLERANCE)
+        drop = ripple.drop + ripple.apart - ripple.beyond(MAX_START_ERROR)
         score = in_angle(max(drop, ripple.drop), trials)
         if score > best[0]:
             best = (score, axis, ripple)
@@ -132,13 +136,13 @@ def _in_angle(seed: Stands, turns: Sequence[SteadyTurn]) -> tuple[float, str, Ri
 
 
 def _in_time(
-    seed: Stands, turns: Sequence[SteadyTurn], lowest: float
-) -> tuple[float, str, list[Ringing]]:
+    detection: Detection, turns: Sequence[SteadyTurn], lowest: float
+) -> tuple[float, str, list[TurnLine]]:
     """The best score of one frequency about any axis, the axis, and its line in each turn."""
-    tried = {seed.frequency}
-    if seed.order is not None:
-        tried = {round(turn.hertz(seed.order), 6) for turn in turns if np.isfinite(turn.rate)}
-    best: tuple[float, str, list[Ringing]] = (-np.inf, TABLE, [])
+    tried = {detection.frequency}
+    if detection.order is not None:
+        tried = {round(turn.hertz(detection.order), 6) for turn in turns if np.isfinite(turn.rate)}
+    best: tuple[float, str, list[TurnLine]] = (-np.inf, TABLE, [])
     bins = max(turn.seconds / turn.step for turn in turns)
     for frequency in sorted(tried):
         everywhere = {turn.name: frequency for turn in turns}
@@ -146,7 +150,7 @@ def _in_time(
             lines = _lines(turns, axis, everywhere, lowest)
             if not lines:
                 continue
-            known = [one for one in lines if one.drop > REFINED]
+            known = [one for one in lines if one.drop > MIN_REFINED_DROP]
             one = together(known).frequency if known else frequency
             same = _lines(turns, axis, dict.fromkeys(everywhere, one), lowest, fixed=True)
             score = in_time(
@@ -166,7 +170,7 @@ def _lines(
     frequencies: Mapping[str, float],
     lowest: float,
     fixed: bool = False,
-) -> list[Ringing]:
+) -> list[TurnLine]:
     """The line of each turn at its frequency, or near it; nothing from half the sample rate on."""
     found = []
     for turn in turns:
@@ -177,78 +181,77 @@ def _lines(
         record, sigma = turn.along(along), turn.sigma(along)
         drop = energy(record, rate, frequency) / sigma**2
         line = line_at(record, rate, lowest, frequency, 1.0)
-        if drop > REFINED and not fixed and frequency * turn.seconds > PERIODS:
+        if drop > MIN_REFINED_DROP and not fixed and frequency * turn.seconds > MIN_PERIODS:
             line = near(record, rate, lowest, frequency, 1.0)
             drop = energy(record, rate, line.frequency) / sigma**2
         searched = min(len(record) * float(np.exp(-min(drop / 2, 700.0))), 1.0)
-        found.append(Ringing(turn.name, axis, turn.whole(replace(line, p_value=searched)), drop))
+        found.append(TurnLine(turn.name, axis, turn.whole(replace(line, p_value=searched)), drop))
     return found
 
 
 def _clear(
-    lines: Sequence[Ringing], turns: Sequence[SteadyTurn], level: float
-) -> Sequence[Ringing]:
+    lines: Sequence[TurnLine], turns: Sequence[SteadyTurn], level: float
+) -> Sequence[TurnLine]:
     """The turns that show a line by themselves; all where none does."""
     trials = len(turns) * len(AXES)
     return [one for one in lines if one.line.p_value * trials < level] or lines
 
 
-# ---- The oscillations of all turns of one mount, one after another: bound to time or to the
-# angle.
+# ---- The oscillations of all turns of one mount, one after another.
 
-MOST = 6  # oscillations that are told apart
+MAX_OSCILLATIONS = 6  # that are searched for one after another
 SEARCHES = 4  # in one turn, in all turns, orders, the order 1: each has its share of the chance
 
 
 @dataclass(frozen=True)
-class Heard:
-    """What was found in the turns of one mount.
+class SearchResult:
+    """The oscillations of the turns of one mount.
 
-    lines : the oscillations in the order in which they were found
-    strongest : the strongest line in time of each axis and turn before any was taken out
+    oscillations : in the order of their detection
+    strongest : the strongest line in time of each axis and turn before any was removed
     orders : of the last search, what each says; None without a turn whose angle is known
-    left : of the last search, what stood out most in time, the order 1, and the best other order
-    seen : (m,), from how many sigmas on an order is seen
+    remaining : of the last search, the most significant in time, the order 1, and the best other
+    sigmas : (m,), from how many on an order is detected
     more : whether the last search would have found another one, but enough were found
     """
 
     turns: Sequence[SteadyTurn]
-    lines: Sequence[Bound]
-    strongest: Sequence[Ringing]
+    oscillations: Sequence[Oscillation]
+    strongest: Sequence[TurnLine]
     orders: Orders | None
-    left: Sequence[Stands]
-    seen: Array
+    remaining: Sequence[Detection]
+    sigmas: Array
     more: bool
 
 
-def heard(turns: Sequence[SteadyTurn], level: float, lowest: float) -> Heard:
-    """Find the oscillation that stands out most, take it out, and search again.
+def find_oscillations(turns: Sequence[SteadyTurn], level: float, lowest: float) -> SearchResult:
+    """Find the most significant oscillation, remove it, and search again.
 
     level : accepted chance of finding any where there is none; lowest : Hz, from which on lines in
     time are sought
     """
     share = level / SEARCHES
     left, taken = list(turns), {turn.name: list[Taken]() for turn in turns}
-    lines: list[Bound] = []
-    first: list[Ringing] = []
+    lines: list[Oscillation] = []
+    first: list[TurnLine] = []
     while True:
-        rings = [ring for turn in left for ring in ringing(turn, lowest, taken[turn.name])]
+        rings = [ring for turn in left for ring in strongest_lines(turn, lowest, taken[turn.name])]
         first = first if lines else rings
         turning = [turn for turn in left if np.isfinite(turn.rate)]
         orders = search([turn.course(turn.about) for turn in turning]) if turning else None
         against = [] if orders is None else best_orders(turning, orders, taken)
         every = [*in_turns(rings, left), *in_all(left, taken, lowest), *against]
         clear = [one for one in every if one.p_value < share]
-        if not clear or len(lines) == MOST:
+        if not clear or len(lines) == MAX_OSCILLATIONS:
             break
-        found = explained(max(clear, key=lambda one: one.drop), left, lowest, share)
+        found = explanation_of(max(clear, key=lambda one: one.drop), left, lowest, share)
         lines.append(found)
         left = [_without(turn, found, taken[turn.name]) for turn in left]
     seen = np.zeros(0) if orders is None else sigmas_seen(orders, shortest(turning), share)
-    return Heard(turns, lines, first, orders, every, seen, bool(clear))
+    return SearchResult(turns, lines, first, orders, every, seen, bool(clear))
 
 
-def _without(turn: SteadyTurn, found: Bound, taken: list[Taken]) -> SteadyTurn:
+def _without(turn: SteadyTurn, found: Oscillation, taken: list[Taken]) -> SteadyTurn:
     """A turn without an oscillation: about each axis as large, and in such phase, as it is."""
     frequency = found.frequencies.get(turn.name)
     if frequency is None:
@@ -269,7 +272,7 @@ def _without(turn: SteadyTurn, found: Bound, taken: list[Taken]) -> SteadyTurn:
 
 
 def without_lines(
-    blocks: pd.DataFrame, turns: Sequence[SteadyTurn], lines: Sequence[Bound]
+    blocks: pd.DataFrame, turns: Sequence[SteadyTurn], lines: Sequence[Oscillation]
 ) -> pd.DataFrame:
     """The same blocks, each line taken out of the steady ones with its own phase in each turn.
 
@@ -283,13 +286,13 @@ def without_lines(
     for turn in turns:
         own = (blocks["manoeuvre"] == turn.name) & (blocks["phase"] == "steady")
         if own.any() and np.isfinite(turn.start):
-            ringing = _mean_rates(turn, lines, blocks[own])
-            ringing -= np.average(ringing, axis=0, weights=blocks.loc[own, "seconds"])
-            quiet.loc[own, GYRO] -= ringing @ turn.matrix.T
+            rates = _mean_rates(turn, lines, blocks[own])
+            rates -= np.average(rates, axis=0, weights=blocks.loc[own, "seconds"])
+            quiet.loc[own, GYRO] -= rates @ turn.matrix.T
     return quiet
 
 
-def _mean_rates(turn: SteadyTurn, lines: Sequence[Bound], blocks: pd.DataFrame) -> Array:
+def _mean_rates(turn: SteadyTurn, lines: Sequence[Oscillation], blocks: pd.DataFrame) -> Array:
     """The mean rates of all lines in blocks of a turn, (k, 3), rad/s, about the case's axes."""
     left = turn.truth.copy()
     time = turn.step * np.arange(len(left))

@@ -1,58 +1,125 @@
-"""Sentences about oscillations, detected and not detected."""
+"""Sentences about oscillations, detected and not detected: each a template with named values."""
 
 from collections.abc import Sequence
 from math import degrees, exp, pi
 
 import numpy as np
+from numpy.typing import NDArray
 
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.periodic_in_angle import Ripple
+from inertial.text.cause_names import in_words
 from inertial.text.numbers import decimals_of, fixed, significant, with_sigma
 from inertial.text.units import ARC_SECOND
-from stages.criticism.oscillation_fits import CLEAR, TABLE, Coupled
-from stages.criticism.oscillation_search import ANGLE, Bound
+from stages.criticism.oscillation_fits import MIN_EXCESS_SIGMA, TABLE, Coupled
+from stages.criticism.oscillation_search import ANGLE, Oscillation
+
+MAX_LOG_ODDS = 40.0  # beyond which the number of the odds says nothing
+MIN_PERIODS_IN_TURN = 1.5  # below which a turn determines little of an eccentricity
+MAX_INTEGER_SIGMAS = 3.0  # within which an order is a whole number
+MAX_RATES = 3  # of the table that a sentence lists
 
 NO_TURN = "no whole turn at a steady rate was recorded"
 NO_ANGLE = "of no whole turn at a steady rate both rate and acceleration are stated"
-MANY = 40.0  # logarithm of odds beyond which their number says nothing
-SHORT = 1.5  # periods in a turn, below which little of them is seen
-NEAR = 3.0  # sigmas within which an order is a whole number
 SPLIT = "record the same turns at twice the rate"
+SINGLE_TURN = (
+    "Noise at so low a frequency is estimated from the differences between turns; there is one turn"
+    " only."
+)
+
+IN_TIME = (
+    "The case oscillates about {axis} while the table turns: {frequency} Hz, {amplitude} rad/s"
+    " ({arc:.1f}″), in {manoeuvres}."
+)
+IN_ANGLE = " It is periodic in the table's angle: {order} per revolution."
+NO_NET_ANGLE = " Over a whole turn it adds no angle."
+RIPPLE = "The table's rate has a ripple {order} per revolution, of {size} of its angle, {turns}."
+ECCENTRIC = "The angle of the table has an error once per revolution, of {size}, {turns}."
+SAME_IN_TURNS = "the same in {count} turns against the table's angle"
+IN_ONE_TURN = "in one turn"
+AT_RATES = " That is {each}."
+AT_RATE = "{frequency} Hz and {amplitude} rad/s at {rate} °/s"
+
+UNDECIDED = (
+    " The data do not distinguish whether it is periodic in time or in the table's angle: the first"
+    " is {odds} as likely."
+)
+NOT_IN_TIME = (
+    " As an oscillation in time, with a phase of its own in each turn, it would be {odds} less"
+    " likely."
+)
+NOT_IN_ANGLE = (
+    " It is periodic in time: as a ripple of order {orders} of the table's angle it would be {odds}"
+    " less likely."
+)
+VERY_LARGE_ODDS = "more than 10¹⁷ times"
+
+COUPLED_UNKNOWN = " Through their cross terms the other axes contain it too."
+COUPLED = " Through their cross terms {each}."
+COUPLED_HIDDEN = "{axis} contains {expected} rad/s, less than its noise shows"
+COUPLED_READ = "{axis} contains {expected} rad/s and reads {read}"
+COUPLED_MORE = (
+    " In {axis} {excess} rad/s is more than coupling; the case tips into the table's rate, which"
+    " brings {tipping}."
+)
+
+CONSEQUENCE = (
+    "{turn} bias, scale factors and cross terms. Part of a turn is in error by up to {swing}″. The"
+    " finding “oscillation” of the logs at this frequency is the same."
+)
+CLOSED = "A whole turn is free of it, and so are"
+NOT_CLOSED = (
+    "As its order is no whole number it does not close over a turn, but blocks of turns take their"
+    " angle from the gyros; it does no harm to"
+)
+CLOSED_IN_TIME = "Over whole turns it adds no angle, so it does no harm to"
+ACTION_UNDECIDED = "To distinguish them, {split}: if periodic in angle its frequency doubles."
+ACTION_ANGLE = "Turn by whole turns; look at the table's gear, motor, bearing and encoder."
+ACTION_TIME = "Turn by whole turns; look for what vibrates: the drive, a loose screw, the mounting."
+
+NOT_SEARCHED = "{effect}: not searched for beside {count} oscillations that are named."
+NOT_OBSERVABLE = "{effect}: not observable in this campaign: {reason}."
+NOT_SIGNIFICANT = "{effect}: not significant against the noise of the turns."
+NOTHING_BESIDE = "{effect}: none beside what is named."
+MAY_BE = "What is named {named} may be {effect}."
+WOULD_BE = "It would be {detected}"
+
+FROM_AMPLITUDE = "detected from {size} rad/s on in each turn."
+FROM_ANGLE = "detected from {size}″ on."
+FROM_ANGLE_BY_ORDER = (
+    "detected from {size}″ on; from {largest}″ where it has {lowest} periods per revolution, from"
+    " {smallest}″ where it has {highest}."
+)
+SHORT_TURN = (
+    "The steady part of a turn holds {share:.2f} of its periods: bias and slope absorb most of it,"
+    " and noise at so low a frequency is estimated from the differences between turns."
+)
 
 
-def of_oscillation(one: Bound, turns: Sequence[SteadyTurn]) -> str:
+def of_oscillation(one: Oscillation, turns: Sequence[SteadyTurn]) -> str:
     """An oscillation in time, or of an axis of the case against the table's angle."""
-    heard = one.oscillating
-    arc = degrees(heard.amplitude / (2 * pi * heard.frequency)) * 3600
-    about = "the table's axis" if one.axis == TABLE else one.axis
-    hertz = f"{_told(heard.frequency, heard.frequency_sigma)} Hz"
-    size = f"{_told(heard.amplitude, heard.amplitude_sigma)} rad/s"
-    told = (
-        f"The case oscillates about {about} while the table turns: {hertz}, {size} ({arc:.1f}″), in"
-        f" {', '.join(heard.manoeuvres)}."
+    mean = one.mean
+    sentence = IN_TIME.format(
+        axis="the table's axis" if one.axis == TABLE else one.axis,
+        frequency=_with_sigma(mean.frequency, mean.frequency_sigma),
+        amplitude=_with_sigma(mean.amplitude, mean.amplitude_sigma),
+        arc=degrees(mean.amplitude / (2 * pi * mean.frequency)) * 3600,
+        manoeuvres=", ".join(mean.manoeuvres),
     )
-    if one.bound == ANGLE and one.ripple is not None:
-        told += f" It is bound to the table's angle: {_order(one.ripple)} in a turn."
-    told += _through(one.through) + _instead(one, turns)
-    return f"{told} Over a whole turn it adds no angle."
+    if one.periodic_in == ANGLE and one.ripple is not None:
+        sentence += IN_ANGLE.format(order=_order(one.ripple))
+    return sentence + _coupling(one.coupled) + _other_explanation(one, turns) + NO_NET_ANGLE
 
 
-def _told(value: float, sigma: float) -> str:
-    return " ± ".join(with_sigma(value, sigma, decimals_of(sigma, 1)))
-
-
-def of_ripple(one: Bound, ripple: Ripple, turns: Sequence[SteadyTurn]) -> str:
+def of_ripple(one: Oscillation, ripple: Ripple, turns: Sequence[SteadyTurn]) -> str:
     """A ripple of the table, or its eccentricity."""
-    size = _arc(ripple.amplitude, ripple.amplitude_sigma)
     count = int(np.isfinite(ripple.own).all(axis=1).sum())
-    same = f"the same in {count} turns against the table's angle" if count > 1 else "in one turn"
-    if eccentric(ripple):
-        told = f"The angle of the table is off once per revolution, by {size}, {same}."
-    else:
-        told = (
-            f"The table's rate ripples {_order(ripple)} in a turn, by {size} of its angle, {same}."
-        )
-    return told + _at_rates(ripple, turns) + _instead(one, turns)
+    sentence = (ECCENTRIC if eccentric(ripple) else RIPPLE).format(
+        order=_order(ripple),
+        size=_with_sigma(ripple.amplitude / ARC_SECOND, ripple.amplitude_sigma / ARC_SECOND) + "″",
+        turns=SAME_IN_TURNS.format(count=count) if count > 1 else IN_ONE_TURN,
+    )
+    return sentence + _at_rates(ripple, turns) + _other_explanation(one, turns)
 
 
 def eccentric(ripple: Ripple) -> bool:
@@ -60,116 +127,141 @@ def eccentric(ripple: Ripple) -> bool:
     return ripple.order_sigma == 0
 
 
-def of_short_turn(share: float) -> str:
-    """What a turn can show of the order 1 whose steady part holds few periods of it."""
-    if share >= SHORT:
-        return ""
-    return (
-        f" The steady part of a turn holds {share:.2f} of its periods: bias and slope take most of"
-        " it up, and noise so slow is told by how turns differ."
-    )
-
-
-def consequence(one: Bound) -> str:
-    """What it does to the model and to angles, in words."""
+def consequence(one: Oscillation) -> str:
+    """What it does to the model and to angles."""
     ripple = one.ripple
-    if one.bound == ANGLE and ripple is not None:
+    if one.periodic_in == ANGLE and ripple is not None:
         swing = 2 * ripple.amplitude
-        whole = abs(ripple.order - round(ripple.order)) < NEAR * ripple.order_sigma + 1e-9
-        turn = (
-            "A whole turn is free of it, and so are"
-            if whole
-            else "Being of no whole order it does not close over a turn, but blocks of turns take"
-            " their angle from the gyros; it does no harm to"
-        )
+        off = abs(ripple.order - round(ripple.order))
+        turn = CLOSED if off < MAX_INTEGER_SIGMAS * ripple.order_sigma + 1e-9 else NOT_CLOSED
     else:
-        swing = 2 * one.oscillating.amplitude / (2 * pi * one.oscillating.frequency)
-        turn = "Over whole turns it adds no angle, so it does no harm to"
-    return (
-        f"{turn} bias, scale factors and cross terms. Part of a turn is off by up to"
-        f" {significant(swing / ARC_SECOND, 2)}″. What the quality of the logs calls an oscillation"
-        " at this frequency is the same."
+        swing = 2 * one.mean.amplitude / (2 * pi * one.mean.frequency)
+        turn = CLOSED_IN_TIME
+    return CONSEQUENCE.format(turn=turn, swing=significant(swing / ARC_SECOND, 2))
+
+
+def action(one: Oscillation) -> str:
+    """What to do about it."""
+    if not one.decided:
+        return ACTION_UNDECIDED.format(split=SPLIT)
+    return ACTION_ANGLE if one.periodic_in == ANGLE else ACTION_TIME
+
+
+def not_searched(effect: str, count: int) -> str:
+    """The search ended with other oscillations."""
+    return NOT_SEARCHED.format(effect=_title(effect), count=count)
+
+
+def not_observable(effect: str, reason: str) -> str:
+    """No turn shows any size of it."""
+    return NOT_OBSERVABLE.format(effect=_title(effect), reason=reason)
+
+
+def not_significant(effect: str, *, beside: bool = False) -> str:
+    """Searched for and not detected; `beside`: other oscillations that are named."""
+    return (NOTHING_BESIDE if beside else NOT_SIGNIFICANT).format(effect=_title(effect))
+
+
+def may_be(named: str, effect: str) -> str:
+    """The other member of a class."""
+    return MAY_BE.format(named=in_words(named), effect=in_words(effect))
+
+
+def would_be(detected: str) -> str:
+    """From which size on it would have been detected."""
+    return WOULD_BE.format(detected=detected)
+
+
+def limit(effect: str, parameter: str, detected: str, why: str | None) -> str:
+    """From which size on a parameter is detected, or `why` it is not."""
+    return f"{in_words(effect)}, {parameter}: {detected if why is None else f'not detected. {why}'}"
+
+
+def from_amplitude(size: float) -> str:
+    """A size in rad/s."""
+    return FROM_AMPLITUDE.format(size=significant(size, 2))
+
+
+def from_angle(size: float) -> str:
+    """A size in rad."""
+    return FROM_ANGLE.format(size=significant(size / ARC_SECOND, 2))
+
+
+def from_angle_by_order(sizes: tuple[float, float, float], orders: NDArray[np.float64]) -> str:
+    """A usual size, that of the lowest order and that of the highest one, in rad."""
+    size, largest, smallest = (significant(one / ARC_SECOND, 2) for one in sizes)
+    lowest, highest = (significant(one, 3) for one in orders[[0, -1]])
+    return FROM_ANGLE_BY_ORDER.format(
+        size=size, largest=largest, smallest=smallest, lowest=lowest, highest=highest
     )
 
 
-def action(one: Bound) -> str:
-    """What to do about it."""
-    if not one.told:
-        return f"To tell them apart, {SPLIT}: bound to the angle its frequency doubles."
-    if one.bound == ANGLE:
-        return "Turn by whole turns; look at the table's gear, motor, bearing and encoder."
-    return "Turn by whole turns; look for what vibrates: the drive, a loose screw, the mounting."
+def of_short_turn(share: float) -> str | None:
+    """What a turn shows of an eccentricity whose steady part holds few periods of it."""
+    return SHORT_TURN.format(share=share) if share < MIN_PERIODS_IN_TURN else None
+
+
+def _title(effect: str) -> str:
+    words = in_words(effect)
+    return words[:1].upper() + words[1:]
+
+
+def _with_sigma(value: float, sigma: float) -> str:
+    return " ± ".join(with_sigma(value, sigma, decimals_of(sigma, 1)))
 
 
 def _order(ripple: Ripple) -> str:
     order, sigma = ripple.order, ripple.order_sigma
-    text = " ± ".join(with_sigma(order, sigma, decimals_of(sigma, 1)))
-    if abs(order - round(order)) < NEAR * sigma < 0.5:
+    text = _with_sigma(order, sigma)
+    if abs(order - round(order)) < MAX_INTEGER_SIGMAS * sigma < 0.5:
         return f"{round(order)} times ({text})"
     return f"{text} times"
 
 
-def _arc(size: float, sigma: float) -> str:
-    value, scatter = size / ARC_SECOND, sigma / ARC_SECOND
-    return " ± ".join(with_sigma(value, scatter, decimals_of(scatter, 1))) + "″"
-
-
 def _at_rates(ripple: Ripple, turns: Sequence[SteadyTurn]) -> str:
-    """The frequency and the rate that it has at each rate of the table."""
+    """The frequency and the amplitude in rad/s that it has at each rate of the table."""
     rates = sorted({round(degrees(abs(t.rate)), 2) for t in turns if np.isfinite(t.rate)})
-    said = [
-        f"{fixed(ripple.order * rate / 360, 3)} Hz and"
-        f" {significant(ripple.order * ripple.amplitude * rate * pi / 180, 2)} rad/s at"
-        f" {significant(rate, 3)} °/s"
-        for rate in rates[:3]
+    each = [
+        AT_RATE.format(
+            frequency=fixed(ripple.order * rate / 360, 3),
+            amplitude=significant(ripple.order * ripple.amplitude * rate * pi / 180, 2),
+            rate=significant(rate, 3),
+        )
+        for rate in rates[:MAX_RATES]
     ]
-    return f" That is {', '.join(said)}."
+    return AT_RATES.format(each=", ".join(each))
 
 
-def _instead(one: Bound, turns: Sequence[SteadyTurn]) -> str:
-    """What the other explanation would be, and what speaks against it."""
+def _other_explanation(one: Oscillation, turns: Sequence[SteadyTurn]) -> str:
+    """The other explanation, and its odds."""
     if one.ripple is None:
         return ""
-    if not one.told:
-        return (
-            " Whether it is bound to time or to the table's angle the data cannot tell: what is"
-            f" named first is {_odds(one.log_odds)} as likely."
-        )
-    if one.bound == ANGLE:
-        return (
-            " Against time, with a phase of its own in each turn, it would be"
-            f" {_odds(one.log_odds)} less likely."
-        )
+    odds = VERY_LARGE_ODDS
+    if one.log_odds <= MAX_LOG_ODDS:
+        odds = f"{significant(exp(one.log_odds), 1)} times"
+    if not one.decided:
+        return UNDECIDED.format(odds=odds)
+    if one.periodic_in == ANGLE:
+        return NOT_IN_TIME.format(odds=odds)
     rates = sorted({round(turn.hertz(1.0), 6) for turn in turns if np.isfinite(turn.rate)})
-    orders = " or ".join(significant(one.oscillating.frequency / rate, 4) for rate in rates[:3])
-    return (
-        f" It is bound to time: as a ripple of order {orders} of the table's angle it would be"
-        f" {_odds(one.log_odds)} less likely."
-    )
+    orders = [significant(one.mean.frequency / rate, 4) for rate in rates[:MAX_RATES]]
+    return NOT_IN_ANGLE.format(orders=" or ".join(orders), odds=odds)
 
 
-def _odds(log_odds: float) -> str:
-    if log_odds > MANY:
-        return "more than 10¹⁷ times"
-    return f"{significant(exp(log_odds), 1)} times"
-
-
-def _through(through: Sequence[Coupled]) -> str:
-    """What the other axes see."""
-    if not through:
-        return " The other axes see it through their cross terms."
-    told = f" Through their cross terms {' and '.join(_seen(one) for one in through)}."
-    for one in through:
+def _coupling(coupled: Sequence[Coupled]) -> str:
+    """What the other axes contain of it."""
+    if not coupled:
+        return COUPLED_UNKNOWN
+    sentence = COUPLED.format(each=" and ".join(_coupled(one) for one in coupled))
+    for one in coupled:
         if one.more:
-            told += (
-                f" In {one.axis} {significant(one.left, 2)} rad/s is more than coupling; the case"
-                f" tips into the table's rate, which brings {significant(one.tipping, 2)}."
-            )
-    return told
+            excess, tipping = significant(one.left, 2), significant(one.tipping, 2)
+            sentence += COUPLED_MORE.format(axis=one.axis, excess=excess, tipping=tipping)
+    return sentence
 
 
-def _seen(one: Coupled) -> str:
-    expected = significant(one.expected, 2)
-    if one.read < CLEAR * one.left_sigma:
-        return f"{one.axis} sees {expected} rad/s, less than its noise shows"
-    return f"{one.axis} sees {expected} rad/s and reads {significant(one.read, 2)}"
+def _coupled(one: Coupled) -> str:
+    hidden = one.read < MIN_EXCESS_SIGMA * one.left_sigma
+    return (COUPLED_HIDDEN if hidden else COUPLED_READ).format(
+        axis=one.axis, expected=significant(one.expected, 2), read=significant(one.read, 2)
+    )

@@ -1,9 +1,12 @@
-"""Whether the residuals beside the named effects have a structure."""
+"""Whether the residuals beside the named effects have a structure.
+
+Functions of the motion are treated like an effect: how much of them do the equations determine,
+all else fitted? So tilts, gravity and random walks enter as they do there.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,20 +18,15 @@ from inertial.physics.effect import Array, Effect, Parameter, Reading
 from inertial.physics.motion import Motion
 from inertial.text.cause_names import in_words
 from inertial.text.numbers import p_is, significant
-
-# ---- Whether what the named effects leave of the readings still has a structure.
-#
-# A function of the motion that a reading may contain is asked about like an effect: how much of
-# it do the equations leave, all else fitted? So tilts, gravity and random walks count as they do
-# there.
+from stages.criticism.finding_rows import SENSORS, TableRow, finding_id, member_rows, snr_of
 
 Integers = NDArray[np.int64]
 
-WIDE = 1e4  # sigma of a named effect's parameters beforehand, in their typical sizes
+PRIOR_SIGMA = 1e4  # of a named effect's parameters, in their typical sizes
 SOLVED = {"gyro": "gyro", "accel": "accelerometer"}  # of a sensor in the joint result
 AXES = "xyz"
-BINS = 60  # of a picture
-SEEN = 1e-6  # of the information of a function on its own: what is less is taken as fitted
+BINS = 60  # of a figure
+MIN_INFORMATION = 1e-6  # of that of a function alone; with less the function counts as fitted
 
 
 class Functions(Effect):
@@ -54,7 +52,7 @@ class Functions(Effect):
 
 @dataclass(frozen=True)
 class Tested:
-    """The six tests of what one mount leaves beside the named effects."""
+    """The six tests of the residuals of one mount beside the named effects."""
 
     campaign: Campaign
     named: Sequence[Effect]
@@ -62,30 +60,30 @@ class Tested:
 
     @property
     def firing(self) -> list[Structure]:
-        """The tests that found a structure, the clearest first."""
+        """The tests that detect a structure, the clearest first."""
         return sorted((test for test in self.tests if test.fires), key=lambda test: test.p_value)
 
     def of(self, sensor: str) -> list[Structure]:
         """Those in the readings of a sensor, `gyro` or `accel`."""
-        return [test for test in self.firing if test.channel.startswith(sensor)]
+        return [test for test in self.firing if test.sensor == sensor]
 
 
 @dataclass(frozen=True)
 class Point:
-    """What is left of the readings of an axis about one value of what they may be a function of.
+    """The residual of an axis in a bin of what it may be a function of.
 
-    `x`: s, rad, rad/s, K, or rad from upright; `left`, `sigma`, and `structure`, what the functions
-    of the test would leave there: rad/s or m/s².
+    `x`: s, rad, rad/s, K, or rad from upright; `residual`, `sigma`, and `structure`, what the
+    functions of the test are there: rad/s or m/s².
     """
 
     x: float
-    left: float
+    residual: float
     sigma: float
     structure: float
 
 
-def tested(campaign: Campaign, named: Sequence[Effect], noise_degrees: float) -> Tested:
-    """The tests of what is left beside the named effects."""
+def structure_tests(campaign: Campaign, named: Sequence[Effect], noise_degrees: float) -> Tested:
+    """The tests of the residuals beside the named effects."""
     answers = [
         answer
         for sensor in SOLVED
@@ -95,11 +93,11 @@ def tested(campaign: Campaign, named: Sequence[Effect], noise_degrees: float) ->
     return Tested(campaign, named, structures(answers))
 
 
-def points(told: Tested, test: Structure) -> Iterator[Point]:
-    """What is to be seen of a structure: each bin of readings by itself, all else as fitted."""
-    sensor, axis = test.channel.split()
-    own = told.campaign.stretches(sensor)
-    where = where_of(told.campaign.motion, own, sensor, AXES.index(axis))
+def points(tested: Tested, test: Structure) -> Iterator[Point]:
+    """The residuals in bins along which a structure is detected, all else as fitted."""
+    sensor, axis = test.sensor, test.axis
+    own = tested.campaign.stretches(sensor)
+    where = where_of(tested.campaign.motion, own, sensor, AXES.index(axis))
     across = _across(where, test.kind, AXES.index(axis))
     bins = [group for group in _bins(across) if len(group)]
     chosen, values = test.values
@@ -108,7 +106,7 @@ def points(told: Tested, test: Structure) -> Iterator[Point]:
     shown[:, 0] = test.answer.question.functions[:, chosen] @ values
     for column, group in enumerate(bins, 1):
         shown[group, column] = 1.0
-    rest, columns, _ = _left(told.campaign, told.named, sensor, AXES.index(axis), [shown])
+    rest, columns, _ = _residuals(tested.campaign, tested.named, sensor, AXES.index(axis), [shown])
     for column, group in enumerate(bins, 1):
         mine = columns[:, column]
         known = float(mine @ mine)
@@ -122,7 +120,7 @@ def points(told: Tested, test: Structure) -> Iterator[Point]:
 
 
 def _across(where: Where, kind: str, axis: int) -> Array:
-    """What a picture of the structure goes along, (n,)."""
+    """The abscissa of a figure of the structure, (n,)."""
     if kind in ("time", "change"):
         return where.time
     if kind == "attitude":
@@ -131,7 +129,7 @@ def _across(where: Where, kind: str, axis: int) -> Array:
 
 
 def _bins(across: Array) -> list[Integers]:
-    """The readings in bins of equal width, those of no known place in none."""
+    """The readings in bins of equal width, those of unknown place in none."""
     known = np.isfinite(across)
     low, high = float(np.min(across[known])), float(np.max(across[known]))
     width = (high - low) / BINS or 1.0
@@ -146,15 +144,16 @@ def _answers(
         return
     where = where_of(campaign.motion, campaign.stretches(sensor), sensor, axis)
     questions = [(kind, one) for kind, test in TESTS.items() for one in test(where)]
-    asked = [question.functions for _, question in questions]
-    rest, columns, degrees = _left(campaign, named, sensor, axis, asked)
+    functions = [question.functions for _, question in questions]
+    rest, columns, degrees = _residuals(campaign, named, sensor, axis, functions)
     first = 0
     for kind, question in questions:
         some = slice(first, first + question.functions.shape[1])
         left = columns[:, some]
         yield Answer(
             kind,
-            f"{sensor} {AXES[axis]}",
+            sensor,
+            AXES[axis],
             question,
             left.T @ left,
             left.T @ rest,
@@ -165,23 +164,25 @@ def _answers(
         first = some.stop
 
 
-def _left(
+def _residuals(
     campaign: Campaign,
     named: Sequence[Effect],
     sensor: str,
     axis: int,
-    asked: Sequence[Array],
+    functions: Sequence[Array],
 ) -> tuple[Array, Array, int]:
-    """The residuals, (m,), and what all that is fitted leaves of functions, (m, k); the degrees.
+    """The residuals, (m,), the functions with all that is fitted removed, (m, k), and the degrees.
 
-    `asked`: of the stretches of the sensor.
+    `functions`: of the stretches of the sensor.
     """
-    whole = np.zeros((len(campaign.motion.rate), sum(each.shape[1] for each in asked)))
-    whole[campaign.stretches(sensor)] = np.hstack(list(asked))
-    system = campaign.system(sensor, [*named, Functions(sensor, axis, "asked", whole)], WIDE)
-    assert system is not None  # else nothing is asked
+    whole = np.zeros((len(campaign.motion.rate), sum(each.shape[1] for each in functions)))
+    whole[campaign.stretches(sensor)] = np.hstack(list(functions))
+    system = campaign.system(
+        sensor, [*named, Functions(sensor, axis, "tested", whole)], PRIOR_SIGMA
+    )
+    assert system is not None  # else there are no tests
     rest, columns, raw = system.projected(sum(len(effect.parameters) for effect in named))
-    fitted = np.sum(columns**2, axis=0) < SEEN * raw
+    fitted = np.sum(columns**2, axis=0) < MIN_INFORMATION * raw
     return rest, np.where(fitted, 0.0, columns), system.rows - system.parameters
 
 
@@ -193,102 +194,121 @@ def where_of(motion: Motion, some: slice, sensor: str, axis: int) -> Where:
     return Where(*(values[some] for values in each))
 
 
-# ---- The rows that criticism writes of structures that are left: tests, pictures and findings.
-
-Row = dict[str, Any]
+# ---- Rows: the tests, the residuals in bins, and findings.
 
 CAUSE = "unknown_structure"
-SENSOR_WORDS = {"gyro": "gyros", "accel": "accelerometers"}
 UNITS = {"gyro": "rad/s", "accel": "m/s²"}
-ACROSS = {"time": "s", "change": "s", "angle": "rad", "rate": "rad/s", "attitude": "rad"}
+X_UNITS = {
+    "time": "s",
+    "change": "s",
+    "angle": "rad",
+    "rate": "rad/s",
+    "attitude": "rad",
+    "temperature": "K",
+}
+SCAN_UNITS = {"time": "Hz", "change": "s", "angle": "cycles per revolution"}
+
+NOT_NOISE = "The residuals of the {sensors} are not noise: {description} ({p_value})."
+ALSO = "The structure shows in {others} too."
+ONLY_CONSISTENT = "The data are no more than consistent with {effects}."
+CONSEQUENCE = (
+    "The joint result stands as it is: no effect by name is added to it for this sensor, and its"
+    " sigmas do not allow for the structure."
+)
+ACTION = "Look at the picture of the residuals; record the manoeuvres concerned again."
+DESCRIPTIONS = {  # by the kind of the test, and whether a value of a scan is known
+    ("time", True): "about {axis} they oscillate in time, every {period} s",
+    ("time", False): "about {axis} they drift smoothly with time",
+    ("angle", True): "about {axis} they depend on the angle of the table, {value:g} times per"
+    " revolution",
+    ("angle", False): "about {axis} they depend on the angle of the table",
+    ("rate", False): "on {axis} they depend on the rate of the turns",
+    ("attitude", False): "on {axis} they depend on the attitude",
+    ("temperature", False): "on {axis} they depend on the temperature",
+    ("change", True): "on {axis} they change at {value:.0f} s",
+}
 
 
-def test_rows(told: Tested, method: str) -> Iterator[Row]:
-    """The six tests."""
-    for test in told.tests:
-        yield {
-            "method": method,
-            "kind": test.kind,
-            "channel": test.channel,
-            "place": test.where if np.isfinite(test.where) else None,
-            "statistic": test.statistic,
-            "degrees": test.degrees,
-            "p_value": test.p_value,
-            "fires": test.fires,
-        }
+def structure_rows(
+    tested: Tested, consistent: Mapping[str, Sequence[str]], mount: str
+) -> Iterator[TableRow]:
+    """The six tests, the residuals in bins where one detects something, and findings.
 
-
-def point_rows(told: Tested, method: str) -> Iterator[Row]:
-    """What there is to be seen of each structure that was found."""
-    for test in told.firing:
-        for point in points(told, test):
-            yield {
-                "method": method,
-                "kind": test.kind,
-                "channel": test.channel,
-                "x": point.x,
-                "x_unit": ACROSS.get(test.kind, "K"),
-                "left": point.left,
-                "sigma": point.sigma,
-                "structure": point.structure,
-                "unit": UNITS[test.channel.split()[0]],
-            }
-
-
-def findings(told: Tested, named: Mapping[str, Sequence[str]], suffix: str) -> Iterator[Row]:
-    """A finding for each sensor that has a structure.
-
-    `named`: of each sensor the effects with which the data are no more than consistent.
+    `consistent`: of each sensor the effects with which the data are no more than consistent.
     """
-    for sensor, words in SENSOR_WORDS.items():
-        found = told.of(sensor)
-        if not found:
-            continue
-        best = found[0]
-        consistent = [in_words(name) for name in named.get(sensor, ())]
-        said = [f"What the model leaves of the {words} is not noise: {_where(best)}."]
-        if others := [_about(test) for test in found[1:]]:
-            said.append(f"It shows in {' and in '.join(others)} too.")
-        if consistent:
-            said.append(f"The data are no more than consistent with {' and '.join(consistent)}.")
-        yield {
-            "id": f"criticism/{CAUSE}/{sensor}{suffix}",
+    for test in tested.tests:
+        scanned = bool(np.isfinite(test.where))
+        yield (
+            "structures",
+            {
+                "mount": mount,
+                "kind": test.kind,
+                "sensor": test.sensor or None,
+                "axis": test.axis or None,
+                "scan_value": test.where if scanned else None,
+                "scan_unit": SCAN_UNITS[test.kind] if scanned else None,
+                "statistic": test.statistic if test.possible else None,
+                "degrees": test.degrees if test.possible else None,
+                "p_value": test.p_value if test.possible else None,
+                "detected": test.fires,
+            },
+        )
+    for test in tested.firing:
+        shared = {"mount": mount, "kind": test.kind, "sensor": test.sensor, "axis": test.axis}
+        shared |= {"x_unit": X_UNITS[test.kind], "unit": UNITS[test.sensor]}
+        for point in points(tested, test):
+            yield "structure_points", shared | asdict(point)
+    for sensor, words in SENSORS.items():
+        if tested.of(sensor):
+            yield from _finding(tested.of(sensor), sensor, words, consistent[sensor], mount)
+
+
+def _finding(
+    tests: Sequence[Structure], sensor: str, words: str, consistent: Sequence[str], mount: str
+) -> Iterator[TableRow]:
+    best = tests[0]
+    sentence = [
+        NOT_NOISE.format(sensors=words, description=_description(best), p_value=p_is(best.p_value))
+    ]
+    if others := [_name(test) for test in tests[1:]]:
+        sentence.append(ALSO.format(others=" and in ".join(others)))
+    if consistent:
+        names = " and ".join(in_words(name) for name in consistent)
+        sentence.append(ONLY_CONSISTENT.format(effects=names))
+    identifier = finding_id(f"{CAUSE}/{sensor}", mount)
+    yield (
+        "findings",
+        {
+            "id": identifier,
+            "mount": mount,
             "cause": CAUSE,
             "sensor": sensor,
-            "count": len(found),
+            "count": len(tests),
             "size": best.statistic**0.5,
             "unit": "sigma",
             "p_value": best.p_value,
             "severity": 2,
-            "sentence": " ".join(said),
-            "consequence": "The joint result stands as it is: no effect by name is added to it for"
-            " this sensor, and its sigmas do not know of what is left.",
-            "action": "Look at the picture of what is left; record the manoeuvres concerned again.",
+            "sentence": " ".join(sentence),
+            "consequence": CONSEQUENCE,
+            "action": ACTION,
             "verdict": UNKNOWN_STRUCTURE,
-            "members": ", ".join(named.get(sensor, ())),
             "statistic": best.statistic,
             "degrees": best.degrees,
-            "snr": float(np.sqrt(max(best.statistic - best.degrees, 0.0))),
-        }
+            "snr": snr_of(best.statistic, best.degrees),
+        },
+    )
+    yield from member_rows(identifier, mount, consistent)
 
 
-def _where(test: Structure) -> str:
+def _description(test: Structure) -> str:
     """The clearest structure, for a person."""
-    axis = test.channel.split()[1]
-    place = {
-        "time": f"about {axis} it oscillates in time, every {significant(1 / test.where)} s"
-        if test.where > 0
-        else f"about {axis} it drifts smoothly with time",
-        "angle": f"about {axis} it goes with the angle of the table, {test.where:g} times in a turn"
-        if test.where > 0
-        else f"about {axis} it goes with the angle of the table",
-        "rate": f"on {axis} it goes with the rate of the turns",
-        "attitude": f"on {axis} it goes with the attitude",
-        "temperature": f"on {axis} it goes with the temperature",
-        "change": f"on {axis} it changes at {test.where:.0f} s",
-    }[test.kind]
-    return f"{place} ({p_is(test.p_value)})"
+    scanned = test.where > 0
+    period = significant(1 / test.where) if scanned else ""
+    template = DESCRIPTIONS[test.kind, bool(scanned) or test.kind == "change"]
+    return template.format(axis=test.axis, value=test.where, period=period)
 
 
-def _about(test: Structure) -> str:
-    return f"{'a change in time' if test.kind == 'change' else test.kind} ({test.channel})"
+def _name(test: Structure) -> str:
+    return (
+        f"{'a change in time' if test.kind == 'change' else test.kind} ({test.sensor} {test.axis})"
+    )

@@ -1,9 +1,8 @@
-"""Which physical effects the simulation lacks, by name."""
+"""The unmodelled effects of a campaign, by name."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import pandas as pd
 
@@ -13,19 +12,23 @@ from inertial.campaign.steady_residuals import steady_turns
 from inertial.effects import CATALOGUE
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
-from stages.criticism import block_results, residual_structure, temperature_findings
 from stages.criticism.bias_drift import walks_with_sigmas
-from stages.criticism.block_results import Rows, unexplained
+from stages.criticism.block_results import (
+    BlockResults,
+    other_scores,
+    random_walk_rows,
+    unexplained_rows,
+)
 from stages.criticism.class_splitting import Foreseen, Further, further
 from stages.criticism.declared import DECLARED
-from stages.criticism.oscillation_results import LinesOfTurns
-from stages.criticism.oscillation_search import heard, without_lines
-from stages.criticism.residual_structure import tested
+from stages.criticism.finding_rows import Row, TableRow
+from stages.criticism.former_columns import with_former
+from stages.criticism.oscillation_results import OscillationResults
+from stages.criticism.oscillation_search import find_oscillations, without_lines
+from stages.criticism.residual_structure import structure_rows, structure_tests
 from stages.criticism.selection import SENSORS, judge
+from stages.criticism.temperature_findings import temperature_rows
 
-Row = dict[str, Any]
-
-PLACES = ("blocks", "spectrum", "noise", "quality")
 BLOCKS_SHARE = 0.9  # of the accepted chance of a false name; the rest is that of the spectrum
 
 
@@ -36,54 +39,50 @@ def criticism(
     level: float,
     lowest_hz: float,
 ) -> Tables:
-    """Scores of every effect of the catalogue, its estimates, the lines, and the findings.
+    """Scores and parameters of every effect of the catalogue, detection limits, and findings.
 
-    `level` is the accepted chance of naming anything where nothing is missing.
+    `level` is the accepted probability of naming any effect where the model is complete.
     """
-    sought = {place: [e for e in CATALOGUE.values() if e.sought_in == place] for place in PLACES}
-    in_blocks = sought["blocks"]
-    others = [*sought["noise"], *sought["quality"]]
     made: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     for data in mounts:
-        suffix, degrees = data.named(""), data.noise.degrees
-        turns = steady_turns(data, simulated)
-        found = heard(turns, level * (1 - BLOCKS_SHARE), lowest_hz)
-        quiet = without_lines(data.blocks, turns, found.lines)
-        campaign = campaign_of(replace(data, blocks=quiet))
-        judged = judge(campaign, in_blocks, level * BLOCKS_SHARE, degrees)
-        left = tested(judged.campaign, judged.effects, degrees)
-        judged = judged.demoted([sensor for sensor in SENSORS if left.of(sensor)])
-        walks = walks_with_sigmas(judged.campaign, judged.effects)
-        more = {
-            name: partial(_with, make, data)
-            for name, make in further(data.plan, data.performed, quiet).items()
-        }
-        rows = Rows(campaign, judged, Foreseen(judged, more), suffix)
-        lines = LinesOfTurns(found, suffix)
-        made["scores"] += [*rows.scores(), *lines.scores()]
-        made["scores"] += block_results.noise_scores(others, walks.get("gyro"))
-        for sensor, walk in walks.items():
-            structured = bool(left.of(sensor))
-            made["findings"] += block_results.walk_findings(
-                sensor, walk, judged.instead, suffix, structured=structured
-            )
-            made["walks"].append(block_results.walk_row(f"joint{suffix}", sensor, walk))
-        made["structures"] += residual_structure.test_rows(left, f"joint{suffix}")
-        made["structure_points"] += residual_structure.point_rows(left, f"joint{suffix}")
-        made["effects"] += [*rows.effects(), *lines.effects()]
-        made["blind_spots"] += [*rows.blind_spots(), *lines.blind_spots()]
-        made["lines"] += lines.lines()
-        made["findings"] += rows.findings()
-        made["findings"] += lines.findings()
-        made["findings"] += residual_structure.findings(left, judged.consistent(), suffix)
-        made["findings"] += unexplained(judged, suffix)
-        made["findings"] += temperature_findings.findings(data.blocks, data.plan, level, suffix)
+        for table, row in _of_mount(data, simulated, level, lowest_hz):
+            made[table].append(row)
+    rows = with_former(made)
     return {
-        name: pd.DataFrame(rows, columns=[column.name for column in table.columns])
-        if rows
+        name: pd.DataFrame(rows[name], columns=[column.name for column in table.columns])
+        if rows[name]
         else table.empty()
-        for (name, table), rows in zip(DECLARED.writes.items(), made.values(), strict=True)
+        for name, table in DECLARED.writes.items()
     }
+
+
+def _of_mount(
+    data: CampaignData, simulated: Stream, level: float, lowest_hz: float
+) -> Iterator[TableRow]:
+    """Oscillations are removed first: in block means they would be taken for other effects."""
+    mount, degrees = data.mount, data.noise.degrees
+    turns = steady_turns(data, simulated)
+    spectrum = find_oscillations(turns, level * (1 - BLOCKS_SHARE), lowest_hz)
+    quiet = without_lines(data.blocks, turns, spectrum.oscillations)
+    campaign = campaign_of(replace(data, blocks=quiet))
+    in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
+    judged = judge(campaign, in_blocks, level * BLOCKS_SHARE, degrees)
+    tested = structure_tests(judged.campaign, judged.effects, degrees)
+    judged = judged.demoted([sensor for sensor in SENSORS if tested.of(sensor)])
+    walks = walks_with_sigmas(judged.campaign, judged.effects)
+    more = {
+        name: partial(_with, make, data)
+        for name, make in further(data.plan, data.performed, quiet).items()
+    }
+    for sensor, walk in walks.items():
+        structured = bool(tested.of(sensor))
+        yield from random_walk_rows(sensor, walk, judged.instead, mount, structured=structured)
+    yield from BlockResults(campaign, judged, Foreseen(judged, more), mount).rows()
+    yield from OscillationResults(spectrum, mount).rows()
+    yield from other_scores(walks.get("gyro"), mount)
+    yield from structure_rows(tested, judged.consistent(), mount)
+    yield from unexplained_rows(judged, mount)
+    yield from temperature_rows(data.blocks, data.plan, level, mount)
 
 
 def _with(make: Callable[[], Further], data: CampaignData) -> Campaign:

@@ -18,11 +18,11 @@ Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
 ACCELEROMETERS, GYROS, SCALE = "accel", "gyro", "scale"
-SPAN = 5.0  # K, from which a sweep of temperatures is one
-FEWEST = 6  # temperatures, of which a parabola leaves enough to see the noise
-POOR = 0.01  # of the median number of samples: what holds fewer is left out
-ALONG = 0.5  # cosine from which a gyro sees enough of a turn
-PARALLEL = 0.999  # cosine from which two attitudes are one
+MIN_SPAN = 5.0  # K, from which a sweep of temperatures is one
+MIN_TEMPERATURES = 6  # temperatures, of which a parabola leaves enough to see the noise
+MIN_SAMPLE_SHARE = 0.01  # of the median number of samples: what holds fewer is left out
+MIN_ALONG = 0.5  # cosine from which a gyro sees enough of a turn
+MIN_PARALLEL = 0.999  # cosine from which two attitudes are one
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,11 @@ class Sweep:
         for axis, values in zip(tables.AXES, self.readings.T, strict=True):
             there = np.isfinite(values)
             at, seen = self.temperature[there], values[there]
-            if len(np.unique(at)) >= FEWEST and np.ptp(at) > SPAN and np.ptp(seen) > 0:
+            if (
+                len(np.unique(at)) >= MIN_TEMPERATURES
+                and np.ptp(at) > MIN_SPAN
+                and np.ptp(seen) > 0
+            ):
                 yield axis, at, seen
 
 
@@ -90,7 +94,7 @@ def _means(blocks: pd.DataFrame) -> pd.DataFrame:
 
 def _sweep(m: Manoeuvre, kind: str, own: pd.DataFrame) -> Sweep:
     counts = own["count"].to_numpy(np.float64)
-    least = POOR * float(np.median(counts))
+    least = MIN_SAMPLE_SHARE * float(np.median(counts))
     poor = counts < least
     channels = [f"{kind}_{axis}" for axis in tables.AXES]
     kept = own[~poor]
@@ -114,7 +118,7 @@ def _of_turn(turn: Sweep, rests: Sequence[Sweep]) -> Sweep:
     level = np.zeros_like(turn.readings)
     if rest is not None:
         level = np.column_stack([_at(turn, rest, i) for i in range(3)])
-    truth = np.where(np.abs(m.axis) >= ALONG, m.axis * (m.rate or np.nan), np.nan)
+    truth = np.where(np.abs(m.axis) >= MIN_ALONG, m.axis * (m.rate or np.nan), np.nan)
     return Sweep(
         m,
         SCALE,
@@ -129,7 +133,7 @@ def _of_turn(turn: Sweep, rests: Sequence[Sweep]) -> Sweep:
 def _alike(rest: Manoeuvre, turn: Manoeuvre) -> bool:
     if rest.up is None or turn.up is None:
         return False
-    return float(rest.up @ turn.up) > PARALLEL
+    return float(rest.up @ turn.up) > MIN_PARALLEL
 
 
 def _at(turn: Sweep, rest: Sweep, i: int) -> Array:
@@ -145,24 +149,24 @@ def _at(turn: Sweep, rest: Sweep, i: int) -> Array:
 # ---- Each axis of a sweep of temperatures, judged: which polynomial it follows, and what is left.
 
 ICE_POINT = 273.15  # K
-LIKELIER = float(np.log(20))  # from which a knee is told
-SHOWS = 0.5  # cosine or sine from which an accelerometer sees its scale factor, or a tilt
+MIN_LOG_ODDS = float(np.log(20))  # from which a knee is told
+MIN_SENSITIVITY = 0.5  # cosine or sine from which an accelerometer sees its scale factor, or a tilt
 
 
 @dataclass(frozen=True)
-class Channel:
+class AxisModel:
     """One axis of a sweep, judged.
 
-    `degree`: of its law, 0 where it has none; `chance`: of that by noise alone, after the search;
-    `chance_beyond`: of what the highest degree leaves, after the search; `knee`: where it
+    `degree`: of its law, 0 where it has none; `p_value`: of that by noise alone, after the search;
+    `p_beyond`: of what the highest degree leaves, after the search; `knee`: where it
     fits clearly better than that.
     """
 
     axis: str
     curve: Curve
     degree: int
-    chance: float
-    chance_beyond: float
+    p_value: float
+    p_beyond: float
     structure: bool
     knee: Knee | None
 
@@ -177,52 +181,52 @@ class Channel:
         return float(np.ptp(self.curve.readings))
 
     @property
-    def told(self) -> int:
+    def described_degree(self) -> int:
         """The degree of the polynomial that stands for it."""
         return self.curve.highest if self.structure else self.degree
 
 
 @dataclass(frozen=True)
-class Moving:
+class TemperatureDependence:
     """The channels of a sweep that go with the temperature, at least one."""
 
     sweep: Sweep
-    channels: Sequence[Channel]
+    axes: Sequence[AxisModel]
 
     @property
     def structured(self) -> bool:
         """Whether a polynomial does not hold all of them."""
-        return any(channel.structure for channel in self.channels)
+        return any(channel.structure for channel in self.axes)
 
     @property
-    def best(self) -> Channel:
+    def best(self) -> AxisModel:
         """The channel in which it is clearest."""
         if self.structured:
-            own = [channel for channel in self.channels if channel.structure]
-            return min(own, key=lambda one: one.chance_beyond)
-        return min(self.channels, key=lambda one: one.chance)
+            own = [channel for channel in self.axes if channel.structure]
+            return min(own, key=lambda one: one.p_beyond)
+        return min(self.axes, key=lambda one: one.p_value)
 
     @property
-    def leaning(self) -> dict[str, float]:
+    def tilts(self) -> dict[str, float]:
         """The tilt, rad, that would move each accelerometer across the vertical so much."""
         across = {
             one.axis: float(np.nan_to_num(np.sqrt(1 - self.sweep.along(one.axis) ** 2), nan=1.0))
-            for one in self.channels
+            for one in self.axes
         }
         return {
             one.axis: one.change / (STANDARD_GRAVITY * across[one.axis])
-            for one in self.channels
-            if across[one.axis] >= SHOWS
+            for one in self.axes
+            if across[one.axis] >= MIN_SENSITIVITY
         }
 
     @property
-    def about(self) -> float:
+    def middle(self) -> float:
         """The mean temperature, whole in °C, about which polynomials are told, K."""
-        middle = np.mean([channel.curve.at.mean() for channel in self.channels])
-        return float(np.round(middle - ICE_POINT)) + ICE_POINT
+        mean = np.mean([channel.curve.at.mean() for channel in self.axes])
+        return float(np.round(mean - ICE_POINT)) + ICE_POINT
 
 
-def moving(swept: Sequence[Sweep], level: float) -> list[Moving]:
+def temperature_dependences(swept: Sequence[Sweep], level: float) -> list[TemperatureDependence]:
     """Of all sweeps those that go with the temperature.
 
     `level`: accepted chance of a law in any channel where there is none, and of a structure.
@@ -234,25 +238,25 @@ def moving(swept: Sequence[Sweep], level: float) -> list[Moving]:
     curves = [curve for _, own in every for curve in own.values()]
     searched = (sum(len(c.lawful) for c in curves), len(curves))
     judged = [
-        Moving(
+        TemperatureDependence(
             sweep, [one for a, c in own.items() if (one := _judged(a, c, level, searched)).moves]
         )
         for sweep, own in every
     ]
-    return [one for one in judged if one.channels]
+    return [one for one in judged if one.axes]
 
 
-def _judged(axis: str, curve: Curve, level: float, searched: tuple[int, int]) -> Channel:
+def _judged(axis: str, curve: Curve, level: float, searched: tuple[int, int]) -> AxisModel:
     """`searched`: how many degrees of laws, and how many channels, are looked at in all."""
     laws, structures = searched
     clear = [d for d in curve.lawful if curve.chance(range(d, d + 1)) * laws < level]
     degree = max(clear, default=0)
     beyond = min(1.0, curve.chance_beyond() * structures)
     knee = knee_of(curve.at, curve.readings) if beyond < level else None
-    if knee is not None and _odds(curve, knee) < LIKELIER:
+    if knee is not None and _odds(curve, knee) < MIN_LOG_ODDS:
         knee = None
     chance = min(1.0, curve.chance(range(1, degree + 1)) * laws)
-    return Channel(axis, curve, degree, chance, beyond, beyond < level, knee)
+    return AxisModel(axis, curve, degree, chance, beyond, beyond < level, knee)
 
 
 def _odds(curve: Curve, knee: Knee) -> float:

@@ -8,7 +8,7 @@ DECLARED = Declared(
         "simulated": From("simulation", tables.SIMULATED),
         "criticism_findings": From("criticism", tables.CAUSES, "findings"),
         "effects": From("criticism", tables.EFFECTS),
-        "walks": From("criticism", tables.WALKS),
+        "random_walks": From("criticism", tables.RANDOM_WALKS),
         "blocks": From("segment", tables.BLOCKS),
         "manoeuvres": From("plan", tables.MANOEUVRES),
         "performed": From("segment", tables.PERFORMED),

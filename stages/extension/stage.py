@@ -33,7 +33,7 @@ def extension(
     simulated: Stream,
     criticism_findings: pd.DataFrame,
     effects: pd.DataFrame,
-    walks: pd.DataFrame,
+    random_walks: pd.DataFrame,
     accelerometer_parameters: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
     accelerometer_fit: pd.DataFrame,
@@ -54,7 +54,7 @@ def extension(
         for row in rows_of(fit)
     }
     walk_of = defaultdict(
-        float, {(row["method"], row["sensor"]): row["walk"] for row in rows_of(walks)}
+        float, {(row["mount"], row["sensor"]): row["value"] for row in rows_of(random_walks)}
     )
     made: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     covariances: list[pd.DataFrame] = []
@@ -66,7 +66,7 @@ def extension(
         found = {}
         if named.in_blocks:
             campaign = campaign_of(data)
-            beside = (walk_of[method, "gyro"], walk_of[method, "accel"])
+            beside = (walk_of[mount, "gyro"], walk_of[mount, "accel"])
             models = models_of(campaign, named.in_blocks, beside)
             for sensor, system, walk in zip(SENSORS, models.systems(), beside, strict=True):
                 if system is not None:

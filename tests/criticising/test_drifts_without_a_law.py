@@ -27,11 +27,12 @@ def test_a_random_walk_beside_an_effect_is_estimated_and_takes_no_name(walking):
     assert findings.loc["gyro_g_sensitivity", "verdict"] == "found"
     # A jump explains about as much of it: so it may be either, and is never certain.
     assert findings.loc["gyro_random_walk", "verdict"] in ("one_of_class", "unknown_structure")
-    assert findings.loc["gyro_random_walk", "members"].startswith("gyro_random_walk")
-    (walk,) = walking["criticism/walks"].itertuples()
+    members = walking["criticism/members"].set_index(["finding", "rank"])["effect"]
+    assert members[findings.loc["gyro_random_walk", "id"], 1] == "gyro_random_walk"
+    (walk,) = walking["criticism/random_walks"].itertuples()
     # °/h/√h is per 60 √s; drawn once, so known to a part of itself only.
     true = 0.4 * 4.848e-6 / 60
-    assert walk.sensor == "gyro" and true / 3 < walk.walk < true * 2.5
+    assert walk.sensor == "gyro" and true / 3 < walk.value < true * 2.5
 
 
 def test_telegraph_noise_is_no_jump_and_its_structure_is_shown(tmp_path):
@@ -40,10 +41,10 @@ def test_telegraph_noise_is_no_jump_and_its_structure_is_shown(tmp_path):
     findings = results["criticism/findings"]
     assert not findings["verdict"].isin(CLEAR).any()
     structure = findings.set_index("cause").loc["unknown_structure"]
-    assert structure["sensor"] == "gyro" and "is not noise: about x" in structure["sentence"]
+    assert structure["sensor"] == "gyro" and "are not noise: about x" in structure["sentence"]
     # Only that axis jumps, and there is something to be seen.
     points = results["criticism/structure_points"]
-    assert set(points["channel"]) >= {"gyro x"}
-    off = points.loc[points["channel"] == "gyro x", ["left", "sigma"]]
-    assert (off["left"].abs() > 5 * off["sigma"]).any()
+    off = points[(points["sensor"] == "gyro") & (points["axis"] == "x")]
+    assert len(off)
+    assert (off["residual"].abs() > 5 * off["sigma"]).any()
     assert not results["criticism/scores"].set_index("effect").loc["gyro_bias_jump", "named"]

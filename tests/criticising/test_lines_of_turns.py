@@ -1,5 +1,6 @@
 """Oscillations of turns are found, bound to time or to the table's angle; noise is silent."""
 
+from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
@@ -12,8 +13,8 @@ from residuals_of_turns import ARC_SECOND, MATRIX, NOISE, locked, turns
 
 from inertial import tables
 from inertial.campaign.steady_residuals import SteadyTurn
-from stages.criticism.oscillation_results import LinesOfTurns
-from stages.criticism.oscillation_search import heard
+from stages.criticism.oscillation_results import OscillationResults
+from stages.criticism.oscillation_search import find_oscillations
 
 LEVEL = 1e-3  # of the spectrum: a tenth of the accepted one in a hundred
 LOWEST = 2.0  # Hz
@@ -21,16 +22,27 @@ A, B = 0.3 * ARC_SECOND, 0.4 * ARC_SECOND
 RINGING = (20.013, 0.01, "x")
 
 
-def said(made: list[SteadyTurn]) -> LinesOfTurns:
-    return LinesOfTurns(heard(made, LEVEL, LOWEST), "")
+Rows = dict[str, list[Mapping[str, Any]]]
+
+
+def said(made: list[SteadyTurn]) -> Rows:
+    """The rows by table."""
+    rows: Rows = defaultdict(list)
+    for table, row in OscillationResults(find_oscillations(made, LEVEL, LOWEST), "").rows():
+        rows[table].append(row)
+    return rows
+
+
+def members(rows: Rows, finding: Mapping[str, Any]) -> list[str]:
+    return [row["effect"] for row in rows["members"] if row["finding"] == finding["id"]]
 
 
 def named(made: list[SteadyTurn]) -> dict[str, Mapping[str, Any]]:
-    return {finding["cause"]: finding for finding in said(made).findings()}
+    return {finding["cause"]: finding for finding in said(made)["findings"]}
 
 
-def estimated(lines: LinesOfTurns) -> dict[tuple[str, str], tuple[float, float]]:
-    rows = [row for row in lines.effects() if row["value"] is not None]
+def estimated(lines: Rows) -> dict[tuple[str, str], tuple[float, float]]:
+    rows = [row for row in lines["effects"] if row["value"] is not None]
     return {(row["effect"], row["parameter"]): (row["value"], row["sigma"]) for row in rows}
 
 
@@ -42,8 +54,8 @@ def assert_near(found: tuple[float, float], true: float) -> None:
 def test_a_ripple_is_found_with_its_order_and_its_parts(order):
     a, b = 36 / order * A, 36 / order * B
     lines = said(turns(2, ripples=[(order, a, b)]))
-    (finding,) = lines.findings()
-    assert finding["cause"] == finding["members"] == "table_ripple"
+    (finding,) = lines["findings"]
+    assert [finding["cause"]] == members(lines, finding) == ["table_ripple"]
     assert finding["verdict"] == "found" and finding["p_value"] < 1e-9
     values = estimated(lines)
     assert_near(values["table_ripple", "n"], order)
@@ -65,9 +77,9 @@ def test_the_sigmas_of_a_ripple_are_true():
 
 def test_what_rings_in_time_is_an_oscillation_about_its_axis():
     lines = said(turns(3, ringing=[RINGING]))
-    (finding,) = lines.findings()
-    assert finding["cause"] == finding["members"] == "oscillation"
-    assert "oscillates about x" in finding["sentence"] and "bound to time" in finding["sentence"]
+    (finding,) = lines["findings"]
+    assert [finding["cause"]] == members(lines, finding) == ["oscillation"]
+    assert "oscillates about x" in finding["sentence"] and "periodic in time" in finding["sentence"]
     assert "order 360.2" in finding["sentence"]  # what it would be against the angle
     assert_near(estimated(lines)["oscillation", "frequency"], RINGING[0])
     assert_near(estimated(lines)["oscillation", "amplitude"], RINGING[1])
@@ -76,7 +88,7 @@ def test_what_rings_in_time_is_an_oscillation_about_its_axis():
 def test_several_are_told_apart_at_once():
     ripples = [(36.0, A, B), (1.0, 20 * ARC_SECOND, -20 * ARC_SECOND)]
     lines = said(turns(8, ripples=ripples, ringing=[RINGING]))
-    assert {finding["cause"] for finding in lines.findings()} == {
+    assert {finding["cause"] for finding in lines["findings"]} == {
         "oscillation",
         "table_ripple",
         "table_eccentricity",
@@ -86,7 +98,7 @@ def test_several_are_told_apart_at_once():
     assert_near(values["table_eccentricity", "a"], 20 * ARC_SECOND)
     assert_near(values["table_eccentricity", "b"], -20 * ARC_SECOND)
     assert_near(values["oscillation", "frequency"], RINGING[0])
-    rows = list(lines.lines())
+    rows = lines["lines"]
     tables.LINES.arrow(pd.DataFrame(rows))
     assert {row["effect"] for row in rows} - {None} == {one for one, _ in values}
     for row in rows:
@@ -98,13 +110,13 @@ def test_several_are_told_apart_at_once():
 def test_an_eccentricity_that_is_too_small_is_a_blind_spot():
     assert set(named(turns(6, ripples=[(1.0, 20 * ARC_SECOND, 0.0)]))) == {"table_eccentricity"}
     lines = said(turns(6, ripples=[(1.0, 1.0 * ARC_SECOND, 0.0)]))
-    assert not list(lines.findings())
+    assert not list(lines["findings"])
     (spot,) = [
         row
-        for row in lines.blind_spots()
+        for row in lines["detection_limits"]
         if row["effect"] == "table_eccentricity" and row["parameter"] == "a"
     ]
-    assert 2 * ARC_SECOND < spot["visible"] < 10 * ARC_SECOND
+    assert 2 * ARC_SECOND < spot["limit"] < 10 * ARC_SECOND
     assert "0.89 of its periods" in spot["sentence"]
 
 
@@ -113,13 +125,13 @@ def test_a_blind_spot_is_five_sigma_of_what_is_found():
     sigma = estimated(lines)["table_ripple", "a"][1]
     (spot,) = [
         row
-        for row in lines.blind_spots()
+        for row in lines["detection_limits"]
         if row["effect"] == "table_ripple" and row["parameter"] == "a"
     ]
     # Sigma goes as one over the order: the spot is told for the middle of 1.5 to 60.
-    assert spot["visible"] * 30.75 / 36 == pytest.approx(5 * sigma, rel=0.1)
-    assert spot["best"] * 60 / 36 == pytest.approx(5 * sigma, rel=0.1)
-    assert spot["worst"] > 10 * spot["visible"]
+    assert spot["limit"] * 30.75 / 36 == pytest.approx(5 * sigma, rel=0.1)
+    assert spot["smallest"] * 60 / 36 == pytest.approx(5 * sigma, rel=0.1)
+    assert spot["largest"] > 10 * spot["limit"]
 
 
 def test_noise_is_silent():
@@ -164,26 +176,26 @@ def test_what_no_turn_shows_by_itself_all_show_together():
 
 def test_one_turn_cannot_tell_time_from_angle_and_another_rate_would():
     lines = said(turns(9, ripples=[(36.0, A, B)], rates=(20,), axes="x"))
-    (finding,) = lines.findings()
+    (finding,) = lines["findings"]
     assert finding["verdict"] == "one_of_class"
-    assert set(finding["members"].split(", ")) == {"oscillation", "table_ripple"}
+    assert set(members(lines, finding)) == {"oscillation", "table_ripple"}
     assert "twice the rate" in finding["split_manoeuvre"] and finding["split_snr"] > 10
-    scores = {row["effect"]: row for row in lines.scores()}
+    scores = {row["effect"]: row for row in lines["scores"]}
     assert sum(row["named"] for row in scores.values()) == 1
     # A slow ripple is not told from a drift by one turn.
-    assert scores["table_eccentricity"]["degrees"] == 0
+    assert scores["table_eccentricity"]["degrees"] is None
 
 
 def test_the_axis_that_only_sees_it_by_coupling_is_named_so():
-    (found,) = heard(turns(3, ringing=[RINGING]), LEVEL, LOWEST).lines
+    (found,) = find_oscillations(turns(3, ringing=[RINGING]), LEVEL, LOWEST).oscillations
     assert found.axis == "x"
-    for one in found.through:
+    for one in found.coupled:
         expected = RINGING[1] * abs(MATRIX["xyz".index(one.axis), 0])
         assert one.expected == pytest.approx(expected, rel=1e-3)
         assert one.read == pytest.approx(expected, abs=3e-6) and not one.more
     also = [RINGING, (RINGING[0], 3e-4, "z")]
-    (found,) = heard(turns(3, ringing=also), LEVEL, LOWEST).lines
-    more = {one.axis: one.more for one in found.through}
+    (found,) = find_oscillations(turns(3, ringing=also), LEVEL, LOWEST).oscillations
+    more = {one.axis: one.more for one in found.coupled}
     assert found.axis == "x" and more == {"y": False, "z": True}
 
 
@@ -203,18 +215,19 @@ def test_where_the_gyros_tell_the_angle_their_residuals_tell_no_ripple():
     for turn in turns(4, ringing=[(20.0, 1e-3, "x")]):
         nothing = turn.truth * (1 - np.abs(turn.about)) + 1e-9 * turn.truth * np.abs(turn.about)
         made.append(replace(turn, truth=nothing, angle=np.full(len(nothing), np.nan)))
-    (finding,) = said(made).findings()
+    (finding,) = said(made)["findings"]
     assert finding["cause"] == "oscillation" and finding["verdict"] == "found"
     assert finding["size"] == pytest.approx(1e-3, rel=0.01)
     assert "y 20, y -20, z 20, z -20" in finding["sentence"]
-    scores = {row["effect"]: row for row in said(made).scores()}
-    assert scores["table_ripple"]["degrees"] == 0
+    scores = {row["effect"]: row for row in said(made)["scores"]}
+    assert scores["table_ripple"]["degrees"] is None
     assert "rate and acceleration are stated" in scores["table_ripple"]["sentence"]
 
 
 def test_without_a_turn_it_says_so():
-    for row in said([]).scores():
-        assert not row["named"] and row["degrees"] == 0
+    for row in said([])["scores"]:
+        assert not row["named"]
+        assert row["degrees"] is row["statistic"] is row["p_value"] is None
         assert "no whole turn at a steady rate" in row["sentence"]
 
 

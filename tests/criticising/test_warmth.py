@@ -1,5 +1,7 @@
 """Means at temperatures: a law is found with its numbers, a knee is no law, noise is silent."""
 
+from collections import defaultdict
+
 import chain
 import numpy as np
 import pandas as pd
@@ -8,7 +10,7 @@ from means_at_temperatures import ICE_POINT, RATE, blocks, manoeuvre, temperatur
 
 from inertial import tables
 from inertial.estimation.regression import curve_of, knee_of
-from stages.criticism.temperature_findings import findings
+from stages.criticism.temperature_findings import temperature_rows
 
 LEVEL = 0.01
 MIDDLE = ICE_POINT + 33  # about which the numbers of the law are told
@@ -17,12 +19,27 @@ TURN = manoeuvre("turn", "turn")
 
 
 def said(made: pd.DataFrame, *plan) -> dict[str, dict]:
-    """The findings by manoeuvre and what is swept; they fit their table."""
-    rows = list(findings(made, plan or [STILL], LEVEL, ""))
+    """The findings, with members and parameters, by manoeuvre and what is swept."""
+    rows = defaultdict(list)
+    for table, row in temperature_rows(made, plan or [STILL], LEVEL, ""):
+        rows[table].append(row)
     names = [column.name for column in tables.CAUSES.columns]
-    tables.CAUSES.arrow(pd.DataFrame(rows, columns=names))
-    assert len({row["id"] for row in rows}) == len(rows)
-    return {row["id"].removeprefix("criticism/temperature/"): row for row in rows}
+    tables.CAUSES.arrow(pd.DataFrame(rows["findings"], columns=names))
+    found = {}
+    for row in rows["findings"]:
+        own = {
+            table: [one for one in rows[table] if one["finding"] == row["id"]]
+            for table in ("members", "effects")
+        }
+        found[row["id"].removeprefix("criticism/temperature/")] = {
+            **row,
+            "members": [one["effect"] for one in own["members"]],
+            "parameters": {
+                one["parameter"]: (one["value"], one["sigma"]) for one in own["effects"]
+            },
+        }
+    assert len(found) == len(rows["findings"])
+    return found
 
 
 def at_rest(seed: int, **changes) -> pd.DataFrame:
@@ -32,11 +49,7 @@ def at_rest(seed: int, **changes) -> pd.DataFrame:
 
 
 def number(row: dict, name: str) -> tuple[float, float]:
-    for told in row["parameters"].split("; "):
-        if told.startswith(f"{name} = "):
-            value, _, rest = told.partition(" = ")[2].partition(" ± ")
-            return float(value), float(rest.split()[0])
-    raise AssertionError(f"no {name} in {row['parameters']}")
+    return row["parameters"][name]
 
 
 def test_what_does_not_go_with_the_temperature_is_silent():
@@ -67,7 +80,7 @@ def test_a_straight_line_of_a_gyro_is_found_with_its_number():
     for seed in range(8):
         found = said(at_rest(seed, gyro_y=lambda t: -4e-5 * t))
         (row,) = found.values()
-        assert row["verdict"] == "found" and row["members"] == "gyro_bias_temperature"
+        assert row["verdict"] == "found" and row["members"] == ["gyro_bias_temperature"]
         assert row["axis"] == "y" and row["degrees"] == 1 and row["p_value"] < 1e-6
         assert "along a straight line" in row["sentence"]
         value, sigma = number(row, "k1_y")
@@ -95,7 +108,7 @@ def test_a_knee_is_no_law_and_is_found():
         assert abs(value - true) < 3.5 * sigma, name
     assert number(row, "knee_z")[1] < 3  # K
     # It is not taken for a law of the effects that it is consistent with.
-    assert set(row["members"].split(", ")) == {"accel_bias_temperature", "accel_scale_temperature"}
+    assert set(row["members"]) == {"accel_bias_temperature", "accel_scale_temperature"}
 
 
 def test_the_interval_of_a_knee_holds_it():
@@ -110,17 +123,17 @@ def test_the_interval_of_a_knee_holds_it():
 @pytest.mark.parametrize(
     ("channel", "change", "able"),
     [
-        ("accel_x", 5e-2, "accel_bias_temperature, table_tilt"),  # 0.3° of tilt would do it
-        ("accel_x", 1.0, "accel_bias_temperature"),  # 6° of the table are not thought of
-        ("accel_z", 5e-2, "accel_bias_temperature, accel_scale_temperature"),
+        ("accel_x", 5e-2, ["accel_bias_temperature", "table_tilt"]),  # 0.3° of tilt would do it
+        ("accel_x", 1.0, ["accel_bias_temperature"]),  # 6° of the table are not thought of
+        ("accel_z", 5e-2, ["accel_bias_temperature", "accel_scale_temperature"]),
     ],
 )
 def test_an_acceleration_is_what_its_attitude_allows(channel, change, able):
     (row,) = said(at_rest(7, **{channel: lambda t: change / 64 * t})).values()
     assert row["members"] == able
-    assert row["verdict"] == ("one_of_class" if "," in able else "found")
+    assert row["verdict"] == ("one_of_class" if len(able) > 1 else "found")
     # Along the vertical a tilt that small does nothing, and the sentence says so.
-    assert ("No tilt moves z" in row["sentence"]) == (channel == "accel_z")
+    assert ("No tilt changes z" in row["sentence"]) == (channel == "accel_z")
 
 
 def test_of_a_turn_the_reading_at_rest_is_taken_off():
@@ -132,7 +145,7 @@ def test_of_a_turn_the_reading_at_rest_is_taken_off():
     assert set(found) == {"still/gyro", "turn/scale"}
     row = found["turn/scale"]
     assert row["verdict"] == "one_of_class" and row["unit"] == "1"
-    assert row["members"] == "gyro_scale_temperature, table_speed_error"
+    assert row["members"] == ["gyro_scale_temperature", "table_speed_error"]
     value, sigma = number(row, "k1_z")
     assert abs(value - 3e-5) < 3.5 * sigma < 1.5e-5
     (alone,) = said(turn, TURN).values()
@@ -152,7 +165,7 @@ def test_a_mean_of_a_few_samples_does_not_count():
     made = at_rest(10, gyro_y=lambda t: -4e-5 * t)
     made.loc[made.index[-1], ["gyro_y", "count"]] = (0.5, 3.0)
     (row,) = said(made).values()
-    assert row["degrees"] == 1 and "Left out: 1 mean of fewer than 200 samples" in row["sentence"]
+    assert row["degrees"] == 1 and "Omitted: 1 mean of fewer than 200 samples" in row["sentence"]
 
 
 def test_a_log_of_means_goes_through_the_chain(tmp_path):

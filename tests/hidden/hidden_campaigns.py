@@ -89,10 +89,11 @@ def _said(results: chain.Results) -> Outcome:
     findings = results["criticism/findings"]
     causes = findings[findings["verdict"].notna()]
     rest = findings[findings["verdict"].isna()]
+    members = results["criticism/members"].groupby("finding")["effect"].agg(list)
     named = [
         {"cause": row["cause"], "verdict": row["verdict"]}
         | {"snr": float(row["snr"]) if pd.notna(row["snr"]) else None}
-        | {"members": [one for one in str(row["members"] or "").split(", ") if one]}
+        | {"members": members.get(row["id"], [])}
         for row in causes.to_dict("records")
     ]
     quality = [results[f"{stage}/findings"] for stage in ("quality", "segment")]
@@ -107,7 +108,8 @@ def _estimated(draw: Draw, results: chain.Results) -> Outcome:
     """Errors of named effects in sigma, and their signal in units of the true one."""
     findings = results["criticism/findings"]
     clear = set(findings.loc[findings["verdict"].isin(CLEAR), "cause"])
-    effects = results["criticism/effects"].set_index(["effect", "parameter"])
+    effects = results["criticism/effects"].drop_duplicates(["effect", "parameter"])
+    effects = effects.set_index(["effect", "parameter"])
     pulls, curse = [], {}
     for name, values in draw.truth.items():
         if name not in clear:

@@ -210,7 +210,8 @@ class Residuals:
                     left = np.where(fitted, 0.0, 1.0)
                     yield Answer(
                         kind,
-                        f"{('gyro', 'accel')[channel // 3]} {'xyz'[channel % 3]}",
+                        ("gyro", "accel")[channel // 3],
+                        "xyz"[channel % 3],
                         question,
                         information * np.outer(left, left),
                         functions.T @ self.values[own] * left,

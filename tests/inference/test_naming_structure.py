@@ -91,7 +91,7 @@ def test_a_structure_is_heard_whatever_its_cause(signal: Array, kinds: set[str])
 def test_where_it_is():
     found = heard(on(TIME > 0.37), 5)
     change = found["change"]
-    assert change.channel == "gyro y"
+    assert (change.sensor, change.axis) == ("gyro", "y")
     assert (change.where - ROWS.time[0]) / np.ptp(ROWS.time) == pytest.approx(0.37, abs=0.05)
     assert heard(np.stack([RIPPLE, 0 * RIPPLE]), 6)["angle"].where == pytest.approx(7.3, abs=0.3)
 

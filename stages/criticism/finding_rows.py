@@ -1,0 +1,68 @@
+"""What the rows of all findings share: identifiers, the members of a class, and parameters."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from inertial.campaign.records import with_mount
+
+Row = Mapping[str, Any]
+TableRow = tuple[str, Row]  # the name of a table that the stage writes, and a row of it
+
+SENSORS = {"gyro": "gyros", "accel": "accelerometers"}
+
+
+def finding_id(cause: str, mount: str, *places: str) -> str:
+    """A stable identifier; it is compared and shown, and nothing is read from it."""
+    return "/".join(["criticism", with_mount(cause, mount), *places])
+
+
+def member_rows(
+    finding: str,
+    mount: str,
+    members: Sequence[str],
+    probability: Sequence[float] = (),
+    captured: Sequence[float] = (),
+) -> Iterator[TableRow]:
+    """The effects of a class, the most probable first."""
+    for i, effect in enumerate(members):
+        row = {"finding": finding, "mount": mount, "rank": i + 1, "effect": effect}
+        row |= {"probability": probability[i] if probability else None}
+        yield "members", row | {"captured": captured[i] if captured else None}
+
+
+@dataclass(frozen=True)
+class Estimated:
+    """A parameter of an effect: value and sigma in the SI `unit`, where they are known."""
+
+    name: str
+    unit: str
+    meaning: str
+    value: float | None = None
+    sigma: float | None = None
+    detection_limit: float | None = None
+
+
+def parameter_row(
+    mount: str, effect: str, parameter: Estimated, finding: str | None, identifier: str
+) -> TableRow:
+    """A row of `effects`; `identifier`: of the effect, or of the finding where it has several."""
+    return "effects", {
+        "id": f"{identifier}/{parameter.name}",
+        "mount": mount,
+        "finding": finding,
+        "effect": effect,
+        "parameter": parameter.name,
+        "value": parameter.value,
+        "sigma": parameter.sigma,
+        "detection_limit": parameter.detection_limit,
+        "unit": parameter.unit,
+        "meaning": parameter.meaning,
+    }
+
+
+def snr_of(statistic: float, degrees: int) -> float:
+    """Signal-to-noise ratio: the statistic less what noise adds to it."""
+    return float(np.sqrt(max(statistic - degrees, 0.0)))
