@@ -1,4 +1,22 @@
-"""Prediction of manoeuvres by a model that was fitted to the others."""
+"""Prediction of manoeuvres by a model that was fitted to the others.
+
+Of the effects' parameters β, all else fitted, the equations of some manoeuvres have the information
+and right-hand side F_t, b_t, and those of all F, b; so those of the others, given the some, have
+F − F_t and b − b_t. The training predicts β_t = F_t⁻¹ b_t, and the chi-squared of the others,
+predicted without the effects less with them, is
+
+    drop = 2 (b − b_t)ᵀ β_t − β_tᵀ (F − F_t) β_t
+
+Both are predicted with the same covariance, and no prior width of β is in it. Where β is the truth
+the drop is on average βᵀ (F − F_t) β, the part of SNR² = βᵀ F β that was held out, less
+tr(F_t⁻¹ F − I), the cost of estimating β_t.
+
+A fold is counted where its training keeps half of the information, or more, along the estimated
+effect (design study); else its manoeuvres alone show the effect. Of a fold that is counted the
+training may still know a combination of several parameters poorly. Where it keeps less than half of
+that one's information, it predicts with it only if the training by itself shows it, at 3 sigma;
+else the combination stays zero in both models.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,51 +25,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.estimation.least_squares import MIN_INFORMATION_SHARE, EffectInformation
-from stages.extension.models import SENSORS, Models, Told
-
-# ---- What a model foretells of manoeuvres that it has not seen.
-#
-# Of the effects' parameters β, all else fitted, some manoeuvres tell (F_t, b_t) and all of them
-# (F, b); so the others tell, beside these, F − F_t and b − b_t. The training predicts β_t = F_t⁻¹
-# b_t, and the chi-squared of the others, foretold without the effects less with them, is
-#
-#     drop = 2 (b − b_t)ᵀ β_t − β_tᵀ (F − F_t) β_t
-#
-# Both are foretold with the same covariance, and no width that β had beforehand is in it. Where β
-# is the truth the drop is on average βᵀ (F − F_t) β, the part of SNR² = βᵀ F β that was taken
-# away, less tr(F_t⁻¹ F − I), what it costs that β_t is only estimated.
-#
-# A fold is counted where its training keeps half of the information, or more, along the effect as
-# it was found (design study); else its manoeuvres alone show the effect. Of a fold that is counted
-# the training may still know a combination of several parameters poorly. Where it keeps less than
-# half of that one's information, it foretells with it only if the training by itself shows it, at
-# 3 sigma; else the combination stays zero in both models.
+from stages.extension.models import SENSORS, Models, SensorEvidence
 
 Array = NDArray[np.float64]
 
-KEPT = 0.5  # of the information: what the training must keep
-SHOWN = 9.0  # of chi-squared: 3 sigma
-LEAST = 0.05  # of the information: with less a single fold would cost twenty by chance
+MIN_TRAINING_SHARE = 0.5  # of the information
+MIN_TRAINED_CHI_SQUARED = 9.0  # of a combination: 3 sigma
+MIN_COMBINATION_SHARE = 0.05  # of the information; with less a fold would cost 20 by chance
 
 
 @dataclass(frozen=True)
 class Fold:
-    """Some manoeuvres, foretold from the others.
+    """Some manoeuvres, predicted from the others.
 
-    `kept`: of the information along the effect, by the training; `beta`: (k,), what it foretells
-    with; `drop` of chi-squared; `at_stake`: the drop if the parameters were known exactly.
+    `kept`: of the information along the effect, by the training; `beta`: (k,), what it predicts
+    with; `drop` of chi-squared; `expected_drop`: the drop if the parameters were known exactly.
     """
 
     manoeuvres: tuple[str, ...]
     kept: float
     beta: Array
     drop: float
-    at_stake: float
+    expected_drop: float
 
     @property
     def counts(self) -> bool:
         """Whether the training shows enough of the effect."""
-        return self.kept >= KEPT
+        return self.kept >= MIN_TRAINING_SHARE
 
 
 def basis_of(information: Array) -> Array:
@@ -69,10 +69,10 @@ def snr_squared(whole: EffectInformation) -> float:
     return max(float(along @ along) - len(along), 0.0)
 
 
-def fold(
+def fold_of(
     manoeuvres: Sequence[str], whole: EffectInformation, training: EffectInformation | None
 ) -> Fold:
-    """Foretell `manoeuvres` from the training, which is all but them; None if that is nothing."""
+    """Predict `manoeuvres` from the training, which is all but them; None if that is nothing."""
     basis = basis_of(whole.information)
     information = np.zeros_like(whole.information) if training is None else training.information
     right = np.zeros_like(whole.right) if training is None else training.right
@@ -80,7 +80,9 @@ def fold(
     basis = basis @ turn
     along = basis.T @ whole.right
     trained = basis.T @ right
-    there = (left >= KEPT) | ((left >= LEAST) & (trained**2 >= SHOWN * left))
+    there = (left >= MIN_TRAINING_SHARE) | (
+        (left >= MIN_COMBINATION_SHARE) & (trained**2 >= MIN_TRAINED_CHI_SQUARED * left)
+    )
     beta = basis[:, there] @ (trained[there] / left[there])
     taken = np.maximum(1 - left[there], 0.0)
     return Fold(
@@ -102,32 +104,32 @@ def groups(manoeuvres: Sequence[str], most: int) -> list[tuple[str, ...]]:
     return [tuple(manoeuvres[start::most]) for start in range(min(most, len(manoeuvres)))]
 
 
-# ---- The extended model put to the test on manoeuvres that its fit has not seen.
+# ---- The folds of a campaign.
 
-FOLDS = 12  # so many fits at most
-MIN_SNR_SQUARED = 9.0  # of chi-squared: what must be at stake, 3 sigma
+MAX_FOLDS = 12
+MIN_SNR_SQUARED = 9.0  # of the effects in the folds that count: 3 sigma
 
 
 @dataclass(frozen=True)
-class HeldOut:
-    """What the folds of one sensor tell.
+class CrossValidation:
+    """The folds of one sensor.
 
-    `whole`: all manoeuvres; `folds` with what their training tells, None where that is nothing;
-    `snr_squared`: of the effects in all manoeuvres.
+    `whole`: all manoeuvres; `folds` with the evidence of their training, None where there is
+    none; `snr_squared`: of the effects in all manoeuvres.
     """
 
     sensor: str
-    whole: Told
-    folds: Sequence[tuple[Fold, Told | None]]
+    whole: SensorEvidence
+    folds: Sequence[tuple[Fold, SensorEvidence | None]]
     snr_squared: float
 
     @property
-    def counted(self) -> list[tuple[Fold, Told]]:
+    def counted(self) -> list[tuple[Fold, SensorEvidence]]:
         """The folds that count, and their training."""
         return [(one, told) for one, told in self.folds if one.counts and told is not None]
 
     @property
-    def left_out(self) -> tuple[str, ...]:
+    def not_counted(self) -> tuple[str, ...]:
         """The manoeuvres that alone show the effects."""
         return tuple(name for one, _ in self.folds if not one.counts for name in one.manoeuvres)
 
@@ -137,36 +139,38 @@ class HeldOut:
         return sum(one.drop for one, _ in self.counted)
 
     @property
-    def walked(self) -> float:
-        """What a walk of the joint model foretells of them better than a bias that stands still."""
-        return sum(self.whole.walked - told.walked for _, told in self.counted)
+    def walk_drop(self) -> float:
+        """What a random walk of the joint model predicts better than a constant bias."""
+        return sum(self.whole.walk_drop - told.walk_drop for _, told in self.counted)
 
     @property
-    def at_stake(self) -> float:
-        """The part of SNR² that these folds took away; one manoeuvre may hold what others need."""
-        return sum(one.at_stake for one, _ in self.counted)
+    def expected_drop(self) -> float:
+        """The part of SNR² that these folds hold; one manoeuvre may hold what others need."""
+        return sum(one.expected_drop for one, _ in self.counted)
 
     @property
     def possible(self) -> bool:
-        """Whether they took away enough of the effect to judge it."""
-        return self.at_stake >= MIN_SNR_SQUARED
+        """Whether they hold enough of the effect to judge it."""
+        return self.expected_drop >= MIN_SNR_SQUARED
 
 
-def held_out(models: Models) -> dict[str, HeldOut]:
-    """For each sensor that shows the effects, what others foretell of each manoeuvre."""
-    every = models.told()
-    found: dict[str, list[tuple[Fold, Told | None]]] = {sensor: [] for sensor in SENSORS}
+def cross_validate(models: Models) -> dict[str, CrossValidation]:
+    """For each sensor that shows the effects, every manoeuvre predicted from the others."""
+    every = models.evidence()
+    found: dict[str, list[tuple[Fold, SensorEvidence | None]]] = {sensor: [] for sensor in SENSORS}
     names = models.joint.manoeuvres
     if not any(every):
         return {}
-    for some in groups(names, FOLDS):
-        training = models.told(set(names) - set(some)) if len(names) > len(some) else [None, None]
+    for some in groups(names, MAX_FOLDS):
+        training = (
+            models.evidence(set(names) - set(some)) if len(names) > len(some) else [None, None]
+        )
         for sensor, whole, rest in zip(SENSORS, every, training, strict=True):
             if whole is not None:
                 effects = rest.effects if rest else None
-                found[sensor].append((fold(some, whole.effects, effects), rest))
+                found[sensor].append((fold_of(some, whole.effects, effects), rest))
     return {
-        sensor: HeldOut(sensor, whole, found[sensor], snr_squared(whole.effects))
+        sensor: CrossValidation(sensor, whole, found[sensor], snr_squared(whole.effects))
         for sensor, whole in zip(SENSORS, every, strict=True)
         if whole is not None
     }

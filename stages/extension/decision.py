@@ -1,150 +1,178 @@
-"""Whether the extended result of a sensor replaces the joint one, and the parameters that count.
+"""Whether the extended result of a sensor replaces the joint one, and the final parameters.
 
-It does where the model with the effects foretells what its fit has not seen better than the one
-without, and nothing says that it is not the whole truth either.
+It does where the model with the effects predicts the manoeuvres that its fit has not seen better
+than the one without, and no finding says that the model is still not complete.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from inertial.estimation.triad import linear_names
 from inertial.text.cause_names import in_words
-from stages.extension.cross_validation import MIN_SNR_SQUARED, HeldOut
+from stages.extension.cross_validation import MIN_SNR_SQUARED, CrossValidation
 from stages.extension.estimates import Solved
-from stages.extension.named_effects import Named
+from stages.extension.named_effects import Alarm, Named
 
-Row = dict[str, Any]
+Row = Mapping[str, Any]
+TableRow = tuple[str, Row]  # the name of a table that the stage writes, and a row of it
 
 JOINT, EXTENDED = "joint", "extended"
 SENSORS = {"gyro": "gyros", "accel": "accelerometers"}
 
-
-def decision(
-    sensor: str,
-    mount: str,
-    named: Named,
-    solution: Solved | None,
-    found: HeldOut | None,
-    joint: Sequence[Row],
-) -> Row:
-    """The row of a sensor; `joint`: rows of its joint result."""
-    alarms = named.alarms.get(sensor, ())
-    effects = tuple(
-        dict.fromkeys(row["parameter"].partition(".")[0] for row in solution.of_effects)
-        if solution
-        else ()
-    )
-    reason = _against(sensor, alarms, effects, solution, found, joint)
-    sentence = reason or _for(sensor, effects, found)
-    row: Row = {
-        "sensor": sensor,
-        "mount": mount,
-        "result": JOINT if reason else EXTENDED,
-        "effects": ", ".join(effects),
-        "drop": None,
-        "snr_squared": None,
-        "folds": None,
-        "counted": None,
-        "alarms": ", ".join(alarms),
-        "sentence": sentence + _classes(effects, named.classes) + _alone(found),
-    }
-    if found is not None:
-        row |= {"drop": found.drop - found.walked, "snr_squared": found.at_stake}
-        row |= {"folds": len(found.folds), "counted": len(found.counted)}
-    return row
-
-
-def _against(
-    sensor: str,
-    alarms: Sequence[str],
-    effects: Sequence[str],
-    solution: Solved | None,
-    found: HeldOut | None,
-    joint: Sequence[Row],
-) -> str:
-    """Why the joint result stays; empty where it does not."""
-    name = SENSORS[sensor]
-    if not any(row["value"] is not None for row in joint):
-        return f"There is no joint result of the {name}."
-    if alarms and not effects:
-        return (
-            f"The joint result of the {name} counts, and its sigmas with a doubt: something is not"
-            f" understood ({_listed(alarms)})."
-        )
-    if solution is None or found is None or not effects:
-        return f"The joint result of the {name} counts: they show no effect that was named."
-    said = f"The joint result of the {name} counts, though {_listed(effects)} was named: "
-    if alarms:
-        return f"{said}beside it something is not understood ({_listed(alarms)})."
-    if not found.possible:
-        return (
-            f"{said}it is not cross-validatable, for the manoeuvres that can be foretold from the"
-            f" others hold too little of it (SNR² {max(found.at_stake, 0.0):.1f}, less than"
-            f" {MIN_SNR_SQUARED:.0f})."
-        )
-    if found.drop <= found.walked:
-        return (
-            f"{said}manoeuvres that the fit has not seen are foretold no better with it (χ² grows"
-            f" by {found.walked - found.drop:.1f})."
-        )
-    extended = {row["parameter"] for row in solution.of_sensor if row["value"] is not None}
-    lost = [
-        r["parameter"] for r in joint if r["value"] is not None and r["parameter"] not in extended
-    ]
-    if lost:
-        return f"{said}beside it {', '.join(lost)} would not be determined."
-    return ""
+NO_JOINT = "There is no joint result of the {sensors}."
+UNEXPLAINED = (
+    "The joint result of the {sensors} is final, and its sigmas are doubtful: some findings are not"
+    " explained ({causes})."
+)
+NO_EFFECT = "The joint result of the {sensors} is final: they show no effect that was named."
+KEPT = "The joint result of the {sensors} is final, though {effects} was named: {reason}."
+NOT_EXPLAINED = "beside it some findings are not explained ({causes})"
+NOT_VALIDATED = (
+    "it is not cross-validatable, for the manoeuvres that can be predicted from the others hold too"
+    " little of it (SNR² {snr_squared:.1f}, less than {least:.0f})"
+)
+NO_BETTER = (
+    "manoeuvres that the fit has not seen are predicted no better with it (χ² grows by"
+    " {growth:.1f})"
+)
+NOT_DETERMINED = "beside it {parameters} would not be determined"
+REPLACED = (
+    "The extended result of the {sensors} is final, with {effects}: χ² of manoeuvres that the fit"
+    " has not seen is reduced by {drop:.1f}, of {expected:.1f} that exactly known effects would"
+    " bring, and no finding remains unexplained."
+)
+AGAINST_WALK = (
+    " Against the joint fit, which describes some of it by a random walk of the biases, it is"
+    " reduced by {drop:.1f}."
+)
+OTHER_MEMBERS = (
+    " Instead of {effect} it may be {others}: that would do the same to these data, within their"
+    " noise."
+)
+NOT_COUNTED = (
+    " Not counted: {manoeuvres}; without {each} the others show less than half of the effect."
+)
 
 
-def _for(sensor: str, effects: Sequence[str], found: HeldOut | None) -> str:
-    assert found is not None  # else the joint result stays
-    return (
-        f"The extended result of the {SENSORS[sensor]} counts, with {_listed(effects)}: χ² of"
-        f" manoeuvres that the fit has not seen drops by {found.drop:.1f}, of"
-        f" {found.at_stake:.1f} that exactly known effects would bring, and no alarm fires."
-        + _walk(found)
-    )
+@dataclass(frozen=True)
+class Candidate:
+    """The results of one sensor, of which one becomes final.
 
+    `joint`: rows of its joint result; `solution` and `validated`: of the extended one, if any.
+    """
 
-def _walk(found: HeldOut) -> str:
-    if found.walked <= 0:
+    sensor: str
+    mount: str
+    named: Named
+    joint: Sequence[Row]
+    solution: Solved | None = None
+    validated: CrossValidation | None = None
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """The named effects that the extended model of this sensor has."""
+        return tuple(dict.fromkeys(self.solution.effects)) if self.solution else ()
+
+    @property
+    def alarms(self) -> Sequence[Alarm]:
+        """Findings about this sensor that no named effect explains."""
+        return self.named.alarms.get(self.sensor, ())
+
+    @property
+    def reason(self) -> str:
+        """Why the joint result stays final, in a sentence; empty where it does not."""
+        sensors, causes = SENSORS[self.sensor], _listed([one.cause for one in self.alarms])
+        if not any(row["value"] is not None for row in self.joint):
+            return NO_JOINT.format(sensors=sensors)
+        if self.alarms and not self.effects:
+            return UNEXPLAINED.format(sensors=sensors, causes=causes)
+        if self.solution is None or self.validated is None or not self.effects:
+            return NO_EFFECT.format(sensors=sensors)
+        reason = self._against(self.solution, self.validated, causes)
+        if not reason:
+            return ""
+        return KEPT.format(sensors=sensors, effects=_listed(self.effects), reason=reason)
+
+    def _against(self, solution: Solved, validated: CrossValidation, causes: str) -> str:
+        if self.alarms:
+            return NOT_EXPLAINED.format(causes=causes)
+        if not validated.possible:
+            size = max(validated.expected_drop, 0.0)
+            return NOT_VALIDATED.format(snr_squared=size, least=MIN_SNR_SQUARED)
+        if validated.drop <= validated.walk_drop:
+            return NO_BETTER.format(growth=validated.walk_drop - validated.drop)
+        extended = {row["parameter"] for row in solution.of_sensor if row["value"] is not None}
+        before = [row["parameter"] for row in self.joint if row["value"] is not None]
+        if lost := [name for name in before if name not in extended]:
+            return NOT_DETERMINED.format(parameters=", ".join(lost))
         return ""
-    return (
-        " Against the joint fit, which has taken some of it for a walk of the biases, it drops by"
-        f" {found.drop - found.walked:.1f}."
-    )
 
+    @property
+    def final(self) -> str:
+        """Which result becomes final."""
+        return JOINT if self.reason else EXTENDED
 
-def _classes(effects: Sequence[str], classes: Mapping[str, Sequence[str]]) -> str:
-    told = ""
-    for effect in effects:
-        if others := [name for name in classes.get(effect, ()) if name != effect]:
-            told += (
-                f" Instead of {in_words(effect)} it may be {_listed(others, 'or')}: that would do"
-                " the same to these data, within their noise."
-            )
-    return told
+    def rows(self) -> Iterator[TableRow]:
+        """The decision, with the effects of the extended model and the unexplained findings."""
+        shared = {"mount": self.mount, "sensor": self.sensor}
+        one = self.validated
+        yield (
+            "decision",
+            {
+                **shared,
+                "result": self.final,
+                "drop": one.drop - one.walk_drop if one else None,
+                "snr_squared": one.expected_drop if one else None,
+                "folds": len(one.folds) if one else None,
+                "counted": len(one.counted) if one else None,
+                "sentence": (self.reason or self._replaced())
+                + self._classes()
+                + self._not_counted(),
+            },
+        )
+        for effect in self.effects:
+            yield "decision_effects", {**shared, "effect": effect}
+        for alarm in self.alarms:
+            yield "alarms", {**shared, **alarm._asdict()}
 
+    def final_rows(self) -> list[Row]:
+        """The rows of the twelve final parameters."""
+        if self.final == EXTENDED and self.solution is not None:
+            return list(self.solution.of_sensor)
+        own = {row["parameter"]: row for row in self.joint}
+        return [own[name] for name in linear_names() if name in own]
 
-def _alone(found: HeldOut | None) -> str:
-    if found is None or not found.left_out:
-        return ""
-    names = ", ".join(found.left_out)
-    return (
-        f" Not counted: {names}; without it the others show less than half of the effect."
-        if len(found.left_out) == 1
-        else f" Not counted: {names}; without each the others show less than half of the effect."
-    )
+    def _replaced(self) -> str:
+        one = self.validated
+        assert one is not None  # else the joint result stays
+        sentence = REPLACED.format(
+            sensors=SENSORS[self.sensor],
+            effects=_listed(self.effects),
+            drop=one.drop,
+            expected=one.expected_drop,
+        )
+        if one.walk_drop <= 0:
+            return sentence
+        return sentence + AGAINST_WALK.format(drop=one.drop - one.walk_drop)
 
+    def _classes(self) -> str:
+        return "".join(
+            OTHER_MEMBERS.format(effect=in_words(effect), others=_listed(others, "or"))
+            for effect in self.effects
+            if (others := [n for n in self.named.classes.get(effect, ()) if n != effect])
+        )
 
-def result(decided: Row, solution: Solved | None, joint: Sequence[Row]) -> list[Row]:
-    """The rows of the twelve parameters of a sensor that count."""
-    if decided["result"] == EXTENDED and solution is not None:
-        return solution.of_sensor
-    own = {row["parameter"]: row for row in joint}
-    return [own[name] for name in linear_names() if name in own]
+    def _not_counted(self) -> str:
+        omitted = self.validated.not_counted if self.validated else ()
+        if not omitted:
+            return ""
+        each = "it" if len(omitted) == 1 else "each"
+        return NOT_COUNTED.format(manoeuvres=", ".join(omitted), each=each)
 
 
 def _listed(causes: Sequence[str], last: str = "and") -> str:
     names = [in_words(cause) for cause in causes]
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {last} {names[-1]}"
+    if len(names) < 2:
+        return "".join(names)
+    return f"{', '.join(names[:-1])} {last} {names[-1]}"

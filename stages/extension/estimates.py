@@ -1,6 +1,6 @@
 """The refitted model as rows, and the changes of its parameters."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.campaign.estimates import UNIT, described
+from inertial.campaign.records import with_mount
 from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.triad import UNKNOWNS, errors_of, linear_names
 from stages.extension.models import Models
@@ -17,7 +18,7 @@ from stages.extension.models import Models
 # ---- The parameters of the extended model with their covariance, and how well it fits.
 
 Array = NDArray[np.float64]
-Row = dict[str, Any]
+Row = Mapping[str, Any]
 
 STAGES = {"gyro": "gyroscope", "accel": "accelerometer"}
 NOT_DETERMINED = "beside the effects the manoeuvres do not determine it"
@@ -25,7 +26,10 @@ NOT_DETERMINED = "beside the effects the manoeuvres do not determine it"
 
 @dataclass(frozen=True)
 class Solved:
-    """The extended fit of one sensor: rows of its parameters, their covariance in that order."""
+    """The extended fit of one sensor: rows of its parameters, their covariance in that order.
+
+    `effects`: the name of the effect of each row after the twelve.
+    """
 
     sensor: str
     method: str
@@ -33,6 +37,7 @@ class Solved:
     covariance: Array
     estimate: Estimate
     walk: float
+    effects: Sequence[str] = ()
 
     @property
     def stage(self) -> str:
@@ -78,24 +83,26 @@ class Solved:
         }
 
 
-def solved(models: Models, sensor: str, system: System, walk: float, suffix: str) -> Solved:
+def solved(models: Models, sensor: str, system: System, walk: float, mount: str) -> Solved:
     """The twelve parameters of a sensor and those of the effects that it shows."""
     estimate = system.solve_shared()
     stage = STAGES[sensor]
-    method = f"{stage}{suffix}"
+    method = with_mount(stage, mount)
     places = list(range(UNKNOWNS))
-    told = [(name, *described(stage, name)) for name in linear_names()]
+    effects: list[str] = []
+    unknowns = [(name, *described(stage, name)) for name in linear_names()]
     for effect in models.effects:
         for parameter in effect.parameters:
             place = system.column("effect", f"{effect.label}.{parameter.name}")
             if place is not None and estimate.determined[place]:
                 places.append(place)
+                effects.append(effect.name)
                 name = f"{effect.name}.{parameter.name}"
-                told.append((name, parameter.unit, "body", parameter.meaning))
+                unknowns.append((name, parameter.unit, "body", parameter.meaning))
     values = estimate.values.copy()
     values[:UNKNOWNS] = errors_of(values[:UNKNOWNS])
-    rows = []
-    for place, (name, unit, frame, meaning) in zip(places, told, strict=True):
+    rows: list[Row] = []
+    for place, (name, unit, frame, meaning) in zip(places, unknowns, strict=True):
         there = bool(estimate.determined[place])
         rows.append(
             {
@@ -112,13 +119,13 @@ def solved(models: Models, sensor: str, system: System, walk: float, suffix: str
             }
         )
     covariance = estimate.covariance[np.ix_(places, places)]
-    return Solved(sensor, method, rows, covariance, estimate, walk)
+    return Solved(sensor, method, rows, covariance, estimate, walk, effects)
 
 
 # ---- How far the effects move each of the 24 parameters.
 
 
-def moved(solution: Solved, joint: Sequence[Row], scatter: bool) -> Iterator[Row]:
+def moved(solution: Solved, joint: Sequence[Row], scatter: bool, mount: str) -> Iterator[Row]:
     """Each parameter by the joint and by the extended fit.
 
     Nested fits of the same data differ by a variance σ²(extended) − σ²(joint) (Hausman 1978), if
@@ -135,6 +142,8 @@ def moved(solution: Solved, joint: Sequence[Row], scatter: bool) -> Iterator[Row
         yield {
             "id": row["id"],
             "joint_id": old["id"],
+            "mount": mount,
+            "sensor": solution.sensor,
             "parameter": name,
             "unit": row["unit"],
             "joint": old["value"],

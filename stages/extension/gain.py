@@ -1,4 +1,7 @@
-"""Reduction of chi-squared by the effects."""
+"""The reduction of chi-squared by the effects: of a sensor, and of each of its channels.
+
+Fitted: all manoeuvres by the fit to all. Held-out: each manoeuvre by the fit to the others.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -12,89 +15,97 @@ from inertial.estimation.periodic_in_time import without_line
 from inertial.physics.forward import Triad
 from inertial.tables import AXES
 from stages.extension.channels import Channels, Mean, system_of
-from stages.extension.cross_validation import HeldOut, drop_of, fold, snr_squared
+from stages.extension.cross_validation import CrossValidation, Fold, drop_of, fold_of, snr_squared
 from stages.extension.models import SENSORS, Models
 
-# ---- By how much the effects bring the model nearer to the data: of a sensor, and of each
-# channel.
-
-Row = dict[str, Any]
+Array = NDArray[np.float64]
+Row = Mapping[str, Any]
+TableRow = tuple[str, Row]  # the name of a table that the stage writes, and a row of it
 
 FITTED, HELD_OUT = "fitted", "held-out"
+BLOCKS = "blocks"  # the model of all effects that are fitted to means of blocks
 
 
-def gain(models: Models, found: dict[str, HeldOut], mount: str) -> Iterator[Row]:
+def gain(models: Models, validated: dict[str, CrossValidation], mount: str) -> Iterator[TableRow]:
     """The rows of each sensor that shows the effects, then those of its channels."""
     channels = Channels(models.extended, models.effects)
+    effect_of = {
+        f"{effect.label}.{parameter.name}": effect.name
+        for effect in models.effects
+        for parameter in effect.parameters
+    }
     for number, sensor in enumerate(SENSORS):
-        if sensor not in found:
+        if sensor not in validated:
             continue
-        one = found[sensor]
-        names = dict.fromkeys(
-            name.partition(".")[0].partition("@")[0] for name in one.whole.effects.names
-        )
-        shared = {"mount": mount, "effects": ", ".join(names)}
-        yield from (shared | row for row in _of_sensor(one))
+        one = validated[sensor]
+        shared = {"mount": mount, "sensor": sensor, "model": BLOCKS}
+        for effect in dict.fromkeys(effect_of[name] for name in one.whole.effects.names):
+            yield "gain_effects", shared | {"effect": effect}
+        yield from (("gain", {**shared, "axis": None, **row}) for row in _of_sensor(one))
+        counted = [fold for fold, _ in one.counted]
+        yield from _fold_rows(shared, [(fold, fold in counted) for fold, _ in one.folds])
         walk = models.extended.solution.walks[number]
         means = channels.means(sensor)
         for channel, axis in enumerate(AXES):
-            rows = _of_channel(one, means, channels.names, channel, walk)
-            yield from (shared | {"sensor": f"{sensor} {axis}"} | row for row in rows)
+            for row in _of_channel(one, means, channels.names, channel, walk):
+                yield "gain", {**shared, "axis": axis, **row}
 
 
-def _of_sensor(one: HeldOut) -> Iterator[Row]:
+def _fold_rows(shared: Row, folds: Sequence[tuple[Fold, bool]]) -> Iterator[TableRow]:
+    for number, (fold, counted) in enumerate(folds, 1):
+        for name in fold.manoeuvres:
+            yield (
+                "held_out",
+                {**shared, "fold": number, "manoeuvre": name, "counted": counted},
+            )
+
+
+def _of_sensor(one: CrossValidation) -> Iterator[Row]:
     whole = one.whole
     fitted = drop_of(best_of(whole.effects), whole.effects)
-    shared = {"sensor": one.sensor}
-    yield (
-        shared
-        | row_of(FITTED, whole.plain.chi_squared, fitted, whole.plain.degrees)
-        | {"snr_squared": one.snr_squared, "walked": whole.walked}
-    )
-    chi_squared = sum(whole.plain.chi_squared - told.plain.chi_squared for _, told in one.counted)
-    degrees = sum(whole.plain.degrees - told.plain.degrees for _, told in one.counted)
-    yield (
-        shared
-        | row_of(HELD_OUT, chi_squared, one.drop, degrees)
-        | {
-            "snr_squared": one.at_stake,
-            "walked": one.walked,
-            "folds": len(one.folds),
-            "counted": len(one.counted),
-            "taken_away": ", ".join(name for fold, _ in one.counted for name in fold.manoeuvres),
-            "left_out": ", ".join(one.left_out),
-        }
-    )
+    yield row_of(FITTED, whole.plain.chi_squared, fitted, whole.plain.degrees) | {
+        "snr_squared": one.snr_squared,
+        "walked": whole.walk_drop,
+    }
+    trained = [training.plain for _, training in one.counted]
+    chi_squared = sum(whole.plain.chi_squared - plain.chi_squared for plain in trained)
+    degrees = sum(whole.plain.degrees - plain.degrees for plain in trained)
+    yield row_of(HELD_OUT, chi_squared, one.drop, degrees) | {
+        "snr_squared": one.expected_drop,
+        "walked": one.walk_drop,
+        "folds": len(one.folds),
+        "counted": len(one.counted),
+    }
 
 
 def _of_channel(
-    one: HeldOut, means: Sequence[Mean], names: Sequence[str], channel: int, walk: float
+    one: CrossValidation, means: Sequence[Mean], names: Sequence[str], channel: int, walk: float
 ) -> Iterator[Row]:
     """The effects are as all channels have them; held-out: as those of the other manoeuvres."""
     shown = one.whole.effects.names
 
-    def told(but: Sequence[str]) -> tuple[float, int, EffectInformation] | None:
-        some = [mean for mean in means if mean.manoeuvre not in but]
+    def fitted(without: Sequence[str]) -> tuple[float, int, EffectInformation] | None:
+        some = [mean for mean in means if mean.manoeuvre not in without]
         system = system_of(some, names, channel, shown, walk)
-        return None if system is None else _told(system)
+        return None if system is None else _fitted(system)
 
-    whole = told(())
+    whole = fitted(())
     if whole is None:
         return
     chi_squared, degrees, reduced = whole
     yield row_of(FITTED, chi_squared, drop_of(best_of(one.whole.effects), reduced), degrees)
     before, drop, rows = 0.0, 0.0, 0
-    for counted, _ in one.counted:
-        part = told(counted.manoeuvres)
+    for fold, _ in one.counted:
+        part = fitted(fold.manoeuvres)
         if part is not None:
             before += chi_squared - part[0]
-            drop += drop_of(counted.beta, reduced) - drop_of(counted.beta, part[2])
+            drop += drop_of(fold.beta, reduced) - drop_of(fold.beta, part[2])
             rows += degrees - part[1]
     yield row_of(HELD_OUT, before, drop, rows)
 
 
-def _told(system: System) -> tuple[float, int, EffectInformation]:
-    """Chi-squared and degrees without the effects, and what is said of them."""
+def _fitted(system: System) -> tuple[float, int, EffectInformation]:
+    """Chi-squared and degrees without the effects, and the information about them."""
     reduced = system.effect_information()
     kept = [i for i, (kind, _) in enumerate(system.names) if kind != "effect"]
     joint = System(
@@ -109,13 +120,13 @@ def _told(system: System) -> tuple[float, int, EffectInformation]:
     return joint.chi_squared, joint.degrees, reduced
 
 
-def best_of(told: EffectInformation) -> np.ndarray:
-    """The parameters as the data have them; zero where they are not shown."""
-    values, _ = told.estimate(range(len(told.names)))
+def best_of(effects: EffectInformation) -> Array:
+    """The estimates of the parameters; zero where they are not determined."""
+    values, _ = effects.estimate(range(len(effects.names)))
     return np.asarray(np.nan_to_num(values))
 
 
-def row_of(scope: str, before: float, drop: float, degrees: int) -> Row:
+def row_of(scope: str, before: float, drop: float, degrees: int) -> dict[str, Any]:
     """What every row has: chi-squared without and with the effects, and the rms of either."""
 
     def rms(squares: float) -> float | None:
@@ -131,19 +142,13 @@ def row_of(scope: str, before: float, drop: float, degrees: int) -> Row:
         "walked": None,
         "folds": None,
         "counted": None,
-        "taken_away": "",
-        "left_out": "",
         "rms_before": rms(before),
         "rms_after": rms(before - drop),
         "unit": "sigma",
     }
 
 
-# ---- What modelling an oscillation gains.
-
-# ---- What an oscillation explains of the full-rate residuals of the turns.
-
-Array = NDArray[np.float64]
+# ---- The full-rate residuals of the turns: an oscillation in time.
 
 
 def gain_of_line(
@@ -152,11 +157,11 @@ def gain_of_line(
     frequency: float,
     gyro: Triad,
     mount: str,
-) -> Iterator[Row]:
-    """What it explains about its axis, the axis that is the loudest.
+) -> Iterator[TableRow]:
+    """What an oscillation explains about its axis, that of the largest standard deviation.
 
     Held-out: the frequency is that of all turns and the amplitude that of the other turns; only
-    the phase is the turn's own, for nothing could foretell it.
+    the phase is the turn's own, for nothing could predict it.
 
     Parameters
     ----------
@@ -176,35 +181,39 @@ def gain_of_line(
     amplitudes = {name: part.amplitude for name, part in parts.items()}
     samples = sum(len(truth) for truth in truths.values())
     before = sum(float(np.sum(part.record**2)) for part in parts.values())
-    for scope in ("fitted", "held-out"):
+    shared = {"mount": mount, "sensor": "gyro", "model": "oscillation"}
+    yield "gain_effects", shared | {"effect": "oscillation"}
+    for scope in (FITTED, HELD_OUT):
         after = 0.0
         for name, part in parts.items():
             rest = [a for other, a in amplitudes.items() if other != name]
-            size = amplitudes[name] if scope == "fitted" or not rest else float(np.mean(rest))
+            size = amplitudes[name] if scope == FITTED or not rest else float(np.mean(rest))
             after += float(np.sum(part.less(size) ** 2))
-        yield {
-            "sensor": f"gyro {'xyz'[axis]}",
-            "mount": mount,
-            "effects": "oscillation",
-            "scope": scope,
-            "rows": samples,
-            "before": before / samples,
-            "after": after / samples,
-            "drop": (before - after) / samples,
-            "rms_before": float(np.sqrt(before / samples)),
-            "rms_after": float(np.sqrt(after / samples)),
-            "unit": "rad/s",
-        }
+        yield (
+            "gain",
+            {
+                **shared,
+                "axis": AXES[axis],
+                "scope": scope,
+                "rows": samples,
+                "before": before / samples,
+                "after": after / samples,
+                "drop": (before - after) / samples,
+                "rms_before": float(np.sqrt(before / samples)),
+                "rms_after": float(np.sqrt(after / samples)),
+                "unit": "rad/s",
+            },
+        )
 
 
-# ---- What a ripple of the table explains of the full-rate residuals of the turns.
+# ---- The full-rate residuals of the turns: a ripple of the table.
 
 ORDERS = {"table_eccentricity": 1.0}  # the order of an effect that has none to scan
 
 
 def gain_of_ripple(
-    turns: Sequence[SteadyTurn], effect: str, values: dict[str, float], mount: str
-) -> Iterator[Row]:
+    turns: Sequence[SteadyTurn], effect: str, values: Mapping[str, float], mount: str
+) -> Iterator[TableRow]:
     """What one sine and one cosine of the table's angle explain about its axis, in all turns.
 
     Bias and slope are each turn's own, and the noise is white. Held-out: each turn with the ripple
@@ -214,40 +223,33 @@ def gain_of_ripple(
     courses = {t.name: t.course(t.about) for t in turns if np.isfinite(t.rate)}
     if order is None or not courses:
         return
-    said = {name: course.says(order) for name, course in courses.items()}
+    equations = {name: course.says(order) for name, course in courses.items()}
     squares = {n: float(np.sum(c.rest**2)) / c.sigma**2 for n, c in courses.items()}
     degrees = {n: len(c.record) - c.slow.shape[1] for n, c in courses.items()}
 
-    def told(names: Sequence[str]) -> EffectInformation:
+    def summed(names: Sequence[str]) -> EffectInformation:
         return EffectInformation(
             ("a", "b"),
-            sum((said[name][0] for name in names), np.zeros((2, 2))),
-            sum((said[name][1] for name in names), np.zeros(2)),
+            sum((equations[name][0] for name in names), np.zeros((2, 2))),
+            sum((equations[name][1] for name in names), np.zeros(2)),
             sum(squares[name] for name in names),
             sum(degrees[name] for name in names),
         )
 
-    whole = told(list(said))
-    folds = [fold([name], whole, told([o for o in said if o != name])) for name in said]
+    whole = summed(list(courses))
+    folds = [
+        fold_of([n], whole, summed([other for other in courses if other != n])) for n in courses
+    ]
     counted = [one for one in folds if one.counts]
-    shared = {"sensor": "gyro", "mount": mount, "effects": effect}
+    shared = {"mount": mount, "sensor": "gyro", "model": effect}
+    yield "gain_effects", shared | {"effect": effect}
     fitted = float(best_of(whole) @ whole.right)
-    yield (
-        shared
-        | row_of("fitted", whole.chi_squared, fitted, whole.degrees)
-        | {"snr_squared": snr_squared(whole)}
-    )
-    names = [name for one in counted for name in one.manoeuvres]
-    foretold = told(names)
+    row = row_of(FITTED, whole.chi_squared, fitted, whole.degrees)
+    yield "gain", {**shared, "axis": None, **row, "snr_squared": snr_squared(whole)}
+    predicted = summed([name for one in counted for name in one.manoeuvres])
     drop = sum(one.drop for one in counted)
-    yield (
-        shared
-        | row_of("held-out", foretold.chi_squared, drop, foretold.degrees)
-        | {
-            "snr_squared": sum(one.at_stake for one in counted),
-            "folds": len(folds),
-            "counted": len(counted),
-            "taken_away": ", ".join(names),
-            "left_out": ", ".join(name for name in said if name not in names),
-        }
-    )
+    row = row_of(HELD_OUT, predicted.chi_squared, drop, predicted.degrees)
+    row |= {"snr_squared": sum(one.expected_drop for one in counted)}
+    row |= {"folds": len(folds), "counted": len(counted)}
+    yield "gain", {**shared, "axis": None, **row}
+    yield from _fold_rows(shared, [(one, one.counts) for one in folds])

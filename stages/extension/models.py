@@ -15,23 +15,23 @@ from inertial.estimation.least_squares import (
 )
 from inertial.physics.effect import Effect
 
-WIDE = 1e4  # sigma of an effect's parameters beforehand, in their typical sizes
+PRIOR_SIGMA = 1e4  # of an effect's parameters, in their typical sizes
 SENSORS = ("gyro", "accel")
 
 
 @dataclass(frozen=True)
-class Told:
+class SensorEvidence:
     """What the equations of one sensor tell, those of all manoeuvres or of some.
 
     `plain`: the fit without the effects, with the noise of the extended model; `effects`: what is
     said of the effects, all else fitted and nothing taken to be known of them beforehand;
-    `walked`: where the biases of the joint model walk and those of the extended one do not, or
+    `walk_drop`: where the biases of the joint model walk and those of the extended one do not, or
     less, by how much that lowers −2 log of the likelihood.
     """
 
     plain: Estimate
     effects: EffectInformation
-    walked: float
+    walk_drop: float
 
 
 @dataclass(frozen=True)
@@ -51,19 +51,19 @@ class Models:
         """
         largest = np.array([e.largest for e in self.effects for _ in e.parameters])
         gyro, accel = (
-            _shown(system, largest) for system in self.extended.systems(self.effects, WIDE)
+            _shown(system, largest) for system in self.extended.systems(self.effects, PRIOR_SIGMA)
         )
         return gyro, accel
 
     def systems(self, only: set[str] | None = None) -> list[System | None]:
         """The equations with the effects that each sensor shows; None where it shows none."""
-        systems = self.extended.systems(self.effects, WIDE, only)
+        systems = self.extended.systems(self.effects, PRIOR_SIGMA, only)
         return [
             None if system is None or not shown else _with(system, shown)
             for system, shown in zip(systems, self.shown, strict=True)
         ]
 
-    def told(self, only: set[str] | None = None) -> list[Told | None]:
+    def evidence(self, only: set[str] | None = None) -> list[SensorEvidence | None]:
         """What gyros and accelerometers tell in some manoeuvres, or in all."""
         systems = self.systems(only)
         walking: list[System | None] = [None, None]
@@ -72,11 +72,11 @@ class Models:
             walking = [
                 system if walk and walk != other else None
                 for system, walk, other in zip(
-                    self.joint.systems([], WIDE, only), walks, others, strict=True
+                    self.joint.systems([], PRIOR_SIGMA, only), walks, others, strict=True
                 )
             ]
         return [
-            None if system is None else _told(system, walks)
+            None if system is None else _evidence(system, walks)
             for system, walks in zip(systems, walking, strict=True)
         ]
 
@@ -89,11 +89,11 @@ def models_of(campaign: Campaign, effects: Sequence[Effect], walks: tuple[float,
     return Models(campaign, campaign.walking(walks), tuple(effects))
 
 
-def _told(system: System, walking: System | None) -> Told:
+def _evidence(system: System, walking: System | None) -> SensorEvidence:
     """`walking`: the equations of the joint model where that has another walk."""
     plain = _with(system, frozenset()).solve_shared()
-    walked = 0.0 if walking is None else plain.deviance - walking.solve_shared().deviance
-    return Told(plain, system.effect_information(), walked)
+    drop = 0.0 if walking is None else plain.deviance - walking.solve_shared().deviance
+    return SensorEvidence(plain, system.effect_information(), drop)
 
 
 def _shown(system: System | None, largest: np.ndarray) -> frozenset[str]:

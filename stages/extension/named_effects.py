@@ -1,82 +1,87 @@
-"""The effects that criticism has named for one mount, and its unexplained findings."""
+"""The effects that criticism has named for one mount, and the findings that speak against them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from inertial.effects import CATALOGUE
 from inertial.physics.effect import Effect
 
-Row = dict[str, Any]
+Row = Mapping[str, Any]
 
 NAMED = ("found", "one_of_class")
 UNKNOWN = "unknown_structure"
 UNEXPLAINED = "unexplained"
-WALK = "_random_walk"  # what the causes of a bias that walks end with
+RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")  # in the covariance of the joint result
+
+
+class Alarm(NamedTuple):
+    """A finding that no named effect explains, and its cause."""
+
+    finding: str
+    cause: str
 
 
 @dataclass(frozen=True)
 class Named:
     """What criticism says of one mount.
 
-    `in_blocks`: the effects that equations can hold, each with the value of what is scanned;
+    `in_blocks`: the effects that equations can hold, each with the value of the scanned variable;
     `in_spectrum`: the parameters of the others by effect and name; `classes`: by the name of an
-    effect those that do the same to the data; `alarms`: by sensor, gyro or accel, the causes of
-    findings that say that the model with the effects is not the whole truth.
+    effect those that do the same to the data; `alarms`: by sensor, gyro or accel, the findings
+    that say that the model with the effects is not complete.
     """
 
     in_blocks: tuple[Effect, ...]
-    in_spectrum: dict[str, dict[str, float]]
-    classes: dict[str, tuple[str, ...]]
-    alarms: dict[str, tuple[str, ...]]
+    in_spectrum: Mapping[str, Mapping[str, float]]
+    classes: Mapping[str, Sequence[str]]
+    alarms: Mapping[str, Sequence[Alarm]]
 
 
-def named_of(findings: Sequence[Row], effects: Sequence[Row], suffix: str) -> Named:
-    """Read the findings of the mount whose methods end with `suffix`.
+def named_of(
+    findings: Iterable[Row], effects: Iterable[Row], members: Iterable[Row], mount: str
+) -> Named:
+    """The findings of a mount, with the parameters in `effects` and the `members` of classes.
 
-    Of a class the likeliest member stands for all: the others would do the same to the data. A
-    bias that walks is in the covariance of the joint result, so it is no alarm.
+    Of a class the likeliest member stands for all: the others would do the same to the data. Of
+    several oscillations the first counts. A random walk of the biases is in the covariance of the
+    joint result, so it is no alarm.
     """
-    own = [row for row in findings if _mount(row["id"].split("/")) == suffix]
+    own = [row for row in findings if row["mount"] == mount]
     values: dict[str, dict[str, float]] = {}
     for row in effects:
-        if _mount(row["id"].split("/")) == suffix and row["value"] is not None:
-            values.setdefault(row["effect"], {})[row["parameter"]] = row["value"]
-    causes = {row["cause"]: row for row in own if row["verdict"] in NAMED}
-    found = {name: CATALOGUE[name] for name in causes if name in CATALOGUE}
-    alarms: dict[str, tuple[str, ...]] = {}
+        if row["finding"] and row["value"] is not None:
+            values.setdefault(row["finding"], {})[row["parameter"]] = row["value"]
+    classes: dict[str, list[str]] = {}
+    for row in members:
+        classes.setdefault(row["finding"], []).append(row["effect"])
+    first: dict[str, str] = {}  # effect → finding
+    alarms: dict[str, list[Alarm]] = {}
     for row in own:
+        if row["verdict"] in NAMED and row["cause"] in CATALOGUE:
+            first.setdefault(row["cause"], row["id"])
         if _alarms(row):
-            alarms[row["sensor"]] = (*alarms.get(row["sensor"], ()), row["cause"])
+            alarms.setdefault(row["sensor"], []).append(Alarm(row["id"], row["cause"]))
+    of = {name: values.get(finding, {}) for name, finding in first.items()}
     return Named(
         tuple(
-            _fixed(effect, values.get(name, {}))
-            for name, effect in found.items()
-            if effect.sought_in == "blocks"
+            _fixed(CATALOGUE[name], values)
+            for name, values in of.items()
+            if CATALOGUE[name].sought_in == "blocks"
         ),
-        {name: values.get(name, {}) for name, e in found.items() if e.sought_in == "spectrum"},
-        {name: _members(row) for name, row in causes.items() if len(_members(row)) > 1},
+        {name: v for name, v in of.items() if CATALOGUE[name].sought_in == "spectrum"},
+        {name: classes[f] for name, f in first.items() if len(classes.get(f, ())) > 1},
         alarms,
     )
 
 
-def _mount(parts: Sequence[str]) -> str:
-    """What the identifier of a finding or of a parameter of an effect says of the mount."""
-    at = [part.partition("@")[2] for part in parts if "@" in part]
-    return f"@{at[0]}" if at else ""
-
-
-def _members(row: Row) -> tuple[str, ...]:
-    return tuple((row["members"] or "").split(", "))
-
-
 def _alarms(row: Row) -> bool:
-    if row["cause"].endswith(WALK):
+    if row["cause"] in RANDOM_WALKS:
         return False
     return bool(row["verdict"] == UNKNOWN or row["cause"] == UNEXPLAINED)
 
 
-def _fixed(effect: Effect, values: dict[str, float]) -> Effect:
-    """The effect with the value that was found of what is scanned."""
+def _fixed(effect: Effect, values: Mapping[str, float]) -> Effect:
+    """The effect with the estimate of its scanned variable."""
     at = values.get(effect.scan.name) if effect.scan else None
     return effect if at is None else effect.fixed(at)

@@ -76,7 +76,7 @@ class Change:
     triad: Triad
     values: Array
     covariance: Array
-    effects: Sequence[str]  # parameters after the twelve, effect.parameter
+    effects: Sequence[tuple[str, str]]  # effect and parameter, after the twelve
 
 
 def change_of(solution: Solved, triad: Triad) -> Change | None:
@@ -88,7 +88,10 @@ def change_of(solution: Solved, triad: Triad) -> Change | None:
     difference = np.array(values, np.float64)
     difference[:UNKNOWNS] -= old
     assert [row["parameter"] for row in solution.of_sensor] == list(linear_names())
-    names = [row["parameter"] for row in solution.of_effects]
+    names = [
+        (effect, row["parameter"])
+        for effect, row in zip(solution.effects, solution.of_effects, strict=True)
+    ]
     return Change(triad, difference, solution.covariance, names)
 
 
@@ -154,8 +157,8 @@ def _slopes(
     for i in range(3):
         slopes[:, 3 * i : 3 * i + 3, i] = truth
         slopes[:, 9 + i, i] = 1.0
-    for column, name in enumerate(change.effects, UNKNOWNS):
-        if of_the_imu(name.partition(".")[0]):
+    for column, (effect, name) in enumerate(change.effects, UNKNOWNS):
+        if of_the_imu(effect):
             slopes[:, column] = told[name][number]
     slopes = slopes @ np.linalg.inv(change.triad.matrix).T
     about = np.broadcast_to(motion.about, motion.up.shape)

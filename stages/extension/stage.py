@@ -1,7 +1,7 @@
-"""The model with the effects that were named, refitted: what it gains, and whether it counts."""
+"""The model with the named effects, refitted; what it gains, and which result is final."""
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import pandas as pd
@@ -11,19 +11,20 @@ from inertial.campaign.equations import campaign_of
 from inertial.campaign.records import rows_of
 from inertial.campaign.steady_residuals import steady_residuals, steady_turns
 from inertial.estimation.triad import linear_names
-from inertial.physics.forward import Triad
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
-from stages.extension.cross_validation import held_out
-from stages.extension.decision import decision, result
+from stages.extension.cross_validation import CrossValidation, cross_validate
+from stages.extension.decision import Candidate
 from stages.extension.declared import DECLARED
 from stages.extension.estimates import Solved, moved, solved
+from stages.extension.former_columns import with_former
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
 from stages.extension.models import SENSORS, models_of
 from stages.extension.named_effects import Named, named_of
 from stages.extension.navigation_error import change_of, worth
 
-Row = dict[str, Any]
+Row = Mapping[str, Any]
+TableRow = tuple[str, Row]
 
 TWELVE = linear_names()
 
@@ -32,6 +33,7 @@ def extension(
     mounts: Sequence[CampaignData],
     simulated: Stream,
     criticism_findings: pd.DataFrame,
+    members: pd.DataFrame,
     effects: pd.DataFrame,
     random_walks: pd.DataFrame,
     accelerometer_parameters: pd.DataFrame,
@@ -39,86 +41,118 @@ def extension(
     accelerometer_fit: pd.DataFrame,
     gyroscope_fit: pd.DataFrame,
 ) -> Tables:
-    """Parameters and covariance of the extended model, and the parameters that count.
+    """Parameters and covariance of the extended model, and the final parameters.
 
-    Where nothing was named there is nothing to extend: the joint result counts, and the tables but
-    `decision` and `result` are empty.
+    Where nothing was named there is nothing to extend: the joint result is final, and the tables
+    but `decision` and `result` are empty.
     """
+    causes = rows_of(criticism_findings), rows_of(effects), rows_of(members)
+    walks: dict[tuple[str, str], float] = defaultdict(float)
+    walks |= {(row["mount"], row["sensor"]): row["value"] for row in rows_of(random_walks)}
     joint = {
-        "gyro": rows_of(gyroscope_parameters),
-        "accel": rows_of(accelerometer_parameters),
+        "gyro": (rows_of(gyroscope_parameters), rows_of(gyroscope_fit)),
+        "accel": (rows_of(accelerometer_parameters), rows_of(accelerometer_fit)),
     }
-    fits = {
-        (sensor, row["method"]): row
-        for sensor, fit in (("gyro", gyroscope_fit), ("accel", accelerometer_fit))
-        for row in rows_of(fit)
-    }
-    walk_of = defaultdict(
-        float, {(row["mount"], row["sensor"]): row["value"] for row in rows_of(random_walks)}
-    )
-    made: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
-    covariances: list[pd.DataFrame] = []
+    made: dict[str, list[Any]] = {name: [] for name in DECLARED.writes}
     for data in mounts:
-        mount, method, suffix = data.mount, data.named("joint"), data.named("")
-        solution = data.result
-        named = named_of(rows_of(criticism_findings), rows_of(effects), suffix)
-        extended: dict[str, Solved] = {}
-        found = {}
-        if named.in_blocks:
-            campaign = campaign_of(data)
-            beside = (walk_of[mount, "gyro"], walk_of[mount, "accel"])
-            models = models_of(campaign, named.in_blocks, beside)
-            for sensor, system, walk in zip(SENSORS, models.systems(), beside, strict=True):
-                if system is not None:
-                    one = solved(models, sensor, system, walk, suffix)
-                    extended[sensor] = one
-                    covariances.append(one.covariance_rows())
-                    made["parameters"] += one.rows
-                    made["fit"].append(one.fit_row(fits[sensor, method], data.noise.degrees))
-            found = held_out(models)
-            made["gain"] += gain(models, found, mount)
-            triads = {"gyro": solution.gyro, "accel": solution.accelerometer}
-            changes = {
-                sensor: change
-                for sensor, one in extended.items()
-                if (triad := triads[sensor]) is not None
-                and (change := change_of(one, triad)) is not None
-            }
-            made["worth"] += worth(models.extended, models.effects, changes, mount)
-        for sensor in SENSORS:
-            own = [r for r in joint[sensor] if r["method"] == method and r["parameter"] in TWELVE]
-            one_of = extended.get(sensor)
-            decided = decision(sensor, mount, named, one_of, found.get(sensor), own)
-            made["decision"].append(decided)
-            made["result"] += result(decided, one_of, own)
-            if one_of is not None:
-                made["moved"] += moved(one_of, own, bool(fits[sensor, method]["scatter"]))
-        if named.in_spectrum and solution.gyro is not None:
-            made["gain"] += _of_spectrum(data, named, simulated, solution.gyro)
+        method = data.named("joint")
+        one = Extension(
+            data,
+            named_of(*causes, data.mount),
+            {s: [r for r in rows if r["method"] == method] for s, (rows, _) in joint.items()},
+            {s: row for s, (_, fit) in joint.items() for row in fit if row["method"] == method},
+            (walks[data.mount, "gyro"], walks[data.mount, "accel"]),
+        )
+        for table, row in one.rows(simulated):
+            made[table].append(row)
+    covariances = made.pop("covariance")
+    rows = with_former(made)
     written = {
-        name: pd.DataFrame(rows, columns=[column.name for column in DECLARED.writes[name].columns])
-        if rows
-        else DECLARED.writes[name].empty()
-        for name, rows in made.items()
+        name: pd.DataFrame(rows[name], columns=[column.name for column in table.columns])
+        if rows.get(name)
+        else table.empty()
+        for name, table in DECLARED.writes.items()
     }
     return written | ({"covariance": pd.concat(covariances)} if covariances else {})
 
 
-def _of_spectrum(
-    data: CampaignData,
-    named: Named,
-    simulated: Stream,
-    gyro: Triad,
-) -> Iterator[Row]:
-    """The gain of an oscillation, and of what goes with the table's angle."""
-    for effect, values in named.in_spectrum.items():
-        if effect != "oscillation":
-            turns = steady_turns(data, simulated)
-            yield from gain_of_ripple(turns, effect, values, data.mount)
-        elif "frequency" in values:
-            step_of = {m.name: data.clocks[m.log].step for m in data.plan}
-            heard = [(n, r) for n, r in steady_residuals(simulated) if n in step_of]
-            yield from gain_of_line(heard, step_of, values["frequency"], gyro, data.mount)
+class Extension:
+    """The extended model of one mount.
+
+    `joint`, `fits`: rows of the parameters and of the fit of the joint result, by sensor;
+    `walks`: of the biases of gyros and accelerometers beside the named effects.
+    """
+
+    def __init__(
+        self,
+        data: CampaignData,
+        named: Named,
+        joint: Mapping[str, Sequence[Row]],
+        fits: Mapping[str, Row],
+        walks: tuple[float, float],
+    ) -> None:
+        self.data, self.named, self.joint, self.fits = data, named, joint, fits
+        self.walks = walks
+        self.solutions: dict[str, Solved] = {}
+        self.validated: Mapping[str, CrossValidation] = {}
+
+    def rows(self, simulated: Stream) -> Iterator[tuple[str, Any]]:
+        """The rows of all tables; of `covariance` tables."""
+        if self.named.in_blocks:
+            yield from self._of_blocks()
+        for sensor in SENSORS:
+            yield from self._final(sensor)
+        if self.named.in_spectrum and self.data.result.gyro is not None:
+            yield from self._of_spectrum(simulated)
+
+    def _of_blocks(self) -> Iterator[tuple[str, Any]]:
+        data, mount = self.data, self.data.mount
+        models = models_of(campaign_of(data), self.named.in_blocks, self.walks)
+        for sensor, system, walk in zip(SENSORS, models.systems(), self.walks, strict=True):
+            if system is not None:
+                one = solved(models, sensor, system, walk, mount)
+                self.solutions[sensor] = one
+                yield "covariance", one.covariance_rows()
+                yield from (("parameters", row) for row in one.rows)
+                yield "fit", one.fit_row(self.fits[sensor], data.noise.degrees)
+        self.validated = cross_validate(models)
+        yield from gain(models, self.validated, mount)
+        triads = {"gyro": data.result.gyro, "accel": data.result.accelerometer}
+        changes = {
+            sensor: change
+            for sensor, one in self.solutions.items()
+            if (triad := triads[sensor]) is not None
+            and (change := change_of(one, triad)) is not None
+        }
+        for row in worth(models.extended, models.effects, changes, mount):
+            yield "worth", row
+
+    def _final(self, sensor: str) -> Iterator[TableRow]:
+        """Which result of a sensor is final, and its parameters."""
+        own = [row for row in self.joint[sensor] if row["parameter"] in TWELVE]
+        solution, mount = self.solutions.get(sensor), self.data.mount
+        validated = self.validated.get(sensor)
+        candidate = Candidate(sensor, mount, self.named, own, solution, validated)
+        yield from candidate.rows()
+        yield from (("result", row) for row in candidate.final_rows())
+        if solution is not None:
+            scatter = bool(self.fits[sensor]["scatter"])
+            yield from (("moved", row) for row in moved(solution, own, scatter, mount))
+
+    def _of_spectrum(self, simulated: Stream) -> Iterator[TableRow]:
+        """The gain of an oscillation, and of what depends on the table's angle."""
+        data, gyro = self.data, self.data.result.gyro
+        assert gyro is not None  # for oscillations were detected in its residuals
+        of_table = set(self.named.in_spectrum) - {"oscillation"}
+        turns = steady_turns(data, simulated) if of_table else []
+        for effect, values in self.named.in_spectrum.items():
+            if effect != "oscillation":
+                yield from gain_of_ripple(turns, effect, values, data.mount)
+            elif "frequency" in values:
+                step_of = {m.name: data.clocks[m.log].step for m in data.plan}
+                residuals = [(n, r) for n, r in steady_residuals(simulated) if n in step_of]
+                frequency = values["frequency"]
+                yield from gain_of_line(residuals, step_of, frequency, gyro, data.mount)
 
 
 STAGE = Stage(extension, DECLARED, gathers={"mounts": campaigns_of})

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from inertial.estimation.least_squares import EffectInformation, System
-from stages.extension.cross_validation import KEPT, fold, groups, snr_squared
+from stages.extension.cross_validation import MIN_TRAINING_SHARE, fold_of, groups, snr_squared
 
 NAMES = tuple("abcdef")
 TRUTH = np.array([3.0, -2.0])  # of the effects
@@ -47,7 +47,7 @@ def test_the_drop_is_that_of_the_residuals_foretold_with_one_covariance():
     nuisance, columns, observed = parts
     for number, name in enumerate(NAMES):
         out = manoeuvre(number)
-        one = fold([name], told(parts, EVERY), told(parts, ~out))
+        one = fold_of([name], told(parts, EVERY), told(parts, ~out))
         # By hand: fit bias and slope to the others, with and without the effects that they show.
         whole = np.hstack([nuisance, columns])
         beta = np.linalg.lstsq(whole[~out], observed[~out], rcond=None)[0][2:]
@@ -66,7 +66,7 @@ def test_the_drop_is_that_of_the_residuals_foretold_with_one_covariance():
 def test_no_width_that_the_effects_had_beforehand_is_in_it():
     parts, rest = campaign(4), ~manoeuvre(2)
     drops = [
-        fold("c", told(parts, EVERY, wide), told(parts, rest, wide)).drop for wide in (10.0, 1e7)
+        fold_of("c", told(parts, EVERY, wide), told(parts, rest, wide)).drop for wide in (10.0, 1e7)
     ]
     assert drops[0] == pytest.approx(drops[1], rel=1e-9)
 
@@ -76,9 +76,11 @@ def test_the_drop_is_the_part_of_snr_squared_that_was_taken_away():
     for seed in range(200):
         parts = campaign(seed, size=0.5)
         whole = told(parts, EVERY)
-        folds = [fold(n, whole, told(parts, ~manoeuvre(i))) for i, n in enumerate(NAMES)]
+        folds = [fold_of(n, whole, told(parts, ~manoeuvre(i))) for i, n in enumerate(NAMES)]
         assert all(one.counts for one in folds)
-        drop, stake = (sum(getattr(one, name) for one in folds) for name in ("drop", "at_stake"))
+        drop, stake = (
+            sum(getattr(one, name) for one in folds) for name in ("drop", "expected_drop")
+        )
         ratios.append(drop / stake)
         totals.append(drop / snr_squared(whole))
     # Two parameters of SNR² near 190 cost about 2 of it; the folds hold everything once.
@@ -92,7 +94,7 @@ def test_an_effect_that_is_not_there_gains_nothing():
         parts = campaign(seed, size=0.0)
         whole = told(parts, EVERY)
         drops.append(
-            sum(fold(n, whole, told(parts, ~manoeuvre(i))).drop for i, n in enumerate(NAMES))
+            sum(fold_of(n, whole, told(parts, ~manoeuvre(i))).drop for i, n in enumerate(NAMES))
         )
     assert np.mean(drops) < 0  # on average it costs its two parameters
     assert np.mean(drops) > -5
@@ -103,10 +105,10 @@ def test_a_manoeuvre_that_alone_shows_the_effect_is_not_counted():
     columns = columns * manoeuvre(1)[:, None]
     parts = (nuisance, columns, nuisance @ [5.0, 1.0] + 4 * columns[:, 0] + observed * 0)
     whole = told(parts, EVERY)
-    folds = [fold(n, whole, told(parts, ~manoeuvre(i))) for i, n in enumerate(NAMES)]
+    folds = [fold_of(n, whole, told(parts, ~manoeuvre(i))) for i, n in enumerate(NAMES)]
     assert [one.counts for one in folds] == [True, False, True, True, True, True]
-    assert folds[1].kept < KEPT and folds[1].drop == 0.0
-    nothing = fold(NAMES, whole, None)
+    assert folds[1].kept < MIN_TRAINING_SHARE and folds[1].drop == 0.0
+    nothing = fold_of(NAMES, whole, None)
     assert not nothing.counts and nothing.drop == 0.0
 
 

@@ -131,15 +131,18 @@ def _gain(results: chain.Results) -> list[Mapping[str, Any]]:
     `whole`: SNR² of the effects in all manoeuvres; `at_stake`: in those that were held out.
     """
     table = results["extension/gain"]
-    own = table[table["sensor"].isin(["gyro", "accel"])]
-    whole = own[own["scope"] == "fitted"].set_index(["sensor", "effects"])["snr_squared"]
+    own = table[table["axis"].isna()]
+    whole = own[own["scope"] == "fitted"].set_index(["sensor", "model"])["snr_squared"]
+    effects = (
+        results["extension/gain_effects"].groupby(["sensor", "model"])["effect"].agg(", ".join)
+    )
     return [
         {
             "sensor": str(row["sensor"]),
-            "effects": str(row["effects"]),
+            "effects": effects[row["sensor"], row["model"]],
             "drop": float(row["drop"]),
             "at_stake": float(row["snr_squared"]),
-            "whole": float(whole[row["sensor"], row["effects"]]),
+            "whole": float(whole[row["sensor"], row["model"]]),
         }
         for row in own[own["scope"] == "held-out"].to_dict("records")
         if np.isfinite(row["drop"])
