@@ -70,8 +70,8 @@ WRONG: list[tuple[Change, str]] = [
     (
         lambda d: d["effects"].update(oscillation={"amplitude_rad_s": 0.01, "axis": "+x"}),
         "effects.oscillation: found {'amplitude_rad_s': 0.01, 'axis': '+x'} (mapping); expected "
-        "the case rings about an axis while the table turns: frequency_hz, or order times per "
-        "revolution of the table",
+        "oscillation of the case about an axis while the table turns: frequency_hz, or order, "
+        "periods per revolution",
     ),
     (
         lambda d: d["campaign"]["site"].update(latitude_deg=None),
