@@ -11,13 +11,12 @@ from inertial.campaign.records import Row, clocks_of, known_of, rows_of
 from inertial.campaign.sums import SumsOver
 from inertial.physics.site import normal_gravity
 from inertial.signal.detector import Given, Log, Windows
+from inertial.signal.scatter import MAD_TO_SIGMA, MIN_RELATIVE_STEP, median
 from inertial.tables import AXES, CHANNEL_STATISTICS, CHANNELS
 
 MAX_READINGS = 1 << 16  # of a batch, from which its noise and smallest step are taken
 WINDOW = 1.0  # s
 MIN_COMMON_LOGS = 3  # logs that can have an interval in common
-MAD_TO_SIGMA = 1.4826  # sigma of Gaussian values in units of the median of their absolute values
-MIN_RELATIVE_STEP = 1e-9  # of the largest reading: smaller steps are rounding of equal ones
 SENSORS = ("accel",) * 3 + ("gyro",) * 3
 
 
@@ -120,7 +119,7 @@ class _Channels:
             if len(steps):
                 self.resolution[i] = np.fmin(self.resolution[i], steps.min())
             # √2: from the scatter of differences to that of one reading.
-            noise[i] = MAD_TO_SIGMA / np.sqrt(2) * np.median(change, overwrite_input=True)
+            noise[i] = MAD_TO_SIGMA / np.sqrt(2) * median(change)
         self.noise.append(noise)
 
     def median_noise(self) -> Array:

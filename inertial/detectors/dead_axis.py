@@ -19,7 +19,7 @@ from inertial.signal.detector import (
     Piece,
     channel_name,
 )
-from inertial.signal.roughness import ALIVE, BLOCK, roughness, smallest_step
+from inertial.signal.scatter import BLOCK, MIN_NOISE_COUNTS, roughness, smallest_step
 from inertial.text.numbers import significant, whole
 
 CERTAIN = 1e-4  # chance of so long a run of equal readings in a log
@@ -76,7 +76,7 @@ class DeadAxis(Detector):
                     for k in np.flatnonzero(chance < CERTAIN):
                         beside = _quieter(values, int(start[k]), int(end[k]), own)
                         chance[k] = tests[k] * _chance(end[k : k + 1] - start[k], beside)[0]
-                elif len(values) >= SURELY and max(np.nan_to_num(noise)) > ALIVE:
+                elif len(values) >= SURELY and max(np.nan_to_num(noise)) > MIN_NOISE_COUNTS:
                     chance[:] = np.nan  # the whole sensor stands still, and the other does not
                 for k in np.flatnonzero(~(chance > CERTAIN) & (end - start >= SHORTEST)):
                     number = int(end[k] - start[k])
@@ -119,7 +119,7 @@ def _chance(length: Integers, rough: float) -> Array:
     rough: counts, of the channel, of which carried counts are 1/2; where it tells nothing the
     chance is one.
     """
-    if rough < ALIVE:
+    if rough < MIN_NOISE_COUNTS:
         return np.ones(len(length))
     noise = np.sqrt(rough**2 - 1 / 4)
     middle = erf(1 / (np.sqrt(8) * noise))

@@ -60,8 +60,10 @@ class Oscillation(Detector):
     everywhere = True
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
-        turning = _turning(piece, log)
         found = sorted(tones(piece, log), key=lambda tone: -tone.clear)
+        if not found:
+            return
+        turning = _turning(piece, log)
         for tone, besides in sorted(_apart(found), key=lambda one: one[0].start):
             alike = [one for one in found if abs(one.frequency - tone.frequency) < one.resolved]
             without = turning.copy()

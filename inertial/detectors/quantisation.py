@@ -15,7 +15,7 @@ from inertial.signal.detector import (
     Log,
     Piece,
 )
-from inertial.signal.roughness import BLOCK, in_blocks, roughness, smallest_step
+from inertial.signal.scatter import BLOCK, in_blocks, roughness, smallest_step
 from inertial.text.numbers import significant
 
 CERTAIN = 1e-6  # chance that all changes are multiples of k counts, in the channels of 12 logs

@@ -17,8 +17,8 @@ from inertial.signal.detector import (
     Piece,
     channel_name,
 )
-from inertial.signal.roughness import SCATTER
 from inertial.signal.runs import joined
+from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.text.numbers import counted, significant
 
 # ---- Readings that pile up at the largest value of a channel, as they do at the end of its range.
@@ -85,7 +85,7 @@ def _noise_beside(values: Array, pile: Integers) -> float:
     if np.count_nonzero(whole) < OUTSIDE:  # nothing lies outside: what is not at the limit itself
         rough, whole = np.diff(np.delete(values, pile), 2), np.ones(1, bool)
     rough = np.abs(rough[np.broadcast_to(whole, rough.shape)])
-    return float(SCATTER * np.median(rough) / np.sqrt(6)) if len(rough) else 0.0
+    return float(MAD_TO_SIGMA * np.median(rough) / np.sqrt(6)) if len(rough) else 0.0
 
 
 def _steady(values: Array, most: float, count: float) -> bool:

@@ -19,8 +19,8 @@ from inertial.signal.detector import (
     channel_name,
 )
 from inertial.signal.outliers import LOUD, WIDEST, Channel
-from inertial.signal.roughness import SCATTER
 from inertial.signal.runs import joined
+from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.text.numbers import counted, significant, whole
 
 FEWEST = 18  # readings of a channel by which a spike can be told
@@ -175,7 +175,7 @@ def _shaken(
     for j, channel in channels.items():
         start, end = np.searchsorted(channel.places, [first - WIDEST, last + WIDEST + 1])
         near = slice(max(start - NEAR, 0), end + NEAR)
-        usual = SCATTER * float(np.median(np.abs(channel.off[near]))) if end > start else 0.0
+        usual = MAD_TO_SIGMA * float(np.median(np.abs(channel.off[near]))) if end > start else 0.0
         least = np.maximum(channel.least[start:end], usual)
         off = np.abs(channel.off[start:end]) > loud * least
         if j != i and not handled:

@@ -9,7 +9,8 @@ from scipy.special import stdtr
 
 from inertial.signal.detector import SENSORS, Array, Description, Detector, Event, Log, Piece
 from inertial.signal.level_jumps import CHANCE, RESTS, Jump, jumps, shaken
-from inertial.signal.static_tilt import SCATTER, UNTOLD, Agreement, Resting
+from inertial.signal.scatter import MAD_TO_SIGMA
+from inertial.signal.static_tilt import UNTOLD, Agreement, Resting
 from inertial.signal.steps import SIDE
 from inertial.text.numbers import fixed, significant
 from inertial.text.units import ARC_SECOND
@@ -218,7 +219,7 @@ def _creep(resting: Resting, own: list[Jump], position: float) -> Iterator[Motio
 def _scatter(series: Array) -> float:
     """Sigma of the values of a series about what changes slowly."""
     change = np.diff(series)
-    return SCATTER / float(np.sqrt(2)) * float(np.median(np.abs(change - np.median(change))))
+    return MAD_TO_SIGMA / float(np.sqrt(2)) * float(np.median(np.abs(change - np.median(change))))
 
 
 def _farthest(series: Array) -> tuple[int, int, float]:

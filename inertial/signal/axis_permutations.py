@@ -2,13 +2,14 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import permutations, product
 
 import numpy as np
 
 from inertial.physics.vectors import cross
 from inertial.signal.detector import SENSORS, Array, Description, Event, Integers, Log, Piece
-from inertial.signal.roughness import SCATTER
+from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.text.numbers import significant, whole
 
 # ---- Where the readings of a triad become a signed permutation of themselves.
@@ -118,16 +119,19 @@ def exchange_words(event: Event, name: str, sensor: str) -> Description:
     )
 
 
-def exchanges_of(piece: Piece, log: Log, sensor: str) -> Iterator[Exchange]:
+@lru_cache(maxsize=2)  # of both sensors, for the detectors of swaps and of signs
+def exchanges_of(piece: Piece, log: Log, sensor: str) -> list[Exchange]:
     """The exchanges of a sensor; with those of the accelerometers what the gyros do with them.
 
-    The records are masked as a whole, so that nobody looks at their gyros any more.
+    The records are masked as a whole, so that no later detector examines their gyros.
     """
     own = list(_exchanges(piece, log, sensor))
     others = list(_exchanges(piece, log, "gyro")) if own and sensor == "accel" else []
-    for one in own:
-        alike = [o for o in others if o.start < one.end and one.start < o.end]
-        yield replace(one, with_it=alike[0].permutation) if alike else one
+    made = []
+    for exchange in own:
+        alike = [o for o in others if o.start < exchange.end and exchange.start < o.end]
+        made.append(replace(exchange, with_it=alike[0].permutation) if alike else exchange)
+    return made
 
 
 def _exchanges(piece: Piece, log: Log, sensor: str) -> Iterator[Exchange]:
@@ -194,7 +198,7 @@ def _beside(values: Array, k: int, smallest: Array) -> tuple[Array, Array, Array
     ]
     about = np.sqrt(sum((one**2).sum(axis=0) for one in left) / (2 * BESIDE - 4))
     changes = np.abs(np.diff(values[max(k - AROUND, 0) : k + AROUND], axis=0))
-    scatter = np.maximum(about, SCATTER / np.sqrt(2) * np.median(changes, axis=0))
+    scatter = np.maximum(about, MAD_TO_SIGMA / np.sqrt(2) * np.median(changes, axis=0))
     before = parts[0].mean(axis=0) + slopes[0] * BESIDE / 2
     after = parts[1].mean(axis=0) - slopes[1] * BESIDE / 2
     share = np.sqrt(1 / BESIDE + (BESIDE / 2) ** 2 / (time @ time))

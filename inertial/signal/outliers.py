@@ -6,7 +6,7 @@ from typing import Self
 import numpy as np
 
 from inertial.signal.detector import Array, Booleans, Integers
-from inertial.signal.roughness import SCATTER
+from inertial.signal.scatter import MAD_TO_SIGMA, median
 
 # ---- The running median, which takes no notice of ramps, steps and single readings far off.
 
@@ -83,7 +83,7 @@ class Channel:
         quiet = max(min(float(np.quantile(near, 0.25)), noise), count)
         # One spike of three readings is no motion yet, nor are several that lie apart.
         pairs = _in_blocks(np.minimum(np.abs(off), np.abs(np.roll(off, 1))), SHORT)
-        third = np.partition(pairs, -WIDEST, axis=1)[:, -WIDEST]
+        third = np.sort(pairs, axis=1)[:, -WIDEST]
         moved = np.maximum(near / RESTLESS, third / LOUD)
         return cls(
             places,
@@ -105,12 +105,12 @@ def _off(values: Array, least: Array) -> Array:
     beside lies on one side, it must be off the straight lines through five readings before and
     five after as well.
     """
-    median = running_median(values)
-    off = values - median
+    course = running_median(values)
+    off = values - course
     half, last = WIDTH // 2, len(values) - 1
     far = np.flatnonzero(np.abs(off) > LOUD * least)
     before, after = np.maximum(far - half - 1, 0), np.minimum(far + half + 1, last)
-    slope = (median[after] - median[before]) / np.maximum(after - before, 1)
+    slope = (course[after] - course[before]) / np.maximum(after - before, 1)
     near = np.clip(far[:, None] + np.arange(-half, half + 1), 0, last)
     flat = values[far] - np.median(values[near] - slope[:, None] * (near - far[:, None]), axis=1)
     distances = [off[far], flat]
@@ -139,7 +139,7 @@ def _in_blocks(readings: Array, length: int) -> Array:
 
 def _scatter(rough: Array, length: int, count: float) -> Array:
     """The scatter of each block of this length, (k,), at least a count."""
-    return np.maximum(SCATTER * np.median(_in_blocks(rough, length), axis=1), count)
+    return np.maximum(MAD_TO_SIGMA * median(_in_blocks(rough, length)), count)
 
 
 def _around(blocks: Array, *, least: bool) -> Array:

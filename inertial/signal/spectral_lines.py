@@ -9,6 +9,7 @@ from scipy.fft import rfft
 from scipy.special import gammaincc, gammainccinv
 
 from inertial.signal.detector import Array
+from inertial.signal.scatter import median
 
 # ---- Lines of one frequency that stand out of the spectra of a channel for some time.
 
@@ -153,8 +154,8 @@ def _ratio(power: Singles) -> Singles:
     """
     parts = power.reshape(len(power), -1, PART)
     pairs = np.concatenate([parts[:, :-1], parts[:, 1:]], axis=2)
-    of_pairs = np.partition(pairs, (PART - 1, PART), axis=2)[:, :, PART - 1 : PART + 1].mean(axis=2)
-    ends = np.median(parts[:, 0, 1:], axis=1), np.median(parts[:, -1], axis=1)
+    of_pairs = median(pairs)
+    ends = median(parts[:, 0, 1:]), median(parts[:, -1])
     lowest, highest = (end[:, None] for end in ends)
     none = np.zeros_like(lowest)
     below = np.hstack([none, lowest, of_pairs[:, :-1]])

@@ -7,9 +7,9 @@ import numpy as np
 
 from inertial.physics.vectors import cross
 from inertial.signal.detector import SENSORS, Array, Booleans, Log, Piece
+from inertial.signal.scatter import MAD_TO_SIGMA
 
 RECORDED = 0.2  # of the records of a rest that a channel must be in
-SCATTER = 1.4826  # sigma of Gaussian values in units of the median of their absolute values
 AROUND = 2.0  # s on each side of a place whose means are compared
 BESIDE = 0.15  # s on each side of a place that a sudden motion may take
 JERK = 4.0  # times the usual change of readings: 10⁻¹⁶ a block of 10 in both sensors by chance
@@ -54,7 +54,7 @@ class Resting:
             there, read = piece.channel(i)
             if len(there) > max(RECORDED * n, 2):
                 self.values[:, i] = np.interp(np.arange(n), there, read)
-                scatter = SCATTER / np.sqrt(2) * float(np.median(np.abs(np.diff(read))))
+                scatter = MAD_TO_SIGMA / np.sqrt(2) * float(np.median(np.abs(np.diff(read))))
                 self.noise[i] = max(scatter, float(np.nan_to_num(log.quantum[i])) / np.sqrt(12))
 
     def __len__(self) -> int:
@@ -149,7 +149,7 @@ class Resting:
         for sensor in ("accel", "gyro"):
             own = np.flatnonzero(np.isfinite(self.noise[SENSORS[sensor]])) + SENSORS[sensor].start
             change = np.abs(np.diff(self.values[: k * length, own], axis=0, append=np.nan))
-            usual = self.noise[own] * np.sqrt(2) / SCATTER
+            usual = self.noise[own] * np.sqrt(2) / MAD_TO_SIGMA
             blocks = np.nanmedian(change.reshape(k, length, len(own)), axis=1)
             both &= (blocks > JERK * usual).any(axis=1)
         return both

@@ -9,6 +9,7 @@ from scipy.ndimage import median_filter, uniform_filter1d
 from scipy.special import ndtri, stdtr
 
 from inertial.signal.detector import Array, Integers
+from inertial.signal.scatter import MAD_TO_SIGMA, median
 
 # ---- A sudden change of level in noisy readings: where, how large, how sure.
 
@@ -71,7 +72,7 @@ def steps(readings: Array, interval: float, quantum: float, level: float) -> lis
     while len(found) < MOST:
         rest = clean - _course(found, n)
         noise = _Noise(rest, longest, quantum)
-        p_value, place, width = _strongest(rest, noise, shortest, refused)
+        p_value, place, width = _strongest(noise, shortest, refused)
         if p_value > level:
             break
         step = _fitted(rest, place, width, noise, QUICK / interval)
@@ -106,20 +107,27 @@ def _corrects(step: Step, other: Step, shortest: int) -> bool:
 def without_spikes(readings: Array) -> Array:
     """The readings, (n,), with what one or two of them stick out of their neighbours cut off."""
     middle = median_filter(readings, 5, mode="nearest")
-    scatter = 1.4826 / np.sqrt(2) * np.median(np.abs(np.diff(readings)))
+    scatter = MAD_TO_SIGMA / np.sqrt(2) * median(np.abs(np.diff(readings)))
     return np.asarray(np.clip(readings, middle - CLIPPED * scatter, middle + CLIPPED * scatter))
 
 
-def differences(readings: Array, width: int) -> Array:
-    """Mean of the `width` readings from k on, less that of those before, k = width … n − width."""
-    total = np.append(0.0, np.cumsum(readings - readings[0]))
+def _cumulative(readings: Array) -> Array:
+    """The sums of the first k readings, (n + 1,), each less the first reading, of (n,)."""
+    return np.append(0.0, np.cumsum(readings - readings[0]))
+
+
+def _differences(total: Array, width: int) -> Array:
+    """Mean of the `width` readings from k on, less that of those before, k = width … n − width.
+
+    total : sums of the readings, from `_cumulative`
+    """
     before, here, after = total[: -2 * width], total[width:-width], total[2 * width :]
     return np.asarray((after - 2 * here + before) / width)
 
 
 def _white(change: Array, width: int) -> float:
     """Scatter of white readings whose neighbouring means of so many would differ so."""
-    return float(1.4826 * np.median(np.abs(change)) * np.sqrt(width / 2))
+    return float(MAD_TO_SIGMA * median(np.abs(change)) * np.sqrt(width / 2))
 
 
 class _Noise:
@@ -133,11 +141,12 @@ class _Noise:
         self.single: list[float] = []  # what a reading would scatter by if the noise were white
         self.trend: list[float] = []  # of an even drift, usual change from mean to mean
         changes: list[Array] = []
+        self.total = _cumulative(readings)
         width = 1
         while width <= min(longest, len(readings) // APART):
             # Neighbours share nearly all their readings: some tell the scatter as well as all.
-            change = differences(readings, width)[:: max(width // SHARED, 1)]
-            trend = float(np.median(change))
+            change = _differences(self.total, width)[:: max(width // SHARED, 1)]
+            trend = float(median(change))
             self.widths.append(width)
             self.trend.append(trend)
             self.single.append(_white(change - trend, width))
@@ -174,22 +183,20 @@ class _Noise:
     def variance(self, width: int) -> float:
         """Usual variance of the readings about their mean over this width."""
         away = self.readings - uniform_filter1d(self.readings, width)
-        return float(max((1.4826 * np.median(np.abs(away))) ** 2, self.least**2))
+        return float(max((MAD_TO_SIGMA * median(np.abs(away))) ** 2, self.least**2))
 
 
-def _strongest(
-    rest: Array, noise: _Noise, shortest: int, refused: Integers
-) -> tuple[float, int, int]:
+def _strongest(noise: _Noise, shortest: int, refused: Integers) -> tuple[float, int, int]:
     """The difference that is least probable by chance: its p-value, place and width."""
     best = (1.0, 0, 0)
     width = shortest
     while width <= noise.longest:
-        size = np.abs(differences(rest, width) - noise.drift(width))
+        size = np.abs(_differences(noise.total, width) - noise.drift(width))
         size[refused[width : width + len(size)] <= width] = 0.0
         k = int(np.argmax(size))
         z = float(size[k]) / max(noise.of_difference(width), 1e-300)
         # A scale has about n/width independent places, so all of them together about n.
-        p_value = 2 * float(stdtr(noise.degrees(width), -z)) * len(rest)
+        p_value = 2 * float(stdtr(noise.degrees(width), -z)) * len(noise.readings)
         best = min(best, (p_value, k + width, width))
         width = min(2 * width, noise.longest) if width < noise.longest else noise.longest + 1
     return best

@@ -6,6 +6,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.signal.scatter import MAD_TO_SIGMA
+
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
@@ -38,7 +40,7 @@ def rest_level(rates: Array) -> tuple[Array, float]:
     magnitude = np.linalg.norm(steady, axis=1)
     resting = steady[magnitude <= np.quantile(magnitude, 1 / 3)]
     level = np.median(resting, axis=0)
-    scatter = 1.4826 * np.median(np.abs(resting - level), axis=0)
+    scatter = MAD_TO_SIGMA * np.median(np.abs(resting - level), axis=0)
     return level, float(np.linalg.norm(scatter))
 
 

@@ -6,7 +6,7 @@ from on_a_table import carried, recorded, rest, tumble, turn
 from recorded_by_hand import COUNT, NOISE, assert_told
 
 from inertial.detectors.quantisation import Quantisation
-from inertial.signal.roughness import roughness
+from inertial.signal.scatter import roughness
 
 
 def found(values, **of_log):

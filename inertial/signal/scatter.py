@@ -1,0 +1,47 @@
+"""Robust measures of the scatter of readings, and their smallest step."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.signal.detector import Array
+
+MAD_TO_SIGMA = 1.4826  # sigma of Gaussian values in units of the median of their absolute values
+BLOCK = 64  # readings
+QUIET_SHARE = 0.25  # of the blocks, those with the least change, that count as quiet
+MIN_RELATIVE_STEP = 1e-9  # of a reading: smaller steps are rounding of equal readings
+MIN_NOISE_COUNTS = 0.8  # what alternates between two counts has 0.71, and no noise
+
+
+def median(values: NDArray[Any], axis: int = -1) -> NDArray[Any]:
+    """The median of finite values along an axis; sorting takes a third of `numpy.median`."""
+    ordered = np.sort(values, axis=axis)
+    n = ordered.shape[axis]
+    middle = np.take(ordered, [(n - 1) // 2, n // 2], axis=axis)
+    return np.asarray(middle.mean(axis=axis))
+
+
+def roughness(values: Array) -> float:
+    """The root mean square change between readings, divided by √2, in the quiet blocks of (n,).
+
+    For white noise of σ and a count q it is √(σ² + q²/12), of increments that carry over
+    √(σ² + q²/4), if σ is no less than half a count. NaN for fewer readings than a block has.
+    """
+    square = in_blocks(np.diff(values) ** 2 / 2)
+    return float(np.sqrt(np.quantile(square.mean(axis=1), QUIET_SHARE))) if len(square) else np.nan
+
+
+def smallest_step(values: Array) -> float:
+    """The smallest change between readings, (n,), which is a count; infinite if there is none.
+
+    Readings are counts times their size, so that equal steps differ in their last digits.
+    """
+    changes = np.abs(np.diff(values))
+    real = changes > MIN_RELATIVE_STEP * np.abs(values).max(initial=0.0)
+    return float(changes[real].min(initial=np.inf))
+
+
+def in_blocks(changes: Array) -> Array:
+    """Changes in blocks, (k, BLOCK), without those that are left over."""
+    return changes[: len(changes) // BLOCK * BLOCK].reshape(-1, BLOCK)
