@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from inertial.estimation.between_positions import Given, Passage, Stop
-from inertial.estimation.gyroscopes import Earth
+from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.multi_position import PAIRS, FreeRest
 from inertial.physics.site import EARTH_RATE
 

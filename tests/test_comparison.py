@@ -8,7 +8,8 @@ import pytest
 from inertial import tables
 from inertial.estimation.consistency import holm_rejections, normal_p_value
 from inertial.estimation.gyroscope_formulas import Upright, both_ways, two_positions
-from inertial.estimation.gyroscopes import Angle, Earth, Position, known_angle
+from inertial.estimation.gyroscope_observations import Earth, Position, WholeTurn
+from inertial.estimation.gyroscopes import bias_and_scale
 from inertial.physics.site import earth_rate
 from inertial.tables.errors import Refusal
 from inertial.tables.yaml_file import YamlFile
@@ -46,8 +47,8 @@ def test_s0_rests_and_turns_differ_with_the_noise_of_its_data():
     rests = np.array([-2.15039e-08, -7.45963e-07, -6.06855e-07])  # S0, table 5-7
     arw = random_walk(0.012)
     static = two_positions(up_and_down(arw, 300), NO_CROSS, WUHAN, 0.0)
-    both = [Angle(a, a, 1e-12, 40, 1, arw) for a in (2 * np.pi, -2 * np.pi)]
-    sigma = np.hypot(static.bias_sigma, known_angle(both, WUHAN).sigma[0])
+    both = [WholeTurn(a, a, 1e-12, 40, 1, arw) for a in (2 * np.pi, -2 * np.pi)]
+    sigma = np.hypot(static.bias_sigma, bias_and_scale(both, WUHAN).sigma[0])
     assert sigma == pytest.approx(4.15e-7, rel=0.005)
     assert np.sum(((turns - rests) / sigma) ** 2) == pytest.approx(18.44, rel=0.01)
 
@@ -112,7 +113,7 @@ def test_the_sigma_of_forward_against_backward_counts_the_shared_data_once(secon
         noise = random.normal(0, np.hypot(arw * np.sqrt(t), angle), 2)
         summed = np.array([alpha, -alpha]) + (bias + WUHAN.up) * t + noise
         turns = [
-            Angle(s, a, angle, t, 1, arw) for s, a in zip(summed, (alpha, -alpha), strict=True)
+            WholeTurn(s, a, angle, t, 1, arw) for s, a in zip(summed, (alpha, -alpha), strict=True)
         ]
         alone = summed.sum() / (2 * t) - WUHAN.up
         rest = bias + random.normal(0, of_rest)

@@ -22,7 +22,7 @@ from inertial.campaign.records import (
 )
 from inertial.campaign.solution import Estimated, Solution, solution_of
 from inertial.campaign.static_positions import Still, stills
-from inertial.estimation.gyroscopes import Earth
+from inertial.estimation.gyroscope_observations import Earth
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,11 +15,11 @@ from inertial.campaign.records import Known, Manoeuvre
 from inertial.campaign.solution import Solution
 from inertial.campaign.static_positions import Blocks, Still
 from inertial.estimation import accelerometers, gyroscopes
-from inertial.estimation.accelerometers import Rest
-from inertial.estimation.gyroscopes import Around
-from inertial.estimation.horizontal_earth_rate import said_of
+from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.gyroscope_equations import Linearisation
+from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import EffectInformation, System
-from inertial.estimation.sensitivities import Traces
+from inertial.estimation.sensitivities import Sensitivities
 from inertial.model_selection.evidence import Evidence
 from inertial.physics.effect import Effect, Reading
 from inertial.physics.forward import Triad, signatures
@@ -45,7 +45,7 @@ class Campaign:
     """
 
     inputs: GyroInputs
-    rests: list[tuple[str, Rest, Motion]]  # manoeuvre; of the accelerometers, turns too
+    rests: list[tuple[str, StaticForce, Motion]]  # manoeuvre; of the accelerometers, turns too
     still_motions: list[Motion]
     turn_motions: list[Motion]
     solution: Solution
@@ -144,7 +144,7 @@ class Campaign:
 
     def _asked(
         self, sensor: str, effects: Sequence[Effect], wide: float, told: Sequence[Reading]
-    ) -> tuple[list[Traces], dict[str, float]]:
+    ) -> tuple[list[Sensitivities], dict[str, float]]:
         """The traces of the effects in each stretch, and the sigmas of their parameters."""
         widths = {
             f"{effect.label}.{parameter.name}": wide * parameter.typical
@@ -156,7 +156,7 @@ class Campaign:
     def _equations(
         self,
         sensor: str,
-        traces: list[Traces],
+        traces: list[Sensitivities],
         widths: Mapping[str, float],
         only: set[str] | None,
     ) -> System | None:
@@ -164,7 +164,7 @@ class Campaign:
         return make(traces, widths, only)
 
     def _gyro(
-        self, traces: list[Traces], widths: Mapping[str, float], only: set[str] | None
+        self, traces: list[Sensitivities], widths: Mapping[str, float], only: set[str] | None
     ) -> System | None:
         if self.solution.gyro is None:
             return None
@@ -172,32 +172,32 @@ class Campaign:
         of_stills, of_turns = traces[: len(self.still_motions)], traces[len(self.still_motions) :]
         for still, rest, told in zip(self.inputs.stills, self.inputs.rests, of_stills, strict=True):
             if only is None or still.manoeuvre.name in only:
-                rests.append(replace(rest, traces=Traces(told.names, told.values[0])))
+                rests.append(replace(rest, sensitivities=Sensitivities(told.names, told.values[0])))
         for recorded, turn, told in zip(self._whole, self.inputs.turns, of_turns, strict=True):
             if only is None or recorded.plan.name in only:
-                turns.append(replace(turn, traces=told))
+                turns.append(replace(turn, sensitivities=told))
         if not (rests or turns):
             return None
         gyro = self.solution.gyro
         names = [(q, p) for p, q in self.solution.found]
         levels = dict(zip(names, self.solution.found.values(), strict=True))
-        return gyroscopes.equations(
-            rests,
-            turns,
-            [],
-            self.inputs.earth,
-            (self.position_sigma, 0.0, self.solution.walks[0]),
-            Around(gyro.matrix, gyro.bias, levels, said_of(levels, self.inputs.earth.level)),
-            widths,
+        point = Linearisation(
+            gyro.matrix,
+            gyro.bias,
+            levels,
+            constrained_positions(levels, self.inputs.earth.level),
         )
+        known = (self.inputs.earth, self.position_sigma)
+        equations = gyroscopes.linearised(point, turns, [], *known, widths)
+        return equations.system(rests, walk=self.solution.walks[0])
 
     def _accelerometer(
-        self, traces: list[Traces], widths: Mapping[str, float], only: set[str] | None
+        self, traces: list[Sensitivities], widths: Mapping[str, float], only: set[str] | None
     ) -> System | None:
         if self.solution.accelerometer is None:
             return None
         rests = [
-            replace(rest, traces=Traces(told.names, told.values[0]))
+            replace(rest, sensitivities=Sensitivities(told.names, told.values[0]))
             for (name, rest, _), told in zip(self.rests, traces, strict=True)
             if only is None or name in only
         ]
@@ -224,7 +224,7 @@ class Campaign:
 
     def _traces(
         self, sensor: str, effects: Sequence[Effect], told: Sequence[Reading]
-    ) -> list[Traces]:
+    ) -> list[Sensitivities]:
         """The same of one sensor, in each stretch of its equations.
 
         Gyros: one for each rest, then for each turn; accelerometers: one for each of `rests`.
@@ -234,10 +234,10 @@ class Campaign:
         gyros = len(parts) - len(self.rests)
         own = parts[:gyros] if sensor == "gyro" else parts[gyros:]
         if not told or not own:
-            return [Traces(values=np.zeros((part.stop - part.start, 3, 0))) for part in own]
+            return [Sensitivities(values=np.zeros((part.stop - part.start, 3, 0))) for part in own]
         names = tuple(f"{e.label}.{parameter.name}" for e in effects for parameter in e.parameters)
         every = np.concatenate([getattr(trace, sensor) for trace in told], axis=2)
-        return [Traces(names, every[part]) for part in own]
+        return [Sensitivities(names, every[part]) for part in own]
 
 
 def campaign_of(data: CampaignData) -> Campaign:
@@ -250,7 +250,7 @@ def campaign_of(data: CampaignData) -> Campaign:
     motions, solution = CampaignMotions(data), data.result
     stills_of_gyro = [motions.at_rest(still) for still in inputs.stills]
     turns: list[Motion] = []
-    rests: list[tuple[str, Rest, Motion]] = []
+    rests: list[tuple[str, StaticForce, Motion]] = []
     for still in found:
         rests.append((still.manoeuvre.name, _rest(still), motions.at_rest(still)))
     whole = [r for r in inputs.usable if r.plan.recorded == "whole"]
@@ -261,7 +261,7 @@ def campaign_of(data: CampaignData) -> Campaign:
         turns.append(motion)
         if not turn.by_hand:
             density = data.noise.of(one.plan.name, "steady", ACCEL)
-            edges = [0, *(bridge.before for bridge in turn.bridges), len(turn.seconds)]
+            edges = [0, *(gap.before for gap in turn.gaps), len(turn.seconds)]
             parts = _turning(one.plan, one.blocks, motion, density, edges)
             rests += [(m, replace(part, stretch=turn.stretch), at) for m, part, at in parts]
     return Campaign(
@@ -282,14 +282,14 @@ def _in_pieces(found: Sequence[Still]) -> list[Still]:
     return [one for still in found for one in still.pieces(max(MIN_PIECE_S, lasted / MAX_PIECES))]
 
 
-def _rest(still: Still) -> Rest:
+def _rest(still: Still) -> StaticForce:
     stretch = still.stretch
-    return Rest(still.manoeuvre.position, still.up_now, *still.over(), stretch=stretch)
+    return StaticForce(still.manoeuvre.position, still.up_now, *still.over(), stretch=stretch)
 
 
 def _turning(
     m: Manoeuvre, blocks: Blocks, motion: Motion, density: Array, edges: Sequence[int]
-) -> list[tuple[str, Rest, Motion]]:
+) -> list[tuple[str, StaticForce, Motion]]:
     """The accelerometers during a turn, some blocks at a time, none across the `edges`."""
     read, seconds = blocks.accel, blocks.seconds
     assert m.up is not None  # else the turn is refused
@@ -303,7 +303,7 @@ def _turning(
         mean = share @ read[some]
         up = share @ ups[some]
         sigma = density / np.sqrt(seconds[some].sum())
-        rest = Rest(m.position, up, mean, sigma)
+        rest = StaticForce(m.position, up, mean, sigma)
         parts.append((m.name, rest, mean_motion(motion, some, share)))
     return parts
 

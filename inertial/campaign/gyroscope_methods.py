@@ -94,7 +94,7 @@ def _add_known_angle(estimates: Estimates, data: CampaignData, scatter: float) -
         turns = [angle for _, angle in angles_about(data, i)]
         names = (f"bias_{axis}", f"scale_{axis}")
         if len({np.sign(turn.angle) for turn in turns}) == 2:
-            estimate = gyroscopes.known_angle(turns, inputs.earth, scatter)
+            estimate = gyroscopes.bias_and_scale(turns, inputs.earth, scatter)
             estimates.add(method, names, estimate.values[:2], estimate.covariance[:2, :2], {})
         elif own:
             reason = f"the formula needs whole turns about {axis} forward and backward"

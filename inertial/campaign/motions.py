@@ -11,7 +11,7 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Manoeuvre
 from inertial.campaign.static_positions import Still
-from inertial.estimation.gyroscopes import Turn
+from inertial.estimation.gyroscope_observations import RateSegment
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import Motion, Profile, turned_all, turning
 from inertial.tables import ACCEL
@@ -40,7 +40,7 @@ def at_rest(data: CampaignData, still: Still, time: float) -> Motion:
     return replace(rest, surveyed=np.array([position.north is not None]))
 
 
-def in_blocks(data: CampaignData, m: Manoeuvre, turn: Turn, time: Array) -> Motion:
+def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) -> Motion:
     """A turn in the k blocks of its sums; the angle of each is what the gyros saw of it."""
     solution, position = data.result, position_of(m, data.heading)
     up, north = solution.upright(m), solution.north(position)
@@ -196,7 +196,7 @@ class CampaignMotions:
             vibration=self._data.noise.of_samples(name, "rest", ACCEL)[None],
         )
 
-    def turning(self, one: Recorded, turn: Turn) -> Motion:
+    def turning(self, one: Recorded, turn: RateSegment) -> Motion:
         """A turn in its blocks; about an axis that is not upright gravity hides how it shakes."""
         name = one.plan.name
         blocks = one.blocks

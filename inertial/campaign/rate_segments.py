@@ -12,8 +12,15 @@ from numpy.typing import NDArray
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.campaign.static_positions import NO_BLOCKS, Blocks, Still, by_manoeuvre, stretch_of
-from inertial.estimation import gyroscopes
-from inertial.estimation.gyroscopes import Angle, Bridge, Earth, Position, Steady, Turn
+from inertial.estimation.gyroscope_observations import (
+    Earth,
+    Gap,
+    Position,
+    RateSegment,
+    StaticRate,
+    SteadyRate,
+    WholeTurn,
+)
 from inertial.estimation.spectrum import strays
 from inertial.physics.vectors import cross
 from inertial.tables import GYRO
@@ -38,7 +45,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-def bridges(part: Blocks) -> list[Bridge]:
+def gaps_of(part: Blocks) -> list[Gap]:
     """The gaps between the k blocks of a turn, interpolated from the blocks beside them."""
     seconds, steady = part.seconds, part.steady
     gaps = []
@@ -51,13 +58,13 @@ def bridges(part: Blocks) -> list[Bridge]:
             # The straight line through the means of both blocks, at the middle of what is missing.
             nearer = (seconds[i - 1] + gone) / (seconds[i - 1] + 2 * gone + seconds[i])
             shares[i - 1 : i + 1] = gone * np.array([1 - nearer, nearer]) / seconds[i - 1 : i + 1]
-        gaps.append(Bridge(i, gone, shares))
+        gaps.append(Gap(i, gone, shares))
     return gaps
 
 
 def sigma_of(
     part: Blocks,
-    gaps: Sequence[Bridge],
+    gaps: Sequence[Gap],
     about: Array,
     name: str,
     noise: NoiseLevels,
@@ -136,8 +143,8 @@ class GyroInputs:
 
     stills: list[Still]
     recorded: list[Recorded]
-    turns: list[Turn]  # from rest to rest, with their angle known
-    steadies: list[Steady]  # at a known rate
+    turns: list[RateSegment]  # from rest to rest, with their angle known
+    steadies: list[SteadyRate]  # at a known rate
     earth: Earth
     position_sigma: float
     heading: float | None
@@ -159,11 +166,11 @@ class GyroInputs:
         return not (self.stills or self.turns or self.steadies)
 
     @cached_property
-    def rests(self) -> list[gyroscopes.Still]:
+    def rests(self) -> list[StaticRate]:
         """The rests as the equations have them."""
         return self.first_of_rests(np.inf)
 
-    def first_of_rests(self, seconds: float) -> list[gyroscopes.Still]:
+    def first_of_rests(self, seconds: float) -> list[StaticRate]:
         """The same of the first seconds of each."""
         return [still_of(still, self.heading, seconds) for still in self.stills]
 
@@ -237,23 +244,25 @@ def position_of(m: Manoeuvre, heading: float | None) -> Position:
     return Position(m.position, up, north=cos(heading) * mark + sin(heading) * cross(up, mark))
 
 
-def still_of(still: Still, heading: float | None, seconds: float) -> gyroscopes.Still:
+def still_of(still: Still, heading: float | None, seconds: float) -> StaticRate:
     """A rest, or its first seconds."""
     position = position_of(still.manoeuvre, heading)
     mean, sigma = still.over(seconds)
     stretch = still.during(seconds)
-    return gyroscopes.Still(position, mean, sigma, still.about, still.angle, stretch=stretch)
+    return StaticRate(position, mean, sigma, still.about, still.angle, stretch=stretch)
 
 
-def turn_of(one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float) -> Turn:
+def turn_of(
+    one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float
+) -> RateSegment:
     """A turn from rest to rest with its blocks in motion; gaps are interpolated.
 
     `rate_sigma`: relative, of the table's rate.
     """
     m, part = one.plan, one.blocks
-    missing = bridges(part)
+    missing = gaps_of(part)
     assert m.angle is not None and m.angle_sigma is not None  # else it is refused
-    return Turn(
+    return RateSegment(
         position=position_of(m, heading),
         about=m.axis,
         angle=m.angle,
@@ -263,19 +272,19 @@ def turn_of(one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma
         density=noise.of(m.name, "steady", GYRO),
         quiet_density=noise.of(m.name, "rest", GYRO),
         by_hand=bool((part.phase == "turning").any()),
-        bridges=missing,
-        bridged_sigma=sigma_of(part, missing, m.axis, m.name, noise, rate_sigma),
+        gaps=missing,
+        gap_sigma=sigma_of(part, missing, m.axis, m.name, noise, rate_sigma),
         unsteady=np.flatnonzero(~part.steady).tolist() if noise.oscillates(m.name, GYRO) else (),
     )
 
 
 def steady_of(
     one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float
-) -> Steady:
+) -> SteadyRate:
     m, part = one.plan, one.steady
     assert m.rate is not None  # the plan wants a rate of such a turn
     ends = np.cumsum(part.seconds + part.missing) - part.missing[0]
-    return Steady(
+    return SteadyRate(
         position=position_of(m, heading),
         about=m.axis,
         rate=m.rate,
@@ -287,7 +296,7 @@ def steady_of(
     )
 
 
-def angles_about(data: "CampaignData", i: int) -> list[tuple[str, Angle]]:
+def angles_about(data: "CampaignData", i: int) -> list[tuple[str, WholeTurn]]:
     """The complete turns about body axis i while it is vertical, by their own gyro, with names."""
     usable = data.gyro_inputs.usable
     recorded = [r for r in usable if r.plan.recorded == "whole" and r.done.complete]
@@ -302,10 +311,10 @@ def _upright(m: Manoeuvre, i: int) -> bool:
     return up and abs(float(m.axis[i])) > 1 - 1e-9
 
 
-def _angle(one: Recorded, i: int, noise: NoiseLevels) -> Angle:
+def _angle(one: Recorded, i: int, noise: NoiseLevels) -> WholeTurn:
     m, part = one.plan, one.blocks
     assert m.up is not None and m.angle is not None and m.angle_sigma is not None  # else refused
-    return Angle(
+    return WholeTurn(
         summed=float((part.gyro[:, i] * part.seconds).sum()),
         angle=m.angle * float(m.axis[i]),
         angle_sigma=m.angle_sigma,

@@ -8,7 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.records import Known, Manoeuvre, rows_of
-from inertial.estimation.gyroscopes import Position
+from inertial.estimation.gyroscope_observations import Position
 from inertial.estimation.triad import BIAS, linear_names
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import level_axes

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.accelerometers import Rest
+from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.gyroscope_formulas import Readings, Solution
 from inertial.estimation.least_squares import pseudo_inverse
 from inertial.physics.motion import level_axes
@@ -98,7 +98,7 @@ def pooling(ups: Array) -> tuple[Array, Array]:
 
 
 def pooled_positions(
-    rests: Sequence[Rest],
+    rests: Sequence[StaticForce],
     gravity: float,
     gravity_sigma: float,
     position_sigma: float,

@@ -28,7 +28,8 @@ from scipy.spatial.transform import Rotation
 
 from inertial.estimation import multi_position as forces
 from inertial.estimation.attitude import carried
-from inertial.estimation.gyroscopes import PRIOR, PRIOR_SIGMA, Earth
+from inertial.estimation.gyroscope_observations import Earth
+from inertial.estimation.gyroscopes import PRIOR, PRIOR_SIGMA
 from inertial.estimation.least_squares import Estimate, System, solve_iterated
 from inertial.estimation.multi_position import FreeRest, Upward, upward_of
 from inertial.estimation.triad import UNKNOWNS, design_of

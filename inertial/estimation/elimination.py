@@ -59,6 +59,13 @@ def compressed(rows: Array) -> Array:
     return r_factor(rows) if len(rows) > 2 * rows.shape[1] else rows
 
 
+def whitened(rows: Array, sigma: Array, own: tuple[Name, ...]) -> EquationBlock:
+    """Equations in units of their sigma, without channels that are not recorded."""
+    there = np.isfinite(rows[:, -1]) & np.isfinite(sigma)
+    deviance = 2 * float(np.sum(np.log(sigma[there])))
+    return EquationBlock(rows[there] / sigma[there, None], own, int(there.sum()), deviance)
+
+
 @dataclass(frozen=True)
 class _BackSubstitution:
     """Rows that give f errors from the other unknowns: upper · errors + others · rest = right.

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.gyroscopes import Angle, Earth, Position
+from inertial.estimation.gyroscope_observations import Earth, Position, WholeTurn
 from inertial.physics.motion import level_axes
 
 # ---- A formula of a source that is linear in the readings, with the covariance that it has.
@@ -184,8 +184,8 @@ class BothWays:
 
 
 def both_ways(
-    forward: Angle,
-    backward: Angle,
+    forward: WholeTurn,
+    backward: WholeTurn,
     bias: float,
     bias_sigma: float,
     earth: Earth,

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.accelerometers import Rest, equations
+from inertial.estimation.accelerometers import StaticForce, equations
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.motion import all_level_axes
@@ -44,7 +44,7 @@ class OffPosition:
 
 
 def off_position(
-    rests: Sequence[Rest],
+    rests: Sequence[StaticForce],
     gravity: float,
     gravity_sigma: float,
     position_sigma: float,
@@ -89,12 +89,12 @@ def off_position(
     )
 
 
-def _traced(rests: Sequence[Rest], gravity: float, matrix: Array) -> list[Rest]:
+def _traced(rests: Sequence[StaticForce], gravity: float, matrix: Array) -> list[StaticForce]:
     """The rests with what the two tilts of their position do to them."""
     found = []
     for rest in rests:
         level = all_level_axes(rest.up[None])[0]
         leans = cross(level, gravity * rest.up) @ matrix.T
         own = [f"{rest.position}/{i}" for i in range(2)]
-        found.append(replace(rest, traces=rest.traces.and_of(own, leans.T)))
+        found.append(replace(rest, sensitivities=rest.sensitivities.extended(own, leans.T)))
     return found

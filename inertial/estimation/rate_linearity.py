@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.gyroscopes import Earth, Steady
-from inertial.estimation.horizontal_earth_rate import earth_seen
+from inertial.estimation.gyroscope_observations import Earth, SteadyRate
+from inertial.estimation.horizontal_earth_rate import summed_earth_rate
 from inertial.estimation.regression import Added, added_columns
 
 Array = NDArray[np.float64]
@@ -50,7 +50,7 @@ class OwnAxis:
         return OwnAxis(self.gyro[keep], self.run[keep], *real)
 
 
-def own_axis(runs: Sequence[Steady], earth: Earth, scatter: float = 0.0) -> OwnAxis:
+def own_axis(runs: Sequence[SteadyRate], earth: Earth, scatter: float = 0.0) -> OwnAxis:
     """Gather the runs about an axis of a gyro, of one mount or of several, the earth taken out.
 
     `scatter`, rad/s, is by what the readings differ from run to run beyond noise and rate.
@@ -62,7 +62,7 @@ def own_axis(runs: Sequence[Steady], earth: Earth, scatter: float = 0.0) -> OwnA
         if abs(run.about[gyro]) < OWN or not there:
             continue
         share = run.seconds / run.seconds.sum()
-        seen = earth_seen(earth, run.position, run.about, run.rate * run.elapsed, share)
+        seen = summed_earth_rate(earth, run.position, run.about, run.rate * run.elapsed, share)
         sigma = np.sqrt(run.sigma[gyro] ** 2 + run.rate_sigma**2 + scatter**2)
         signed = run.rate * np.sign(run.about[gyro])
         rows.append((gyro, number, signed, run.mean[gyro] - seen.known[gyro], sigma))

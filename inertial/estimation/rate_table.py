@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.estimation.gyroscope_formulas import Readings, Solution
-from inertial.estimation.gyroscopes import Earth, Steady
-from inertial.estimation.horizontal_earth_rate import earth_seen
+from inertial.estimation.gyroscope_observations import Earth, SteadyRate
+from inertial.estimation.horizontal_earth_rate import summed_earth_rate
 from inertial.estimation.least_squares import pseudo_inverse
 from inertial.estimation.triad import AXES, linear_names
 from inertial.physics.motion import level_axes
@@ -78,7 +78,7 @@ class RateTable:
 
 
 def rate_table(
-    runs: Sequence[Steady], earth: Earth, position_sigma: float, scatter: float = 0.0
+    runs: Sequence[SteadyRate], earth: Earth, position_sigma: float, scatter: float = 0.0
 ) -> RateTable | None:
     """S4's least squares of k steady runs; None where there is none.
 
@@ -99,7 +99,7 @@ def rate_table(
     determined = np.array([span.determined for span in spans])
 
     seen = [
-        earth_seen(
+        summed_earth_rate(
             earth, run.position, run.about, run.rate * run.elapsed, run.seconds / run.seconds.sum()
         )
         for run in runs

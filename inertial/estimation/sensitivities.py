@@ -1,4 +1,4 @@
-"""How readings change with the parameters of effects."""
+"""Derivatives of readings with respect to the parameters of effects."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Traces:
+class Sensitivities:
     """The change of a reading per unit of each parameter.
 
     `names`: of the parameters; `values`: (3, k), or (n, 3, k) for n blocks.
@@ -20,7 +20,7 @@ class Traces:
     values: Array = field(default_factory=lambda: np.zeros((3, 0)))
 
     def of(self, names: Sequence[str]) -> Array:
-        """The same for other parameters, in their order; zero for those that it does not have."""
+        """Those to other parameters, in their order; zero for parameters that it does not have."""
         if tuple(names) == self.names:
             return self.values
         others = np.zeros((*self.values.shape[:-1], len(names)))
@@ -28,9 +28,10 @@ class Traces:
         others[..., there] = self.values[..., [self.names.index(names[i]) for i in there]]
         return others
 
-    def and_of(self, names: Sequence[str], values: Array) -> "Traces":
+    def extended(self, names: Sequence[str], values: Array) -> "Sensitivities":
         """These and further ones."""
-        return Traces((*self.names, *names), np.concatenate([self.values, values], axis=-1))
+        every = np.concatenate([self.values, values], axis=-1)
+        return Sensitivities((*self.names, *names), every)
 
 
-NONE = Traces()
+NO_SENSITIVITIES = Sensitivities()

@@ -24,8 +24,8 @@ from numpy.typing import NDArray
 
 from inertial.estimation.accelerometer_formulas import pooling
 from inertial.estimation.gyroscope_formulas import Readings, Solution
-from inertial.estimation.gyroscopes import Earth, Still, Turn
-from inertial.estimation.horizontal_earth_rate import EarthSeen, earth_seen
+from inertial.estimation.gyroscope_observations import Earth, RateSegment, StaticRate
+from inertial.estimation.horizontal_earth_rate import SummedEarthRate, summed_earth_rate
 from inertial.estimation.least_squares import pseudo_inverse
 from inertial.physics.motion import level_axes, turned
 from inertial.physics.vectors import cross
@@ -43,14 +43,14 @@ class BothTurns:
     offset: Array
 
 
-def both_turns(forward: Turn, backward: Turn) -> BothTurns:
+def both_turns(forward: RateSegment, backward: RateSegment) -> BothTurns:
     """S3 (13) to (15) for one axis; both turns are about it, their angles of opposite sign."""
     of_along, of_offset = _factors(forward, backward)
     sums = np.array([forward.sums.sum(axis=0), backward.sums.sum(axis=0)])
     return BothTurns(of_along @ sums, of_offset @ sums)
 
 
-def _factors(forward: Turn, backward: Turn) -> tuple[Array, Array]:
+def _factors(forward: RateSegment, backward: RateSegment) -> tuple[Array, Array]:
     """How the two sums make M u, and how they make D + M E, (2,) each; 1/rad and 1/s."""
     seconds = np.array([forward.seconds.sum(), backward.seconds.sum()])
     angle = np.array([forward.angle, backward.angle])
@@ -60,14 +60,14 @@ def _factors(forward: Turn, backward: Turn) -> tuple[Array, Array]:
     return of_along, of_offset
 
 
-def pairs_of(turns: Sequence[Turn]) -> list[tuple[int, int]]:
+def pairs_of(turns: Sequence[RateSegment]) -> list[tuple[int, int]]:
     """Turns forward, each with one backward of the same axis and attitude: their numbers.
 
     A turn of which something is missing is none of them.
     """
     turns = [_upward(turn) for turn in turns]
     found: list[tuple[int, int]] = []
-    whole = [j for j, turn in enumerate(turns) if not turn.bridges]
+    whole = [j for j, turn in enumerate(turns) if not turn.gaps]
     backward = [j for j in whole if turns[j].angle < 0]
     for i in whole:
         alike = [j for j in backward if turns[i].angle > 0 and _alike(turns[i], turns[j])]
@@ -77,14 +77,14 @@ def pairs_of(turns: Sequence[Turn]) -> list[tuple[int, int]]:
     return found
 
 
-def _upward(turn: Turn) -> Turn:
+def _upward(turn: RateSegment) -> RateSegment:
     """The same turn told about the end of its axis that points up."""
     if turn.about @ turn.position.up >= 0:
         return turn
     return replace(turn, about=-turn.about, angle=-turn.angle)
 
 
-def _alike(one: Turn, other: Turn) -> bool:
+def _alike(one: RateSegment, other: RateSegment) -> bool:
     """Whether two turns are about the same axis from the same attitude."""
     same = np.allclose(one.about, other.about, atol=1e-9)
     return same and np.allclose(one.position.up, other.position.up, atol=1e-9)
@@ -103,8 +103,8 @@ class TurnAndStop:
 
 
 def turn_and_stop(
-    turns: Sequence[Turn],
-    stills: Sequence[Still],
+    turns: Sequence[RateSegment],
+    stills: Sequence[StaticRate],
     earth: Earth,
     position_sigma: float,
     scatter: float = 0.0,
@@ -166,14 +166,16 @@ def turn_and_stop(
     return TurnAndStop(solution(of_offset.mean(axis=0)) if pairs else None, by_rests, pairs)
 
 
-def _earth(turns: Sequence[Turn], stills: Sequence[Still], earth: Earth) -> list[EarthSeen]:
+def _earth(
+    turns: Sequence[RateSegment], stills: Sequence[StaticRate], earth: Earth
+) -> list[SummedEarthRate]:
     """The earth in every sum, rad, and in every mean, rad/s."""
     moving = [(t.position, t.about, _angles(t), t.seconds) for t in turns]
     at_rest = [(s.position, s.about, np.array([s.angle]), np.ones(1)) for s in stills]
-    return [earth_seen(earth, *one) for one in moving + at_rest]
+    return [summed_earth_rate(earth, *one) for one in moving + at_rest]
 
 
-def _angles(turn: Turn) -> Array:
+def _angles(turn: RateSegment) -> Array:
     """The angle at the middle of each block, by the gyros along the axis.
 
     What they exceed the known angle by is bias and earth, alike in all of the turn.

@@ -15,8 +15,8 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import refusal_of
 from inertial.campaign.records import Manoeuvre
 from inertial.campaign.static_positions import Blocks, by_manoeuvre, stretch_of
-from inertial.estimation.accelerometers import Rest
-from inertial.estimation.sensitivities import Traces
+from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.sensitivities import Sensitivities
 from inertial.physics.motion import mean_turned
 from inertial.tables import ACCEL, AXES
 
@@ -26,15 +26,15 @@ LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU stan
 MAX_TURN_IN_MEAN = np.radians(5)  # by how much the vertical may turn in the case within one mean
 
 
-def turning_rests(data: CampaignData) -> list[tuple[str, Rest]]:
+def turning_rests(data: CampaignData) -> list[tuple[str, StaticForce]]:
     """The steady parts of all whole turns, each with its label, in means of like attitude.
 
-    The `traces` of each are those of LEVER_ARM.
+    The `sensitivities` of each are those of LEVER_ARM.
     """
     blocks, performed = data.blocks, data.performed
     moving = by_manoeuvre(blocks[~blocks["phase"].str.startswith("rest")])
     quiet = by_manoeuvre(blocks[blocks["phase"].isin(["rest-before", "rest-after"])])
-    found: list[tuple[str, Rest]] = []
+    found: list[tuple[str, StaticForce]] = []
     for m in data.plan:
         if m.do != "turn" or m.recorded != "whole" or m.name not in moving:
             continue
@@ -50,7 +50,7 @@ def turning_rests(data: CampaignData) -> list[tuple[str, Rest]]:
     return found
 
 
-def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[Rest]:
+def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[StaticForce]:
     """The blocks of the steady part, as many in one mean as see the same attitude."""
     assert m.up is not None and m.angle is not None  # else the turn is refused
     read, seconds = part.accel, part.seconds
@@ -68,12 +68,12 @@ def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[R
         square = float(share @ rate[some] ** 2)
         pull = square * (np.outer(m.axis, m.axis) - np.eye(3))  # ω × (ω × r) of r
         rests.append(
-            Rest(
+            StaticForce(
                 m.position,
                 share @ ups[some],
                 share @ read[some],
                 density / np.sqrt(seconds[some].sum()),
-                traces=Traces(tuple(LEVER_ARM), pull),
+                sensitivities=Sensitivities(tuple(LEVER_ARM), pull),
             )
         )
     return rests

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from inertial.campaign.estimates import NAMES, Estimates, Wanted
 from inertial.campaign.static_positions import Still
 from inertial.estimation.accelerometer_formulas import Upright, pooled_positions, up_and_down
-from inertial.estimation.accelerometers import Rest, formula
+from inertial.estimation.accelerometers import StaticForce, six_position_formula
 from inertial.estimation.triad import UNKNOWNS, errors_of
 from inertial.tables import AXES
 
@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 def add_six_positions(
     estimates: Estimates,
-    planned: Sequence[tuple[Still, Rest]],
+    planned: Sequence[tuple[Still, StaticForce]],
     about: tuple[float, float, float],  # gravity, its sigma, m/s², sigma of a position, rad
     scatter: float,
     wanted: float,
@@ -34,13 +34,13 @@ def add_six_positions(
     rests is reckoned.
     """
     rests = [rest for _, rest in planned]
-    solved = formula(rests, *about, scatter) if rests else None
+    solved = six_position_formula(rests, *about, scatter) if rests else None
     if solved is None:
         _add_up_and_down(estimates, rests, about, scatter)
         return
     unknowns, covariance = solved
     estimates.add("six_position", NAMES, errors_of(unknowns), covariance, {})
-    ideal = formula([replace(rest, sigma=np.zeros(3)) for rest in rests], *about)
+    ideal = six_position_formula([replace(rest, sigma=np.zeros(3)) for rest in rests], *about)
     assert ideal is not None  # it depends on the same attitudes
     seconds = float(np.mean([still.seconds.sum() for still, _ in planned]))
     for i, axis in enumerate(AXES, UNKNOWNS - 3):
@@ -50,7 +50,7 @@ def add_six_positions(
 
 def _add_up_and_down(
     estimates: Estimates,
-    rests: Sequence[Rest],
+    rests: Sequence[StaticForce],
     about: tuple[float, float, float],
     scatter: float,
 ) -> None:
@@ -70,7 +70,7 @@ def _add_up_and_down(
 
 def add_pooled_positions(
     estimates: Estimates,
-    rests: Sequence[Rest],
+    rests: Sequence[StaticForce],
     about: tuple[float, float, float],
     scatter: float,
 ) -> None:

@@ -11,7 +11,7 @@ from inertial.campaign.findings import Finding, table_of
 from inertial.campaign.static_positions import Still, averaging_times
 from inertial.campaign.unknown_attitude import add_free_accelerometers
 from inertial.estimation import accelerometers, triad
-from inertial.estimation.accelerometers import Rest, equations, weighted
+from inertial.estimation.accelerometers import StaticForce, equations, weighted
 from inertial.estimation.position_outlier import off_position
 from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
 from inertial.tables.stage import Stage, Tables
@@ -53,7 +53,7 @@ def accelerometer(
         wide = LEVER_ARM if turns else None
         moving = [rest for _, rest in turns]
         rests = [*(_rest(still) for still in found), *moving]
-        fitted = accelerometers.fitted(rests, *about, data.noise.degrees, wide)
+        fitted = accelerometers.fit(rests, *about, data.noise.degrees, wide)
         recorded = np.isfinite(np.array([rest.mean for rest in rests])).any(axis=0)
         why = reasons(fitted.estimate.determined, recorded, "accelerometer", CURES)
         estimates.add_triad("joint", fitted.estimate, why)
@@ -77,7 +77,7 @@ def accelerometer(
 
 
 def _off(
-    rests: list[Rest],
+    rests: list[StaticForce],
     about: tuple[float, float, float],
     matrix: Array,
     wide: Mapping[str, float] | None,
@@ -86,13 +86,15 @@ def _off(
     """The position that does not fit, where one alone explains why the model does not."""
     off = off_position(rests, *about, matrix, wide)
     if off is not None:
-        sigma = weighted(rests, *about, wide=wide).sigma[: triad.UNKNOWNS]
+        sigma = weighted(rests, *about, effect_sigma=wide).sigma[: triad.UNKNOWNS]
         yield from findings(off, sigma, mount)
 
 
-def _rest(still: Still, seconds: float = np.inf) -> Rest:
+def _rest(still: Still, seconds: float = np.inf) -> StaticForce:
     stretch = still.during(seconds)
-    return Rest(still.manoeuvre.position, still.up_now, *still.over(seconds), stretch=stretch)
+    return StaticForce(
+        still.manoeuvre.position, still.up_now, *still.over(seconds), stretch=stretch
+    )
 
 
 STAGE = Stage(accelerometer, DECLARED, gathers={"mounts": campaigns_of})

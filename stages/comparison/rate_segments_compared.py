@@ -8,14 +8,15 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.gyroscope_methods import uprights
 from inertial.campaign.rate_segments import angles_about
 from inertial.estimation.gyroscope_formulas import both_ways, two_positions
-from inertial.estimation.gyroscopes import Angle, known_angle
+from inertial.estimation.gyroscope_observations import WholeTurn
+from inertial.estimation.gyroscopes import bias_and_scale
 from inertial.tables import AXES
 from stages.comparison.difference import Difference, Results
 
 # --- Rotation forward against backward about the same axis ---
 
 FORWARD_AGAINST_BACKWARD = "forward_against_backward"
-Pair = tuple[tuple[str, Angle], tuple[str, Angle]]
+Pair = tuple[tuple[str, WholeTurn], tuple[str, WholeTurn]]
 
 
 def forward_against_backward(
@@ -43,7 +44,7 @@ def forward_against_backward(
             )
 
 
-def _pairs(turns: list[tuple[str, Angle]]) -> list[Pair]:
+def _pairs(turns: list[tuple[str, WholeTurn]]) -> list[Pair]:
     """Forward turns, each with a backward one of the same angle, the same end of the axis up."""
     pairs: list[Pair] = []
     for up in (1, -1):
@@ -77,7 +78,7 @@ def static_against_turns(data: CampaignData, gyro: Results) -> Iterator[Differen
         )
         if static is None or gyro.determined("turns", f"bias_{axis}") is None:
             continue
-        turns = known_angle([turn for _, turn in angles_about(data, i)], data.earth)
+        turns = bias_and_scale([turn for _, turn in angles_about(data, i)], data.earth)
         found = {
             "bias": (static.bias, static.bias_sigma, 0, "rad/s"),
             "scale": (static.scale, static.scale_sigma, 1, "1"),

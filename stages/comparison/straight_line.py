@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from inertial.estimation.consistency import outliers
-from inertial.estimation.gyroscopes import Earth, Steady
+from inertial.estimation.gyroscope_observations import Earth, SteadyRate
 from inertial.estimation.rate_linearity import columns_of, nonlinearities, own_axis
 from stages.comparison.difference import Difference
 
@@ -15,7 +15,7 @@ FORMS = {"cubic": "s²/rad²", "asymmetry": "1"}
 
 
 def straight_line(
-    runs: Sequence[Steady], earth: Earth, scatter: Sequence[float]
+    runs: Sequence[SteadyRate], earth: Earth, scatter: Sequence[float]
 ) -> Iterator[Difference]:
     """Whether what the gyros read goes with the rate alone; the runs of all mounts at once.
 

@@ -16,7 +16,7 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Row, rows_of, with_mount
 from inertial.campaign.static_positions import Still
-from inertial.estimation.gyroscopes import Earth, Position
+from inertial.estimation.gyroscope_observations import Earth, Position
 from inertial.physics.forward import Triad
 from inertial.tables import GYRO
 from inertial.text.numbers import decimals_of, fixed, with_sigma

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from inertial.campaign.equations import USUAL_SIZE, Campaign
-from inertial.estimation.accelerometers import WALK as LARGEST_OF_ACCELEROMETERS
-from inertial.estimation.accelerometers import Rest
-from inertial.estimation.gyroscope_rows import Still, Turn
-from inertial.estimation.gyroscopes import WALK as LARGEST_OF_GYROS
+from inertial.estimation.accelerometers import MAX_RANDOM_WALK as MAX_OF_ACCELEROMETERS
+from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.gyroscope_observations import RateSegment, StaticRate
+from inertial.estimation.gyroscopes import MAX_RANDOM_WALK as MAX_OF_GYROS
 from inertial.estimation.variance_components import (
     MIN_DEVIANCE_DROP,
     WalkSearch,
@@ -81,13 +81,13 @@ def _deviance(
 
 def _times(campaign: Campaign, sensor: str) -> WalkSearch | None:
     """What the times of a sensor's stretches can tell of a walk; None where they tell nothing."""
-    parts: Sequence[Still | Turn | Rest]
+    parts: Sequence[StaticRate | RateSegment | StaticForce]
     if sensor == "gyro":
-        solved, largest = campaign.solution.gyro, LARGEST_OF_GYROS
-        rests: Sequence[Still | Rest] = campaign.inputs.rests
+        solved, largest = campaign.solution.gyro, MAX_OF_GYROS
+        rests: Sequence[StaticRate | StaticForce] = campaign.inputs.rests
         parts = [*rests, *campaign.inputs.turns]
     else:
-        solved, largest = campaign.solution.accelerometer, LARGEST_OF_ACCELEROMETERS
+        solved, largest = campaign.solution.accelerometer, MAX_OF_ACCELEROMETERS
         parts = rests = [rest for _, rest, _ in campaign.rests]
     if solved is None or not rests:
         return None

@@ -10,7 +10,8 @@ from scipy.linalg import solve_triangular
 
 from inertial.campaign.equations import Campaign
 from inertial.campaign.rate_segments import Recorded
-from inertial.estimation.gyroscope_rows import Position, Turn, level_names, level_of
+from inertial.estimation.gyroscope_equations import horizontal_axes, horizontal_names
+from inertial.estimation.gyroscope_observations import Position, RateSegment
 from inertial.estimation.least_squares import System
 from inertial.physics.effect import Effect, Truth
 from inertial.physics.forward import Triad, signatures, truth_of
@@ -113,7 +114,7 @@ class Channels:
         return self.campaign.solution.gyro
 
     def _of_turn(
-        self, one: Recorded, turn: Turn, motion: Motion, truth: Truth, traces: Array
+        self, one: Recorded, turn: RateSegment, motion: Motion, truth: Truth, traces: Array
     ) -> Mean:
         """A turn as a whole; what is missing of it counts as the blocks about it."""
         weight = turn.weights * turn.seconds
@@ -127,7 +128,7 @@ class Channels:
         along = self._gyro.matrix @ turn.about / total
         errors["angle", one.plan.name] = (
             along,
-            float(np.hypot(turn.angle_sigma, turn.bridged_sigma)),
+            float(np.hypot(turn.angle_sigma, turn.gap_sigma)),
         )
         for i, axis in enumerate(level_axes(turn.about)):
             leant = self._gyro.matrix @ cross(axis, turn.about) * (turn.angle / total)
@@ -140,7 +141,7 @@ class Channels:
         """The errors of what is known of the earth's rate."""
         earth, matrix = self.campaign.inputs.earth, self._gyro.matrix
         errors: Errors = {("earth", "up"): (matrix @ (share @ motion.up), earth.up_sigma)}
-        for key, axis in zip(level_names(position), level_of(position), strict=False):
+        for key, axis in zip(horizontal_names(position), horizontal_axes(position), strict=False):
             about = np.broadcast_to(motion.about, motion.up.shape)
             level = share @ turned_all(axis, about, motion.angle)
             errors[key] = (matrix @ level, earth.level / np.sqrt(2))

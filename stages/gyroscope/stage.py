@@ -39,11 +39,13 @@ def gyroscope(
             estimates.add_nothing("joint", "; ".join(inputs.left_out))
             continue
         moving = (inputs.turns, inputs.steadies, inputs.earth, inputs.position_sigma)
-        fitted = gyroscopes.fitted(inputs.rests, *moving, data.noise.degrees)
+        fitted = gyroscopes.fit(inputs.rests, *moving, data.noise.degrees)
         why = reasons(fitted.estimate.determined, _channels(inputs), "gyro", CURES)
         estimates.add_triad("joint", fitted.estimate, why)
         estimates.add_fit("joint", fitted, inputs.used, inputs.left_out)
-        linear = gyroscopes.about(gyroscopes.around_of(fitted.estimate, inputs.earth), *moving)
+        linear = gyroscopes.linearised(
+            gyroscopes.linearisation_at(fitted.estimate, inputs.earth), *moving
+        )
         for seconds in averaging_times(inputs.stills, averaging_steps):
             shorter = linear.system(
                 inputs.first_of_rests(seconds), fitted.scatter, fitted.random_walk

@@ -18,7 +18,7 @@ from inertial.estimation.angle_windows import (
     noise_of,
     solved,
 )
-from inertial.estimation.gyroscopes import known_angle
+from inertial.estimation.gyroscopes import bias_and_scale
 from inertial.estimation.time_angle import Valued, plateau
 from inertial.tables import AXES, GYRO
 from stages.studies.table_motion import Gyros, WholeMotion
@@ -126,7 +126,7 @@ class Pair:
         """The whole turn, by S0's formula."""
         names = (self.forward.plan.name, self.backward.plan.name)
         own = [turn for name, turn in angles_about(data, self.axis) if name in names]
-        found = known_angle(own, data.earth)
+        found = bias_and_scale(own, data.earth)
         return self._row(
             "whole turn",
             from_s=-self.forward.first * self.step,

@@ -9,7 +9,8 @@ import pytest
 from z_turns import ANGLE, NOISE, Z_SCALE, inputs_of, lose
 
 from inertial.campaign.equations import campaign_of
-from inertial.estimation.gyroscopes import Angle, Turn, joint, known_angle
+from inertial.estimation.gyroscope_observations import RateSegment, WholeTurn
+from inertial.estimation.gyroscopes import bias_and_scale, joint
 from inertial.estimation.triad import errors_of, linear_names
 
 
@@ -32,7 +33,9 @@ def test_an_assumed_angle_is_wrong_by_far_more_than_its_sigma(gapped):
     # With the times of each, and 240° for the backward turn.
     def formulas(angle: float):
         pairs = zip(sums, (2 * np.pi, -radians(angle)), seconds, strict=True)
-        return known_angle([Angle(s, a, ANGLE, t, 1.0, NOISE) for s, a, t in pairs], inputs.earth)
+        return bias_and_scale(
+            [WholeTurn(s, a, ANGLE, t, 1.0, NOISE) for s, a, t in pairs], inputs.earth
+        )
 
     assumed = formulas(240)
     assert 1e6 * (assumed.values[1] - scale) == pytest.approx(612, abs=15)
@@ -40,12 +43,12 @@ def test_an_assumed_angle_is_wrong_by_far_more_than_its_sigma(gapped):
     assert abs(assumed.values[1] - scale) > 150 * assumed.sigma[1]
 
     # The joint estimate, with nothing but this turn about z.
-    def together(turn: Turn):
+    def together(turn: RateSegment):
         fit = joint(inputs.rests, [turn], [], inputs.earth, inputs.position_sigma)
         return fit.values[Z_SCALE] - 1 - scale, fit.sigma[Z_SCALE]
 
     gap = inputs.turns[-1]
-    unbridged = replace(gap, bridges=(), bridged_sigma=0.0)
+    unbridged = replace(gap, gaps=(), gap_sigma=0.0)
     by_240, sigma_240 = together(replace(unbridged, angle=-radians(240)))
     assert 1e6 * by_240 == pytest.approx(1251, abs=25)
     assert by_240 > 100 * sigma_240
@@ -64,7 +67,7 @@ def test_criticism_and_extension_take_the_turn_as_the_joint_estimate_does(tmp_pa
     campaign = campaign_of(data).without_walk()
     assert "z-backward" in campaign.manoeuvres
     system, _ = campaign.systems([], 1.0)
-    assert system.column("bridged", "z-backward 5") is not None
+    assert system.column("gap angle", "z-backward 5") is not None
     again = system.solve()
     joint_result = results.parameters("gyroscope").loc[list(linear_names())]
     values = errors_of(again.values[:12]) - joint_result["value"].to_numpy(float)
@@ -76,7 +79,7 @@ def test_the_bridged_turn_lowers_the_sigma_of_the_scale_factor(gapped):
     inputs = inputs_of(gapped)
     fixed = (inputs.rests, [], inputs.earth, inputs.position_sigma)
 
-    def sigma(turns: list[Turn]) -> float:
+    def sigma(turns: list[RateSegment]) -> float:
         return float(joint(fixed[0], turns, *fixed[1:]).sigma[Z_SCALE])
 
     assert sigma(inputs.turns) < sigma(inputs.turns[:1])

@@ -12,7 +12,8 @@ from inertial.campaign.noise_levels import NoiseLevels, effective_levels
 from inertial.campaign.rate_segments import Recorded, turn_of
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.campaign.static_positions import Blocks
-from inertial.estimation.gyroscopes import Earth, Position, Still, Turn, joint
+from inertial.estimation.gyroscope_observations import Earth, Position, RateSegment, StaticRate
+from inertial.estimation.gyroscopes import joint
 from inertial.physics.motion import turned_all
 from inertial.physics.site import earth_rate
 from inertial.tables import CHANNELS
@@ -50,7 +51,7 @@ def turn(
     gap: tuple[int, int] | None = None,
     wander=lambda time, lost: 0.0 * time,
     rate_sigma: float = 1e-4,
-) -> Turn:
+) -> RateSegment:
     """S0's turn in blocks by exact physics: two ramps of 2 s, 34 s about 10 °/s, from rest to rest.
 
     `wander`: by what its rate differs from the mean one, relative, by the time of each sample and
@@ -90,7 +91,7 @@ def turn(
     return turn_of(Recorded(m, Performed(m.name, ""), blocks, ""), levels(), None, rate_sigma)
 
 
-def rests(rng: np.random.Generator) -> list[Still]:
+def rests(rng: np.random.Generator) -> list[StaticRate]:
     """Six rests of 300 s, each at its own azimuth."""
     sigma = np.full(3, NOISE / np.sqrt(300))
     found = []
@@ -99,11 +100,11 @@ def rests(rng: np.random.Generator) -> list[Still]:
             up = sign * np.eye(3)[axis]
             truth = UP * up + LEVEL * np.roll(up, 1)
             mean = MATRIX @ truth + BIAS + sigma * rng.standard_normal(3)
-            found.append(Still(Position(f"rest {axis} {sign}", up), mean, sigma, up))
+            found.append(StaticRate(Position(f"rest {axis} {sign}", up), mean, sigma, up))
     return found
 
 
-def session(seed: int, **of_the_gap) -> tuple[list[Still], list[Turn]]:
+def session(seed: int, **of_the_gap) -> tuple[list[StaticRate], list[RateSegment]]:
     """Six rests and six turns; the last one, z backward, has lost what S0's has."""
     rng = np.random.default_rng(seed)
     stills = rests(rng)
@@ -172,7 +173,7 @@ def test_two_gaps_are_bridged_like_one():
     rng = np.random.default_rng(5)
     m = planned("turn", 2, -1)
     one = turn(m, rng, GAP)
-    both = replace(one, bridges=[*one.bridges, *one.bridges])  # the same stretch lost twice
+    both = replace(one, gaps=[*one.gaps, *one.gaps])  # the same stretch lost twice
     assert one.weights @ one.seconds == pytest.approx(38.0)
     assert both.weights @ both.seconds == pytest.approx(38.0 + 11.97)
     angle = one.sums @ m.axis

@@ -29,7 +29,7 @@ def test_the_gap_of_the_demo_is_bridged_and_said(gapped):
 
 def test_the_bridge_takes_its_place_in_time_and_angle(gapped):
     one = inputs_of(gapped).turns[-1]
-    (bridge,) = one.bridges
+    (bridge,) = one.gaps
     assert bridge.seconds == pytest.approx(11.97)
     angle = one.sums[:, 2]
     # 119.7° at the set speed as the gyro reads it, bias and earth rate with it.
@@ -37,7 +37,7 @@ def test_the_bridge_takes_its_place_in_time_and_angle(gapped):
     assert degrees(bridge.shares @ angle) == pytest.approx(read, abs=0.001)
     assert degrees(one.turned(angle)[-1]) == pytest.approx(-360.2, abs=0.1)
     # 100 ppm of the campaign's file are more than the table of the laboratory strays.
-    assert degrees(one.bridged_sigma) == pytest.approx(1e-4 * 119.7, rel=0.02)
+    assert degrees(one.gap_sigma) == pytest.approx(1e-4 * 119.7, rel=0.02)
 
 
 @pytest.mark.parametrize(
@@ -62,5 +62,5 @@ def test_two_gaps_in_the_steady_part_are_both_bridged(tmp_path):
     done = of_z(results, "segment/performed")
     assert done["bridged"] and done["missing_s"] == pytest.approx(8.0)
     one = inputs_of(results).turns[-1]
-    assert [bridge.seconds for bridge in one.bridges] == pytest.approx([3.0, 5.0])
+    assert [bridge.seconds for bridge in one.gaps] == pytest.approx([3.0, 5.0])
     assert degrees(one.turned(one.sums[:, 2])[-1]) == pytest.approx(-360.2, abs=0.1)

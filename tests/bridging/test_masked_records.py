@@ -44,8 +44,8 @@ def test_a_masked_record_loses_no_angle(whole, stretches, most, channel):
     off = now.weights @ now.sums[:, 2] - before.sums[:, 2].sum()
     noise = NOISE * np.sqrt(missing * (1 + missing / 30))
     # Unbridged it would lack 0.1° for each record.
-    assert abs(off) < 3 * np.hypot(noise, now.bridged_sigma)
-    assert degrees(now.bridged_sigma) * 3600 < most
+    assert abs(off) < 3 * np.hypot(noise, now.gap_sigma)
+    assert degrees(now.gap_sigma) * 3600 < most
     assert np.isfinite(now.sums).all()
 
 

@@ -6,7 +6,7 @@ import s4
 from scipy.stats import f as f_distribution
 
 from inertial.estimation.consistency import largest_outlier, outliers
-from inertial.estimation.gyroscopes import Earth, Position, Steady
+from inertial.estimation.gyroscope_observations import Earth, Position, SteadyRate
 from inertial.estimation.rate_linearity import columns_of, nonlinearities, own_axis
 from inertial.estimation.rate_table import rate_table
 
@@ -15,7 +15,7 @@ DEGREE = np.radians(1)
 OFF_DIAGONAL = ~np.eye(3, dtype=bool)
 
 
-def run(gyro: int, number: int, sigma: float = 1.0) -> Steady:
+def run(gyro: int, number: int, sigma: float = 1.0) -> SteadyRate:
     """One of the thirty runs; only the gyro that turns was used."""
     up = np.eye(3)[gyro]
     rate = s4.RATES[number]
@@ -24,7 +24,7 @@ def run(gyro: int, number: int, sigma: float = 1.0) -> Steady:
     about = {"position": Position(name, up), "about": up, "rate": rate * DEGREE, "rate_sigma": 0.0}
     once = 360 / abs(rate) / 200
     time = {"seconds": np.full(200, once), "elapsed": once * (np.arange(200) + 0.5)}
-    return Steady(**about, **time, mean=mean, sigma=np.full(3, sigma * DEGREE))
+    return SteadyRate(**about, **time, mean=mean, sigma=np.full(3, sigma * DEGREE))
 
 
 RUNS = [run(gyro, number) for gyro in range(3) for number in range(10)]

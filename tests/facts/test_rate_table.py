@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from inertial.estimation.gyroscopes import Earth, Position, Steady
+from inertial.estimation.gyroscope_observations import Earth, Position, SteadyRate
 from inertial.estimation.rate_linearity import nonlinearities, own_axis
 from inertial.estimation.rate_table import rate_table
 from inertial.physics.motion import turned_all
@@ -21,7 +21,7 @@ def runs(
     bias: np.ndarray,
     axes: str = "xyz",
     turns: float = 1,
-) -> list[Steady]:
+) -> list[SteadyRate]:
     """Runs about each axis at ten rates, with the errors of table, mounting and gyros."""
     result = []
     for gyro in ("xyz".index(axis) for axis in axes):
@@ -38,7 +38,7 @@ def runs(
             truth = real * (up + lean) + UP * up + LEVEL * seen
             mean = M @ truth + bias + random.normal(0, NOISE, 3)
             result.append(
-                Steady(
+                SteadyRate(
                     Position("xyz"[gyro], up),
                     up,
                     rate,
@@ -75,7 +75,7 @@ def test_without_errors_it_is_exact():
     M, bias = drawn(random)
     exact = runs(random, M, bias)
     exact = [
-        Steady(
+        SteadyRate(
             Position(r.position.name, r.about, north=np.roll(r.about, 1)),
             r.about,
             r.rate,

@@ -7,7 +7,8 @@ from scipy.stats import chi2
 
 from inertial.estimation.consistency import common_cause
 from inertial.estimation.gyroscope_formulas import Upright, two_positions
-from inertial.estimation.gyroscopes import Angle, Earth, Position, known_angle
+from inertial.estimation.gyroscope_observations import Earth, Position, WholeTurn
+from inertial.estimation.gyroscopes import bias_and_scale
 from inertial.physics.site import earth_rate
 
 UP, LEVEL = earth_rate(s0.LATITUDE)
@@ -25,9 +26,9 @@ def rests(walk: float, seconds: float) -> list[Upright]:
 def sigma_of_difference(walk: float) -> float:
     """Of a bias by turns of 40 s both ways less that by rests of 300 s."""
     density = s0.per_root_second(np.radians(walk))
-    turns = [Angle(a, a, 1e-12, 40, 1, density) for a in (2 * np.pi, -2 * np.pi)]
+    turns = [WholeTurn(a, a, 1e-12, 40, 1, density) for a in (2 * np.pi, -2 * np.pi)]
     static = two_positions(rests(walk, 300), np.zeros(3), WUHAN, 0.0)
-    return float(np.hypot(known_angle(turns, WUHAN).sigma[0], static.bias_sigma))
+    return float(np.hypot(bias_and_scale(turns, WUHAN).sigma[0], static.bias_sigma))
 
 
 DIFFERENCE = s0.TURNS_BIAS - s0.RESTS_BIAS

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import s0
 
-from inertial.estimation.accelerometers import Rest, formula
+from inertial.estimation.accelerometers import StaticForce, six_position_formula
 
 
 def even_and_odd(up: np.ndarray, down: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -15,17 +15,17 @@ def even_and_odd(up: np.ndarray, down: np.ndarray) -> tuple[np.ndarray, np.ndarr
 EVEN, ODD = even_and_odd(s0.COMPENSATED_UP, s0.COMPENSATED_DOWN)  # m/s²
 
 
-def six(reading) -> list[Rest]:
+def six(reading) -> list[StaticForce]:
     """Six rests, whose readings are a function of the force."""
     ups = [sign * axis for axis in np.eye(3) for sign in (1.0, -1.0)]
-    return [Rest(str(up), up, reading(s0.GRAVITY * up), np.full(3, 1e-5)) for up in ups]
+    return [StaticForce(str(up), up, reading(s0.GRAVITY * up), np.full(3, 1e-5)) for up in ups]
 
 
 def test_the_same_data_would_leave_no_odd_part():
     """So the means of table 5-9 are of another stretch than table 5-1."""
     random = np.random.default_rng(9)
     rests = six(lambda force: s0.ACCELEROMETER @ force + random.normal(0, 1e-3, 3))
-    unknowns, _ = formula(rests, s0.GRAVITY, 0.0, 0.0)
+    unknowns, _ = six_position_formula(rests, s0.GRAVITY, 0.0, 0.0)
     M, bias = unknowns[:9].reshape(3, 3), unknowns[9:]
     means = np.array([np.linalg.solve(M, rest.mean - bias) for rest in rests])
     even, odd = even_and_odd(means[[0, 2, 4], range(3)], means[[1, 3, 5], range(3)])
@@ -41,7 +41,7 @@ def test_the_square_that_would_leave_such_an_even_part():
     square = 1.5 * EVEN / s0.GRAVITY**2  # per m/s²
     np.testing.assert_allclose(square * s0.GRAVITY**2, [347.1e-6, 102.2e-6, 183.6e-6], atol=1e-7)
     rests = six(lambda force: force + square * force**2)
-    unknowns, _ = formula(rests, s0.GRAVITY, 0.0, 0.0)
+    unknowns, _ = six_position_formula(rests, s0.GRAVITY, 0.0, 0.0)
     np.testing.assert_allclose(unknowns[:9].reshape(3, 3), np.eye(3), atol=1e-12)
     left = np.array([rest.mean - unknowns[9:] for rest in rests])
     even, _ = even_and_odd(left[[0, 2, 4], range(3)], left[[1, 3, 5], range(3)])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import s0
 
-from inertial.estimation.accelerometers import Rest, formula, weighted
+from inertial.estimation.accelerometers import StaticForce, six_position_formula, weighted
 
 # Noise of each sensor (rows) in each pair of positions, m/s² per sample: by six positions,
 # for single epochs var(M_rk) = σ_rk² / (2 g²), and the variance of the bias is Σ σ_rk² / 18.
@@ -12,14 +12,14 @@ NOISE = s0.GRAVITY * np.sqrt(2 * s0.SINGLE_EPOCHS)
 OF_BIAS = np.sum(NOISE**2, axis=1) / 18
 
 
-def six_epochs() -> list[Rest]:
+def six_epochs() -> list[StaticForce]:
     """One epoch of each of the six positions, with the noise of table 5-4."""
     rests = []
     for axis in range(3):
         for sign in (1.0, -1.0):
             up = sign * np.eye(3)[axis]
             mean = s0.ACCELEROMETER @ up * s0.GRAVITY + s0.ACCELEROMETER_BIAS
-            rests.append(Rest(f"{axis}{sign}", up, mean, NOISE[:, axis]))
+            rests.append(StaticForce(f"{axis}{sign}", up, mean, NOISE[:, axis]))
     return rests
 
 
@@ -34,7 +34,7 @@ def test_t8_the_noise_of_each_attitude():
 
 def test_t8_the_variances_of_the_bias_follow_from_it():
     np.testing.assert_allclose(s0.SINGLE_EPOCHS_BIAS / OF_BIAS, [0.960, 0.970, 1.000], atol=5e-4)
-    unknowns, covariance = formula(six_epochs(), s0.GRAVITY, 0.0, 0.0)
+    unknowns, covariance = six_position_formula(six_epochs(), s0.GRAVITY, 0.0, 0.0)
     np.testing.assert_allclose(unknowns, np.append(s0.ACCELEROMETER, s0.ACCELEROMETER_BIAS))
     variances = np.diag(covariance)
     np.testing.assert_allclose(variances[9:], OF_BIAS, rtol=1e-9)
@@ -42,7 +42,7 @@ def test_t8_the_variances_of_the_bias_follow_from_it():
 
 
 def test_t25_what_weights_gain():
-    _, covariance = formula(six_epochs(), s0.GRAVITY, 0.0, 0.0)
+    _, covariance = six_position_formula(six_epochs(), s0.GRAVITY, 0.0, 0.0)
     fit = weighted(six_epochs(), s0.GRAVITY, 1e-12, 1e-12)
     gain = np.sqrt(np.diag(covariance)[9:]) / fit.sigma[9:12]
     np.testing.assert_allclose(gain, [1.079, 3.343, 2.501], atol=1e-3)

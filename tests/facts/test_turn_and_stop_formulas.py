@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from inertial.estimation.accelerometer_formulas import pooled_positions
-from inertial.estimation.accelerometers import Rest, formula
-from inertial.estimation.gyroscopes import Bridge, Earth, Position, Still, Turn
+from inertial.estimation.accelerometers import StaticForce, six_position_formula
+from inertial.estimation.gyroscope_observations import Earth, Gap, Position, RateSegment, StaticRate
 from inertial.estimation.turn_and_stop import both_turns, pairs_of, turn_and_stop
 from inertial.physics.motion import Profile, level_axes, turned_all
 from inertial.physics.site import earth_rate
@@ -40,7 +40,7 @@ def a_turn(
     random: np.random.Generator | None = None,
     lean: np.ndarray = NO_LEAN,
     known: bool = False,
-) -> Turn:
+) -> RateSegment:
     """A turn in the middle of S3's window, with exact physics but for the noise."""
     M, bias = sensor
     window = WINDOWS[profile]
@@ -60,7 +60,7 @@ def a_turn(
     sums = truth @ M.T + step * bias
     if random is not None:
         sums += random.normal(0, WALK * np.sqrt(step), sums.shape)
-    return Turn(
+    return RateSegment(
         Position(f"{up}", up, north=north if known else None),
         up,
         sign * 2 * np.pi,
@@ -81,7 +81,7 @@ SENSOR = (
 
 def session(
     sensor: tuple[np.ndarray, np.ndarray], random: np.random.Generator | None, known: bool = False
-) -> tuple[list[Turn], list[Still]]:
+) -> tuple[list[RateSegment], list[StaticRate]]:
     """S3's session: six orientations, each turned about both ways, at rest before and after."""
     turns, stills = [], []
     M, bias = sensor
@@ -98,7 +98,7 @@ def session(
             for _ in range(2):
                 mean = M @ (UP * up + LEVEL * azimuths(up, azimuth)) + bias
                 mean += 0 if random is None else random.normal(0, sigma)
-                stills.append(Still(turns[-1].position, mean, sigma, up))
+                stills.append(StaticRate(turns[-1].position, mean, sigma, up))
     return turns, stills
 
 
@@ -188,7 +188,7 @@ def test_what_nobody_turned_about_is_not_determined():
     assert there == [True, False, True] * 3 + [True] * 3
     pulls = (found.by_turns.values - np.append(*SENSOR)) / found.by_turns.sigma
     assert np.nanmax(np.abs(pulls)) < 4.5
-    gap = replace(turns[0], bridges=(Bridge(300, 12.0, np.zeros(len(turns[0].seconds))),))
+    gap = replace(turns[0], gaps=(Gap(300, 12.0, np.zeros(len(turns[0].seconds))),))
     assert pairs_of([gap, *turns[1:]]) == pairs_of(turns)[1:]
     other_end = [replace(t, about=-t.about, angle=-t.angle) if t.angle < 0 else t for t in turns]
     told = turn_and_stop(other_end[:8], stills, WUHAN, TILT).by_turns
@@ -215,7 +215,7 @@ def test_unequal_durations_and_angles_are_solved_as_they_are():
 # ---- the accelerometers
 
 
-def stops(positions: tuple[str, ...], random: np.random.Generator) -> list[Rest]:
+def stops(positions: tuple[str, ...], random: np.random.Generator) -> list[StaticForce]:
     """Two stops of 120 s at each of six attitudes, each named by `positions`."""
     M, bias, sigma, tilt = SENSOR[0], np.array([-5e-3, 5e-3, -2e-3]), np.full(3, 1e-5), 1e-5
     rests = []
@@ -223,7 +223,7 @@ def stops(positions: tuple[str, ...], random: np.random.Generator) -> list[Rest]
         for stop in range(2):
             lean = np.cross(random.normal(0, tilt, 3), up)
             mean = M @ (GRAVITY * (up + lean)) + bias + random.normal(0, sigma)
-            rests.append(Rest(f"{up} {positions[stop]}", up, mean, sigma))
+            rests.append(StaticForce(f"{up} {positions[stop]}", up, mean, sigma))
     return rests
 
 
@@ -236,7 +236,7 @@ def test_the_two_stops_of_an_orientation_count_as_one_position():
         pulls.append((found.values - truth) / found.sigma)
     assert np.std(pulls) == pytest.approx(1, abs=0.12)
     # The same number of stops everywhere: it is S0's formula.
-    unknowns, covariance = formula(rests, GRAVITY, 0.0, 1e-5)
+    unknowns, covariance = six_position_formula(rests, GRAVITY, 0.0, 1e-5)
     np.testing.assert_allclose(found.values, unknowns, atol=1e-13)
     sigma = np.sqrt(np.diag(covariance))  # there tilts do not pass M, whose cross terms are 8e-3
     np.testing.assert_allclose(found.sigma, sigma, rtol=0.01)
@@ -259,7 +259,11 @@ def test_a_position_with_more_stops_counts_no_more_than_the_others():
         [uneven[0].mean] + [(uneven[i].mean + uneven[i + 1].mean) / 2 for i in range(1, 11, 2)]
     )
     ups = [uneven[0].up] + [uneven[i].up for i in range(1, 11, 2)]
-    by_hand = [Rest(str(up), up, mean, np.zeros(3)) for up, mean in zip(ups, means, strict=True)]
-    np.testing.assert_allclose(found.values, formula(by_hand, GRAVITY, 0.0, 0.0)[0], atol=1e-13)
+    by_hand = [
+        StaticForce(str(up), up, mean, np.zeros(3)) for up, mean in zip(ups, means, strict=True)
+    ]
+    np.testing.assert_allclose(
+        found.values, six_position_formula(by_hand, GRAVITY, 0.0, 0.0)[0], atol=1e-13
+    )
     assert pooled_positions(rests[:4], GRAVITY, 0.0, 1e-5) is None
     assert pooled_positions([], GRAVITY, 0.0, 1e-5) is None

@@ -6,7 +6,7 @@ import s0
 
 from inertial.estimation.angle_windows import fencepost
 from inertial.estimation.consistency import holm_rejections, normal_p_value
-from inertial.estimation.gyroscopes import Earth, Position, Steady
+from inertial.estimation.gyroscope_observations import Earth, Position, SteadyRate
 from inertial.estimation.rate_table import rate_table
 from inertial.estimation.time_angle import ripple_angle, ripple_scale
 from inertial.physics.site import earth_rate
@@ -57,14 +57,14 @@ def test_a_fencepost_of_windows_of_other_lengths_has_its_own_form():
     assert not fencepost(scales, s0.TURNS_SCALE, SIGMA, samples).told(level=0.01)
 
 
-def plateau(gyro: int) -> list[Steady]:
+def plateau(gyro: int) -> list[SteadyRate]:
     """The steady parts of the two turns about one axis, as table 5-6 prints their means."""
     up = np.eye(3)[gyro]
     runs = []
     for rate, means in ((s0.RATE, s0.STEADY_FORWARD), (-s0.RATE, s0.STEADY_BACKWARD)):
         mean = np.where(up > 0, means, np.nan)
         runs.append(
-            Steady(
+            SteadyRate(
                 Position("", up),
                 up,
                 rate,

@@ -1,4 +1,4 @@
-"""The size of the level earth rate is known where its direction is not."""
+"""The size of the horizontal earth rate is known where its direction is not."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from inertial.estimation import horizontal_earth_rate
 from inertial.estimation.gyroscopes import joint
 
 
-def test_the_size_is_said_where_the_azimuth_is_told_and_the_bias_gains(monkeypatch):
+def test_a_determined_azimuth_is_constrained_and_the_bias_gains(monkeypatch):
     runs = [campaign(seed) for seed in range(40, 52)]
     fits = [joint(run.stills, run.turns, [], EARTH, TILT) for run in runs]
     levels = dict(zip(fits[0].names, fits[0].values, strict=True))
@@ -24,12 +24,12 @@ def test_the_size_is_said_where_the_azimuth_is_told_and_the_bias_gains(monkeypat
     # Each azimuth is fitted: chi-squared has the mean of its degrees, within its own scatter.
     excess = [fit.chi_squared - fit.degrees for fit in fits]
     assert abs(np.mean(excess)) < 4 * np.sqrt(2 * fits[0].degrees / len(fits))
-    monkeypatch.setattr(horizontal_earth_rate, "KNOWN", 0.0)
+    monkeypatch.setattr(horizontal_earth_rate, "MAX_AZIMUTH_SIGMA", 0.0)
     without = joint(runs[0].stills, runs[0].turns, [], EARTH, TILT)
     assert fits[0].sigma[9:12].max() < 0.9 * without.sigma[9:12].min()
 
 
-def test_an_azimuth_that_the_data_do_not_tell_keeps_both_parts():
+def test_a_poorly_determined_azimuth_keeps_both_components():
     sigma = {("level 0", "poor"): 0.3 * LEVEL, ("level 1", "poor"): NOISE / np.sqrt(REST)}
     sigma |= {("level 0", "good"): 0.1 * LEVEL, ("level 1", "good"): 0.1 * LEVEL}
     assert horizontal_earth_rate.known_azimuths(sigma, EARTH) == {"good"}

@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 
 from inertial.estimation.attitude import carried, running_product
 from inertial.estimation.between_positions import Given, Passage, Stop, between_rests
-from inertial.estimation.gyroscopes import Earth
+from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.multi_position import FREE, FreeRest
 from inertial.estimation.triad import UNKNOWNS
 from inertial.estimation.variance_components import with_scatter

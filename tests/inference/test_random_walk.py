@@ -8,11 +8,12 @@ from inference.walking import DEGREE_PER_HOUR, EARTH, TILT, UNIT, campaign
 from scipy.stats import chi2
 
 from inertial.estimation import accelerometers
-from inertial.estimation.accelerometers import Rest
+from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.elimination import EquationBlock, eliminate
-from inertial.estimation.gyroscopes import around_of, equations, fitted, joint
+from inertial.estimation.gyroscopes import fit as fit_gyroscopes
+from inertial.estimation.gyroscopes import joint, linearisation_at, linearised
 from inertial.estimation.random_walk import Stretch, with_drifts
-from inertial.estimation.sensitivities import Traces
+from inertial.estimation.sensitivities import Sensitivities
 
 G, GRAVITY_SIGMA = 9.7936174, 1e-6
 NOISE = 0.0064 / 60  # m/s/√s
@@ -64,7 +65,7 @@ def test_a_walk_of_the_gyros_comes_back_and_the_bias_keeps_its_sigma():
     """0.5 °/h/√h on S0's noise: by the end of the 50 minutes 0.45 °/h, 20 sigma of white noise."""
     size = 0.5 * UNIT
     runs = [campaign(seed, size) for seed in range(10)]
-    fits = [fitted(run.stills, run.turns, [], EARTH, TILT) for run in runs]
+    fits = [fit_gyroscopes(run.stills, run.turns, [], EARTH, TILT) for run in runs]
     assert sum(fit.random_walk > 0 for fit in fits) >= 9
     found = [(run, fit) for run, fit in zip(runs, fits, strict=True) if fit.random_walk]
     of_walk = np.array([(fit.random_walk - size) / fit.random_walk_sigma for _, fit in found])
@@ -86,7 +87,7 @@ def test_a_walk_of_the_gyros_comes_back_and_the_bias_keeps_its_sigma():
 def test_clean_campaigns_have_no_walk():
     for seed in range(100, 108):
         run = campaign(seed)
-        fit = fitted(run.stills, run.turns, [], EARTH, TILT)
+        fit = fit_gyroscopes(run.stills, run.turns, [], EARTH, TILT)
         assert fit.random_walk == 0
         assert fit.scatter == 0
 
@@ -94,7 +95,7 @@ def test_clean_campaigns_have_no_walk():
 @pytest.mark.parametrize("one_clock", [True, False])
 def test_what_differs_with_the_attitude_is_no_walk(one_clock):
     run = campaign(3, g_sensitivity=1.2 * DEGREE_PER_HOUR, one_clock=one_clock)
-    fit = fitted(run.stills, run.turns, [], EARTH, TILT)
+    fit = fit_gyroscopes(run.stills, run.turns, [], EARTH, TILT)
     assert fit.random_walk == 0
     assert fit.scatter > 1e-6
 
@@ -110,14 +111,14 @@ def test_a_steady_drift_is_no_walk():
         replace(one, sums=one.sums + hour * one.stretch.start * one.seconds[:, None])
         for one in run.turns
     ]
-    fit = fitted(stills, turns, [], EARTH, TILT)
+    fit = fit_gyroscopes(stills, turns, [], EARTH, TILT)
     assert fit.random_walk == 0
     assert fit.scatter > 1e-7
 
 
 def test_without_a_common_clock_a_walk_between_logs_is_a_scatter():
     run = campaign(4, UNIT, one_clock=False)
-    fit = fitted(run.stills, run.turns, [], EARTH, TILT)
+    fit = fit_gyroscopes(run.stills, run.turns, [], EARTH, TILT)
     assert fit.random_walk == 0
     assert fit.scatter > 0
 
@@ -131,14 +132,19 @@ def named(run, walk: float) -> bool:
         told += [np.eye(3)[i] * (one.stretch.start + one.stretch.end) / 2 for i in range(3)]
         return np.column_stack(told)
 
-    stills = [replace(one, traces=Traces(tuple(names), traces(one))) for one in run.stills]
+    stills = [
+        replace(one, sensitivities=Sensitivities(tuple(names), traces(one))) for one in run.stills
+    ]
     turns = [
-        replace(one, traces=Traces(tuple(names), np.tile(traces(one), (len(one.sums), 1, 1))))
+        replace(
+            one,
+            sensitivities=Sensitivities(tuple(names), np.tile(traces(one), (len(one.sums), 1, 1))),
+        )
         for one in run.turns
     ]
-    around = around_of(joint(run.stills, run.turns, [], EARTH, TILT), EARTH)
+    around = linearisation_at(joint(run.stills, run.turns, [], EARTH, TILT), EARTH)
     wide = dict.fromkeys(names[:9], DEGREE_PER_HOUR) | dict.fromkeys(names[9:], 1e-9)
-    system = equations(stills, turns, [], EARTH, (TILT, 0.0, walk), around, wide)
+    system = linearised(around, turns, [], EARTH, TILT, wide).system(stills, walk=walk)
     reduced = system.effect_information()
     chances = [chi2.sf(*reduced.drop(some)) for some in (range(9), range(9, 12))]
     return min(chances) < 0.01 / 2
@@ -164,10 +170,10 @@ def test_a_walk_of_the_accelerometers_comes_back():
             sigma = np.full(3, NOISE / np.sqrt(300.0))
             stretch = Stretch(str(number), "", time, 300.0)
             mean += sigma * rng.standard_normal(3)
-            rests.append(Rest(f"{number}", up, mean, sigma, stretch=stretch))
+            rests.append(StaticForce(f"{number}", up, mean, sigma, stretch=stretch))
             time += 360.0
             drift = drift + size * np.sqrt(60.0) * rng.standard_normal(3)
-        found.append(accelerometers.fitted(rests, G, GRAVITY_SIGMA, 1e-7))
+        found.append(accelerometers.fit(rests, G, GRAVITY_SIGMA, 1e-7))
     walks = np.array([fit.random_walk for fit in found])
     assert np.all(walks > 0)
     pulls = np.array([(fit.random_walk - size) / fit.random_walk_sigma for fit in found])

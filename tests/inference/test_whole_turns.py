@@ -3,15 +3,22 @@
 import numpy as np
 import pytest
 
-from inertial.estimation.gyroscopes import Angle, Earth, Position, Still, Turn, joint, known_angle
+from inertial.estimation.gyroscope_observations import (
+    Earth,
+    Position,
+    RateSegment,
+    StaticRate,
+    WholeTurn,
+)
+from inertial.estimation.gyroscopes import bias_and_scale, joint
 from inertial.physics.site import earth_rate
 
 UP, LEVEL = earth_rate(np.radians(30.5278))
 EARTH = Earth(UP, 1e-12, LEVEL)
 
 
-def turn(sign: float, summed: float, seconds: float = 38.0) -> Angle:
-    return Angle(summed, sign * 2 * np.pi, 1e-9, seconds, 1.0, 3.5e-6)
+def turn(sign: float, summed: float, seconds: float = 38.0) -> WholeTurn:
+    return WholeTurn(summed, sign * 2 * np.pi, 1e-9, seconds, 1.0, 3.5e-6)
 
 
 def test_two_turns_give_the_formulas_of_the_report():
@@ -20,7 +27,7 @@ def test_two_turns_give_the_formulas_of_the_report():
     forward = (1 + scale) * 2 * np.pi + (bias + UP) * 38
     backward = -(1 + scale) * 2 * np.pi + (bias + UP) * 38
     by_formula = (forward + backward) / (2 * 38) - UP, (forward - backward) / (4 * np.pi) - 1
-    fit = known_angle([turn(1, forward), turn(-1, backward)], EARTH)
+    fit = bias_and_scale([turn(1, forward), turn(-1, backward)], EARTH)
     np.testing.assert_allclose(fit.values[:2], by_formula, rtol=1e-6)
     np.testing.assert_allclose(fit.values[:2], [bias, scale], rtol=1e-6)
     # σ_b = N/√(2t): S0's formula sees the noise of both turns.
@@ -39,7 +46,7 @@ def campaign(directions: tuple[float, ...], rng: np.random.Generator, M: np.ndar
             sigma = np.full(3, noise / np.sqrt(300))
             truth = UP * up + LEVEL * level
             mean = M @ truth + bias + sigma * rng.standard_normal(3)
-            rests.append(Still(Position(f"{axis}{sign}", up), mean, sigma, up))
+            rests.append(StaticRate(Position(f"{axis}{sign}", up), mean, sigma, up))
         up = np.eye(3)[axis]
         for direction in directions:
             seconds = np.full(190, 0.2)
@@ -54,7 +61,9 @@ def campaign(directions: tuple[float, ...], rng: np.random.Generator, M: np.ndar
             density = np.full(3, noise)
             position = Position(f"turn {axis} {direction}", up)
             turns.append(
-                Turn(position, up, direction * 2 * np.pi, 1e-5, sums, seconds, density, density)
+                RateSegment(
+                    position, up, direction * 2 * np.pi, 1e-5, sums, seconds, density, density
+                )
             )
     return rests, turns
 
@@ -87,5 +96,5 @@ def test_a_gap_taken_for_a_whole_turn_would_be_a_sixth_of_the_scale():
     """What the refusal of an incomplete turn prevents: S0's 11.98 s, as 360° or as 240°."""
     forward = 2 * np.pi
     backward = -2 * np.pi + np.radians(119.8)
-    wrong = known_angle([turn(1, forward), turn(-1, backward)], EARTH)
+    wrong = bias_and_scale([turn(1, forward), turn(-1, backward)], EARTH)
     assert wrong.values[1] == pytest.approx(-0.166389, rel=1e-4)

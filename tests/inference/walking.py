@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from inertial.estimation.gyroscopes import Earth, Position, Still, Turn
+from inertial.estimation.gyroscope_observations import Earth, Position, RateSegment, StaticRate
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
 from inertial.physics.site import earth_rate
 
@@ -41,8 +41,8 @@ class Walk:
 class Campaign:
     """Rests and turns, the true M and bias; the bias as it is in the middle of the campaign."""
 
-    stills: list[Still]
-    turns: list[Turn]
+    stills: list[StaticRate]
+    turns: list[RateSegment]
     matrix: np.ndarray
     bias: np.ndarray
 
@@ -58,15 +58,15 @@ def campaign(
     matrix = np.eye(3) + 5e-3 * rng.standard_normal((3, 3))
     bias = 1e-5 * rng.standard_normal(3)
     path = Walk(walk, rng)
-    stills: list[Still] = []
-    turns: list[Turn] = []
+    stills: list[StaticRate] = []
+    turns: list[RateSegment] = []
 
     def rest(position, stretch, about, angle=0.0):
         up = position.up
         sigma = np.full(3, NOISE / np.sqrt(stretch.seconds))
         drift = path.over(stretch.seconds) + g_sensitivity * up + sigma * rng.standard_normal(3)
         mean = matrix @ (UP * up + LEVEL * level_of(up)) + bias + drift
-        stills.append(Still(position, mean, sigma, about, angle, stretch=stretch))
+        stills.append(StaticRate(position, mean, sigma, about, angle, stretch=stretch))
 
     def stretch(name, seconds):
         return Stretch(
@@ -97,7 +97,7 @@ def campaign(
             density, seconds = np.full(3, NOISE), np.full(BLOCKS, BLOCK)
             turned = sign * 2 * np.pi
             about = (position, up, turned, TILT, sums, seconds, density, density)
-            turns.append(Turn(*about, stretch=moving))
+            turns.append(RateSegment(*about, stretch=moving))
             rest(position, stretch(f"{name} after", STILL), up, turned)
             path.over(PAUSE)
     middle = (stills[0].stretch.start + stills[-1].stretch.end) / 2

@@ -1,0 +1,312 @@
+"""The equations of the gyros in static positions, at steady rates and in rate segments.
+
+    sum over a block = M · (u Δθ + E) + bias · τ + noise
+
+u is the axis of the turn in body axes, tilted by δ; Δθ the angle that the table turns during the
+block; E the earth's rate in body axes, summed. The rate of the table is not exactly known, so Δθ of
+every block is an unknown that occurs in its own three readings only; known is the whole angle from
+rest to rest. So a block gives the two combinations of its channels that are free of Δθ, and the
+rate segment as a whole the third.
+
+A gap in a rate segment is interpolated from the blocks next to it: the table turned in it at their
+rate, to a known sigma, an unknown of its own. So in the segment as a whole every block counts for
+itself and for its share of the gaps,
+
+    sum of w · (sum over a block) = M · (u α + sum of w · E) + bias · sum of w · τ,   w ≥ 1,
+
+and noise, earth and bias are those of what was recorded, w times. In a steady part the share is the
+same for all, T_missing/T_steady; by the sums S of one gyro that is a recorded angle of
+α / (1 + S_steady/S · T_missing/T_steady), in which its scale factor cancels.
+
+The earth's rate has an upward component, known from the latitude, and a horizontal component of
+known size whose direction is known only with `mark` and the table's heading. Else it is an unknown
+of each position, with the size as its sigma.
+"""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.estimation.elimination import EquationBlock, Name, compressed, whitened
+from inertial.estimation.gyroscope_observations import (
+    Earth,
+    Position,
+    RateSegment,
+    StaticRate,
+    SteadyRate,
+)
+from inertial.estimation.random_walk import Stretch
+from inertial.estimation.triad import UNKNOWNS, design_of
+from inertial.physics.motion import all_level_axes, level_axes, turned_all
+from inertial.physics.vectors import cross
+
+Array = NDArray[np.float64]
+
+MAX_BLOCKS_PER_PASS = 4000  # so that the memory does not grow with the length of a segment
+
+
+def horizontal_names(position: Position) -> tuple[Name, ...]:
+    """The unknown horizontal components of the earth's rate; none where north is known."""
+    if position.north is not None:
+        return ()
+    name = "the table" if position.mark is not None else position.name
+    return tuple((f"level {i}", name) for i in (0, 1))
+
+
+def horizontal_axes(position: Position) -> Array:
+    """The directions of the unknown horizontal components of the earth's rate, (2, 3)."""
+    if position.mark is not None:
+        return np.array([position.mark, cross(position.up, position.mark)])
+    return np.array(level_axes(position.up))
+
+
+@dataclass(frozen=True)
+class Linearisation:
+    """The point about which the equations are linear: M, bias, horizontal earth rates.
+
+    `azimuths`: the positions whose azimuth is known well enough to constrain the size of the
+    horizontal earth rate, which is exactly known.
+    """
+
+    matrix: Array
+    bias: Array
+    levels: Mapping[Name, float]  # by kind and name of the unknowns
+    azimuths: Collection[str] = ()
+
+
+def static_equations(
+    statics: Sequence[StaticRate],
+    matrix: Array,
+    earth: Earth,
+    prior: Array,
+    effects: Sequence[str],
+    sigma: dict[Name, float],
+) -> list[tuple[str, EquationBlock, Stretch]]:
+    """Position, equations and stretch of every static mean.
+
+    Parameters
+    ----------
+    matrix : M that the equations are linear about; `prior`: (s,), of the shared unknowns
+    effects : names of the last shared unknowns
+    sigma : of the errors, to which those of the static positions are added
+    """
+    if not statics:
+        return []
+    n, s = len(statics), len(prior)
+    positions = [static.position for static in statics]
+    abouts = np.array([static.about for static in statics])
+    angles = np.array([static.angle for static in statics])
+    ups = turned_all(np.array([p.up for p in positions]), abouts, angles)
+    norths = np.array([np.zeros(3) if p.north is None else p.north for p in positions])
+    known = turned_all(earth.level * norths, abouts, angles)
+    axes = all_level_axes(np.array([p.up for p in positions]))
+    for i, position in enumerate(positions):
+        if position.mark is not None:
+            axes[i] = horizontal_axes(position)
+    # The product M · earth is linear about the present M; the earth is small, so is the error.
+    rows = np.zeros((n, 3, s + 3))
+    for row in range(3):
+        rows[:, row, 3 * row : 3 * row + 3] = known + earth.up * ups
+        rows[:, row, 9 + row] = 1.0
+    rows[:, :, UNKNOWNS] = ups @ matrix.T
+    rows[:, :, UNKNOWNS + 1 : s] = [static.sensitivities.of(effects) for static in statics]
+    for i in (0, 1):
+        rows[:, :, s + i] = turned_all(axes[:, i], abouts, angles) @ matrix.T
+    rows[:, :, -1] = np.array([st.mean for st in statics]) + rows[:, :, UNKNOWNS] * earth.up
+    rows[:, :, -1] -= rows[:, :, :s] @ prior
+    result = []
+    for i, static in enumerate(statics):
+        names = horizontal_names(static.position)
+        sigma |= dict.fromkeys(names, earth.level / np.sqrt(2))
+        columns = slice(None) if names else np.r_[:s, s + 2]
+        block = whitened(rows[i][:, columns], static.sigma, names)
+        result.append((static.position.name, block, static.stretch or Stretch(f"rest {i}")))
+    return result
+
+
+def steady_equations(
+    steady: SteadyRate,
+    name: str,
+    matrix: Array,
+    earth: Earth,
+    position_sigma: float,
+    prior: Array,
+    effects: Sequence[str],
+    sigma: dict[Name, float],
+) -> EquationBlock:
+    """The equations of a part at a known rate; arguments as in `static_equations`."""
+    names = horizontal_names(steady.position)
+    angles, shares = steady.rate * steady.elapsed, steady.seconds / steady.seconds.sum()
+    known = np.zeros(3)
+    if steady.position.north is not None:
+        north = earth.level * steady.position.north
+        known = shares @ turned_all(north, steady.about, angles)
+    up = matrix @ steady.position.up
+    truth = steady.rate * steady.about + known + earth.up * steady.position.up
+    columns = [design_of(truth), up[:, None], steady.sensitivities.of(effects)]
+    sigma |= dict.fromkeys(names, earth.level / np.sqrt(2))
+    if names:
+        axes = horizontal_axes(steady.position)
+        means = [shares @ turned_all(axis, steady.about, angles) for axis in axes]
+        columns.append(matrix @ np.column_stack(means))
+    for i, axis in enumerate(level_axes(steady.about)):
+        tilt = (f"tilt {i}", steady.position.name)
+        sigma[tilt], names = position_sigma, (*names, tilt)
+        columns.append((steady.rate * (matrix @ cross(axis, steady.about)))[:, None])
+    rate = ("rate", name)
+    sigma[rate], names = steady.rate_sigma, (*names, rate)
+    columns.append((matrix @ steady.about)[:, None])
+    design = np.hstack(columns)
+    observed = steady.mean + up * earth.up - design[:, : len(prior)] @ prior
+    return whitened(np.column_stack([design, observed]), steady.sigma, names)
+
+
+def segment_equations(
+    segment: RateSegment,
+    name: str,
+    point: Linearisation,
+    earth: Earth,
+    position_sigma: float,
+    prior: Array,
+    effects: Sequence[str],
+    sigma: dict[Name, float],
+) -> EquationBlock | None:
+    """The equations of a rate segment in few rows; None where no recorded gyro senses its axis.
+
+    Parameters
+    ----------
+    name : of the segment, for its own errors; `position_sigma`: rad
+    prior : (s,), of the shared unknowns, of which `effects` are the last
+    sigma : of the errors, to which those of the segment are added
+    """
+    recorded = np.isfinite(segment.sums).all(axis=0) & np.isfinite(segment.density)
+    weight = np.where(recorded, 1 / np.where(recorded, segment.density, 1.0), 0.0)
+    along = weight * (point.matrix @ segment.about)
+    if not np.any(along):
+        return None
+    own = {name: earth.level / np.sqrt(2) for name in horizontal_names(segment.position)}
+    own |= {(f"tilt {i}", segment.position.name): position_sigma for i in (0, 1)}
+    own[("angle", name)] = segment.angle_sigma
+    if segment.gaps:
+        own[("gap angle", name)] = segment.gap_sigma
+    sigma |= own
+    sums = np.where(recorded, segment.sums, 0.0)
+    angle = _block_angles(segment, sums, weight, point, earth)
+    middle = segment.turned(angle)
+
+    # Two combinations of every block that do not depend on its angle.
+    across = np.zeros((int(recorded.sum()) - 1, 3))
+    across[:, recorded] = np.linalg.svd(along[None, recorded] / np.linalg.norm(along))[2][1:]
+    across *= weight
+    blocks = _Blocks(segment, point, earth, prior, effects, list(own), sums, angle, middle)
+    whole = np.zeros((3, len(prior) + len(own) + 1))
+    unweighted, rows, count = whole.copy(), [whole[:0]], 1
+    for start in range(0, len(sums), MAX_BLOCKS_PER_PASS):
+        some = slice(start, start + MAX_BLOCKS_PER_PASS)
+        equations = blocks.equations(some)
+        whole += np.einsum("k,krc->rc", segment.weights[some], equations)
+        if segment.by_hand:
+            unweighted += equations.sum(axis=0)
+            continue
+        usable = segment.usable_blocks[some]
+        noise = np.sqrt(segment.seconds[some][usable])
+        pairs = np.einsum("dr,krc->kdc", across, equations[usable]) / noise[:, None, None]
+        rows.append(compressed(pairs.reshape(-1, pairs.shape[-1])))
+        count += len(across) * int(usable.sum())
+    if segment.by_hand:
+        rows.append(across @ unweighted / np.sqrt(segment.seconds.sum()))
+        count += len(across)
+    sum_of_blocks = float(segment.weights @ angle)
+    rows.append(_whole_angle(segment, point.matrix, whole, recorded, sum_of_blocks, own))
+    stacked = np.vstack(rows)
+    if not np.isfinite(stacked[-1]).all():
+        stacked, count = stacked[:-1], count - 1
+    return EquationBlock(compressed(stacked), tuple(own), count, 0.0)
+
+
+def _block_angles(
+    segment: RateSegment, sums: Array, weight: Array, point: Linearisation, earth: Earth
+) -> Array:
+    """The angle of each block, (k,), rad, from the channels along the axis."""
+    matrix, position = point.matrix, segment.position
+    along = weight * (matrix @ segment.about)
+    level = np.zeros(3) if position.north is None else earth.level * position.north
+    for key, axis in zip(horizontal_names(position), horizontal_axes(position), strict=False):
+        level = level + point.levels.get(key, 0.0) * axis
+    angle = np.zeros(len(sums))
+    for _ in range(2):  # the direction of the horizontal earth rate depends on the angle
+        rate = earth.up * position.up + turned_all(level, segment.about, segment.turned(angle))
+        residual = sums - rate * segment.seconds[:, None] @ matrix.T
+        residual -= np.outer(segment.seconds, point.bias)
+        angle = (residual * weight) @ along / (along @ along)
+    return angle
+
+
+@dataclass(frozen=True)
+class _Blocks:
+    """The equations of the blocks of a rate segment, before elimination of their angles."""
+
+    segment: RateSegment
+    point: Linearisation
+    earth: Earth
+    prior: Array
+    effects: Sequence[str]
+    own: Sequence[Name]
+    sums: Array  # (k, 3), rad
+    angle: Array  # (k,), rad
+    middle: Array  # (k,), rad, turned since the start at the middle
+
+    def equations(self, some: slice) -> Array:
+        """Coefficients of shared unknowns, of own errors, and the observed, (blocks, 3, n)."""
+        segment, matrix, earth = self.segment, self.point.matrix, self.earth
+        position, about, s = segment.position, segment.about, len(self.prior)
+        seconds, angle, middle = segment.seconds[some], self.angle[some], self.middle[some]
+        rows = np.zeros((len(seconds), 3, s + len(self.own) + 1))
+        rate = np.full((len(seconds), 3), earth.up * position.up)
+        if position.north is not None:
+            rate += turned_all(earth.level * position.north, about, middle)
+        truth = angle[:, None] * about + rate * seconds[:, None]
+        for row in range(3):
+            rows[:, row, 3 * row : 3 * row + 3] = truth
+            rows[:, row, 9 + row] = seconds
+        rows[:, :, UNKNOWNS] = np.outer(seconds, matrix @ position.up)
+        if segment.sensitivities.names:
+            sensitivities = segment.sensitivities.of(self.effects)[some]
+            rows[:, :, UNKNOWNS + 1 : s] = sensitivities * seconds[:, None, None]
+        column = s
+        if position.north is None:
+            for axis in horizontal_axes(position):
+                level = turned_all(axis, about, middle) @ matrix.T
+                rows[:, :, column] = level * seconds[:, None]
+                column += 1
+        for axis in level_axes(about):
+            rows[:, :, column] = np.outer(angle, matrix @ cross(axis, about))
+            column += 1
+        observed = self.sums[some] + rows[:, :, UNKNOWNS] * earth.up
+        rows[:, :, -1] = observed - rows[:, :, :s] @ self.prior
+        return rows
+
+
+def _whole_angle(
+    segment: RateSegment,
+    matrix: Array,
+    whole: Array,  # (3, columns), weighted sum of the blocks
+    recorded: NDArray[np.bool_],  # (3,)
+    angle: float,  # rad, of these blocks
+    own: Mapping[Name, float],
+) -> Array:
+    """The equation of the known angle; the motion of the table on the way is no noise here."""
+    quiet = np.where(recorded, 1 / np.where(recorded, segment.quiet_density, 1.0), 0.0)
+    along = quiet * (matrix @ segment.about)
+    scale = float(np.linalg.norm(along)) * np.sqrt(segment.weights**2 @ segment.seconds)
+    along = quiet * along / scale
+    row = along @ whole
+    # M multiplies the known angle, from which the sum of the blocks' angles differs a little.
+    missing = np.kron(along, (segment.angle - angle) * segment.about)
+    row[:9] += missing
+    row[-1] -= missing @ np.eye(3).ravel()
+    angles = sum(kind in ("angle", "gap angle") for kind, _ in own)
+    row[-1 - angles : -1] = along @ (matrix @ segment.about)
+    return row[None]

@@ -1,0 +1,149 @@
+"""Static positions and rate segments of a campaign as the equations of the gyros take them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.estimation.random_walk import Stretch
+from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Earth:
+    """The earth's rate at the site, rad/s: upward component, its sigma, horizontal component."""
+
+    up: float
+    up_sigma: float
+    level: float
+
+
+@dataclass(frozen=True)
+class Position:
+    """A set position: the upward direction, and what is known of north, in body axes.
+
+    `north` where mark and heading are given; `mark` where only the mark is; else
+    the azimuth is an unknown of this position.
+    """
+
+    name: str
+    up: Array
+    mark: Array | None = None
+    north: Array | None = None
+
+
+@dataclass(frozen=True)
+class StaticRate:
+    """Mean rates (3,) at rest, rad/s, and their sigma; `angle` turned since the start, rad."""
+
+    position: Position
+    mean: Array
+    sigma: Array
+    about: Array
+    angle: float = 0.0
+    sensitivities: Sensitivities = NO_SENSITIVITIES
+    stretch: Stretch | None = None
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A missing part of a rate segment, before the block `before`.
+
+    The angle of the table in it is interpolated: the sum of `shares` (k,) times the angles of the
+    blocks; `seconds`: its duration.
+    """
+
+    before: int
+    seconds: float
+    shares: Array
+
+
+@dataclass(frozen=True)
+class RateSegment:
+    """A whole turn from rest to rest, in k blocks.
+
+    `sums`: (k, 3), rad; `seconds`: (k,); `angle`, `angle_sigma`: rad; `density` and
+    `quiet_density`: (3,), rad/√s, white noise while turning and at rest. `by_hand`: the
+    axis sways on the way, so only the sums over the whole turn are used. `gaps`: missing parts
+    between the blocks; `gap_sigma`: rad, of the interpolated angle.
+    `unsteady`: blocks in which the amplitude of an oscillation of the case changes.
+    """
+
+    position: Position
+    about: Array
+    angle: float
+    angle_sigma: float
+    sums: Array
+    seconds: Array
+    density: Array
+    quiet_density: Array
+    by_hand: bool = False
+    gaps: Sequence[Gap] = ()
+    gap_sigma: float = 0.0
+    unsteady: Sequence[int] = ()
+    sensitivities: Sensitivities = NO_SENSITIVITIES
+    stretch: Stretch | None = None
+
+    @property
+    def weights(self) -> Array:
+        """The weight of each block in the whole turn, (k,), 1 without gaps."""
+        return np.ones(len(self.seconds)) + sum((gap.shares for gap in self.gaps), np.zeros(1))
+
+    @property
+    def usable_blocks(self) -> NDArray[np.bool_]:
+        """Which blocks give equations of their own, (k,): those that no gap cuts short.
+
+        In a full block a steady oscillation of the case averages out; next to a gap it may not.
+        """
+        cut = [gap.before - side for gap in self.gaps for side in (0, 1)] + list(self.unsteady)
+        return ~np.isin(np.arange(len(self.seconds)), cut) | self.by_hand
+
+    @property
+    def elapsed(self) -> Array:
+        """The middle of each block since the first began, (k,), s."""
+        return self._cumulated(self.seconds, [gap.seconds for gap in self.gaps])
+
+    def turned(self, angle: Array) -> Array:
+        """The angle of the table at the middle of each block, (k,), from those of the blocks."""
+        return self._cumulated(angle, [float(gap.shares @ angle) for gap in self.gaps])
+
+    def _cumulated(self, own: Array, missing: Sequence[float]) -> Array:
+        """Sum up to the middle of each block, of the blocks and of the gaps."""
+        total = np.cumsum(own) - own / 2
+        for gap, amount in zip(self.gaps, missing, strict=True):
+            total[gap.before :] += amount
+        return np.asarray(total)
+
+
+@dataclass(frozen=True)
+class SteadyRate:
+    """A part of a rate segment at a known rate: mean rates (3,), rad/s, sigma, rate and its sigma.
+
+    `seconds`, `elapsed`: (k,), duration and middle of its blocks, s.
+    """
+
+    position: Position
+    about: Array
+    rate: float
+    rate_sigma: float
+    seconds: Array
+    elapsed: Array
+    mean: Array
+    sigma: Array
+    sensitivities: Sensitivities = NO_SENSITIVITIES
+    stretch: Stretch | None = None
+
+
+@dataclass(frozen=True)
+class WholeTurn:
+    """A whole turn by the gyro along its axis: summed angle of that gyro, known angle, duration."""
+
+    summed: float  # rad
+    angle: float  # rad, along the axis
+    angle_sigma: float
+    seconds: float
+    up: float  # +1 where the axis points up, −1 where it points down
+    density: float  # rad/√s
