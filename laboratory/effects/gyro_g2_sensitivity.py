@@ -10,7 +10,7 @@ class GyroG2Sensitivity(ArrayEffect):
     """ω̃_i += G2_i f_i², f_i the specific force along the case's axis i; anisoelasticity.
 
     value: G2, (3,), (rad/s)/(m/s²)².
-    Source: IEEE Std 528-2019, "drift rate, acceleration-squared-sensitive".
+    Source: IEEE Std 528-2019, "acceleration-squared-sensitive drift rate".
     """
 
     KEY = "k_deg_h_g2"

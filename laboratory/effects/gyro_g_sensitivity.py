@@ -10,7 +10,7 @@ class GyroGSensitivity(ArrayEffect):
     """ω̃ += G f, f the specific force of the case; mass unbalance, stress of the package.
 
     value: G, (3, 3), (rad/s)/(m/s²), row = gyro, column = axis of the force.
-    Source: IEEE Std 528-2019, "drift rate, acceleration-sensitive".
+    Source: IEEE Std 528-2019, "acceleration-sensitive drift rate".
     """
 
     KEY = "matrix_deg_h_g"
