@@ -10,9 +10,8 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from inertial.formats.columns import column_reader as columns
 from inertial.tables.errors import Refusal
-from stages.formats import columns
-from stages.formats.bag_chunks import unpacked
 from tests.formats import written
 
 BAGS = {"ros 1": written.ros_1, "ros 2": written.ros_2, "mcap": written.mcap}
