@@ -157,7 +157,9 @@ def _rows(
 def _is_regular(chunk: Chunk, header: int) -> bool:
     """Whether lines and fields are to pyarrow what they are to this format."""
     data = chunk.data
-    if SEPARATOR in data or data.count(b"\r") != data.count(b"\r\n"):
+    if SEPARATOR in data:
+        return False
+    if b"\r" in data and data.count(b"\r") != data.count(b"\r\n"):
         return False
     if chunk.lengths[header:].max() > MAX_LINE_BYTES:
         return False
@@ -184,8 +186,10 @@ def _parsed(
         return None
     values, count, others = found
     lines = np.delete(filled, others)
-    rest = np.setdiff1d(np.arange(header, len(chunk.starts)), lines)
-    examined = _examined(chunk, rest.tolist(), delimiter, columns, fields)
+    is_other = np.ones(len(chunk.starts), bool)
+    is_other[:header] = is_other[lines] = False
+    others = np.flatnonzero(is_other).tolist()
+    examined = _examined(chunk, others, delimiter, columns, fields)
     if len(lines) != count or len(examined.lines):
         return None
     return _Rows(values, lines, examined.reasons, examined.blank)
@@ -193,15 +197,19 @@ def _parsed(
 
 def _delimited(data: bytes, delimiter: bytes | None) -> tuple[bytes, str]:
     """The same lines with fields between single characters, and that character."""
-    data = data.replace(b"\r\n", b"\n")
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n")
     if delimiter is not None:
         if len(delimiter) == 1:
             return data, delimiter.decode()
         return data.replace(delimiter, SEPARATOR), SEPARATOR.decode()
     data = data.translate(bytes.maketrans(b"\t\v\f", b"   "))
-    while b"  " in data:
-        data = data.replace(b"  ", b" ")
-    return data.replace(b"\n ", b"\n").replace(b" \n", b"\n").strip(b" "), " "
+    characters = np.frombuffer(data, np.uint8)
+    blank = characters == ord(" ")
+    superfluous = blank[:-1] & (blank[1:] | (characters[1:] == ord("\n")))
+    if superfluous.any():
+        data = characters[np.append(~superfluous, True)].tobytes()
+    return data.replace(b"\n ", b"\n").strip(b" "), " "
 
 
 def _table(
