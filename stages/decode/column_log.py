@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from inertial.formats.columns import column_reader
+from inertial.formats.columns.column_layout import ticks_per_second
 from inertial.tables import AXES
 from inertial.text.campaign_units import CHANNEL_UNITS
 from stages.decode.decoded import Decoded, Reals, look_ahead
 from stages.decode.table_angle import ANGLE_UNITS
-from inertial.formats.columns import column_reader
-from inertial.formats.columns.column_layout import ticks_per_second
 
 ICE_POINT = 273.15  # K
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.tables.errors import Refusal
-from stages.decode.decoded import Decoded, Reals, look_ahead
 from inertial.formats.file_type import FileType, file_type_of, refuse_compressed
 from inertial.formats.gps_time import NANOSECONDS, utc
+from inertial.tables.errors import Refusal
+from stages.decode.decoded import Decoded, Reals, look_ahead
 
 if TYPE_CHECKING:
     from inertial.formats.novatel import novatel_reader

@@ -7,7 +7,6 @@ from typing import Any
 
 import pyarrow as pa
 
-from inertial.tables import ACCOUNTS, REFUSED, SAMPLES
 from inertial.formats.account import Account, RefusedLine
 from inertial.formats.arrow_arrays import (
     array_of_numbers,
@@ -15,6 +14,7 @@ from inertial.formats.arrow_arrays import (
     batch_of_rows,
     repeated_text,
 )
+from inertial.tables import ACCOUNTS, REFUSED, SAMPLES
 
 Pieces = Iterator[tuple[str, pa.RecordBatch]]
 

@@ -145,8 +145,9 @@ def test_reading_needs_no_pandas(tmp_path, name):
     log = tmp_path / "log"
     layout = written.WRITERS[name](log, written.rows(20))
     program = (
-        "import sys, json; from pathlib import Path; from inertial.formats.columns import column_reader as columns\n"
-        "readings = columns.read(Path(sys.argv[1]), json.load(sys.stdin))\n"
+        "import sys, json; from pathlib import Path\n"
+        "from inertial.formats.columns import column_reader\n"
+        "readings = column_reader.read(Path(sys.argv[1]), json.load(sys.stdin))\n"
         "print(sum(len(reading.records.record) for reading in readings))\n"
         "assert 'pandas' not in sys.modules"
     )

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.tables.errors import Refusal
 from inertial.formats.account import Account, RefusedLine
 from inertial.formats.columns import column_reader
 from inertial.formats.columns.column_layout import ticks_per_second
+from inertial.tables.errors import Refusal
 
 Reals = NDArray[np.float64]
 

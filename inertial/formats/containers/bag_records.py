@@ -71,9 +71,7 @@ def bag_records(
         yield Gap("the bag was not closed: messages may be missing at its end")
 
 
-def _records_in(
-    chunk: Record, framing: Framing, kinds: Collection[int]
-) -> Iterator[Record | Gap]:
+def _records_in(chunk: Record, framing: Framing, kinds: Collection[int]) -> Iterator[Record | Gap]:
     try:
         data = framing.unpacked(chunk)
         file = BytesIO(data)

@@ -44,14 +44,15 @@ def _heads(file: BinaryIO) -> Iterator[tuple[int, None, int]]:
         yield kind, None, length
 
 
-def _unpacked(chunk: Record) -> bytes:
+def unpacked(chunk: Record) -> bytes:
+    """The records in a chunk."""
     content = BytesIO(chunk.data)
     _, _, size, checksum = struct.unpack("<QQQI", read_exact(content, 28))
     compression = read_string(content)
     return decompress(read_sized(content), compression, size, checksum)
 
 
-_FRAMING = Framing(len(_MAGIC), _CHUNK, _heads, _unpacked, lambda kind, *_: kind == _FOOTER)
+_FRAMING = Framing(len(_MAGIC), _CHUNK, _heads, unpacked, lambda kind, *_: kind == _FOOTER)
 
 
 def _topics(path: Path, *, inside: bool) -> dict[int, Topic]:

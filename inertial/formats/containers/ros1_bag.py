@@ -52,7 +52,8 @@ def _heads(file: BinaryIO) -> Iterator[tuple[int, Header, int]]:
         yield kind, header, read_uint32(file)
 
 
-def _unpacked(chunk: Record) -> bytes:
+def unpacked(chunk: Record) -> bytes:
+    """The records in a chunk."""
     compression, size = chunk.header.get_string("compression"), chunk.header.get_uint32("size")
     if compression not in decompressors:
         raise ReaderError(f"compression '{compression[:20]}', expected {', '.join(decompressors)}")
@@ -66,7 +67,7 @@ def _shows_closed(kind: int, header: Header, size: int) -> bool:
     return kind == RecordType.BAGHEADER and 0 < header.get_uint64("index_pos") <= size
 
 
-_FRAMING = Framing(len(_MAGIC), RecordType.CHUNK, _heads, _unpacked, _shows_closed)
+_FRAMING = Framing(len(_MAGIC), RecordType.CHUNK, _heads, unpacked, _shows_closed)
 
 
 def _topics(path: Path, *, inside: bool) -> dict[int, Topic]:

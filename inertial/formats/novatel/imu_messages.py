@@ -24,18 +24,11 @@ from numpy.typing import NDArray
 
 from inertial.formats.novatel.kernel import (
     BINARY,
-    BODY_BYTES,
-    CRC_BYTES,
     EXTENDED,
-    IMU,
-    LAST_WEEK,
     LONG_SYNC,
-    SECOND_NS,
     SHORT,
     SHORT_SYNC,
     SYNC,
-    UNPARSED,
-    WEEK_S,
     Bytes,
     Integers,
     scan,
@@ -43,15 +36,6 @@ from inertial.formats.novatel.kernel import (
 
 MAX_ITEMS = 1 << 16  # of one call
 NUMBERS = (268, 325, 1461, 1462)
-
-_BODY = np.dtype(
-    {
-        "names": ["week", "imu_type", "extended_week", "seconds", "status", "counts"],
-        "formats": ["<u4", "u1", "<u2", "<f8", "<u4", "(6,)<i4"],
-        "offsets": [0, 1, 2, 4, 12, 16],
-        "itemsize": BODY_BYTES,
-    }
-)
 
 
 def name_of(code: int) -> str:
@@ -91,7 +75,7 @@ def find_items(data: Bytes, start: int, *, last: bool) -> Items:
     status, imu_type = np.empty(MAX_ITEMS, np.uint32), np.empty(MAX_ITEMS, np.int16)
     counts = np.empty((MAX_ITEMS, 6), np.int32, order="F")  # used by columns
     n = scan(data, start, last, kind, code, bounds, stamp, status, counts, imu_type)
-    items = Items(
+    return Items(
         kind[:n],
         code[:n],
         bounds[:n],
@@ -102,29 +86,3 @@ def find_items(data: Bytes, start: int, *, last: bool) -> Items:
         imu_type[:n],
         int(bounds[n]),
     )
-    _read_bodies(data, items)
-    return items
-
-
-def _read_bodies(data: Bytes, items: Items) -> None:
-    """Fill in the fields of the binary IMU messages; those without a valid time are UNPARSED."""
-    binary = (items.kind == IMU) & (items.code >= BINARY)
-    if not binary.any():
-        return
-    some = slice(None) if binary.all() else np.flatnonzero(binary)
-    ends = items.start[some] + items.length[some] - CRC_BYTES
-    # A body may begin at any byte: as many overlapping views of the data, of which some are used.
-    bodies = np.ndarray(len(data) - BODY_BYTES + 1, _BODY, data, strides=(1,))
-    body = bodies[ends - BODY_BYTES]
-    extended = (items.code[some] & EXTENDED) != 0
-    week = np.where(extended, body["extended_week"], body["week"]).astype(np.int64)
-    seconds = body["seconds"]
-    valid = (week <= LAST_WEEK) & (seconds < WEEK_S) & ~np.signbit(seconds)  # no NaN is smaller
-    seconds = np.where(valid, seconds, 0.0)
-    whole = np.floor(seconds)
-    ns = np.rint((seconds - whole) * SECOND_NS).astype(np.int64)
-    items.stamp[some] = (week * WEEK_S + whole.astype(np.int64)) * SECOND_NS + ns
-    items.status[some] = body["status"]
-    items.counts[some] = body["counts"]
-    items.imu_type[some] = np.where(extended, body["imu_type"].astype(np.int16), -1)
-    items.kind[some] = np.where(valid, IMU, UNPARSED)

@@ -88,23 +88,25 @@ def scan(
     """Find the items of `data` from `start` on; return their number n, at most `len(kinds)`.
 
     `last`: no data follow. Filled in: kinds; codes, the number of an IMU message, of a binary
-    message, or the length of a text message's name; bounds, (n + 1,); the fields of IMU messages
-    in text.
+    message, or the length of a text message's name; bounds, (n + 1,); the fields of IMU messages.
     """
-    place, n = start, np.int64(0)
+    place, n = start, int(np.int64(0))  # a plain 0 would be compiled as another type
     bounds[0] = place
     while place < len(data) and n < len(kinds):
-        kind, code, after = DAMAGE, 0, _NO_MESSAGE
+        kind, code, after, parsed = DAMAGE, 0, _NO_MESSAGE, False
         if data[place] == SYNC[0]:
             kind, code, after = _binary(data, place, last)
+            if kind == IMU:
+                body = after - CRC_BYTES - BODY_BYTES
+                parsed, stamps[n], status[n], imu_types[n] = _body(data, body, code, n, counts)
         elif data[place] == _PERCENT or data[place] == _HASH:
             kind, code, star, after = _text(data, place, last)
-            if kind == IMU and after > 0:
+            if kind == IMU:
                 parsed, stamps[n], status[n], imu_types[n] = _fields(
                     data, place, star, code, n, counts
                 )
-                if not parsed:
-                    kind = UNPARSED
+        if kind == IMU and not parsed:
+            kind = UNPARSED
         if after < 0:
             kind, after = _damage(data, place, last, 0 if after == _NO_MESSAGE else -after)
         if after == _MORE:
@@ -138,27 +140,54 @@ def _binary(data: Bytes, place: int, last: bool) -> tuple[int, int, int]:
     if left < SHORT_BYTES:
         return DAMAGE, 0, _NO_MESSAGE if last else _MORE
     long = data[place + 2] == LONG_SYNC
-    header, body = SHORT_BYTES, np.int64(data[place + 3])
+    header, body = SHORT_BYTES, int(np.int64(data[place + 3]))
     if long:
-        header, body = body, data[place + 8] | np.int64(data[place + 9]) << 8
+        header, body = body, _half_word(data, place + 8)
         if header != LONG_BYTES:
             return DAMAGE, 0, _NO_MESSAGE
-    number = data[place + 4] | np.int64(data[place + 5]) << 8
+    number = _half_word(data, place + 4)
     length = header + body + CRC_BYTES
     if left < length:
         return DAMAGE, number, -left if last else _MORE
     end = place + header + body
     if _checksum(data, place, end) != _word(data, end):
         return DAMAGE, number, -length
-    if number == (268 if long else 325):
-        code = BINARY if long else BINARY | SHORT
-    elif number == (1461 if long else 1462):
-        code = BINARY | EXTENDED if long else BINARY | EXTENDED | SHORT
-    else:
-        code = 0
+    code = _binary_code(number, long)
     if not code or (long and data[place + 6] & RESPONSE):
         return OTHER_BINARY, number, place + length
     return IMU if body == BODY_BYTES else UNPARSED, code, place + length
+
+
+@_inlined
+def _binary_code(number: int, long: bool) -> int:
+    """The number of the IMU message with this number in a binary header; 0: another message."""
+    if number == (268 if long else 325):
+        return BINARY if long else BINARY | SHORT
+    if number == (1461 if long else 1462):
+        return BINARY | EXTENDED if long else BINARY | EXTENDED | SHORT
+    return 0
+
+
+@_compiled
+def _body(
+    data: Bytes, first: int, code: int, n: int, counts: NDArray[np.int32]
+) -> tuple[bool, int, np.uint32, int]:
+    """Whether the time in the body from `first` is valid; stamp, ns, status and type of the IMU."""
+    if first < 0:
+        return False, 0, np.uint32(0), 0
+    week, imu_type = int(np.int64(_word(data, first))), int(np.int64(-1))
+    if code & EXTENDED:
+        week, imu_type = _half_word(data, first + 2), int(np.int64(data[first + 1]))
+    low, high = np.uint64(_word(data, first + 4)), np.uint64(_word(data, first + 8))
+    seconds = np.uint64(low | high << np.uint64(32)).view(np.float64)
+    for k in range(6):
+        counts[n, k] = np.int32(_word(data, first + 16 + 4 * k))
+    status = _word(data, first + 12)
+    # NaN is not smaller.
+    valid = week <= LAST_WEEK and bool(seconds < WEEK_S) and not np.signbit(seconds)
+    whole = int(np.int64(seconds)) if valid else 0
+    ns = int(np.int64(np.rint((seconds - whole) * SECOND_NS))) if valid else 0
+    return valid, (week * WEEK_S + whole) * SECOND_NS + ns, status, imu_type
 
 
 # ---- text messages
@@ -227,17 +256,17 @@ def _imu_name(data: Bytes, place: int, end: int) -> int:
 @_compiled
 def _fields(
     data: Bytes, place: int, star: int, code: int, n: int, counts: NDArray[np.int32]
-) -> tuple[bool, int, int, int]:
+) -> tuple[bool, int, np.uint32, int]:
     """Whether the fields of the IMU message are usual; stamp, ns, status and type of the IMU."""
     if place < 0:
-        return False, 0, 0, 0
+        return False, 0, np.uint32(0), 0
     i, header = place + 1, 1
     while i < star and data[i] != _SEMICOLON:
         header += data[i] == _COMMA
         i += 1
     if i == star or header != (SHORT_FIELDS if code & SHORT else LONG_FIELDS):
-        return False, 0, 0, 0
-    imu_type, valid_type = np.int64(-1), True
+        return False, 0, np.uint32(0), 0
+    imu_type, valid_type = int(np.int64(-1)), True
     if code & EXTENDED:
         i += 1
         while i < star and data[i] != _COMMA:  # the information byte is not used
@@ -248,12 +277,12 @@ def _fields(
     ns, i, valid_ns = _number(data, i + 1, star, 9)
     word, end = _hexadecimal(data, i + 1, star)
     valid = valid_type & valid_week & valid_ns & (end > i + 1) & (end <= i + 1 + 8)
-    valid &= (data[end] == _COMMA) & (week >= 0) & (week <= LAST_WEEK)
+    valid &= bool(data[end] == _COMMA) & (week >= 0) & (week <= LAST_WEEK)
     valid &= (ns >= 0) & (ns < WEEK_S * SECOND_NS)
     i = end
     for k in range(6):
         count, i, valid_count = _number(data, i + 1, star, 0)
-        valid &= valid_count & ((i == star) == (k == 5)) & (-(2**31) <= count) & (count < 2**31)
+        valid &= valid_count & ((i == star) == (k == 5)) & (count >= -(2**31)) & (count < 2**31)
         counts[n, k] = count
     return valid, week * (WEEK_S * SECOND_NS) + ns, word, imu_type
 
@@ -268,19 +297,19 @@ def _number(data: Bytes, i: int, stop: int, decimals: int) -> tuple[int, int, bo
     value, i = _digits(data, first)
     valid = first < i <= first + MAX_NUMBER_DIGITS
     if decimals:
-        fraction, missing = np.int64(0), decimals
+        fraction, missing = int(np.int64(0)), decimals
         if data[i] == _POINT:
             first = i + 1
             fraction, i = _digits(data, first)
             missing -= i - first
         valid = valid and missing >= 0
         value = value * _POWERS_OF_TEN[decimals] + fraction * _POWERS_OF_TEN[max(missing, 0)]
-    valid &= (i == stop) | (data[i] == _COMMA)
+    valid &= (i == stop) | bool(data[i] == _COMMA)
     return -value if negative else value, i, valid
 
 
 @_inlined
-def _hexadecimal(data: Bytes, i: int, stop: int) -> tuple[int, int]:
+def _hexadecimal(data: Bytes, i: int, stop: int) -> tuple[np.uint32, int]:
     """The hexadecimal number at `i`, modulo 2³², and its end."""
     value = np.uint32(0)
     if i < 0:
@@ -336,7 +365,7 @@ def _message_within(data: Bytes, place: int, stop: int, lines: bool) -> tuple[in
         if i > place:
             if byte == SYNC[0] and i + 2 < len(data) and _binary_begins(data, i):
                 return i, i, False
-            if byte == _PERCENT or byte == _HASH:
+            if byte in (_PERCENT, _HASH):
                 start = i
             elif byte == _STAR and start > 0:
                 if _intact(data, start, i, len(data)):
@@ -351,6 +380,12 @@ def _message_within(data: Bytes, place: int, stop: int, lines: bool) -> tuple[in
 # ---- bytes
 
 _BYTE, _B8, _B16, _B24 = np.uint32(0xFF), np.uint32(8), np.uint32(16), np.uint32(24)
+
+
+@_inlined
+def _half_word(data: Bytes, i: int) -> int:
+    """Two bytes as a number, the first byte the lowest."""
+    return int(np.int64(data[i])) | int(np.int64(data[i + 1])) << 8
 
 
 @_inlined
@@ -382,7 +417,7 @@ def _checksum(data: Bytes, first: int, after: int) -> np.uint32:
 def _crc_of_word(word: np.uint32, k: int) -> np.uint32:
     """The contribution of four bytes to the checksum when k more follow."""
     first = _CRC[k + 3, word & _BYTE] ^ _CRC[k + 2, word >> _B8 & _BYTE]
-    return first ^ _CRC[k + 1, word >> _B16 & _BYTE] ^ _CRC[k, word >> _B24]
+    return np.uint32(first ^ _CRC[k + 1, word >> _B16 & _BYTE] ^ _CRC[k, word >> _B24])
 
 
 @_compiled
@@ -398,10 +433,10 @@ def _find(data: Bytes, i: int, byte: int) -> int:
 @_inlined
 def _digits(data: Bytes, i: int) -> tuple[int, int]:
     """The number of the decimal digits at `i`, valid up to 18 digits, and their end."""
-    value = np.int64(0)
+    value = int(np.int64(0))
     if i < 0:
         return value, i
     while i < len(data) and _HEXADECIMAL[data[i]] < 10:
-        value = 10 * value + np.int64(_HEXADECIMAL[data[i]])
+        value = 10 * value + int(np.int64(_HEXADECIMAL[data[i]]))
         i += 1
     return value, i
