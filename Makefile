@@ -123,7 +123,7 @@ setup: .venv/complete pango
 	$(PYTHON) -m venv --clear .venv
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
 	# What reads logs is compiled now, so that the first log need not wait for it.
-	$(BIN)/python -c "from stages.formats.novatel_scan import scan; scan(b'', 0, last=True)"
+	$(BIN)/python -c "import numpy; from inertial.formats.novatel.imu_messages import find_items; find_items(numpy.zeros(0, numpy.uint8), 0, last=True)"
 	touch $@
 
 # The peers have needs of their own, so they live in an environment of their own.

@@ -1,6 +1,6 @@
 """A recording of the simulated laboratory as the stage `decode` reads it, without bytes on disk.
 
-The two readers of logs, `stages.formats.novatel.read` and `stages.formats.columns.read`, hand over
+The two readers of logs, `novatel_reader.read` and `column_reader.read`, hand over
 the laboratory's counts instead; every other line of the stages is the same. What a receiver
 writes, checksums and text, is left out: tests of bytes do that.
 """
@@ -12,11 +12,12 @@ from typing import Any
 
 import numpy as np
 
+from inertial.formats.account import DECODED, Account
+from inertial.formats.columns import column_reader
+from inertial.formats.novatel import novatel_reader
 from laboratory.folder import campaign_yaml
 from laboratory.recording import Recording
 from laboratory.records import Records
-from stages.formats import columns, novatel
-from stages.formats.account import DECODED, Account
 
 # As RAWIMUSA sends them, z, −y, x, accelerometers first; the laboratory counts x, y, z.
 SENT, SIGNS = [2, 1, 0, 5, 4, 3], [1, -1, 1, 1, -1, 1]
@@ -31,13 +32,13 @@ def recorded(recording: Recording, folder: Path) -> Iterator[Path]:
     (folder / "campaign.yaml").write_bytes(campaign_yaml(recording.campaign))
     for log in recording.records:
         (folder / log).touch()
-    kept = novatel.read, columns.read
-    novatel.read = _reader(recording, kept[0], _rawimusa)  # type: ignore[assignment]
-    columns.read = _reader(recording, kept[1], _of_columns)  # type: ignore[assignment]
+    kept = novatel_reader.read, column_reader.read
+    novatel_reader.read = _reader(recording, kept[0], _rawimusa)  # type: ignore[assignment]
+    column_reader.read = _reader(recording, kept[1], _of_columns)  # type: ignore[assignment]
     try:
         yield folder
     finally:
-        novatel.read, columns.read = kept
+        novatel_reader.read, column_reader.read = kept
 
 
 def _reader(
@@ -52,9 +53,9 @@ def _reader(
     return read
 
 
-def _rawimusa(recording: Recording, records: Records) -> novatel.Reading:
+def _rawimusa(recording: Recording, records: Records) -> novatel_reader.Reading:
     number = np.arange(len(records), dtype=np.int64)
-    increments = novatel.Increments(
+    increments = novatel_reader.Increments(
         record=number,
         offset=number * LINE_BYTES,
         line=number + 1,
@@ -63,12 +64,12 @@ def _rawimusa(recording: Recording, records: Records) -> novatel.Reading:
         counts=(records.counts[:, SENT] * SIGNS).astype(np.int32),
         imu=np.full(len(records), -1, np.int16),
     )
-    return novatel.Reading(increments, [], _account("RAWIMUSA", len(records)))
+    return novatel_reader.Reading(increments, [], _account("RAWIMUSA", len(records)))
 
 
-def _of_columns(recording: Recording, records: Records) -> columns.Reading:
+def _of_columns(recording: Recording, records: Records) -> column_reader.Reading:
     number = np.arange(len(records), dtype=np.int64)
-    rows = columns.Rows(
+    rows = column_reader.Rows(
         record=number,
         offset=number * LINE_BYTES,
         line=number + 2,  # behind the header
@@ -80,7 +81,7 @@ def _of_columns(recording: Recording, records: Records) -> columns.Reading:
         temperature=np.array([float(f"{t:.3f}") for t in records.temperature - ICE_POINT]),
         label=None,
     )
-    return columns.Reading(rows, [], _account("", len(records)))
+    return column_reader.Reading(rows, [], _account("", len(records)))
 
 
 def _account(name: str, lines: int) -> Account:

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from inertial.formats.columns import column_reader
+from inertial.formats.columns.column_layout import ticks_per_second
 from inertial.tables import AXES
 from inertial.text.campaign_units import CHANNEL_UNITS
 from stages.decode.decoded import Decoded, Reals, look_ahead
 from stages.decode.table_angle import ANGLE_UNITS
-from stages.formats import columns
-from stages.formats.column_layout import ticks_per_second
 
 ICE_POINT = 273.15  # K
 
@@ -35,13 +35,13 @@ class ColumnLog:
             return 0.0, None, None
         if time.get("column") is None:  # rows are counted from the first, though it be refused
             return 0.0, 1 / self._ticks, 1 / self._ticks
-        readings = columns.read(self.path, self._layout)
+        readings = column_reader.read(self.path, self._layout)
         first, median, mean = look_ahead(self._ticks_of_one_sensor(readings))
         if median is None or mean is None:
             return first or 0.0, None, None
         return first or 0.0, median / self._ticks, mean / self._ticks
 
-    def _ticks_of_one_sensor(self, readings: Iterable[columns.Reading]) -> Iterator[Reals]:
+    def _ticks_of_one_sensor(self, readings: Iterable[column_reader.Reading]) -> Iterator[Reals]:
         """The times of one sensor, for two may come in rows of their own."""
         for reading in readings:
             rows = reading.records
@@ -51,7 +51,7 @@ class ColumnLog:
 
     def decoded(self, origin: int) -> Iterator[Decoded]:
         """The log, piece by piece; `origin` is none of its business."""
-        for reading in columns.read(self.path, self._layout):
+        for reading in column_reader.read(self.path, self._layout):
             rows = reading.records
             samples = {
                 "record": rows.record,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stages.formats.account import Account, RefusedLine
+from inertial.formats.account import Account, RefusedLine
 
 LOOK_AHEAD = 1000  # samples, where there are as many, of which the interval is the median
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.formats.file_type import FileType, file_type_of, refuse_compressed
+from inertial.formats.gps_time import NANOSECONDS, utc
 from inertial.tables.errors import Refusal
 from stages.decode.decoded import Decoded, Reals, look_ahead
-from stages.formats.content import Content, content_of, refuse_compressed
-from stages.formats.gps_time import NANOSECONDS, utc
 
 if TYPE_CHECKING:
-    from stages.formats import novatel
+    from inertial.formats.novatel import novatel_reader
 
 
 class ReceiverLog:
@@ -86,20 +86,20 @@ class ReceiverLog:
         }
 
 
-def _messages(path: Path) -> "Iterator[novatel.Reading]":
+def _messages(path: Path) -> "Iterator[novatel_reader.Reading]":
     """The messages of a receiver; what reads them is loaded only where there are any."""
-    from stages.formats import novatel
+    from inertial.formats.novatel import novatel_reader
 
-    return novatel.read(path)
+    return novatel_reader.read(path)
 
 
 def _refuse_other_than_messages(path: Path) -> None:
     refuse_compressed(path)
-    if (content := content_of(path)) is not Content.TEXT:
+    if (file_type := file_type_of(path)) is not FileType.TEXT:
         raise Refusal(
             path.name,
             "",
-            f"a file of {content.value}",
+            f"a file of {file_type.value}",
             "messages of a NovAtel receiver, text or binary, as the instrument's format says",
             "name the right log, or give its manoeuvres a format of kind columns",
         )

@@ -10,6 +10,9 @@ from pathlib import Path
 
 import pyarrow as pa
 
+from inertial.formats.account import Account
+from inertial.formats.arrow_arrays import batch_of_rows
+from inertial.formats.prefetch import prefetched
 from inertial.tables import CLOCKS, IMU_TYPES
 from inertial.tables.parquet import BATCH_ROWS
 from inertial.tables.stage import Stage
@@ -20,9 +23,6 @@ from stages.decode.log_files import path_of, refuse_grown
 from stages.decode.receiver_log import ReceiverLog
 from stages.decode.table_angle import TableAngle
 from stages.decode.table_rows import Pieces, account_of, refused_rows, sample_rows
-from stages.formats.account import Account
-from stages.formats.ahead import ahead
-from stages.formats.arrow_arrays import batch_of_rows
 
 
 def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
@@ -63,7 +63,7 @@ def _pieces_of(log: ReceiverLog | ColumnLog, origin: int, table: TableAngle | No
     records, to_record = 0, 0
     ends: list[float | None] = []
     imu_types: frozenset[int] = frozenset()
-    for decoded, samples in ahead(_decoded(log, origin, table)):
+    for decoded, samples in prefetched(_decoded(log, origin, table)):
         account.add_account(decoded.account)
         imu_types |= decoded.imu_types
         yield from refused_rows(log.name, decoded.refused)

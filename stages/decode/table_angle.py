@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from inertial.formats.columns.encoder_log import Encoder
+from inertial.formats.gps_time import WEEK
 from stages.decode.decoded import Reals
 from stages.decode.log_files import path_of
-from stages.formats.encoder import Encoder
-from stages.formats.gps_time import WEEK
 
 ANGLE_UNITS = {"deg": math.radians(1), "rad": 1.0}
 

@@ -7,14 +7,14 @@ from typing import Any
 
 import pyarrow as pa
 
-from inertial.tables import ACCOUNTS, REFUSED, SAMPLES
-from stages.formats.account import Account, RefusedLine
-from stages.formats.arrow_arrays import (
+from inertial.formats.account import Account, RefusedLine
+from inertial.formats.arrow_arrays import (
     array_of_numbers,
     array_of_texts,
     batch_of_rows,
     repeated_text,
 )
+from inertial.tables import ACCOUNTS, REFUSED, SAMPLES
 
 Pieces = Iterator[tuple[str, pa.RecordBatch]]
 

@@ -2,7 +2,7 @@
 
 from datetime import UTC, date, datetime, timedelta, timezone
 
-from stages.formats.gps_time import NANOSECONDS, WEEK, utc
+from inertial.formats.gps_time import NANOSECONDS, WEEK, utc
 
 BEIJING = timezone(timedelta(hours=8))
 

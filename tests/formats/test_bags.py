@@ -2,17 +2,23 @@
 
 import bz2
 import sqlite3
+import struct
+import zlib
 from contextlib import closing
-from pathlib import Path
 
 import lz4.frame
 import numpy as np
 import pyarrow as pa
 import pytest
+from rosbags.rosbag1 import ReaderError
+from rosbags.rosbag1 import Writer as Writer1
+from rosbags.rosbag1.reader import Header
+from rosbags.rosbag2 import ReaderError as McapError
 
+from inertial.formats.columns import column_reader as columns
+from inertial.formats.containers import mcap_bag, ros1_bag
+from inertial.formats.containers.bag_records import Record
 from inertial.tables.errors import Refusal
-from stages.formats import columns
-from stages.formats.bag_chunks import unpacked
 from tests.formats import written
 
 BAGS = {"ros 1": written.ros_1, "ros 2": written.ros_2, "mcap": written.mcap}
@@ -105,20 +111,58 @@ def test_a_bag_of_ros_2_with_messages_in_its_journal_is_refused(tmp_path):
     assert sum(len(reading.records.record) for reading in columns.read(log, layout)) == 9
 
 
-def test_a_chunk_is_unpacked_to_its_size_and_to_no_other():
-    data, bag = np.random.default_rng(1).bytes(3000) * 2, Path("bag")
-    chunks = {
-        "none": data,
-        "": data,
-        "bz2": bz2.compress(data),
-        "lz4": lz4.frame.compress(data),
-        "zstd": pa.Codec("zstd").compress(data, asbytes=True),
-    }
-    for compression, chunk in chunks.items():
-        assert unpacked(bag, chunk, compression, 6000) == data
-        with pytest.raises(ValueError, match="a chunk of 6000 bytes, expected 6001"):
-            unpacked(bag, chunk, compression, 6001)
-        with pytest.raises(ValueError, match="a chunk of more bytes, expected 5999"):
-            unpacked(bag, chunk, compression, 5999)
-    with pytest.raises(ValueError, match="compression 'xz', expected one of lz4, zstd, bz2"):
-        unpacked(bag, data, "xz", 6000)
+DATA = np.random.default_rng(1).bytes(3000) * 2
+
+
+@pytest.mark.parametrize(
+    ("compression", "chunk"),
+    [("none", DATA), ("bz2", bz2.compress(DATA)), ("lz4", lz4.frame.compress(DATA))],
+)
+def test_a_chunk_of_ros_1_is_unpacked_to_its_size_and_to_no_other(compression, chunk):
+    def unpacked(size: int, compression: str = compression) -> bytes:
+        fields = Header(compression=compression.encode(), size=size.to_bytes(4, "little"))
+        return ros1_bag.unpacked(Record(5, fields, chunk))
+
+    assert unpacked(6000) == DATA
+    for size in (5999, 6001):
+        with pytest.raises(ReaderError, match=f"a chunk of 6000 bytes, expected {size}"):
+            unpacked(size)
+    with pytest.raises(ReaderError, match="compression 'xz', expected none, bz2, lz4"):
+        unpacked(6000, "xz")
+
+
+@pytest.mark.parametrize(
+    ("compression", "chunk"),
+    [
+        ("", DATA),
+        ("lz4", lz4.frame.compress(DATA)),
+        ("zstd", pa.Codec("zstd").compress(DATA, asbytes=True)),
+    ],
+)
+def test_a_chunk_of_mcap_is_unpacked_to_its_size_and_to_no_other(compression, chunk):
+    def unpacked(size: int, compression: str = compression, checksum: int = 0) -> bytes:
+        name = compression.encode()
+        head = struct.pack("<QQQII", 0, 0, size, checksum, len(name)) + name
+        return mcap_bag.unpacked(Record(6, None, head + struct.pack("<Q", len(chunk)) + chunk))
+
+    assert unpacked(6000) == unpacked(6000, checksum=zlib.crc32(DATA)) == DATA
+    for size in (5999, 6001):
+        with pytest.raises(McapError, match=f"expected {size} bytes, got 6000"):
+            unpacked(size)
+    with pytest.raises(McapError, match="Unsupported chunk compression 'xz'"):
+        unpacked(6000, "xz")
+    with pytest.raises(McapError, match="checksum mismatch"):
+        unpacked(6000, checksum=1)
+
+
+@pytest.mark.parametrize("compression", ["none", "BZ2", "LZ4"])
+def test_a_bag_of_ros_1_is_read_by_every_compression(tmp_path, monkeypatch, compression):
+    log, values = tmp_path / "log", written.rows(20)
+    plain = Writer1.set_compression
+    if compression == "none":
+        monkeypatch.setattr(Writer1, "set_compression", lambda *_: None)
+    else:
+        kind = Writer1.CompressionFormat[compression]
+        monkeypatch.setattr(Writer1, "set_compression", lambda bag, _: plain(bag, kind))
+    (reading,) = columns.read(log, written.ros_1(log, values))
+    np.testing.assert_array_equal(reading.records.gyro, values[:, 1:4])

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from inertial.formats.account import Account
+from inertial.formats.columns.column_reader import read
 from inertial.tables.errors import Refusal
-from stages.formats.account import Account
-from stages.formats.columns import read
 
 NAMED = {
     "kind": "columns",

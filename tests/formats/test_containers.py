@@ -12,9 +12,9 @@ import pytest
 from pyarrow import parquet
 from scipy.io import savemat
 
+from inertial.formats.account import Account
+from inertial.formats.columns import column_reader as columns
 from inertial.tables.errors import Refusal
-from stages.formats import columns
-from stages.formats.account import Account
 from tests.formats import written
 
 
@@ -145,8 +145,9 @@ def test_reading_needs_no_pandas(tmp_path, name):
     log = tmp_path / "log"
     layout = written.WRITERS[name](log, written.rows(20))
     program = (
-        "import sys, json; from pathlib import Path; from stages.formats import columns\n"
-        "readings = columns.read(Path(sys.argv[1]), json.load(sys.stdin))\n"
+        "import sys, json; from pathlib import Path\n"
+        "from inertial.formats.columns import column_reader\n"
+        "readings = column_reader.read(Path(sys.argv[1]), json.load(sys.stdin))\n"
         "print(sum(len(reading.records.record) for reading in readings))\n"
         "assert 'pandas' not in sys.modules"
     )
@@ -156,7 +157,7 @@ def test_reading_needs_no_pandas(tmp_path, name):
         capture_output=True,
         text=True,
         check=True,
-        cwd=Path(columns.__file__).parents[2],
+        cwd=Path(columns.__file__).parents[3],
     )
     assert told.stdout == "20\n"
 

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from inertial.formats.columns import column_reader as columns
 from inertial.tables.errors import Refusal
-from stages.formats import columns
 from tests.formats import written
 
 ROWS = 400

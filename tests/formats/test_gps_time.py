@@ -4,7 +4,7 @@ from datetime import datetime, timedelta, timezone
 
 import pytest
 
-from stages.formats.gps_time import LEAP_SECONDS, NANOSECONDS, WEEK, utc
+from inertial.formats.gps_time import LEAP_SECONDS, NANOSECONDS, WEEK, utc
 
 
 def stamp(week: int, seconds: float) -> int:

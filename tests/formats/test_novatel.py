@@ -8,12 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stages.formats import novatel
-from stages.formats.crc32 import checksum
-from stages.formats.novatel import read
-from stages.formats.novatel_items import IMU, UNSURE
-from stages.formats.novatel_scan import scan
-from stages.formats.novatel_words import Fields, fields_of
+from inertial.formats.account import Account
+from inertial.formats.novatel.imu_messages import find_items
+from inertial.formats.novatel.kernel import IMU, SHORT, UNPARSED
+from inertial.formats.novatel.message_errors import Fields, checksum, fields_of
+from inertial.formats.novatel.novatel_reader import read
 
 # Lines 2192 and 2193 of the z counter-clockwise log of the Wuhan report, as printed there.
 S0 = (
@@ -50,7 +49,7 @@ def log(tmp_path: Path):
 def everything(path: Path, size: int = 1 << 22):
     """Records as tuples, refused lines, account."""
     records, refused = [], []
-    account = novatel.Account()
+    account = Account()
     for reading in read(path, size):
         found = reading.records
         records += zip(
@@ -172,12 +171,13 @@ def test_what_the_loop_reads_of_a_line_is_what_a_second_look_reads(place, wild):
     fields = ["2283", "42699.879998762", "00000077", "64188", "-64", "465", "-16100", "-2", "873"]
     fields[place : place + 1] = [wild]
     line = signed(f"RAWIMUSA,2283,42699.880;{','.join(fields)}".encode())
-    found = scan(np.frombuffer(line + b"\r\n", np.uint8), 0, last=True)
-    if found.what[0] == IMU:
-        stamp, status, counts, imu = (part[0] for part in found.fields)
-        assert fields_of(line) == Fields(stamp, status, counts.tolist(), imu)
+    found = find_items(np.frombuffer(line + b"\r\n", np.uint8), 0, last=True)
+    if found.kind[0] == IMU:
+        parts = (found.stamp, found.status, found.counts, found.imu_type)
+        stamp, status, counts, imu = (part[0] for part in parts)
+        assert fields_of(line, SHORT) == Fields(stamp, status, counts.tolist(), imu)
     else:
-        assert found.what[0] == UNSURE
+        assert found.kind[0] == UNPARSED
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from inertial.formats.novatel.kernel import MAX_LINE_BYTES
+from inertial.formats.novatel.message_errors import checksum
+from inertial.formats.novatel.novatel_reader import read
 from laboratory.rawimu import MESSAGES, Samples, log_bytes
-from stages.formats.crc32 import checksum
-from stages.formats.novatel import read
-from stages.formats.pieces import LONGEST_LINE
 
 N = 12
 STAMPS = 1_380_801_099_879_998_762 + 10_000_000 * np.arange(N)
@@ -145,7 +145,7 @@ def test_every_byte_is_accounted_for_and_every_whole_message_is_read(
 
 
 @pytest.mark.parametrize("fill", [b"\x00", b"x", b"%", b"\xaa", b"\xaaD\x13"])
-@pytest.mark.parametrize("length", [500_000, LONGEST_LINE + 1, 3 * LONGEST_LINE])
+@pytest.mark.parametrize("length", [500_000, MAX_LINE_BYTES + 1, 3 * MAX_LINE_BYTES])
 def test_half_a_megabyte_and_more_without_a_line_end(tmp_path, fill, length):
     first, second = PARTS["RAWIMUSA"][:2]
     junk = fill * (length // len(fill))
@@ -169,10 +169,10 @@ def test_a_message_without_fields_is_refused_before_the_first_whole_one_too(tmp_
 
 def test_a_message_behind_a_megabyte_of_zeros_in_its_line_is_read(tmp_path):
     first, second = PARTS["RAWIMUSA"][:2]
-    content = first + bytes(2 * LONGEST_LINE) + second
+    content = first + bytes(2 * MAX_LINE_BYTES) + second
     (_, offset, *_), refused = everything(tmp_path / "log", content, 1 << 18)
     assert list(offset) == [0, len(content) - len(second)]
-    assert [one.bytes for one in refused] == [2 * LONGEST_LINE]
+    assert [one.bytes for one in refused] == [2 * MAX_LINE_BYTES]
     assert refused[0].reason.endswith("bytes without a line end, expected at most 1048576")
 
 

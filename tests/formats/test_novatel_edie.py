@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from novatel_edie import oem
 
+from inertial.formats.gps_time import NANOSECONDS, WEEK
+from inertial.formats.novatel.novatel_reader import read
 from laboratory.rawimu import MESSAGES, Samples, log_bytes
-from stages.formats.gps_time import NANOSECONDS, WEEK
-from stages.formats.novatel import read
 
 N = 200
 STEP = 5_000_000  # ns

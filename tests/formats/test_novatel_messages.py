@@ -9,11 +9,11 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from inertial.formats.novatel.imu_messages import find_items
+from inertial.formats.novatel.kernel import IMU, UNPARSED
+from inertial.formats.novatel.message_errors import checksum
+from inertial.formats.novatel.novatel_reader import read
 from laboratory.rawimu import MESSAGES, Samples, log_bytes
-from stages.formats.crc32 import checksum
-from stages.formats.novatel import read
-from stages.formats.novatel_items import IMU, UNSURE
-from stages.formats.novatel_scan import scan
 
 WEEK = 604_800 * 10**9  # ns
 START = 2283 * WEEK + 42_699_879_998_762
@@ -154,11 +154,11 @@ def test_a_binary_message_of_nonsense_says_why(body, reason, tmp_path):
 @example(seconds=float("inf"), week=1, counts=[0] * 6)
 def test_what_the_loop_reads_of_a_binary_message_is_what_was_packed(seconds, week, counts):
     sent = binary(325, struct.pack("<IdI6i", week, seconds, 0x77, *counts))
-    found = scan(np.frombuffer(sent, np.uint8), 0, last=True)
+    found = find_items(np.frombuffer(sent, np.uint8), 0, last=True)
     good = week <= 9999 and 0 <= seconds < 604_800 and not str(seconds).startswith("-")
-    assert found.what.tolist() == [IMU if good else UNSURE]
+    assert found.kind.tolist() == [IMU if good else UNPARSED]
     if good:
-        stamp, status, read_counts, _ = (part[0] for part in found.fields)
+        stamp, status, read_counts = found.stamp[0], found.status[0], found.counts[0]
         whole = int(seconds)
         assert stamp == week * WEEK + whole * 10**9 + round((seconds - whole) * 1e9)
         assert (status, read_counts.tolist()) == (0x77, counts)

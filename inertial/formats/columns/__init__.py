@@ -1,0 +1,1 @@
+"""Logs of columns: one data row per sample, in text or in a container."""

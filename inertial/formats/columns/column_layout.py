@@ -1,0 +1,178 @@
+"""Which column of a log holds what: the campaign's layout, applied to the names in the file.
+
+The layout is the JSON of the campaign's format (kind `columns`). Columns go by name, as the last
+header line of a text or the container gives them, or by number from 1.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from inertial.tables.errors import Refusal
+
+_TICKS = {"s": 1.0, "ms": 1e3, "us": 1e6}  # in a second
+_NAMES_SHOWN = 60  # of a container, that may have thousands
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of the file."""
+
+    name: str  # as the layout calls it
+    index: int  # from 0
+
+
+@dataclass(frozen=True)
+class Triad:
+    """Where the three axes of a sensor are; not recorded where a column is None."""
+
+    columns: tuple[Column | None, ...] = (None, None, None)  # x, y, z
+    rows: tuple[tuple[Column, str], ...] = ()  # only rows with these texts hold the triad
+    missing: float | None = None  # this value means: not recorded
+
+
+@dataclass(frozen=True)
+class ColumnLayout:
+    """The columns of the file that are required."""
+
+    accelerometer: Triad
+    gyro: Triad
+    counts_rows: bool  # no column holds the time: the number of the row is the time
+    time: Column | None
+    mean_of: Column | None
+    table_angle: Column | None
+    temperature: Column | None
+    label: tuple[Column, ...]  # the plan selects rows by their texts
+    by_name: bool  # some column goes by name, so the header has their number
+
+    @property
+    def triads(self) -> tuple[Triad, Triad]:
+        """Accelerometer, gyro."""
+        return self.accelerometer, self.gyro
+
+    @property
+    def of_every_row(self) -> list[Column]:
+        """The columns that hold a number in every row."""
+        columns = (self.time, self.mean_of, self.table_angle, self.temperature)
+        return [column for column in columns if column]
+
+    @property
+    def texts(self) -> list[Column]:
+        """The columns whose text is required."""
+        return [*self.label, *(column for triad in self.triads for column, _ in triad.rows)]
+
+    @property
+    def number_indices(self) -> list[int]:
+        """The columns of numbers whose text is not required."""
+        numbers = {column.index for column in (*self.of_every_row, *self.axes)}
+        return sorted(numbers - set(self.text_indices))
+
+    @property
+    def text_indices(self) -> list[int]:
+        """The columns whose text is required."""
+        return sorted({column.index for column in self.texts})
+
+    @property
+    def axes(self) -> list[Column]:
+        """The columns of both triads."""
+        return [column for triad in self.triads for column in triad.columns if column]
+
+    @property
+    def all(self) -> list[Column]:
+        """Every column that is required."""
+        return [*self.of_every_row, *self.texts, *self.axes]
+
+
+def ticks_per_second(layout: Mapping[str, Any]) -> float:
+    """How many ticks of the log's time make a second; a tick is a sample where it counts these."""
+    time = layout["time"]
+    if time.get("column") is None or time["unit"] == "sample":
+        return float(time["rate_hz"])
+    return _TICKS[time["unit"]]
+
+
+def column_layout(
+    layout: Mapping[str, Any], names: Sequence[str], file: str, *, container: bool = False
+) -> ColumnLayout:
+    """The layout applied to a file that gives its columns these names.
+
+    A `container` names every column that it has; the header of a text may name none.
+
+    Raises
+    ------
+    Refusal
+        where the layout names a column that the file has not, or has twice
+    """
+    finder = _Finder(names, file, container)
+    time = layout.get("time")
+    return ColumnLayout(
+        accelerometer=finder.triad("accelerometer", layout.get("accelerometer")),
+        gyro=finder.triad("gyro", layout.get("gyro")),
+        counts_rows=time is not None and time.get("column") is None,
+        time=finder.column_of("time", time),
+        mean_of=finder.column("mean_of", layout.get("mean_of")),
+        table_angle=finder.column_of("table_angle", layout.get("table_angle")),
+        temperature=finder.column_of("temperature", layout.get("temperature")),
+        label=tuple(finder.known("label", name) for name in layout.get("label") or ()),
+        by_name=finder.by_name,
+    )
+
+
+class _Finder:
+    """Finds the columns that the keys of the layout name."""
+
+    def __init__(self, names: Sequence[str], file: str, container: bool) -> None:
+        self._names = names
+        self._file = file
+        self._container = container
+        self.by_name = False
+
+    def triad(self, key: str, stated: Mapping[str, Any] | None) -> Triad:
+        if stated is None:
+            return Triad()
+        return Triad(
+            tuple(self.column(f"{key}.columns", name) for name in stated["columns"]),
+            tuple(
+                (self.known(f"{key}.rows", name), str(value).strip())
+                for name, value in (stated.get("rows") or {}).items()
+            ),
+            stated.get("missing"),
+        )
+
+    def column_of(self, key: str, stated: Mapping[str, Any] | None) -> Column | None:
+        return None if stated is None else self.column(f"{key}.column", stated.get("column"))
+
+    def column(self, key: str, name: str | int | None) -> Column | None:
+        return None if name is None else self.known(key, name)
+
+    def known(self, key: str, name: str | int) -> Column:
+        if isinstance(name, str) and (times := Counter(self._names)[name]):
+            if times > 1:
+                holder = "file" if self._container else "header"
+                raise self._refusal(key, f"the {holder} has {times} columns '{name}'", "one")
+            self.by_name = True
+            return Column(name, self._names.index(name))
+        # A key of a JSON object is always text, so a number may come as text too.
+        if str(name).isdecimal() and 1 <= int(name) <= self._most:
+            return Column(str(name), int(name) - 1)
+        shown = list(self._names[:_NAMES_SHOWN])
+        if len(self._names) > len(shown):
+            shown.append(f"and {len(self._names) - len(shown)} more")
+        there = f"one of {', '.join(shown)}" if shown else "a number, from 1"
+        raise self._refusal(key, f"no column '{name}'", there)
+
+    @property
+    def _most(self) -> float:
+        """The largest number that a column may have."""
+        return len(self._names) if self._container else math.inf
+
+    def _refusal(self, key: str, found: str, expected: str) -> Refusal:
+        cure = (
+            "name the column as the file does, or by its number from 1"
+            if self._container
+            else "name the column as the last header line does, or by its number from 1; "
+            "header_lines tells how many lines come before the data"
+        )
+        return Refusal(self._file, key, found, expected, cure)

@@ -1,0 +1,62 @@
+"""Reader of a log of columns: one data row per sample, in text or in a container.
+
+The content decides which, never the name of the file. Numbers have the units of the file.
+`text_reader` and `container` say which rows are refused.
+"""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from inertial.formats.columns import text_reader
+from inertial.formats.columns.data_rows import Reading, Rows
+from inertial.formats.columns.text_chunks import CHUNK_BYTES
+from inertial.formats.containers import container
+from inertial.formats.file_type import FileType, file_type_of, refuse_compressed
+
+__all__ = ["Reading", "Rows", "read"]
+
+
+def read(
+    path: Path, layout: Mapping[str, Any], chunk_bytes: int = CHUNK_BYTES
+) -> Iterator[Reading]:
+    """The log at `path` in this layout, chunk by chunk; text about `chunk_bytes` at a time.
+
+    Raises
+    ------
+    Refusal
+        where the layout names a column that is missing, or is there twice; where the file is
+        compressed; where a container is damaged or needs too much memory
+    """
+    refuse_compressed(path)
+    open_container = _opening(file_type_of(path))
+    if open_container is None:
+        yield from text_reader.read(path, layout, chunk_bytes)
+    else:
+        yield from container.read(path, layout, open_container)
+
+
+def _opening(file_type: FileType) -> container.Opening | None:
+    """The function that opens a container; None for text.
+
+    Its library is imported only where a log needs it: importing all of them takes longer than
+    reading most logs.
+    """
+    match file_type:
+        case FileType.PARQUET:
+            from inertial.formats.containers.arrow_tables import opened_parquet as opened
+        case FileType.ARROW_FILE | FileType.ARROW_STREAM:
+            from inertial.formats.containers.arrow_tables import opened_arrow as opened
+        case FileType.HDF5:
+            from inertial.formats.containers.hdf5_file import opened
+        case FileType.MATLAB_5:
+            from inertial.formats.containers.matlab5_file import opened
+        case FileType.ROS_1:
+            from inertial.formats.containers.ros1_bag import opened
+        case FileType.ROS_2:
+            from inertial.formats.containers.ros2_bag import opened
+        case FileType.MCAP:
+            from inertial.formats.containers.mcap_bag import opened
+        case FileType.TEXT:
+            return None
+    return opened

@@ -1,0 +1,146 @@
+"""The messages sensor_msgs/Imu of a ROS bag as a table; a message is a row.
+
+Its columns are
+
+    stamp                       time in the header of the message, s since 1970
+    received                    time when it was put into the bag, s since 1970
+    angular_velocity.x .y .z    rad/s
+    linear_acceleration.x .y .z m/s²
+
+A time is the float nearest to the nanoseconds in the bag: today within 0.12 µs. The definition of
+messages in the bag is not used, only that of sensor_msgs/Imu in ROS.
+
+Source: https://docs.ros.org/en/noetic/api/sensor_msgs/html/msg/Imu.html
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from inertial.formats.account import OTHER_MESSAGE, Account
+from inertial.formats.columns.column_values import NumberValues
+from inertial.formats.containers.container import BATCH_ROWS, Batch, Table
+from inertial.tables.errors import Refusal
+
+IMU = "sensor_msgs/msg/Imu"
+NANOSECONDS = 1e9  # in a second
+COLUMNS = (
+    "stamp",
+    "received",
+    *(f"angular_velocity.{axis}" for axis in "xyz"),
+    *(f"linear_acceleration.{axis}" for axis in "xyz"),
+)
+_UNREADABLE = (np.nan,) * len(COLUMNS)
+
+
+@dataclass(frozen=True)
+class Topic:
+    """The topic of a connection of the bag."""
+
+    name: str
+    kind: str  # of its messages, in the notation of ROS 2: sensor_msgs/msg/Imu
+
+
+@dataclass(frozen=True)
+class Message:
+    """A message in the bag, not deserialized."""
+
+    connection: int
+    received: int  # ns since 1970
+    data: bytes
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A stretch of the bag that cannot be read; it counts as one row, which is refused."""
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class Bag:
+    """A bag of either kind."""
+
+    topics: Mapping[int, Topic]  # by connection
+    messages: Callable[[], Iterator[Message | Gap]]  # in the order in which they were received
+    deserialize: Callable[[bytes], Any]  # of the bytes of a sensor_msgs/Imu
+
+
+def imu_table(path: Path, layout: Mapping[str, Any], bag: Bag) -> Table:
+    """The topic that the layout names, else the only one with sensor_msgs/Imu.
+
+    Raises
+    ------
+    Refusal
+        where there is no such topic, or several and none is named
+    """
+    topic = Topic(_topic(path, layout.get("topic"), bag.topics), IMU)
+    return Table(COLUMNS, partial(_batches, bag, topic))
+
+
+def _topic(path: Path, named: str | None, topics: Mapping[int, Topic]) -> str:
+    there = sorted({topic.name for topic in topics.values() if topic.kind == IMU})
+    if named in there:
+        return str(named)
+    if named is None and len(there) == 1:
+        return there[0]
+    others = sorted({f"{topic.name} ({topic.kind})" for topic in topics.values()})
+    if named is not None:
+        problem = f"no topic '{named}' with {IMU}"
+    else:
+        problem = f"{len(there) or 'no'} topics with {IMU}"
+    raise Refusal(
+        path.name,
+        "topic",
+        problem,
+        f"one of {', '.join(there or others) or 'its topics, of which it has none'}",
+        "name the topic of the IMU in the format's key topic",
+    )
+
+
+def _batches(bag: Bag, topic: Topic, indices: Sequence[int]) -> Iterator[Batch]:
+    rows: list[tuple[float, ...]] = []
+    unreadable: dict[int, str] = {}
+    account = Account()
+    for message in bag.messages():
+        if isinstance(message, Gap):
+            unreadable[len(rows)] = message.reason
+            rows.append(_UNREADABLE)
+        elif (other := bag.topics.get(message.connection)) != topic:
+            name = f"connection {message.connection}" if other is None else other.name
+            account.add(OTHER_MESSAGE, name, 1, 0)
+        else:
+            try:
+                rows.append(_row(message, bag.deserialize(message.data)))
+            except MemoryError:
+                raise
+            except Exception as error:  # rosbags' own, and any that damage causes in it
+                unreadable[len(rows)] = f"no {IMU}: {' '.join(str(error).split())}"
+                rows.append(_UNREADABLE)
+        if len(rows) == BATCH_ROWS:
+            yield _batch(rows, indices, unreadable, account)
+            rows, unreadable, account = [], {}, Account()
+    yield _batch(rows, indices, unreadable, account)
+
+
+def _batch(
+    rows: Sequence[tuple[float, ...]],
+    indices: Sequence[int],
+    unreadable: Mapping[int, str],
+    account: Account,
+) -> Batch:
+    values = np.array(rows, np.float64).reshape(len(rows), len(COLUMNS))
+    columns = {index: NumberValues(values[:, index]) for index in indices}
+    return Batch(len(rows), columns, unreadable, account)
+
+
+def _row(message: Message, imu: Any) -> tuple[float, ...]:
+    """The values of one message in the order of `COLUMNS`."""
+    stamp = imu.header.stamp.sec * 10**9 + imu.header.stamp.nanosec
+    rate, force = imu.angular_velocity, imu.linear_acceleration
+    times = stamp / NANOSECONDS, message.received / NANOSECONDS
+    return (*times, rate.x, rate.y, rate.z, force.x, force.y, force.z)

@@ -1,0 +1,103 @@
+"""Columns of the matrices in a MATLAB file of version 5 (`save -v6` or `-v7`).
+
+Their names are those of `matrices`. Numbers only: of words, cells, functions and objects nothing is
+read. A variable passes through memory as a whole, and only the required ones do.
+
+Source: https://www.mathworks.com/help/pdf_doc/matlab/matfile_format.pdf
+"""
+
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.io import loadmat, whosmat
+
+from inertial.formats.columns.column_values import NumberValues
+from inertial.formats.containers.container import BATCH_ROWS, Batch, Table
+from inertial.formats.containers.matrices import MAX_DEPTH, MatrixColumn, columns_of, samples_of
+
+_INTEGERS = {f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)}
+_NUMBERS = {"double", "single", "logical"} | _INTEGERS
+
+Matrices = dict[str, NDArray[Any]]
+
+
+@contextmanager
+def opened(path: Path, layout: Mapping[str, Any]) -> Iterator[Table]:
+    """The MATLAB file at `path` as a table.
+
+    A structure is opened only where the layout names a field of it: `imu.gyro.3`.
+
+    Raises
+    ------
+    Refusal
+        where columns differ in length
+    """
+    required = list(_texts_in(layout))
+    variables = whosmat(str(path), appendmat=False)
+    columns: list[MatrixColumn] = []
+    fields: Matrices = {}
+    for name, shape, kind in variables:
+        if kind in _NUMBERS:
+            columns += columns_of(name, shape)
+        elif kind == "struct" and any(text.startswith(f"{name}.") for text in required):
+            inside = dict(_fields(_load(path, [name])[name], name, MAX_DEPTH))
+            fields |= inside
+            for field, matrix in inside.items():
+                columns += columns_of(field, matrix.shape)
+    yield Table([column.name for column in columns], partial(_batches, path, columns, fields))
+
+
+def _batches(
+    path: Path, columns: Sequence[MatrixColumn], fields: Matrices, indices: Sequence[int]
+) -> Iterator[Batch]:
+    required = {index: columns[index] for index in indices}
+    samples = samples_of(path, required)
+    variables = {column.matrix for column in required.values()} - set(fields)
+    matrices = fields | (_load(path, sorted(variables)) if variables else {})
+    values = {
+        index: np.take(matrices[column.matrix], column.place, 1 - column.along)
+        for index, column in required.items()
+    }
+    for first in range(0, samples, BATCH_ROWS):
+        some = slice(first, first + BATCH_ROWS)
+        count = min(BATCH_ROWS, samples - first)
+        yield Batch(count, {index: NumberValues(values[index][some]) for index in indices})
+
+
+def _load(path: Path, variables: list[str]) -> Matrices:
+    """The variables of these names; what is wrong with one is an error, not a warning."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        loaded = loadmat(str(path), appendmat=False, variable_names=variables)
+    return {name: np.atleast_2d(loaded[name]) for name in variables}
+
+
+def _fields(structure: NDArray[Any], name: str, depth: int) -> Iterator[tuple[str, NDArray[Any]]]:
+    """The matrices in a structure, by their names with all before them."""
+    if structure.dtype.names is None:
+        if structure.dtype.kind in "iufb":
+            yield name, structure
+    elif structure.size == 1 and depth:
+        for field in structure.dtype.names:
+            value = structure.flat[0][field]
+            if isinstance(value, np.ndarray):
+                yield from _fields(value, f"{name}.{field}", depth - 1)
+
+
+def _texts_in(layout: object) -> Iterator[str]:
+    """Every text in the layout."""
+    if isinstance(layout, str):
+        yield layout
+    elif isinstance(layout, Mapping):
+        for key, value in layout.items():
+            yield from _texts_in(key)
+            yield from _texts_in(value)
+    elif isinstance(layout, Sequence):
+        for value in layout:
+            yield from _texts_in(value)

@@ -1,0 +1,1 @@
+"""Logs of NovAtel receivers: increments of the IMU among any other messages, text and binary."""

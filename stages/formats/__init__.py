@@ -1,1 +1,0 @@
-"""Log formats, one per file: bytes → counts, times, status. They know no calibration."""
