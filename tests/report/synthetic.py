@@ -1,4 +1,4 @@
-"""The tables of a made-up campaign as S0 ran it: six rests, six turns, one of them not whole."""
+"""The tables of a synthetic campaign as S0 ran it: six rests, six turns, one of them not whole."""
 
 from __future__ import annotations
 

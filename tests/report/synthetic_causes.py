@@ -1,4 +1,4 @@
-"""What criticism says of the made-up campaign, row by row: causes, structures, blind spots."""
+"""What criticism says of the synthetic campaign, row by row: causes, structures, blind spots."""
 
 from __future__ import annotations
 

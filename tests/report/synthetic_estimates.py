@@ -1,4 +1,4 @@
-"""What the made-up campaign gives, beside other results and earlier ones."""
+"""What the synthetic campaign gives, beside other results and earlier ones."""
 
 from __future__ import annotations
 

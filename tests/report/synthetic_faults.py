@@ -1,4 +1,4 @@
-"""The made-up campaign with faults of many kinds, each with the samples around it."""
+"""The synthetic campaign with faults of many kinds, each with the samples around it."""
 
 from __future__ import annotations
 

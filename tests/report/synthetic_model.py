@@ -1,4 +1,4 @@
-"""What simulation, criticism and extension say of the made-up campaign."""
+"""What simulation, criticism and extension say of the synthetic campaign."""
 
 from __future__ import annotations
 

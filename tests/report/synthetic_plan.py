@@ -1,4 +1,4 @@
-"""What the stages plan and decode say of the made-up campaign."""
+"""What the stages plan and decode say of the synthetic campaign."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What quality, segmentation and noise say of the made-up campaign."""
+"""What quality, segmentation and noise say of the synthetic campaign."""
 
 from __future__ import annotations
 

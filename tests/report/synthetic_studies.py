@@ -1,4 +1,4 @@
-"""The tables of made-up studies: two pairs of turns, the rests of both sensors."""
+"""The tables of synthetic studies: two pairs of turns, the rests of both sensors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The made-up campaign with other findings of criticism: a class, a structure, a walk."""
+"""The synthetic campaign with other findings of criticism: a class, a structure, a walk."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the made-up campaign is: its numbers, and rows as tables."""
+"""What the synthetic campaign is: its numbers, and rows as tables."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ CAUSE = re.compile(r'<article class="finding cause[^"]*" id="effect/([^"]+)">(.*
 
 @cache
 def of(make: Callable[..., dict[str, Any]], *arguments: str) -> dict[str, str]:
-    """The report on a made-up campaign."""
+    """The report on a synthetic campaign."""
     return synthetic.report_on(make(*arguments))
 
 

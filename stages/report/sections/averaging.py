@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from inertial.text.numbers import counted, fixed, significant, whole
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import drawing, outline
+from stages.report.drawing import Array
 from stages.report.identifiers import group_and_parameter, stage_and_method, stage_of
 from stages.report.results import Estimate, by_kind, kind_of
 from stages.report.tables import Record, Tables
@@ -102,7 +103,7 @@ def _figure(
     )
 
 
-def _arrays(rows: Sequence[Record], *keys: str) -> Iterator[drawing.Array]:
+def _arrays(rows: Sequence[Record], *keys: str) -> Iterator[Array]:
     """Columns of the rows, a gap as NaN."""
     for key in keys:
         yield np.array([np.nan if row[key] is None else row[key] for row in rows], np.float64)

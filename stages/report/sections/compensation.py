@@ -15,6 +15,7 @@ from inertial.campaign.final_result import EXTENDED
 from inertial.tables import AXES, CHANNELS
 from inertial.text import numbers, units
 from stages.report import drawing, outline
+from stages.report.drawing import Array
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSOR, SENSORS, capital, listed
 
@@ -188,18 +189,18 @@ FINE = {"gyro": units.DEGREES_PER_HOUR, "accel": units.MILLIMETRES}
 class Curves:
     """One channel: its extremes before and after, and the correction; NaN at a break."""
 
-    least: drawing.Array
-    most: drawing.Array
-    least_after: drawing.Array
-    most_after: drawing.Array
-    correction: drawing.Array
+    least: Array
+    most: Array
+    least_after: Array
+    most_after: Array
+    correction: Array
 
 
 @dataclass(frozen=True)
 class Compensated:
     """One manoeuvre before and after, with the edges of the traces."""
 
-    x: drawing.Array
+    x: Array
     timed: bool
     curves: Mapping[str, Curves]  # by channel
     phases: Sequence[Record]
@@ -291,13 +292,13 @@ def _compensated(tables: Tables, plan: Record) -> Compensated | None:
     return Compensated(x, timed, curves, phases, turning=plan["do"] == "turn")
 
 
-def _mean(values: drawing.Array, edges: NDArray[np.int64]) -> drawing.Array:
+def _mean(values: Array, edges: NDArray[np.int64]) -> Array:
     """Means over the stretches that begin at `edges`."""
     count = np.diff(np.append(edges, len(values)))
     return np.asarray(np.add.reduceat(values, edges) / count)
 
 
-def _breaks(x: drawing.Array) -> NDArray[np.int64]:
+def _breaks(x: Array) -> NDArray[np.int64]:
     """Where something is missing between one stretch and the next."""
     steps = np.diff(x)
     if not len(steps):
@@ -305,7 +306,7 @@ def _breaks(x: drawing.Array) -> NDArray[np.int64]:
     return np.flatnonzero(steps > MAX_STEPS * np.median(steps)) + 1
 
 
-def _of(frame: pd.DataFrame, column: str) -> drawing.Array:
+def _of(frame: pd.DataFrame, column: str) -> Array:
     return frame[column].to_numpy(dtype=np.float64)
 
 

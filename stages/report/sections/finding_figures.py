@@ -146,8 +146,8 @@ def axis(x: Array) -> Axis:
     at: list[float] = []
     stretches = [own for own in np.split(np.arange(len(x)), cuts) if len(own) > 1]
     for own in stretches:
-        wanted = max(MOST_TICKS // len(stretches), 2)
-        nice = MaxNLocator(wanted).tick_values(x[own[0]], x[own[-1]])
+        count = max(MOST_TICKS // len(stretches), 2)
+        nice = MaxNLocator(count).tick_values(x[own[0]], x[own[-1]])
         inside = nice[(nice >= x[own[0]]) & (nice <= x[own[-1]])]
         ticks += inside.tolist()
         at += np.interp(inside, x[own], places[own]).tolist()

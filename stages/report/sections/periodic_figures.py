@@ -15,6 +15,7 @@ from inertial.tables import AXES, GYRO
 from inertial.text.numbers import fixed, shortened, significant
 from inertial.text.units import DEGREE, DEGREES_PER_HOUR, PPM, SECONDS_OF_ARC
 from stages.report import drawing
+from stages.report.drawing import Array
 from stages.report.outline import Figure
 from stages.report.results import final_results
 from stages.report.tables import Record, Tables
@@ -136,12 +137,12 @@ def over_time(tables: Tables, effect: str, key: str) -> Figure | None:
     )
 
 
-def _seconds(tables: Tables, turns: Collection[str]) -> dict[str, Mapping[str, drawing.Array]]:
+def _seconds(tables: Tables, turns: Collection[str]) -> dict[str, Mapping[str, Array]]:
     """A second from the middle of the steady part of each turn: time and what the gyros read."""
     pieces: dict[str, list[pd.DataFrame]] = {}
     for name, own in _steady(tables, turns) if turns else ():
         pieces.setdefault(name, []).append(own)
-    seconds: dict[str, Mapping[str, drawing.Array]] = {}
+    seconds: dict[str, Mapping[str, Array]] = {}
     for name, each in pieces.items():
         rows = pd.concat(each).sort_values("record")
         time = rows["time"].to_numpy(dtype=np.float64)
@@ -157,7 +158,7 @@ def _seconds(tables: Tables, turns: Collection[str]) -> dict[str, Mapping[str, d
     return seconds
 
 
-def _curve(panel: Axes, view: View, samples: Mapping[str, drawing.Array]) -> None:
+def _curve(panel: Axes, view: View, samples: Mapping[str, Array]) -> None:
     line, time = view.line, samples["time"]
     values = (samples[view.gyro] - np.nanmean(samples[view.gyro])) / MILLIRADIANS
     colour = drawing.AXIS_COLOUR[view.gyro]
@@ -236,7 +237,7 @@ def over_angle(tables: Tables, order: float, key: str) -> Figure | None:
     )
 
 
-def _binned(tables: Tables, span: float) -> Iterator[tuple[str, str, drawing.Array, drawing.Array]]:
+def _binned(tables: Tables, span: float) -> Iterator[tuple[str, str, Array, Array]]:
     """Of each axis a turn: its name, the axis, the angle turned, °, and the residual, °/h."""
     plan = tables.rows("manoeuvres")
     about = turns_about(plan)

@@ -14,6 +14,7 @@ from inertial.tables import AXES, CHANNELS
 from inertial.text.numbers import counted, fixed, shortened
 from inertial.text.units import DEGREES_PER_SECOND, METRES, Unit
 from stages.report import drawing
+from stages.report.drawing import Array
 from stages.report.identifiers import at_rest
 from stages.report.outline import Figure, Paragraph, Part, Section
 from stages.report.tables import Record, Tables, once
@@ -28,10 +29,10 @@ class Log:
     """One log as it is drawn: envelope over time, phases, missing stretches."""
 
     name: str
-    start: drawing.Array  # of each row of the envelope, s, or records where there is no time
-    end: drawing.Array
-    least: dict[str, drawing.Array]
-    most: dict[str, drawing.Array]
+    start: Array  # of each row of the envelope, s, or records where there is no time
+    end: Array
+    least: dict[str, Array]
+    most: dict[str, Array]
     phases: tuple[Record, ...]
     missing: tuple[Stretch, ...]  # the longest of them
     lost: float  # s, of all gaps, from the record before to the one after
@@ -91,9 +92,7 @@ def logs(tables: Tables) -> list[Log]:
     return each
 
 
-def _missing(
-    start: drawing.Array, end: drawing.Array, interval: float | None, gaps: drawing.Array
-) -> list[Stretch]:
+def _missing(start: Array, end: Array, interval: float | None, gaps: Array) -> list[Stretch]:
     """Stretches without samples: the gaps, and wherever else the envelope breaks off."""
     step = interval or (float(np.median(start[1:] - end[:-1])) if len(start) > 1 else np.inf)
     breaks = np.flatnonzero(start[1:] - end[:-1] > 2.5 * step)
@@ -128,9 +127,7 @@ def _cut(log: Log) -> Log:
     return replace(log.rows(np.array(keep)), start=np.array(start), end=np.array(end))
 
 
-def envelope(
-    log: Log, channel: str, points: int
-) -> tuple[drawing.Array, drawing.Array, drawing.Array]:
+def envelope(log: Log, channel: str, points: int) -> tuple[Array, Array, Array]:
     """Middle, smallest and largest of about `points` stretches; a nan where the log breaks off."""
     count = len(log.start)
     broken = np.zeros(count, dtype=np.int64)

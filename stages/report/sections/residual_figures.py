@@ -14,6 +14,7 @@ from inertial.tables import AXES
 from inertial.text.numbers import p_is, shortened
 from inertial.text.units import DEGREE, DEGREES_PER_HOUR, MICRO_G, Unit
 from stages.report import drawing
+from stages.report.drawing import Array
 from stages.report.identifiers import at_mount, sensor_and_axis
 from stages.report.outline import Figure
 from stages.report.results import JOINT
@@ -48,8 +49,8 @@ class Residual:
     """
 
     manoeuvre: str
-    mean: drawing.Array
-    sigma: drawing.Array
+    mean: Array
+    sigma: Array
 
 
 @once
@@ -58,9 +59,7 @@ def mean_residuals(tables: Tables) -> dict[str, list[Residual]]:
     noise = {(r["manoeuvre"], r["channel"]): r["noise_rms"] for r in tables.rows("fidelity")}
     channels = [f"{sensor}_{axis}" for sensor in UNIT for axis in AXES]
     residuals = [f"residual_{name}" for name in channels]
-    sums: dict[
-        str, list[tuple[drawing.Array, drawing.Array]]
-    ] = {}  # of each manoeuvre sums and counts, (k, 6)
+    sums: dict[str, list[tuple[Array, Array]]] = {}  # of each manoeuvre sums and counts, (k, 6)
     for batch in tables.stream("simulated").columns(["manoeuvre", "phase", *residuals]):
         for name, own in batch.to_pandas().groupby("manoeuvre", sort=False):
             values = own[residuals].to_numpy(np.float64)

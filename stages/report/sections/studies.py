@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from inertial.text import numbers
 from inertial.text.units import DEGREE, DEGREES_PER_HOUR, PPM, SECONDS_OF_ARC, Unit
 from stages.report import drawing
+from stages.report.drawing import Array
 from stages.report.outline import (
     Column,
     Equation,
@@ -120,7 +121,7 @@ def _by_time(rows: Sequence[Record], wholes: Wholes) -> By:
     return dict(list(by_pair.items())[:MOST_PAIRS])
 
 
-def _column(rows: Sequence[Record], key: str, unit: Unit) -> drawing.Array:
+def _column(rows: Sequence[Record], key: str, unit: Unit) -> Array:
     return np.array([row[key] for row in rows], dtype=np.float64) / unit.size
 
 
@@ -209,12 +210,12 @@ def _on_place(rows: Sequence[Record], whole_turn: Record) -> str:
 def _on_angle(rows: Sequence[Record], whole_turn: Record) -> str:
     """How far the result still is from that of the whole turn at some angles."""
     differences = []
-    for wanted in (90.0, 180.0, 270.0, degrees(rows[-1]["angle"])):
-        row = min(rows, key=lambda row: abs(degrees(row["angle"]) - wanted))
-        if abs(degrees(row["angle"]) - wanted) < MAX_OFF:
+    for angle in (90.0, 180.0, 270.0, degrees(rows[-1]["angle"])):
+        row = min(rows, key=lambda row: abs(degrees(row["angle"]) - angle))
+        if abs(degrees(row["angle"]) - angle) < MAX_OFF:
             off = numbers.fixed(PPM.of(row["scale"] - whole_turn["scale"]), 1)
             sigma = numbers.fixed(PPM.of(row["cut_sigma"]), 1)
-            differences.append(f"{off} ± {sigma} ppm at {numbers.fixed(wanted, 0)}°")
+            differences.append(f"{off} ± {sigma} ppm at {numbers.fixed(angle, 0)}°")
     return (
         f"{whole_turn['axis']} gyro, {_names(whole_turn)}: the difference from the whole turn is "
         f"{'; '.join(differences)}. The larger the angle, the smaller the effect of noise and of "
@@ -245,11 +246,11 @@ def _middles(tables: Tables) -> Table:
 
 
 def _middle(row: Record, whole_turn: Record) -> Row:
-    apart = row["cut_sigma"] if row["by"] != "other turns" else row["scale_sigma"]
+    own_sigma = row["cut_sigma"] if row["by"] != "other turns" else row["scale_sigma"]
     off = sigma = None
     if row["by"] != WHOLE_TURN:
         off = row["scale"] - whole_turn["scale"]
-        sigma = float(np.hypot(apart, whole_turn["scale_sigma"])) if apart else None
+        sigma = float(np.hypot(own_sigma, whole_turn["scale_sigma"])) if own_sigma else None
     decimals = numbers.decimals_of(PPM.of(whole_turn["scale_sigma"])) or 1
     values = (row["scale"], row["scale_sigma"], off, sigma)
     return table_row(
