@@ -1,1 +1,1 @@
-"""What the project is worth beside others: `make bench` measures and times it on the same data."""
+"""Comparison with other programs on the same data: accuracy, time, memory (`make bench`)."""

@@ -18,7 +18,7 @@ RESULTS = Path(__file__).parent / "results.md"
 
 
 def main(names: list[str]) -> None:
-    """Run the parts and tell what they found."""
+    """Run the parts and print their tables."""
     if unknown := [name for name in names if name not in PARTS]:
         sys.exit(f"benchmarks: there is no part {', '.join(unknown)}; parts: {', '.join(PARTS)}")
     page = ["# Benchmarks", "", *(f"- {line}" for line in described()), ""]

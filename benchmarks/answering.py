@@ -1,4 +1,4 @@
-"""How a program in a process of its own answers: one JSON object, with its largest memory."""
+"""The answer of a program in a process of its own: one JSON object, with its largest memory."""
 
 import json
 import resource
@@ -9,14 +9,14 @@ from typing import Any
 STATUS = Path("/proc/self/status")
 
 
-def answer(**told: Any) -> None:
-    """Write what was found, and the largest resident memory of this process, byte."""
-    json.dump({**told, "memory": memory()}, sys.stdout)
+def answer(**results: Any) -> None:
+    """Write the results and the largest resident memory of this process, byte."""
+    json.dump({**results, "memory": memory()}, sys.stdout)
 
 
 def memory() -> int:
     """The largest resident memory of this process so far, byte."""
-    # Linux keeps the maximum that getrusage tells from the process that started this one.
+    # On Linux, getrusage includes the maximum of the process that started this one.
     if STATUS.exists():
         for line in STATUS.read_text().splitlines():
             if line.startswith("VmHWM:"):

@@ -1,12 +1,12 @@
-"""The least that any unbiased method can be off: the bound of Cramér and Rao, by the design.
+"""Smallest error of any unbiased method: the Cramér–Rao bound, from the design.
 
 It knows the white noise, the table's motion and gravity, and uses every sample:
 
     accelerometers   reading = M g u + b
     gyros            reading = M (u (rate + ω_up) + e) + b
 
-where u points up; the level part e of the earth's rate, which goes round while the table turns, is
-unknown at each position but for its size. It shares no code with the stages.
+where u points up; the horizontal component e of the earth rate, which rotates while the table
+turns, is unknown at each position except for its size. It shares no code with the stages.
 """
 
 from math import cos, radians, sin, sqrt
@@ -84,14 +84,14 @@ def unit(direction: str) -> Array:
 
 
 def expected_worst(covariance: Array, parts: NDArray[np.bool_]) -> float:
-    """How far off the worst of some parameters is on average, by their covariance."""
+    """Mean of the largest error of some parameters, by their covariance."""
     chosen = covariance[np.ix_(parts, parts)]
     drawn = np.random.default_rng(0).multivariate_normal(np.zeros(len(chosen)), chosen, DRAWS)
     return float(np.abs(drawn).max(axis=1).mean())
 
 
 def _of_triad(of_channel: Array) -> Array:
-    """The covariance of three alike and independent channels, each of a row of M and a bias."""
+    """The covariance of three equal and independent channels, each of a row of M and a bias."""
     covariance = np.zeros((12, 12))
     for row in range(3):
         places = [3 * row, 3 * row + 1, 3 * row + 2, 9 + row]

@@ -1,8 +1,8 @@
-"""The joint estimate against the bound of Cramér and Rao: plans a to e of the design study.
+"""The joint estimate against the Cramér–Rao bound: plans a to e of the design study.
 
 150 campaigns of block statistics for each plan and noise, and three from bytes, through the whole
-chain: rms error over the bound, and how often 95 % intervals hold the truth. The bound is computed
-apart from the stages (tests/bounds).
+chain: rms error over the bound, and how often 95 % intervals contain the truth. The bound is
+computed independently of the stages (tests/bounds).
 """
 
 from collections.abc import Iterator
@@ -33,7 +33,7 @@ COLUMNS = [f"{kind}_{sensor}" for sensor in SENSORS.values() for kind in KINDS.v
 def measured() -> list[Table]:
     """One table: a row for each plan and noise."""
     table = Table(
-        f"Rms error of the joint estimate over the bound of Cramér and Rao, {DRAWS} campaigns each",
+        f"Rms error of the joint estimate over the Cramér–Rao bound, {DRAWS} campaigns each",
         ("plan, noise", *COLUMNS, "all", "within\n1.96 σ", "from\nbytes"),
     )
     every: list[Array] = []
@@ -45,20 +45,20 @@ def measured() -> list[Table]:
                 errors, sigmas = (np.array(part) for part in zip(*results, strict=True))
                 few = list(pool.map(partial(from_bytes, *pair), range(FROM_BYTES)))
                 whole, _ = (np.array(part) for part in zip(*few, strict=True))
-                told = np.isfinite(sigmas).all(axis=0)
+                determined = np.isfinite(sigmas).all(axis=0)
                 bound = least(*pair)
-                within = np.abs(errors / sigmas)[:, told] < 1.96
+                within = np.abs(errors / sigmas)[:, determined] < 1.96
                 every.append(within.ravel())
                 table.add(
                     f"{plan}, {instrument}",
-                    *(_cell(errors / bound, told, name) for name in COLUMNS),
-                    f"{_rms((errors / bound)[:, told]):.3f}",
+                    *(_cell(errors / bound, determined, name) for name in COLUMNS),
+                    f"{_rms((errors / bound)[:, determined]):.3f}",
                     f"{100 * within.mean():.1f} %",
-                    f"{_rms((whole / bound)[:, told]):.2f}",
+                    f"{_rms((whole / bound)[:, determined]):.2f}",
                 )
     pooled = np.concatenate(every)
     table.remarks += [
-        f"All {len(pooled)} intervals together hold the truth in {100 * pooled.mean():.2f} %.",
+        f"All {len(pooled)} intervals together contain the truth in {100 * pooled.mean():.2f} %.",
         "A dash: the plan does not determine it, and no value is given.",
         "b bias, s scale factor, N cross terms; a accelerometers, g gyros. An rms of 450 errors"
         " scatters by 3 %.",
@@ -66,7 +66,7 @@ def measured() -> list[Table]:
     return [table]
 
 
-def _cell(ratios: Array, told: NDArray[np.bool_], column: str) -> str:
+def _cell(ratios: Array, determined: NDArray[np.bool_], column: str) -> str:
     kind, sensor = column.split("_")
     own = np.array(
         [
@@ -75,7 +75,7 @@ def _cell(ratios: Array, told: NDArray[np.bool_], column: str) -> str:
             for name in NAMES
         ]
     )
-    return f"{_rms(ratios[:, own & told]):.3f}" if (own & told).any() else "–"
+    return f"{_rms(ratios[:, own & determined]):.3f}" if (own & determined).any() else "–"
 
 
 def _rms(ratios: Array) -> float:
@@ -98,10 +98,10 @@ def from_bytes(plan: str, instrument: str, seed: int) -> tuple[Array, Array]:
 def _document(plan: str, instrument: str, seed: int) -> dict[str, Any]:
     gyro, accelerometer = plans.NOISE[instrument]
     demo = chain.demo(seed=seed)
-    told = plans.campaign(plan)
+    determined = plans.campaign(plan)
     return {
         **demo,
-        "campaign": told | {"site": told["site"] | {"gravity_m_s2": GRAVITY}},
+        "campaign": determined | {"site": determined["site"] | {"gravity_m_s2": GRAVITY}},
         "handling": {
             "still_s": 2,
             "change_s": 8,

@@ -1,4 +1,4 @@
-"""Calibration of clean data: how far off each method is, the bound, and how long it takes."""
+"""Calibration of clean data: errors of each method, the bound, and time."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,14 +14,14 @@ from benchmarks.campaign import document, performed
 from benchmarks.methods import EXPLAINED, JOINT, METHODS, Compared, of_all
 from benchmarks.parameters import KINDS, SENSORS, Array, truth, worst
 from benchmarks.solving import Solved, run_again, solve, tables_for
-from benchmarks.tables import Table, told
+from benchmarks.tables import Table, digits
 from benchmarks.timing import HEADS, REMARK, Seconds, timed
 
 SEEDS = range(1, 9)
-RUNS = 5  # of the solves of each campaign
+RUNS = 5  # of the estimation of each campaign
 LEFT_OUT = (
-    "Left out, for they do not do this: actipy (sphere fit of scale and bias; returns data within"
-    " 10 mg of 1 g as they are), scikit-digital-health (the same fit, from 12 hours on),"
+    "Not compared, because they do not do this: actipy (sphere fit of scale and bias; returns data"
+    " within 10 mg of 1 g as they are), scikit-digital-health (the same fit, from 12 hours on),"
     " circuitpython-mag-cal (ellipsoid of nine unknowns; six positions give six equations), magyc"
     " and qmt (magnetometers), imusensor (reads its own chip), ahrs, scikit-kinematics, imuops"
     " (none)."
@@ -30,10 +30,10 @@ LEFT_OUT = (
 
 @dataclass
 class Runs:
-    """What the methods found, campaign by campaign."""
+    """Results of the methods, campaign by campaign."""
 
     off: dict[tuple[str, str], list[Array]] = field(default_factory=dict)  # method, sensor
-    pulls: list[Array] = field(default_factory=list)  # of the joint estimate, in its sigmas
+    standardised: list[Array] = field(default_factory=list)  # of the joint estimate, in its sigmas
     covariances: dict[str, list[Array]] = field(default_factory=dict)  # of the joint estimate
     solving: list[Seconds] = field(default_factory=list)
     alone: list[Seconds] = field(default_factory=list)  # without the averaging curves
@@ -45,17 +45,17 @@ class Runs:
         self.whole.append(solved.seconds)
         self.of_imucal += compared.times
         for sensor, true in truth().items():
-            for method, parameters in compared.found.items():
+            for method, parameters in compared.parameters.items():
                 off = parameters[sensor] - true
                 self.off.setdefault((method, sensor), []).append(off)
                 if method == JOINT:
                     covariance = solved.covariance(sensor)
                     self.covariances.setdefault(sensor, []).append(covariance)
-                    self.pulls.append(off / np.sqrt(np.diag(covariance)))
+                    self.standardised.append(off / np.sqrt(np.diag(covariance)))
 
 
 def measured() -> list[Table]:
-    """Errors and times on campaigns that differ by chance alone."""
+    """Errors and times on campaigns that differ in their noise only."""
     runs = Runs()
     for seed in SEEDS:
         recording = performed(document(seed))
@@ -84,21 +84,21 @@ def _errors(runs: Runs) -> Table:
         cells = []
         for _, sensor, parts, unit in KINDS:
             found = runs.off[method, sensor]
-            cells.append(told(float(np.mean([worst(off, parts, unit) for off in found]))))
+            cells.append(digits(float(np.mean([worst(off, parts, unit) for off in found]))))
         table.add(method, *cells, "no" if "imucal" in method else "yes")
     promised = {sensor: np.mean(each, axis=0) for sensor, each in runs.covariances.items()}
     least = {"accelerometer": bound.accelerometers(), "gyroscope": bound.gyros()}
     for name, covariance in (("expected: joint, its sigmas", promised), ("expected: bound", least)):
-        cells = [told(bound.expected_worst(covariance[s], p) / unit) for _, s, p, unit in KINDS]
+        cells = [digits(bound.expected_worst(covariance[s], p) / unit) for _, s, p, unit in KINDS]
         table.add(name, *cells, "")
-    pulls = np.concatenate(runs.pulls)
+    standardised = np.concatenate(runs.standardised)
     table.remarks += [
-        f"Chance moves a mean of {len(SEEDS)} by about 15 %; the expected values are free of it."
-        " Bound: Cramér and Rao, of every sample, from the design alone. S0's formulas: six"
+        f"A mean of {len(SEEDS)} scatters by about 15 %; the expected values do not."
+        " Bound: Cramér–Rao, of every sample, from the design alone. S0's formulas: six"
         " positions, and turns of a known angle.",
         "The sigmas hold: the errors of the joint estimate in units of its own sigmas have the rms"
-        f" {np.sqrt(np.mean(pulls**2)):.2f}, expected 1; the largest of {len(pulls)} is"
-        f" {np.abs(pulls).max():.1f}.",
+        f" {np.sqrt(np.mean(standardised**2)):.2f}, expected 1; the largest of"
+        f" {len(standardised)} is {np.abs(standardised).max():.1f}.",
         EXPLAINED,
         LEFT_OUT,
     ]

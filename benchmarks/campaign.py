@@ -1,8 +1,8 @@
-"""The campaign that everything here is measured on: six positions, three axes there and back.
+"""The campaign of the benchmarks: six positions, turns about three axes forward and backward.
 
 Of 200 samples per second, 1 mg and 0.02 °/s of white noise in each: six rests of 120 s, and about
 each axis 720° at 20 °/s forward and backward. The IMU is the demo's, misaligned by half a degree
-and biased; the table is so good that only the noise counts, and gravity is known.
+and biased; the table is so accurate that only the noise matters, and gravity is known.
 """
 
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ TURN_NOISE = 0.02  # °/s per sample
 REST_SECONDS = 120.0
 STILL_SECONDS = 6.5  # before and after a turn
 TURN_DEGREES = 720.0
-TURN_RATE = 20.0  # °/s, reached and left at as much per second
+TURN_RATE = 20.0  # °/s; accelerations are as much per second
 ARCSECONDS = 0.1  # sigma of the table's positions and angles
 
 LEANING = [0.0, 1.0, tan(radians(0.1))]  # +y, 0.1° off towards z
@@ -35,10 +35,10 @@ TURNS = {
 
 
 def document(seed: int, *, longer: int = 1, times: int = 1, rate: float = RATE) -> dict[str, Any]:
-    """What the simulated laboratory is told.
+    """The specification for the simulated laboratory.
 
-    `longer`: rests and turns last so many times as long; `times`: all is done so many times.
-    The noise is that of the sensors, so another `rate`, Hz, has another noise in each sample.
+    `longer`: factor of the durations of rests and turns; `times`: repetitions of the plan.
+    The noise density is that of the sensors, so the noise of a sample depends on `rate`, Hz.
     """
     demo = laboratory.read(ROOT / "data/simulated/demo.yaml").document
     receiver = {**demo["receiver"], "rate_hz": rate}
@@ -93,14 +93,14 @@ def log_of(manoeuvre: str) -> str:
     return f"{manoeuvre}.asc"
 
 
-def performed(told: Mapping[str, Any]) -> laboratory.Recording:
-    """The simulated laboratory carries it out."""
-    return laboratory.perform(laboratory.specify(told))
+def performed(specified: Mapping[str, Any]) -> laboratory.Recording:
+    """The recording of the simulated laboratory."""
+    return laboratory.perform(laboratory.specify(specified))
 
 
-def tilted(told: Mapping[str, Any]) -> laboratory.Recording:
-    """The same, but one rest truly stands 0.1° off what the laboratory believes and writes down."""
-    plan = told["campaign"]["plan"]
+def tilted(specified: Mapping[str, Any]) -> laboratory.Recording:
+    """The same, but with one rest 0.1° off the attitude in the campaign file."""
+    plan = specified["campaign"]["plan"]
     crooked = [{**one, "up": LEANING} if one["id"] == "y-up" else one for one in plan]
-    true = performed({**told, "campaign": {**told["campaign"], "plan": crooked}})
+    true = performed({**specified, "campaign": {**specified["campaign"], "plan": crooked}})
     return replace(true, campaign={**true.campaign, "plan": plan})

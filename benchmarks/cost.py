@@ -1,4 +1,4 @@
-"""What the solves cost: time and memory from blocks to parameters, as campaigns grow.
+"""Cost of the estimation: time and memory from blocks to parameters, as campaigns grow.
 
 The laboratory records long campaigns with 5 samples per second instead of 200. A sample is a mean
 over its interval, so one of 0.2 s is a block of a turn, and all blocks are those that a log of 200
@@ -14,12 +14,12 @@ import chain  # of the tests: the stages one after another in this process
 import laboratory
 from benchmarks.campaign import RATE, RESTS, TURNS, document, performed
 from benchmarks.processes import Answer, in_own
-from benchmarks.tables import Table, told
+from benchmarks.tables import Table, digits
 from benchmarks.timing import REMARK, Seconds
 
 SAMPLED = 5.0  # Hz
-LONGER = {1: 5, 10: 3, 100: 1}  # how many times as long, and how many runs
-TIMES = {1: 5, 4: 2, 8: 1}  # how many times all is done, and how many runs
+LONGER = {1: 5, 10: 3, 100: 1}  # factor of duration, and number of runs
+TIMES = {1: 5, 4: 2, 8: 1}  # repetitions of the plan, and number of runs
 BAR = 2.0  # s, for the first campaign
 MANOEUVRES = len(RESTS) + len(TURNS)
 HEADS = (
@@ -31,17 +31,17 @@ HEADS = (
     "processor\ns",
     "grows as\nsamples to the",
     "memory\nMB",
-    "of it by\nthe solves",
+    "of it by\nestimation",
 )
 
 
 def measured() -> list[Table]:
     """Campaigns of longer manoeuvres, and of more of them."""
-    longer = Table("Cost of the solves: the same manoeuvres, longer", HEADS)
+    longer = Table("Cost of the estimation: the same manoeuvres, longer", HEADS)
     best = _fill(longer, [(f"{n} × as long", n, 1, runs) for n, runs in LONGER.items()])
     kept = "kept" if best < BAR else "MISSED"
     longer.remarks.append(f"Bar: the first campaign in {BAR:g} s: {best:.2f} s, {kept}.")
-    more = Table("Cost of the solves: more manoeuvres, each a position of its own", HEADS)
+    more = Table("Cost of the estimation: more manoeuvres, each a position of its own", HEADS)
     _fill(more, [(f"{n * MANOEUVRES} manoeuvres", 1, n, runs) for n, runs in TIMES.items()])
     more.remarks.append(REMARK)
     return [longer, more]
@@ -64,10 +64,10 @@ def _fill(table: Table, rows: list[tuple[str, int, int, int]]) -> float:
             f"{samples:,.0f}",
             f"{answer['blocks']:,}",
             *(stage.cells()[0] for stage in stages),
-            told(cpu),
+            digits(cpu),
             "" if growth is None else f"{growth:.2f}",
-            told(answer["memory"] / 1e6),
-            told((answer["memory"] - answer["memory_before"]) / 1e6),
+            digits(answer["memory"] / 1e6),
+            digits((answer["memory"] - answer["memory_before"]) / 1e6),
         )
         best.append(sum(stage.best for stage in stages))
         before = samples, cpu
@@ -75,7 +75,7 @@ def _fill(table: Table, rows: list[tuple[str, int, int, int]]) -> float:
 
 
 def _solved(longer: int, times: int, runs: int) -> tuple[float, Answer]:
-    """The samples that a campaign would have at 200 Hz, and what its solves answer."""
+    """The samples that a campaign would have at 200 Hz, and the cost of its estimation."""
     with TemporaryDirectory() as folder:
         raw, derived = Path(folder) / "raw" / "bench", Path(folder) / "derived" / "bench"
         recording = performed(document(1, longer=longer, times=times, rate=SAMPLED))

@@ -1,4 +1,4 @@
-"""A long log to Parquet, text and binary: speed and memory beside others, and beside a copy.
+"""A long log to Parquet, text and binary: speed and memory of several programs and of a copy.
 
 The text log has 100 MB (10⁶ byte); BENCH_LOG_MB sets another size. The binary one has the same
 records in half of that.
@@ -15,15 +15,15 @@ from ruamel.yaml import YAML
 
 from benchmarks.campaign import RATE, document
 from benchmarks.processes import Answer, in_own, in_peers
-from benchmarks.tables import Table, told
+from benchmarks.tables import Table, digits
 from benchmarks.timing import HEADS, REMARK, Seconds
 from laboratory.rawimu import Samples, log_bytes
 
-LINES = 100_000  # of the log that are written at a time
+LINES = 100_000  # of the log, written at once
 ROUNDS = 3
 LONG = 10  # s; what takes longer has one round
 START = 1_477_530_018_009_998_762  # ns of GPS time
-UNIX = 2_000_000  # byte of the log with line ends LF: enough to see that nothing is found in it
+UNIX = 2_000_000  # byte of the log with line ends LF: enough to show that it is not read
 COPY = "copy in memory"
 OURS = "this project, decode"
 
@@ -115,10 +115,10 @@ def _table(readers: list[Reader], of: str) -> Table:
             reader.name,
             f"{reader.runs[0]['records']:,}" if reader.name != COPY else "",
             *seconds[reader.name].cells(),
-            told(speeds[reader.name] / 1e6),
-            told(reader.size / min(seconds[reader.name].cpu) / 1e6),
+            digits(speeds[reader.name] / 1e6),
+            digits(reader.size / min(seconds[reader.name].cpu) / 1e6),
             f"{max(run['memory'] for run in reader.runs) / 1e6:,.0f}",
-            told(speeds[COPY] / speeds[reader.name]),
+            digits(speeds[COPY] / speeds[reader.name]),
         )
     table.remarks.append(
         f"{REMARK} {ROUNDS} rounds, one where a run takes over {LONG} s, each reader in a process"

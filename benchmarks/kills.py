@@ -19,14 +19,14 @@ import pyarrow.parquet as pq
 from ruamel.yaml import YAML
 
 import laboratory
-from benchmarks.tables import Table, told
+from benchmarks.tables import Table, digits
 
 ROOT = Path(__file__).parent.parent
 PAGE = "reports/short.html"
 
 
 def measured() -> list[Table]:
-    """One run undisturbed; then so many that are killed, each going on where the last one ended."""
+    """One undisturbed run; then runs that are killed, each continuing where the last one ended."""
     kills, chance = int(os.environ.get("BENCH_KILLS", "50")), np.random.default_rng(1)
     with TemporaryDirectory() as name:
         whole, killed = Path(name) / "whole", Path(name) / "killed"
@@ -54,14 +54,20 @@ def measured() -> list[Table]:
         different = _different(whole, killed)
     table = Table(
         "Runs killed (-9) at random moments",
-        ("kills", "tables that cannot be read", "parts left", "the next run", "tables that differ"),
+        (
+            "kills",
+            "tables that cannot be read",
+            "temporary files",
+            "the next run",
+            "tables that differ",
+        ),
     )
     how = "completes" if last == 0 else f"ends with {last}"
     table.add(str(moments), str(len(damaged)), str(parts), how, str(len(different)))
     table.remarks.append(
-        f"An undisturbed run takes {told(seconds)} s; {completed} runs ended before they could be"
-        " killed and were begun anew. Parts are what a stage writes beside a table until it is"
-        " whole; the next run overwrites them. The tables are compared with the undisturbed run's."
+        f"An undisturbed run takes {digits(seconds)} s; {completed} runs ended before they could be"
+        " killed and were started again. Temporary files hold a table until it is complete;"
+        " the next run overwrites them. The tables are compared with the undisturbed run's."
     )
     return [table]
 

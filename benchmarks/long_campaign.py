@@ -1,8 +1,8 @@
 """The campaign of the benchmarks with rests of any length, in binary logs; written piece by piece.
 
-The laboratory performs the short one. Each rest then goes on as it was: the mean of its readings,
-white noise of the same size, counted as the receiver counts. What is recorded after it is later by
-as much.
+The laboratory simulates the short one. Each rest is then extended with the mean of its readings and
+white noise of the same size, rounded to counts as in the receiver. Later logs are delayed by as
+much.
 """
 
 from collections.abc import Iterator
@@ -24,8 +24,8 @@ Counts = NDArray[np.int64]
 
 def record(folder: Path, samples: int) -> tuple[int, int]:
     """A campaign of at least so many samples into its folder; its samples and the logs' bytes."""
-    told = document(1)
-    short = performed(told)
+    specified = document(1)
+    short = performed(specified)
     there = sum(len(truth.time) for truth in short.truth.values())
     more = -(-max(0, samples - there) // len(RESTS))  # of every rest
     folder.mkdir(parents=True)
@@ -38,9 +38,9 @@ def record(folder: Path, samples: int) -> tuple[int, int]:
         later += longer * STEP
     plan = [
         {**one, "seconds": one["seconds"] + more / RATE} if one["do"] == "rest" else one
-        for one in told["campaign"]["plan"]
+        for one in specified["campaign"]["plan"]
     ]
-    (folder / "campaign.yaml").write_bytes(campaign_yaml({**told["campaign"], "plan": plan}))
+    (folder / "campaign.yaml").write_bytes(campaign_yaml({**specified["campaign"], "plan": plan}))
     return there + more * len(RESTS), written
 
 
@@ -52,7 +52,7 @@ def _pieces(
     yield Samples(stamps, truth.accelerometer, truth.gyro)
     chance = np.random.default_rng([1, list(short.truth).index(log)])
     means, sigmas = _increments(short, truth)
-    over = np.zeros(6)  # what was felt and not yet counted
+    over = np.zeros(6)  # remainder that is not yet counted
     for first in range(0, longer, PIECE):
         size = min(PIECE, longer - first)
         felt = over + np.cumsum(chance.normal(means, sigmas, (size, 6)), axis=0)

@@ -1,4 +1,4 @@
-"""Every method on the same samples: this project's two, and those of peers."""
+"""Every method on the same samples: two of this project, and those of other programs."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,15 +35,15 @@ RUNS = 5  # of imucal, for its time
 
 @dataclass(frozen=True)
 class Compared:
-    """What every method finds by its name, what imucal warns of, and its times."""
+    """Parameters by method, warnings of imucal, and its times."""
 
-    found: dict[str, Parameters]
+    parameters: dict[str, Parameters]
     warnings: list[str]
     times: list[Seconds]
 
 
 def of_all(solved: Solved, recording: Recording, folder: Path) -> Compared:
-    """Show every method the samples that the chain was shown."""
+    """Apply every method to the samples of the chain."""
     found = {
         name: {sensor: solved.values[sensor, method] for sensor, method in own.items()}
         for name, own in OWN.items()

@@ -1,4 +1,4 @@
-"""White noise of a long record: our spectrum beside allantools' Allan deviation."""
+"""White noise of a long record: our spectrum compared with allantools' Allan deviation."""
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -17,7 +17,7 @@ RUNS = 3
 
 
 def measured() -> list[Table]:
-    """Time, memory, and what is found without and with an oscillation in the band."""
+    """Time, memory, and errors without and with an oscillation in the band."""
     chance = np.random.default_rng(1)
     scatter = WHITE * np.sqrt(RATE)
     quiet = scatter * chance.standard_normal(SAMPLES)

@@ -1,4 +1,4 @@
-"""Twelve parameters of a triad of sensors, what they are off, and how that is told.
+"""Twelve parameters of a triad of sensors, and their errors in units for display.
 
 M by rows, then the bias: (12,), no unit and m/s² or rad/s.
 """
@@ -23,7 +23,7 @@ BIAS: Booleans = ~(SCALE | CROSS)
 MATRIX: Booleans = SCALE | CROSS
 BIAS_UNIT = {"accelerometer": MICRO_G, "gyroscope": DEGREE_HOUR}
 SENSORS = tuple(BIAS_UNIT)
-# Heads of tables, and what stands below: sensor, parts, and the unit they are told in.
+# Heads of tables, with sensor, parts, and the unit of display.
 KINDS = [
     (f"{short} {kind}\n{unit}", sensor, parts, size)
     for sensor, short, bias_unit in (("accelerometer", "accel", "µg"), ("gyroscope", "gyro", "°/h"))

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 from benchmarks.long_campaign import record
 from benchmarks.processes import Answer, in_own
-from benchmarks.tables import Table, told
+from benchmarks.tables import Table, digits
 
 SIZES = (10**6, 10**7, 10**8)
 BAR = 2000.0  # MB
@@ -41,18 +41,18 @@ def measured() -> list[Table]:
         stages = sorted(answer["stages"].items(), key=lambda stage: -stage[1])[:LONGEST]
         table.add(
             f"{samples:,}",
-            told(written / 1e6),
-            told(answer["seconds"]),
-            told(cpu),
+            digits(written / 1e6),
+            digits(answer["seconds"]),
+            digits(cpu),
             "" if growth is None else f"{growth:.2f}",
-            told(memory),
-            told(answer["largest"] / 1e6),
-            ", ".join(f"{stage} {told(seconds)}" for stage, seconds in stages),
+            digits(memory),
+            digits(answer["largest"] / 1e6),
+            ", ".join(f"{stage} {digits(seconds)}" for stage, seconds in stages),
         )
         before, largest = (samples, cpu), max(largest, memory)
     table.remarks.append(
         "Binary logs, two processors. Processor and memory: of all processes of a run, Snakemake"
-        " among them, looked at five times a second; what some of them share counts once. Bar:"
+        " among them, sampled five times a second; shared memory counts once. Bar:"
         f" {BAR:,.0f} MB, {'kept' if largest < BAR else 'MISSED'}."
     )
     return [table]

@@ -1,6 +1,6 @@
-"""The samples of the campaign cut into the sections that a peer wants, as its user would cut them.
+"""The samples of the campaign cut into the sections that another program needs.
 
-The cuts are perfect: they are made by what truly happened. One file, sections.npz, holds for each
+The cuts are exact, from the true motion. One file, sections.npz, holds for each
 section the accelerometers, m/s², and the gyros, °/s, both (n, 3).
 """
 
@@ -20,17 +20,17 @@ Array = NDArray[np.float64]
 
 FORCE = [f"accel_{axis}" for axis in "xyz"]
 TURN = [f"gyro_{axis}" for axis in "xyz"]
-AROUND = round(0.25 * RATE)  # samples left before and after the motion of a turn
+AROUND = round(0.25 * RATE)  # samples before and after the motion of a turn
 MOVING = 1e-3  # rad/s: the earth turns by less
 
 
 def write(samples: pd.DataFrame, recording: Recording, path: Path, *, earth: bool) -> None:
-    """Write the sections; without `earth`, its true rate is taken out of the gyros beforehand."""
+    """Write the sections; without `earth`, its true rate is subtracted from the gyros."""
     arrays: dict[str, Any] = {}
     for name in (*RESTS, *TURNS):
         truth = recording.truth[log_of(name)]
         log = samples[samples["log"] == log_of(name)]
-        # Lines may be missing in the log, so its samples are found by their time.
+        # Lines may be missing in the log, so its samples are identified by their time.
         row = np.searchsorted(truth.time, log["time"].to_numpy() - RATE**-1 / 2)
         chosen = np.ones(len(log), bool)
         if name in TURNS:

@@ -1,4 +1,4 @@
-"""The project's own chain on a campaign: what it finds, what it says, and how long it takes."""
+"""The stages of this project on a campaign: parameters, findings, and time."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,15 +16,15 @@ from benchmarks.timing import Seconds, timed
 Array = NDArray[np.float64]
 
 
-SEVERITY = {3: "spoils a result", 2: "weakens it", 1: "good to know"}
+SEVERITY = {3: "invalidates a result", 2: "weakens it", 1: "information"}
 
 
 @dataclass(frozen=True)
 class Solved:
-    """What the chain made of a campaign.
+    """The results of the stages on a campaign.
 
     `values`, `sigmas`: by sensor and method, (12,), NaN where not determined, M and not its errors.
-    `seconds`: from the logs to the last of the stages that ran; `says`: see `complaints`.
+    `seconds`: from the logs to the last of the stages that ran; `says`: see `warnings_of`.
     """
 
     results: chain.Results
@@ -57,11 +57,11 @@ def solve(recording: laboratory.Recording, folder: Path, until: str = "gyroscope
         unit = np.append(np.eye(3).ravel(), np.zeros(3))
         values[stage, method] = table["value"].to_numpy(np.float64) + unit
         sigmas[stage, method] = table["sigma"].to_numpy(np.float64)
-    return Solved(results, values, sigmas, seconds, complaints(results))
+    return Solved(results, values, sigmas, seconds, warnings_of(results))
 
 
-def complaints(results: chain.Results) -> list[str]:
-    """What the stages complain of, as far as they ran: each cause, how badly, how many times."""
+def warnings_of(results: chain.Results) -> list[str]:
+    """The findings of the stages that ran: each cause, severity, and number."""
     counted: dict[str, int] = {}
     for stage in ("quality", "segment", "criticism"):
         if (results.folder / stage / "findings.parquet").exists():
@@ -69,15 +69,15 @@ def complaints(results: chain.Results) -> list[str]:
             for cause, severity in zip(table["cause"], table["severity"], strict=True):
                 words = f"{cause} ({SEVERITY[severity]})"
                 counted[words] = counted.get(words, 0) + 1
-    told = [words if times == 1 else f"{words} ×{times}" for words, times in counted.items()]
+    warnings = [words if times == 1 else f"{words} ×{times}" for words, times in counted.items()]
     for stage in SENSORS:
         fit = results[f"{stage}/fit"].iloc[0]
         if fit["scatter"] > 0:
-            told.append(f"{stage}: the manoeuvres differ by more than noise, sigmas grow")
+            warnings.append(f"{stage}: the manoeuvres differ by more than noise, sigmas grow")
         parameters = results[f"{stage}/parameters"]
         for method, rows in parameters[parameters["reason"] != ""].groupby("method"):
-            told.append(f"{stage}/{method} refuses {', '.join(rows['parameter'])}")
-    return told
+            warnings.append(f"{stage}/{method} refuses {', '.join(rows['parameter'])}")
+    return warnings
 
 
 def tables_for(derived: Path, stage: str) -> dict[str, Any]:

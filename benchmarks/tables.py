@@ -29,8 +29,8 @@ class Table:
         return "\n".join(lines) + "\n"
 
 
-def told(number: float) -> str:
-    """Three digits that count; a dash for what there is not."""
+def digits(number: float) -> str:
+    """Three significant digits; a dash for no value."""
     if isnan(number):
         return "–"
     if abs(number) < 0.005:

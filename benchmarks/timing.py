@@ -1,4 +1,4 @@
-"""Times on a machine that others use too: several runs, of which the best and the median count."""
+"""Times on a shared machine: several runs, of which the best and the median are given."""
 
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -9,14 +9,14 @@ from typing import Any, Self
 
 @dataclass(frozen=True)
 class Seconds:
-    """How long the runs of the same work took, s, and how long processors worked for them."""
+    """Elapsed times of the runs of the same work, s, and their processor times."""
 
     runs: Sequence[float]
     cpu: Sequence[float]
 
     @classmethod
     def answered(cls, answers: Iterable[Mapping[str, Any]]) -> Self:
-        """The runs that some processes tell of."""
+        """The runs in the answers of some processes."""
         together = list(answers)
         runs = [run for one in together for run in one["seconds"]]
         return cls(runs, [run for one in together for run in one["cpu"]])
@@ -30,13 +30,13 @@ class Seconds:
 
     @property
     def best(self) -> float:
-        """The shortest run: what the work takes where nothing disturbs it."""
+        """The shortest run: the time of the undisturbed work."""
         return min(self.runs)
 
     def cells(self) -> tuple[str, str]:
         """Best, median and longest run; shortest time of the processors."""
-        told = (self.best, median(self.runs), max(self.runs))
-        return " / ".join(_digits(run) for run in told), _digits(min(self.cpu))
+        times = (self.best, median(self.runs), max(self.runs))
+        return " / ".join(_digits(run) for run in times), _digits(min(self.cpu))
 
 
 HEADS = ("time\ns", "processor\ns")

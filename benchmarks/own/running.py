@@ -15,26 +15,26 @@ import psutil
 from benchmarks.answering import answer
 
 ROOT = Path(__file__).parents[2]
-EVERY = 0.2  # s between two looks
+EVERY = 0.2  # s between two samples
 
 
 @dataclass
 class Watch:
-    """What the processes of a run were seen to use: processor time, s, and memory, byte."""
+    """Processor time, s, and memory, byte, of the processes of a run."""
 
     cpu: dict[psutil.Process, float] = field(default_factory=dict)
     together: int = 0
     largest: int = 0
 
-    def look(self, run: psutil.Process) -> None:
-        """At a process and all that it began; what two of them share counts for each a half."""
-        held = [0]
+    def sample(self, run: psutil.Process) -> None:
+        """Sample a process and its children; memory that two of them share counts half for each."""
+        memory = [0]
         with suppress(psutil.NoSuchProcess):  # it has just ended
-            for one in (run, *run.children(recursive=True)):
-                times = one.cpu_times()
-                self.cpu[one] = times.user + times.system
-                held.append(one.memory_full_info().pss)
-        self.together, self.largest = max(self.together, sum(held)), max(self.largest, *held)
+            for process in (run, *run.children(recursive=True)):
+                times = process.cpu_times()
+                self.cpu[process] = times.user + times.system
+                memory.append(process.memory_full_info().pss)
+        self.together, self.largest = max(self.together, sum(memory)), max(self.largest, *memory)
 
 
 def main(folder: str, campaign: str) -> None:
@@ -55,13 +55,13 @@ def main(folder: str, campaign: str) -> None:
 
 
 def _watched(targets: list[str], folder: Path) -> Watch:
-    """Run the workflow and look at its processes."""
+    """Run the workflow and sample its processes."""
     where = ["--snakefile", str(ROOT / "Snakefile"), "--directory", str(folder)]
-    told = ["--cores", "2", "--quiet", "all", *where, "--", *targets]
-    run = subprocess.Popen([sys.executable, "-m", "snakemake", *told], stdout=sys.stderr)
+    options = ["--cores", "2", "--quiet", "all", *where, "--", *targets]
+    run = subprocess.Popen([sys.executable, "-m", "snakemake", *options], stdout=sys.stderr)
     watch = Watch()
     while run.poll() is None:
-        watch.look(psutil.Process(run.pid))
+        watch.sample(psutil.Process(run.pid))
         time.sleep(EVERY)
     if run.returncode:
         sys.exit(run.returncode)
@@ -69,7 +69,7 @@ def _watched(targets: list[str], folder: Path) -> Watch:
 
 
 def _seconds(log: Path) -> float:
-    """From the begin of a stage, when its log was made, to its last table; s."""
+    """From the start of a stage, when its log is created, to its last table; s."""
     tables = [table.stat().st_mtime for table in log.parent.glob("*.parquet")]
     return max(tables) - log.stat().st_mtime
 
