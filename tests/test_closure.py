@@ -91,10 +91,11 @@ def test_parameters_against_averaging_time_end_at_the_result(clean):
     for stage in TRUTH:
         averaging = clean[0][f"{stage}/averaging"]
         last = averaging[averaging["seconds"] == averaging["seconds"].max()]
-        result = clean[0].parameters(stage).set_index("id")
+        result = clean[0].parameters(stage)
+        assert set(averaging["method"]) == {"joint"}
         np.testing.assert_allclose(
-            last["value"], result.loc[last["parameter"], "value"], rtol=1e-3, atol=1e-8
+            last["value"], result.loc[last["quantity"], "value"], rtol=1e-3, atol=1e-8
         )
         first = averaging[averaging["seconds"] == averaging["seconds"].min()]
-        biases = first["parameter"].str.contains("bias").to_numpy()
+        biases = first["quantity"].str.contains("bias").to_numpy()
         assert (first["sigma"].to_numpy()[biases] > last["sigma"].to_numpy()[biases]).all()

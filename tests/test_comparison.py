@@ -136,7 +136,7 @@ def test_a_family_of_comparisons_is_judged_together():
 
 
 def of_kind(table: pd.DataFrame, kind: str) -> pd.DataFrame:
-    return table[table["kind"] == kind].set_index("parameter")
+    return table[table["kind"] == kind].set_index(["sensor", "quantity"])
 
 
 def test_clean_campaigns_differ_by_no_more_than_chance(clean):
@@ -166,16 +166,16 @@ def test_the_hidden_g_sensitivity_parts_rests_from_turns(demo):
     earth = WUHAN.up / DEGREE_PER_HOUR
     for axis, hidden in (("x", 1.4), ("y", -1.0)):  # °/h/g, data/simulated/demo.yaml
         for name, size in (("bias", -hidden * DEGREE_PER_HOUR), ("scale", hidden / earth)):
-            row = table.loc[f"gyroscope/{name}_{axis}"]
+            row = table.loc["gyro", f"{name}_{axis}"]
             assert abs(row["difference"] - size) < 3.5 * row["sigma"]
             assert abs(row["in_sigmas"]) > 6
             assert ": more than chance" in row["sentence"]
-    sentence = table.loc["gyroscope/bias_x", "sentence"]
+    sentence = table.loc[("gyro", "bias_x"), "sentence"]
     assert sentence.startswith("bias of the x gyro: rests and turns differ by −1.")
     assert "°/h" in sentence
-    assert not any(parameter.endswith("z") for parameter in table.index)  # a turn has a gap
+    assert not any(quantity.endswith("z") for _, quantity in table.index)  # a turn has a gap
     both = of_kind(demo["comparison/differences"], "forward_against_backward")
-    assert both.loc["gyroscope/scale_x", "in_sigmas"] > 3
+    assert both.loc[("gyro", "scale_x"), "in_sigmas"] > 3
 
 
 def test_each_value_is_the_one_that_its_stage_tells(demo):
@@ -220,10 +220,10 @@ def test_a_right_published_value_agrees_and_a_wrong_one_is_named(clean, tmp_path
     table = of_kind(right["differences"], "published")
     assert len(table) == 4 and (table["in_sigmas"].abs() < 3.5).all()
     assert not table["sentence"].str.contains(": more than chance").any()
-    alone = table.loc["gyroscope/bias_y"]
+    alone = table.loc["gyro", "bias_y"]
     ours = clean[0].parameters("gyroscope").loc["bias_y"]
     assert alone["sigma"] == ours["sigma"] and "it is ours alone" in alone["sentence"]
-    shared = table.loc["gyroscope/bias_x", "sigma"]
+    shared = table.loc[("gyro", "bias_x"), "sigma"]
     assert shared == np.hypot(clean[0].parameters("gyroscope").loc["bias_x", "sigma"], 3e-7)
 
     wrong = published(tmp_path, RIGHT.replace("-0.43316", "0.43316"))

@@ -172,7 +172,7 @@ def test_where_every_attitude_is_known_the_method_has_no_rows(imu, recorded):
 def test_an_accelerometer_that_is_not_recorded_is_named(imu, recorded):
     unread = recorded.assign(accel_y=np.nan)
     found, left = free_stills(CampaignData(PLAN, {}, unread, noise(imu), KNOWN))
-    assert not found and left[0] == "settle: |f| = g needs y too"
+    assert not found and left[0].omission == "settle: |f| = g needs y too"
     table, _, _ = rows(add_free_accelerometers, "accelerometer", unread, imu)
     assert table["value"].isna().all()
 

@@ -133,18 +133,18 @@ def test_a_table_off_its_set_rate_is_told_by_the_whole_angle_and_mends_the_windo
 
 def test_epochs_of_white_noise_scatter_as_it_does(calm):
     spreads = calm["studies/spreads"]
-    assert set(spreads["parameter"].str.partition("/")[0]) == {"accelerometer", "gyroscope"}
-    assert len(set(spreads["parameter"])) == 15
+    assert set(spreads["sensor"]) == {"accel", "gyro"} and set(spreads["method"]) == {"rests"}
+    assert len(spreads[["sensor", "quantity"]].drop_duplicates()) == 15
     single = spreads[spreads["seconds"] == spreads["seconds"].min()]
-    assert np.sqrt(single["single"] / single["white"]).to_numpy() == pytest.approx(1, abs=0.12)
+    ratio = np.sqrt(single["single_variance"] / single["white_variance"])
+    assert ratio.to_numpy() == pytest.approx(1, abs=0.12)
     epochs = calm["studies/epochs"]
     last = epochs[epochs["seconds"] == epochs["seconds"].max()]
-    final = epochs.set_index("parameter").loc[last["parameter"]]
-    assert len(final) == len(epochs)
+    assert len(epochs.merge(last[["sensor", "quantity"]])) == len(epochs)
     truth = chain.demo()["truth"]["accelerometer"]
-    biases = last[last["parameter"].str.contains("accelerometer/rests/bias")]
-    off = biases["running"].to_numpy() - truth["bias_m_s2"]
-    assert np.abs(off).max() < 5 * np.hypot(biases["running_sigma"].max(), 1e-5 * 9.8)
+    biases = last[(last["sensor"] == "accel") & last["quantity"].str.startswith("bias")]
+    off = biases["running_mean"].to_numpy() - truth["bias_m_s2"]
+    assert np.abs(off).max() < 5 * np.hypot(biases["running_mean_sigma"].max(), 1e-5 * 9.8)
 
 
 def test_a_turn_that_is_not_whole_is_left_out_with_the_reason(calm):

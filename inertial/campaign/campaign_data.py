@@ -12,6 +12,7 @@ from inertial.campaign.records import (
     Clock,
     Known,
     Manoeuvre,
+    Part,
     Performed,
     clocks_of,
     known_of,
@@ -85,12 +86,12 @@ class CampaignData:
         return self.solution
 
     @cached_property
-    def accelerometer_positions(self) -> tuple[list[Still], list[str]]:
+    def accelerometer_positions(self) -> tuple[list[Still], list[Part]]:
         """The static positions with readings of accelerometers; those left out, with the reason."""
         return stills(self, "accel")
 
     @cached_property
-    def gyro_positions(self) -> tuple[list[Still], list[str]]:
+    def gyro_positions(self) -> tuple[list[Still], list[Part]]:
         """The same of the gyros."""
         return stills(self, "gyro")
 

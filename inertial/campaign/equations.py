@@ -34,6 +34,7 @@ MIN_VISIBLE_SIGMA = 5.0  # of an effect at its largest size: less is not observa
 MIN_PIECE_S = 30.0  # s, of a static position that counts as one
 MAX_PIECES = 100  # pieces of all rests together
 SENSORS = ("gyro", "accel")
+UNKNOWN = {"tilt": "tilt", "horizontal": "level"}  # of a position, as the equations call it
 MERGED_BLOCKS = 5  # blocks of a turn in one mean of the accelerometers: their input changes slowly
 
 
@@ -179,8 +180,10 @@ class Campaign:
         if not (rests or turns):
             return None
         gyro = self.solution.gyro
-        names = [(q, p) for p, q in self.solution.found]
-        levels = dict(zip(names, self.solution.found.values(), strict=True))
+        levels = {
+            (f"{UNKNOWN[quantity]} {component}", position): value
+            for (position, quantity, component), value in self.solution.found.items()
+        }
         point = Linearisation(
             gyro.matrix,
             gyro.bias,

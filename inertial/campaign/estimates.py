@@ -9,7 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.records import Manoeuvre, with_mount
+from inertial.campaign.records import Manoeuvre, Part, omissions, with_mount
 from inertial.estimation import triad
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.variance_components import ScatterFit
@@ -52,11 +52,18 @@ Booleans = NDArray[np.bool_]
 
 NAMES = triad.linear_names()
 SENSED = {"accelerometer": "specific force", "gyroscope": "angular rate"}
-SET = {"tilt": "rad", "level": "rad/s"}  # what is estimated of a position, and its unit
+# What is estimated of a position, by the names of unknowns: quantity, component, unit.
+OF_POSITIONS = {
+    f"{kind} {component}": ((quantity, component, unit),)
+    for kind, quantity, unit in (("tilt", "tilt", "rad"), ("level", "horizontal", "rad/s"))
+    for component in (0, 1)
+}
+SENSOR_OF = {"accelerometer": "accel", "gyroscope": "gyro"}  # as the columns call it
 UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 TABLES = {
     "parameters": tables.PARAMETERS,
     "fit": tables.FIT,
+    "fit_manoeuvres": tables.FIT_MANOEUVRES,
     "averaging": tables.AVERAGING,
     "positions": tables.POSITIONS,
     "wanted": tables.WANTED,
@@ -95,6 +102,7 @@ class Estimates:
                 {
                     "id": ids[i],
                     "stage": self.stage,
+                    **self._key(method),
                     "method": with_mount(method, self.mount),
                     "parameter": name,
                     "value": None if missing else float(values[i]),
@@ -116,6 +124,11 @@ class Estimates:
                 }
             )
         )
+
+    def _key(self, method: str, quantity: str = "") -> dict[str, Any]:
+        """The columns that say whose estimate a row holds."""
+        key = {"mount": self.mount, "sensor": SENSOR_OF[self.stage], "method": method}
+        return key | ({"quantity": quantity} if quantity else {})
 
     def _id(self, method: str, name: str) -> str:
         return f"{self.stage}/{with_mount(method, self.mount)}/{name}"
@@ -147,32 +160,40 @@ class Estimates:
         self,
         method: str,
         fitted: ScatterFit,
-        used: list[str],
-        left_out: list[str],
+        used: Sequence[Part],
+        left_out: Sequence[Part],
     ) -> None:
         """Goodness of fit, the manoeuvres used, and what was estimated of the positions."""
-        for column, (kind, position) in enumerate(fitted.estimate.names):
-            if kind.partition(" ")[0] in SET:
-                self.rows["positions"].append(
-                    {
-                        "method": with_mount(method, self.mount),
-                        "position": position,
-                        "quantity": kind,
-                        "value": float(fitted.estimate.values[column]),
-                        "sigma": float(fitted.estimate.sigma[column]),
-                        "unit": SET[kind.partition(" ")[0]],
-                    }
-                )
+        self.rows["positions"] += [
+            self._key(method)
+            | {
+                "position": position,
+                "quantity": quantity,
+                "component": component,
+                "value": float(fitted.estimate.values[column]),
+                "sigma": float(fitted.estimate.sigma[column]),
+                "unit": unit,
+            }
+            for column, (kind, position) in enumerate(fitted.estimate.names)
+            for quantity, component, unit in OF_POSITIONS.get(kind, ())
+        ]
+        self.rows["fit_manoeuvres"] += [
+            self._key(method)
+            | {"manoeuvre": part.manoeuvre, "phase": part.phase}
+            | {"used": not part.reason, "reason": part.reason or None}
+            for part in (*used, *left_out)
+        ]
         self.rows["fit"].append(
-            {
+            self._key(method)
+            | {
                 "method": with_mount(method, self.mount),
                 "chi_squared": fitted.estimate.chi_squared,
                 "degrees": fitted.estimate.degrees,
                 "p_value": fitted.p_value,
                 "scatter": fitted.scatter,
                 "unit": UNIT[self.stage],
-                "used": ", ".join(used),
-                "left_out": "; ".join(left_out),
+                "used": ", ".join(part.label for part in used),
+                "left_out": omissions(left_out),
                 "random_walk": fitted.random_walk,
                 "random_walk_sigma": fitted.random_walk_sigma,
             }
@@ -182,8 +203,8 @@ class Estimates:
         """The estimate from the first seconds of each static position."""
         values = triad.errors_of(estimate.values[:12])
         self.rows["averaging"] += [
-            {
-                "parameter": self._id(method, name),
+            self._key(method, name)
+            | {
                 "seconds": seconds,
                 "value": float(values[i]),
                 "sigma": float(estimate.sigma[i]),
@@ -194,11 +215,10 @@ class Estimates:
 
     def add_wanted(self, method: str, axis: str, required: Wanted, wanted: float) -> None:
         """The length of static positions for a bias with the sigma `wanted`."""
-        name = self._id(method, f"bias_{axis}")
-        self.rows["wanted"].append({"parameter": name} | required.row(wanted))
+        self.rows["wanted"].append(self._key(method, f"bias_{axis}") | required.row(wanted))
 
     def tables(self) -> dict[str, pd.DataFrame]:
-        """The six tables, with their columns even where there are no rows."""
+        """The tables, with their columns even where there are no rows."""
         made = {
             name: pd.DataFrame(rows) if rows else TABLES[name].empty()
             for name, rows in self.rows.items()

@@ -182,7 +182,7 @@ class CampaignMotions:
         """A rest as one stretch."""
         name, time = still.manoeuvre.name, still.mean_of(still.time)
         time = time if self._data.shared_clock else np.nan
-        later = AFTER if still.label.endswith("(rest-after)") else 0.0
+        later = AFTER if still.part.phase == "rest-after" else 0.0
         place = (name, still.angle)  # all pieces of a rest stand alike
         if place not in self._at_rest:
             self._at_rest[place] = at_rest(self._data, still, time)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import Manoeuvre, Performed
+from inertial.campaign.records import Manoeuvre, Part, Performed
 from inertial.campaign.static_positions import NO_BLOCKS, Blocks, Still, by_manoeuvre, stretch_of
 from inertial.estimation.gyroscope_observations import (
     Earth,
@@ -148,7 +148,7 @@ class GyroInputs:
     earth: Earth
     position_sigma: float
     heading: float | None
-    left_out: list[str]  # manoeuvres, each with the reason
+    left_out: list[Part]
 
     @property
     def usable(self) -> list[Recorded]:
@@ -156,9 +156,9 @@ class GyroInputs:
         return [one for one in self.recorded if not one.refusal]
 
     @property
-    def used(self) -> list[str]:
-        """Names of all that is used."""
-        return [s.label for s in self.stills] + [one.plan.name for one in self.usable]
+    def used(self) -> list[Part]:
+        """The manoeuvres of the equations."""
+        return [s.part for s in self.stills] + [Part(one.plan.name) for one in self.usable]
 
     @property
     def nothing(self) -> bool:
@@ -198,7 +198,7 @@ def gyro_inputs(data: "CampaignData") -> GyroInputs:
         data.earth,
         data.position_sigma,
         data.heading,
-        left_out + [f"{one.plan.name}: {one.refusal}" for one in recorded if one.refusal],
+        left_out + [Part(r.plan.name, None, r.refusal) for r in recorded if r.refusal],
     )
 
 

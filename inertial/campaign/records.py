@@ -1,5 +1,6 @@
 """Rows of the small tables as records with types: manoeuvres, what was performed, what is known."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -103,6 +104,31 @@ class Performed:
 def performed_of(table: pd.DataFrame) -> dict[str, Performed]:
     """What was recorded, by the name of the manoeuvre."""
     return {row["manoeuvre"]: Performed(**row) for row in rows_of(table)}
+
+
+@dataclass(frozen=True)
+class Part:
+    """A manoeuvre of a fit, or one phase of it; `reason`: why it is left out, empty where used."""
+
+    manoeuvre: str
+    phase: str | None = None
+    reason: str = ""
+
+    @property
+    def label(self) -> str:
+        """In words: the manoeuvre, with the phase where it is one of a turn."""
+        named = self.phase not in (None, "rest", "between")
+        return f"{self.manoeuvre} ({self.phase})" if named else self.manoeuvre
+
+    @property
+    def omission(self) -> str:
+        """In words: what is left out, and why."""
+        return f"{self.label}: {self.reason}"
+
+
+def omissions(parts: Sequence[Part]) -> str:
+    """In words: what is left out, each with the reason."""
+    return "; ".join(part.omission for part in parts)
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ class Solution:
     gyro: Triad | None
     accelerometer: Triad | None
     site: Site
-    found: Mapping[tuple[str, str], float]  # position and quantity → value, rad or rad/s
+    found: Mapping[tuple[str, str, int], float]  # position, quantity, component: rad or rad/s
     walks: tuple[float, float] = (0.0, 0.0)
 
     def upright(self, m: Manoeuvre) -> Array:
@@ -37,7 +37,7 @@ class Solution:
         assert m.up is not None  # a manoeuvre without it is not simulated
         lean = np.zeros(3)
         for i, axis in enumerate(level_axes(m.up)):
-            lean = lean + self.found.get((m.position, f"tilt {i}"), 0.0) * axis
+            lean = lean + self.found.get((m.position, "tilt", i), 0.0) * axis
         return np.asarray(m.up + cross(lean, m.up))
 
     def north(self, position: Position) -> Array:
@@ -50,7 +50,7 @@ class Solution:
         axes, name = level_axes(position.up), position.name
         if position.mark is not None:
             axes, name = (position.mark, cross(position.up, position.mark)), "the table"
-        parts = [self.found.get((name, f"level {i}"), np.nan) for i in (0, 1)]
+        parts = [self.found.get((name, "horizontal", i), np.nan) for i in (0, 1)]
         return np.asarray((parts[0] * axes[0] + parts[1] * axes[1]) / self.site.earth_level)
 
 
@@ -62,13 +62,13 @@ class Estimated:
     positions: pd.DataFrame | None = None
     fit: pd.DataFrame | None = None
 
-    def found(self, method: str, kind: str, below: float) -> dict[tuple[str, str], float]:
-        """What is estimated of the positions, tilt or level, with a sigma below this."""
+    def found(self, method: str, quantity: str, below: float) -> dict[tuple[str, str, int], float]:
+        """What is estimated of the positions, by component, with a sigma below this."""
         rows = [] if self.positions is None else rows_of(self.positions)
         return {
-            (row["position"], row["quantity"]): row["value"]
+            (row["position"], quantity, row["component"]): row["value"]
             for row in rows
-            if row["method"] == method and row["quantity"].startswith(kind) and row["sigma"] < below
+            if row["method"] == method and row["quantity"] == quantity and row["sigma"] < below
         }
 
     def walk(self, method: str) -> float:
@@ -86,7 +86,7 @@ def solution_of(
     """
     level = known["earth_rate_level"].number
     tilts = accelerometer.found(method, "tilt", np.inf)
-    levels = gyro.found(method, "level", level / 3)
+    levels = gyro.found(method, "horizontal", level / 3)
     return Solution(
         triad_of(gyro.parameters, method),
         triad_of(accelerometer.parameters, method),

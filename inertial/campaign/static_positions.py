@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.records import Manoeuvre
+from inertial.campaign.records import Manoeuvre, Part
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
 from inertial.physics.motion import turned
 from inertial.tables import ACCEL, AXES, GYRO
@@ -77,6 +77,9 @@ def _blocks(table: pd.DataFrame) -> Blocks:
 # --- Static positions of known attitude ---
 
 UNTIMED = Stretch("")
+NO_UP = "which way is up is not known"
+NO_ATTITUDE = "its attitude is not known, for the turn is not whole"
+NO_NOISE = "its noise is not known, for it has no time or is too short"
 PER_BLOCK = ("means", "counts", "seconds", "time", "temperature")
 BLOCK_COLUMNS = ("count", "seconds", "time", "temperature")
 
@@ -85,13 +88,13 @@ BLOCK_COLUMNS = ("count", "seconds", "time", "temperature")
 class Still:
     """One stretch at rest in k blocks.
 
-    `up`, `about`: (3,), body axes at the start of its manoeuvre; `angle`: rad, by which
-    it has turned about `about` since; `means`: (k, 3), rad/s or m/s², NaN where not
+    `part`: of the plan; `up`, `about`: (3,), body axes at the start of its manoeuvre; `angle`: rad,
+    by which it has turned about `about` since; `means`: (k, 3), rad/s or m/s², NaN where not
     recorded; `counts`, `seconds`, `time` of the middle, s, `temperature`, K: (k,); `density`: (3,),
     white noise per √s; `stretch`: of time.
     """
 
-    label: str
+    part: Part
     manoeuvre: Manoeuvre
     up: Array
     about: Array
@@ -103,6 +106,11 @@ class Still:
     temperature: Array
     density: Array
     stretch: Stretch = UNTIMED
+
+    @property
+    def label(self) -> str:
+        """Its manoeuvre, with the phase where it is one of a turn."""
+        return self.part.label
 
     @cached_property
     def up_now(self) -> Array:
@@ -152,15 +160,15 @@ class Still:
         return np.cumsum([samples * np.nan_to_num(self.means), samples, lasted], axis=1)
 
 
-def stills(data: "CampaignData", sensor: str) -> tuple[list[Still], list[str]]:
-    """The stretches at rest with a known attitude, and what is left out with the reason.
+def stills(data: "CampaignData", sensor: str) -> tuple[list[Still], list[Part]]:
+    """The static positions of known attitude, and those left out with the reason.
 
     After a turn the IMU stands where the turn has brought it, so that stretch counts
     where the turn was recorded from rest to rest. `sensor` is accel or gyro.
     """
     blocks, performed = data.blocks, data.performed
-    found: list[Still] = []
-    left: list[str] = []
+    positions: list[Still] = []
+    left_out: list[Part] = []
     channels = [f"{sensor}_{axis}" for axis in AXES]
     at_rest = blocks[blocks["phase"].str.startswith("rest") & (blocks["count"] > 0)]
     read = at_rest[channels].to_numpy(np.float64)
@@ -169,41 +177,41 @@ def stills(data: "CampaignData", sensor: str) -> tuple[list[Still], list[str]]:
     rows = at_rest.groupby(["manoeuvre", "phase"]).indices
     for m in data.plan:
         if m.do == "positions":
-            left.append(f"{m.name}: the attitudes of its rests are not known")
+            left_out.append(Part(m.name, None, "the attitudes of its rests are not known"))
         if m.do == "rest" and not performed[m.name].found:
-            left.append(f"{m.name}: not found in its log")
+            left_out.append(Part(m.name, None, "not found in its log"))
         for phase in ("rest", "rest-before", "rest-after"):
-            part = rows.get((m.name, phase))
-            if part is None or np.isnan(read[part]).all():
+            own = rows.get((m.name, phase))
+            if own is None or np.isnan(read[own]).all():
                 continue
-            count, seconds, time, temperature = (each[name][part] for name in BLOCK_COLUMNS)
+            count, seconds, time, temperature = (each[name][own] for name in BLOCK_COLUMNS)
             density = data.noise.of(m.name, "rest", channels)
-            label = m.name if phase == "rest" else f"{m.name} ({phase})"
             after, whole = phase == "rest-after", performed[m.name].complete
+            part = Part(m.name, phase)
             if m.up is None:
-                left.append(f"{label}: which way is up is not known")
+                left_out.append(replace(part, reason=NO_UP))
             elif after and (not (whole or performed[m.name].bridged) or m.angle is None):
-                left.append(f"{label}: its attitude is not known, for the turn is not whole")
+                left_out.append(replace(part, reason=NO_ATTITUDE))
             elif np.isnan(seconds).any() or np.isnan(density).all():
-                left.append(f"{label}: its noise is not known, for it has no time or is too short")
+                left_out.append(replace(part, reason=NO_NOISE))
             else:
-                found.append(
+                positions.append(
                     Still(
-                        label,
+                        part,
                         m,
                         m.up,
                         m.up if m.about is None else m.about,
                         (m.angle or 0.0) if after else 0.0,
-                        read[part],
+                        read[own],
                         count,
                         seconds,
                         time,
                         temperature,
                         density,
-                        _stretch(label, str(logs[part[0]]), time, seconds, data.shared_clock),
+                        _stretch(part.label, str(logs[own[0]]), time, seconds, data.shared_clock),
                     )
                 )
-    return found, left
+    return positions, left_out
 
 
 def stretch_of(name: str, part: Blocks, shared_clock: bool) -> Stretch:

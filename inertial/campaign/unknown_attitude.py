@@ -5,7 +5,7 @@ used as well, but not their attitude, so the table has no part in the result.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -16,8 +16,8 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import NAMES as LINEAR
 from inertial.campaign.estimates import Estimates
 from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import Manoeuvre
-from inertial.campaign.static_positions import Still
+from inertial.campaign.records import Manoeuvre, Part, omissions
+from inertial.campaign.static_positions import NO_NOISE, Still
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.multi_position import (
     FREE,
@@ -65,7 +65,7 @@ class FreeStill:
         return FreeRest(self.label, *self.force.over())
 
 
-def free_stills(data: CampaignData) -> tuple[list[FreeStill], list[str]]:
+def free_stills(data: CampaignData) -> tuple[list[FreeStill], list[Part]]:
     """All stretches at rest of one mount in the order of the logs; those left out, with reasons.
 
     None at all where the plan knows every attitude: there the other methods serve.
@@ -74,7 +74,7 @@ def free_stills(data: CampaignData) -> tuple[list[FreeStill], list[str]]:
     if all(m.up is not None for m in plan if m.do != "turn"):
         return [], []
     found: list[FreeStill] = []
-    left: list[str] = []
+    left_out: list[Part] = []
     named = {m.name: m for m in plan}
     at_rest = blocks[blocks["phase"].str.startswith("rest") & (blocks["count"] > 0)]
     at_rest = at_rest.sort_values(["log", "from_record"])
@@ -83,30 +83,29 @@ def free_stills(data: CampaignData) -> tuple[list[FreeStill], list[str]]:
         m = named.get(name) or named.get(name.rpartition("-")[0])  # rests that are found have -01
         if m is None:
             continue
-        label = name if phase == "rest" else f"{name} ({phase})"
-        force, rate = (_still(label, name, m, part, data.noise, each) for each in (ACCEL, GYRO))
+        own = Part(name, str(phase))
+        force, rate = (_still(own, m, part, data.noise, each) for each in (ACCEL, GYRO))
         recorded = np.isfinite(force.means).any(axis=0)
         first, after = int(part["from_record"].min()), int(part["to_record"].max())
         if not recorded.all():
             lacking = " and ".join(np.array(AXES)[~recorded])
-            left.append(f"{label}: |f| = g needs {lacking} too")
+            left_out.append(replace(own, reason=f"|f| = g needs {lacking} too"))
         elif not np.isfinite(force.over()).all():
-            left.append(f"{label}: its noise is not known, for it has no time or is too short")
+            left_out.append(replace(own, reason=NO_NOISE))
         else:
             found.append(FreeStill(force, rate, str(part["log"].iloc[0]), first, after))
-    return found, left
+    return found, left_out
 
 
 def _still(
-    label: str,
-    name: str,
+    own: Part,
     m: Manoeuvre,
     part: pd.DataFrame,
     noise: NoiseLevels,
     channels: list[str],
 ) -> Still:
     return Still(
-        label,
+        own,
         m,
         UNKNOWN,
         UNKNOWN,
@@ -116,7 +115,7 @@ def _still(
         part["seconds"].to_numpy(np.float64),
         part["time"].to_numpy(np.float64),
         part["temperature"].to_numpy(np.float64),
-        noise.of(name, "rest", channels),
+        noise.of(own.manoeuvre, "rest", channels),
     )
 
 
@@ -129,13 +128,13 @@ def fitted_to(data: CampaignData, found: Sequence[FreeStill]) -> ScatterFit:
 
 def add_free_accelerometers(estimates: Estimates, data: CampaignData) -> None:
     """The method's rows; none where the plan knows every attitude."""
-    found, left = free_stills(data)
+    found, left_out = free_stills(data)
     if found:
         fitted = fitted_to(data, found)
         add_symmetric(estimates, METHOD, fitted.estimate)
-        estimates.add_fit(METHOD, fitted, [one.label for one in found], left)
-    elif left:
-        estimates.add_nothing(METHOD, "; ".join(left))
+        estimates.add_fit(METHOD, fitted, [one.force.part for one in found], left_out)
+    elif left_out:
+        estimates.add_nothing(METHOD, omissions(left_out))
 
 
 def add_symmetric(estimates: Estimates, method: str, estimate: Estimate) -> None:

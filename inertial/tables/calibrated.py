@@ -1,6 +1,6 @@
 """Compensated samples, their checks, and the archive of calibrations."""
 
-from inertial.tables.shared import channels
+from inertial.tables.shared import MOUNT, channels
 from inertial.tables.table import DOUBLE, INTEGER, LABEL, TEXT, TEXTS, TRUTH, Column, Table
 
 # ---- Samples with the errors taken out, and the checks of them.
@@ -17,9 +17,10 @@ COMPENSATED = Table(
 )
 CHECKS = Table(
     "checks",
-    1,
+    2,
     (
         Column("id", TEXT, "", "stable identifier: compensation/quantity/manoeuvre"),
+        MOUNT,
         Column(
             "manoeuvre",
             TEXT,

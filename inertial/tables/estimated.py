@@ -1,9 +1,9 @@
 """Noise, parameters, covariance, fits, studies and comparisons."""
 
-from inertial.tables.shared import BODY
-from inertial.tables.table import DOUBLE, INTEGER, TEXT, Column, Table
+from inertial.tables.shared import BODY, METHOD, MOUNT, QUANTITY, SENSOR
+from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
 
-# ---- Noise, parameters, covariance, fits and positions.
+# --- Noise, parameters, covariance, fits and positions ---
 
 NOISE = Table(
     "noise",
@@ -36,10 +36,12 @@ LEVELS = Table(
 )
 PARAMETERS = Table(
     "parameters",
-    1,
+    2,
     (
         Column("id", TEXT, "", "stable identifier: stage/method/parameter"),
         Column("stage", TEXT, "", "stage that estimated it"),
+        MOUNT,
+        SENSOR,
         Column("method", TEXT, "", "method of estimation"),
         Column("parameter", TEXT, "", "name within the method"),
         Column(
@@ -63,8 +65,10 @@ COVARIANCE = Table(
 )
 FIT = Table(
     "fit",
-    2,
+    3,
     (
+        MOUNT,
+        SENSOR,
         Column("method", TEXT, "", "method of estimation"),
         Column(
             "chi_squared",
@@ -86,23 +90,42 @@ FIT = Table(
         Column("random_walk_sigma", DOUBLE, "unit/√s", "its standard deviation", nullable=True),
     ),
 )
-POSITIONS = Table(
-    "positions",
+FIT_MANOEUVRES = Table(
+    "fit_manoeuvres",
     1,
     (
+        MOUNT,
+        SENSOR,
+        METHOD,
+        Column("manoeuvre", TEXT, "", "as in manoeuvres, or as in blocks where it was found"),
+        Column("phase", TEXT, "", "as in blocks; none: all that the method uses", nullable=True),
+        Column("used", TRUTH, "", "in the fit"),
+        Column("reason", TEXT, "", "why it is not", nullable=True),
+    ),
+)
+POSITIONS = Table(
+    "positions",
+    2,
+    (
+        MOUNT,
+        SENSOR,
         Column("method", TEXT, "", "method of estimation"),
         Column("position", TEXT, "", "set position"),
-        Column("quantity", TEXT, "", "tilt 0, tilt 1; level 0, level 1: part of the earth's rate"),
-        Column("value", DOUBLE, "as unit", "estimate, about or along the level axis 0 or 1", BODY),
+        Column("quantity", TEXT, "", "tilt, or horizontal: the component of the earth's rate"),
+        Column("component", INTEGER, "", "0 or 1, of the two horizontal axes of the position"),
+        Column("value", DOUBLE, "as unit", "estimate, about or along this axis", BODY),
         Column("sigma", DOUBLE, "as unit", "its standard deviation"),
         Column("unit", TEXT, "", "unit of value and sigma"),
     ),
 )
 AVERAGING = Table(
     "averaging",
-    1,
+    2,
     (
-        Column("parameter", TEXT, "", "id of a parameter"),
+        MOUNT,
+        SENSOR,
+        METHOD,
+        QUANTITY,
         Column("seconds", DOUBLE, "s", "length of each rest that was used, from its start"),
         Column("value", DOUBLE, "as the parameter", "estimate from these"),
         Column("sigma", DOUBLE, "as the parameter", "its standard deviation"),
@@ -110,9 +133,12 @@ AVERAGING = Table(
 )
 WANTED = Table(
     "wanted",
-    1,
+    2,
     (
-        Column("parameter", TEXT, "", "id of a bias by one of S0's formulas"),
+        MOUNT,
+        SENSOR,
+        METHOD,
+        QUANTITY,
         Column("seconds", DOUBLE, "s", "length of each rest that was recorded"),
         Column("sigma", DOUBLE, "as the parameter", "standard deviation of the bias by these"),
         Column("floor", DOUBLE, "as the parameter", "what of it no time averages out"),
@@ -133,34 +159,41 @@ WANTED = Table(
 
 EPOCHS = Table(
     "epochs",
-    1,
+    2,
     (
-        Column("parameter", TEXT, "", "stage, rests and parameter: gyroscope/rests/bias_x"),
+        MOUNT,
+        SENSOR,
+        METHOD,
+        QUANTITY,
         Column("unit", TEXT, "", "unit of the parameter, SI"),
         Column("seconds", DOUBLE, "s", "end of the epoch, from the start of every rest"),
         Column("single", DOUBLE, "as unit", "by this epoch alone", nullable=True),
         Column("single_sigma", DOUBLE, "as unit", "its sigma by white noise"),
-        Column("running", DOUBLE, "as unit", "by all epochs up to this one", nullable=True),
-        Column("running_sigma", DOUBLE, "as unit", "its sigma by white noise"),
+        Column("running_mean", DOUBLE, "as unit", "by all epochs up to this one", nullable=True),
+        Column("running_mean_sigma", DOUBLE, "as unit", "its sigma by white noise"),
     ),
 )
 SPREADS = Table(
     "spreads",
-    1,
+    2,
     (
-        Column("parameter", TEXT, "", "as in epochs"),
+        MOUNT,
+        SENSOR,
+        METHOD,
+        QUANTITY,
         Column("unit", TEXT, "", "unit of the parameter, SI"),
         Column("seconds", DOUBLE, "s", "length of an epoch"),
         Column("epochs", INTEGER, "1", "how many there are"),
-        Column("single", DOUBLE, "unit²", "variance of the values by single epochs"),
-        Column("running", DOUBLE, "unit²", "variance of the values by running means"),
-        Column("white", DOUBLE, "unit²", "variance by single epochs that white noise would give"),
+        Column("single_variance", DOUBLE, "unit²", "variance of the values by single epochs"),
+        Column("running_variance", DOUBLE, "unit²", "variance of the values by running means"),
+        Column("white_variance", DOUBLE, "unit²", "of single epochs, by white noise alone"),
     ),
 )
 WINDOWS = Table(
     "windows",
-    1,
+    2,
     (
+        MOUNT,
         Column("axis", TEXT, "", "gyro, and axis of both turns", BODY),
         Column("forward", TEXT, "", "manoeuvre of the turn forward"),
         Column("backward", TEXT, "", "manoeuvre of the turn backward"),
@@ -213,9 +246,10 @@ MOTIONS = Table(
 )
 NOT_STUDIED = Table(
     "not_studied",
-    1,
+    2,
     (
         Column("study", TEXT, "", "rests, or turns"),
+        MOUNT,
         Column("subject", TEXT, "", "manoeuvres or parameters, in words"),
         Column("reason", TEXT, "", "why there is nothing of it"),
     ),
@@ -226,17 +260,19 @@ NOT_STUDIED = Table(
 
 DIFFERENCES = Table(
     "differences",
-    1,
+    2,
     (
         Column("id", TEXT, "", "stable identifier: comparison/kind/parameter, and which turns"),
+        MOUNT,
+        SENSOR,
+        Column("quantity", TEXT, "", "parameter, or what is common to all gyros"),
         Column(
             "kind",
             TEXT,
             "",
             "static_against_turns, forward_against_backward, method_against_method, published,"
-            " fencepost; with @ and the mount where there are several",
+            " fencepost, straight_line",
         ),
-        Column("parameter", TEXT, "", "stage and parameter, such as gyroscope/bias_x"),
         Column("unit", TEXT, "", "unit of the values, SI"),
         Column("first", TEXT, "", "what is compared: id of a parameter, or in words"),
         Column("second", TEXT, "", "with what: id of a parameter, or in words"),

@@ -45,3 +45,6 @@ RECORDS = (
 SENSOR = Column("sensor", TEXT, "", "accel or gyro")
 AXIS = Column("axis", TEXT, "", "x, y or z, of the body")
 AS_CHANNEL = "m/s² of accel, rad/s of gyro"
+MOUNT = Column("mount", TEXT, "", "of the plan; empty where the campaign has a single one")
+METHOD = Column("method", TEXT, "", "method of estimation")
+QUANTITY = Column("quantity", TEXT, "", "name of the parameter, such as bias_x")

@@ -1,7 +1,7 @@
 """The simulation, its unmodelled effects, and the model extended by them."""
 
 from inertial.tables.recorded import FINDINGS
-from inertial.tables.shared import BODY, LOG, PHASES, channels
+from inertial.tables.shared import BODY, LOG, MOUNT, PHASES, channels
 from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
 
 # ---- The simulated readings and their residuals.
@@ -21,8 +21,9 @@ SIMULATED = Table(
 )
 FIDELITY = Table(
     "fidelity",
-    1,
+    2,
     (
+        MOUNT,
         Column("manoeuvre", TEXT, "", "as in manoeuvres"),
         Column("channel", TEXT, "", "one of the six channels"),
         Column("profile", TEXT, "", "trapezoid; as the gyros have it; or at rest"),

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import refusal_of
-from inertial.campaign.records import Manoeuvre
+from inertial.campaign.records import Manoeuvre, Part
 from inertial.campaign.static_positions import Blocks, by_manoeuvre, stretch_of
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.sensitivities import Sensitivities
@@ -26,15 +26,15 @@ LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU stan
 MAX_TURN_IN_MEAN = np.radians(5)  # by how much the vertical may turn in the case within one mean
 
 
-def turning_rests(data: CampaignData) -> list[tuple[str, StaticForce]]:
-    """The steady parts of all whole turns, each with its label, in means of like attitude.
+def turning_rests(data: CampaignData) -> list[tuple[Part, StaticForce]]:
+    """The steady parts of all whole turns, each with its manoeuvre, in means of like attitude.
 
     The `sensitivities` of each are those of LEVER_ARM.
     """
     blocks, performed = data.blocks, data.performed
     moving = by_manoeuvre(blocks[~blocks["phase"].str.startswith("rest")])
     quiet = by_manoeuvre(blocks[blocks["phase"].isin(["rest-before", "rest-after"])])
-    found: list[tuple[str, StaticForce]] = []
+    found: list[tuple[Part, StaticForce]] = []
     for m in data.plan:
         if m.do != "turn" or m.recorded != "whole" or m.name not in moving:
             continue
@@ -44,7 +44,7 @@ def turning_rests(data: CampaignData) -> list[tuple[str, StaticForce]]:
             density = data.noise.of(m.name, "steady", ACCEL)
             stretch = stretch_of(m.name, part.those(part.steady), data.shared_clock)
             found += [
-                (f"{m.name} (steady)", replace(rest, stretch=stretch))
+                (Part(m.name, "steady"), replace(rest, stretch=stretch))
                 for rest in _steady(m, part, quiet[m.name], density)
             ]
     return found

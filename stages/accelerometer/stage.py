@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
+from inertial.campaign.records import omissions
 from inertial.campaign.static_positions import Still, averaging_times
 from inertial.campaign.unknown_attitude import add_free_accelerometers
 from inertial.estimation import accelerometers, triad
@@ -45,9 +46,9 @@ def accelerometer(
         estimates, gravity = collected.on(data.mount), data.gravity
         about = (gravity.number, gravity.scatter, data.position_sigma)
         add_free_accelerometers(estimates, data)
-        found, left = data.accelerometer_positions
+        found, left_out = data.accelerometer_positions
         if not found:
-            estimates.add_nothing("joint", "; ".join(left))
+            estimates.add_nothing("joint", omissions(left_out))
             continue
         turns = turning_rests(data)
         wide = LEVER_ARM if turns else None
@@ -57,8 +58,8 @@ def accelerometer(
         recorded = np.isfinite(np.array([rest.mean for rest in rests])).any(axis=0)
         why = reasons(fitted.estimate.determined, recorded, "accelerometer", CURES)
         estimates.add_triad("joint", fitted.estimate, why)
-        used = [still.label for still in found] + list(dict.fromkeys(label for label, _ in turns))
-        estimates.add_fit("joint", fitted, used, left)
+        used = [still.part for still in found] + list(dict.fromkeys(part for part, _ in turns))
+        estimates.add_fit("joint", fitted, used, left_out)
         matrix = fitted.estimate.values[:9].reshape(3, 3)
         if fitted.p_value < MIN_CONSISTENT_P_VALUE:
             told += _off(rests, about, matrix, wide, data.mount)

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from inertial import tables
+from inertial.campaign.estimates import SENSOR_OF
 from inertial.campaign.records import Row, rows_of, with_mount
 from inertial.estimation.consistency import holm_rejections, normal_p_value
 from inertial.text.numbers import decimals_of, fixed, p_is, with_sigma
@@ -30,7 +31,8 @@ class Difference:
     """
 
     kind: str
-    parameter: str  # stage and parameter, such as gyroscope/bias_x
+    stage: str  # of the parameter, such as gyroscope
+    quantity: str  # such as bias_x
     unit: str
     first: str
     second: str
@@ -41,11 +43,18 @@ class Difference:
     remark: str = ""
     place: str = ""  # which of several, such as the turns that are compared
     degrees: float = np.inf  # of freedom, from which sigma is estimated
+    mount: str = ""
+
+    @property
+    def parameter(self) -> str:
+        """Stage and quantity, such as gyroscope/bias_x."""
+        return f"{self.stage}/{self.quantity}"
 
     @property
     def id(self) -> str:
         """The stable identifier."""
-        parts = ["comparison", self.kind, self.parameter, self.place]
+        kind = with_mount(self.kind, self.mount)
+        parts = ["comparison", kind, self.parameter, self.place]
         return "/".join(part for part in parts if part)
 
     @property
@@ -67,11 +76,11 @@ class Difference:
 
     def sentence(self, beyond: bool, among: int) -> str:
         """The difference in the laboratory's unit, and whether it is more than chance."""
-        subject = named(self.parameter)
+        subject = named(self.stage, self.quantity)
         one, other = self.between
         if self.value is None or self.in_sigmas is None or self.p_value is None:
             return f"{subject}: {self.remark}."
-        unit = quantity(self.parameter.rpartition("/")[2], self.unit).laboratory
+        unit = quantity(self.quantity, self.unit).laboratory
         sigma = unit.of(self.sigma)
         size = " ± ".join(with_sigma(unit.of(self.value), sigma, decimals_of(sigma)))
         far = f"{size} {unit.name}, {fixed(abs(self.in_sigmas), 1)} sigma"
@@ -89,9 +98,8 @@ class Difference:
         return f"{subject}: {told}{remark}"
 
 
-def named(parameter: str) -> str:
-    """A parameter in words: gyroscope/bias_y is the bias of the y gyro."""
-    stage, _, name = parameter.partition("/")
+def named(stage: str, name: str) -> str:
+    """A parameter in words: bias_y of the gyroscope is the bias of the y gyro."""
     if name in FORMS:
         return FORMS[name]
     kind, _, axes = name.partition("_")
@@ -116,8 +124,10 @@ def table_of(differences: Sequence[Difference], level: float) -> pd.DataFrame:
 def _row(d: Difference, beyond: bool, among: int) -> Row:
     return {
         "id": d.id,
+        "mount": d.mount,
+        "sensor": SENSOR_OF[d.stage],
+        "quantity": d.quantity,
         "kind": d.kind,
-        "parameter": d.parameter,
         "unit": d.unit,
         "first": d.first,
         "second": d.second,

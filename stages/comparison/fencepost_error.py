@@ -50,8 +50,10 @@ def off_by_a_sample(
     if speed is not None and _explains(speed, found, samples):
         return
     yield Difference(
-        kind=gyro.named(KIND),
-        parameter="gyroscope/scale",
+        kind=KIND,
+        mount=gyro.mount,
+        stage="gyroscope",
+        quantity="scale",
         unit="1",
         first=f"gyroscope/{gyro.named('joint')}",
         second=scales[0]["source"],

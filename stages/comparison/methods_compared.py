@@ -36,8 +36,10 @@ def method_against_method(results: Results, method: str) -> Iterator[Difference]
         alike = abs(other["sigma"] / joint["sigma"] - 1) < MIN_SIGMA_DIFFERENCE
         sigma = abs(other["sigma"] ** 2 - joint["sigma"] ** 2) ** 0.5
         yield Difference(
-            kind=results.named(METHOD_AGAINST_METHOD),
-            parameter=f"{results.stage}/{name}",
+            kind=METHOD_AGAINST_METHOD,
+            mount=results.mount,
+            stage=results.stage,
+            quantity=name,
             unit=joint["unit"],
             first=other["id"],
             second=joint["id"],
@@ -78,8 +80,10 @@ def against_published(
             reason = table["reason"]
         alone = told["sigma"] is None
         yield Difference(
-            kind=own.named(PUBLISHED),
-            parameter=told["parameter"],
+            kind=PUBLISHED,
+            mount=own.mount,
+            stage=stage,
+            quantity=name,
             unit=told["unit"],
             first=own.id("joint", name),
             second=told["source"],

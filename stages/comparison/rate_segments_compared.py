@@ -31,8 +31,10 @@ def forward_against_backward(
         for (forward_name, forward), (backward_name, backward) in pairs:
             found = both_ways(forward, backward, bias["value"], bias["sigma"], data.earth, scatter)
             yield Difference(
-                kind=gyro.named(FORWARD_AGAINST_BACKWARD),
-                parameter=f"gyroscope/scale_{axis}",
+                kind=FORWARD_AGAINST_BACKWARD,
+                mount=data.mount,
+                stage="gyroscope",
+                quantity=f"scale_{axis}",
                 unit="1",
                 first=forward_name,
                 second=backward_name,
@@ -87,8 +89,10 @@ def static_against_turns(data: CampaignData, gyro: Results) -> Iterator[Differen
             if value is None or sigma is None:
                 continue
             yield Difference(
-                kind=gyro.named(STATIC_AGAINST_TURNS),
-                parameter=f"gyroscope/{name}_{axis}",
+                kind=STATIC_AGAINST_TURNS,
+                mount=data.mount,
+                stage="gyroscope",
+                quantity=f"{name}_{axis}",
                 unit=unit,
                 first=f"rests with {axis} up and {axis} down: {', '.join(n for n, _ in rests)}",
                 second=gyro.id("turns", f"{name}_{axis}"),

@@ -37,7 +37,8 @@ def straight_line(
             test = found[form]
             yield Difference(
                 kind=KIND,
-                parameter=f"gyroscope/{form}",
+                stage="gyroscope",
+                quantity=form,
                 unit=unit,
                 first=f"{len(data.rate) - len(apart)} steady runs",
                 second="a scale factor and a bias for each gyro",

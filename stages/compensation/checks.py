@@ -67,6 +67,7 @@ class Check:
         )
         return {
             "id": f"{with_mount('compensation', mount)}/{self.quantity}/{self.manoeuvre}",
+            "mount": mount,
             "manoeuvre": self.manoeuvre,
             "quantity": self.quantity,
             "unit": SI[self.quantity],
@@ -107,6 +108,7 @@ def missing(parameters: pd.DataFrame, sensor: str, mount: str) -> Row:
     nothing = ("expected", "expected_sigma", "before", "after", "after_sigma", "in_sigmas_after")
     return dict.fromkeys(nothing) | {
         "id": f"{with_mount('compensation', mount)}/{sensor}",
+        "mount": mount,
         "manoeuvre": None,
         "quantity": sensor,
         "unit": "",

@@ -38,6 +38,7 @@ class Solved:
     estimate: Estimate
     walk: float
     effects: Sequence[str] = ()
+    mount: str = ""
 
     @property
     def stage(self) -> str:
@@ -70,6 +71,8 @@ class Solved:
     def fit_row(self, joint: Row, noise_degrees: float) -> Row:
         """How well the extended model describes the data; `joint`: the row of the joint fit."""
         return {
+            "mount": self.mount,
+            "sensor": self.sensor,
             "method": self.method,
             "chi_squared": self.estimate.chi_squared,
             "degrees": self.estimate.degrees,
@@ -108,6 +111,8 @@ def solved(models: Models, sensor: str, system: System, walk: float, mount: str)
             {
                 "id": f"extension/{method}/{name}",
                 "stage": "extension",
+                "mount": mount,
+                "sensor": sensor,
                 "method": method,
                 "parameter": name,
                 "value": float(values[place]) if there else None,
@@ -119,7 +124,7 @@ def solved(models: Models, sensor: str, system: System, walk: float, mount: str)
             }
         )
     covariance = estimate.covariance[np.ix_(places, places)]
-    return Solved(sensor, method, rows, covariance, estimate, walk, effects)
+    return Solved(sensor, method, rows, covariance, estimate, walk, effects, mount)
 
 
 # ---- How far the effects move each of the 24 parameters.

@@ -16,6 +16,7 @@ DECLARED = Declared(
         "parameters": tables.PARAMETERS,
         "covariance": tables.COVARIANCE,
         "fit": tables.FIT,
+        "fit_manoeuvres": tables.FIT_MANOEUVRES,
         "averaging": tables.AVERAGING,
         "positions": tables.POSITIONS,
         "wanted": tables.WANTED,

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import Estimates, reasons
 from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import Part, omissions
 from inertial.campaign.unknown_attitude import METHOD, FreeStill, fitted_to, free_stills
 from inertial.estimation.between_positions import Given, Passage, Stop, between_rests
 from inertial.estimation.variance_components import with_scatter
@@ -34,14 +35,14 @@ CURES = {
 
 def add_free_gyros(estimates: Estimates, data: CampaignData) -> None:
     """The method's rows; none where the plan knows every attitude."""
-    found, left = free_stills(data)
+    found, left_out = free_stills(data)
     stops = [_stop(one) for one in found]
     recorded = np.isfinite(np.array([stop.mean for stop in stops]).reshape(-1, 3)).any(axis=0)
     if not recorded.any():
-        if left or found:
-            estimates.add_nothing(METHOD, "; ".join(left) or "no gyro is recorded")
+        if left_out or found:
+            estimates.add_nothing(METHOD, omissions(left_out) or "no gyro is recorded")
         return
-    passages, names, broken = passages_of(found, data.blocks, data.noise)
+    passages, moving, broken = passages_of(found, data.blocks, data.noise)
     between = fitted_to(data, found).scatter
     given = Given(data.gravity.number, data.gravity.scatter, between, data.earth)
     fits = [
@@ -55,8 +56,8 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> None:
     fitted = min(fits, key=lambda fit: fit.estimate.deviance)
     why = reasons(fitted.estimate.determined, recorded, "gyro", CURES)
     estimates.add_triad(METHOD, fitted.estimate, why)
-    used = [one.label for one in found] + names
-    estimates.add_fit(METHOD, fitted, used, left + broken)
+    used = [one.force.part for one in found] + moving
+    estimates.add_fit(METHOD, fitted, used, left_out + broken)
 
 
 def _stop(one: FreeStill) -> Stop:
@@ -65,12 +66,12 @@ def _stop(one: FreeStill) -> Stop:
 
 def passages_of(
     found: Sequence[FreeStill], blocks: pd.DataFrame, noise: NoiseLevels
-) -> tuple[list[Passage], list[str], list[str]]:
-    """The motions from each rest to the next, their names, and those left out with the reason."""
+) -> tuple[list[Passage], list[Part], list[Part]]:
+    """The motions from each rest to the next, their blocks, and those left out with the reason."""
     moving = blocks[blocks["phase"] == BETWEEN].sort_values(["log", "from_record"])
     passages: list[Passage] = []
-    names: list[str] = []
-    left: list[str] = []
+    used: list[Part] = []
+    left_out: list[Part] = []
     for i, (before, behind) in enumerate(pairwise(found)):
         if before.log != behind.log:
             continue
@@ -79,12 +80,12 @@ def passages_of(
         part = moving[inside & (moving["log"] == before.log)]
         density = noise.of(name, "rest", GYRO)
         if refusal := refusal_of(part, before, behind, density):
-            left.append(f"{name}: {refusal}")
+            left_out.append(Part(name, BETWEEN, refusal))
             continue
         seconds = part["seconds"].to_numpy(np.float64)
         passages.append(Passage(i, part[GYRO].to_numpy(np.float64), seconds, density))
-        names.append(name)
-    return passages, names, left
+        used.append(Part(name, BETWEEN))
+    return passages, used, left_out
 
 
 def refusal_of(part: pd.DataFrame, before: FreeStill, behind: FreeStill, density: Array) -> str:

@@ -9,6 +9,7 @@ from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
 from inertial.campaign.gyroscope_methods import add_formulas, add_turn_and_stop
 from inertial.campaign.rate_segments import GyroInputs
+from inertial.campaign.records import omissions
 from inertial.campaign.static_positions import averaging_times
 from inertial.estimation import gyroscopes
 from inertial.tables.stage import Stage, Tables
@@ -36,7 +37,7 @@ def gyroscope(
         estimates, inputs = collected.on(data.mount), data.gyro_inputs
         add_free_gyros(estimates, data)
         if inputs.nothing:
-            estimates.add_nothing("joint", "; ".join(inputs.left_out))
+            estimates.add_nothing("joint", omissions(inputs.left_out))
             continue
         moving = (inputs.turns, inputs.steadies, inputs.earth, inputs.position_sigma)
         fitted = gyroscopes.fit(inputs.rests, *moving, data.noise.degrees)

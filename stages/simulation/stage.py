@@ -13,7 +13,6 @@ from inertial import tables
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.masked_samples import inside, pieces
 from inertial.campaign.motions import at_rest, in_samples
-from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Manoeuvre, Performed, Row, rows_of
 from inertial.campaign.solution import Solution
 from inertial.physics.effect import Reading
@@ -40,7 +39,7 @@ def simulation(
         rests = list(_rests(data))
         if rests:
             yield "simulated", _frame([part for part, _ in rests])
-            rows = [row for part, s in rests for row in _fidelity(part, data.noise, "at rest", s)]
+            rows = [row for part, s in rests for row in _fidelity(part, data, "at rest", s)]
             yield "fidelity", _table(rows)
         if data.result.gyro is None:
             continue
@@ -48,7 +47,7 @@ def simulation(
         for m, parts in _samples_of(samples, segments, whole):
             part, how = _turn(data, m, parts, segments)
             yield "simulated", _frame([part])
-            yield "fidelity", _table(_fidelity(part, data.noise, how, data.clocks[m.log].step))
+            yield "fidelity", _table(_fidelity(part, data, how, data.clocks[m.log].step))
 
 
 def _whole(m: Manoeuvre, done: Performed) -> bool:
@@ -81,15 +80,15 @@ class Simulated:
 def _rests(data: CampaignData) -> Iterator[tuple[Simulated, float]]:
     """Every rest in its blocks, each with how long a block lasts, s."""
     both = [*data.gyro_positions[0], *data.accelerometer_positions[0]]
-    found = {still.label: still for still in both}
+    positions = {still.part: still for still in both}
     blocks = data.blocks
     rows = blocks.groupby(["manoeuvre", "phase"]).indices
     log, phase, record = (blocks[name].to_numpy() for name in ("log", "phase", "from_record"))
     time, seconds = (blocks[name].to_numpy(np.float64) for name in ("time", "seconds"))
     read = blocks[list(tables.CHANNELS)].to_numpy(np.float64)
-    for label, still in found.items():
-        name = still.manoeuvre.name
-        own = rows[name, "rest" if label == name else label.rpartition("(")[2][:-1]]
+    for position, still in positions.items():
+        name = position.manoeuvre
+        own = rows[name, position.phase]
         said = _predicted(at_rest(data, still, 0.0), data.result)
         row = np.concatenate([said.accel[0], said.gyro[0]])
         every = np.tile(row, (len(own), 1))
@@ -163,13 +162,14 @@ def _frame(parts: Sequence[Simulated]) -> pd.DataFrame:
     )
 
 
-def _fidelity(part: Simulated, levels: NoiseLevels, how: str, seconds: float) -> Iterator[Row]:
+def _fidelity(part: Simulated, data: CampaignData, how: str, seconds: float) -> Iterator[Row]:
     """How large the residuals are beside what white noise alone would leave of means so long."""
-    white = levels.of(part.manoeuvre, "rest", tables.CHANNELS)
+    white = data.noise.of(part.manoeuvre, "rest", tables.CHANNELS)
     for channel, residual, level in zip(tables.CHANNELS, part.residual.T, white, strict=True):
         there = residual[np.isfinite(residual)]
         if len(there) and np.isfinite(level):
             yield {
+                "mount": data.mount,
                 "manoeuvre": part.manoeuvre,
                 "channel": channel,
                 "profile": how,

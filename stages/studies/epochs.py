@@ -9,7 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.estimates import UNIT, described
+from inertial.campaign.estimates import SENSOR_OF, UNIT, described
 from inertial.campaign.records import Manoeuvre, Performed, rows_of, with_mount
 from inertial.estimation.averaging_epochs import Formula, in_epochs, spread
 from inertial.estimation.triad import errors_of, linear_names
@@ -108,14 +108,16 @@ def studied(
     if length < MIN_SAMPLES or np.ptp(step) > MAX_INTERVAL_DIFFERENCE * step.min():
         short = f"no rest of known attitude and {MIN_SAMPLES} samples or more was found"
         reason = short if length < MIN_SAMPLES else "the rests differ in their sample interval"
-        rows["not_studied"].append(_not_studied(data.named("rests"), reason))
+        rows["not_studied"].append(_not_studied(data.mount, data.named("rests"), reason))
         return rows
     ups = np.array([m.up for m, _ in there.values()])
     found = formulas(ups, data.gravity.number)
     for stage in SENSORS:
         if stage not in [named.stage for named in found]:
             needed = NEEDED[stage]
-            rows["not_studied"].append(_not_studied(data.named(stage), f"it needs {needed}"))
+            rows["not_studied"].append(
+                _not_studied(data.mount, data.named(stage), f"it needs {needed}")
+            )
     for named in found:
         place = SENSORS[named.stage]
         channels = CHANNELS[place : place + 3]
@@ -125,8 +127,8 @@ def studied(
     return rows
 
 
-def _not_studied(subject: str, reason: str) -> Row:
-    return {"study": "rests", "subject": subject, "reason": reason}
+def _not_studied(mount: str, subject: str, reason: str) -> Row:
+    return {"study": "rests", "mount": mount, "subject": subject, "reason": reason}
 
 
 def _add(
@@ -142,14 +144,16 @@ def _add(
     for name in np.array(named.names)[~needed]:
         what = f"{with_mount(named.stage, mount)}: {name}"
         reason = "not all of its rests were recorded, with their noise"
-        rows["not_studied"].append(_not_studied(what, reason))
+        rows["not_studied"].append(_not_studied(mount, what, reason))
     names = [name for name, has in zip(named.names, needed, strict=True) if has]
     if not names:
         return
     formula = Formula(named.formula.weights[needed], named.formula.constant[needed])
     readings, density = np.where(told, readings, 0.0), np.where(told, density, 0.0)
-    method = with_mount("rests", mount)
-    ids = [f"{named.stage}/{method}/{name}" for name in names]
+    sensor = SENSOR_OF[named.stage]
+    keys = [
+        {"mount": mount, "sensor": sensor, "method": "rests", "quantity": name} for name in names
+    ]
     unit = [described(named.stage, name)[0] for name in names]
     assert set(unit) <= {"1", *UNIT.values()}
 
@@ -159,31 +163,31 @@ def _add(
     for k in range(len(single)):
         seconds = (k + 1) * length * step
         sigma = formula.sigma(density, length * step)
-        for i, name in enumerate(ids):
+        for i, key in enumerate(keys):
             rows["epochs"].append(
-                {
-                    "parameter": name,
+                key
+                | {
                     "unit": unit[i],
                     "seconds": seconds,
                     "single": single[k, i],
                     "single_sigma": sigma[i],
-                    "running": running[k, i],
-                    "running_sigma": sigma[i] / np.sqrt(k + 1),
+                    "running_mean": running[k, i],
+                    "running_mean_sigma": sigma[i] / np.sqrt(k + 1),
                 }
             )
     most = len(readings) // MIN_EPOCHS
     lengths = [2**octave for octave in range(most.bit_length())]
     for one in spread(formula, readings, lengths):
         white = formula.sigma(density, one.samples * step) ** 2
-        for i, name in enumerate(ids):
+        for i, key in enumerate(keys):
             rows["spreads"].append(
-                {
-                    "parameter": name,
+                key
+                | {
                     "unit": unit[i],
                     "seconds": one.samples * step,
                     "epochs": one.epochs,
-                    "single": one.single[i],
-                    "running": one.running[i],
-                    "white": white[i],
+                    "single_variance": one.single[i],
+                    "running_variance": one.running[i],
+                    "white_variance": white[i],
                 }
             )

@@ -7,7 +7,6 @@ import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.masked_samples import Masks
-from inertial.campaign.rate_segments import Recorded
 from inertial.campaign.records import rows_of
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
@@ -52,7 +51,7 @@ def studies(
     rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     for data in mounts:
         _add(rows, studied(data, rests[data.mount], read))
-        _add(rows, _refused(data.gyro_inputs.recorded))
+        _add(rows, _refused(data))
         gyros = gyros_of(gyroscope_parameters, data.named("joint"))
         between = scatter.get(data.named("joint"), 0.0)
         motions: dict[str, WholeMotion] = {}
@@ -62,7 +61,7 @@ def studies(
             if isinstance(found, WholeMotion):
                 motions[name] = found
             else:
-                _add(rows, {"not_studied": [_not_studied(name, found)]})
+                _add(rows, {"not_studied": [_not_studied(data, name, found)]})
         _add(rows, _of_turns(data, motions, gyros))
     return {
         name: pd.DataFrame(rows[name]) if rows[name] else table.empty()
@@ -75,13 +74,14 @@ def _add(rows: dict[str, list[Row]], found: Mapping[str, list[Row]]) -> None:
         rows[name] += more
 
 
-def _refused(turns: list[Recorded]) -> dict[str, list[Row]]:
-    left = [_not_studied(r.plan.name, why_not(r)) for r in turns if why_not(r)]
-    return {"not_studied": left}
+def _refused(data: CampaignData) -> dict[str, list[Row]]:
+    turns = data.gyro_inputs.recorded
+    refused = [_not_studied(data, r.plan.name, why_not(r)) for r in turns if why_not(r)]
+    return {"not_studied": refused}
 
 
-def _not_studied(turn: str, reason: str) -> Row:
-    return {"study": "turns", "subject": turn, "reason": reason}
+def _not_studied(data: CampaignData, turn: str, reason: str) -> Row:
+    return {"study": "turns", "mount": data.mount, "subject": turn, "reason": reason}
 
 
 def _of_turns(
@@ -101,7 +101,9 @@ def _of_turns(
         rows["middles"] += middle(pair, whole)
         if not windows:
             names = f"{pair.forward.plan.name}, {pair.backward.plan.name}"
-            rows["not_studied"].append(_not_studied(names, "the steady part is less than 180°"))
+            rows["not_studied"].append(
+                _not_studied(data, names, "the steady part is less than 180°")
+            )
     return rows
 
 

@@ -51,6 +51,7 @@ class Pair:
     level: float
     rate_sigma: float
     others: Valued | None
+    mount: str = ""
 
     @property
     def step(self) -> float:
@@ -141,7 +142,7 @@ class Pair:
 
     def _row(self, by: str, **values: float) -> Row:
         names = {"forward": self.forward.plan.name, "backward": self.backward.plan.name}
-        return {"axis": AXES[self.axis], **names, "by": by, **values}
+        return {"mount": self.mount, "axis": AXES[self.axis], **names, "by": by, **values}
 
 
 def sliding(pair: Pair, whole: Row) -> list[Row]:
@@ -237,6 +238,7 @@ def pair_of(
         gyros.cross(i) * data.earth.level / np.sqrt(2),
         data.rate_sigma,
         together(others),
+        data.mount,
     )
 
 

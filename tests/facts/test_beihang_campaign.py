@@ -66,21 +66,22 @@ def test_published_cross_terms_that_nobody_recorded_are_told_so(results):
     told = results["comparison/differences"]
     for axes in CROSS:
         own = told[
-            (told["parameter"] == f"gyroscope/cross_{axes}")
-            & (told["kind"] == f"published@{axes[0]}")
+            (told["quantity"] == f"cross_{axes}")
+            & (told["kind"] == "published")
+            & (told["mount"] == axes[0])
         ]
         (sentence,) = own["sentence"]
         assert "program of S4 cannot be judged" in sentence and "rank 2 of 4" in sentence
 
 
 def test_the_bend_of_the_rates_is_told(results):
-    told = results["comparison/differences"].set_index("parameter")
-    cubic = told.loc["gyroscope/cubic"]
+    told = results["comparison/differences"].set_index("quantity")
+    cubic = told.loc["cubic"]
     # T18: the two runs of y left out; the earth's rate is in all runs of an axis alike.
     assert "y-10, y-40" in cubic["sentence"] or "y-40, y-10" in cubic["sentence"]
     assert cubic["difference"] * np.radians(1) ** 2 == pytest.approx(-1.375e-6, rel=0.01)
     assert cubic["in_sigmas"] == pytest.approx(-8.4, abs=0.1)
     assert "more than chance" in cubic["sentence"]
-    assert "no more than chance" in told.loc["gyroscope/asymmetry", "sentence"] or (
-        "agree within" in told.loc["gyroscope/asymmetry", "sentence"]
+    assert "no more than chance" in told.loc["asymmetry", "sentence"] or (
+        "agree within" in told.loc["asymmetry", "sentence"]
     )

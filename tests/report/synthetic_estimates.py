@@ -8,7 +8,17 @@ import numpy as np
 import pandas as pd
 
 from inertial import tables
-from tests.report.synthetic_values import AXES, BIAS, CROSS, GRAVITY, PAIRS, REST_S, SCALE, Rows
+from tests.report.synthetic_values import (
+    AXES,
+    BIAS,
+    CROSS,
+    GRAVITY,
+    PAIRS,
+    REST_S,
+    SCALE,
+    SENSOR,
+    Rows,
+)
 
 
 def parameters(stage: str, method: str) -> Rows:
@@ -40,6 +50,7 @@ def parameters(stage: str, method: str) -> Rows:
         {
             "id": f"{stage}/{method}/{name}",
             "stage": stage,
+            "sensor": SENSOR[stage],
             "method": method,
             "parameter": name,
             "value": value,
@@ -65,8 +76,8 @@ def fit(stage: str, other: str) -> Rows:
     row = {"chi_squared": chi_squared, "degrees": 594, "p_value": p_value, "used": used}
     plain = {"chi_squared": 5.1, "degrees": 6, "p_value": 0.53, "used": "x-up, x-down, y-up"}
     return [
-        {"method": "joint", "left_out": left_out, **row, **noise},
-        {"method": other, "left_out": left_out, **plain, **noise},
+        {"sensor": SENSOR[stage], "method": "joint", "left_out": left_out, **row, **noise},
+        {"sensor": SENSOR[stage], "method": other, "left_out": left_out, **plain, **noise},
     ]
 
 
@@ -82,7 +93,9 @@ def averaging(parameters: Rows, generator: np.random.Generator) -> Rows:
             spread = np.sqrt(max(sigma**2 - parameter["sigma"] ** 2, 0.0))
             value = parameter["value"] + spread * generator.standard_normal() * 0.8
             rows.append(
-                {"parameter": parameter["id"], "seconds": seconds, "value": value, "sigma": sigma}
+                {key: parameter[key] for key in ("sensor", "method")}
+                | {"quantity": parameter["parameter"], "seconds": seconds}
+                | {"value": value, "sigma": sigma}
             )
     return rows
 
@@ -92,20 +105,20 @@ def wanted(stage: str, method: str) -> Rows:
     row = {"seconds": REST_S, "sigma": sigma, "floor": floor, "random_walk": sigma * REST_S**0.5}
     times = {"x": (2 * sigma, 60.0), "y": (sigma / 2, 1200.0), "z": (floor / 2, None)}
     return [
-        {"parameter": f"{stage}/{method}/bias_{axis}", "wanted": wanted, "wanted_seconds": time}
+        {"sensor": SENSOR[stage], "method": method, "quantity": f"bias_{axis}"}
+        | {"wanted": wanted, "wanted_seconds": time}
         | row
         for axis, (wanted, time) in times.items()
     ]
 
 
 def differences() -> Rows:
-    def row(
-        kind: str, parameter: str, unit: str, sigmas: float | None, said: str
-    ) -> dict[str, Any]:
+    def row(kind: str, quantity: str, unit: str, sigmas: float | None, said: str) -> dict[str, Any]:
         one = {
-            "id": f"comparison/{kind}/{parameter}",
+            "id": f"comparison/{kind}/gyroscope/{quantity}",
             "kind": kind,
-            "parameter": parameter,
+            "sensor": "gyro",
+            "quantity": quantity,
             "unit": unit,
             "first": "this",
             "second": "that",
@@ -121,11 +134,11 @@ def differences() -> Rows:
         return one | difference | {"in_sigmas": sigmas, "p_value": p_value}
 
     return [
-        row("method_against_method", "gyroscope/bias_y", "rad/s", 0.9, "bias: they agree."),
-        row("method_against_method", "gyroscope/scale_x", "1", None, "nothing to compare."),
+        row("method_against_method", "bias_y", "rad/s", 0.9, "bias: they agree."),
+        row("method_against_method", "scale_x", "1", None, "nothing to compare."),
         row(
             "static_against_turns",
-            "gyroscope/bias_x",
+            "bias_x",
             "rad/s",
             -13.2,
             "bias of the x gyro: rests and turns differ by 0.2 °/h: more than chance.",

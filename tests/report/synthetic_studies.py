@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-Rows = list[dict[str, Any]]
+from tests.report.synthetic_values import DEGREE, SENSOR, Rows
 
-DEGREE = np.pi / 180
 SCALE = {"x": 6.151e-4, "y": -1.62e-5}
 NOISE = 3e-6
 RATE = 10 * DEGREE
@@ -46,28 +43,34 @@ def studies(generator: np.random.Generator) -> dict[str, Rows]:
     }
 
 
-def _parameters() -> list[tuple[str, str, float]]:
+def _parameters() -> list[tuple[str, str, str, float]]:
     names = [("accelerometer", f"bias_{a}", "m/s²", 1e-4) for a in "xyz"]
     names += [("accelerometer", f"scale_{a}", "1", 1e-5) for a in "xyz"]
     names += [("accelerometer", "cross_xy", "1", 1e-5), ("gyroscope", "bias_x", "rad/s", 1e-6)]
-    return [(f"{stage}/rests/{name}", unit, sigma) for stage, name, unit, sigma in names]
+    return names
 
 
-def _epochs(parameter: str, unit: str, sigma: float, generator: np.random.Generator) -> Rows:
+def _key(stage: str, name: str, unit: str) -> dict[str, str]:
+    return {"sensor": SENSOR[stage], "method": "rests", "quantity": name, "unit": unit}
+
+
+def _epochs(stage: str, name: str, unit: str, sigma: float, generator: np.random.Generator) -> Rows:
     values = sigma * generator.standard_normal(40)
     running = np.cumsum(values) / np.arange(1, 41)
     return [
-        {"parameter": parameter, "unit": unit, "seconds": k + 1.0, "single": values[k]}
-        | {"single_sigma": sigma, "running": running[k], "running_sigma": sigma / (k + 1) ** 0.5}
+        _key(stage, name, unit)
+        | {"seconds": k + 1.0, "single": values[k], "single_sigma": sigma}
+        | {"running_mean": running[k], "running_mean_sigma": sigma / (k + 1) ** 0.5}
         for k in range(40)
     ]
 
 
-def _spreads(parameter: str, unit: str, sigma: float) -> Rows:
+def _spreads(stage: str, name: str, unit: str, sigma: float) -> Rows:
     return [
-        {"parameter": parameter, "unit": unit, "seconds": seconds, "epochs": round(300 / seconds)}
-        | {"single": 1.21 * sigma**2 / seconds, "running": 1e-3 * sigma**2}
-        | {"white": sigma**2 / seconds}
+        _key(stage, name, unit)
+        | {"seconds": seconds, "epochs": round(300 / seconds)}
+        | {"single_variance": 1.21 * sigma**2 / seconds, "running_variance": 1e-3 * sigma**2}
+        | {"white_variance": sigma**2 / seconds}
         for seconds in (0.01, 0.1, 1.0, 10.0)
     ]
 

@@ -25,6 +25,7 @@ CROSS = (0.0021831, 0.0076080, -0.0027442, -0.0007839, -0.0075585, 0.0007016)
 BIAS = {"accel": (-0.0052949, 0.0050641, -0.0018790), "gyro": (1.30e-6, -2.10e-6, 0.90e-6)}
 NOISE = {"accel": 1.07e-3, "gyro": 3.5e-5}
 BATCH = 700  # rows, so that a turn comes in several batches
+SENSOR = {"accelerometer": "accel", "gyroscope": "gyro"}
 Rows = list[dict[str, Any]]
 
 
@@ -39,9 +40,10 @@ class Held:
 
 
 def rows_as(table: Any, rows: Rows) -> pd.DataFrame:
-    """Rows with the columns of the contract; what a row leaves out is a gap."""
+    """Rows in the columns of the contract; what a row omits is a gap, its mount the only one."""
     names = [column.name for column in table.columns]
     unknown = {name for row in rows for name in row} - set(names)
     assert not unknown, unknown
-    frame = pd.DataFrame([{name: row.get(name) for name in names} for row in rows], columns=names)
+    given = [{"mount": ""} | row for row in rows]
+    frame = pd.DataFrame([{name: row.get(name) for name in names} for row in given], columns=names)
     return pd.DataFrame(table.arrow(frame).to_pandas())

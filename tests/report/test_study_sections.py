@@ -66,11 +66,17 @@ def test_without_a_table_the_rest_of_the_page_is_there(made, name):
 
 
 def test_a_fencepost_stands_on_top_of_the_comparisons():
-    named = {"kind": "fencepost", "parameter": "gyroscope/scale", "unit": "1", "first": "ours"}
+    named = {
+        "kind": "fencepost",
+        "sensor": "gyro",
+        "quantity": "scale",
+        "unit": "1",
+        "first": "ours",
+    }
     named |= {"id": "comparison/fencepost/gyroscope/scale", "second": "others"}
     named |= {"sentence": "scale factors of the gyros: fencepost."}
     other = named | {"id": "comparison/published/gyroscope/scale_x", "kind": "published"}
-    other |= {"parameter": "gyroscope/scale_x", "first_value": 1e-3, "second_value": 1.5e-3}
+    other |= {"quantity": "scale_x", "first_value": 1e-3, "second_value": 1.5e-3}
     other |= {"difference": -5e-4, "sigma": 1e-5, "in_sigmas": -50.0, "p_value": 0.0}
     other |= {"sentence": "scale factor of the x gyro: they differ: more than chance."}
     section = built(

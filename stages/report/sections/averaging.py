@@ -12,7 +12,7 @@ from inertial.text.numbers import counted, fixed, significant, whole
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import drawing, outline
 from stages.report.drawing import Array
-from stages.report.identifiers import group_and_parameter, stage_and_method, stage_of
+from stages.report.identifiers import at_mount
 from stages.report.results import Estimate, by_kind, kind_of
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSOR_OF_STAGE, plain, sensor_of_stage
@@ -21,6 +21,8 @@ MOST_PANELS = 24
 MOST_EPOCH_PANELS = 12
 BIAS_UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 SENSOR = {"accelerometer": "accel", "gyroscope": "gyro"}
+STAGE = {sensor: stage for stage, sensor in SENSOR.items()}
+Group = tuple[str, str, str]  # sensor, mount, method
 KINDS = {"bias": "bias", "scale": "scale", "cross": "cross-axis terms"}
 SHOWN_SIGMAS = 4  # of a single epoch
 
@@ -29,13 +31,9 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
     """One figure per sensor and method, one panel per parameter; the time for a wanted sigma."""
     for stage, name in SENSOR_OF_STAGE.items():
         yield outline.Heading(name)
-        unit_of = {row["id"]: row["unit"] for row in tables.rows(f"{stage}_parameters")}
         groups = _curves(tables.rows(f"{stage}_averaging"))
         for number, (group, curves) in enumerate(groups.items(), 1):
-            units = {
-                parameter: quantity(parameter, _unit(stage, parameter, group, unit_of)).laboratory
-                for parameter in curves
-            }
+            units = {name: quantity(name, _unit(stage, name)).laboratory for name in curves}
             yield _figure(group, f"averaging-{stage}-{number}", curves, units)
         if not groups:
             yield outline.Paragraph(
@@ -51,32 +49,34 @@ SECTION = outline.Section(
     "its final value.",
     "The band is value ± σ. Where it narrows about zero, longer static positions would still help; "
     "where the line leaves the band and stays outside, something drifts.",
-    tuple(
-        f"{stage}_{table}" for stage in SENSOR for table in ("parameters", "averaging", "wanted")
-    ),
+    tuple(f"{stage}_{table}" for stage in SENSOR for table in ("averaging", "wanted")),
     parts,
 )
 
 
-def _curves(rows: Sequence[Record]) -> dict[str, dict[str, list[Record]]]:
+def _curves(rows: Sequence[Record]) -> dict[Group, dict[str, list[Record]]]:
     """The rows by group and by parameter, the biases first."""
-    named = []
-    for row in rows:
-        group, parameter = group_and_parameter(row["parameter"])
-        named.append(row | {"group": group, "parameter": parameter})
-    groups: dict[str, dict[str, list[Record]]] = {row["group"]: {} for row in named}
-    for row in by_kind(named):
-        groups[row["group"]].setdefault(row["parameter"], []).append(row)
+    groups: dict[Group, dict[str, list[Record]]] = {_group(row): {} for row in rows}
+    for row in by_kind(row | {"parameter": row["quantity"]} for row in rows):
+        groups[_group(row)].setdefault(row["quantity"], []).append(row)
     return groups
 
 
-def _unit(stage: str, parameter: str, group: str, unit_of: Mapping[str, str]) -> str:
-    usual = BIAS_UNIT[stage] if kind_of(parameter) == "bias" else "1"
-    return unit_of.get(f"{group}/{parameter}") or usual
+def _group(row: Record) -> Group:
+    return row["sensor"], row["mount"], row["method"]
+
+
+def _estimate(group: Group) -> Estimate:
+    sensor, mount, method = group
+    return Estimate(STAGE[sensor], at_mount(method, mount))
+
+
+def _unit(stage: str, parameter: str) -> str:
+    return BIAS_UNIT[stage] if kind_of(parameter) == "bias" else "1"
 
 
 def _figure(
-    group: str, key: str, curves: Mapping[str, Sequence[Record]], units: Mapping[str, Unit]
+    group: Group, key: str, curves: Mapping[str, Sequence[Record]], units: Mapping[str, Unit]
 ) -> outline.Figure:
     def panel_of(panel: Axes, name: str) -> None:
         rows = sorted(curves[name], key=lambda row: float(row["seconds"]))
@@ -92,7 +92,7 @@ def _figure(
         panel.set_title(f"{plain(name)}, {units[name].name}", pad=3)
         drawing.ticks(panel, 4)
 
-    title = Estimate(*stage_and_method(group)).name
+    title = _estimate(group).name
     shown = list(curves)[:MOST_PANELS]
     margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
     rest = outline.more(len(curves) - len(shown), " in the averaging table")
@@ -136,16 +136,14 @@ def _wanted(rows: Sequence[Record]) -> outline.Table:
 
 
 def _wanted_row(row: Record) -> outline.Row:
-    group, parameter = group_and_parameter(row["parameter"])
-    stage, method = stage_and_method(group)
-    unit = quantity(parameter, BIAS_UNIT[stage]).laboratory
-    walk = RANDOM_WALK[SENSOR[stage]]
+    unit = quantity(row["quantity"], BIAS_UNIT[STAGE[row["sensor"]]]).laboratory
+    walk = RANDOM_WALK[row["sensor"]]
     sigma, floor, wanted = (
         significant(unit.of(row[which]), 2) for which in ("sigma", "floor", "wanted")
     )
     seconds = row["wanted_seconds"]
     return outline.table_row(
-        f"{plain(parameter)}, {Estimate(stage, method).name}",
+        f"{plain(row['quantity'])}, {_estimate(_group(row)).name}",
         *(significant(walk.of(row["random_walk"]), 2), walk.name),
         *(sigma, f"{significant(row['seconds'], 3)} s"),
         *(floor, wanted, unit.name),
@@ -169,13 +167,13 @@ def epoch_parts(tables: Tables) -> Iterator[outline.Part]:
         yield _spreads(spreads)
 
 
-def _epochs(group: str, key: str, curves: Mapping[str, Sequence[Record]]) -> outline.Figure:
+def _epochs(group: Group, key: str, curves: Mapping[str, Sequence[Record]]) -> outline.Figure:
     def panel_of(panel: Axes, name: str) -> None:
         rows = curves[name]
         unit = quantity(name, rows[0]["unit"]).laboratory
-        seconds, *each = _arrays(rows, "seconds", "single", "running", "running_sigma")
+        seconds, *each = _arrays(rows, "seconds", "single", "running_mean", "running_mean_sigma")
         single, running, sigma = (values / unit.size for values in each)
-        final, colour = rows[-1]["running"] / unit.size, _colour(name)
+        final, colour = rows[-1]["running_mean"] / unit.size, _colour(name)
         panel.plot(seconds, single - final, color=drawing.QUIET, linewidth=0.35, alpha=0.6)
         away = running - final
         drawing.band(panel, seconds, away - sigma, away + sigma, colour, alpha=0.25, linewidth=0)
@@ -191,7 +189,7 @@ def _epochs(group: str, key: str, curves: Mapping[str, Sequence[Record]]) -> out
     first = next(iter(curves.values()))[0]["seconds"]
     margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
     return outline.Figure(
-        f"{Estimate(*stage_and_method(group)).sensor}: by single epochs of {significant(first, 3)} "
+        f"{_estimate(group).sensor}: by single epochs of {significant(first, 3)} "
         "s (grey) and by running means (colour, with ± σ of white noise), relative to the final "
         "value. The panels show ± 4 σ of a single epoch.",
         drawing.grid(shown, panel_of, 0.78, margins, "Time per static position, s", key),
@@ -199,19 +197,16 @@ def _epochs(group: str, key: str, curves: Mapping[str, Sequence[Record]]) -> out
     )
 
 
-def _name(row: Record) -> str:
-    return group_and_parameter(row["parameter"])[1]
-
-
 def _ratio(row: Record) -> float:
     """Standard deviation by single epochs over that of white noise."""
-    return sqrt(row["single"] / row["white"]) if row["white"] > 0 else float("nan")
+    white = row["white_variance"]
+    return sqrt(row["single_variance"] / white) if white > 0 else float("nan")
 
 
 def _scatter(rows: Sequence[Record]) -> outline.Figure:
     panels_of: dict[tuple[str, str], list[Record]] = {}
     for row in rows:
-        place = (stage_of(row["parameter"]), kind_of(_name(row)))
+        place = (STAGE[row["sensor"]], kind_of(row["quantity"]))
         panels_of.setdefault(place, []).append(row)
     places = sorted(panels_of, key=lambda place: (place[0], list(KINDS).index(place[1])))
     with drawing.style():
@@ -241,9 +236,9 @@ def _scatter_panel(panel: Axes, rows: Sequence[Record]) -> None:
         panel, seconds, 1 - 2 * chance, 1 + 2 * chance, drawing.QUIET, alpha=0.18, linewidth=0
     )
     panel.axhline(1, color=drawing.INK, linewidth=0.6)
-    for name in dict.fromkeys(row["parameter"] for row in rows):
-        own = sorted((row["seconds"], _ratio(row)) for row in rows if row["parameter"] == name)
-        x, y = zip(*own, strict=True)
+    for mount, name in dict.fromkeys((row["mount"], row["quantity"]) for row in rows):
+        own = [row for row in rows if (row["mount"], row["quantity"]) == (mount, name)]
+        x, y = zip(*sorted((row["seconds"], _ratio(row)) for row in own), strict=True)
         panel.plot(x, y, color=_colour(name), marker="o", markersize=1.8, linewidth=0.8)
     panel.set_xscale("log")
     drawing.plain_numbers(panel.xaxis)
@@ -254,7 +249,7 @@ def _scatter_panel(panel: Axes, rows: Sequence[Record]) -> None:
 def _scatter_at(rows: Sequence[Record], seconds: float) -> str:
     """How far the scatter is off that of white noise, at epochs of one length."""
     own = [row for row in rows if row["seconds"] == seconds]
-    ratios = sorted((_ratio(row), _name(row), stage_of(row["parameter"])) for row in own)
+    ratios = sorted((_ratio(row), row["quantity"], STAGE[row["sensor"]]) for row in own)
     epochs = own[0]["epochs"]
     chance = 1 / sqrt(2 * max(epochs - 1, 1))
     (smallest, *_), (largest, name, stage) = ratios[0], ratios[-1]
@@ -269,10 +264,8 @@ def _scatter_at(rows: Sequence[Record], seconds: float) -> str:
 def _spreads(rows: Sequence[Record]) -> outline.Table:
     shortest = {}
     for row in sorted(rows, key=lambda row: -float(row["seconds"])):
-        shortest[row["parameter"]] = row
-    named = by_kind(
-        row | {"stage": stage_of(name), "parameter": _name(row)} for name, row in shortest.items()
-    )
+        shortest[_group(row), row["quantity"]] = row
+    named = by_kind(row | {"parameter": row["quantity"]} for row in shortest.values())
     epoch = significant(min(row["seconds"] for row in rows), 3)
     return outline.Table(
         f"Scatter of the values epoch by epoch, epochs of one sample ({epoch} s).",
@@ -295,11 +288,12 @@ def _spreads(rows: Sequence[Record]) -> outline.Table:
 
 
 def _spread(row: Record) -> outline.Row:
-    unit = quantity(row["parameter"], row["unit"]).laboratory
+    unit = quantity(row["quantity"], row["unit"]).laboratory
+    single, running, white = (row[f"{of}_variance"] for of in ("single", "running", "white"))
     return outline.table_row(
-        plain(row["parameter"]),
-        SENSOR_OF_STAGE.get(row["stage"], ""),
+        plain(row["quantity"]),
+        SENSOR_OF_STAGE[STAGE[row["sensor"]]],
         unit.name,
-        *(significant(sqrt(row[key]) / unit.size, 3) for key in ("single", "white", "running")),
-        *(significant(row[key], 3) for key in ("single", "running")),
+        *(significant(sqrt(each) / unit.size, 3) for each in (single, white, running)),
+        *(significant(each, 3) for each in (single, running)),
     )

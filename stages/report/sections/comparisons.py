@@ -14,9 +14,7 @@ from stages.report import outline
 from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks
 from stages.report.identifiers import (
     beyond_chance,
-    group_and_parameter,
     joint_parameter,
-    method_and_mount,
 )
 from stages.report.results import KIND, RESULT_TABLES, final_parameters
 from stages.report.tables import Record, Tables
@@ -48,7 +46,7 @@ def comparison_parts(tables: Tables) -> Iterator[outline.Part]:
     for row in filter(_fencepost, rows):
         yield outline.Paragraph(capital(str(row["sentence"])), "fair")
     yield _differences(rows)
-    if rows and not any(_kind(row) == "published" for row in rows):
+    if rows and not any(row["kind"] == "published" for row in rows):
         yield outline.Paragraph("Published values: none is known for this instrument.")
 
 
@@ -70,13 +68,9 @@ def _worst_first(row: Record) -> tuple[bool, bool, float, str]:
     return not _fencepost(row), size is None, -abs(size or 0.0), row["id"]
 
 
-def _kind(row: Record) -> str:
-    return method_and_mount(str(row["kind"]))[0]
-
-
 def _fencepost(row: Record) -> bool:
     """Whether it says why published values are wrong, rather than that they are."""
-    return _kind(row) == "fencepost"
+    return bool(row["kind"] == "fencepost")
 
 
 def _beyond(row: Record) -> bool:
@@ -101,15 +95,15 @@ def _differences(rows: Sequence[Record]) -> outline.Table:
 
 
 def _difference(row: Record, sigma: str) -> outline.Row:
-    kind, mount = _kind(row), method_and_mount(str(row["kind"]))[1]
-    unit = units.quantity(group_and_parameter(row["parameter"])[1], row["unit"]).laboratory
+    kind = str(row["kind"])
+    unit = units.quantity(row["quantity"], row["unit"]).laboratory
     decimals = numbers.decimals_of(unit.of(row["sigma"]))
     first, second = (
         numbers.significant(value, 5) if decimals is None else numbers.fixed(value, decimals)
         for value in (unit.of(row["first_value"]), unit.of(row["second_value"]))
     )
     return outline.table_row(
-        with_mount(KINDS.get(kind, numbers.shortened(kind, 60)), mount),
+        with_mount(KINDS.get(kind, numbers.shortened(kind, 60)), row["mount"]),
         capital(numbers.shortened(row["sentence"], 600)),
         *(first, second, unit.name, sigma, numbers.probability(row["p_value"])),
         anchor=row["id"],
