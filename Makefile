@@ -2,20 +2,20 @@
 #
 #   make report                   the demo, recorded by the simulated laboratory
 #   make report CAMPAIGN=<name>   the campaign in data/raw/<name>/
-#   make check                    in seconds what is wrong with the recording, before the set-up is
-#                                 taken apart; also with CAMPAIGN=<name>
-#   make trace ID=<number>        from a number of the report, such as gyroscope/joint/bias_x, down to
+#   make check                    faults of the recording within seconds, before the set-up is
+#                                 dismantled; also with CAMPAIGN=<name>
+#   make trace ID=<number>        from a number of the report, such as gyroscope/joint/bias_x, back to
 #                                 the lines of the logs; also with CAMPAIGN=<name>
 #   make test                     every test; the same as CI with `make style`
-#   make bench                    errors, time and memory beside other programs, in one run; also
-#                                 with ONLY="cost noise"
-#   make style                    linters, types, and who may import whom
-#   make challenge                hides effects in many campaigns and says what is found, on
+#   make bench                    errors, time and memory compared with other programs, in one run;
+#                                 also with ONLY="cost noise"
+#   make style                    linters, types, and which room may import which
+#   make challenge                hides effects in many campaigns and reports what is detected, in
 #                                 docs/challenge.md; 90 minutes on two cores, can be resumed; with
 #                                 DRAWS=100 a tenth of them
 #   make docs                     docs/tables.md and the catalogue of messages, from the code
-#   make clean                    what can be made again from the raw logs; reports stay
-#   make setup                    only the environment, .venv; everything above sees to it itself
+#   make clean                    deletes what can be computed again from the raw logs; reports stay
+#   make setup                    only the environment, .venv, which every target above needs
 
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
@@ -23,8 +23,8 @@ SHELL := bash
 .SILENT:
 .PHONY: report check trace test style bench challenge docs clean setup pango campaign
 
-# Taken word for word and given to the shell through the environment, so that neither make nor the
-# shell runs what may stand in them.
+# Taken literally and passed to the shell through the environment, so that neither make nor the
+# shell executes their content.
 CAMPAIGN ?= demo
 ID ?=
 ONLY ?=
@@ -38,8 +38,8 @@ export CAMPAIGN ID ONLY DRAWS
 PYTHON ?= python3
 BIN := .venv/bin
 PANGO := libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0
-# The kernel frees the lock of flock when a run is killed; Snakemake's own would stay and stop the
-# next run.
+# The kernel releases the lock of flock when a run is killed; Snakemake's own would stay and stop
+# the next run.
 SNAKEMAKE := flock Snakefile $(BIN)/snakemake --nolock --cores 2 --quiet host reason --
 
 report: campaign setup
@@ -94,7 +94,7 @@ bench: .venv/complete benchmarks/.venv/complete
 challenge: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m hidden "$$DRAWS" data/derived/challenge
 
-# What is written by the code of the project itself; tests fail where it is not current.
+# Files generated from the code; tests fail where they are not current.
 docs: .venv/complete
 	$(BIN)/python -m commands.tables
 	$(BIN)/pybabel -q extract --keywords _ --keywords plural:1,2 --no-wrap --omit-header \
@@ -105,7 +105,7 @@ clean:
 
 setup: .venv/complete pango
 
-# Written last, so that an environment that was cut short is made anew.
+# Written last, so that an incomplete environment is created again.
 .venv/complete: requirements.lock
 	if ! $(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11))"; then
 		echo "make: $(PYTHON) must be Python 3.11 or newer; name another: make setup PYTHON=python3.12"
@@ -122,20 +122,20 @@ setup: .venv/complete pango
 	echo "Making .venv from requirements.lock, once; it takes a minute or two."
 	$(PYTHON) -m venv --clear .venv
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
-	# What reads logs is compiled now, so that the first log need not wait for it.
+	# The readers of logs are compiled now, so that the first log need not wait for it.
 	$(BIN)/python -c "import numpy; from inertial.formats.novatel.imu_messages import find_items; find_items(numpy.zeros(0, numpy.uint8), 0, last=True)"
 	touch $@
 
-# The peers have needs of their own, so they live in an environment of their own.
+# The programs compared with have requirements of their own, hence an environment of their own.
 benchmarks/.venv/complete: benchmarks/requirements.lock .venv/complete
 	echo "Making benchmarks/.venv from benchmarks/requirements.lock, once."
 	$(PYTHON) -m venv --clear benchmarks/.venv
 	benchmarks/.venv/bin/python -m pip install --quiet --require-hashes -r benchmarks/requirements.lock
 	touch $@
 
-# WeasyPrint sets the PDF with Pango, which pip cannot install. Where this may not either, only the
-# PDF is missing; without HarfBuzz's subsets alone it is made, but slower. That all is there is seen
-# once: to try takes a second.
+# WeasyPrint needs Pango for the PDF, which pip cannot install. Where this target may not either, only
+# the PDF is missing; without HarfBuzz's subsets it is made, but slower. The result is remembered in
+# .venv/pango, because the test takes a second.
 pango: .venv/complete
 	if [[ -e .venv/pango ]]; then exit; fi
 	if $(BIN)/python -c "from weasyprint.text import ffi; exit(ffi.harfbuzz_subset is None)" 2> /dev/null
