@@ -6,7 +6,7 @@ from itertools import combinations, product
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from inertial.estimation.between_positions import Given, Passage, Stop
+from inertial.estimation.between_positions import Passage, Prior, Stop
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.multi_position import PAIRS, FreeRest
 from inertial.physics.site import EARTH_RATE
@@ -25,7 +25,7 @@ TWENTY_FOUR = np.vstack([FACES, EDGES, CORNERS[:6]])
 GRAVITY, GRAVITY_SIGMA = 9.7936174, 5e-5
 LATITUDE = np.radians(30.5278)
 UP, LEVEL = EARTH_RATE * np.sin(LATITUDE), EARTH_RATE * np.cos(LATITUDE)
-GIVEN = Given(GRAVITY, GRAVITY_SIGMA, 0.0, Earth(UP, 1e-10, LEVEL))
+GIVEN = Prior(GRAVITY, GRAVITY_SIGMA, 0.0, Earth(UP, 1e-10, LEVEL))
 RATE, FINE, LASTS = 100, 10, 2.0  # Hz; steps in a sample; s, of a motion
 
 # The noise of data/simulated/demo.yaml, m/s²/√Hz and rad/√s.

@@ -143,7 +143,7 @@ class Estimates:
         values = np.append(triad.errors_of(unknowns), np.zeros(len(derived)))
         if np.linalg.det(matrix) > 0:
             jacobian[12:, :9] = triad.jacobian_of_mounting(matrix)
-            values[12:] = triad.mounting_and_rest(matrix)
+            values[12:] = triad.mounting_and_symmetric(matrix)
         else:  # two axes are taken for each other, or a sign is wrong: the findings say so
             reasons = reasons | {name: "M is left-handed: it is no mounting" for name in derived}
         if any(name.startswith(("scale", "cross")) for name in reasons):

@@ -21,7 +21,7 @@ from inertial.estimation.gyroscope_observations import (
     SteadyRate,
     WholeTurn,
 )
-from inertial.estimation.spectrum import strays
+from inertial.estimation.spectrum import rate_deviation
 from inertial.physics.vectors import cross
 from inertial.tables import GYRO
 
@@ -91,7 +91,7 @@ def sigma_of(
     level = [gap for gap in gaps if steady[gap.before - 1] and steady[gap.before]]
     if level:
         longer = max(level, key=lambda gap: gap.seconds)
-        strayed = strays(
+        strayed = rate_deviation(
             rate[steady],
             seconds[steady],
             elapsed[steady],

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from inertial.estimation.gyroscope_observations import Earth, SteadyRate
 from inertial.estimation.horizontal_earth_rate import summed_earth_rate
-from inertial.estimation.regression import Added, added_columns
+from inertial.estimation.regression import NestedTest, nested_test
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -91,13 +91,13 @@ def columns_of(data: OwnAxis) -> dict[str, Array]:
     }
 
 
-def nonlinearities(data: OwnAxis) -> dict[str, Added]:
+def nonlinearities(data: OwnAxis) -> dict[str, NestedTest]:
     """The F test of each form beside the straight lines, by name; what cannot be tested is absent.
 
     The coefficients of `table` are NaN: one share that is common to all rates is a scale factor.
     """
     tests = {
-        name: added_columns(data.straight, columns, data.mean, data.sigma)
+        name: nested_test(data.straight, columns, data.mean, data.sigma)
         for name, columns in columns_of(data).items()
     }
     return {name: test for name, test in tests.items() if test is not None}

@@ -1,18 +1,14 @@
-"""White noise of a record from its spectrum, and how far a rate strays beyond it."""
+"""White noise of a record from its spectrum, and deviations of a steady rate of the table."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-# ---- How much white noise a record holds, read from its spectrum.
-#
-# The level is the median of the periodogram over a band, so that an oscillation,
-# which fills few of its bins, and a drift, which lies below the band, do not count
-# as noise.
-
 Array = NDArray[np.float64]
+Booleans = NDArray[np.bool_]
 
-FEWEST_BINS = 12  # of a band; a shorter record is read up to half its sample rate
-CORRELATED = 1.5  # bins that a Hann window makes out of one that is independent
+MIN_BAND_BINS = 12  # in a shorter record the band extends to half the sample rate
+BINS_PER_INDEPENDENT_BIN = 1.5  # of a Hann window
+STEADY_RUNS = 8  # per recorded steady part: runs whose scatter is known to 27 %
 
 
 def band_levels(values: Array, rate: float, band: tuple[float, float]) -> Array:
@@ -34,11 +30,13 @@ def band_levels(values: Array, rate: float, band: tuple[float, float]) -> Array:
     frequency, density = periodogram(values, rate, "hann", detrend="linear", axis=0)  # type: ignore[call-overload]
     half = density[1:-1] / 2
     inside = (frequency[1:-1] >= band[0]) & (frequency[1:-1] <= band[1])
-    return np.asarray(half[inside] if inside.sum() >= FEWEST_BINS else half[1:])
+    return np.asarray(half[inside] if inside.sum() >= MIN_BAND_BINS else half[1:])
 
 
 def white_level(levels: Array) -> tuple[Array, Array]:
-    """The white noise of each channel and its standard deviation.
+    """The white noise of each channel and its standard deviation, by the median of the band.
+
+    An oscillation, which fills few bins, and a drift, which lies below the band, do not count.
 
     The median of n exponentially distributed bins is ln 2 of their mean for large n;
     for few bins as in Allen et al., Phys. Rev. D 85 (2012) 122006, appendix B.
@@ -56,50 +54,42 @@ def white_level(levels: Array) -> tuple[Array, Array]:
     bias = float(np.sum(terms * np.where(np.arange(len(terms)) % 2, -1, 1)))
     white = np.sqrt(np.median(levels, axis=0) / bias)
     # The sample median m of an exponential has variance 1/n; half of it for the root.
-    relative = 0.5 / np.log(2) / np.sqrt(max(bins / CORRELATED, 1.0))
+    relative = 0.5 / np.log(2) / np.sqrt(max(bins / BINS_PER_INDEPENDENT_BIN, 1.0))
     return white, relative * white
 
 
-# ---- How far the rate of a table strays while it is said to be steady.
-
-Booleans = NDArray[np.bool_]
-
-RUNS = 8  # of the recorded steady part: the longest stretch whose scatter is still known, to 27 %
-
-
-def strays(
+def rate_deviation(
     rate: Array, seconds: Array, elapsed: Array, before: Booleans, missing: float, density: float
 ) -> float:
-    """By how much the mean rate over what is missing may be off that of what is recorded, rad/s.
+    """Sigma of the mean rate of the table in a gap about that of the recorded parts, rad/s.
 
-    The larger of two, each without what white noise adds to it. Half of the difference between
-    the rates before and after: wherever between them the rate has changed, the mean lies not
-    farther off. The scatter of means over runs as long as what is missing: it may stray as any
-    of them. Where it is longer than an eighth of the recorded part, over runs of an eighth; that
-    a longer stretch averages more is not counted on.
+    The larger of two, each without the contribution of white noise. First, half of the difference
+    between the rates before and after: wherever in the gap the rate has changed, its mean is not
+    farther off. Second, the scatter of means over runs of the length of the gap, or of an eighth of
+    the recorded part if that is shorter: that a longer run averages more is not assumed.
 
     Parameters
     ----------
     rate, seconds, elapsed : (k,), rad/s and s, of the steady blocks; elapsed at their middles
-    before : (k,), which of them lie before the longest missing stretch
-    missing : s, how long that is
+    before : (k,), which of them precede the longest gap
+    missing : s, duration of that gap
     density : rad/√s, white noise along the axis
     """
     whole = float(seconds.sum())
-    apart = 0.0
+    difference = 0.0
     if before.any() and not before.all():
-        lasted = np.array([seconds[part].sum() for part in (before, ~before)])
-        means = np.array([rate[part] @ seconds[part] for part in (before, ~before)]) / lasted
-        excess = (means[1] - means[0]) ** 2 - density**2 * np.sum(1 / lasted)
-        apart = float(np.sqrt(max(excess, 0.0))) / 2
+        durations = np.array([seconds[part].sum() for part in (before, ~before)])
+        means = np.array([rate[part] @ seconds[part] for part in (before, ~before)]) / durations
+        excess = (means[1] - means[0]) ** 2 - density**2 * np.sum(1 / durations)
+        difference = float(np.sqrt(max(excess, 0.0))) / 2
 
-    length = max(min(missing, whole / RUNS), float(np.median(seconds)))
+    length = max(min(missing, whole / STEADY_RUNS), float(np.median(seconds)))
     run = ((elapsed - elapsed[0]) / length).astype(np.int64)
-    lasted = np.bincount(run, seconds)
-    full = lasted > length / 2  # what a gap leaves of a run is not as long as the others
-    scattered = 0.0
+    durations = np.bincount(run, seconds)
+    full = durations > length / 2  # a run that a gap cuts is shorter than the others
+    scatter = 0.0
     if full.sum() > 1:
-        means = np.bincount(run, rate * seconds)[full] / lasted[full]
-        beyond = float(np.var(means, ddof=1) - density**2 * np.mean(1 / lasted[full]))
-        scattered = float(np.sqrt(max(beyond, 0.0)))
-    return max(apart, scattered)
+        means = np.bincount(run, rate * seconds)[full] / durations[full]
+        excess_variance = float(np.var(means, ddof=1) - density**2 * np.mean(1 / durations[full]))
+        scatter = float(np.sqrt(max(excess_variance, 0.0)))
+    return max(difference, scatter)

@@ -1,10 +1,9 @@
-"""Three sensors in one case: reading = M · truth + bias, and what M is made of.
+"""A triad of sensors in one case: reading = M · truth + bias, and the decomposition of M.
 
-M = I + S + N, with the scale factor errors S on the diagonal and the cross terms N
-beside it (sources: S0, eq. 3-1; S3, eq. 6). By polar decomposition M = P R: R
-takes the truth into axes that are square to each other and lie nearest to the
-sensors', so its inverse is the rotation of the sensor triad against the case;
-the symmetric P holds the scale factors and what is not square.
+M = I + S + N, with the scale factor errors S on the diagonal and the cross terms N elsewhere
+(sources: S0, eq. 3-1; S3, eq. 6). By polar decomposition M = P R: R takes the truth into the
+orthogonal axes nearest to the sensors', so its inverse is the rotation of the sensor triad against
+the case; the symmetric P holds the scale factors and the non-orthogonality.
 """
 
 import numpy as np
@@ -40,23 +39,25 @@ def errors_of(unknowns: Array) -> Array:
     return np.asarray(unknowns - np.append(np.eye(3).ravel(), np.zeros(3)))
 
 
-def mounting_and_rest(matrix: Array) -> Array:
-    """Mounting rotation (rad, rotation vector) and symmetric rest P − I of M, (9,).
+def mounting_and_symmetric(matrix: Array) -> Array:
+    """Mounting rotation (rad, rotation vector) and symmetric part P − I of M, (9,).
 
     The order is MOUNTING, SYMMETRIC.
     """
     rotation, symmetric = polar(matrix, side="left")
     mounting = -Rotation.from_matrix(rotation).as_rotvec()
-    rest = symmetric - np.eye(3)
-    return np.concatenate([mounting, np.diag(rest), rest[[0, 0, 1], [1, 2, 2]]])
+    error = symmetric - np.eye(3)
+    return np.concatenate([mounting, np.diag(error), error[[0, 0, 1], [1, 2, 2]]])
 
 
 def jacobian_of_mounting(matrix: Array, step: float = 1e-6) -> Array:
-    """Derivative of `mounting_and_rest` with respect to M by rows, (9, 9)."""
+    """Derivative of `mounting_and_symmetric` with respect to M by rows, (9, 9)."""
     columns = []
     for unit in np.eye(9):
         change = step * unit.reshape(3, 3)
-        difference = mounting_and_rest(matrix + change) - mounting_and_rest(matrix - change)
+        difference = mounting_and_symmetric(matrix + change) - mounting_and_symmetric(
+            matrix - change
+        )
         columns.append(difference / (2 * step))
     return np.column_stack(columns)
 

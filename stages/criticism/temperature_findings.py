@@ -132,7 +132,7 @@ def _finding(dependence: TemperatureDependence, mount: str) -> Iterator[TableRow
     sweep, best, effects = dependence.sweep, dependence.best, members(dependence)
     if dependence.structured:
         verdict, p_value = UNKNOWN_STRUCTURE, best.p_beyond
-        statistic, count = best.curve.left_chi_squared()
+        statistic, count = best.curve.residual_chi_squared()
     else:
         verdict, p_value = ONE_OF_CLASS if len(effects) > 1 else FOUND, best.p_value
         statistic, count = best.curve.drop(range(1, best.degree + 1)), best.degree
@@ -241,7 +241,7 @@ def _structure(best: AxisModel, kind: Kind) -> Iterator[str]:
     yield NO_LAW.format(
         curve=CURVES[highest],
         p_value=p_is(best.p_beyond),
-        residual=kind.of(best.curve.left(highest)),
+        residual=kind.of(best.curve.residual_rms(highest)),
         noise=kind.of(best.curve.noise),
     )
     knee = best.knee
@@ -252,7 +252,7 @@ def _structure(best: AxisModel, kind: Kind) -> Iterator[str]:
     below, above = (
         kind.per_kelvin(slope, sigma) for slope, sigma in zip(knee.slopes, knee.sigmas, strict=True)
     )
-    at, residual = _celsius(knee.at), kind.of(knee.left)
+    at, residual = _celsius(knee.at), kind.of(knee.residual_rms)
     yield KNEE.format(at=at, low=low, high=high, below=below, above=above, residual=residual)
 
 
@@ -264,7 +264,7 @@ def _law(best: AxisModel, kind: Kind, middle: float) -> Iterator[str]:
     if best.degree > 1:
         ends = best.curve.at[0], best.curve.at[-1]
         cold, warm = (significant(best.curve.slope(best.degree, e) / kind.size, 2) for e in ends)
-        residual, noise = kind.of(best.curve.left(1)), kind.of(best.curve.noise)
+        residual, noise = kind.of(best.curve.residual_rms(1)), kind.of(best.curve.noise)
         yield SLOPES.format(cold=cold, warm=warm, residual=residual, noise=noise)
 
 
@@ -307,7 +307,9 @@ def _consequence(dependence: TemperatureDependence) -> str:
     kind = KINDS[dependence.sweep.kind]
     return CONSEQUENCE.format(
         changes=", ".join(f"{one.axis} {kind.of(one.change)}" for one in dependence.axes),
-        residuals=", ".join(f"{one.axis} {kind.of(one.curve.left(1))}" for one in dependence.axes),
+        residuals=", ".join(
+            f"{one.axis} {kind.of(one.curve.residual_rms(1))}" for one in dependence.axes
+        ),
     )
 
 

@@ -236,7 +236,7 @@ def temperature_dependences(swept: Sequence[Sweep], level: float) -> list[Temper
         for sweep in swept
     ]
     curves = [curve for _, own in every for curve in own.values()]
-    searched = (sum(len(c.lawful) for c in curves), len(curves))
+    searched = (sum(len(c.degrees) for c in curves), len(curves))
     judged = [
         TemperatureDependence(
             sweep, [one for a, c in own.items() if (one := _judged(a, c, level, searched)).moves]
@@ -249,17 +249,19 @@ def temperature_dependences(swept: Sequence[Sweep], level: float) -> list[Temper
 def _judged(axis: str, curve: Curve, level: float, searched: tuple[int, int]) -> AxisModel:
     """`searched`: how many degrees of laws, and how many channels, are looked at in all."""
     laws, structures = searched
-    clear = [d for d in curve.lawful if curve.chance(range(d, d + 1)) * laws < level]
+    clear = [d for d in curve.degrees if curve.p_value(range(d, d + 1)) * laws < level]
     degree = max(clear, default=0)
-    beyond = min(1.0, curve.chance_beyond() * structures)
+    beyond = min(1.0, curve.misfit_p_value() * structures)
     knee = knee_of(curve.at, curve.readings) if beyond < level else None
     if knee is not None and _odds(curve, knee) < MIN_LOG_ODDS:
         knee = None
-    chance = min(1.0, curve.chance(range(1, degree + 1)) * laws)
+    chance = min(1.0, curve.p_value(range(1, degree + 1)) * laws)
     return AxisModel(axis, curve, degree, chance, beyond, beyond < level, knee)
 
 
 def _odds(curve: Curve, knee: Knee) -> float:
     """How much likelier, as a logarithm, two lines are than the polynomial of highest degree."""
     rounded = np.finfo(np.float64).tiny  # two lines may hold made-up readings wholly
-    return len(curve.at) * float(np.log(curve.left(curve.highest) / max(knee.left, rounded)))
+    return len(curve.at) * float(
+        np.log(curve.residual_rms(curve.highest) / max(knee.residual_rms, rounded))
+    )

@@ -18,7 +18,7 @@ from inertial.campaign.estimates import Estimates, reasons
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Part, omissions
 from inertial.campaign.unknown_attitude import METHOD, FreeStill, fitted_to, free_stills
-from inertial.estimation.between_positions import Given, Passage, Stop, between_rests
+from inertial.estimation.between_positions import Passage, Prior, Stop, between_rests
 from inertial.estimation.variance_components import with_scatter
 from inertial.tables import GYRO
 
@@ -44,10 +44,10 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> None:
         return
     passages, moving, broken = passages_of(found, data.blocks, data.noise)
     between = fitted_to(data, found).scatter
-    given = Given(data.gravity.number, data.gravity.scatter, between, data.earth)
+    prior = Prior(data.gravity.number, data.gravity.scatter, between, data.earth)
     fits = [
         with_scatter(
-            partial(between_rests, stops, passages, given, sways=sways),
+            partial(between_rests, stops, passages, prior, sways=sways),
             between=SCATTER_RANGE,
             noise_degrees=data.noise.degrees,
         )

@@ -68,9 +68,9 @@ def test_the_chances_are_true():
     for below in (0.05, 0.5):
         scatter = 4 * np.sqrt(below * (1 - below) / len(curves))
         for degree in (1, 2, 3):
-            chances = [curve.chance(range(degree, degree + 1)) for curve in curves]
+            chances = [curve.p_value(range(degree, degree + 1)) for curve in curves]
             assert np.mean(np.array(chances) < below) == pytest.approx(below, abs=scatter)
-    beyond = np.array([curve.chance_beyond() for curve in curves])
+    beyond = np.array([curve.misfit_p_value() for curve in curves])
     scatter = 4 * np.sqrt(0.05 * 0.95 / len(curves))
     assert np.mean(beyond < 0.05) == pytest.approx(0.05, abs=scatter)
 

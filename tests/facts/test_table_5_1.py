@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import s0
 
-from inertial.estimation.triad import mounting_and_rest
+from inertial.estimation.triad import mounting_and_symmetric
 from inertial.physics.site import normal_gravity
 
 N = s0.ACCELEROMETER - np.eye(3)
@@ -13,7 +13,7 @@ ARC_SECOND = np.radians(1 / 3600)
 
 
 def test_t5_the_mounting_rotation():
-    found = mounting_and_rest(s0.ACCELEROMETER)[:3]
+    found = mounting_and_symmetric(s0.ACCELEROMETER)[:3]
     assert np.degrees(np.linalg.norm(found)) == pytest.approx(0.458673, abs=1e-6)
     first_order = (N - N.T)[[1, 2, 0], [2, 0, 1]] / 2
     np.testing.assert_allclose(first_order, [-0.742750e-3, -7.583250e-3, 2.463650e-3], atol=1e-9)
@@ -28,7 +28,7 @@ def test_t6_the_symmetric_rest():
     np.testing.assert_allclose(first_order / ARC_SECOND, [-57.87, 5.11, -8.49], atol=0.005)
     # Those of the design study are of first order. The second order has the size θ²/2 = 29 µrad;
     # with it the rest of M = P R is:
-    rest = mounting_and_rest(s0.ACCELEROMETER)[6:]
+    rest = mounting_and_symmetric(s0.ACCELEROMETER)[6:]
     np.testing.assert_allclose(rest, [-283.53e-6, 25.16e-6, -30.74e-6], atol=1e-8)
     noise = s0.per_root_second(s0.VELOCITY_RANDOM_WALK) / np.sqrt(2 * 300) / s0.GRAVITY
     assert noise == pytest.approx(2.08e-6, abs=0.01e-6)  # of a cross term, two rests of 300 s
@@ -40,8 +40,8 @@ def test_the_rest_is_what_the_axes_lack_to_right_angles():
     seconds = np.degrees(np.arccos((rows @ rows.T)[PAIRS]) - np.pi / 2) * 3600
     np.testing.assert_allclose(seconds, [116.92, -10.38, 12.68], atol=0.01)
     P = np.eye(3)
-    P[np.diag_indices(3)] += mounting_and_rest(s0.ACCELEROMETER)[3:6]
-    P[PAIRS] = mounting_and_rest(s0.ACCELEROMETER)[6:]
+    P[np.diag_indices(3)] += mounting_and_symmetric(s0.ACCELEROMETER)[3:6]
+    P[PAIRS] = mounting_and_symmetric(s0.ACCELEROMETER)[6:]
     P = np.triu(P) + np.triu(P, 1).T
     # M Mᵀ = P²: the rest alone has the angles between the axes; the mounting does not enter.
     np.testing.assert_allclose(P @ P, s0.ACCELEROMETER @ s0.ACCELEROMETER.T, atol=1e-12)
@@ -49,10 +49,10 @@ def test_the_rest_is_what_the_axes_lack_to_right_angles():
 
 def test_t7_the_scale_factors_without_the_rotation():
     # the design study has M = R P, whose P is that of Mᵀ = P Rᵀ.
-    transposed = mounting_and_rest(s0.ACCELEROMETER.T)
+    transposed = mounting_and_symmetric(s0.ACCELEROMETER.T)
     np.testing.assert_allclose(transposed[3:6], [360.80e-6, 330.85e-6, 264.91e-6], atol=1e-8)
     # With M = P R, as campaigns.md has it, they are close to the lengths of the rows.
-    own = mounting_and_rest(s0.ACCELEROMETER)
+    own = mounting_and_symmetric(s0.ACCELEROMETER)
     np.testing.assert_allclose(own[3:6], [359.79e-6, 332.29e-6, 264.47e-6], atol=1e-8)
     rows = np.linalg.norm(s0.ACCELEROMETER, axis=1) - 1
     np.testing.assert_allclose(rows, [359.833e-6, 332.331e-6, 264.474e-6], atol=1e-9)

@@ -15,8 +15,8 @@ from moved_by_hand import (
 )
 from scipy.spatial.transform import Rotation
 
-from inertial.estimation.attitude import carried, running_product
-from inertial.estimation.between_positions import Given, Passage, Stop, between_rests
+from inertial.estimation.attitude import integrate, running_product
+from inertial.estimation.between_positions import Passage, Prior, Stop, between_rests
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.multi_position import FREE, FreeRest
 from inertial.estimation.triad import UNKNOWNS
@@ -42,7 +42,7 @@ def test_a_hundred_readings_a_second_carry_an_attitude_to_a_microradian():
         rates = swung(np.random.default_rng(seed))
         truth = running_product(Rotation.from_rotvec(rates / 10_000).as_matrix())[-1].T
         means = rates.reshape(-1, 100, 3).mean(axis=1)
-        ours = carried(means, np.full(len(means), 0.01)).whole
+        ours = integrate(means, np.full(len(means), 0.01)).whole
         plain = running_product(Rotation.from_rotvec(means / 100).as_matrix())[-1].T
         off = [Rotation.from_matrix(found @ truth.T).magnitude() for found in (ours, plain)]
         astray.append(off)
@@ -52,9 +52,9 @@ def test_a_hundred_readings_a_second_carry_an_attitude_to_a_microradian():
 
 
 def test_what_stands_still_turns_the_other_way():
-    way = carried(np.array([[0, 0, 0.1]] * 10), np.full(10, 1.0))
+    way = integrate(np.array([[0, 0, 0.1]] * 10), np.full(10, 1.0))
     np.testing.assert_allclose(way.whole @ [1, 0, 0], [np.cos(1), -np.sin(1), 0], atol=1e-14)
-    np.testing.assert_allclose(way.to_the_end[0] @ way.middles[0], way.whole, atol=1e-14)
+    np.testing.assert_allclose(way.to_end[0] @ way.middles[0], way.whole, atol=1e-14)
     np.testing.assert_allclose(
         way.middles[0] @ [1, 0, 0], [np.cos(0.05), -np.sin(0.05), 0], atol=1e-14
     )
@@ -201,8 +201,8 @@ def published(parameters):
 
 def gyros_of_cuyo(stops, passages):
     up, level = earth_rate(np.radians(-32.9))
-    given = Given(9.80665, 5e-4, 0.0, Earth(up, 1e-8, level))
-    fit = partial(between_rests, stops, passages, given, sways=True)
+    prior = Prior(9.80665, 5e-4, 0.0, Earth(up, 1e-8, level))
+    fit = partial(between_rests, stops, passages, prior, sways=True)
     return with_scatter(fit, (1e-11, 0.1), np.inf)
 
 

@@ -26,7 +26,7 @@ from inertial.estimation.multi_position import (
     unseen,
     upper_triangular,
 )
-from inertial.estimation.triad import mounting_and_rest
+from inertial.estimation.triad import mounting_and_symmetric
 from inertial.estimation.variance_components import with_scatter
 
 A_TENTH = np.radians(0.1)
@@ -155,7 +155,7 @@ def test_the_upper_triangular_form_is_the_same_triad():
     upper = upper_triangular(symmetric)
     np.testing.assert_allclose(np.tril(upper, -1), 0, atol=1e-15)
     np.testing.assert_allclose(upper @ upper.T, symmetric @ symmetric, atol=1e-15)
-    rest = mounting_and_rest(upper)[3:]
+    rest = mounting_and_symmetric(upper)[3:]
     np.testing.assert_allclose(rest, [symmetric[i, j] - (i == j) for i, j in PAIRS], atol=1e-12)
     # For small errors: the diagonal is the same, and the corner is twice the angle of P.
     np.testing.assert_allclose(upper[0, 1], 2 * symmetric[0, 1], rtol=0.05)
@@ -190,7 +190,7 @@ def published(parameters):
     (yz, zy, zx), scale, bias = np.split(parameters, [3, 6])
     skew = np.array([[1, -yz, zy], [0, 1, -zx], [0, 0, 1]])
     matrix = np.linalg.inv(skew @ np.diag(scale)) * COUNT
-    symmetric = mounting_and_rest(matrix)[3:] + PRIOR[:6]  # P − I and I
+    symmetric = mounting_and_symmetric(matrix)[3:] + PRIOR[:6]  # P − I and I
     return np.append(symmetric, -bias * COUNT)
 
 
