@@ -19,7 +19,7 @@ from inertial.estimation import gyroscopes
 from inertial.estimation.gyroscope_formulas import Solution, Upright, two_positions
 from inertial.estimation.rate_table import rate_table
 from inertial.estimation.triad import BIAS, errors_of
-from inertial.estimation.turn_and_stop import UNKNOWN, turn_and_stop
+from inertial.estimation.turn_and_stop import CROSS_SIGMA, turn_and_stop
 from inertial.estimation.variance_components import ScatterFit
 from inertial.tables import AXES
 
@@ -39,7 +39,7 @@ def add_formulas(
     """
     inputs = data.gyro_inputs
     scatter, told = joint.scatter, joint.estimate.determined[:9]
-    cross = np.where(told, joint.estimate.values[:9], UNKNOWN).reshape(3, 3)
+    cross = np.where(told, joint.estimate.values[:9], CROSS_SIGMA).reshape(3, 3)
     _add_static(estimates, inputs, cross, (scatter, wanted))
     _add_known_angle(estimates, data, scatter)
     found = rate_table(inputs.steadies, inputs.earth, inputs.position_sigma, scatter)

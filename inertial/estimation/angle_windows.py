@@ -8,24 +8,19 @@ from numpy.typing import NDArray
 from inertial.estimation.consistency import CommonCause, common_cause, normal_p_value
 from inertial.estimation.probability import chi2_sf
 
-# ---- Bias and scale factor of a gyro from a window of two turns, forward and backward.
-#
-#     b = (α̃₁ + α̃₂ − (1 + s)(α₁ + α₂)) / (2T) − ω_e,   s = (α̃₁ − α̃₂) / (α₁ − α₂) − 1
-#
-# S0 (3-9), (3-10), where α₁ = −α₂. A window of N intervals lies between N + 1 edges and holds N
-# samples: its angle at a set rate ω is N · step · ω. Who sums N + 1 samples has a scale factor
-# that is too large by 1/N (design study, T11).
-
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
 class Window:
-    """m windows of two turns: first edge, and the edge after the last sample, (m,) each.
+    """m windows of a turn forward and a turn backward.
 
-    `seconds`, `forward`, `backward`: (m,), s and rad, how long each lasts and the angle of the
-    table in it; forward positive, backward negative.
+    `first`, `after`: (m,), the first edge, and the edge after the last sample. A window of N
+    intervals lies between N + 1 edges and holds N samples: its angle at a set rate ω is
+    N · step · ω. A sum over N + 1 samples gives a scale factor that is too large by 1/N (design
+    study, T11). `seconds`, `forward`, `backward`: (m,), s and rad, duration and angle of the
+    table; forward positive, backward negative.
     """
 
     first: Integers
@@ -43,9 +38,9 @@ def at_set_rate(first: Integers, samples: Integers | int, step: float, rate: flo
 
 
 def by_angles(window: Window, forward: Array, backward: Array) -> Window:
-    """The same windows, their angles by those of the table at every edge, (n + 1,) each."""
-    one, other = (angle[window.after] - angle[window.first] for angle in (forward, backward))
-    return Window(window.first, window.after, window.seconds, one, other)
+    """The same windows, with their angles by those of the table at every edge, (n + 1,) each."""
+    plus, minus = (angle[window.after] - angle[window.first] for angle in (forward, backward))
+    return Window(window.first, window.after, window.seconds, plus, minus)
 
 
 def edges_of(increments: Array) -> Array:
@@ -53,18 +48,24 @@ def edges_of(increments: Array) -> Array:
     return np.append(0.0, np.cumsum(increments))
 
 
-def solved(window: Window, forward: Array, backward: Array, earth: float) -> tuple[Array, Array]:
+def scale_and_bias(
+    window: Window, forward: Array, backward: Array, earth: float
+) -> tuple[Array, Array]:
     """Scale factor errors, and biases in rad/s, (m,) each.
+
+        b = (α̃₁ + α̃₂ − (1 + s)(α₁ + α₂)) / (2T) − ω_e,   s = (α̃₁ − α̃₂) / (α₁ − α₂) − 1
+
+    S0 (3-9), (3-10), where α₁ = −α₂.
 
     Parameters
     ----------
-    forward, backward : (n + 1,), rad, the angle that the gyro summed, at the edges of its samples
+    forward, backward : (n + 1,), rad, the summed angle of the gyro at the edges of its samples
     earth : rad/s, upward earth rate along the gyro
     """
-    one, other = (summed[window.after] - summed[window.first] for summed in (forward, backward))
-    scale = (one - other) / (window.forward - window.backward) - 1
-    left = one + other - (1 + scale) * (window.forward + window.backward)
-    return np.asarray(scale), np.asarray(left / (2 * window.seconds) - earth)
+    plus, minus = (summed[window.after] - summed[window.first] for summed in (forward, backward))
+    scale = (plus - minus) / (window.forward - window.backward) - 1
+    residual = plus + minus - (1 + scale) * (window.forward + window.backward)
+    return np.asarray(scale), np.asarray(residual / (2 * window.seconds) - earth)
 
 
 def noise_of(
@@ -75,29 +76,29 @@ def noise_of(
     Parameters
     ----------
     densities : rad/√s, white noise of the gyro in the turn forward and backward
-    each : rad, what else either angle suffers, each for itself: a ripple that is cut, a level rate
+    each : rad, further independent errors of either angle: a cut ripple, a horizontal rate
     """
     variance = (densities[0] ** 2 + densities[1] ** 2) * window.seconds + 2 * np.square(each)
     size = np.sqrt(variance)
     return np.asarray(size / (window.forward - window.backward)), size / (2 * window.seconds)
 
 
-# ---- Scale factors that are all off by one sample: N + 1 samples summed for N intervals.
-#
-#     (1 + s) / (1 + s_reference) − 1 = m / N,   m a whole number, the same for all axes
-#
-# S0's table 5-5 is such a case (design study, 0 and T11): its windows of 180° at 10 °/s and 100
-# Hz last 1800 samples, and its scale factors exceed those of the whole turns by 581, 555 and 560
-# ppm, where 1/1800 is 555.6 ppm. Where N differs between the axes the form is its own; where it
-# does not, that m comes out whole is what tells it from another common cause.
+MAX_FENCEPOST_SIGMA = 0.1  # of m: else any number would be near a whole one
 
 
 @dataclass(frozen=True)
 class Fencepost:
-    """How many samples too many were summed, as a number that may be broken, and the nearest whole.
+    """Scale factors that are all off by the same number m of samples: N + 1 summed for N intervals.
 
-    `ratios`: (k,), by what the scale factors exceed the reference; `cause`: its `amount` is m;
-    `whole_chi_squared`: of k degrees, with the nearest whole number.
+        (1 + s) / (1 + s_reference) − 1 = m / N,   m a whole number, the same for all axes
+
+    S0's table 5-5 is such a case (design study, 0 and T11): its windows of 180° at 10 °/s and 100
+    Hz last 1800 samples, and its scale factors exceed those of the whole turns by 581, 555 and 560
+    ppm, where 1/1800 is 555.6 ppm. Where N differs between the axes the pattern is characteristic;
+    where it does not, only that m is whole distinguishes it from another common cause.
+
+    `ratios`: (k,), by which the scale factors exceed the reference; `cause`: its `amount` is m;
+    `whole`: the nearest whole number; `whole_chi_squared`: of k degrees, with that.
     """
 
     ratios: Array
@@ -107,16 +108,16 @@ class Fencepost:
 
     @property
     def p_whole(self) -> float:
-        """Chance of such scale factors if just so many samples too many were summed."""
+        """p-value of the scale factors with that whole number."""
         return float(chi2_sf(self.whole_chi_squared, self.cause.k))
 
-    def told(self, level: float) -> bool:
-        """Whether it is a fencepost.
+    def is_detected(self, level: float) -> bool:
+        """Whether it is a fencepost error at significance `level`.
 
-        Without it the ratios are not chance, with it they are, one by one and in common; and the
-        sigma of m is small enough that not any number would be near a whole one.
+        Without it the ratios differ from zero, with it they do not, one by one and in common; and
+        the sigma of m is small.
         """
-        sharp = self.cause.sigma < 0.1
+        sharp = self.cause.sigma < MAX_FENCEPOST_SIGMA
         off = normal_p_value((self.cause.amount - self.whole) / self.cause.sigma)
         chance = min(self.p_whole, off)
         return sharp and self.whole != 0 and self.cause.p_without < level <= chance
@@ -128,11 +129,11 @@ def fencepost(scales: Array, reference: Array, sigma: Array, samples: Array) -> 
     Parameters
     ----------
     scales, reference : (k,), scale factor errors
-    sigma : (k,), of their differences, ripple that the window cuts included
-    samples : (k,), N, how many intervals the window should have had
+    sigma : (k,), of their differences, cut ripple included
+    samples : (k,), N, the intended number of intervals
     """
     ratios = (1 + scales) / (1 + reference) - 1
     cause = common_cause(ratios, sigma, 1 / samples)
     whole = round(cause.amount)
-    left = (ratios - whole / samples) / sigma
-    return Fencepost(np.asarray(ratios), cause, whole, float(left @ left))
+    residual = (ratios - whole / samples) / sigma
+    return Fencepost(np.asarray(ratios), cause, whole, float(residual @ residual))

@@ -1,12 +1,11 @@
-"""Parameters that are linear in readings at rest, solved anew from every epoch of the rests.
+"""Variances of parameters that are solved from every epoch of the static positions.
 
     parameter = Σ weight · reading + constant
 
-All rests are cut into epochs of one length; the k-th epochs of all rests give the k-th value, the
+All static positions are cut into epochs of one length; the k-th epochs give the k-th value, the
 means of the first k epochs its running mean. S0 (tables 5-3, 5-4; figures 5-3 to 5-8) gives the
-variances of both, of epochs of one sample. That of single epochs falls as 1/T by white noise alone;
-where it does not, what is read is no white noise. That of running means says how far they
-wandered, not how sure the last one is.
+variances of both, for epochs of one sample. That of single epochs decreases as 1/T for white noise
+alone. That of running means describes their excursion, not the sigma of the last one.
 """
 
 from collections.abc import Sequence
@@ -30,13 +29,13 @@ class Formula:
         return np.asarray(readings @ self.weights.T + self.constant)
 
     def sigma(self, densities: Array, seconds: float) -> Array:
-        """What white noise of `densities` (r,), per √s, leaves after so many seconds, (p,)."""
+        """Sigmas by white noise of `densities` (r,), per √s, after so many seconds, (p,)."""
         return np.asarray(np.sqrt(self.weights**2 @ densities**2 / seconds))
 
 
 @dataclass(frozen=True)
 class Spread:
-    """How values scatter that are solved epoch by epoch, (p,) each.
+    """Variances of values that are solved epoch by epoch, (p,) each.
 
     `single`, `running`: variances of the values by single epochs and by running means.
     """
@@ -53,7 +52,7 @@ def in_epochs(readings: Array, length: int) -> tuple[Array, Array]:
     Parameters
     ----------
     readings : (n, r), samples of all rests side by side, NaN where masked
-    length : samples of an epoch; what is left over at the end is not used
+    length : samples of an epoch; an incomplete last epoch is not used
     """
     k = len(readings) // length
     cut = readings[: k * length].reshape(k, length, -1)
@@ -64,10 +63,10 @@ def in_epochs(readings: Array, length: int) -> tuple[Array, Array]:
 
 def spread(formula: Formula, readings: Array, lengths: Sequence[int]) -> list[Spread]:
     """The variances for epochs of several lengths in samples; at least two epochs of each."""
-    found = []
+    result = []
     for length in lengths:
         single, running = (formula.of(part) for part in in_epochs(readings, length))
         if len(single) > 1:
             variances = [np.nanvar(values, axis=0, ddof=1) for values in (single, running)]
-            found.append(Spread(length, len(single), *variances))
-    return found
+            result.append(Spread(length, len(single), *variances))
+    return result

@@ -6,18 +6,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.estimation.gyroscope_equations import horizontal_axes, horizontal_names
 from inertial.estimation.gyroscope_observations import Earth, Position, WholeTurn
-from inertial.physics.motion import level_axes
-
-# ---- A formula of a source that is linear in the readings, with the covariance that it has.
-#
-#     parameter k of sensor r = sum over j of weights[r, k, j] · reading[j, r]
-#
-# The sources print such formulas without sigma. What the readings suffer is noise, each for
-# itself, and causes that several share: the tilt of a position, the angle of a turn, gravity.
 
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
+
+MIN_EARTH_RATE_SIGMAS = 3.0  # of the upward earth rate, else it determines no scale factor
 
 # Sensor by sensor three columns of M and the bias, (3, 4), in the order of the twelve unknowns.
 ORDER = np.append(np.arange(12).reshape(3, 4)[:, :3].ravel(), np.arange(12).reshape(3, 4)[:, 3])
@@ -46,24 +41,30 @@ class Solution:
 
 @dataclass
 class Readings:
-    """n readings of three sensors, and all that they suffer.
+    """n readings of three sensors with the covariance of their errors.
 
-    `values`: (n, 3); `noise`: (n, 3), standard deviations; NaN where not recorded. `causes`: for
-    each error that several readings share, what it does to all of them at one sigma, (n, 3).
+    The sources print formulas that are linear in the readings, without sigma:
+
+        parameter k of sensor r = sum over j of weights[r, k, j] · reading[j, r]
+
+    Errors are noise, independent between readings, and causes that several readings share: the tilt
+    of a position, the angle of a rate segment, gravity. `values`: (n, 3); `noise`: (n, 3), standard
+    deviations; NaN where not recorded. `causes`: for each shared error its effect at one sigma on
+    all readings, (n, 3).
     """
 
     values: Array
     noise: Array
     causes: dict[tuple[str, str], Array] = field(default_factory=dict)
 
-    def suffer(self, kind: str, name: str, reading: int, size: Array) -> None:
-        """Let one sigma of the cause change a reading by `size`, (3,)."""
+    def add_cause(self, kind: str, name: str, reading: int, size: Array) -> None:
+        """One sigma of the cause changes a reading by `size`, (3,)."""
         if (kind, name) not in self.causes:
             self.causes[kind, name] = np.zeros_like(self.values)
         self.causes[kind, name][reading] += size
 
     def solution(self, weights: Array, determined: Booleans) -> Solution:
-        """What the formula gives.
+        """The parameters by the formula, with their covariance.
 
         Parameters
         ----------
@@ -85,20 +86,9 @@ class Readings:
         return Solution(values, flat)
 
 
-# ---- A gyro from rests with its axis up and its axis down, with the sigmas that S0 leaves out.
-#
-#     b = (ω̃_up + ω̃_down) / 2,   s = (ω̃_up − ω̃_down) / (2 ω_e sinφ) − 1        (S0 3-13, 3-14)
-#
-# The level part of the earth's rate reaches the gyro through its cross terms and through the tilt
-# of each position: γ ω_e cosφ is 0.1 °/h for γ = 7.6 mrad in Wuhan. Where the azimuth is known it
-# is taken out, else it adds to the sigmas.
-
-KNOWN = 3.0  # sigmas by which the upward earth rate must be known, or it shows no scale factor
-
-
 @dataclass(frozen=True)
 class Upright:
-    """A rest with the axis of the gyro up or down: its mean, rad/s, and the sigma of noise."""
+    """A static position with the axis of the gyro up or down: mean, rad/s, and sigma of noise."""
 
     position: Position
     up: float  # +1 where the axis points up, −1 where it points down
@@ -119,21 +109,27 @@ class TwoPositions:
 def two_positions(
     rests: Sequence[Upright], cross: Array, earth: Earth, position_sigma: float
 ) -> TwoPositions | None:
-    """S0's formulas; None unless the axis was up and down.
+    """A gyro from static positions with its axis up and down, with the sigmas that S0 omits.
+
+        b = (ω̃_up + ω̃_down) / 2,   s = (ω̃_up − ω̃_down) / (2 ω_e sinφ) − 1      (S0 3-13, 3-14)
+
+    The horizontal earth rate couples through the cross terms and the tilt of each position:
+    γ ω_e cosφ is 0.1 °/h for γ = 7.6 mrad in Wuhan. Where the azimuth is known it is subtracted,
+    else it adds to the sigmas. None unless the axis was up and down.
 
     Parameters
     ----------
-    cross : (3,), what the gyro senses of rates along x, y, z; 0 along its own axis
+    cross : (3,), cross terms of the gyro for rates about x, y, z; 0 along its own axis
     position_sigma : tilt of each position, rad
     """
     up = np.array([rest.up > 0 for rest in rests], dtype=np.bool_)
     if up.all() or not up.any():
         return None
-    # Where the axis stood up several times, the mean of smallest variance.
+    # Of several positions of one direction the mean of smallest variance.
     weight = np.array([rest.sigma**-2 for rest in rests])
     share = np.where(up, weight / weight[up].sum(), weight / weight[~up].sum())
     bias, bias_variance = _combined(rests, share / 2, cross, earth, position_sigma)
-    if abs(earth.up) < KNOWN * earth.up_sigma:
+    if abs(earth.up) < MIN_EARTH_RATE_SIGMAS * earth.up_sigma:
         return TwoPositions(bias, float(np.sqrt(bias_variance)), None, None)
     signed = np.where(up, share, -share) / (2 * earth.up)
     ratio, variance = _combined(rests, signed, cross, earth, position_sigma)
@@ -144,7 +140,7 @@ def two_positions(
 def _combined(
     rests: Sequence[Upright], factors: Array, cross: Array, earth: Earth, position_sigma: float
 ) -> tuple[float, float]:
-    """A weighted sum of the means, the known level earth rate taken out, and its variance.
+    """A weighted sum of the means less the known horizontal earth rate, and its variance.
 
     An unknown azimuth is a random direction; positions with a common mark share it.
     """
@@ -157,26 +153,16 @@ def _combined(
         if position.north is not None:
             value -= factor * earth.level * float(cross @ position.north)
             continue
-        axes, name = level_axes(position.up), position.name
-        if position.mark is not None:
-            axes, name = (position.mark, np.cross(position.up, position.mark)), "the table"
-        part = factor * earth.level * np.array([cross @ axis for axis in axes])
+        (_, name), _ = horizontal_names(position)
+        part = factor * earth.level * horizontal_axes(position) @ cross
         coupled[name] = coupled.get(name, np.zeros(2)) + part
     variance += sum(float(part @ part) / 2 for part in coupled.values())
     return float(value), float(variance)
 
 
-# ---- A turn forward against a turn backward: does the gyro have one scale factor for both?
-#
-#     s = (α̃ − b t − ω_e sinφ t) / α − 1,   for each direction by itself
-#
-# with the bias b of the joint estimate. An asymmetry of the scale factor, and all that adds to a
-# rate while it turns, makes the two differ.
-
-
 @dataclass(frozen=True)
 class BothWays:
-    """The scale factor error that each direction gives, and the sigma of their difference."""
+    """The scale factor error by each direction, and the sigma of their difference."""
 
     forward: float
     backward: float
@@ -191,15 +177,20 @@ def both_ways(
     earth: Earth,
     scatter: float = 0.0,
 ) -> BothWays:
-    """Compare two turns about the same axis.
+    """The scale factor error of a gyro by a turn forward and by a turn backward.
+
+        s = (α̃ − b t − ω_e sinφ t) / α − 1,   for each direction by itself
+
+    with the bias b of the joint estimate. An asymmetry of the scale factor, and any error that
+    occurs during rotation only, makes the two differ.
 
     The difference is c (b_turns − b) with c = t/α forward less t/α backward, where b_turns is the
-    bias that the two turns alone would give: an error of b goes into the two scale factors with
-    opposite sign. The joint bias b is from data that hold these turns, so the two are correlated:
-    its estimate is efficient, and so it gives b_turns the weight σ_b²/σ_turns². Without `scatter`,
-    the scatter between manoeuvres that the joint estimate allows for (rad/s), this leaves
-    σ² = c² (σ_turns² − σ_b²), after Hausman (1978). The scatter is not counted as noise of the
-    turns: it stands for what the model lacks, which is what is sought here.
+    bias by the two turns alone: an error of b enters the two scale factors with opposite sign. The
+    joint bias b is from data that contain these turns, so the two are correlated: its estimate is
+    efficient, and so it gives b_turns the weight σ_b²/σ_turns². Without `scatter`, the scatter
+    between manoeuvres in the joint estimate (rad/s), this leaves σ² = c² (σ_turns² − σ_b²), after
+    Hausman (1978). The scatter is not counted as noise of the turns: it represents unmodelled
+    effects, which are what is tested here.
     """
     scales = [
         (turn.summed - (bias + earth.up * turn.up) * turn.seconds) / turn.angle - 1

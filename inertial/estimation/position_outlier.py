@@ -1,9 +1,9 @@
-"""Whether one set position is off by more than the table's sigma, and what that spoils.
+"""Test of one set position for an error larger than the table's sigma, and its consequences.
 
-The tilts of each position in turn are left free and the drop of chi-squared is held against noise,
-the search over all positions paid for. A reading up and a reading down that are tilted alike change
-the same sum, so from six positions alone it may be either of two: all are named that explain the
-readings nearly as well.
+The tilts of each position in turn are fitted freely and the drop of chi-squared is compared with
+noise, with Bonferroni's correction for the number of positions. A reading up and a reading down
+with the same tilt change the same sum, so from six positions alone it may be either of two: all
+positions are listed that fit the readings nearly as well.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,23 +15,23 @@ from numpy.typing import NDArray
 from inertial.estimation.accelerometers import StaticForce, equations
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.triad import UNKNOWNS
-from inertial.physics.motion import all_level_axes
+from inertial.physics.motion import level_axes
 from inertial.physics.vectors import cross
 
 Array = NDArray[np.float64]
 
-FREE = 0.02  # rad, sigma of a tilt that is left free: a degree
-LEVEL = 0.001  # accepted chance of finding a position off where none is
-ALIKE = 6.0  # drop of chi-squared by which the best must exceed another: 95 % of 2 degrees
+FREE_TILT_SIGMA = 0.02  # rad, of a tilt that is fitted freely: a degree
+SIGNIFICANCE = 0.001  # accepted probability of a false alarm
+MIN_DROP_DIFFERENCE = 6.0  # of chi-squared, from best to excluded: 95 % of 2 degrees of freedom
 
 
 @dataclass(frozen=True)
 class OffPosition:
     """A position that does not fit the others.
 
-    `positions`: all that may be the one, the likeliest first; `tilt`, `sigma`: rad, how far that
-    one is off; `about`: (3,), body axes, unit vector; `moved`, `freed_sigma`: (12,), by how much
-    the parameters change when it is left free, and their sigmas then; `p_value`: after the search.
+    `positions`: all candidates, the most likely first; `tilt`, `sigma`: rad, of that one; `about`:
+    (3,), body axes, unit vector; `moved`, `freed_sigma`: (12,), change of the parameters when it is
+    fitted freely, and their sigmas then; `p_value`: after Bonferroni.
     """
 
     positions: tuple[str, ...]
@@ -44,39 +44,44 @@ class OffPosition:
 
 
 def off_position(
-    rests: Sequence[StaticForce],
+    statics: Sequence[StaticForce],
     gravity: float,
     gravity_sigma: float,
     position_sigma: float,
     matrix: Array,
-    wide: Mapping[str, float] | None = None,
+    effect_sigma: Mapping[str, float] | None = None,
 ) -> OffPosition | None:
-    """The position that is off, if there is one; `matrix`: M of the estimate, (3, 3).
+    """The position in error, if there is one; `matrix`: M of the estimate, (3, 3).
 
-    `wide`: sigmas of further unknowns, as in `weighted`; they are fitted as well.
+    `effect_sigma`: of parameters of effects as in `weighted`; they are fitted as well.
     """
-    positions = list(dict.fromkeys(rest.position for rest in rests))
-    given = (gravity, gravity_sigma, position_sigma, 0.0, matrix)
+    positions = list(dict.fromkeys(static.position for static in statics))
+    setup = (gravity, gravity_sigma, position_sigma, 0.0, matrix)
     columns = [f"{position}/{i}" for position in positions for i in (0, 1)]
-    traced, known = _traced(rests, gravity, matrix), dict(wide or {})
-    reduced = equations(traced, *given, known | dict.fromkeys(columns, FREE)).effect_information()
-    further = list(range(len(known)))
-    base, _ = reduced.drop(further) if further else (0.0, 0)
+    with_tilts, known = _with_tilts(statics, gravity, matrix), dict(effect_sigma or {})
+    information = equations(
+        with_tilts, *setup, known | dict.fromkeys(columns, FREE_TILT_SIGMA)
+    ).effect_information()
+    fitted = list(range(len(known)))
+    base, _ = information.drop(fitted) if fitted else (0.0, 0)
     tilts = [[len(known) + 2 * i + k for k in (0, 1)] for i in range(len(positions))]
-    drops = np.array([reduced.drop([*further, *pair])[0] - base for pair in tilts])
+    drops = np.array([information.drop([*fitted, *pair])[0] - base for pair in tilts])
     best = int(np.argmax(drops))
     p_value = min(float(chi2_sf(drops[best], 2)) * len(positions), 1.0)
-    if p_value >= LEVEL:
+    if p_value >= SIGNIFICANCE:
         return None
-    alike = [positions[i] for i in np.argsort(-drops) if drops[i] > drops[best] - ALIKE]
+    alike = [
+        positions[i] for i in np.argsort(-drops) if drops[i] > drops[best] - MIN_DROP_DIFFERENCE
+    ]
     own = columns[2 * best : 2 * best + 2]
-    before = equations(rests, *given, known).solve()
-    after = equations(traced, *given, known | dict.fromkeys(own, FREE)).solve()
+    before = equations(statics, *setup, known).solve()
+    after = equations(with_tilts, *setup, known | dict.fromkeys(own, FREE_TILT_SIGMA)).solve()
     places = [after.names.index(("effect", name)) for name in own]
-    level = all_level_axes(next(r.up for r in rests if r.position == positions[best])[None])[0]
-    vector = after.values[places] @ level
+    up = next(static.up for static in statics if static.position == positions[best])
+    horizontal = np.array(level_axes(up))
+    vector = after.values[places] @ horizontal
     tilt = float(np.linalg.norm(vector))
-    along = vector @ level.T / tilt
+    along = vector @ horizontal.T / tilt
     variance = along @ after.covariance[np.ix_(places, places)] @ along
     return OffPosition(
         tuple(alike),
@@ -89,12 +94,12 @@ def off_position(
     )
 
 
-def _traced(rests: Sequence[StaticForce], gravity: float, matrix: Array) -> list[StaticForce]:
-    """The rests with what the two tilts of their position do to them."""
-    found = []
-    for rest in rests:
-        level = all_level_axes(rest.up[None])[0]
-        leans = cross(level, gravity * rest.up) @ matrix.T
-        own = [f"{rest.position}/{i}" for i in range(2)]
-        found.append(replace(rest, sensitivities=rest.sensitivities.extended(own, leans.T)))
-    return found
+def _with_tilts(statics: Sequence[StaticForce], gravity: float, matrix: Array) -> list[StaticForce]:
+    """The static means with their sensitivities to the two tilts of their position."""
+    result = []
+    for static in statics:
+        horizontal = np.array(level_axes(static.up))
+        changes = cross(horizontal, gravity * static.up) @ matrix.T
+        own = [f"{static.position}/{i}" for i in range(2)]
+        result.append(replace(static, sensitivities=static.sensitivities.extended(own, changes.T)))
+    return result

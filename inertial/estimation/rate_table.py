@@ -3,9 +3,9 @@
     mean reading = M · (ω u + E) + bias + noise,   [M | b] = Ω̃ Wᵀ (W Wᵀ)⁻¹
 
 The columns of W are (ω u, 1): the rate of the table about its axis u in body axes, and 1. All runs
-count alike. The earth's rate E, of which S4 does not speak, is taken out beforehand. A gyro that
-was recorded only while the table turned about its own axis has a W of rank 2: its scale factor and
-bias are those of a straight line, its cross terms are refused.
+have the same weight. The earth's rate E, which S4 does not mention, is subtracted beforehand. A
+gyro that was recorded only while the table turned about its own axis has a W of rank 2: its scale
+factor and bias are those of a straight line, its cross terms are not determined.
 """
 
 from collections.abc import Sequence
@@ -26,11 +26,12 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 COLUMNS = 4  # the rates about x, y, z, and 1
+EARTH_ITERATIONS = 3  # the earth's rate is sensed through M, which is an unknown
 
 
 @dataclass(frozen=True)
 class RateTable:
-    """What the runs say of the gyros.
+    """The gyros by the runs.
 
     `solution`: M and bias; `ranks`: (3,), rank of the inputs of each gyro, of 4; `recorded`: (3,),
     runs of each gyro; `residuals`: (k, 3), rad/s, NaN where not recorded.
@@ -50,7 +51,7 @@ class RateTable:
     def rms(self) -> Array:
         """Standard deviation of a run by the residuals of each gyro, (3,), rad/s.
 
-        NaN where no degree of freedom is left.
+        NaN where no degree of freedom is values.
         """
         squares = np.nansum(self.residuals**2, axis=0)
         free = np.where(self.degrees > 0, self.degrees, 1)
@@ -58,14 +59,14 @@ class RateTable:
 
     def refusals(self) -> dict[str, str]:
         """Why a parameter is not determined, with the rank and the cure, by its name."""
-        found = {}
+        refusals = {}
         for name, there in zip(linear_names(), self.solution.determined, strict=True):
             gyro, about = name.partition("_")[2][0], name[-1]
             rank, runs = self.ranks[AXES.index(gyro)], self.recorded[AXES.index(gyro)]
             if there:
                 continue
             if not runs:
-                found[name] = f"the {gyro} gyro is not recorded in any steady run"
+                refusals[name] = f"the {gyro} gyro is not recorded in any steady run"
                 continue
             what = f"the inputs of the {gyro} gyro have rank {rank} of {COLUMNS}"
             cure = (
@@ -73,8 +74,8 @@ class RateTable:
                 if name.startswith("bias")
                 else f"record all three gyros while the table turns about {about}"
             )
-            found[name] = f"{what}: {cure}"
-        return found
+            refusals[name] = f"{what}: {cure}"
+        return refusals
 
 
 def rate_table(
@@ -92,36 +93,36 @@ def rate_table(
     noise = np.hypot(np.array([run.sigma for run in runs]), scatter)
     there = np.isfinite(means) & np.isfinite(noise)
     design = np.column_stack([rates, np.ones(len(runs))])
-    spans = [pseudo_inverse(design[there[:, gyro]]) for gyro in range(3)]
+    inverses = [pseudo_inverse(design[there[:, gyro]]) for gyro in range(3)]
     weights = np.zeros((3, COLUMNS, len(runs)))
-    for gyro, span in enumerate(spans):
-        weights[gyro][:, there[:, gyro]] = span.inverse
-    determined = np.array([span.determined for span in spans])
+    for gyro, solution in enumerate(inverses):
+        weights[gyro][:, there[:, gyro]] = solution.inverse
+    determined = np.array([inverse.determined for inverse in inverses])
 
-    seen = [
+    earth_rates = [
         summed_earth_rate(
             earth, run.position, run.about, run.rate * run.elapsed, run.seconds / run.seconds.sum()
         )
         for run in runs
     ]
     matrix = np.eye(3)
-    for _ in range(3):  # the earth is read through M, which is not known before
-        left = means - np.array([one.known for one in seen]) @ matrix.T
-        solved = np.einsum("rkj,jr->rk", weights, np.nan_to_num(left))
+    for _ in range(EARTH_ITERATIONS):
+        values = means - np.array([rate.known for rate in earth_rates]) @ matrix.T
+        solved = np.einsum("rkj,jr->rk", weights, np.nan_to_num(values))
         matrix = np.where(determined[:, :3], solved[:, :3], np.eye(3))
 
-    readings = Readings(left, noise)
-    for j, (run, one) in enumerate(zip(runs, seen, strict=True)):
-        readings.suffer("rate", str(j), j, matrix @ run.about * run.rate_sigma)
-        readings.suffer("earth", "up", j, matrix @ one.up * earth.up_sigma)
-        for (kind, name), size in one.level.items():
-            readings.suffer(kind, name, j, matrix @ size)
+    readings = Readings(values, noise)
+    for j, (run, earth_rate) in enumerate(zip(runs, earth_rates, strict=True)):
+        readings.add_cause("rate", str(j), j, matrix @ run.about * run.rate_sigma)
+        readings.add_cause("earth", "up", j, matrix @ earth_rate.up * earth.up_sigma)
+        for (kind, name), size in earth_rate.level.items():
+            readings.add_cause(kind, name, j, matrix @ size)
         for i, axis in enumerate(level_axes(run.about)):
-            lean = run.rate * cross(axis, run.about) * position_sigma
-            readings.suffer(f"tilt {i}", run.position.name, j, matrix @ lean)
+            change = run.rate * cross(axis, run.about) * position_sigma
+            readings.add_cause(f"tilt {i}", run.position.name, j, matrix @ change)
     return RateTable(
         readings.solution(weights, determined),
-        np.array([span.rank for span in spans]),
+        np.array([inverse.rank for inverse in inverses]),
         there.sum(axis=0),
-        np.where(there, left - design @ solved.T, np.nan),
+        np.where(there, values - design @ solved.T, np.nan),
     )

@@ -45,7 +45,7 @@ def off_by_a_sample(
     told = all(row["samples"] is not None for row in scales)
     theirs, ours, sigma, samples = np.array(cases).T
     found, speed = fencepost(theirs, ours, sigma, samples), _speed(motions)
-    if not found.told(level) or not (told or abs(found.whole) == 1):
+    if not found.is_detected(level) or not (told or abs(found.whole) == 1):
         return
     if speed is not None and _explains(speed, found, samples):
         return

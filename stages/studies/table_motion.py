@@ -14,7 +14,13 @@ from inertial.campaign.motions import angles_seen
 from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Manoeuvre, rows_of
 from inertial.estimation.periodic_in_time import strongest
-from inertial.estimation.time_angle import Errors, TimeAngle, ripple_angle, ripple_window, tied
+from inertial.estimation.time_angle import (
+    Errors,
+    TimeAngle,
+    ripple_angle,
+    ripple_window,
+    time_angle,
+)
 from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Site, Triad
 from inertial.physics.vectors import cross
@@ -204,7 +210,7 @@ def motion_of(
     )
     turned = np.sign(m.angle) * seen
     return WholeMotion(
-        one, step, increments, first, after, tied(turned, step, abs(m.angle), errors), lines
+        one, step, increments, first, after, time_angle(turned, step, abs(m.angle), errors), lines
     )
 
 

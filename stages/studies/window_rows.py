@@ -16,7 +16,7 @@ from inertial.estimation.angle_windows import (
     by_angles,
     edges_of,
     noise_of,
-    solved,
+    scale_and_bias,
 )
 from inertial.estimation.gyroscopes import bias_and_scale
 from inertial.estimation.time_angle import Valued, plateau
@@ -96,7 +96,7 @@ class Pair:
 
         With `any_phase` an oscillation counts as cut at any phase, however long they are.
         """
-        scale, bias = solved(window, *self.summed(), self.earth)
+        scale, bias = scale_and_bias(window, *self.summed(), self.earth)
         seconds = None if any_phase else window.seconds
         ripple = [motion.ripple(self.axis, seconds) for motion in (self.forward, self.backward)]
         # While the table turns on, the level earth rate sums to 2 sin(α/2)/ω.

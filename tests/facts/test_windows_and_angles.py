@@ -29,7 +29,7 @@ def test_t11_the_middle_180_degrees_hold_one_sample_too_many():
     np.testing.assert_allclose(found.ratios, [580.57e-6, 555.13e-6, 559.74e-6], atol=1e-8)
     left = found.ratios - 1 / WINDOW
     np.testing.assert_allclose(left, [25.02e-6, -0.43e-6, 4.18e-6], atol=1e-8)
-    assert found.whole == 1 and found.told(level=0.01)
+    assert found.whole == 1 and found.is_detected(level=0.01)
     assert found.cause.amount == pytest.approx(1, abs=3 * found.cause.sigma)
     assert found.cause.p_without < 1e-12 and found.p_whole > 0.1
 
@@ -44,17 +44,17 @@ def test_t11_the_middle_180_degrees_hold_one_sample_too_many():
 )
 def test_other_differences_are_no_fencepost(ratios):
     scales = (1 + np.array(ratios)) * (1 + s0.TURNS_SCALE) - 1
-    assert not fencepost(scales, s0.TURNS_SCALE, SIGMA, WINDOW).told(level=0.01)
+    assert not fencepost(scales, s0.TURNS_SCALE, SIGMA, WINDOW).is_detected(level=0.01)
 
 
 def test_a_fencepost_of_windows_of_other_lengths_has_its_own_form():
     samples = np.array([1800.0, 900.0, 450.0])
     scales = (1 + s0.TURNS_SCALE) * (1 - 1 / samples) - 1
     found = fencepost(scales, s0.TURNS_SCALE, SIGMA, samples)
-    assert found.whole == -1 and found.told(level=0.01)
+    assert found.whole == -1 and found.is_detected(level=0.01)
     same = np.full(3, -1 / 900)
     scales = (1 + s0.TURNS_SCALE) * (1 + same) - 1
-    assert not fencepost(scales, s0.TURNS_SCALE, SIGMA, samples).told(level=0.01)
+    assert not fencepost(scales, s0.TURNS_SCALE, SIGMA, samples).is_detected(level=0.01)
 
 
 def plateau(gyro: int) -> list[SteadyRate]:

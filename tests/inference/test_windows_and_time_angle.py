@@ -3,9 +3,22 @@
 import numpy as np
 import pytest
 
-from inertial.estimation.angle_windows import at_set_rate, by_angles, edges_of, noise_of, solved
+from inertial.estimation.angle_windows import (
+    at_set_rate,
+    by_angles,
+    edges_of,
+    noise_of,
+    scale_and_bias,
+)
 from inertial.estimation.averaging_epochs import Formula, in_epochs, spread
-from inertial.estimation.time_angle import Errors, plateau, ripple_window, spin_down, spin_up, tied
+from inertial.estimation.time_angle import (
+    Errors,
+    plateau,
+    ripple_window,
+    spin_down,
+    spin_up,
+    time_angle,
+)
 from inertial.physics.motion import Profile
 
 STEP = 0.01
@@ -25,15 +38,15 @@ def test_a_window_of_n_samples_has_n_steps_and_not_one_more():
     gyro = STEP * np.array([(1 + true) * way * RATE + bias + earth for way in (1, -1)])
     forward, backward = (edges_of(np.full(2500, one)) for one in gyro)
     window = at_set_rate(np.arange(0, 700, 100), n, STEP, RATE)
-    scale, offset = solved(window, forward, backward, earth)
+    scale, offset = scale_and_bias(window, forward, backward, earth)
     np.testing.assert_allclose(scale, true, atol=1e-12)
     np.testing.assert_allclose(offset, bias, atol=1e-12)
     np.testing.assert_allclose(window.forward, np.pi, rtol=1e-12)
     # S0's windows: 1801 samples against the angle of 1800 (design study, T11).
     wrong = at_set_rate(np.zeros(1, int), n + 1, STEP, RATE * n / (n + 1))
-    assert (1 + solved(wrong, forward, backward, earth)[0][0]) / (1 + true) - 1 == pytest.approx(
-        1 / n
-    )
+    assert (1 + scale_and_bias(wrong, forward, backward, earth)[0][0]) / (
+        1 + true
+    ) - 1 == pytest.approx(1 / n)
 
 
 def test_the_noise_of_windows_is_that_of_many_windows():
@@ -48,7 +61,7 @@ def test_the_noise_of_windows_is_that_of_many_windows():
         ]
         for one in sums:
             one[-1] += random.normal(0, 1e-6)
-        found.append([float(part[0]) for part in solved(window, *sums, 0.0)])
+        found.append([float(part[0]) for part in scale_and_bias(window, *sums, 0.0)])
     scatter = np.std(found, axis=0)
     np.testing.assert_allclose(scatter, [sigma[0], offset[0]], rtol=0.06)
 
@@ -68,7 +81,7 @@ def test_what_a_ripple_leaves_is_nothing_over_whole_periods():
 def noisy(random: np.random.Generator, scale: float = 6e-4):
     """The turn by a gyro with a scale factor error and white noise."""
     white = random.normal(0, DENSITY * STEP**0.5, len(EDGES) - 1)
-    return tied((1 + scale) * np.diff(ANGLE) + white, STEP, PROFILE.angle, EXACT)
+    return time_angle((1 + scale) * np.diff(ANGLE) + white, STEP, PROFILE.angle, EXACT)
 
 
 def test_the_angle_is_tied_at_both_ends_and_a_brownian_bridge_between():
@@ -117,7 +130,7 @@ def test_a_smooth_ramp_is_as_long_as_one_of_constant_acceleration_with_its_sprea
     share = np.clip((time - 1) / 3, 0, 1)
     rate = RATE * np.sin(np.pi * share / 2) ** 2
     angle = np.append(0, np.cumsum((rate[1:] + rate[:-1]) / 2 * STEP))
-    turn = tied(np.diff(angle), STEP, float(angle[-1]), EXACT)
+    turn = time_angle(np.diff(angle), STEP, float(angle[-1]), EXACT)
     found = spin_up(turn, 800, plateau(turn, 800, 2000))
     assert found.seconds.value == pytest.approx(3 * np.sqrt(12 * (0.25 - 2 / np.pi**2)), rel=1e-3)
     assert found.start.value + found.seconds.value / 2 == pytest.approx(2.5, abs=1e-3)
@@ -129,11 +142,11 @@ def test_the_own_angle_gives_the_whole_turn_again():
         (1 + 6e-4) * way * np.diff(ANGLE) + random.normal(0, DENSITY * 0.1, len(EDGES) - 1)
         for way in (1, -1)
     )
-    one = tied(forward, STEP, 2 * np.pi, EXACT)
-    other = tied(-backward, STEP, 2 * np.pi, EXACT)
+    one = time_angle(forward, STEP, 2 * np.pi, EXACT)
+    other = time_angle(-backward, STEP, 2 * np.pi, EXACT)
     window = at_set_rate(np.arange(300, 1500, 50), 1800, STEP, RATE)
     own = by_angles(window, one.angle, -other.angle)
-    scale, _ = solved(own, edges_of(forward), edges_of(backward), 0.0)
+    scale, _ = scale_and_bias(own, edges_of(forward), edges_of(backward), 0.0)
     whole = (forward.sum() - backward.sum()) / (4 * np.pi) - 1
     np.testing.assert_allclose(scale, whole, atol=1e-8)
 
