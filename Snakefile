@@ -30,7 +30,10 @@ RAW = "data/raw/{campaign}"
 SIMULATED = campaigns("data/simulated", "*.yaml")
 LABORATORY = sorted(p for p in (HOME / "laboratory").rglob("*") if p.suffix in {".py", ".yaml"})
 CAMPAIGNS = sorted({*campaigns("data/raw", "*/campaign.yaml"), *SIMULATED})
-STAGE = "python -m stages.{rule} data/derived/{wildcards.campaign:q} {params.options:q} 2> {log:q}"
+STAGE = (
+    "python -m stages.{rule} data/derived/{wildcards.campaign:q}"
+    " --settings {params.settings:q} {params.files:q} 2> {log:q}"
+)
 
 
 def declared(stage):
@@ -54,17 +57,21 @@ def code(stage):
     return hash_of(code_of(stage))
 
 
-def options(stage, **more):
-    """The command line of a stage: its settings and no other's, its files that are no tables."""
+def settings(stage):
+    """The section of config.yaml that a stage gets, and no other, so that only it runs again."""
+    return json.dumps(config.get(stage, {}), sort_keys=True)
+
+
+def files(stage, **more):
+    """The options of a stage that name files: inputs that are no tables, and its documents."""
 
     def of(wildcards, input):
         given = {name: input[name] for name in declared(stage).files if name in input.keys()}
-        named = given | more
-        words = ["--settings", json.dumps(config.get(stage, {}), sort_keys=True)]
         if declared(stage).documents:
-            words += ["--documents", f"reports/{wildcards.campaign}"]
-        for name, files in named.items():
-            words += [f"--{name}", *([files] if isinstance(files, str) else files)]
+            given["documents"] = f"reports/{wildcards.campaign}"
+        words = []
+        for name, paths in (given | more).items():
+            words += [f"--{name}", *([paths] if isinstance(paths, str) else paths)]
         return words
 
     return of
@@ -133,7 +140,8 @@ rule plan:
     log:
         f"{DERIVED}/plan/stage.log",
     params:
-        options=options("plan"),
+        settings=settings("plan"),
+        files=files("plan"),
         code=code("plan"),
     message:
         "{wildcards.campaign}: the campaign file, checked and made explicit"
@@ -150,7 +158,8 @@ rule decode:
     log:
         f"{DERIVED}/decode/stage.log",
     params:
-        options=options("decode"),
+        settings=settings("decode"),
+        files=files("decode"),
         code=code("decode"),
     message:
         "{wildcards.campaign}: logs to samples"
@@ -166,7 +175,8 @@ rule quality:
     log:
         f"{DERIVED}/quality/stage.log",
     params:
-        options=options("quality"),
+        settings=settings("quality"),
+        files=files("quality"),
         code=code("quality"),
     message:
         "{wildcards.campaign}: faults of the recording"
@@ -182,7 +192,8 @@ rule segment:
     log:
         f"{DERIVED}/segment/stage.log",
     params:
-        options=options("segment"),
+        settings=settings("segment"),
+        files=files("segment"),
         code=code("segment"),
     message:
         "{wildcards.campaign}: the manoeuvres of the plan in the logs"
@@ -198,7 +209,8 @@ rule noise:
     log:
         f"{DERIVED}/noise/stage.log",
     params:
-        options=options("noise"),
+        settings=settings("noise"),
+        files=files("noise"),
         code=code("noise"),
     message:
         "{wildcards.campaign}: white noise of every channel"
@@ -214,7 +226,8 @@ rule accelerometer:
     log:
         f"{DERIVED}/accelerometer/stage.log",
     params:
-        options=options("accelerometer"),
+        settings=settings("accelerometer"),
+        files=files("accelerometer"),
         code=code("accelerometer"),
     message:
         "{wildcards.campaign}: the accelerometers from static positions"
@@ -230,7 +243,8 @@ rule gyroscope:
     log:
         f"{DERIVED}/gyroscope/stage.log",
     params:
-        options=options("gyroscope"),
+        settings=settings("gyroscope"),
+        files=files("gyroscope"),
         code=code("gyroscope"),
     message:
         "{wildcards.campaign}: the gyros from rate segments and static positions"
@@ -246,7 +260,8 @@ rule studies:
     log:
         f"{DERIVED}/studies/stage.log",
     params:
-        options=options("studies"),
+        settings=settings("studies"),
+        files=files("studies"),
         code=code("studies"),
     message:
         "{wildcards.campaign}: averaging time, epochs, windows, time and angle"
@@ -262,7 +277,8 @@ rule comparison:
     log:
         f"{DERIVED}/comparison/stage.log",
     params:
-        options=options("comparison"),
+        settings=settings("comparison"),
+        files=files("comparison"),
         code=code("comparison"),
     message:
         "{wildcards.campaign}: static against rotation, method against method, published values"
@@ -278,7 +294,8 @@ rule compensation:
     log:
         f"{DERIVED}/compensation/stage.log",
     params:
-        options=options("compensation"),
+        settings=settings("compensation"),
+        files=files("compensation"),
         code=code("compensation"),
     message:
         "{wildcards.campaign}: the samples with the errors taken out"
@@ -295,7 +312,8 @@ rule simulation:
         f"{DERIVED}/simulation/stage.log",
     priority: 1  # the longest way to the report leads here
     params:
-        options=options("simulation"),
+        settings=settings("simulation"),
+        files=files("simulation"),
         code=code("simulation"),
     message:
         "{wildcards.campaign}: what the IMU should have read"
@@ -312,7 +330,8 @@ rule criticism:
         f"{DERIVED}/criticism/stage.log",
     priority: 1  # the longest way to the report leads here
     params:
-        options=options("criticism"),
+        settings=settings("criticism"),
+        files=files("criticism"),
         code=code("criticism"),
     message:
         "{wildcards.campaign}: unmodelled effects by name"
@@ -329,7 +348,8 @@ rule extension:
         f"{DERIVED}/extension/stage.log",
     priority: 1  # the longest way to the report leads here
     params:
-        options=options("extension"),
+        settings=settings("extension"),
+        files=files("extension"),
         code=code("extension"),
     message:
         "{wildcards.campaign}: the model with these effects, and its gain on held-out manoeuvres"
@@ -345,7 +365,8 @@ rule history:
     log:
         f"{DERIVED}/history/stage.log",
     params:
-        options=options("history", archive="data/history"),
+        settings=settings("history"),
+        files=files("history", archive="data/history"),
         code=code("history"),
     message:
         "{wildcards.campaign}: into the archive of its IMU"
@@ -361,7 +382,8 @@ rule export:
     log:
         f"{DERIVED}/export/stage.log",
     params:
-        options=options("export"),
+        settings=settings("export"),
+        files=files("export"),
         code=code("export"),
     message:
         "{wildcards.campaign}: the calibration for other programs"
@@ -377,7 +399,8 @@ rule report:
     log:
         f"{DERIVED}/report/stage.log",
     params:
-        options=options("report"),
+        settings=settings("report"),
+        files=files("report"),
         code=code("report"),
     message:
         "{wildcards.campaign}: the report"
@@ -393,7 +416,8 @@ rule pdf:
     log:
         f"{DERIVED}/pdf/stage.log",
     params:
-        options=options("pdf"),
+        settings=settings("pdf"),
+        files=files("pdf"),
         code=code("pdf"),
     message:
         "{wildcards.campaign}: the report as PDF"

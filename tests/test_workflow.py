@@ -118,7 +118,7 @@ def test_the_rules_are_the_stages_with_what_they_declare(workflow: Workflow) -> 
     for line in summary[1:]:
         row = dict(zip(names, line.split("\t"), strict=True))
         outputs.setdefault(row["rule"], set()).add(row["output_file"])
-        if row["rule"] in ORDER:
+        if row["rule"] in set(ORDER) - {"pdf"}:
             assert f"python -m stages.{row['rule']} data/derived/short" in row["shellcmd"]
     assert set(outputs) - {"pdf"} == {*ORDER, "laboratory_short"} - {"pdf"}
     for stage in set(ORDER) - {"pdf"}:
@@ -164,10 +164,10 @@ def test_a_changed_setting_reruns_its_stage_and_what_follows(
     [
         ("inertial/formats/columns/text_chunks.py", {"decode", *AFTER_DECODE}),
         ("inertial/estimation/spectrum.py", {"noise", *ESTIMATION}),
-        ("inertial/estimation/gyroscopes.py", ESTIMATION),
+        ("inertial/estimation/least_squares.py", ESTIMATION),
         ("inertial/text/numbers.py", AFTER_DECODE),
         ("inertial/text/cause_names.py", {"criticism", "extension", "history", "report"}),
-        ("stages/reporting/report.css", {"report"}),
+        ("stages/report/report.css", {"report"}),
         ("laboratory/counts.py", {"laboratory_short", "plan", "decode", *AFTER_DECODE}),
     ],
 )
