@@ -30,10 +30,6 @@ RAW = "data/raw/{campaign}"
 SIMULATED = campaigns("data/simulated", "*.yaml")
 LABORATORY = sorted(p for p in (HOME / "laboratory").rglob("*") if p.suffix in {".py", ".yaml"})
 CAMPAIGNS = sorted({*campaigns("data/raw", "*/campaign.yaml"), *SIMULATED})
-STAGE = (
-    "python -m stages.{rule} data/derived/{wildcards.campaign:q}"
-    " --settings {params.settings:q} {params.files:q} 2> {log:q}"
-)
 
 
 def declared(stage):
@@ -55,6 +51,14 @@ def writes(stage):
 def code(stage):
     """One hash of all files of the project that a stage rests on: it runs again when one changes."""
     return hash_of(code_of(stage))
+
+
+def command(stage):
+    """How a stage is called, with the folder of the campaign's tables."""
+    return (
+        f"python -m stages.{stage} data/derived/{{wildcards.campaign:q}}"
+        " --settings {params.settings:q} {params.files:q} 2> {log:q}"
+    )
 
 
 def settings(stage):
@@ -120,7 +124,7 @@ for simulated in SIMULATED:
         log:
             f"data/derived/{simulated}/laboratory/stage.log",
         params:
-            output=f"data/raw/{simulated}",
+            output=lambda wildcards, output: Path(output[-1]).parent,
             code=hash_of(LABORATORY),
         message:
             f"{simulated}: the simulated laboratory records"
@@ -146,7 +150,7 @@ rule plan:
     message:
         "{wildcards.campaign}: the campaign file, checked and made explicit"
     shell:
-        STAGE
+        command("plan")
 
 
 rule decode:
@@ -164,7 +168,7 @@ rule decode:
     message:
         "{wildcards.campaign}: logs to samples"
     shell:
-        STAGE
+        command("decode")
 
 
 rule quality:
@@ -181,7 +185,7 @@ rule quality:
     message:
         "{wildcards.campaign}: faults of the recording"
     shell:
-        STAGE
+        command("quality")
 
 
 rule segment:
@@ -198,7 +202,7 @@ rule segment:
     message:
         "{wildcards.campaign}: the manoeuvres of the plan in the logs"
     shell:
-        STAGE
+        command("segment")
 
 
 rule noise:
@@ -215,7 +219,7 @@ rule noise:
     message:
         "{wildcards.campaign}: white noise of every channel"
     shell:
-        STAGE
+        command("noise")
 
 
 rule accelerometer:
@@ -232,7 +236,7 @@ rule accelerometer:
     message:
         "{wildcards.campaign}: the accelerometers from static positions"
     shell:
-        STAGE
+        command("accelerometer")
 
 
 rule gyroscope:
@@ -249,7 +253,7 @@ rule gyroscope:
     message:
         "{wildcards.campaign}: the gyros from rate segments and static positions"
     shell:
-        STAGE
+        command("gyroscope")
 
 
 rule studies:
@@ -266,7 +270,7 @@ rule studies:
     message:
         "{wildcards.campaign}: averaging time, epochs, windows, time and angle"
     shell:
-        STAGE
+        command("studies")
 
 
 rule comparison:
@@ -283,7 +287,7 @@ rule comparison:
     message:
         "{wildcards.campaign}: static against rotation, method against method, published values"
     shell:
-        STAGE
+        command("comparison")
 
 
 rule compensation:
@@ -300,7 +304,7 @@ rule compensation:
     message:
         "{wildcards.campaign}: the samples with the errors taken out"
     shell:
-        STAGE
+        command("compensation")
 
 
 rule simulation:
@@ -318,7 +322,7 @@ rule simulation:
     message:
         "{wildcards.campaign}: what the IMU should have read"
     shell:
-        STAGE
+        command("simulation")
 
 
 rule criticism:
@@ -336,7 +340,7 @@ rule criticism:
     message:
         "{wildcards.campaign}: unmodelled effects by name"
     shell:
-        STAGE
+        command("criticism")
 
 
 rule extension:
@@ -354,7 +358,7 @@ rule extension:
     message:
         "{wildcards.campaign}: the model with these effects, and its gain on held-out manoeuvres"
     shell:
-        STAGE
+        command("extension")
 
 
 rule history:
@@ -371,7 +375,7 @@ rule history:
     message:
         "{wildcards.campaign}: into the archive of its IMU"
     shell:
-        STAGE
+        command("history")
 
 
 rule export:
@@ -388,7 +392,7 @@ rule export:
     message:
         "{wildcards.campaign}: the calibration for other programs"
     shell:
-        STAGE
+        command("export")
 
 
 rule report:
@@ -405,7 +409,7 @@ rule report:
     message:
         "{wildcards.campaign}: the report"
     shell:
-        STAGE
+        command("report")
 
 
 rule pdf:
@@ -422,4 +426,4 @@ rule pdf:
     message:
         "{wildcards.campaign}: the report as PDF"
     shell:
-        STAGE
+        command("pdf")
