@@ -3,7 +3,7 @@
     _("{count} records are missing before record {record}", count=12, record=4711)
 
 The English sentence is its own key. `messages.pot`, beside this file, lists all of them; `make
-messages` writes it anew, and a test fails where it lacks one. Another language is a file
+docs` writes it anew, and a test fails where it lacks one. Another language is a file
 `<language>.po` beside it, chosen by the environment variable REPORT_LANGUAGE.
 """
 

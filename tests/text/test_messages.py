@@ -41,8 +41,8 @@ def test_the_catalogue_has_every_sentence_of_the_code_and_no_other() -> None:
     found = written()
     assert len(found) > 300
     missing = [f"{found[m]}: {m}" for m in found if m not in listed]
-    assert not missing, "run `make messages`"
-    assert not listed - set(found), "run `make messages`"
+    assert not missing, "run `make docs`"
+    assert not listed - set(found), "run `make docs`"
 
 
 def test_every_sentence_gets_the_values_that_it_names() -> None:
