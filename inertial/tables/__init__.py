@@ -49,7 +49,6 @@ from inertial.tables.recorded import (
 from inertial.tables.shared import ACCEL, AXES, BODY, CHANNELS, GYRO, UNITS
 from inertial.tables.unmodelled import (
     ALARMS,
-    BLIND_SPOTS,
     CAUSE_POSITIONS,
     CAUSES,
     DECISION,
@@ -78,7 +77,6 @@ __all__ = [
     "ARCHIVED",
     "AVERAGING",
     "AXES",
-    "BLIND_SPOTS",
     "BLOCKS",
     "BODY",
     "CALIBRATION",

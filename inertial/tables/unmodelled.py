@@ -69,9 +69,6 @@ CAUSES = Table(
             "signal-to-noise ratio with which that manoeuvre would distinguish them",
             nullable=True,
         ),
-        # Lists, which `members` and `effects` hold; until nothing reads them.
-        Column("members", TEXT, "", "those that cannot be told apart", nullable=True),
-        Column("parameters", TEXT, "SI", "name = value ± sigma unit, each", nullable=True),
     ),
 )
 MEMBERS = Table(
@@ -138,20 +135,6 @@ DETECTION_LIMITS = Table(
         Column("sentence", TEXT, "", "all of this in words"),
     ),
 )
-BLIND_SPOTS = Table(  # `detection_limits` before mount was a column; until nothing reads it
-    "blind_spots",
-    1,
-    (
-        Column("effect", TEXT, "", "name in the catalogue, with @ and the mount if of several"),
-        Column("parameter", TEXT, "", "name within the effect"),
-        Column("visible", DOUBLE, "as unit", "5 sigma: what could have been seen", nullable=True),
-        Column("best", DOUBLE, "as unit", "at the best value of what is scanned", nullable=True),
-        Column("worst", DOUBLE, "as unit", "and at the worst", nullable=True),
-        Column("unit", TEXT, "", "unit of these"),
-        Column("reason", TEXT, "", "visible, not_excited, absorbed, or only_together"),
-        Column("sentence", TEXT, "", "the same in words"),
-    ),
-)
 SCORES = Table(
     "scores",
     3,
@@ -195,8 +178,6 @@ SCORES = Table(
         ),
         Column("scan_unit", TEXT, "", "unit of the scanned variable", nullable=True),
         Column("sentence", TEXT, "", "the verdict in words"),
-        Column("members", TEXT, "", "as a list; until nothing reads it"),
-        Column("at", DOUBLE, "", "scan_value; until nothing reads it", nullable=True),
     ),
 )
 EFFECTS = Table(
@@ -221,7 +202,6 @@ EFFECTS = Table(
         ),
         Column("unit", TEXT, "", "unit of value, sigma and detection limit"),
         Column("meaning", TEXT, "", "what it is"),
-        Column("visible", DOUBLE, "as unit", "the limit; until nothing reads it", nullable=True),
     ),
 )
 LINES = Table(
@@ -303,11 +283,6 @@ STRUCTURES = Table(
             nullable=True,
         ),
         Column("detected", TRUTH, "", "below the significance level that all tests share"),
-        # Until nothing reads them.
-        Column("method", TEXT, "", "joint, with @ and the mount where there are several"),
-        Column("channel", TEXT, "", "sensor and axis; empty: none tested"),
-        Column("place", DOUBLE, "", "scan_value", nullable=True),
-        Column("fires", TRUTH, "", "detected"),
     ),
 )
 STRUCTURE_POINTS = Table(
@@ -324,10 +299,6 @@ STRUCTURE_POINTS = Table(
         Column("sigma", DOUBLE, "as unit", "its standard deviation"),
         Column("structure", DOUBLE, "as unit", "the same by the functions of the test, fitted"),
         Column("unit", TEXT, "", "rad/s or m/s²"),
-        # Until nothing reads them.
-        Column("method", TEXT, "", "joint, with @ and the mount where there are several"),
-        Column("channel", TEXT, "", "sensor and axis"),
-        Column("left", DOUBLE, "as unit", "residual"),
     ),
 )
 
@@ -366,7 +337,7 @@ GAIN = Table(
             nullable=True,
         ),
         Column(
-            "walked",
+            "random_walk_drop",
             DOUBLE,
             "1",
             "part of the reduction that a random walk of the biases achieves as well, where the"
@@ -384,10 +355,6 @@ GAIN = Table(
         Column("rms_before", DOUBLE, "as unit", "of the residuals without", nullable=True),
         Column("rms_after", DOUBLE, "as unit", "and with the effects", nullable=True),
         Column("unit", TEXT, "", "sigma, or the unit of the channel"),
-        # Lists, which `gain_effects` and `held_out` hold; until nothing reads them.
-        Column("effects", TEXT, "", "the effects that were added, by name in the catalogue"),
-        Column("taken_away", TEXT, "", "the manoeuvres that were predicted", nullable=True),
-        Column("left_out", TEXT, "", "those that alone show the effects", nullable=True),
     ),
 )
 GAIN_EFFECTS = Table(
@@ -467,14 +434,11 @@ DECISION = Table(
         MOUNT,
         Column("sensor", TEXT, "", "gyro or accel"),
         Column("result", TEXT, "", "the final result: joint or extended"),
-        Column("drop", DOUBLE, "1", "held-out, as in gain, less walked", nullable=True),
+        Column("drop", DOUBLE, "1", "held-out, as in gain, less random_walk_drop", nullable=True),
         Column("snr_squared", DOUBLE, "1", "held-out, as in gain", nullable=True),
         Column("folds", INTEGER, "1", "as in gain", nullable=True),
         Column("counted", INTEGER, "1", "as in gain", nullable=True),
         Column("sentence", TEXT, "", "the reason in words"),
-        # Lists, which `decision_effects` and `alarms` hold; until nothing reads them.
-        Column("effects", TEXT, "", "the effects that this sensor shows, of those named"),
-        Column("alarms", TEXT, "", "causes of findings that say that something else is wrong"),
     ),
 )
 DECISION_EFFECTS = Table(

@@ -30,7 +30,6 @@ DECLARED = Declared(
         "findings": tables.CAUSES,
         "members": tables.MEMBERS,
         "cause_positions": tables.CAUSE_POSITIONS,
-        "blind_spots": tables.BLIND_SPOTS,
     },
     streams=("simulated",),
 )

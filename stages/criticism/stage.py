@@ -22,7 +22,6 @@ from stages.criticism.block_results import (
 from stages.criticism.class_splitting import Foreseen, Further, further
 from stages.criticism.declared import DECLARED
 from stages.criticism.finding_rows import Row, TableRow
-from stages.criticism.former_columns import with_former
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations, without_lines
 from stages.criticism.residual_structure import structure_rows, structure_tests
@@ -47,10 +46,9 @@ def criticism(
     for data in mounts:
         for table, row in _of_mount(data, simulated, level, lowest_hz):
             made[table].append(row)
-    rows = with_former(made)
     return {
-        name: pd.DataFrame(rows[name], columns=[column.name for column in table.columns])
-        if rows[name]
+        name: pd.DataFrame(made[name], columns=[column.name for column in table.columns])
+        if made[name]
         else table.empty()
         for name, table in DECLARED.writes.items()
     }

@@ -65,14 +65,14 @@ def _of_sensor(one: CrossValidation) -> Iterator[Row]:
     fitted = drop_of(best_of(whole.effects), whole.effects)
     yield row_of(FITTED, whole.plain.chi_squared, fitted, whole.plain.degrees) | {
         "snr_squared": one.snr_squared,
-        "walked": whole.walk_drop,
+        "random_walk_drop": whole.walk_drop,
     }
     trained = [training.plain for _, training in one.counted]
     chi_squared = sum(whole.plain.chi_squared - plain.chi_squared for plain in trained)
     degrees = sum(whole.plain.degrees - plain.degrees for plain in trained)
     yield row_of(HELD_OUT, chi_squared, one.drop, degrees) | {
         "snr_squared": one.expected_drop,
-        "walked": one.walk_drop,
+        "random_walk_drop": one.walk_drop,
         "folds": len(one.folds),
         "counted": len(one.counted),
     }
@@ -139,7 +139,7 @@ def row_of(scope: str, before: float, drop: float, degrees: int) -> dict[str, An
         "after": before - drop,
         "drop": drop,
         "snr_squared": None,
-        "walked": None,
+        "random_walk_drop": None,
         "folds": None,
         "counted": None,
         "rms_before": rms(before),

@@ -17,7 +17,6 @@ from stages.extension.cross_validation import CrossValidation, cross_validate
 from stages.extension.decision import Candidate
 from stages.extension.declared import DECLARED
 from stages.extension.estimates import Solved, moved, solved
-from stages.extension.former_columns import with_former
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
 from stages.extension.models import SENSORS, models_of
 from stages.extension.named_effects import Named, named_of
@@ -66,10 +65,9 @@ def extension(
         for table, row in one.rows(simulated):
             made[table].append(row)
     covariances = made.pop("covariance")
-    rows = with_former(made)
     written = {
-        name: pd.DataFrame(rows[name], columns=[column.name for column in table.columns])
-        if rows.get(name)
+        name: pd.DataFrame(made[name], columns=[column.name for column in table.columns])
+        if made.get(name)
         else table.empty()
         for name, table in DECLARED.writes.items()
     }

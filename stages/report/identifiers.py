@@ -5,14 +5,10 @@ Nothing else of the report takes a name apart.
 
 from __future__ import annotations
 
-import re
-
 from inertial.campaign.final_result import STAGES
 from stages.report.tables import Record
 
 MODEL = "criticism/"  # how the identifiers of findings about the model begin
-# As a finding writes a parameter: k1_x = 1.2e-05 ± 3e-07 m/s²/K
-PARAMETER = re.compile(r"(\S+) = (\S+)(?: ± (\S+))? (.+)")
 
 
 def mount_of(identifier: str) -> str:
@@ -70,17 +66,6 @@ def sensor_and_axis(text: str) -> tuple[str, str]:
     return sensor, axis
 
 
-def beyond_size(sentence: str | None) -> str:
-    """What a detection limit says beyond the size: another way of turning, or a longer turn."""
-    return (sentence or "").partition(" on. ")[2]
-
-
-def reason_in(sentence: str | None) -> str:
-    """Why an effect is not observable, of the sentence of its detection limit."""
-    reason = (sentence or "").partition(": ")[2]
-    return reason.removeprefix("not seen, for ").removeprefix("not seen. ")
-
-
 def beyond_chance(difference: Record) -> bool:
     """Whether a comparison says that a difference is significant."""
     return ": more than chance" in difference["sentence"]
@@ -94,11 +79,6 @@ def assumed(known: Record) -> bool:
 def states_sigmas(action: str) -> bool:
     """Whether an action says at how many sigmas it distinguishes effects."""
     return "sigma" in action
-
-
-def finding_of_effect(effect: str, mount: str) -> str:
-    """The identifier of the finding that names an effect."""
-    return f"{MODEL}{at_mount(effect, mount)}"
 
 
 def joint_parameter(stage: str, parameter: str) -> str:
@@ -129,23 +109,3 @@ def at_rest(phase: str) -> bool:
 def about_model(finding: Record) -> bool:
     """Whether a finding is about the model, not about the recording."""
     return str(finding["id"]).startswith(MODEL)
-
-
-def listed_names(text: str | None) -> list[str]:
-    """The names in a list of them: members of a class, effects of a decision."""
-    return [name for name in (text or "").split(", ") if name]
-
-
-def parameters_in(text: str | None) -> list[Record]:
-    """The parameters that a finding states in its own words."""
-    parameters = []
-    for match in map(PARAMETER.fullmatch, (part.strip() for part in (text or "").split("; "))):
-        if match is None:
-            continue
-        name, value, sigma, unit = match.groups()
-        try:
-            size, scatter = float(value), None if sigma is None else float(sigma)
-        except ValueError:
-            continue
-        parameters.append({"parameter": name, "value": size, "sigma": scatter, "unit": unit})
-    return parameters

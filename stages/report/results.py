@@ -13,11 +13,11 @@ from inertial.text.cause_names import in_words
 from stages.report.identifiers import (
     at_mount,
     kind_and_axes,
-    listed_names,
     method_and_mount,
     method_of_sensor,
     of_effect,
 )
+from stages.report.linked import DECISION_TABLES, decisions
 from stages.report.outline import Tone
 from stages.report.tables import Record, Tables, once
 from stages.report.words import SENSOR_OF_STAGE, capital, sensor_of_stage, with_mount
@@ -28,7 +28,7 @@ ESTIMATE_TABLES = (
     "gyroscope_parameters",
     "gyroscope_fit",
 )
-RESULT_TABLES = (*ESTIMATE_TABLES, "extended_parameters", "extended_fit", "decision")
+RESULT_TABLES = (*ESTIMATE_TABLES, "extended_parameters", "extended_fit", *DECISION_TABLES)
 JOINT, FREE = "joint", "free_positions"
 METHOD = {
     JOINT: "joint fit of all manoeuvres",
@@ -207,8 +207,8 @@ def effects_in(tables: Tables, estimate: Estimate) -> list[str]:
     if estimate.kind != EXTENDED:
         return []
     method = at_mount(estimate.stage, estimate.mount)
-    own = [row for row in tables.rows("decision") if method_of_sensor(row) == method]
-    return [in_words(name) for row in own for name in listed_names(row["effects"])]
+    own = [row for row in decisions(tables) if method_of_sensor(row) == method]
+    return [in_words(name) for row in own for name in row["effects"]]
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from inertial import tables
+from tests.report.synthetic_values import rows_as
+
 Rows = list[dict[str, Any]]
 KINDS = ("time", "angle", "rate", "attitude", "temperature", "change")
-NAMED = {"count": 1, "unit": "sigma", "severity": 2, "p_value": 0.0, "sensor": "gyro"}
+NAMED = {"mount": "", "count": 1, "unit": "sigma", "severity": 2, "p_value": 0.0, "sensor": "gyro"}
 DEGREE_PER_HOUR = np.pi / 180 / 3600
 
 
@@ -24,7 +27,7 @@ def findings() -> Rows:
             "action": "Look at it.",
             "sentence": "The data ask for gyro g sensitivity.",
             "verdict": "found",
-            "members": "gyro_g_sensitivity",
+            "members": ["gyro_g_sensitivity"],
             "snr": 77.0,
         },
         NAMED
@@ -35,34 +38,50 @@ def findings() -> Rows:
             "action": "Look at it.",
             "sentence": "The case oscillates about x while the table turns.",
             "verdict": "found",
-            "members": "oscillation",
+            "members": ["oscillation"],
             "snr": 60.0,
         },
     ]
 
 
-def blind_spots() -> Rows:
-    """An effect that is seen on three axes, one that is not, and one that was named."""
+def cause_tables(rows: Rows) -> dict[str, Any]:
+    """The findings, and the link table of their members, which each lists."""
+    members = [
+        {"finding": row["id"], "mount": "", "rank": rank, "effect": effect}
+        for row in rows
+        for rank, effect in enumerate(row.get("members", ()), 1)
+    ]
+    plain = [{key: row[key] for key in row if key != "members"} for row in rows]
+    return {
+        "criticism_findings": rows_as(tables.CAUSES, plain),
+        "members": rows_as(tables.MEMBERS, members),
+        "cause_positions": tables.CAUSE_POSITIONS.empty(),
+    }
 
-    def spot(effect: str, parameter: str, visible: float | None, unit: str) -> dict[str, Any]:
-        told = "seen from 1.6 mm on." if visible else "not seen, for no manoeuvre excites it."
+
+def detection_limits() -> Rows:
+    """An effect that is detectable on three axes, one that is not, and one that was named."""
+
+    def limit(effect: str, parameter: str, size: float | None, unit: str) -> dict[str, Any]:
         return {
+            "mount": "",
             "effect": effect,
             "parameter": parameter,
-            "visible": visible,
-            "best": visible,
-            "worst": visible,
+            "limit": size,
+            "smallest": size,
+            "largest": size,
             "unit": unit,
-            "reason": "visible" if visible else "not_excited",
-            "sentence": f"{effect}, {parameter}: {told}",
+            "reason": "visible" if size else "not_excited",
+            "explanation": None if size else "no manoeuvre excites it.",
+            "sentence": f"{effect}, {parameter}",
         }
 
     sizes = {"x": 1.1e-3, "y": 1.65e-3, "z": 0.9e-3}
     return [
-        spot("gyro_g_sensitivity", "g_xx", 6.9e-8, "(rad/s)/(m/s²)"),
-        *(spot("lever_arm", f"r_{axis}", size, "m") for axis, size in sizes.items()),
-        spot("table_tilt", "north", None, "rad"),
-        spot("table_tilt", "east", None, "rad"),
+        limit("gyro_g_sensitivity", "g_xx", 6.9e-8, "(rad/s)/(m/s²)"),
+        *(limit("lever_arm", f"r_{axis}", size, "m") for axis, size in sizes.items()),
+        limit("table_tilt", "north", None, "rad"),
+        limit("table_tilt", "east", None, "rad"),
     ]
 
 
@@ -70,15 +89,18 @@ def structures(*firing: str) -> Rows:
     """The six tests, silent but for the kinds in `firing`; no temperature was recorded."""
     return [
         {
-            "method": "joint",
+            "mount": "",
             "kind": kind,
-            "channel": "" if kind == "temperature" else "gyro x",
-            "place": 1200.0 if kind == "change" else None,
+            "sensor": "gyro",
+            "axis": "x",
+            "scan_value": 1200.0 if kind == "change" else None,
             "statistic": 75.0 if kind in firing else 9.0,
-            "degrees": 0 if kind == "temperature" else 6,
+            "degrees": 6,
             "p_value": 1e-9 if kind in firing else 0.09 + 0.1 * KINDS.index(kind),
-            "fires": kind in firing,
+            "detected": kind in firing,
         }
+        if kind != "temperature"
+        else {"mount": "", "kind": kind, "detected": False}
         for kind in KINDS
     ]
 
@@ -88,12 +110,13 @@ def points(*kinds: str) -> Rows:
     units = {"time": ("s", 2400.0), "change": ("s", 2400.0), "angle": ("rad", 2 * np.pi)}
     return [
         {
-            "method": "joint",
+            "mount": "",
             "kind": kind,
-            "channel": "gyro x",
+            "sensor": "gyro",
+            "axis": "x",
             "x": share * units[kind][1],
             "x_unit": units[kind][0],
-            "left": 2 * DEGREE_PER_HOUR * (share > 0.5),
+            "residual": 2 * DEGREE_PER_HOUR * (share > 0.5),
             "sigma": 0.3 * DEGREE_PER_HOUR,
             "structure": 1.9 * DEGREE_PER_HOUR * (share > 0.5),
             "unit": "rad/s",

@@ -38,7 +38,11 @@ def of_the_model(
         "lines": rows_as(tables.LINES, _lines(turns)),
         "gain": rows_as(tables.GAIN, _gain()),
         "worth": rows_as(tables.WORTH, _worth()),
+        "gain_effects": rows_as(tables.GAIN_EFFECTS, _gain_effects()),
+        "held_out": tables.HELD_OUT.empty(),
         "decision": rows_as(tables.DECISION, _decision()),
+        "decision_effects": rows_as(tables.DECISION_EFFECTS, [OF_GYRO]),
+        "alarms": tables.ALARMS.empty(),
         "extended_parameters": rows_as(tables.PARAMETERS, _extended(parameters)),
         "extended_fit": rows_as(tables.FIT, _extended_fit()),
         "accelerometer_findings": tables.FINDINGS.empty(),
@@ -89,9 +93,10 @@ def _fidelity(manoeuvres: Rows, turns: Rows) -> Rows:
 def _scores() -> Rows:
     def score(effect: str, cause: str, **more: Any) -> dict[str, Any]:
         needless: dict[str, Any] = {"sought_in": "blocks", "statistic": 3.1, "named": False}
-        needless |= {"degrees": 3, "p_value": 0.38, "verdict": "", "members": ""}
+        needless |= {"degrees": 3, "p_value": 0.38, "verdict": ""}
         said = f"No {effect} is needed (p = 0.38)."
         return {
+            "mount": "",
             "effect": effect,
             "cause": cause,
             **needless,
@@ -107,11 +112,12 @@ def _scores() -> Rows:
             degrees=9,
             p_value=0.0,
             named=True,
+            finding="criticism/gyro_g_sensitivity",
             sentence="The data ask for gyro g sensitivity.",
         ),
         score("lever_arm", "the accelerometers stand beside the axis of the table"),
         score("accel_quadratic", "the suspension of the proof mass is not symmetric"),
-        score("table_tilt", "the base of the table is not level", degrees=0, p_value=1.0)
+        score("table_tilt", "the base of the table is not level", degrees=None, p_value=None)
         | {"sentence": "This campaign cannot show table tilt. No manoeuvre excites it."},
         score(
             "oscillation",
@@ -119,27 +125,31 @@ def _scores() -> Rows:
             sought_in="spectrum",
             p_value=0.0,
             named=True,
+            finding="criticism/oscillation",
             sentence="The case oscillates about x while the table turns: 20.000 Hz.",
         ),
     ]
 
 
 def _effects() -> Rows:
+    g = "gyro_g_sensitivity"
+
     def effect(
         name: str, parameter: str, unit: str, value: float | None, sigma: float | None
     ) -> dict[str, Any]:
         return {
             "id": f"criticism/{name}/{parameter}",
+            "mount": "",
+            "finding": f"criticism/{name}" if name in (g, "oscillation") else None,
             "effect": name,
             "parameter": parameter,
             "value": value,
             "sigma": sigma,
-            "visible": None if sigma is None else 5 * sigma,
+            "detection_limit": None if sigma is None else 5 * sigma,
             "unit": unit,
             "meaning": f"{parameter} of {name}",
         }
 
-    g = "gyro_g_sensitivity"
     rows = [
         effect(g, f"g_{i}{j}", "(rad/s)/(m/s²)", 6.92e-7 if i == j else 2.9e-8, 1.38e-8)
         for i in AXES
@@ -150,7 +160,7 @@ def _effects() -> Rows:
         effect("accel_quadratic", f"k2_{axis}", "(m/s²)/(m/s²)²", 2.8e-7, 4.1e-7) for axis in AXES
     ]
     rows += [effect("table_tilt", way, "rad", None, None) for way in ("north", "east")]
-    rows.append(effect("oscillation", "frequency", "Hz", 20.0, 6.6e-7) | {"visible": None})
+    rows.append(effect("oscillation", "frequency", "Hz", 20.0, 6.6e-7) | {"detection_limit": None})
     rows.append(effect("oscillation", "amplitude", "rad/s", 0.01, 4.1e-7))
     return rows
 
@@ -159,6 +169,7 @@ def _lines(turns: Rows) -> Rows:
     return [
         {
             "manoeuvre": row["manoeuvre"],
+            "mount": "",
             "axis": axis,
             "frequency": 20.0 if axis == "x" else 31.7,
             "frequency_sigma": 1e-6 if axis == "x" else 3e-3,
@@ -174,19 +185,20 @@ def _lines(turns: Rows) -> Rows:
 def _gain() -> Rows:
     g = {
         "sensor": "gyro",
-        "effects": "gyro_g_sensitivity",
+        "model": "blocks",
         "rows": 1996,
         "unit": "sigma",
         "mount": "",
     }
     line = {
-        "sensor": "gyro x",
-        "effects": "oscillation",
+        "sensor": "gyro",
+        "axis": "x",
+        "model": "oscillation",
         "rows": 17000,
         "unit": "rad/s",
         "mount": "",
     }
-    channel = g | {"sensor": "gyro y", "rows": 74, "before": 90.0, "after": 71.0, "drop": 19.0}
+    channel = g | {"axis": "y", "rows": 74, "before": 90.0, "after": 71.0, "drop": 19.0}
     after = {"before": 4.4e-5, "after": 1.2e-9, "drop": 4.4e-5 - 1.2e-9}
     return [
         g
@@ -204,6 +216,14 @@ def _gain() -> Rows:
     ]
 
 
+OF_GYRO = {"mount": "", "sensor": "gyro", "effect": "gyro_g_sensitivity"}
+
+
+def _gain_effects() -> Rows:
+    of_line = {"model": "oscillation", "effect": "oscillation"}
+    return [OF_GYRO | {"model": "blocks"}, OF_GYRO | of_line]
+
+
 def _decision() -> Rows:
     told = {
         "gyro": "The extended result of the gyros counts, with gyro g-sensitivity.",
@@ -214,8 +234,6 @@ def _decision() -> Rows:
             "sensor": sensor,
             "mount": "",
             "result": "extended" if sensor == "gyro" else "joint",
-            "effects": "gyro_g_sensitivity" if sensor == "gyro" else "",
-            "alarms": "",
             "sentence": sentence,
         }
         for sensor, sentence in told.items()
@@ -245,8 +263,8 @@ def _worth() -> Rows:
 
 def criticised() -> dict[str, Any]:
     return {
-        "criticism_findings": rows_as(tables.CAUSES, synthetic_causes.findings()),
-        "blind_spots": rows_as(tables.BLIND_SPOTS, synthetic_causes.blind_spots()),
+        **synthetic_causes.cause_tables(synthetic_causes.findings()),
+        "detection_limits": rows_as(tables.DETECTION_LIMITS, synthetic_causes.detection_limits()),
         "structures": rows_as(tables.STRUCTURES, synthetic_causes.structures()),
         "structure_points": tables.STRUCTURE_POINTS.empty(),
     }

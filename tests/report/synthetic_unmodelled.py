@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import pandas as pd
+
 from inertial import tables
 from tests.report import synthetic, synthetic_causes
 from tests.report.synthetic_values import rows_as
@@ -13,15 +15,29 @@ def without_effects() -> dict[str, Any]:
     """The campaign where nothing was named and nothing extended."""
     made = synthetic.brief()
     made["scores"]["named"] = False
+    made["scores"]["finding"] = None
     for name in ("gain", "extended_parameters", "extended_fit", "worth", "decision"):
         made[name] = made[name].iloc[:0]
-    return made | {"criticism_findings": tables.CAUSES.empty()}
+    return made | synthetic_causes.cause_tables([])
 
 
 def with_findings(*rows: dict[str, Any]) -> dict[str, Any]:
     """The same with these findings of criticism alone."""
     made = without_effects()
-    return made | {"criticism_findings": rows_as(tables.CAUSES, list(rows))}
+    made["effects"]["finding"] = None
+    return made | synthetic_causes.cause_tables(list(rows))
+
+
+def with_parameters(made: dict[str, Any], finding: str, *numbers: tuple[Any, ...]) -> None:
+    """Name, value, sigma and unit of parameters of a finding."""
+    effect = finding.rpartition("/")[2]
+    own = [
+        {"id": f"{finding}/{name}", "mount": "", "finding": finding, "effect": effect}
+        | {"parameter": name, "value": value, "sigma": sigma, "unit": unit, "meaning": name}
+        for name, value, sigma, unit in numbers
+    ]
+    others = made["effects"][made["effects"]["effect"] != effect]
+    made["effects"] = pd.concat([others, rows_as(tables.EFFECTS, own)], ignore_index=True)
 
 
 def of_a_class() -> dict[str, Any]:
@@ -36,15 +52,15 @@ def of_a_class() -> dict[str, Any]:
             "action": "It is added to the model.",
             "sentence": "The data ask for accelerometer quadratic term, or for lever arm.",
             "verdict": "one_of_class",
-            "members": "accel_quadratic, lever_arm",
+            "members": ["accel_quadratic", "lever_arm"],
             "snr": 12.0,
-            "parameters": "k2_x = 2.0e-05 ± 4e-07 (m/s²)/(m/s²)²",
             "split_manoeuvre": "rest also with two axes at 45° to the vertical",
             "split_snr": 24.0,
         }
     )
-    made["effects"].loc[made["effects"]["effect"] == "accel_quadratic", ["value", "sigma"]] = None
-    return made  # so its numbers are those of the finding
+    number = ("k2_x", 2.0e-05, 4e-07, "(m/s²)/(m/s²)²")
+    with_parameters(made, "criticism/accel_quadratic", number)
+    return made
 
 
 def of_no_name(*firing: str) -> dict[str, Any]:
@@ -53,6 +69,7 @@ def of_no_name(*firing: str) -> dict[str, Any]:
     made = with_findings(
         {
             "id": "criticism/gyro_random_walk",
+            "mount": "",
             "cause": "gyro_random_walk",
             "sensor": "gyro",
             "count": 1,
@@ -63,8 +80,7 @@ def of_no_name(*firing: str) -> dict[str, Any]:
             "action": "A shorter campaign lessens what it does.",
             "sentence": "The biases of the gyros change as by a random walk of 5.3 ± 0.3 °/h/√h.",
             "verdict": "unknown_structure",
-            "members": "gyro_random_walk",
-            "parameters": "K = 4.3e-07 ± 2.6e-08 rad/s/√s",
+            "members": ["gyro_random_walk"],
         },
         shared
         | {
@@ -73,9 +89,8 @@ def of_no_name(*firing: str) -> dict[str, Any]:
             "consequence": "The joint estimate holds it as a random walk.",
             "action": "Look at the residuals against time.",
             "sentence": "The data are consistent with gyro bias jump, and no more is said.",
-            "members": "gyro_bias_jump",
+            "members": ["gyro_bias_jump"],
             "snr": 4.9,
-            "parameters": "b_x = 9.7e-06 ± 1e-06 rad/s; t0 = 316.4 ± 5.4 s",
         },
         shared
         | {
@@ -84,10 +99,13 @@ def of_no_name(*firing: str) -> dict[str, Any]:
             "consequence": "The joint result stands as it is.",
             "action": "Look at the picture of what is left.",
             "sentence": "What the model leaves of the gyros is not noise.",
-            "members": "gyro_bias_jump",
+            "members": ["gyro_bias_jump"],
             "snr": 8.3,
         },
     )
+    with_parameters(made, "criticism/gyro_random_walk", ("K", 4.3e-07, 2.6e-08, "rad/s/√s"))
+    jump = (("b_x", 9.7e-06, 1e-06, "rad/s"), ("t0", 316.4, 5.4, "s"))
+    with_parameters(made, "criticism/gyro_bias_jump", *jump)
     tests, points = synthetic_causes.structures(*firing), synthetic_causes.points(*firing)
     return made | {
         "structures": rows_as(tables.STRUCTURES, tests),

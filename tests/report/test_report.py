@@ -251,18 +251,15 @@ def test_no_effect_is_detected() -> None:
 
 def test_an_effect_of_two_mounts_stands_twice() -> None:
     tables = synthetic.brief()
-    for name in ("scores", "effects", "criticism_findings", "blind_spots"):
+    for name in ("scores", "effects", "criticism_findings", "members", "detection_limits"):
         both = [tables[name], tables[name].copy()]
-        if name == "effects":
-            both[1]["id"] = both[1]["id"].str.replace(r"/(\w+)/", r"/\1@lying/", regex=True)
-        if name == "criticism_findings":
-            both[1]["id"] += "@lying"
-        if name == "blind_spots":
-            both[1]["effect"] += "@lying"
+        both[1]["mount"] = "lying"
+        for key in {"id", "finding"} & set(both[1].columns):
+            both[1][key] += " of lying"
         tables[name] = pd.concat(both, ignore_index=True)
     page = Page(synthetic.report_on(tables)["html"])
     assert "Oscillation (mount lying)" in page.text
-    twice = [page.rows[f"limit/lever_arm{mount}/r_y"][1:] for mount in ("@lying", "")]
+    twice = [page.rows[f"limit/lever_arm{mount}/r_y"][1:] for mount in ("/lying", "")]
     assert twice[0] == twice[1]
 
 
@@ -311,11 +308,12 @@ def test_texts_from_outside_are_harmless() -> None:
     tables["scores"][["cause", "sentence"]] = HOSTILE
     tables["effects"]["meaning"] = HOSTILE
     tables["lines"]["manoeuvre"] = HOSTILE
-    tables["gain"]["effects"] = HOSTILE
-    tables["blind_spots"][["sentence", "parameter"]] = HOSTILE
+    tables["gain_effects"]["effect"] = HOSTILE
+    tables["detection_limits"][["sentence", "explanation", "remark", "parameter"]] = HOSTILE
     tables["decision"]["sentence"] = HOSTILE
-    tables["structures"][["method", "kind", "channel"]] = HOSTILE
-    told = ["sentence", "consequence", "action", "manoeuvre", "members", "parameters"]
+    tables["structures"][["kind", "sensor", "axis"]] = HOSTILE
+    tables["members"]["effect"] = HOSTILE
+    told = ["sentence", "consequence", "action", "manoeuvre"]
     tables["criticism_findings"][[*told, "split_manoeuvre"]] = HOSTILE
     tables["differences"][["kind", "sentence"]] = HOSTILE
     tables["checks"]["manoeuvre"] = HOSTILE

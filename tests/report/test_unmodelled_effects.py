@@ -183,7 +183,8 @@ def test_a_ripple_is_shown_against_the_angle_of_the_table() -> None:
     findings[["id", "cause"]] = findings[["id", "cause"]].replace(
         "oscillation", "table_ripple", regex=True
     )
-    made["scores"]["effect"] = made["scores"]["effect"].replace("oscillation", "table_ripple")
+    for name in ("scores", "effects", "members"):
+        made[name] = made[name].replace("oscillation", "table_ripple", regex=True)
     html = blocks(synthetic.report_on(made))["criticism/table_ripple"]
     assert "z gyro in z-forward" in html
     assert "Angle turned, °" in html
@@ -193,8 +194,10 @@ def test_a_ripple_is_shown_against_the_angle_of_the_table() -> None:
 def test_a_walk_that_may_be_an_effect_is_one_of_a_class() -> None:
     made = synthetic_unmodelled.of_no_name()
     walk = made["criticism_findings"].iloc[:1].assign(verdict="one_of_class")
-    members = "gyro_random_walk, gyro_bias_ramp"
-    made = synthetic.report_on(made | {"criticism_findings": walk.assign(members=members)})
+    ramp = {"finding": "criticism/gyro_random_walk", "mount": "", "rank": 2}
+    ramp["effect"] = "gyro_bias_ramp"
+    made["members"] = pd.concat([made["members"], rows_as(tables.MEMBERS, [ramp])])
+    made = synthetic.report_on(made | {"criticism_findings": walk})
     html = blocks(made)["criticism/gyro_random_walk"]
     assert "cannot distinguish random walk of the gyro biases and gyro bias ramp." in html
     assert ">one of a class<" in html

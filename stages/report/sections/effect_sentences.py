@@ -10,11 +10,7 @@ from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.numbers import decimals_of, fixed, shortened, significant, whole, with_sigma
 from stages.report.identifiers import (
-    finding_of_effect,
-    listed_names,
-    mount_of,
     random_walk,
-    sensor_and_axis,
 )
 from stages.report.results import Shift, quantity_of
 from stages.report.tables import Record, Tables, once
@@ -53,22 +49,21 @@ class Tested:
 
     @property
     def finding(self) -> str:
-        """The identifier of the finding that names it."""
-        return finding_of_effect(self.effect, self.mount)
+        """The identifier of the finding that names it; empty where none does."""
+        return str(self.score["finding"] or "")
 
 
 @once
 def tested_effects(tables: Tables) -> list[Tested]:
     """Every effect with its parameters; of several mounts each by itself, as they come."""
-    groups: dict[str, dict[str, list[Record]]] = {}
+    groups: dict[tuple[str, str], list[Record]] = {}
     for row in tables.rows("effects"):
-        own = groups.setdefault(row["effect"], {})
-        own.setdefault(mount_of(row["id"]), []).append(row)
+        groups.setdefault((row["mount"], row["effect"]), []).append(row)
     effects = []
     for score in tables.rows("scores"):
-        mounts = groups.get(score["effect"], {})
-        mount = next(iter(mounts), "")
-        effects.append(Tested(score, tuple(mounts.pop(mount, ())), mount))
+        mount, rows = score["mount"], groups.get((score["mount"], score["effect"]), [])
+        first = [row for row in rows if row["finding"] == score["finding"]]
+        effects.append(Tested(score, tuple(first or rows), mount))
     return effects
 
 
@@ -80,7 +75,7 @@ def tested_effect(tables: Tables, effect: str, mount: str) -> Tested | None:
 
 def effect_of(tables: Tables, finding: Record) -> Tested | None:
     """The effect that a finding names; none of a second one of its kind."""
-    effect = tested_effect(tables, finding["cause"], mount_of(finding["id"]))
+    effect = tested_effect(tables, finding["cause"], finding["mount"])
     return effect if effect is not None and effect.finding == finding["id"] else None
 
 
@@ -118,14 +113,12 @@ def name_of(row: Record) -> str:
         name = f"unidentified structure in the residuals of the {sensors}"
     if sensors and kind == "unexplained":
         name = f"unexplained residuals of the {sensors}"
-    return with_mount(name, mount_of(row["id"]))
+    return with_mount(name, row["mount"])
 
 
 def alternatives(row: Record) -> list[str]:
     """The effects that it may be instead, by name in the catalogue."""
-    return [name for name in listed_names(row.get("members")) if name != row["cause"]][
-        :MOST_MEMBERS
-    ]
+    return [name for name in row.get("members") or () if name != row["cause"]][:MOST_MEMBERS]
 
 
 def certainty(row: Record) -> str:
@@ -198,26 +191,21 @@ PER_THOUSAND = 1e-3  # rad and m/s in mrad and mm/s
 
 def about_effect(rows: Sequence[Record], effect: str, mount: str) -> list[Record]:
     """The rows of gain or decision that are about an effect, of one mount."""
-    return [
-        row
-        for row in rows
-        if (row["mount"] or "") == mount and effect in listed_names(row["effects"])
-    ]
+    return [row for row in rows if (row["mount"] or "") == mount and effect in row["effects"]]
 
 
 def reductions(effect: str, mount: str, gain: Sequence[Record]) -> Iterator[str]:
     """The reduction of χ² and of the residuals with an effect in the model."""
     own = about_effect(gain, effect, mount)
     for sensor in SENSORS:
-        by_scope = {row["scope"]: row for row in own if row["sensor"] == sensor}
+        by_scope = {row["scope"]: row for row in own if row["sensor"] == sensor and not row["axis"]}
         if HELD_OUT in by_scope:
             yield _on_held_out(by_scope[HELD_OUT])
         if FITTED in by_scope:
             yield f"In the fit, χ² {_change(by_scope[FITTED])}."
     for row in own:
         if row["unit"] != "sigma" and row["scope"] == HELD_OUT:
-            _, axis = sensor_and_axis(row["sensor"])
-            gyro = f"{axis} gyro" if axis else "gyros"
+            gyro = f"{row['axis']} gyro" if row["axis"] else "gyros"
             before, after = (significant(row[f"rms_{at}"], 3) for at in ("before", "after"))
             unit = shortened(row["unit"], 20)
             yield (
@@ -227,7 +215,7 @@ def reductions(effect: str, mount: str, gain: Sequence[Record]) -> Iterator[str]
 
 
 def _on_held_out(row: Record) -> str:
-    effects = listed_names(row["effects"])
+    effects = row["effects"]
     if not row["counted"] and row["folds"]:
         return (
             "No manoeuvre can be predicted from the others, so the improvement on held-out data is "
@@ -244,8 +232,8 @@ def _on_held_out(row: Record) -> str:
         sentence += f", which captures {share} % of the attainable reduction"
     elif attainable is not None:
         sentence += "; the attainable reduction is too small to judge it by"
-    if left_out := (row["left_out"] or ""):
-        names = shortened(left_out, 200)
+    if row["not_counted"]:
+        names = shortened(", ".join(row["not_counted"]), 200)
         sentence += f"; not predicted, since the others hardly observe the effect: {names}"
     return f"{sentence}."
 

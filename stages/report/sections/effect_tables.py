@@ -8,13 +8,6 @@ from itertools import groupby
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from stages.report import outline
-from stages.report.identifiers import (
-    at_mount,
-    beyond_size,
-    method_and_mount,
-    reason_in,
-    sensor_and_axis,
-)
 from stages.report.results import (
     KIND,
     Shift,
@@ -31,6 +24,7 @@ from stages.report.words import SENSOR, capital, count_in_words, listed, with_mo
 
 MIN_SIGMAS = 3.0  # from which a parameter is listed and a shift is marked
 VISIBLE = "visible"
+Effect = tuple[str, str]  # its name in the catalogue, and the mount
 TESTS = {
     "time": "time",
     "angle": "the angle of the table",
@@ -144,15 +138,20 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
 
     `tested`: the effects that no finding names.
     """
-    by_name = {at_mount(effect.effect, effect.mount): effect for effect in tested}
-    own = [row for row in rows if row["effect"] in by_name]
-    seen = [row for row in own if row["reason"] == VISIBLE and row["visible"] is not None]
+    by_name = {(effect.effect, effect.mount): effect for effect in tested}
+    own = [row for row in rows if _effect(row) in by_name]
+    seen = [row for row in own if row["reason"] == VISIBLE and row["limit"] is not None]
     hidden = [row for row in own if row not in seen]
     # An effect that is not sought in equations and turns: its score says how.
     hidden += [
-        {"effect": name, "parameter": "", "sentence": f": {effect.score['sentence']}"}
+        {
+            "effect": effect.effect,
+            "mount": effect.mount,
+            "parameter": "",
+            "explanation": effect.score["sentence"],
+        }
         for name, effect in by_name.items()
-        if name not in {row["effect"] for row in own}
+        if name not in {_effect(row) for row in own}
     ]
     yield outline.Table(
         "Of each effect that was tested and not detected, the smallest size that this campaign "
@@ -167,8 +166,8 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
             outline.Column("Meaning", "note"),
         ),
         [
-            _limit(by_name[name], name, list(group))
-            for (name, _), group in groupby(seen, lambda row: (row["effect"], row["unit"]))
+            _limit(by_name[name], list(group))
+            for (name, _), group in groupby(seen, lambda row: (_effect(row), row["unit"]))
         ],
         "None: every effect that this campaign makes observable was detected.",
         "p: the probability of such data under noise alone.",
@@ -181,13 +180,17 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
         )
 
 
-def _limit(tested: Tested, name: str, rows: Sequence[Record]) -> outline.Row:
-    rows = sorted(rows, key=lambda row: -(row["worst"] or row["visible"]))
+def _effect(row: Record) -> Effect:
+    return row["effect"], row["mount"]
+
+
+def _limit(tested: Tested, rows: Sequence[Record]) -> outline.Row:
+    rows = sorted(rows, key=lambda row: -(row["largest"] or row["limit"]))
     first, unit = rows[0], quantity_of(rows[0]).laboratory
-    worst = numbers.significant(unit.of(max(first["visible"], first["worst"] or 0.0)), 2)
-    best = min(min(row["visible"], row["best"] or row["visible"]) for row in rows)
+    worst = numbers.significant(unit.of(max(first["limit"], first["largest"] or 0.0)), 2)
+    best = min(min(row["limit"], row["smallest"] or row["limit"]) for row in rows)
     least = numbers.significant(unit.of(best), 2)
-    beyond = dict.fromkeys(beyond_size(row["sentence"]) for row in rows)
+    beyond = dict.fromkeys(row["remark"] or "" for row in rows)
     meaning = f"{capital(numbers.shortened(tested.score['cause'], 160))}."
     return outline.table_row(
         capital(tested.name),
@@ -197,27 +200,27 @@ def _limit(tested: Tested, name: str, rows: Sequence[Record]) -> outline.Row:
         unit.name,
         numbers.probability(tested.score["p_value"]),
         f"{meaning} {numbers.shortened(' '.join(beyond).strip(), 300)}".strip(),
-        anchor=f"limit/{name}/{first['parameter']}",
+        anchor="/".join(("limit", *filter(None, _effect(first)), first["parameter"])),
     )
 
 
 def _hidden(rows: Sequence[Record], every: Sequence[Record]) -> Iterator[outline.Row]:
     """Effects that are not seen for the same reason in one row; `every`: all limits."""
-    by_reason: dict[str, dict[str, list[str]]] = {}
+    by_reason: dict[str, dict[Effect, list[str]]] = {}
     for row in rows:
-        reason = capital(numbers.shortened(reason_in(row["sentence"]), 300))
+        reason = capital(numbers.shortened(row["explanation"] or "", 300))
         effects = by_reason.setdefault(reason, {})
-        effects.setdefault(row["effect"], []).append(row["parameter"])
+        effects.setdefault(_effect(row), []).append(row["parameter"])
     for reason, effects in by_reason.items():
         names = [_named(name, own, every) for name, own in effects.items()]
         yield outline.table_row(reason, f"{capital('; '.join(names))}.")
 
 
-def _named(name: str, own: Sequence[str], every: Sequence[Record]) -> str:
+def _named(effect: Effect, own: Sequence[str], every: Sequence[Record]) -> str:
     """The effect, and its parameters where not all of them are concerned."""
-    effect, mount = method_and_mount(name)
-    words = with_mount(in_words(effect), mount)
-    if len(own) == sum(row["effect"] == name for row in every):
+    name, mount = effect
+    words = with_mount(in_words(name), mount)
+    if len(own) == sum(_effect(row) == effect for row in every):
         return words
     return f"{words} ({', '.join(numbers.shortened(each, 30) for each in own)})"
 
@@ -227,10 +230,10 @@ def _named(name: str, own: Sequence[str], every: Sequence[Record]) -> str:
 
 def structure_tests(rows: Sequence[Record]) -> Iterator[outline.Part]:
     """The six tests of each mount: in a line where none is significant, else as a table."""
-    for method in dict.fromkeys(row["method"] for row in rows):
-        own = [row for row in rows if row["method"] == method]
-        where = with_mount("", method_and_mount(method)[1])
-        if any(row["fires"] for row in own):
+    for mount in dict.fromkeys(row["mount"] for row in rows):
+        own = [row for row in rows if row["mount"] == mount]
+        where = with_mount("", mount)
+        if any(row["detected"] for row in own):
             yield _tests(own, where)
         elif any(row["degrees"] for row in own):
             yield outline.Paragraph(_insignificant(own, where), "good")
@@ -270,17 +273,21 @@ def _tests(rows: Sequence[Record], where: str) -> outline.Table:
                 channel(row),
                 place(row),
                 *_outcome(row),
-                tone="fair" if row["fires"] else "",
+                tone="fair" if row["detected"] else "",
             )
-            for row in sorted(rows, key=lambda row: (not row["fires"], row["p_value"]))
+            for row in sorted(rows, key=_significant_first)
         ],
     )
+
+
+def _significant_first(row: Record) -> tuple[bool, float]:
+    return not row["detected"], 1.0 if row["p_value"] is None else row["p_value"]
 
 
 def _outcome(row: Record) -> tuple[str, str, str]:
     if not row["degrees"]:
         return "—", "—", "not recorded"
-    outcome = "significant" if row["fires"] else "not significant"
+    outcome = "significant" if row["detected"] else "not significant"
     return numbers.significant(row["statistic"]), numbers.probability(row["p_value"]), outcome
 
 
@@ -291,13 +298,12 @@ def test_name(row: Record) -> str:
 
 def channel(row: Record) -> str:
     """Sensor and axis in words: x gyro."""
-    sensor, axis = sensor_and_axis(row["channel"])
-    return f"{axis} {SENSOR.get(sensor, sensor)}" if axis else "—"
+    return f"{row['axis']} {SENSOR.get(row['sensor'], row['sensor'])}" if row["axis"] else "—"
 
 
 def place(row: Record) -> str:
     """Where along time or angle the structure is."""
-    at = row["place"]
+    at = row["scan_value"]
     if at is None or not row["degrees"]:
         return "—"
     if row["kind"] == "change":

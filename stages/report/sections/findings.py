@@ -8,7 +8,8 @@ from itertools import combinations
 
 from inertial.text.cause_names import how_grave, in_words, tally
 from inertial.text.numbers import counted, fixed, probability, shortened, significant, whole
-from stages.report.identifiers import about_model, listed_names, stage_of, with_temperature
+from stages.report.identifiers import about_model, stage_of, with_temperature
+from stages.report.linked import CAUSE_TABLES, effect_causes
 from stages.report.outline import (
     Column,
     Figure,
@@ -45,7 +46,7 @@ Span = tuple[float, float]
 def ranked(tables: Tables) -> list[Record]:
     """All findings, worst first: by severity, then the least likely by chance, then by count."""
     return sorted(
-        (row for name in FINDING_TABLES for row in tables.rows(name)),
+        (row for name in FINDING_TABLES for row in _rows(tables, name)),
         key=lambda row: (
             -row["severity"],
             1.0 if row["p_value"] is None else row["p_value"],
@@ -53,6 +54,10 @@ def ranked(tables: Tables) -> list[Record]:
             row["id"],
         ),
     )
+
+
+def _rows(tables: Tables, name: str) -> list[Record]:
+    return effect_causes(tables) if name == "criticism_findings" else tables.rows(name)
 
 
 @once
@@ -94,7 +99,7 @@ def _same_sensor(row: Record, other: Record) -> bool:
 
 def _causes(row: Record) -> set[str]:
     """What a finding is about: its cause, those that it may be, and what both look like."""
-    causes = {row["cause"], *listed_names(row.get("members"))}
+    causes = {row["cause"], *(row.get("members") or ())}
     if with_temperature(causes, row):
         causes.add(DRIFT)
     if row["sensor"] == "accel" and (row.get("verdict") or "") in NAMED:
@@ -168,6 +173,7 @@ SECTION = Section(
     "where a wedge marks the place; right, the samples there.",
     (
         *FINDING_TABLES,
+        *CAUSE_TABLES[1:],
         *("campaign", "known", "manoeuvres", "performed", "clocks", "segments", "traces"),
         *("gaps", "masks", "quality_close_ups", "segment_close_ups"),
     ),

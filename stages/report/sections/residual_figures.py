@@ -15,9 +15,8 @@ from inertial.text.numbers import p_is, shortened
 from inertial.text.units import DEGREE, DEGREES_PER_HOUR, MICRO_G, Unit
 from stages.report import drawing
 from stages.report.drawing import Array
-from stages.report.identifiers import at_mount, sensor_and_axis
+from stages.report.linked import gains
 from stages.report.outline import Figure
-from stages.report.results import JOINT
 from stages.report.sections.effect_sentences import FITTED, HELD_OUT, about_effect
 from stages.report.sections.effect_tables import TESTS, channel, place
 from stages.report.tables import Record, Tables, once
@@ -103,7 +102,7 @@ def by_manoeuvre(tables: Tables, finding: Record, mount: str, key: str) -> Figur
     ]
     if not shown:
         return None
-    changes = _changes(about_effect(tables.rows("gain"), finding["cause"], mount), sensor)
+    changes = _changes(about_effect(gains(tables), finding["cause"], mount), sensor)
     caption = (
         f"Residuals of the {SENSORS[sensor]} with the joint model: means over turns and over "
         "fifths of static positions, ± σ of the noise alone."
@@ -132,7 +131,7 @@ def _changes(gain: Sequence[Record], sensor: str) -> dict[str, Record]:
     changes: dict[str, Record] = {}
     for scope in (FITTED, HELD_OUT):
         for row in gain:
-            own, axis = sensor_and_axis(row["sensor"])
+            own, axis = row["sensor"], row["axis"] or ""
             known = None not in (row["rms_before"], row["rms_after"])
             if known and (own, row["scope"], row["unit"]) == (sensor, scope, "sigma"):
                 changes[axis] = row
@@ -192,12 +191,10 @@ def structures(tables: Tables, finding: Record, mount: str, key: str) -> Iterato
     firing = [
         row
         for row in tables.rows("structures")
-        if row["method"] == at_mount(JOINT, mount)
-        and row["fires"]
-        and sensor_and_axis(row["channel"])[0] == finding["sensor"]
+        if row["mount"] == mount and row["detected"] and row["sensor"] == finding["sensor"]
     ]
     firing.sort(key=lambda row: float(row["p_value"]))
-    same = ("method", "kind", "channel")
+    same = ("mount", "kind", "sensor", "axis")
     for number, row in enumerate(firing[:MOST_STRUCTURES], 1):
         own = [
             point
@@ -221,13 +218,13 @@ def _structure(row: Record, points: Sequence[Record], key: str) -> Figure:
 
 
 def _draw_structure(row: Record, points: Sequence[Record], key: str) -> str:
-    sensor, axis = sensor_and_axis(row["channel"])
+    sensor, axis = row["sensor"], row["axis"]
     name, unit, zero = ALONG[row["kind"]]
     size = UNIT[sensor]
     points = sorted(points, key=lambda point: float(point["x"]))
     x, residual, sigma, structure = (
         np.array([point[column] for point in points], np.float64)
-        for column in ("x", "left", "sigma", "structure")
+        for column in ("x", "residual", "sigma", "structure")
     )
     x = (x - zero) / unit.size
     with drawing.style():

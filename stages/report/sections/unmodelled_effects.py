@@ -9,12 +9,11 @@ from inertial.text.cause_names import in_words
 from inertial.text.numbers import p_is, shortened, significant
 from stages.report import outline
 from stages.report.identifiers import (
-    listed_names,
     method_of_sensor,
     mount_of,
-    parameters_in,
     states_sigmas,
 )
+from stages.report.linked import CAUSE_TABLES, GAIN_TABLES, decisions, effect_causes, gains
 from stages.report.results import RESULT_TABLES, shifts
 from stages.report.sections import effect_tables, periodic_figures, residual_figures
 from stages.report.sections.effect_sentences import (
@@ -53,7 +52,7 @@ IDENTIFIED = frozenset({"found", "class"})
 @once
 def effect_findings(tables: Tables) -> list[Record]:
     """The findings of criticism, the clearest first."""
-    return clearest_first(tables.rows("criticism_findings"))
+    return clearest_first(effect_causes(tables))
 
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
@@ -61,14 +60,14 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
     yield _summary(tables)
     yield from _decisions(tables)
     tests = list(effect_tables.structure_tests(tables.rows("structures")))
-    firing = any(row["fires"] for row in tables.rows("structures"))
+    firing = any(row["detected"] for row in tables.rows("structures"))
     yield from () if firing else tests
     yield from _blocks(tables)
     yield from tests if firing else ()
     yield from effect_tables.extended(tables)
     if missed := list(_not_detected(tables)):
         yield outline.Heading("Detection limits")
-        yield from effect_tables.detection_limits(tables.rows("blind_spots"), missed)
+        yield from effect_tables.detection_limits(tables.rows("detection_limits"), missed)
 
 
 SECTION = outline.Section(
@@ -85,8 +84,8 @@ SECTION = outline.Section(
     (
         *RESULT_TABLES,
         *FINDING_TABLES,
-        *("manoeuvres", "segments", "simulated", "fidelity", "scores", "effects", "lines"),
-        *("blind_spots", "structures", "structure_points", "gain", "worth"),
+        *("manoeuvres", "segments", "simulated", "fidelity", "scores", "lines", "worth"),
+        *("detection_limits", "structures", "structure_points", *CAUSE_TABLES[1:], *GAIN_TABLES),
     ),
     parts,
 )
@@ -115,7 +114,7 @@ def _summary(tables: Tables) -> outline.Paragraph:
 
 def _decisions(tables: Tables) -> Iterator[outline.Paragraph]:
     """The decision of every sensor that shows an effect, or beside which something is wrong."""
-    for row in tables.rows("decision"):
+    for row in decisions(tables):
         if row["effects"] or row["alarms"]:
             mount = f"Mount {row['mount']}: " if row["mount"] else ""
             tone: outline.Tone = "good" if row["result"] == EXTENDED else "fair"
@@ -125,7 +124,7 @@ def _decisions(tables: Tables) -> Iterator[outline.Paragraph]:
 def _not_detected(tables: Tables) -> Iterator[Tested]:
     """The effects that no finding is about, nor may be instead."""
     named = {
-        (name, mount_of(row["id"]))
+        (name, row["mount"])
         for row in effect_findings(tables)
         for name in (row["cause"], *alternatives(row))
     }
@@ -141,7 +140,7 @@ def _blocks(tables: Tables) -> Iterator[outline.Finding]:
     """A block for each finding; what several would show alike is shown by the first of them."""
     first: dict[tuple[str | None, str], Record] = {}
     for number, row in enumerate(effect_findings(tables), 1):
-        key, mount = f"effect-{number}", mount_of(row["id"])
+        key, mount = f"effect-{number}", row["mount"]
         place = (row["sensor"], mount)
         shown: list[outline.Figure | outline.Table] = [*_parameters(tables, row)]
         links = [
@@ -181,11 +180,7 @@ def _parameters(tables: Tables, row: Record) -> Iterator[outline.Table]:
     tested = effect_of(tables, row)
     known: Sequence[Record] = tested.parameters if tested else ()
     if not any(each["value"] is not None for each in known):
-        meanings = {each["parameter"]: each["meaning"] for each in known}
-        known = [
-            each | {"id": "", "meaning": meanings.get(each["parameter"], "")}
-            for each in parameters_in(row["parameters"])
-        ]
+        known = row["parameters"]
     if known and kind_of(row) != "walk":
         yield effect_tables.parameters(name_of(row), known)
 
@@ -203,11 +198,11 @@ def _own_figures(tables: Tables, row: Record, key: str) -> Iterator[outline.Figu
     if figure:
         yield figure
     if kind_of(row) == "structure":
-        yield from residual_figures.structures(tables, row, mount_of(row["id"]), key)
+        yield from residual_figures.structures(tables, row, row["mount"], key)
 
 
 def _answers(tables: Tables, row: Record) -> outline.Pairs:
-    mount, kind = mount_of(row["id"]), kind_of(row)
+    mount, kind = row["mount"], kind_of(row)
     answers = [("Certainty", certainty(row))]
     if kind in ("consistent", "walk") and (what := _meaning(tables, row["cause"], mount)):
         answers.append(("Cause", f"{capital(what)}."))
@@ -269,21 +264,21 @@ def _split(row: Record) -> str:
 
 
 def _reductions(tables: Tables, row: Record) -> Iterator[str]:
-    return reductions(row["cause"], mount_of(row["id"]), tables.rows("gain"))
+    return reductions(row["cause"], row["mount"], gains(tables))
 
 
 def _gain(tables: Tables, row: Record, mount: str) -> Iterator[str]:
     """The gain, and how far the parameters of the sensor move."""
     if kind_of(row) in IDENTIFIED:
         yield from _reductions(tables, row)
-        for decision in about_effect(tables.rows("decision"), row["cause"], mount):
+        for decision in about_effect(decisions(tables), row["cause"], mount):
             yield largest_shift(shifts(tables).get(method_of_sensor(decision), ()))
 
 
 def _worth(tables: Tables, row: Record, mount: str) -> str:
-    if not about_effect(tables.rows("decision"), row["cause"], mount):
+    if not about_effect(decisions(tables), row["cause"], mount):
         return ""
-    decisions = [each for each in tables.rows("decision") if (each["mount"] or "") == mount]
-    together = dict.fromkeys(name for each in decisions for name in listed_names(each["effects"]))
+    of_mount = [each for each in decisions(tables) if (each["mount"] or "") == mount]
+    together = dict.fromkeys(name for each in of_mount for name in each["effects"])
     own = [each for each in tables.rows("worth") if (each["mount"] or "") == mount]
     return worth(list(together), own)

@@ -12,6 +12,7 @@ from inertial.campaign.final_result import EXTENDED
 from inertial.text.cause_names import in_words
 from inertial.text.numbers import counted, fixed, probability, shortened, significant, whole
 from stages.report import outline
+from stages.report.linked import CAUSE_TABLES
 from stages.report.results import (
     CALIBRATION,
     FREE,
@@ -206,7 +207,16 @@ SECTION = outline.Section(
     "Calibrated: the final fits, joint or with effects in the model, determine all 24 "
     "parameters and describe their data (p ≥ 0.01). In part: some are not determined, or a "
     "model does not describe its data. Not calibrated: none is determined.",
-    (*RESULT_TABLES, *FINDING_TABLES, "campaign", "known", "clocks", "manoeuvres", "performed"),
+    (
+        *RESULT_TABLES,
+        *FINDING_TABLES,
+        *CAUSE_TABLES[1:],
+        "campaign",
+        "known",
+        "clocks",
+        "manoeuvres",
+        "performed",
+    ),
     parts,
 )
 
