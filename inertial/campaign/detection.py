@@ -49,7 +49,7 @@ class _Cutter:
             piece = {name: values[: after + SHARED_RECORDS] for name, values in waiting.items()}
             yield subject[0], _piece(piece, self._done, after, self._latest)
             time = waiting["time"][: after - SHARED_RECORDS]
-            # Of two stamps in a row: a single one that is far ahead says nothing of the rest.
+            # Of two stamps in a row: a single one that is far ahead does not count.
             self._latest = max(self._latest, np.minimum(time[1:], time[:-1]).max())
             left = {name: values[after - SHARED_RECORDS :] for name, values in waiting.items()}
             self._waiting, self._records = [left], len(left["record"])

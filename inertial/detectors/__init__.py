@@ -1,8 +1,7 @@
 """The faults of a recording that the pipeline can see.
 
 To add a detector, write its file beside this one and add it here; quality, segment, the report
-and the tests take it from these lists. Those that come first mask what those after them are not
-to be misled by.
+and the tests take it from these lists. A detector masks what it detects for those after it.
 """
 
 from inertial.detectors.axis_swap import AxisSwap, AxisSwapOfGyros
@@ -56,7 +55,7 @@ OF_RECORDS: tuple[Detector, ...] = (
     RateOff(),
     WrongDay(),
     WrongImuType(),
-    # readings: what stands at its limit or stands still would look like a spike
+    # readings: a channel at its limit or one that repeats would resemble a spike
     Saturation(),
     DeadAxis(),
     Spikes(),

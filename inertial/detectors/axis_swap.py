@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator
 
-from inertial.signal.axis_permutations import exchange_words, exchanges_of
+from inertial.signal.axis_permutations import describe_exchange, exchanges_of
 from inertial.signal.detector import Description, Detector, Event, Log, Piece
 
 
 class AxisSwap(Detector):
     """Two axes of a triad that read each other's values from one record to the next.
 
-    The IMU cannot do that: between two records it turns by far less, as its gyros say, and no
+    The IMU cannot do that: between two records it turns by far less by its gyros, and no
     turn ends in exactly the same three readings on other axes. Of the accelerometers it is seen
     in any attitude in which the two do not read the same. Of the gyros it is seen while the table
     turns; at rest only if their biases are clear of the noise. What was exchanged before the log
@@ -26,12 +26,12 @@ class AxisSwap(Detector):
     sensor = "accel"
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
-        for one in exchanges_of(piece, log, self.sensor):
-            if not one.permutation.in_place:
-                yield one.event(piece, log)
+        for exchange in exchanges_of(piece, log, self.sensor):
+            if not exchange.permutation.in_place:
+                yield exchange.event(piece, log)
 
     def describe(self, event: Event, name: str) -> Description:
-        return exchange_words(event, name, self.sensor)
+        return describe_exchange(event, name, self.sensor)
 
 
 class AxisSwapOfGyros(AxisSwap):

@@ -1,9 +1,9 @@
-"""Axes in each other's place, seen by what the plan says of gravity and of the turns."""
+"""Exchanged axes, detected by the planned directions of gravity and axes of turns."""
 
 from collections.abc import Iterator
 
 from inertial.signal.detector import Description
-from inertial.signal.misread_axes import deviation, misread_words
+from inertial.signal.misread_axes import describe_misread, deviation
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 
 
@@ -11,7 +11,7 @@ class AxisSwapAgainstPlan(PlanDetector):
     """Rests, or turns, that fit the plan only if two axes of a sensor are read as each other.
 
     The directions of gravity at the rests, and the axes of the turns, must be a signed permutation
-    of the planned ones; where it is not the unit matrix, axes are taken for others. An IMU that is
+    of the planned ones; where it is not the unit matrix, axes are exchanged. An IMU that is
     mounted askew by less than 25° is none of that.
     """
 
@@ -23,9 +23,9 @@ class AxisSwapAgainstPlan(PlanDetector):
     severity = 3
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        for one in recorded.misread:
-            if not one.axes.in_place:
-                yield deviation(one, recorded)
+        for misread in recorded.misread:
+            if not misread.axes.in_place:
+                yield deviation(misread, recorded)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
-        return misread_words(deviation.facts, recorded)
+        return describe_misread(deviation.facts, recorded)

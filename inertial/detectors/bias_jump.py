@@ -11,14 +11,14 @@ from inertial.signal.static_tilt import Resting
 from inertial.signal.steps import Step
 from inertial.text.numbers import fixed, significant
 
-BACK = 0.25  # of a jump: what may be left of it where the bias has gone back
-CERTAIN = 4.0  # sigmas of the two sizes, within which it has gone back as well
-UPRIGHT = 0.7  # share of the vertical from which an axis counts as upright
+MAX_RETURN_SHARE = 0.25  # of a jump: largest remainder where the bias has returned
+MAX_RETURN_SIGMA = 4.0  # sigmas of the sum of the two sizes, within which it has returned as well
+MIN_UPRIGHT_SHARE = 0.7  # share of the vertical from which an axis counts as upright
 
 
 @dataclass(frozen=True)
 class Jumped:
-    """What is told of a jump.
+    """What the description of a jump needs.
 
     jump: as seen; back: it goes back; early, late: s by which the place may be earlier or later;
     share: of the rest, with the new bias; upright: share of the vertical in its axis, with sign;
@@ -52,36 +52,38 @@ class BiasJump(Detector):
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         resting, every = jumps(piece, log)
-        own = [one for one in every if not one.moved]
+        own = [jump for jump in every if not jump.moved]
         for i in range(len(CHANNELS)):
-            yield from _events(piece, log, resting, [one for one in own if one.channel == i])
+            yield from _events(piece, log, resting, [jump for jump in own if jump.channel == i])
 
     def describe(self, event: Event, name: str) -> Description:
-        told: Jumped = event.facts
+        jumped: Jumped = event.facts
         i = event.channel
         assert i is not None  # it is one channel that jumps
         unit, axis = UNITS[i], CHANNELS[i][-1]
         sensor = "accelerometer" if i < 3 else "gyro"
-        back = f" and back at {fixed(event.to_s, 2)} s" if told.back else ""
+        back = f" and back at {fixed(event.to_s, 2)} s" if jumped.back else ""
         place = f"{fixed(event.from_s, 2)} s"
-        if told.early + told.late > 0:
-            place += f" (95 %: {fixed(told.early, 2)} s earlier to {fixed(told.late, 2)} s later)"
+        if jumped.early + jumped.late > 0:
+            place += (
+                f" (95 %: {fixed(jumped.early, 2)} s earlier to {fixed(jumped.late, 2)} s later)"
+            )
         sentence = (
             f"{name}: the {axis} {sensor} jumps by {_signed(event.size)} {unit}"
-            f" (sigma {significant(told.jump.step.sigma, 2)}) at {place}{back};"
-            f" {significant(abs(event.size) / told.noise, 2)} times the noise of a reading."
+            f" (sigma {significant(jumped.jump.step.sigma, 2)}) at {place}{back};"
+            f" {significant(abs(event.size) / jumped.noise, 2)} times the noise of a reading."
         )
-        if i >= 3 and not told.jump.agreement.conclusive:
-            sentence += " A slow turn about the vertical would look the same."
-        off = event.size * told.share
+        if i >= 3 and not jumped.jump.agreement.conclusive:
+            sentence += " A slow turn about the vertical cannot be distinguished from it."
+        off = event.size * jumped.share
         consequence = (
             f"The mean of this rest is off by {_signed(off)} {unit} (the jump, over"
-            f" {told.share:.0%} of it)"
+            f" {jumped.share:.0%} of it)"
         )
         if i >= 3:
             consequence += f", and with it the bias of the {axis} gyro as this rest has it."
-        elif abs(told.upright) > UPRIGHT:
-            ppm = off * np.sign(told.upright) / (2 * told.gravity) * 1e6
+        elif abs(jumped.upright) > MIN_UPRIGHT_SHARE:
+            ppm = off * np.sign(jumped.upright) / (2 * jumped.gravity) * 1e6
             consequence += (
                 f". In a pair of {axis} up and {axis} down that is {_signed(off / 2)} {unit} of"
                 f" bias and {_signed(ppm)} ppm of scale factor."
@@ -100,7 +102,7 @@ class BiasJump(Detector):
 
 
 def _events(piece: Piece, log: Log, resting: Resting, own: list[Jump]) -> Iterator[Event]:
-    """The jumps of one channel; one that goes back is told with the one before it."""
+    """The jumps of one channel; one that returns is joined with the one before it."""
     waiting = list(own)
     while waiting:
         jump = waiting.pop(0)
@@ -131,8 +133,8 @@ def _events(piece: Piece, log: Log, resting: Resting, own: list[Jump]) -> Iterat
 
 def _goes_back(step: Step, other: Step) -> bool:
     left = abs(step.size + other.size)
-    unsure = CERTAIN * float(np.hypot(step.sigma, other.sigma))
-    return step.size * other.size < 0 and left < max(BACK * abs(step.size), unsure)
+    unsure = MAX_RETURN_SIGMA * float(np.hypot(step.sigma, other.sigma))
+    return step.size * other.size < 0 and left < max(MAX_RETURN_SHARE * abs(step.size), unsure)
 
 
 def _signed(value: float) -> str:

@@ -7,24 +7,25 @@ import numpy as np
 
 from inertial.signal.detector import Array, Description, Detector, Event, Integers, Log, Piece
 from inertial.signal.runs import joined
-from inertial.signal.stamps import PRINTED, stamps_of, unit_of
+from inertial.signal.stamps import STAMP_DIGIT_S, stamps_of, unit_of
 from inertial.text.numbers import significant
 
 # Share of an interval by which stamps may scatter. A rate made from stamp to stamp would then
 # scatter by 1.4 %, as much as a bad consumer gyro is off; a receiver's stamps keep to 10⁻⁷.
-ALLOWED = 0.01
-STRETCH = 32  # stamps in which the clock is taken as even
-SET = 3.0  # intervals: where time goes back by more, the clock was set
-FEWEST = 8  # of them, where a log is shorter
-OFTEN = 3  # stretches that must scatter: one alone is a jump or a change of the clock
-APART = 10  # stretches between those that scatter, in which rounded stamps may happen to fit
-BIASED = 1e-3  # what the median interval is off the mean: then it spoils scale factors
-ROUND = 1e-6  # s: to finer steps than that stamps are printed, not rounded
+MAX_JITTER_SHARE = 0.01
+STRETCH_STAMPS = 32  # stamps in which the clock is taken as even
+MAX_BACKWARD_INTERVALS = 3.0  # intervals: where time goes back by more, the clock was set
+MIN_STAMPS = 8  # of them, where a log is shorter
+MIN_STRETCHES = 3  # stretches that must scatter: one alone is a jump or a change of the clock
+# Stretches between those that scatter, in which rounded stamps may happen to fit
+MAX_QUIET_STRETCHES = 10
+MIN_INTERVAL_BIAS = 1e-3  # what the median interval is off the mean: then it spoils scale factors
+MIN_ROUNDING_S = 1e-6  # s: to finer steps than that stamps are printed, not rounded
 
 
 @dataclass(frozen=True)
 class _Facts:
-    """What is told: share of an interval; unit of rounded stamps and the intervals, s; and rates.
+    """The scatter as a share of an interval; unit of rounded stamps and the intervals, s.
 
     unit is 0 where stamps are not rounded; biased: by how much the median interval is off the
     mean, 1, where rates are made with it.
@@ -55,21 +56,23 @@ class ClockJitter(Detector):
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         stamps = stamps_of(piece, log)
-        if len(stamps) < FEWEST:
+        if len(stamps) < MIN_STAMPS:
             return
         step = np.diff(stamps.time)
         off = (step - stamps.apart * log.interval)[stamps.apart > 0]
-        if not len(off) or np.ptp(off) <= ALLOWED * log.interval:
+        if not len(off) or np.ptp(off) <= MAX_JITTER_SHARE * log.interval:
             return  # nothing scatters as much
-        length = min(STRETCH, len(stamps))
+        length = min(STRETCH_STAMPS, len(stamps))
         # A stamp that is behind the one before by chance is one interval on all the same.
-        apart = np.where((stamps.apart == 0) & (step > -SET * log.interval), 1, stamps.apart)
+        apart = np.where(
+            (stamps.apart == 0) & (step > -MAX_BACKWARD_INTERVALS * log.interval), 1, stamps.apart
+        )
         # By the stamps a late one may be two intervals; by the numbers of the records a gap is one.
         ones = np.minimum(apart, 1)
         square = np.fmin(*(_scatter(stamps.time, each, length) for each in (apart, ones)))
-        scattered = square > (ALLOWED * log.interval) ** 2
-        often = min(OFTEN, int(np.isfinite(square).sum()))
-        for first, after in joined(np.flatnonzero(scattered), APART):
+        scattered = square > (MAX_JITTER_SHARE * log.interval) ** 2
+        often = min(MIN_STRETCHES, int(np.isfinite(square).sum()))
+        for first, after in joined(np.flatnonzero(scattered), MAX_QUIET_STRETCHES):
             if np.count_nonzero(scattered[first:after]) < often:
                 continue
             start = first * length
@@ -82,7 +85,7 @@ class ClockJitter(Detector):
                 int(place[end - 1]) + 1,
                 rms,
                 facts=facts,
-                severity=3 if abs(facts.biased) > BIASED else None,
+                severity=3 if abs(facts.biased) > MIN_INTERVAL_BIAS else None,
             )
 
     def describe(self, event: Event, name: str) -> Description:
@@ -105,8 +108,8 @@ class ClockJitter(Detector):
             f" {_percent(np.sqrt(2) * facts.share)}; the pipeline makes none. When something"
             f" happens is known to {rms} ms."
         )
-        action = "One interval is taken for the whole log, so no parameter sees the stamps."
-        if abs(facts.biased) > BIASED:
+        action = "One interval is taken for the whole log, so no parameter depends on the stamps."
+        if abs(facts.biased) > MIN_INTERVAL_BIAS:
             consequence += (
                 " The median interval, with which increments become rates, is off the mean by"
                 f" {significant(facts.biased * 1e6, 2)} ppm, so every rate of this log is off by as"
@@ -137,12 +140,12 @@ def _scatter(time: Array, apart: Integers, length: int) -> Array:
 
 
 def _facts(single: Array, rms: float, log: Log) -> _Facts:
-    """What is told of stamps whose single intervals are these, (m,), s."""
-    ticks, often = np.unique(np.rint(single / PRINTED).astype(np.int64), return_counts=True)
-    unit = unit_of(np.asarray(ticks * PRINTED))
+    """Facts about stamps with these single intervals, (m,), s."""
+    ticks, often = np.unique(np.rint(single / STAMP_DIGIT_S).astype(np.int64), return_counts=True)
+    unit = unit_of(np.asarray(ticks * STAMP_DIGIT_S))
     # Rounding alone scatters by unit/√12, a little more or less in a short stretch.
-    rounded = unit >= ROUND and rms < 1.5 * unit / np.sqrt(12)
-    usual = np.sort(ticks[np.argsort(often)[-2:]]) * PRINTED
+    rounded = unit >= MIN_ROUNDING_S and rms < 1.5 * unit / np.sqrt(12)
+    usual = np.sort(ticks[np.argsort(often)[-2:]]) * STAMP_DIGIT_S
     near = single[single > 0.5 * log.interval]  # as far below the usual as single ones go above
     mean = float(near.mean()) if len(near) else log.interval
     increments = log.recorded_on is not None  # of a receiver; columns hold rates

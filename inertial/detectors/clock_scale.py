@@ -16,23 +16,23 @@ from inertial.signal.detector import (
     Log,
     Piece,
 )
-from inertial.signal.sample_interval import Told, told_of_log, told_of_part
-from inertial.signal.stamps import MAX_RATE_ERROR, PRINTED, Stamps, stamps_of, unit_of
+from inertial.signal.sample_interval import StampEvidence, evidence_of_log, evidence_of_part
+from inertial.signal.stamps import MAX_RATE_ERROR, STAMP_DIGIT_S, Stamps, stamps_of, unit_of
 from inertial.signal.steps import changes
 from inertial.text.numbers import counted, fixed, significant
 
 # Crystals are cut and trimmed to some 20 to 50 ppm, cheap ones to 100 ppm (Ethernet, IEEE 802.3,
 # allows as much); what differs from the stated rate by less is no fault.
-CRYSTAL = 1e-4
+MAX_CRYSTAL_ERROR = 1e-4
 # Within a log, or from log to log, a crystal keeps to a few ppm: 10 K move it by less than that.
-LEAST = 5e-6
-BLOCK = 0.5  # s, of which the mean interval is taken,
-UNITS = 1000  # or so many units of the stamps, so that one of them is a part in a thousand
-ROUNDED = np.sqrt(2 / 12)  # units: the error of the difference of two rounded stamps
-SHORTEST = 3  # blocks of a stretch
-FEWEST = 16  # intervals
-CERTAIN = 5.0  # sigma of a mean interval
-JUMPS = 1e-3  # share of intervals that may be jumps of the clock; more are its nature
+MIN_CHANGE = 5e-6
+BLOCK_S = 0.5  # s, of which the mean interval is taken,
+BLOCK_UNITS = 1000  # or so many units of the stamps, so that one of them is a part in a thousand
+ROUNDING_SIGMA = np.sqrt(2 / 12)  # units: the error of the difference of two rounded stamps
+MIN_BLOCKS = 3  # blocks of a stretch
+MIN_INTERVALS = 16  # intervals
+MIN_SIGMA = 5.0  # sigma of a mean interval
+MAX_JUMP_SHARE = 1e-3  # share of intervals that may be jumps of the clock; more are its nature
 
 
 @dataclass(frozen=True)
@@ -47,10 +47,10 @@ class _Part:
 
 @dataclass(frozen=True)
 class _Facts:
-    """What is told: intervals here, by which it is judged, and of which rates are made, s.
+    """What the description needs: intervals here, of the reference, and of which rates are made, s.
 
-    against: with what it is compared; part: of a log; increments: of a receiver; told: by the
-    specific force.
+    against: with what it is compared; part: of a log; increments: of a receiver; evidence: of
+    the specific force.
     """
 
     here: float
@@ -59,7 +59,7 @@ class _Facts:
     against: str
     part: bool
     increments: bool
-    told: Told
+    evidence: StampEvidence
 
 
 class ClockScale(Detector):
@@ -67,7 +67,7 @@ class ClockScale(Detector):
 
     The intervals of a log are cut into parts whose means differ. A part is compared with what the
     logs of the campaign have in common; where they have nothing, with what most of the log has near
-    the stated rate, and a whole log with the stated rate. Increments tell whether the stamps are
+    the stated rate, and a whole log with the stated rate. Increments show whether the stamps are
     off or the sampling: at rest each is gravity times the true interval.
     """
 
@@ -80,13 +80,15 @@ class ClockScale(Detector):
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         stamps = stamps_of(piece, log)
         steps, series = _intervals(stamps, log.interval)
-        if len(series) < FEWEST:
+        if len(series) < MIN_INTERVALS:
             return
         parts = _parts(series, log.interval)
         reference, tolerance, against = _reference(parts, piece, log)
         for part in parts:
             away = part.mean - reference
-            if abs(away) <= max(tolerance, CERTAIN * part.sigma) or _jump(series, part, reference):
+            if abs(away) <= max(tolerance, MIN_SIGMA * part.sigma) or _jump(
+                series, part, reference
+            ):
                 continue
             first = 0 if part.start == 0 else int(steps[part.start]) + 1
             last = int(steps[part.end - 1]) + 1
@@ -105,9 +107,9 @@ class ClockScale(Detector):
                     against=against if whole else "elsewhere in this log",
                     part=not whole,
                     increments=log.recorded_on is not None,
-                    told=told_of_log(log, away)
+                    evidence=evidence_of_log(log, away)
                     if whole
-                    else told_of_part(piece, log, start, end, away),
+                    else evidence_of_part(piece, log, start, end, away),
                 ),
             )
 
@@ -119,8 +121,12 @@ class ClockScale(Detector):
         if not _agree(given) or not _off_the_stated(usual, given):
             return
         away = usual / given.interval - 1
-        told = {told.stamps: told for log in logs.values() for told in [told_of_log(log, away)]}
-        told.pop(None, None)
+        evidence = {
+            evidence.stamps: evidence
+            for log in logs.values()
+            for evidence in [evidence_of_log(log, away)]
+        }
+        evidence.pop(None, None)
         facts = _Facts(
             here=usual,
             usual=given.interval,
@@ -128,7 +134,7 @@ class ClockScale(Detector):
             against="by the stated rate",
             part=False,
             increments=all(log.recorded_on is not None for log in logs.values()),
-            told=next(iter(told.values())) if len(told) == 1 else Told(),
+            evidence=next(iter(evidence.values())) if len(evidence) == 1 else StampEvidence(),
         )
         yield Event(0, 0, 0, np.nan, np.nan, away * 1e6, facts=facts)
 
@@ -136,7 +142,7 @@ class ClockScale(Detector):
         facts = event.facts
         intervals = f"{_ms(facts.here)} from record to record, {_ms(facts.usual)} {facts.against}"
         size = _ppm(abs(event.size) * 1e-6)
-        if facts.told.stamps:
+        if facts.evidence.stamps:
             off = f"the stamps run {'fast' if event.size > 0 else 'slow'} by {size}"
         else:
             off = (
@@ -153,16 +159,13 @@ class ClockScale(Detector):
         else:
             sentence = f"{name}: {off}: {intervals}."
         return Description(
-            f"{sentence} {_verdict(facts)}",
+            f"{sentence} {_evidence_in_words(facts)}",
             _consequence(event, facts),
             "Nothing is changed. Compare the clock of the logger with another, such as GPS time."
             if facts.part
-            else "Nothing is changed. Correct rate_hz of the instrument, or look at the clocks of"
+            else "Nothing is changed. Correct rate_hz of the instrument, or check the clocks of"
             " logger and IMU.",
         )
-
-
-# ---- what the stamps say
 
 
 def _intervals(stamps: Stamps, interval: float) -> tuple[Integers, Array]:
@@ -172,25 +175,27 @@ def _intervals(stamps: Stamps, interval: float) -> tuple[Integers, Array]:
     """
     steps = np.flatnonzero(stamps.apart == 1)
     series = np.diff(stamps.time)[steps] / interval - 1
-    if len(series) < FEWEST or np.ptp(series) <= LEAST:
+    if len(series) < MIN_INTERVALS or np.ptp(series) <= MIN_CHANGE:
         return steps, series
     beside = np.stack([np.roll(series, shift) for shift in (-2, -1, 1, 2)])
     least, most = beside.min(axis=0), beside.max(axis=0)
-    room = 5 * (most - least) + LEAST
+    room = 5 * (most - least) + MIN_CHANGE
     jumps = (series > most + room) | (series < least - room)
-    if np.count_nonzero(jumps) <= max(JUMPS * len(series), 2):
+    if np.count_nonzero(jumps) <= max(MAX_JUMP_SHARE * len(series), 2):
         steps, series = steps[~jumps], series[~jumps]
     return steps, series
 
 
 def _parts(series: Array, interval: float) -> list[_Part]:
     """The parts of a log that have each an interval of their own."""
-    if np.ptp(series) <= LEAST:
-        length = max(FEWEST, round(BLOCK / interval))
+    if np.ptp(series) <= MIN_CHANGE:
+        length = max(MIN_INTERVALS, round(BLOCK_S / interval))
         return [_part(series, 0, len(series), length, interval)]
     unit = unit_of(interval * (1 + series))
-    length = max(FEWEST, round(max(BLOCK, UNITS * unit) / interval))
-    borders = changes(series, length, SHORTEST, LEAST, ROUNDED * unit / (length * interval))
+    length = max(MIN_INTERVALS, round(max(BLOCK_S, BLOCK_UNITS * unit) / interval))
+    borders = changes(
+        series, length, MIN_BLOCKS, MIN_CHANGE, ROUNDING_SIGMA * unit / (length * interval)
+    )
     return [_part(series, start, end, length, interval) for start, end in pairwise(borders)]
 
 
@@ -198,36 +203,40 @@ def _part(series: Array, start: int, end: int, length: int, interval: float) -> 
     """A part of the intervals; its sigma from means of blocks, within which errors cancel."""
     own = series[start:end]
     blocks = own[: len(own) // length * length].reshape(-1, length).mean(axis=1)
-    few = len(blocks) < SHORTEST
+    few = len(blocks) < MIN_BLOCKS
     scatter = own.std() / np.sqrt(len(own)) if few else blocks.std() / np.sqrt(len(blocks))
-    return _Part(start, end, float(own.mean()), max(float(scatter), PRINTED / interval / len(own)))
+    return _Part(
+        start, end, float(own.mean()), max(float(scatter), STAMP_DIGIT_S / interval / len(own))
+    )
 
 
 def _reference(parts: Sequence[_Part], piece: Piece, log: Log) -> tuple[float, float, str]:
     """With what the parts are compared: interval and tolerance, relative to the log's; and what."""
     given = log.given
     if _agree(given):
-        tolerance = max(LEAST, 6 * given.unlike)
+        tolerance = max(MIN_CHANGE, 6 * given.unlike)
         return given.usual_interval / log.interval - 1, tolerance, "in the other logs"
     if len(parts) == 1 and not np.isfinite(given.usual_interval):
         here = log.interval * (1 + parts[0].mean)
         if _off_the_stated(here, given):
-            return given.interval / log.interval - 1, CRYSTAL, "by the stated rate"
+            return given.interval / log.interval - 1, MAX_CRYSTAL_ERROR, "by the stated rate"
     if log.records > len(piece):
-        return 0.0, LEAST, "at the beginning of this log"
+        return 0.0, MIN_CHANGE, "at the beginning of this log"
     stated = given.interval / log.interval
-    near = [part for part in parts if abs((1 + part.mean) / stated - 1) < CRYSTAL] or parts
+    near = [
+        part for part in parts if abs((1 + part.mean) / stated - 1) < MAX_CRYSTAL_ERROR
+    ] or parts
 
-    def alike(one: _Part) -> int:
-        own = [part for part in near if abs(part.mean - one.mean) <= LEAST]
+    def alike(part: _Part) -> int:
+        own = [part for part in near if abs(part.mean - part.mean) <= MIN_CHANGE]
         return sum(part.end - part.start for part in own)
 
-    return max(near, key=alike).mean, LEAST, "elsewhere in this log"
+    return max(near, key=alike).mean, MIN_CHANGE, "elsewhere in this log"
 
 
 def _agree(given: Given) -> bool:
     """Whether the logs of the campaign have an interval in common, as crystals would."""
-    return bool(6 * given.unlike < CRYSTAL)
+    return bool(6 * given.unlike < MAX_CRYSTAL_ERROR)
 
 
 def _off_the_stated(interval: float, given: Given) -> bool:
@@ -239,7 +248,10 @@ def _off_the_stated(interval: float, given: Given) -> bool:
     # A rate of 83.3 Hz is stated to half a unit of its last digit.
     rounded = 0.5 * 10.0**-digits * given.interval if digits else 0.0
     away = abs(interval / given.interval - 1)
-    return max(CRYSTAL, rounded) < away and abs(given.interval / interval - 1) <= MAX_RATE_ERROR
+    return (
+        max(MAX_CRYSTAL_ERROR, rounded) < away
+        and abs(given.interval / interval - 1) <= MAX_RATE_ERROR
+    )
 
 
 def _jump(series: Array, part: _Part, reference: float) -> bool:
@@ -248,20 +260,17 @@ def _jump(series: Array, part: _Part, reference: float) -> bool:
     return bool(away[:-2].sum() < 0.5 * away.sum())
 
 
-# ---- words
-
-
-def _verdict(facts: _Facts) -> str:
-    told = facts.told
-    if told.stamps is None:
+def _evidence_in_words(facts: _Facts) -> str:
+    evidence = facts.evidence
+    if evidence.stamps is None:
         what = "readings" if facts.increments else "rates"
-        return f"Whether the stamps are off or the sampling, the {what} do not tell."
-    change = f"{significant(told.change * 1e6, 2)} ± {significant(told.sigma * 1e6, 2)} ppm"
+        return f"The {what} do not show whether the stamps or the sampling is off."
+    change = f"{significant(evidence.change * 1e6, 2)} ± {significant(evidence.sigma * 1e6, 2)} ppm"
     off = "the stamps are off, not the sampling"
     if not facts.part:
-        off = off if told.stamps else "the stamps are right"
+        off = off if evidence.stamps else "the stamps are right"
         return f"At rest the specific force is {change} off gravity, so {off}."
-    if told.stamps:
+    if evidence.stamps:
         return f"The specific force per record does not change with it ({change}), so {off}."
     return (
         f"The specific force per record changes as much ({change}), so the sampling is off, not"
@@ -271,7 +280,7 @@ def _verdict(facts: _Facts) -> str:
 
 def _consequence(event: Event, facts: _Facts) -> str:
     used = _ms(facts.used)
-    if facts.increments and abs(facts.usual / facts.used - 1) > LEAST / 2:
+    if facts.increments and abs(facts.usual / facts.used - 1) > MIN_CHANGE / 2:
         wrong = facts.usual / facts.used - 1
         return (
             f"Rates are made with {used}. Where the stamps are wrong, every rate that is made with"
@@ -281,7 +290,7 @@ def _consequence(event: Event, facts: _Facts) -> str:
     if facts.increments:
         after = abs(event.size) * 1e-6 * (event.to_s - event.from_s) * 1e3
         rates = f"Rates are made with {used}, the median interval of the log, and stand"
-        if facts.told.stamps is False:
+        if facts.evidence.stamps is False:
             uneven = _ppm(facts.here / facts.used - 1)
             rates = (
                 f"Rates are made with {used} throughout; in this stretch they are off by {uneven}"

@@ -8,11 +8,11 @@ from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.stamps import stamps_of
 from inertial.text.numbers import fixed, significant
 
-LEAST = 0.02  # of an interval: what is less moves nothing
-CLEAR = 10.0  # times what the stamps beside it scatter by, rms
-BESIDE = 32  # stamps on either side
-FEWEST = 8  # of them, where the log begins or ends
-STAYS = 0.5  # of the step, by which the stamps beside it may take it back
+MIN_STEP_SHARE = 0.02  # of an interval: smaller steps have no effect
+MIN_STEP_SIGMA = 10.0  # times what the stamps beside it scatter by, rms
+SIDE_STAMPS = 32  # stamps on either side
+MIN_SIDE_STAMPS = 8  # of them, where the log begins or ends
+MAX_RETURN_SHARE = 0.5  # of the step, by which the stamps beside it may take it back
 
 
 class ClockStep(Detector):
@@ -33,14 +33,14 @@ class ClockStep(Detector):
         stamps = stamps_of(piece, log)
         off = np.diff(stamps.time) - stamps.apart * log.interval
         off[stamps.apart != 1] = np.nan
-        for k in np.flatnonzero(np.abs(off) > LEAST * log.interval):
-            before, behind = off[max(k - BESIDE, 0) : k], off[k + 1 : k + 1 + BESIDE]
-            if min(np.isfinite(before).sum(), np.isfinite(behind).sum()) < FEWEST:
+        for k in np.flatnonzero(np.abs(off) > MIN_STEP_SHARE * log.interval):
+            before, behind = off[max(k - SIDE_STAMPS, 0) : k], off[k + 1 : k + 1 + SIDE_STAMPS]
+            if min(np.isfinite(before).sum(), np.isfinite(behind).sum()) < MIN_SIDE_STAMPS:
                 continue
             scatter = float(np.sqrt(np.nanmean(np.append(before, behind) ** 2)))
             taken_back = abs(float(np.nansum(before[-2:]) + np.nansum(behind[:2])))
             step = float(off[k])
-            if abs(step) > CLEAR * scatter and taken_back < STAYS * abs(step):
+            if abs(step) > MIN_STEP_SIGMA * scatter and taken_back < MAX_RETURN_SHARE * abs(step):
                 place = int(stamps.place[k + 1])
                 yield Event(
                     int(piece.record[place]),
@@ -57,7 +57,7 @@ class ClockStep(Detector):
         size = significant(event.size * 1e3, 3)
         return Description(
             f"{name}: from line {event.line} on, at {fixed(event.to_s, 3)} s, all stamps are"
-            f" {size} ms {later} than an even clock says, and no sample is missing.",
+            f" {size} ms {later} than those of an even clock, and no sample is missing.",
             "What is taken against time is off by that much; angles and means hardly change.",
             "All samples are used. Let the clock settle before recording.",
         )

@@ -22,17 +22,17 @@ from inertial.signal.detector import (
 from inertial.signal.scatter import BLOCK, MIN_NOISE_COUNTS, roughness, smallest_step
 from inertial.text.numbers import significant, whole
 
-CERTAIN = 1e-4  # chance of so long a run of equal readings in a log
-SHORTEST = 4  # equal readings; fewer may be spikes
-LEAP = 20.0  # times the changes beside a run, by which the readings leap to it and back
-LEAPT = 1e-6  # chance that they do so by themselves
-BESIDE = 8  # readings before a run and after it
-SURELY = 1000  # equal readings of all axes, where nothing is known of their noise
+MAX_CHANCE = 1e-4  # chance of so long a run of equal readings in a log
+MIN_RUN = 4  # equal readings; fewer may be spikes
+MIN_LEAP_RATIO = 20.0  # times the changes beside a run, by which the readings leap to it and back
+MAX_LEAP_CHANCE = 1e-6  # chance that they do so by themselves
+SIDE_READINGS = 8  # readings before a run and after it
+MIN_COMMON_RUN = 1000  # equal readings of all axes, where nothing is known of their noise
 
 
 @dataclass(frozen=True)
 class Stillness:
-    """What is told of a dead axis: what it reads, all the time or not, and for how many s."""
+    """A constant channel: its reading, whether throughout the log, and for how many s."""
 
     level: float
     always: bool
@@ -64,21 +64,25 @@ class DeadAxis(Detector):
         runs = [_runs(values) for _, values in channels]
         noise = [_noise(values, *run) for (_, values), run in zip(channels, runs, strict=True)]
         for axes in SENSORS.values():
-            known = [one for one in noise[axes] if np.isfinite(one)]
+            known = [sigma for sigma in noise[axes] if np.isfinite(sigma)]
             for i in range(axes.start, axes.stop):
                 places, values = channels[i]
                 start, end = runs[i]
                 chance = np.ones(len(start))
                 if known:
                     own = noise[i] if np.isfinite(noise[i]) else min(known)
-                    tests = 6 * log.records * np.where(_leapt_to(values, start, end), LEAPT, 1.0)
+                    tests = (
+                        6
+                        * log.records
+                        * np.where(_leapt_to(values, start, end), MAX_LEAP_CHANCE, 1.0)
+                    )
                     chance = tests * _chance(end - start, own)
-                    for k in np.flatnonzero(chance < CERTAIN):
+                    for k in np.flatnonzero(chance < MAX_CHANCE):
                         beside = _quieter(values, int(start[k]), int(end[k]), own)
                         chance[k] = tests[k] * _chance(end[k : k + 1] - start[k], beside)[0]
-                elif len(values) >= SURELY and max(np.nan_to_num(noise)) > MIN_NOISE_COUNTS:
+                elif len(values) >= MIN_COMMON_RUN and max(np.nan_to_num(noise)) > MIN_NOISE_COUNTS:
                     chance[:] = np.nan  # the whole sensor stands still, and the other does not
-                for k in np.flatnonzero(~(chance > CERTAIN) & (end - start >= SHORTEST)):
+                for k in np.flatnonzero(~(chance > MAX_CHANCE) & (end - start >= MIN_RUN)):
                     number = int(end[k] - start[k])
                     yield piece.event(
                         int(places[start[k]]),
@@ -116,7 +120,7 @@ class DeadAxis(Detector):
 def _chance(length: Integers, rough: float) -> Array:
     """The chance that a run of so many equal readings begins at a reading.
 
-    rough: counts, of the channel, of which carried counts are 1/2; where it tells nothing the
+    rough: counts, of the channel, of which carried counts are 1/2; where it is not known the
     chance is one.
     """
     if rough < MIN_NOISE_COUNTS:
@@ -129,25 +133,30 @@ def _chance(length: Integers, rough: float) -> Array:
 def _quieter(values: Array, start: int, end: int, usual: float) -> float:
     """The roughness beside a run, if it is less than the usual one of the log, in counts.
 
-    Most of a log may be louder than that: it may oscillate. Another run beside it tells nothing.
+    Most of a log may be louder than that: it may oscillate. Another run beside it does not count.
     """
     sides = values[max(start - BLOCK - 1, 0) : start], values[end : end + BLOCK + 1]
     rough = [roughness(side) / smallest_step(values) for side in sides]
-    return min(usual, *(one for one in rough if one > 0), usual)
+    return min(usual, *(sigma for sigma in rough if sigma > 0), usual)
 
 
 def _leapt_to(values: Array, start: Integers, end: Integers) -> Booleans:
     """Which runs lie far from the readings before and from those after, (k,)."""
     change = np.abs(np.diff(values))
     leapt = np.zeros(len(start), bool)
-    far = LEAP * smallest_step(values)
-    inside = (end - start >= SHORTEST) & (start >= BESIDE) & (end <= len(values) - BESIDE)
+    far = MIN_LEAP_RATIO * smallest_step(values)
+    inside = (
+        (end - start >= MIN_RUN) & (start >= SIDE_READINGS) & (end <= len(values) - SIDE_READINGS)
+    )
     for k in np.flatnonzero(inside):
         first, after = int(start[k]), int(end[k])
         leap = min(change[first - 1], change[after - 1])
         if leap > far:
-            beside = change[first - BESIDE : first - 1], change[after : after + BESIDE - 1]
-            leapt[k] = leap > LEAP * max(side.max() for side in beside)
+            beside = (
+                change[first - SIDE_READINGS : first - 1],
+                change[after : after + SIDE_READINGS - 1],
+            )
+            leapt[k] = leap > MIN_LEAP_RATIO * max(side.max() for side in beside)
     return leapt
 
 

@@ -20,7 +20,7 @@ from inertial.text.numbers import counted, fixed
 
 # Share of stamps that stand still while the readings change: above it the stamps are so coarse
 # that equal readings with equal stamps may be another sample.
-COARSE = 0.05
+MAX_CHANCE_EQUAL = 0.05
 
 
 class Duplicate(Detector):
@@ -46,16 +46,16 @@ class Duplicate(Detector):
             yield piece.event(start, end, float(end - start), facts=far)
 
     def describe(self, event: Event, name: str) -> Description:
-        one = event.size == 1
+        single = event.size == 1
         what = f"{counted(int(event.size), 'record')} from line {event.line}"
-        does = "repeats" if one else "repeat"
+        does = "repeats" if single else "repeat"
         where = "earlier ones, stamps and all" if event.facts else "the one before, stamp and all"
-        many = "it" if one else "them"
+        many = "it" if single else "them"
         return Description(
             f"{name}: {what} {does} {where}, at {fixed(event.from_s, 3)} s.",
             f"A sum over time would count {many} twice: the angle of a turn by the rate times"
             f" {counted(int(event.size), 'sample interval')}; the mean of a rest hardly moves.",
-            f"{'It is' if one else 'They are'} masked, and no time is counted for {many}.",
+            f"{'It is' if single else 'They are'} masked, and no time is counted for {many}.",
         )
 
 
@@ -94,4 +94,4 @@ def _seen_before(rows: Array) -> Booleans:
 def _coarse(stamps: Array, changed: Booleans, records: int) -> bool:
     """Whether time often stands still while the readings change."""
     still = np.append(False, np.diff(stamps) == 0) & changed
-    return bool(np.count_nonzero(still) > COARSE * records)
+    return bool(np.count_nonzero(still) > MAX_CHANCE_EQUAL * records)

@@ -8,8 +8,8 @@ from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.stamps import disorders, stamps_of
 from inertial.text.numbers import fixed
 
-LONGER = 1.5  # median intervals: what is no jitter of the stamps any more
-BESIDE = 4  # stamps on either side that must agree
+MIN_GAP_INTERVALS = 1.5  # median intervals: what is no jitter of the stamps any more
+SIDE_STAMPS = 4  # stamps on either side that must agree
 
 
 class Gap(Detector):
@@ -26,17 +26,17 @@ class Gap(Detector):
         stamps = stamps_of(piece, log)
         # Stamps that are out of order make no gap, but their records are there.
         ordered = np.ones(len(stamps), bool)
-        for one in disorders(stamps.time, piece.reached, log.interval):
-            ordered[one.start : one.end] = False
+        for disorder in disorders(stamps.time, piece.reached, log.interval):
+            ordered[disorder.start : disorder.end] = False
         place, time = np.flatnonzero(ordered), stamps.time[ordered]
-        for k in np.flatnonzero(np.diff(time) > LONGER * log.interval):
-            later = time[k + 1 : k + 1 + BESIDE]
-            earlier = time[max(k + 1 - BESIDE, 0) : k + 1][::-1]
+        for k in np.flatnonzero(np.diff(time) > MIN_GAP_INTERVALS * log.interval):
+            later = time[k + 1 : k + 1 + SIDE_STAMPS]
+            earlier = time[max(k + 1 - SIDE_STAMPS, 0) : k + 1][::-1]
             # A stamp that is late or early by itself makes no gap: those beside it do not agree.
             surely = (later - log.interval * np.arange(len(later))).min()
             surely -= (earlier + log.interval * np.arange(len(earlier))).max()
             missing = round((time[k + 1] - time[k]) / log.interval) - (place[k + 1] - place[k])
-            if missing > 0 and surely > LONGER * log.interval:
+            if missing > 0 and surely > MIN_GAP_INTERVALS * log.interval:
                 after = int(stamps.place[place[k + 1]])
                 yield Event(
                     int(piece.record[after]),

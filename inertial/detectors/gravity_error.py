@@ -10,10 +10,10 @@ from inertial.text.units import STANDARD_GRAVITY
 
 # m/s²: gravity differs from normal gravity, point by point over the earth, by 42 mGal rms
 # (variance 1795 mGal²: Tscherning & Rapp, OSU Report 208, 1974); 50 mGal, as the plan takes it.
-ANOMALY = 5e-4
-CERTAIN = 3.0  # sigma
+ANOMALY_SIGMA = 5e-4
+MIN_SIGMA = 3.0  # sigma
 MGAL = 1e-5  # m/s²
-SAME = 2e-5  # m/s²: gravity is stated to as much
+MAX_ROUNDING = 2e-5  # m/s²: gravity is stated to as much
 
 
 class GravityError(Detector):
@@ -31,13 +31,13 @@ class GravityError(Detector):
 
     def detect_in_campaign(self, given: Given) -> Iterator[Event]:
         off = given.gravity - given.normal_gravity
-        sigma = float(np.hypot(given.gravity_sigma, ANOMALY))
-        if abs(off) > CERTAIN * sigma:
+        sigma = float(np.hypot(given.gravity_sigma, ANOMALY_SIGMA))
+        if abs(off) > MIN_SIGMA * sigma:
             yield Event(0, 0, 0, np.nan, np.nan, off, facts=(given, sigma))
 
     def describe(self, event: Event, name: str) -> Description:
         given, sigma = event.facts
-        unit = abs(given.gravity - STANDARD_GRAVITY) < SAME
+        unit = abs(given.gravity - STANDARD_GRAVITY) < MAX_ROUNDING
         why = " It is the size of the unit g, which is gravity of no place." if unit else ""
         times = significant(abs(event.size) / sigma, 2)
         parts = -event.size / given.gravity * 1e6

@@ -18,12 +18,12 @@ from inertial.signal.runs import runs
 from inertial.signal.stamps import kinds
 from inertial.text.numbers import counted, fixed, p_is
 
-UNLIKELY = 1e-3  # chance in the whole log below which a run is no chance
-BESIDE = 100  # pairs on each side of a run by which its chance is judged
+MAX_CHANCE = 1e-3  # probability in the whole log below which a run is not random
+SIDE_PAIRS = 100  # pairs on each side of a run by which its chance is judged
 # Pairs on each side, where half of the channels are equal, or more than usual: a swing turns round.
-CLOSE = (1, 3, 10)
-MORE = 3.0  # sigma, more than usual
-HALVINGS = 40  # of the interval in which the chance lies
+CLOSE_COUNTS = (1, 3, 10)
+MIN_EXCESS_SIGMA = 3.0  # sigma, more than usual
+BISECTIONS = 40  # of the interval in which the chance lies
 
 
 class HeldRecord(Detector):
@@ -33,7 +33,7 @@ class HeldRecord(Detector):
     records is (number of records) × Pʳ, with P the chance that a pair is equal in all channels. It
     follows from the pairs that are not: how often a channel is equal in them, beside the run and in
     the whole, the larger counts. For a run of more than one it is also judged by how often the
-    readings that are held come beside it. A channel that never changes tells nothing.
+    readings that are held come beside it. A channel that never changes does not count.
     """
 
     name = "held_record"
@@ -46,32 +46,32 @@ class HeldRecord(Detector):
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         for places, channels in kinds(piece):
-            telling = channels[log.least[channels] < log.most[channels]]
-            if not len(telling) or not _any_equal(piece.values, places, telling):
+            changing = channels[log.least[channels] < log.most[channels]]
+            if not len(changing) or not _any_equal(piece.values, places, changing):
                 continue
-            values = piece.values[np.ix_(places, telling)]
+            values = piece.values[np.ix_(places, changing)]
             for start, end, chance in _held(values, log.records):
                 # The rows of another sensor may lie between; they are not concerned.
                 own = places[start + 1 : end + 1]
                 whole = own[-1] - own[0] + 1 == len(own)
                 for part in [own] if whole else own[:, None]:
                     first, last, size = int(part[0]), int(part[-1]) + 1, float(len(part))
-                    yield piece.event(first, last, size, p_value=chance, facts=len(telling))
+                    yield piece.event(first, last, size, p_value=chance, facts=len(changing))
 
     def describe(self, event: Event, name: str) -> Description:
-        one = event.size == 1
+        single = event.size == 1
         records = counted(int(event.size), "record")
         at = f", {fixed(event.from_s, 3)} s," if np.isfinite(event.from_s) else ""
         return Description(
             f"{name}: {records} from line {event.line}{at}"
-            f" {'has' if one else 'have'} the readings of the one before in all {event.facts}"
+            f" {'has' if single else 'have'} the readings of the one before in all {event.facts}"
             f" channels, though time goes on; by chance that happens with"
             f" {p_is(event.p_value)} in this log.",
             "Used, a sum over time would take old readings for new ones: while it turns the angle"
             f" is then unknown by what the rate changes in {records}; a mean hardly moves, the"
             " noise seems smaller.",
-            f"{'It is' if one else 'They are'} masked; time passes with"
-            f" {'it' if one else 'them'}. Look at the logger's buffer and cable.",
+            f"{'It is' if single else 'They are'} masked; time passes with"
+            f" {'it' if single else 'them'}. Look at the logger's buffer and cable.",
         )
 
 
@@ -94,14 +94,14 @@ def _held(values: Array, records: int) -> Iterator[tuple[int, int, float]]:
     start, end = edges.T
     length = end - start
     likely = _likely(equal, whole, start, end)
-    for k in np.flatnonzero(records * likely**length < UNLIKELY):
+    for k in np.flatnonzero(records * likely**length < MAX_CHANCE):
         a, b = int(start[k]), int(end[k])
         if b > a + 1:
-            beside = np.r_[max(a - BESIDE, 0) : a, b + 1 : min(b + 1 + BESIDE, len(values))]
+            beside = np.r_[max(a - SIDE_PAIRS, 0) : a, b + 1 : min(b + 1 + SIDE_PAIRS, len(values))]
             same = ((values[beside] == values[a]).sum(axis=0) + 1) / (len(beside) + 2)
             likely[k] = max(likely[k], same.prod())
         chance = records * float(likely[k]) ** (b - a)
-        if chance < UNLIKELY:
+        if chance < MAX_CHANCE:
             yield a, b, chance
 
 
@@ -121,14 +121,14 @@ def _likely(equal: Booleans, whole: Booleans, start: Integers, end: Integers) ->
         return [other[start] - other[before], other[after] - other[end]]
 
     likely = np.repeat(_all_equal(_shares(other[-1:])), len(start))
-    for side, usual in enumerate(beside(BESIDE)):
+    for side, usual in enumerate(beside(SIDE_PAIRS)):
         shares = _shares(usual)
         likely = np.maximum(likely, _all_equal(shares))
-        for distance in CLOSE:
+        for distance in CLOSE_COUNTS:
             counts = beside(distance)[side]
-            found, expected = counts[:, :-1].sum(axis=1), counts[:, -1] * shares.sum(axis=1)
-            more = found > expected + MORE * np.sqrt(expected + 1)
-            more |= found >= counts[:, -1] * shares.shape[1] / 2
+            observed, expected = counts[:, :-1].sum(axis=1), counts[:, -1] * shares.sum(axis=1)
+            more = observed > expected + MIN_EXCESS_SIGMA * np.sqrt(expected + 1)
+            more |= observed >= counts[:, -1] * shares.shape[1] / 2
             likely = np.where(more, np.maximum(likely, _all_equal(_shares(counts))), likely)
     return likely
 
@@ -150,7 +150,7 @@ def _all_equal(shares: Array) -> Array:
     than one channel changes in such a pair there is no P below 1.
     """
     low, high = np.zeros(len(shares)), np.ones(len(shares))
-    for _ in range(HALVINGS):
+    for _ in range(BISECTIONS):
         middle = (low + high) / 2
         more = (shares * (1 - middle[:, None]) + middle[:, None]).prod(axis=1) > middle
         low, high = np.where(more, middle, low), np.where(more, high, middle)

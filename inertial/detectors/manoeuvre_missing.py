@@ -9,7 +9,7 @@ from inertial.signal.detector import Array, Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.text.numbers import fixed
 
-SAME = float(np.cos(np.radians(25)))  # directions that are the same
+MIN_SAME_COSINE = float(np.cos(np.radians(25)))  # directions that are the same
 
 
 class ManoeuvreMissing(PlanDetector):
@@ -43,14 +43,16 @@ def _instead(recorded: Recorded, i: int) -> str:
             return ""
         direction = force / np.linalg.norm(force)
         away = np.degrees(np.arccos(np.clip(direction @ up, -1, 1)))
-        told = f" Its log rests {away:.0f}° from there, with {_axis(direction)} up."
-        if float(np.abs(direction).max()) > SAME:
-            told += " Either the IMU stood so, or two axes or a sign of the accelerometers are"
-            told += " taken for others; this log alone does not tell."
-        return told
+        sentence = f" Its log rests {away:.0f}° from there, with {_axis(direction)} up."
+        if float(np.abs(direction).max()) > MIN_SAME_COSINE:
+            sentence += (
+                " Either the IMU had this attitude, or two axes or a sign of the accelerometers are"
+            )
+            sentence += " wrong; this log alone cannot decide."
+        return sentence
     turned = np.degrees(recorded.turned[i])
     about = recorded.about[i]
-    blind = np.flatnonzero(~recorded.gyros[i] & (np.abs(about) > SAME))
+    blind = np.flatnonzero(~recorded.gyros[i] & (np.abs(about) > MIN_SAME_COSINE))
     if len(blind):
         return f" The {AXES[int(blind[0])]} gyro, which would see it, has no reading to be used."
     if recorded.first[i] >= 0 and np.isfinite(turned).any():
@@ -61,20 +63,20 @@ def _instead(recorded: Recorded, i: int) -> str:
 
 def _axis(direction: Array) -> str:
     k = int(np.argmax(np.abs(direction)))
-    if abs(direction[k]) > SAME:
+    if abs(direction[k]) > MIN_SAME_COSINE:
         return f"{'+' if direction[k] > 0 else '−'}{AXES[k]}"
     return "(" + ", ".join(fixed(float(part), 2) for part in direction) + ")"
 
 
 def _left(recorded: Recorded, i: int) -> str:
-    """What the others say of the same direction."""
+    """Which other manoeuvres observe the same direction."""
     rest = recorded.do[i] == "rest"
     directions = recorded.up if rest else recorded.about
     own = directions[i]
     if not np.isfinite(own).all():
         return ""
     along = np.nan_to_num(directions) @ own
-    same = (along > SAME) if rest else (np.abs(along) > SAME)
+    same = (along > MIN_SAME_COSINE) if rest else (np.abs(along) > MIN_SAME_COSINE)
     others = same & recorded.found & (np.arange(len(along)) != i)
     others &= np.isfinite(directions).all(axis=1)
     if others.any():

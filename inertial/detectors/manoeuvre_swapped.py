@@ -1,4 +1,4 @@
-"""Two manoeuvres in each other's place."""
+"""Two exchanged manoeuvres."""
 
 from collections.abc import Iterator
 
@@ -11,7 +11,7 @@ from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded, Swa
 class ManoeuvreSwapped(PlanDetector):
     """Two logs under each other's names, or two manoeuvres of a log in each other's place.
 
-    Each fits where the plan has the other, and not where the plan has it.
+    Each agrees with the plan of the other, and not with its own.
     """
 
     name = "manoeuvre_swapped"
@@ -21,24 +21,24 @@ class ManoeuvreSwapped(PlanDetector):
     unit = "manoeuvres"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        for one in recorded.swapped:
-            i = list(recorded.name).index(one.names[0])
-            yield self.of(recorded, i, float(len(one.names)), facts=one)
+        for swapped in recorded.swapped:
+            i = list(recorded.name).index(swapped.names[0])
+            yield self.of(recorded, i, float(len(swapped.names)), facts=swapped)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
-        one: Swapped = deviation.facts
-        half = len(one.names) // 2
-        first, second = ", ".join(one.names[:half]), ", ".join(one.names[half:])
-        if len(one.logs) == 2:
+        swapped: Swapped = deviation.facts
+        half = len(swapped.names) // 2
+        first, second = ", ".join(swapped.names[:half]), ", ".join(swapped.names[half:])
+        if len(swapped.logs) == 2:
+            one, other = swapped.logs
             sentence = (
-                f"{one.logs[0]} holds what {second} should be, and {one.logs[1]} what {first}"
-                " should be: they bear each other's names."
+                f"{one} contains {second}, and {other} contains {first}: their names are exchanged."
             )
         else:
-            sentence = f"In {one.logs[0]}, {first} and {second} stand in each other's place."
-        own = [i for i, name in enumerate(recorded.name) if name in one.names]
+            sentence = f"In {swapped.logs[0]}, {first} and {second} are exchanged."
+        own = [i for i, name in enumerate(recorded.name) if name in swapped.names]
         return Description(
-            sentence + (_or_a_sign(recorded, own) if len(one.logs) == 2 else ""),
+            sentence + (_or_a_sign(recorded, own) if len(swapped.logs) == 2 else ""),
             _if_used(recorded, own),
             "Both are left out, for only the laboratory knows which is which. Correct the names, or"
             " the plan, and run it again.",
@@ -57,15 +57,18 @@ def _or_a_sign(recorded: Recorded, own: list[int]) -> str:
     axis = "xyz"[int(np.argmax(np.abs(unit[0])))]
     if rests:
         return (
-            f" A wrong sign of the {axis} accelerometer would look the same, if no other manoeuvre"
-            " shows its sign."
+            f" A wrong sign of the {axis} accelerometer cannot be distinguished from it, if no"
+            " other manoeuvre shows its sign."
         )
     if recorded.gyro_signs["xyz".index(axis)] > 0:
         return (
-            f" Planned angles of the wrong sign would look the same; the sign of the {axis} gyro is"
-            " right, for it sees the earth turn."
+            f" Planned angles of the wrong sign cannot be distinguished from it; the sign of the"
+            f" {axis} gyro is right, as the earth rate shows."
         )
-    return f" A wrong sign of the {axis} gyro, or of the planned angles, would look the same."
+    return (
+        f" A wrong sign of the {axis} gyro, or of the planned angles, cannot be distinguished from"
+        " it."
+    )
 
 
 def _if_used(recorded: Recorded, own: list[int]) -> str:
@@ -76,4 +79,4 @@ def _if_used(recorded: Recorded, own: list[int]) -> str:
     if np.isfinite(angles).all():
         wrong = f"{2 * angles.max():.0f}°"
         return f"Used, each angle would be wrong by up to {wrong}, a scale error of −200 %."
-    return "Used, each would be taken for the other."
+    return "Used, each would be evaluated as the other."

@@ -18,16 +18,16 @@ from inertial.signal.detector import (
 from inertial.signal.tones import Tone, tones
 from inertial.text.numbers import significant
 
-TURNING = 0.03  # rad/s, which no table does at rest
-BIAS = 0.1  # rad/s, which no gyro reads at rest
-BLOCK = 128  # readings whose mean rate is taken
-MOSTLY = 0.9  # of the time of an oscillation
-FEWEST = 3  # blocks at rest that tell that it is not there
+MIN_TURN_RATE = 0.03  # rad/s, which no table does at rest
+MAX_GYRO_BIAS = 0.1  # rad/s, which no gyro reads at rest
+BLOCK_READINGS = 128  # readings whose mean rate is taken
+MIN_MAJORITY = 0.9  # of the time of an oscillation
+MIN_REST_BLOCKS = 3  # blocks at rest without it, for it to be absent at rest
 
 
 @dataclass(frozen=True)
 class Ringing:
-    """What is told of an oscillation.
+    """What the description of an oscillation needs.
 
     tone: the largest; others: the same in other channels; besides: Hz, what its channel has at the
     same time; turning: share of its time in which the IMU turned, NaN without gyros; not_at_rest:
@@ -41,31 +41,31 @@ class Ringing:
 
 
 class Oscillation(Detector):
-    """One frequency that stands out of the spectra of a channel, and keeps its phase.
+    """A significant line in the spectra of a channel that keeps its phase.
 
     It is seen in windows of 256 readings, from 8 periods a window on and in four windows at least;
     its frequency is that by which the phase stays the same from window to window, its edges are
-    those that are most likely reading by reading. A log of 24 to 64 readings is looked at as a
-    whole. Where several channels have it, the one is told in which it is largest, of
-    the sensor that has it clearest; what others have in step with it may be coupling. Motion by
-    hand, ramps and coloured noise rise above their own spectrum on one side only, or keep no
-    phase.
+    those that are most likely reading by reading. A log of 24 to 64 readings is examined as a
+    whole. Where several channels have it, the finding names the one with the largest amplitude, of
+    the sensor with the best signal-to-noise ratio; coherent lines of others may be coupling.
+    Motion by hand, ramps and coloured noise rise above their own spectrum on one side only, or
+    keep no phase.
     """
 
     name = "oscillation"
     cause = "the case, a loose screw, the drive of the table or the electronics ring"
     source = "S0, figures 5-14 to 5-16: 20 Hz, 0.01 rad/s about x while the table turns"
-    costs = "angles and means over part of a turn; the noise, where it is taken for noise"
+    costs = "angles and means over part of a turn; the noise level, if it counts as noise"
     severity = 1
     everywhere = True
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
-        found = sorted(tones(piece, log), key=lambda tone: -tone.clear)
-        if not found:
+        detected = sorted(tones(piece, log), key=lambda tone: -tone.clear)
+        if not detected:
             return
         turning = _turning(piece, log)
-        for tone, besides in sorted(_apart(found), key=lambda one: one[0].start):
-            alike = [one for one in found if abs(one.frequency - tone.frequency) < one.resolved]
+        for tone, besides in sorted(_apart(detected), key=lambda one: one[0].start):
+            alike = [one for one in detected if abs(one.frequency - tone.frequency) < one.resolved]
             without = turning.copy()
             for one in alike:
                 without[one.start : one.end] = np.nan
@@ -81,7 +81,7 @@ class Oscillation(Detector):
                     tone,
                     besides,
                     float(known.mean()) if len(known) else np.nan,
-                    int(np.count_nonzero(without == 0)) >= FEWEST * BLOCK,
+                    int(np.count_nonzero(without == 0)) >= MIN_REST_BLOCKS * BLOCK_READINGS,
                 ),
             )
 
@@ -92,7 +92,7 @@ class Oscillation(Detector):
         others = " and ".join(
             f"{channel_name(i)} by {significant(size, 2)} {UNITS[i]}" for i, size in tone.others
         )
-        besides = " and ".join(f"{one:.2f} Hz" for one in ringing.besides)
+        besides = " and ".join(f"{frequency:.2f} Hz" for frequency in ringing.besides)
         return Description(
             f"{name}: {channel_name(tone.channel)} oscillates at {tone.frequency:.2f} Hz by"
             f" {significant(event.size, 2)} {unit}, from {event.from_s:.2f} s to"
@@ -100,8 +100,8 @@ class Oscillation(Detector):
             + (f" In step with it {others}, which may be coupling." if others else "")
             + (f" It has {besides} as well." if besides else "")
             + f" At {rate:.4g} samples per second {rate - tone.frequency:.2f} or"
-            f" {rate + tone.frequency:.2f} Hz would look the same.",
-            _consequence(tone, ringing.not_at_rest and ringing.turning > MOSTLY),
+            f" {rate + tone.frequency:.2f} Hz cannot be distinguished from it.",
+            _consequence(tone, ringing.not_at_rest and ringing.turning > MIN_MAJORITY),
             "Nothing is changed: over many periods it averages out. Look for a loose screw, and"
             " whether it is there with the drive of the table switched off.",
         )
@@ -110,9 +110,11 @@ class Oscillation(Detector):
 def _when(ringing: Ringing) -> str:
     if not np.isfinite(ringing.turning):
         return ""
-    if ringing.turning > MOSTLY:
+    if ringing.turning > MIN_MAJORITY:
         return ", while the IMU turns" + (", and not at rest" if ringing.not_at_rest else "")
-    return ", at rest" if ringing.turning < 1 - MOSTLY else ", at rest and while the IMU turns"
+    return (
+        ", at rest" if ringing.turning < 1 - MIN_MAJORITY else ", at rest and while the IMU turns"
+    )
 
 
 def _consequence(tone: Tone, only_turning: bool) -> str:
@@ -142,20 +144,20 @@ def _turning(piece: Piece, log: Log) -> Array:
     if not len(means):
         return turning
     rest = means[np.argmin(np.linalg.norm(means, axis=1))]
-    rest = rest if np.linalg.norm(rest) < BIAS else np.zeros(3)
-    for start in range(0, len(rates), BLOCK):
-        block = rates[start : start + BLOCK]
+    rest = rest if np.linalg.norm(rest) < MAX_GYRO_BIAS else np.zeros(3)
+    for start in range(0, len(rates), BLOCK_READINGS):
+        block = rates[start : start + BLOCK_READINGS]
         block = block[np.isfinite(block).all(axis=1)]
         if len(block):
             away = float(np.linalg.norm(block.mean(axis=0) - rest))
-            turning[start : start + BLOCK] = away > TURNING
+            turning[start : start + BLOCK_READINGS] = away > MIN_TURN_RATE
     return turning
 
 
-def _apart(found: Sequence[Tone]) -> Iterator[tuple[Tone, tuple[float, ...]]]:
+def _apart(detected: Sequence[Tone]) -> Iterator[tuple[Tone, tuple[float, ...]]]:
     """Of tones of one channel at the same time the clearest, and the frequencies of the others."""
     taken: list[list[Tone]] = []
-    for tone in found:
+    for tone in detected:
         for group in taken:
             first = group[0]
             if tone.channel == first.channel and tone.start < first.end and first.start < tone.end:

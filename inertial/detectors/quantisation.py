@@ -18,11 +18,11 @@ from inertial.signal.detector import (
 from inertial.signal.scatter import BLOCK, in_blocks, roughness, smallest_step
 from inertial.text.numbers import significant
 
-CERTAIN = 1e-6  # chance that all changes are multiples of k counts, in the channels of 12 logs
+MAX_CHANCE = 1e-6  # chance that all changes are multiples of k counts, in the channels of 12 logs
 TESTS = 6 * 12
-USUAL = 0.5  # of the blocks
-LARGE = 1.5  # steps: a change by two steps or more
-WHOLE = 0.01  # counts: by how much a multiple of a count may be off
+MIN_BLOCK_SHARE = 0.5  # of the blocks
+MIN_LARGE_CHANGE = 1.5  # steps: a change by two steps or more
+MAX_MULTIPLE_ERROR = 0.01  # counts: by how much a multiple of a count may be off
 
 # The variance of rounded readings in steps², on average over where the truth lies between two,
 # by their noise in steps: σ² + 1/12 less the variance of the mean, whose harmonics are known.
@@ -36,7 +36,7 @@ _VARIANCE = (
 
 @dataclass(frozen=True)
 class Steps:
-    """What is told of the steps of some axes of a sensor.
+    """The steps of some axes of a sensor.
 
     noise: in steps, the least of them; stated: one count, unit of the channel, NaN if it is not.
     """
@@ -66,13 +66,13 @@ class Quantisation(Detector):
     everywhere = True
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
-        told: dict[tuple[str, float], list[Event]] = {}
+        events: dict[tuple[str, float], list[Event]] = {}
         for i in range(6):
             event = _of_channel(piece, log, i)
             if event is not None:
-                told.setdefault((CHANNELS[i][:-2], float(f"{event.size:.6g}")), []).append(event)
-        for events in told.values():
-            yield _together(events)
+                events.setdefault((CHANNELS[i][:-2], float(f"{event.size:.6g}")), []).append(event)
+        for own in events.values():
+            yield _together(own)
 
     def describe(self, event: Event, name: str) -> Description:
         assert event.channel is not None
@@ -110,7 +110,7 @@ class Quantisation(Detector):
 
 
 def _of_channel(piece: Piece, log: Log, i: int) -> Event | None:
-    """What is to be told of one channel."""
+    """The event of one channel, if there is one."""
     places, values = piece.channel(i)
     step = smallest_step(values)
     if len(values) <= BLOCK or not np.isfinite(step):
@@ -120,8 +120,8 @@ def _of_channel(piece: Piece, log: Log, i: int) -> Event | None:
     times, chance = _coarser(changes[changes > step / 2], stated)
     step = stated * times if times > 1 else step
     blocks = in_blocks(np.abs(np.diff(values)) / step)
-    fine = (blocks > LARGE).any(axis=1)
-    coarse = fine.mean() < USUAL
+    fine = (blocks > MIN_LARGE_CHANGE).any(axis=1)
+    coarse = fine.mean() < MIN_BLOCK_SHARE
     if times == 1 and not coarse:
         return None
     variance = float(np.mean(blocks[~fine] ** 2) / 2) if coarse else (roughness(values) / step) ** 2
@@ -151,8 +151,8 @@ def _together(events: list[Event]) -> Event:
 def _coarser(changes: Array, count: float) -> tuple[int, float]:
     """How many counts all changes are multiples of, and the chance of that; 1 if of one."""
     counts = changes / count
-    if not np.isfinite(count) or (np.abs(counts - np.rint(counts)) > WHOLE).any():
+    if not np.isfinite(count) or (np.abs(counts - np.rint(counts)) > MAX_MULTIPLE_ERROR).any():
         return 1, 1.0
     times = int(np.gcd.reduce(np.rint(counts).astype(np.int64)))
     chance = min(TESTS * float(times) ** -len(counts), 1.0) if times > 1 else 1.0
-    return (times, chance) if chance < CERTAIN else (1, 1.0)
+    return (times, chance) if chance < MAX_CHANCE else (1, 1.0)

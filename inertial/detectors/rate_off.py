@@ -35,7 +35,7 @@ class RateOff(Detector):
             f" {significant(stated)} are stated: {_factor(event.size)}.",
             "None where the stamps are right: sums over time, and rates of increments, are made"
             " with the log's own interval. Where they are wrong, both are off by this factor.",
-            f"Nothing is changed. Correct rate_hz of {instrument}, or look whether it is the"
+            f"Nothing is changed. Correct rate_hz of {instrument}, or check whether it is the"
             " instrument that recorded this, and whether samples are left out.",
         )
 

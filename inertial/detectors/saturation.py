@@ -21,18 +21,22 @@ from inertial.signal.runs import joined
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.text.numbers import counted, significant
 
-# ---- Readings that pile up at the largest value of a channel, as they do at the end of its range.
+# Readings that accumulate at an extreme of a channel, as at the end of its range.
 
-STEPS = (8, 64, 512)  # next counts below, whose readings are compared with those at the extreme
-TESTS = 6 * 2 * len(STEPS) * 12  # both ends of each channel, in as many logs as S0 has
-CERTAIN = 1e-6  # chance of a pile in a campaign
-BETWEEN = 8  # readings at the most between two visits that are one
-SOLID = 0.5  # of the readings of a pile in one run: it is no noise cut off, but one long visit
-COARSE = 0.8  # counts of noise with that of rounding, which is up to 0.53 in increments
-OUTSIDE = 64  # readings before the first visit and after the last, and between them
-BESIDE = 8  # readings before and after a visit, in which the channel must run up to the limit
-AWAY = 8.0  # scatters of those readings: so far away from the limit it must have been
-FILLED = 0.7  # of the counts from the median to the extreme: what noise fills of them
+# Next counts below, whose readings are compared with those at the extreme
+COMPARED_COUNTS = (8, 64, 512)
+TESTS = 6 * 2 * len(COMPARED_COUNTS) * 12  # both ends of each channel, in as many logs as S0 has
+MAX_CHANCE = 1e-6  # chance of a pile in a campaign
+MAX_VISIT_BREAK = 8  # readings at the most between two visits that are one
+# Of the readings of a pile in one run: it is no noise cut off, but one long visit
+MAX_RUN_SHARE = 0.5
+MIN_NOISE_COUNTS = 0.8  # counts of noise with that of rounding, which is up to 0.53 in increments
+OUTSIDE_READINGS = 64  # readings before the first visit and after the last, and between them
+# Readings before and after a visit, in which the channel must run up to the limit
+SIDE_READINGS = 8
+# Scatters of those readings: so far away from the limit it must have been
+MIN_DISTANCE_SCATTER = 8.0
+MIN_FILLED_SHARE = 0.7  # of the counts from the median to the extreme: what noise fills of them
 
 
 def pile_at_top(values: Array, most: float, count: float, noise: float) -> tuple[Integers, float]:
@@ -56,16 +60,18 @@ def pile_at_top(values: Array, most: float, count: float, noise: float) -> tuple
     if len(pile) < 2 or most == 0 or not np.isfinite(count):
         return none, 1.0
     # Where the noise is less than a count, a steady turn stands at one value by right.
-    if _noise_beside(values, pile) < COARSE * count:
+    if _noise_beside(values, pile) < MIN_NOISE_COUNTS * count:
         return none, 1.0
-    places = np.unique(np.clip(pile[:, None] + np.arange(-BESIDE, BESIDE + 1), 0, len(values) - 1))
+    places = np.unique(
+        np.clip(pile[:, None] + np.arange(-SIDE_READINGS, SIDE_READINGS + 1), 0, len(values) - 1)
+    )
     if _steady(values[places], most, count):
         chance = TESTS * _by_the_other_side(values[places], most, count)
     elif np.count_nonzero(np.diff(pile) == 1) >= len(pile) / 2 - 1:
         chance = TESTS * _by_what_is_below(values, most, count, len(pile))
     else:
         return none, 1.0  # the crests of an oscillation: one reading each
-    if chance < CERTAIN and _runs_into(values, pile, noise):
+    if chance < MAX_CHANCE and _runs_into(values, pile, noise):
         return pile, chance
     return none, 1.0
 
@@ -76,13 +82,14 @@ def _noise_beside(values: Array, pile: Integers) -> float:
     Of white noise the differences of differences have 6 times the variance.
     """
     near = np.zeros(len(values), bool)
-    for start, end in joined(pile, 2 * OUTSIDE):
-        near[max(start - OUTSIDE, 0) : end + OUTSIDE] = True
-    for start, end in joined(pile, BETWEEN):
+    for start, end in joined(pile, 2 * OUTSIDE_READINGS):
+        near[max(start - OUTSIDE_READINGS, 0) : end + OUTSIDE_READINGS] = True
+    for start, end in joined(pile, MAX_VISIT_BREAK):
         near[start:end] = False
     rough = np.diff(values, 2)
     whole = near[:-2] & near[1:-1] & near[2:]
-    if np.count_nonzero(whole) < OUTSIDE:  # nothing lies outside: what is not at the limit itself
+    # Nothing lies outside: what is not at the limit itself
+    if np.count_nonzero(whole) < OUTSIDE_READINGS:
         rough, whole = np.diff(np.delete(values, pile), 2), np.ones(1, bool)
     rough = np.abs(rough[np.broadcast_to(whole, rough.shape)])
     return float(MAD_TO_SIGMA * np.median(rough) / np.sqrt(6)) if len(rough) else 0.0
@@ -93,7 +100,7 @@ def _steady(values: Array, most: float, count: float) -> bool:
     upper = values[values >= np.median(values)]
     steps = (most - upper.min()) / count
     filled = len(np.unique(np.rint((most - upper) / count)))
-    return bool(steps >= 1 and filled > FILLED * (steps + 1))
+    return bool(steps >= 1 and filled > MIN_FILLED_SHARE * (steps + 1))
 
 
 def _by_the_other_side(values: Array, most: float, count: float) -> float:
@@ -111,7 +118,7 @@ def _by_the_other_side(values: Array, most: float, count: float) -> float:
 def _by_what_is_below(values: Array, most: float, count: float, number: int) -> float:
     """The chance of so many readings at the largest value, by those in the counts below it."""
     chance, filled = 1.0, 0.0
-    for steps in STEPS:
+    for steps in COMPARED_COUNTS:
         together = np.count_nonzero(values > most - (steps + 0.5) * count)
         density = (together - number) / steps
         if density < filled:
@@ -124,29 +131,32 @@ def _by_what_is_below(values: Array, most: float, count: float, number: int) -> 
 def _runs_into(values: Array, pile: Integers, noise: float) -> bool:
     """Whether a pile is noise cut off, or one visit that the channel runs into and out of."""
     start, end = max(joined(pile, 0), key=lambda run: run[1] - run[0])
-    if end - start < max(SOLID * len(pile), BESIDE):
+    if end - start < max(MAX_RUN_SHARE * len(pile), SIDE_READINGS):
         return True
-    start, end = max(joined(pile, BETWEEN), key=lambda run: run[1] - run[0])
+    start, end = max(joined(pile, MAX_VISIT_BREAK), key=lambda run: run[1] - run[0])
     sides = [
         np.abs(values[start] - side)
-        for side in (values[max(start - BESIDE, 0) : start][::-1], values[end : end + BESIDE])
-        if len(side) == BESIDE
+        for side in (
+            values[max(start - SIDE_READINGS, 0) : start][::-1],
+            values[end : end + SIDE_READINGS],
+        )
+        if len(side) == SIDE_READINGS
     ]
     return bool(sides) and all(
-        away[-1] > AWAY * noise and away[0] <= 2 * np.abs(np.diff(away)).max() for away in sides
+        away[-1] > MIN_DISTANCE_SCATTER * noise and away[0] <= 2 * np.abs(np.diff(away)).max()
+        for away in sides
     )
 
 
-# ---- A channel at the end of its range.
-
-FULL = tuple(2**bits - one for bits in (15, 19, 23, 31) for one in (0, 1))  # counts of converters
-ROUNDED = 1 - 1e-9  # readings are counts times their size, rounded
-SHORT = 20  # readings of a visit that can be bridged by a curve
+# Counts of converters
+CONVERTER_COUNTS = tuple(2**bits - less for bits in (15, 19, 23, 31) for less in (0, 1))
+ROUNDING = 1 - 1e-9  # readings are counts times their size, rounded
+MAX_INTERPOLATED = 20  # readings of a visit that can be bridged by a curve
 
 
 @dataclass(frozen=True)
 class Visit:
-    """What is told of a visit.
+    """What the description of a visit to the limit needs.
 
     limit: unit of the channel; seconds: that its readings stand for; lost: integral beyond the
     limit by the cubic that continues the readings beside it, unit of the channel × s, NaN where
@@ -162,7 +172,7 @@ class Saturation(Detector):
     """A channel that stands at the largest or the smallest value that it can read.
 
     It is known where the campaign states the limit, or the extreme is the full count of a
-    converter. Otherwise a pile of readings at the largest or smallest value of the log tells it,
+    converter. Otherwise a pile of readings at the largest or smallest value of the log shows it,
     where the noise is no less than a count, and the readings run into it: a value that they leap
     to is no end of a range, nor is zero.
     """
@@ -182,12 +192,12 @@ class Saturation(Detector):
             chance: dict[float, float] = {}
             for sign, most in ((1.0, log.most[i]), (-1.0, -log.least[i])):
                 upward = sign * values
-                clipped |= upward >= ROUNDED * _known(sign, log, i)
+                clipped |= upward >= ROUNDING * _known(sign, log, i)
                 if not (upward[clipped] == most).any():
                     pile, p_value = pile_at_top(upward, most, log.quantum[i], log.noise[i])
                     clipped[pile] = True
                     chance[sign * most] = p_value
-            for start, end in joined(np.flatnonzero(clipped), BETWEEN):
+            for start, end in joined(np.flatnonzero(clipped), MAX_VISIT_BREAK):
                 limit = float(values[start])
                 yield piece.event(
                     int(places[start]),
@@ -215,7 +225,7 @@ class Saturation(Detector):
                 if np.isfinite(visit.lost)
                 else f"{significant(percent, 2)} {unit} for each 1 % beyond."
                 if np.isfinite(percent)
-                else "how much, the log does not tell."
+                else "by an unknown amount."
             ),
             f"{'The readings are' if many else 'The reading is'} masked. Turn more slowly, or"
             " choose a wider range.",
@@ -226,14 +236,14 @@ def _known(sign: float, log: Log, i: int) -> float:
     """What the channel reads at its upper end, by the campaign or as a full count."""
     most = float(log.most[i] if sign > 0 else -log.least[i])
     count = float(log.count[i] if np.isfinite(log.count[i]) else log.quantum[i])
-    if np.isfinite(count) and np.isclose(most / count, FULL, rtol=1e-7).any():
+    if np.isfinite(count) and np.isclose(most / count, CONVERTER_COUNTS, rtol=1e-7).any():
         return most
     return float(log.limit[i])
 
 
 def _lost(values: Array, start: int, end: int, step: float) -> float:
     """What the cubic with the slopes beside a visit encloses beyond the limit."""
-    if end - start > SHORT or start < 2 or end + 2 > len(values):
+    if end - start > MAX_INTERPOLATED or start < 2 or end + 2 > len(values):
         return np.nan
     up, down = values[start - 1] - values[start - 2], values[end + 1] - values[end]
     lost = float((up - down) * np.sign(values[start]) * (end - start) ** 2 / 12 * step)

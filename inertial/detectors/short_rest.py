@@ -8,7 +8,7 @@ from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.text.numbers import fixed, significant
 
-SHORT = 1 / 3  # of the planned time
+MIN_DURATION_SHARE = 1 / 3  # of the planned time
 
 
 class ShortRest(PlanDetector):
@@ -22,7 +22,7 @@ class ShortRest(PlanDetector):
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         for i, what in enumerate(recorded.do):
-            short = recorded.duration[i] < SHORT * recorded.seconds[i]
+            short = recorded.duration[i] < MIN_DURATION_SHARE * recorded.seconds[i]
             if what == "rest" and recorded.found[i] and recorded.duration[i] > 0 and short:
                 yield self.of(recorded, i, float(recorded.duration[i]))
 

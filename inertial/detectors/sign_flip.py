@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from inertial.signal.axis_permutations import exchange_words, exchanges_of
+from inertial.signal.axis_permutations import describe_exchange, exchanges_of
 from inertial.signal.detector import Description, Detector, Event, Log, Piece
 
 
@@ -24,12 +24,12 @@ class SignFlip(Detector):
     sensor = "accel"
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
-        for one in exchanges_of(piece, log, self.sensor):
-            if one.permutation.in_place:
-                yield one.event(piece, log)
+        for exchange in exchanges_of(piece, log, self.sensor):
+            if exchange.permutation.in_place:
+                yield exchange.event(piece, log)
 
     def describe(self, event: Event, name: str) -> Description:
-        return exchange_words(event, name, self.sensor)
+        return describe_exchange(event, name, self.sensor)
 
 
 class SignFlipOfGyros(SignFlip):

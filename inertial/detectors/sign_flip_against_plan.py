@@ -1,9 +1,9 @@
-"""Axes with the other sign, seen by what the plan says of gravity and of the turns."""
+"""Reversed axes, detected by the planned directions of gravity and senses of turns."""
 
 from collections.abc import Iterator
 
 from inertial.signal.detector import Description
-from inertial.signal.misread_axes import deviation, misread_words
+from inertial.signal.misread_axes import describe_misread, deviation
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 
 
@@ -12,15 +12,15 @@ class SignFlipAgainstPlan(PlanDetector):
 
     name = "sign_flip"
     cause = "a sign of the raw fields is forgotten, or taken twice"
-    source = "design study, 41d: RAWIMUS −y; two wrong flips cancel, so the determinant is told"
+    source = "design study, 41d: RAWIMUS −y; two wrong flips cancel, so the determinant is given"
     costs = "scale factor and bias of the axis"
     unit = "manoeuvres"
     severity = 3
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        for one in recorded.misread:
-            if one.axes.in_place:
-                yield deviation(one, recorded)
+        for misread in recorded.misread:
+            if misread.axes.in_place:
+                yield deviation(misread, recorded)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
-        return misread_words(deviation.facts, recorded)
+        return describe_misread(deviation.facts, recorded)

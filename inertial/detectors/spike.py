@@ -18,26 +18,27 @@ from inertial.signal.detector import (
     Piece,
     channel_name,
 )
-from inertial.signal.outliers import LOUD, WIDEST, Channel
+from inertial.signal.outliers import MAX_SPIKE_READINGS, MIN_DEVIATION_SCATTER, Channel
 from inertial.signal.runs import joined
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.text.numbers import counted, significant, whole
 
-FEWEST = 18  # readings of a channel by which a spike can be told
-CERTAIN = 7.5  # scatters: see `chance`
-GROSS = 40.0  # scatters, where the IMU is moved by hand or rings
-LEAP = 4.0  # times the largest change between readings beside it, there
-FAINT = 0.01  # of a spike: what is less beside it in other channels is none of a knock's
-NEAR = 24  # readings on each side from which the scatter is taken where it changes
-SPARED = 4  # of them may be spikes as well
-LARGE = 1.37  # sigma: the fifth largest of 24 Gaussian readings
-SHARE = 0.75  # of that scatter, which comes from few readings, so that noise alone seldom raises it
-READINGS = 1.2e6  # of a campaign like S0's, among which the largest is looked for
+MIN_READINGS = 18  # readings of a channel that a spike can be compared with
+MIN_SPIKE_SCATTER = 7.5  # scatters: see `chance`
+MIN_GROSS_SCATTER = 40.0  # scatters, where the IMU is moved by hand or rings
+MIN_CHANGE_RATIO = 4.0  # times the largest change between readings beside it, there
+MAX_FAINT_SHARE = 0.01  # of a spike: what is less beside it in other channels is none of a knock's
+SIDE_READINGS = 24  # readings on each side from which the scatter is taken where it changes
+MAX_OTHER_SPIKES = 4  # of them may be spikes as well
+FIFTH_LARGEST_SIGMA = 1.37  # sigma: the fifth largest of 24 Gaussian readings
+# Of that scatter, which comes from few readings, so that noise alone seldom raises it
+SIDE_SCATTER_SHARE = 0.75
+CAMPAIGN_READINGS = 1.2e6  # of a campaign like S0's, among which the largest is sought
 
 
 @dataclass(frozen=True)
 class Spike:
-    """What is told of a spike: its readings, and those of its channel in 1 s and in the log."""
+    """A spike: number of its readings, and those of its channel in 1 s and in the log."""
 
     readings: int
     in_second: float
@@ -64,14 +65,14 @@ class Spikes(Detector):
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         if not np.isfinite(log.interval):
-            return  # nothing tells that one reading follows the other
+            return  # consecutive readings may not be neighbours in time
         counts = np.fmax(np.nan_to_num(log.quantum), np.nan_to_num(log.count))
         time = piece.time / log.interval
         channels = {
             i: Channel.of(places, values, time[places], float(counts[i]), float(log.noise[i]))
             for i in range(6)
             for places, values in [piece.channel(i)]
-            if len(places) >= FEWEST
+            if len(places) >= MIN_READINGS
         }
         handled = np.zeros(len(piece), bool)
         for channel in channels.values():
@@ -79,7 +80,7 @@ class Spikes(Detector):
         for i, channel in channels.items():
             for start, end, scatters in _spikes(channel, handled):
                 first, last = int(channel.places[start]), int(channel.places[end - 1])
-                loud = max(LOUD, FAINT * scatters)
+                loud = max(MIN_DEVIATION_SCATTER, MAX_FAINT_SHARE * scatters)
                 if not _shaken(channels, (first, last), i, loud, bool(handled[first])):
                     k = start + int(np.argmax(np.abs(channel.off[start:end])))
                     yield piece.event(
@@ -117,42 +118,47 @@ def chance(scatters: float) -> float:
     A reading less a median in which it has no part has 1.09 sigma; the scatter is the least of
     three from 1024 readings each, 4 % too small.
     """
-    return float(min(READINGS * erfc(scatters * 0.96 / 1.09 / np.sqrt(2)), 1.0))
+    return float(min(CAMPAIGN_READINGS * erfc(scatters * 0.96 / 1.09 / np.sqrt(2)), 1.0))
 
 
 def _spikes(channel: Channel, handled: Booleans) -> Iterator[tuple[int, int, float]]:
     """Readings of a channel, and by how many scatters the farthest of them is off."""
     off = np.abs(channel.off)
-    far = np.flatnonzero((off > CERTAIN * channel.scatter) & ~channel.alone)
+    far = np.flatnonzero((off > MIN_SPIKE_SCATTER * channel.scatter) & ~channel.alone)
     if not len(far):
         return
-    scatter = np.maximum(channel.scatter[far], SHARE * _beside(off, far, SPARED) / LARGE)
-    moved = np.maximum(GROSS * scatter, LEAP * _beside(channel.change, far, 0))
-    certain = off[far] > np.where(handled[channel.places[far]], moved, CERTAIN * scatter)
+    scatter = np.maximum(
+        channel.scatter[far],
+        SIDE_SCATTER_SHARE * _beside(off, far, MAX_OTHER_SPIKES) / FIFTH_LARGEST_SIGMA,
+    )
+    moved = np.maximum(
+        MIN_GROSS_SCATTER * scatter, MIN_CHANGE_RATIO * _beside(channel.change, far, 0)
+    )
+    certain = off[far] > np.where(handled[channel.places[far]], moved, MIN_SPIKE_SCATTER * scatter)
     far, scatter = far[certain], scatter[certain]
     for start, end in joined(_with_others(off, far, scatter), 0):
         own = (far >= start) & (far < end)
-        if own.any() and end - start <= WIDEST:
+        if own.any() and end - start <= MAX_SPIKE_READINGS:
             yield start, end, float((off[far] / scatter)[own].max())
 
 
 def _beside(readings: Array, far: Integers, spared: int) -> Array:
     """The largest readings on either side of each of these, so many spared, (k,)."""
-    shifts = np.arange(WIDEST, WIDEST + NEAR)
+    shifts = np.arange(MAX_SPIKE_READINGS, MAX_SPIKE_READINGS + SIDE_READINGS)
     sides = []
     for places in (far[:, None] - shifts, far[:, None] + shifts + 1):
         there = (places >= 0) & (places < len(readings))
         beside = np.where(there, readings[np.clip(places, 0, len(readings) - 1)], 0.0)
-        kept = NEAR - 1 - spared
+        kept = SIDE_READINGS - 1 - spared
         sides.append(np.partition(beside, kept, axis=1)[:, kept])
     return np.asarray(np.maximum(*sides))
 
 
 def _with_others(off: Array, far: Integers, scatter: Array) -> Integers:
     """These readings, and those next to them that are off as well."""
-    near = far[:, None] + np.arange(-WIDEST, WIDEST + 1)
+    near = far[:, None] + np.arange(-MAX_SPIKE_READINGS, MAX_SPIKE_READINGS + 1)
     there = (near >= 0) & (near < len(off))
-    large = off[np.clip(near, 0, len(off) - 1)] > LOUD * scatter[:, None]
+    large = off[np.clip(near, 0, len(off) - 1)] > MIN_DEVIATION_SCATTER * scatter[:, None]
     return np.unique(np.append(near[there & large], far))
 
 
@@ -173,15 +179,17 @@ def _shaken(
     """
     first, last = places
     for j, channel in channels.items():
-        start, end = np.searchsorted(channel.places, [first - WIDEST, last + WIDEST + 1])
-        near = slice(max(start - NEAR, 0), end + NEAR)
+        start, end = np.searchsorted(
+            channel.places, [first - MAX_SPIKE_READINGS, last + MAX_SPIKE_READINGS + 1]
+        )
+        near = slice(max(start - SIDE_READINGS, 0), end + SIDE_READINGS)
         usual = MAD_TO_SIGMA * float(np.median(np.abs(channel.off[near]))) if end > start else 0.0
         least = np.maximum(channel.least[start:end], usual)
         off = np.abs(channel.off[start:end]) > loud * least
         if j != i and not handled:
-            off &= ~(_single(off) & (np.abs(channel.off[start:end]) > GROSS * least))
+            off &= ~(_single(off) & (np.abs(channel.off[start:end]) > MIN_GROSS_SCATTER * least))
         here = (channel.places[start:end] >= first) & (channel.places[start:end] <= last)
-        spared = WIDEST if j == i else 0
+        spared = MAX_SPIKE_READINGS if j == i else 0
         if j != i and first == last and not handled:
             off &= ~here
         if np.count_nonzero(off) > spared:

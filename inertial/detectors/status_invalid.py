@@ -30,7 +30,7 @@ class StatusInvalid(Detector):
 
     def describe(self, event: Event, name: str) -> Description:
         status, lacks, has = event.facts
-        one = event.size == 1
+        single = event.size == 1
         at = f", {fixed(event.from_s, 3)} s," if np.isfinite(event.from_s) else ""
         why = [f"{_bits(lacks)} {'is' if lacks.bit_count() == 1 else 'are'} not set"] * bool(lacks)
         why += [f"{_bits(has)} {'is' if has.bit_count() == 1 else 'are'} set"] * bool(has)
@@ -38,8 +38,8 @@ class StatusInvalid(Detector):
             f"{name}: the instrument marks {counted(int(event.size), 'record')} from line"
             f" {event.line}{at} as invalid: status {status:08x}, {' and '.join(why)}.",
             "Their readings are not to be trusted, by up to the full range of the sensor.",
-            f"{'It is' if one else 'They are'} masked; time passes with {'it' if one else 'them'}."
-            " See the status word in the instrument's manual.",
+            f"{'It is' if single else 'They are'} masked; the time is counted. See the status word"
+            " in the instrument's manual.",
         )
 
 

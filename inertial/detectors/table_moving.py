@@ -8,31 +8,34 @@ import numpy as np
 from scipy.special import stdtr
 
 from inertial.signal.detector import SENSORS, Array, Description, Detector, Event, Log, Piece
-from inertial.signal.level_jumps import CHANCE, RESTS, Jump, jumps, shaken
+from inertial.signal.level_jumps import CAMPAIGN_RESTS, FALSE_ALARM_LEVEL, Jump, jumps, shaken
 from inertial.signal.scatter import MAD_TO_SIGMA
-from inertial.signal.static_tilt import UNTOLD, Agreement, Resting
-from inertial.signal.steps import SIDE
+from inertial.signal.static_tilt import UNCONFIRMED, Agreement, Resting
+from inertial.signal.steps import MAX_SIDE_S
 from inertial.text.numbers import fixed, significant
 from inertial.text.units import ARC_SECOND
 
-BLOCK = 1.0  # s of the means in which a creep is sought
-BLOCKS = 64  # at most; a longer rest has longer ones
-FEWEST = 8  # blocks in which a creep can be told from noise
-# What an accelerometer's own bias may do within a rest and look like a tilt. 30″ are 0.15 mg, more
+BLOCK_S = 1.0  # s of the means in which a creep is sought
+MAX_BLOCKS = 64  # at most; a longer rest has longer ones
+MIN_BLOCKS = 8  # blocks in which a creep can be distinguished from noise
+# What an accelerometer's own bias may do within a rest and resemble a tilt. 30″ are 0.15 mg, more
 # than the in-run stability of a tactical unit (0.05 to 0.1 mg). A noisier one is less stable: 15
 # times what its means over a second scatter by is 44″ of 20 µg/√Hz, 440″ of 200 µg/√Hz.
-STABLE = 30 * ARC_SECOND
-STABLE_IN_NOISE = 15.0
-UPRIGHT = (
+MIN_TILT = 30 * ARC_SECOND
+MIN_TILT_SIGMA = 15.0
+MIN_DRIFT_RATIO = (
     5.0  # times the drift of the upright accelerometer: then the level ones did not just drift
 )
-COLOURED = 1.5  # times what the noise of the readings makes means scatter by: there is more
-EFFICIENT = 0.37  # of the blocks count for the median by which their scatter is had
-MANY = 1000.0  # degrees of freedom of a scatter that is well known
-STILL = 3.0  # sigmas within which a block stands as another one does
-STILL_SHARE = 0.02  # of the whole motion, likewise
-SUDDEN = 4.0  # s, blocks of a second at both ends included: what is no creep
-SEEN = 5.0  # times what the gyros wander about the vertical, for them to tell a tilt
+# Times what the noise of the readings makes means scatter by: there is more
+MIN_COLOURED_RATIO = 1.5
+MEDIAN_EFFICIENCY = 0.37  # of the blocks count for the median by which their scatter is had
+MAX_DEGREES = 1000.0  # degrees of freedom of a scatter that is well known
+MAX_STILL_SIGMA = 3.0  # sigmas within which a block stands as another one does
+MAX_STILL_SHARE = 0.02  # of the whole motion, likewise
+MAX_SUDDEN_S = 4.0  # s, blocks of a second at both ends included: what is no creep
+MIN_HEADING_RATIO = (
+    5.0  # times the drift of the gyros about the vertical, for them to confirm a tilt
+)
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Moved:
-    """What is told of a motion: that, the uncertainty of a set position, rad, gravity, m/s²."""
+    """A motion, with the uncertainty of a set position, rad, and gravity, m/s²."""
 
     motion: Motion
     position: float
@@ -62,7 +65,7 @@ class Moved:
 
 
 class TableMoving(Detector):
-    """The direction of gravity wanders in the case during a rest, or the case is knocked.
+    """The direction of gravity changes in the case during a rest, or the case is knocked.
 
     A tilt that the gyros show as well is one, however small, where it is clear of the noise and
     larger than the position's own uncertainty. One that is too slow for the gyros must be larger
@@ -84,9 +87,9 @@ class TableMoving(Detector):
         position = log.given.position_sigma
         motions = list(_knocks(resting))
         if resting.recorded("accel"):
-            motions += _sudden(resting, [one for one in own if one.moved], position)
+            motions += _sudden(resting, [jump for jump in own if jump.moved], position)
             motions += _creep(resting, own, position)
-        for motion in _joined(motions, round(BLOCK / log.interval)):
+        for motion in _joined(motions, round(BLOCK_S / log.interval)):
             yield piece.event(
                 motion.first,
                 motion.after,
@@ -107,11 +110,11 @@ class TableMoving(Detector):
                 "The mean of this rest hardly changes; its noise does.",
                 "The rest is used as it is. Keep off the table while it records.",
             )
-        seen = (
+        confirmation = (
             f"the gyros turn along ({motion.agreement.share:.0%} of it)"
             if motion.agreement.conclusive
-            else "too slowly for the gyros to tell, and more than the biases of the accelerometers"
-            " do by themselves"
+            else "too slowly for the gyros to confirm, and by more than the biases of the"
+            " accelerometers do by themselves"
         )
         kind = "tilts" if motion.kind == "tilt" else "creeps"
         off = motion.off / ARC_SECOND
@@ -119,7 +122,7 @@ class TableMoving(Detector):
         times = times + " position" if moved.position > 0 else ""
         return Description(
             f"{name}: the table {kind} by {size} {span}, while it should rest: the direction of"
-            f" gravity turns in the case, {seen}.",
+            f" gravity turns in the case, {confirmation}.",
             f"The mean attitude of this rest is off by {significant(off, 3)}″{times}: its level"
             f" axes by up to {significant(motion.off * moved.gravity, 2)} m/s², with them biases"
             " and cross-axis terms.",
@@ -139,15 +142,15 @@ def _knocks(resting: Resting) -> Iterator[Motion]:
             rate = resting.rate[first:after] - np.median(resting.rate, axis=0)
             swing = np.cumsum(rate, axis=0) * resting.interval
             size = float(np.linalg.norm(np.ptp(swing, axis=0)))
-        yield Motion(first, after, "knock", size, 0.0, UNTOLD)
+        yield Motion(first, after, "knock", size, 0.0, UNCONFIRMED)
 
 
 def _sudden(resting: Resting, own: list[Jump], position: float) -> Iterator[Motion]:
     """Jumps of a channel that are a motion: of an accelerometer a tilt, of a gyro a turn."""
-    n, longest = len(resting), round(SIDE / resting.interval)
-    for one in own:
-        step = one.step
-        if one.channel < 3:
+    n, longest = len(resting), round(MAX_SIDE_S / resting.interval)
+    for jump in own:
+        step = jump.step
+        if jump.channel < 3:
             tilt, agreement = resting.shifted(0, step.earliest, step.latest, n)
             size = float(np.linalg.norm(tilt))
             first, after = step.earliest, max(step.latest, step.earliest + 1)
@@ -160,7 +163,7 @@ def _sudden(resting: Resting, own: list[Jump], position: float) -> Iterator[Moti
             turned = (resting.rate[step.place : after] - before).sum(axis=0) * resting.interval
             size = float(np.linalg.norm(turned))
             off = size * (1 - (step.place + after) / (2 * n))
-            agreement = one.agreement
+            agreement = jump.agreement
             motion = Motion(step.place, after, "creep", size, off, agreement, step.p_value)
         if motion.size > position:
             yield motion
@@ -168,10 +171,10 @@ def _sudden(resting: Resting, own: list[Jump], position: float) -> Iterator[Moti
 
 def _creep(resting: Resting, own: list[Jump], position: float) -> Iterator[Motion]:
     """A change of the tilt over the rest, without what sudden jumps do to it."""
-    length = max(round(BLOCK / resting.interval), -(-len(resting) // BLOCKS))
-    length = min(length, len(resting) // FEWEST)
+    length = max(round(BLOCK_S / resting.interval), -(-len(resting) // MAX_BLOCKS))
+    length = min(length, len(resting) // MIN_BLOCKS)
     k = len(resting) // max(length, 1)
-    if length < 1 or k < FEWEST:
+    if length < 1 or k < MIN_BLOCKS:
         return
     force = resting.force.copy()
     for jump in own:
@@ -181,23 +184,23 @@ def _creep(resting: Resting, own: list[Jump], position: float) -> Iterator[Motio
     blocks = blocks - blocks.mean(axis=0)
     tilt = resting.tilt(blocks)
     upright = blocks @ resting.up / np.linalg.norm(resting.force.mean(axis=0))
-    scatter = np.array([_scatter(one) for one in (*tilt.T, upright)])
+    scatter = np.array([_scatter(series) for series in (*tilt.T, upright)])
     white = resting.tilt_noise(length)
     sigma = max(float(np.linalg.norm(scatter[:3]) / np.sqrt(2)), white, 1e-300)
     # The noise of the readings is well known; what exceeds it is known from few blocks only.
-    degrees = MANY if sigma < COLOURED * white else EFFICIENT * k
+    degrees = MAX_DEGREES if sigma < MIN_COLOURED_RATIO * white else MEDIAN_EFFICIENCY * k
     i, j, size = _farthest(tilt)
     size -= sigma  # the farthest two of many are a little too far apart
     pairs = k * (k - 1) / 2
-    chance = float(stdtr(degrees, -size / (np.sqrt(2) * sigma))) * pairs * RESTS
-    if chance > CHANCE:
+    chance = float(stdtr(degrees, -size / (np.sqrt(2) * sigma))) * pairs * CAMPAIGN_RESTS
+    if chance > FALSE_ALARM_LEVEL:
         return
     _, _, drift = _farthest(upright[:, None])
-    least = max(position, UPRIGHT * (drift - 5 * float(scatter[3])))
+    least = max(position, MIN_DRIFT_RATIO * (drift - 5 * float(scatter[3])))
     agreement = _turned(resting, own, tilt, length)
     if not agreement.conclusive:
         second = sigma * np.sqrt(length * resting.interval)
-        least = max(least, STABLE, STABLE_IN_NOISE * second)
+        least = max(least, MIN_TILT, MIN_TILT_SIGMA * second)
     elif not agreement.moved:
         return
     if size > least:
@@ -207,12 +210,12 @@ def _creep(resting: Resting, own: list[Jump], position: float) -> Iterator[Motio
             size = float(np.linalg.norm(slope))
             off = size / 2
         else:
-            i, j = _moving(tilt, i, j, max(STILL * sigma, STILL_SHARE * size))
+            i, j = _moving(tilt, i, j, max(MAX_STILL_SIGMA * sigma, MAX_STILL_SHARE * size))
             first, after = i * length, min((j + 1) * length, len(resting))
             stood = tilt[: i + 1].mean(axis=0)
             size = float(np.linalg.norm(tilt[j:].mean(axis=0) - stood))
             off = float(np.linalg.norm(tilt.mean(axis=0) - stood))
-        kind = "tilt" if (after - first) * resting.interval <= SUDDEN else "creep"
+        kind = "tilt" if (after - first) * resting.interval <= MAX_SUDDEN_S else "creep"
         yield Motion(first, after, kind, size, off, agreement, chance)
 
 
@@ -231,7 +234,9 @@ def _farthest(series: Array) -> tuple[int, int, float]:
 
 def _even(tilt: Array, sigma: float) -> bool:
     """Whether a tilt in k blocks, (k, 3), grows evenly from the first to the last."""
-    return bool(np.sqrt(np.sum((_uneven(len(tilt)) @ tilt) ** 2) / len(tilt)) < STILL * sigma)
+    return bool(
+        np.sqrt(np.sum((_uneven(len(tilt)) @ tilt) ** 2) / len(tilt)) < MAX_STILL_SIGMA * sigma
+    )
 
 
 def _uneven(k: int) -> Array:
@@ -250,14 +255,14 @@ def _moving(tilt: Array, i: int, j: int, still: float) -> tuple[int, int]:
 
 
 def _turned(resting: Resting, own: list[Jump], tilt: Array, length: int) -> Agreement:
-    """How much of a tilt in k blocks, (k, 3), the gyros turn; what is even of it they cannot tell.
+    """How much of a tilt in k blocks, (k, 3), the gyros confirm; its linear part they cannot.
 
-    Their biases and the earth's rate look like an even turn. What they wander about the vertical,
-    of which the tilt knows nothing, is how well they tell the rest. Jumps of their biases are
-    taken off.
+    Their biases and the earth's rate equal an even turn. Their drift about the vertical, to which
+    the tilt is insensitive, gives the uncertainty of the rest. Jumps of their biases are
+    subtracted.
     """
     if not resting.recorded("gyro"):
-        return UNTOLD
+        return UNCONFIRMED
     k = len(tilt)
     rate = resting.rate.copy()
     for jump in own:
@@ -265,27 +270,29 @@ def _turned(resting: Resting, own: list[Jump], tilt: Array, length: int) -> Agre
             rate[jump.step.place :, jump.channel - 3] -= jump.step.size
     rates = rate[: k * length].reshape(k, length, 3).sum(axis=1) * resting.interval
     turned = np.cumsum(rates, axis=0) - rates / 2
-    uneven, seen = _uneven(k) @ tilt, _uneven(k) @ turned
+    uneven, rotation = _uneven(k) @ tilt, _uneven(k) @ turned
     size = float(np.sum(uneven**2))
-    level = resting.level(seen)
-    wander = float(np.sum((seen @ resting.up) ** 2))
+    level = resting.level(rotation)
+    wander = float(np.sum((rotation @ resting.up) ** 2))
     white = float(np.max(resting.noise[SENSORS["gyro"]])) * resting.interval
     wander = max(wander, k / 15 * white**2 * k * length)
     if size <= 0:
-        return UNTOLD
-    return Agreement(float(np.sum(level * uneven)) / size, SEEN / 4 * float(np.sqrt(wander / size)))
+        return UNCONFIRMED
+    return Agreement(
+        float(np.sum(level * uneven)) / size, MIN_HEADING_RATIO / 4 * float(np.sqrt(wander / size))
+    )
 
 
 def _joined(motions: list[Motion], near: int) -> list[Motion]:
     """Motions that touch, as one: that which is larger, from the first record to the last."""
-    ordered = sorted(motions, key=lambda one: one.first)
+    ordered = sorted(motions, key=lambda motion: motion.first)
     borders = [b.first > a + near for a, b in pairwise_reached(ordered)]
     groups: list[list[Motion]] = []
     for number, motion in enumerate(ordered):
         if number == 0 or borders[number - 1]:
             groups.append([])
         groups[-1].append(motion)
-    return [_one_of(group) for group in groups]
+    return [_largest_of(group) for group in groups]
 
 
 def pairwise_reached(ordered: list[Motion]) -> Iterator[tuple[int, Motion]]:
@@ -296,16 +303,16 @@ def pairwise_reached(ordered: list[Motion]) -> Iterator[tuple[int, Motion]]:
         yield reached, later
 
 
-def _one_of(group: list[Motion]) -> Motion:
+def _largest_of(group: list[Motion]) -> Motion:
     order = {"knock": 0, "tilt": 1, "creep": 2}
-    largest = max(group, key=lambda one: (one.kind != "knock", np.nan_to_num(one.size)))
-    kind = max((one.kind for one in group), key=lambda one: order[one])
+    largest = max(group, key=lambda motion: (motion.kind != "knock", np.nan_to_num(motion.size)))
+    kind = max((motion.kind for motion in group), key=lambda motion: order[motion])
     return Motion(
-        min(one.first for one in group),
-        max(one.after for one in group),
+        min(motion.first for motion in group),
+        max(motion.after for motion in group),
         kind,
         largest.size,
-        max(one.off for one in group),
+        max(motion.off for motion in group),
         largest.agreement,
         largest.p_value,
     )

@@ -20,22 +20,22 @@ from inertial.text.numbers import significant
 from inertial.text.units import DEGREE, STANDARD_GRAVITY
 
 # K. A consumer MEMS then moves by as much as it is calibrated to; a thermometer is sure of it.
-ALLOWED = 1.0
+MAX_DRIFT = 1.0
 ICE_POINT = 273.15  # K
-MEDIAN = 5  # windows of a running median, by which wrong readings of the thermometer go
+MEDIAN_WINDOWS = 5  # windows of a running median, by which wrong readings of the thermometer go
 MG = STANDARD_GRAVITY * 1e-3  # m/s²
 # Per K: biases of accelerometers, m/s², and gyros, rad/s, at least and at most; scale factors, 1.
 CONSUMER = ((0.1 * MG, 1.0 * MG), (0.005 * DEGREE, 0.08 * DEGREE), 2e-4)
 TACTICAL = (0.1 * MG, 1.0 * DEGREE / 3600)
-PARALLEL = 0.1  # rad between specific forces that are of one attitude
-RATE = 1 * DEGREE  # rad/s about the median: the same motion, or rest
-FEWEST = 6  # windows of which the coldest and the warmest third are compared
-CLEAR = 5.0  # sigma of the difference of their means
+MAX_ATTITUDE_ANGLE = 0.1  # rad between specific forces that are of one attitude
+MAX_RATE_DIFFERENCE = 1 * DEGREE  # rad/s about the median: the same motion, or rest
+MIN_WINDOWS = 6  # windows of which the coldest and the warmest third are compared
+MIN_DRIFT_SIGMA = 5.0  # sigma of the difference of their means
 
 
 @dataclass(frozen=True)
 class _Facts:
-    """What is told: K at the ends, first and last or lowest and highest; change of channels."""
+    """Temperatures, K, at the ends, first and last or lowest and highest; change of channels."""
 
     lowest: float
     highest: float
@@ -64,7 +64,7 @@ class TemperatureDrift(Detector):
     def detect_in_log(self, log: Log) -> Iterator[Event]:
         temperature = log.windows.temperature
         lowest, highest = _range(temperature)
-        if highest - lowest > ALLOWED:
+        if highest - lowest > MAX_DRIFT:
             warms = bool(np.nanargmin(temperature) < np.nanargmax(temperature))
             facts = _Facts(lowest, highest, warms, _changes(log.windows))
             yield log.event(highest - lowest, facts=facts)
@@ -76,7 +76,7 @@ class TemperatureDrift(Detector):
             return
         lowest, highest = min(low for low, _ in ranges), max(high for _, high in ranges)
         within = max(high - low for low, high in ranges)
-        if highest - lowest > within + ALLOWED:
+        if highest - lowest > within + MAX_DRIFT:
             facts = _Facts(lowest, highest, True, {}, len(ranges))
             yield Event(0, 0, 0, np.nan, np.nan, highest - lowest, facts=facts)
 
@@ -117,28 +117,28 @@ def _range(temperature: Array) -> tuple[float, float]:
     there = temperature[np.isfinite(temperature)]
     if not len(there):
         return np.nan, np.nan
-    if len(there) > MEDIAN**2:
-        there = median_filter(there, MEDIAN, mode="nearest")
+    if len(there) > MEDIAN_WINDOWS**2:
+        there = median_filter(there, MEDIAN_WINDOWS, mode="nearest")
     return float(there.min()), float(there.max())
 
 
 def _changes(windows: Windows) -> dict[int, float]:
     """By how much channels move from the coldest third of a log to its warmest."""
     own = _of_one_attitude(windows) & np.isfinite(windows.temperature)
-    if np.count_nonzero(own) < max(FEWEST, len(own) / 2):
+    if np.count_nonzero(own) < max(MIN_WINDOWS, len(own) / 2):
         return {}
     temperature, mean = windows.temperature[own], windows.mean[own]
     third = len(temperature) // 3
     order = np.argsort(temperature, kind="stable")
-    found = {}
+    changes = {}
     for i in range(len(CHANNELS)):
         cold, warm = mean[order[:third], i], mean[order[-third:], i]
         # Of neighbours, so that the drift itself does not hide the difference.
         noise = np.std(np.diff(mean[order, i])) / np.sqrt(2)
         change = float(warm.mean() - cold.mean())
-        if abs(change) > CLEAR * noise * np.sqrt(2 / third):
-            found[i] = change
-    return found
+        if abs(change) > MIN_DRIFT_SIGMA * noise * np.sqrt(2 / third):
+            changes[i] = change
+    return changes
 
 
 def _of_one_attitude(windows: Windows) -> Booleans:
@@ -148,10 +148,10 @@ def _of_one_attitude(windows: Windows) -> Booleans:
     if np.isfinite(force).all(axis=1).any():
         usual = np.nanmedian(force, axis=0)
         off = np.linalg.norm(force - usual, axis=1) / np.linalg.norm(usual)
-        own &= off < PARALLEL
+        own &= off < MAX_ATTITUDE_ANGLE
     for i in range(3):
         if np.isfinite(rate[:, i]).any():
-            own &= np.abs(rate[:, i] - np.nanmedian(rate[:, i])) < RATE
+            own &= np.abs(rate[:, i] - np.nanmedian(rate[:, i])) < MAX_RATE_DIFFERENCE
     return own
 
 

@@ -12,7 +12,7 @@ from inertial.text.numbers import counted, fixed
 
 @dataclass(frozen=True)
 class _Facts:
-    """What is told: time before the step back; ahead or behind; the share that is a replay."""
+    """Time before the step back; whether the stamps are ahead; the share that is a replay."""
 
     before: float
     ahead: bool
@@ -24,7 +24,7 @@ class TimeBackwards(Detector):
 
     Where stamps jump ahead first and come back after fewer records than that, these are the
     stretch. `from_s` and `to_s` are both the stamp behind the step, for which time it was in
-    between is what is not known; the records tell how long it lasts.
+    between is unknown; the records give its duration.
     """
 
     name = "time_backwards"
@@ -36,11 +36,13 @@ class TimeBackwards(Detector):
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         # Nothing is left of a record that repeats an earlier one.
         replayed = np.asarray(np.isnan(piece.values).all(axis=1))
-        for one in disorders(piece.time, piece.reached, log.interval):
-            step = one.end if one.ahead and one.end < len(piece) else one.start
+        for disorder in disorders(piece.time, piece.reached, log.interval):
+            step = disorder.end if disorder.ahead and disorder.end < len(piece) else disorder.start
             before = max(piece.reached, float(piece.time[:step].max(initial=-np.inf)))
-            facts = _Facts(before, one.ahead, float(replayed[one.start : one.end].mean()))
-            event = piece.event(one.start, one.end, one.size, facts=facts)
+            facts = _Facts(
+                before, disorder.ahead, float(replayed[disorder.start : disorder.end].mean())
+            )
+            event = piece.event(disorder.start, disorder.end, disorder.size, facts=facts)
             stamp = float(piece.time[step])
             # Where it begins in an earlier piece this is its continuation.
             yield event if step == 0 else replace(event, from_s=stamp, to_s=stamp)

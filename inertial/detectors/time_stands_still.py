@@ -28,14 +28,14 @@ class TimeStandsStill(Detector):
             yield piece.event(start, end, float(end - start), facts=log.interval)
 
     def describe(self, event: Event, name: str) -> Description:
-        one = event.size == 1
+        single = event.size == 1
         time = event.size * event.facts
         return Description(
             f"{name}: {counted(int(event.size), 'record')} from line {event.line}"
-            f" {'has' if one else 'have'} the stamp of the one before,"
+            f" {'has' if single else 'have'} the stamp of the one before,"
             f" {fixed(event.from_s, 3)} s, but other readings.",
-            f"Whether {time:.3g} s passed with {'it' if one else 'them'} is not known, so a sum"
+            f"Whether {time:.3g} s passed with {'it' if single else 'them'} is not known, so a sum"
             " over them, the angle of a turn, is unknown by the rate times as much; the mean of a"
             " rest stands.",
-            f"{'It is' if one else 'They are'} masked. Look at the clock of the logger.",
+            f"{'It is' if single else 'They are'} masked. Look at the clock of the logger.",
         )

@@ -1,4 +1,4 @@
-"""A log that was recorded on another day than the campaign says."""
+"""A log that was recorded on another day than the campaign states."""
 
 from collections.abc import Iterator
 from datetime import date
@@ -6,8 +6,8 @@ from datetime import date
 from inertial.signal.detector import Description, Detector, Event, Log
 from inertial.text.numbers import counted
 
-ZONES = 1  # day: between UTC and the laboratory's own time
-ROLL_OVER = 1024 * 7  # days after which a receiver counts the GPS weeks from 0 again
+MAX_ZONE_DAYS = 1  # day: between UTC and the laboratory's own time
+ROLLOVER_DAYS = 1024 * 7  # days after which a receiver counts the GPS weeks from 0 again
 
 
 class WrongDay(Detector):
@@ -25,7 +25,7 @@ class WrongDay(Detector):
         if recorded is None or stated is None:
             return
         apart = (stated - recorded).days
-        if abs(apart) > ZONES:
+        if abs(apart) > MAX_ZONE_DAYS:
             yield log.event(float(abs(apart)), facts=(recorded, stated))
 
     def describe(self, event: Event, name: str) -> Description:
@@ -33,12 +33,12 @@ class WrongDay(Detector):
         days = counted(int(event.size), "day")
         when = "before" if recorded < stated else "after"
         why = ""
-        if abs(event.size - ROLL_OVER) <= ZONES:
+        if abs(event.size - ROLLOVER_DAYS) <= MAX_ZONE_DAYS:
             why = " That is 1024 weeks, after which receivers count from 0 again."
         elif event.size == 10:
             why = " One wrong digit would make that."
         return Description(
-            f"{name}: its stamps say {recorded.isoformat()} (UTC), {days} {when} the stated"
+            f"{name}: its stamps give {recorded.isoformat()} (UTC), {days} {when} the stated"
             f" {stated.isoformat()}.{why}",
             "If the log is of another session, its biases are those of another switch-on; if the"
             " date was written down wrong, nothing changes but the order of the history.",

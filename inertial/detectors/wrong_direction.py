@@ -10,7 +10,7 @@ from inertial.text.numbers import fixed
 
 
 class WrongDirection(PlanDetector):
-    """A turn whose gyro says that it went against the planned direction."""
+    """A turn that is opposite to the planned direction by its gyro."""
 
     name = "wrong_direction"
     cause = "the sign of the planned angle, or the table turned the other way"
@@ -28,11 +28,11 @@ class WrongDirection(PlanDetector):
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at
         assert i is not None and deviation.size is not None
-        name, turned, wanted = recorded.name[i], recorded.moved[i], recorded.angle[i]
+        name, turned, planned = recorded.name[i], recorded.moved[i], recorded.angle[i]
         unit = "°"
-        if not np.isfinite(turned * wanted):
-            turned, wanted, unit = recorded.speed[i], recorded.rate[i], " °/s"
-        far = [fixed(float(np.degrees(turned)), 2), fixed(float(np.degrees(wanted)), 0)]
+        if not np.isfinite(turned * planned):
+            turned, planned, unit = recorded.speed[i], recorded.rate[i], " °/s"
+        far = [fixed(float(np.degrees(turned)), 2), fixed(float(np.degrees(planned)), 0)]
         return Description(
             f"{name} turns against the planned direction: by {far[0]}{unit} in place of"
             f" {far[1]}{unit}.",

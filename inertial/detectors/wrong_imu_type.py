@@ -70,9 +70,7 @@ IMU_TYPES = {
 }
 
 
-# ---- A receiver that says that another type of IMU is connected than the campaign does.
-
-SAME = 1e-3  # by which the stated sizes of a count may differ: they are rounded
+MAX_COUNT_DIFFERENCE = 1e-3  # by which the stated sizes of a count may differ: they are rounded
 
 
 class WrongImuType(Detector):
@@ -96,21 +94,21 @@ class WrongImuType(Detector):
             gyro, force = IMU_TYPES[number].counts(log.step)
             stated = log.count * log.step
             ratios = np.array([stated[3] / gyro, stated[0] / force])
-            off = np.abs(ratios - 1) > SAME
+            off = np.abs(ratios - 1) > MAX_COUNT_DIFFERENCE
             if off.any():
                 yield log.event(float(ratios[off][0]), facts=(number, ratios))
 
     def describe(self, event: Event, name: str) -> Description:
         if event.facts is None:
             return Description(
-                f"{name}: its messages tell {round(event.size)} types of IMU.",
+                f"{name}: its messages name {round(event.size)} types of IMU.",
                 "At most one of them is this instrument; the counts of the others are of another"
                 " size.",
                 "The log is used as one. Record each IMU in a log of its own.",
             )
         number, (gyro, force) = event.facts
         return Description(
-            f"{name}: its messages tell IMU type {number}, {IMU_TYPES[number].name}; a count of"
+            f"{name}: its messages name IMU type {number}, {IMU_TYPES[number].name}; a count of"
             f" this campaign's instrument is {significant(float(gyro), 5)} times that type's in the"
             f" gyros and {significant(float(force), 5)} times in the accelerometers.",
             "If the receiver is right, all readings are off by these ratios, and no motion of"

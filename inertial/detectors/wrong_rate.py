@@ -31,7 +31,7 @@ class WrongRate(PlanDetector):
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i, ratio = deviation.at, deviation.size
         assert i is not None and ratio is not None
-        read, wanted = np.degrees([recorded.speed[i], recorded.rate[i]]).tolist()
+        read, planned = np.degrees([recorded.speed[i], recorded.rate[i]]).tolist()
         _, angle = turn_ratios(recorded)
         if deviation.severity == 1:
             consequence = (
@@ -49,7 +49,7 @@ class WrongRate(PlanDetector):
             )
         return Description(
             f"{recorded.name[i]} turns at {significant(read)} °/s, {significant(ratio, 5)} times"
-            f" the planned {significant(wanted)} °/s; the other turns are not off by this ratio.",
+            f" the planned {significant(planned)} °/s; the other turns are not off by this ratio.",
             consequence,
             "Correct the rate of the plan, or see what the table did.",
         )

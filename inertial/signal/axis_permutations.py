@@ -12,16 +12,15 @@ from inertial.signal.detector import SENSORS, Array, Description, Event, Integer
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.text.numbers import significant, whole
 
-# ---- Where the readings of a triad become a signed permutation of themselves.
-
 AXES = "xyz"
-BESIDE = 5  # readings on each side that are compared: the shortest exchange
-AROUND = 32  # readings on each side by which their scatter is had
-SUDDEN = 5.0  # times the largest change among those: what no motion does from reading to reading
-CLEAR = 12.0  # sigma of the jump, by which it must be more than noise
-ALIKE = 5.0  # sigma by which the readings after it may differ from the permuted ones before
-BROKEN = 1.5  # median intervals: readings farther apart are not compared
-TURNED = 0.25  # of the jump: what the IMU may have turned meanwhile, by its gyros
+SIDE_READINGS = 5  # readings on each side that are compared: the shortest exchange
+SCATTER_READINGS = 32  # readings on each side by which their scatter is had
+# Times the largest change among those: what no motion does from reading to reading
+MIN_CHANGE_RATIO = 5.0
+MIN_JUMP_SIGMA = 12.0  # sigma of the jump, by which it must be more than noise
+MAX_FIT_SIGMA = 5.0  # sigma by which the readings after it may differ from the permuted ones before
+MAX_INTERVALS = 1.5  # median intervals: readings farther apart are not compared
+MAX_TURNED_SHARE = 0.25  # of the jump: what the IMU may have turned meanwhile, by its gyros
 
 
 @dataclass(frozen=True)
@@ -40,10 +39,10 @@ class Permutation:
     def changed(self) -> list[bool]:
         """Which axes these are, (3,)."""
         both = zip(self.sources, self.signs, strict=True)
-        return [one != (i, 1) for i, one in enumerate(both)]
+        return [pair != (i, 1) for i, pair in enumerate(both)]
 
     @property
-    def told(self) -> str:
+    def in_words(self) -> str:
         """In words: x reads z and z reads −x."""
         both = zip(self.sources, self.signs, strict=True)
         reads = [f"{'' if sign > 0 else '−'}{AXES[source]}" for source, sign in both]
@@ -66,14 +65,14 @@ class Permutation:
 
 
 # The simplest first: one sign, two axes, then what is left.
-EVERY = sorted(
+PERMUTATIONS = sorted(
     (
         Permutation(sources, signs)
         for sources in permutations(range(3))
         for signs in product((1, -1), repeat=3)
         if (sources, signs) != ((0, 1, 2), (1, 1, 1))
     ),
-    key=lambda one: (one.moved, one.signs.count(-1)),
+    key=lambda permutation: (permutation.moved, permutation.signs.count(-1)),
 )
 
 
@@ -101,19 +100,22 @@ class Exchange:
         return replace(event, after=log.records, to_s=float(log.windows.time[-1]), size=number)
 
 
-def exchange_words(event: Event, name: str, sensor: str) -> Description:
+def describe_exchange(event: Event, name: str, sensor: str) -> Description:
     """An exchange in words."""
-    one: Exchange = event.facts
+    exchange: Exchange = event.facts
     unit, what = ("m/s²", "accelerometer") if sensor == "accel" else ("rad/s", "gyro")
-    other = f" So do those of the gyros: {one.with_it.told}." if one.with_it else ""
-    worst = int(np.argmax(np.abs(one.after - one.before)))
+    other = f" So do those of the gyros: {exchange.with_it.in_words}." if exchange.with_it else ""
+    worst = int(np.argmax(np.abs(exchange.after - exchange.before)))
+    before, after = (
+        significant(float(part[worst]), 5) for part in (exchange.before, exchange.after)
+    )
     return Description(
-        f"{name}: from line {event.line} on, {'to the end, ' if one.lasting else ''}for"
-        f" {whole(event.size)} records, the axes of the {what}s are others than in the records"
-        f" before: {one.permutation.told}.{other} No motion does that from one record to the next.",
-        f"Used, their mean on {AXES[worst]} would be {significant(float(one.after[worst]), 5)} in"
-        f" place of {significant(float(one.before[worst]), 5)} {unit}: bias, scale factor and cross"
-        " terms would be wrong.",
+        f"{name}: from line {event.line} on, {'to the end, ' if exchange.lasting else ''}for"
+        f" {whole(event.size)} records, the axes of the {what}s differ from those of the records"
+        f" before: {exchange.permutation.in_words}.{other} No motion does that from one record to"
+        " the next.",
+        f"Used, their mean on {AXES[worst]} would be {after} in place of {before} {unit}: bias,"
+        " scale factor and cross terms would be wrong.",
         "These records are masked. Find out which order and signs of the axes are right, and"
         " whether the records before are.",
     )
@@ -139,7 +141,7 @@ def _exchanges(piece: Piece, log: Log, sensor: str) -> Iterator[Exchange]:
     triad = piece.values[:, SENSORS[sensor]]
     places = np.flatnonzero(np.isfinite(triad).all(axis=1))
     values = triad[places]
-    if len(values) < 2 * BESIDE:
+    if len(values) < 2 * SIDE_READINGS:
         return
     smallest = np.nan_to_num(log.quantum[SENSORS[sensor]])
     open_: tuple[int, Array, Array, list[Permutation]] | None = None
@@ -147,7 +149,7 @@ def _exchanges(piece: Piece, log: Log, sensor: str) -> Iterator[Exchange]:
         if _broken(piece, log, places, k):
             continue
         before, after, sigma = _beside(values, k, smallest)
-        fitting = [p for p in EVERY if _fits(p, before, after, sigma)]
+        fitting = [p for p in PERMUTATIONS if _fits(p, before, after, sigma)]
         if not fitting or (sensor == "accel" and _turned(piece, log, places, k, before, after)):
             continue
         if open_ is None:
@@ -164,23 +166,23 @@ def _exchanges(piece: Piece, log: Log, sensor: str) -> Iterator[Exchange]:
 
 
 def _sudden(values: Array, smallest: Array) -> list[int]:
-    """Places whose reading is away from the one before by more than others beside them are."""
+    """Places whose reading is misfit from the one before by more than others beside them are."""
     change = np.abs(np.diff(values, axis=0))
-    side = BESIDE - 1
+    side = SIDE_READINGS - 1
     largest = change[: len(change) - side + 1].copy()  # of each change and those that follow
     for shift in range(1, side):
         np.maximum(largest, change[shift : len(change) - side + 1 + shift], out=largest)
     inside = len(change) - 2 * side
     beside = np.maximum(largest[:inside], largest[side + 1 : side + 1 + inside])
-    sudden = change[side : side + inside] > SUDDEN * np.maximum(beside, smallest)
-    found: list[int] = (np.flatnonzero(sudden.any(axis=1)) + side + 1).tolist()
-    return found
+    sudden = change[side : side + inside] > MIN_CHANGE_RATIO * np.maximum(beside, smallest)
+    places: list[int] = (np.flatnonzero(sudden.any(axis=1)) + side + 1).tolist()
+    return places
 
 
 def _broken(piece: Piece, log: Log, places: Integers, k: int) -> bool:
     """Whether something is missing between these readings, so that the IMU may have been moved."""
     between = piece.time[places[k]] - piece.time[places[k - 1]]
-    return bool(between > BROKEN * log.interval)
+    return bool(between > MAX_INTERVALS * log.interval)
 
 
 def _beside(values: Array, k: int, smallest: Array) -> tuple[Array, Array, Array]:
@@ -189,53 +191,54 @@ def _beside(values: Array, k: int, smallest: Array) -> tuple[Array, Array, Array
     Two straight lines through 5 readings each, continued by half an interval. The scatter is that
     about the lines, but at least that from reading to reading around, and half a count.
     """
-    time = np.arange(BESIDE) - (BESIDE - 1) / 2
-    parts = values[k - BESIDE : k], values[k : k + BESIDE]
+    time = np.arange(SIDE_READINGS) - (SIDE_READINGS - 1) / 2
+    parts = values[k - SIDE_READINGS : k], values[k : k + SIDE_READINGS]
     slopes = [time @ part / (time @ time) for part in parts]
     left = [
         part - part.mean(axis=0) - np.outer(time, slope)
         for part, slope in zip(parts, slopes, strict=True)
     ]
-    about = np.sqrt(sum((one**2).sum(axis=0) for one in left) / (2 * BESIDE - 4))
-    changes = np.abs(np.diff(values[max(k - AROUND, 0) : k + AROUND], axis=0))
+    about = np.sqrt(sum((part**2).sum(axis=0) for part in left) / (2 * SIDE_READINGS - 4))
+    changes = np.abs(np.diff(values[max(k - SCATTER_READINGS, 0) : k + SCATTER_READINGS], axis=0))
     scatter = np.maximum(about, MAD_TO_SIGMA / np.sqrt(2) * np.median(changes, axis=0))
-    before = parts[0].mean(axis=0) + slopes[0] * BESIDE / 2
-    after = parts[1].mean(axis=0) - slopes[1] * BESIDE / 2
-    share = np.sqrt(1 / BESIDE + (BESIDE / 2) ** 2 / (time @ time))
+    before = parts[0].mean(axis=0) + slopes[0] * SIDE_READINGS / 2
+    after = parts[1].mean(axis=0) - slopes[1] * SIDE_READINGS / 2
+    share = np.sqrt(1 / SIDE_READINGS + (SIDE_READINGS / 2) ** 2 / (time @ time))
     return before, after, share * np.maximum(scatter, smallest / 2)
 
 
 def _fits(permutation: Permutation, before: Array, after: Array, sigma: Array) -> bool:
     """Whether it makes the readings before to those after, and makes a difference."""
     both = np.hypot(sigma, sigma[list(permutation.sources)])
-    alike = np.abs(after - permutation.of(before)) <= ALIKE * both
-    apart = np.abs(permutation.of(before) - before) > CLEAR * both
+    alike = np.abs(after - permutation.of(before)) <= MAX_FIT_SIGMA * both
+    apart = np.abs(permutation.of(before) - before) > MIN_JUMP_SIGMA * both
     return bool(alike.all() and apart[permutation.changed].all())
 
 
 def _turned(piece: Piece, log: Log, places: Integers, k: int, before: Array, after: Array) -> bool:
     """Whether a turn of the IMU explains part of the change: df/dt = −ω × f, by the gyros."""
-    rates = piece.values[places[k - BESIDE] : places[k + BESIDE - 1] + 1, SENSORS["gyro"]]
+    rates = piece.values[
+        places[k - SIDE_READINGS] : places[k + SIDE_READINGS - 1] + 1, SENSORS["gyro"]
+    ]
     known = rates[np.isfinite(rates).all(axis=1)]
     if not len(known) or not np.isfinite(log.interval):
         return False
     turned = cross(known.mean(axis=0), before) * log.interval
-    return bool(np.linalg.norm(turned) > TURNED * np.abs(after - before).max())
+    return bool(np.linalg.norm(turned) > MAX_TURNED_SHARE * np.abs(after - before).max())
 
 
-# ---- Whether an IMU stood in another way, or its accelerometers are read as each other.
-
-ASKEW = float(np.cos(np.radians(25)))  # how far an IMU may be mounted from the planned direction
-CLEARLY = 3.0  # times as far from what was expected, for the other explanation to be wrong
+# How far an IMU may be mounted from the planned direction
+MIN_MOUNTING_COSINE = float(np.cos(np.radians(25)))
+MIN_MISFIT_RATIO = 3.0  # times as far from what was expected, for the other explanation to be wrong
 
 
 def read_as_other_axes(force: Array, up: Array, forces: Array, ups: Array) -> Permutation | None:
     """The permutation that a rest was read with, if that and no other attitude explains it.
 
     Every accelerometer has its own bias and scale factor, and the triad its own mounting: what
-    the other rests read, forces = A [ups; 1], foretells the three readings of this one, either in
+    the other rests read, forces = A [ups; 1], predicts the three readings of this one, either in
     the planned attitude with the axes exchanged, or as read with another axis up. None where the
-    two differ too little to tell, as by hand, or where the other rests are too few.
+    two differ too little, as by hand, or where the other rests are too few.
 
     Parameters
     ----------
@@ -247,16 +250,16 @@ def read_as_other_axes(force: Array, up: Array, forces: Array, ups: Array) -> Pe
     if np.linalg.matrix_rank(design, tol=0.1) < 4:
         return None
     response = np.linalg.lstsq(design, forces, rcond=None)[0].T
-    foretold = response @ np.append(up, 1.0)
-    away: dict[Permutation, float] = {}
-    for permutation in EVERY:
+    predicted = response @ np.append(up, 1.0)
+    misfit: dict[Permutation, float] = {}
+    for permutation in PERMUTATIONS:
         straight = permutation.of(force)
-        if float(straight @ up) > ASKEW * float(np.linalg.norm(force)):
-            away[permutation] = float(np.linalg.norm(straight - foretold))
-    if not away:
+        if float(straight @ up) > MIN_MOUNTING_COSINE * float(np.linalg.norm(force)):
+            misfit[permutation] = float(np.linalg.norm(straight - predicted))
+    if not misfit:
         return None
     axis = int(np.argmax(np.abs(force)))
-    stood = np.sign(force[axis]) * np.eye(3)[axis]
-    otherwise = float(np.linalg.norm(force - response @ np.append(stood, 1.0)))
-    best = min(away, key=lambda permutation: away[permutation])
-    return best if CLEARLY * away[best] < otherwise else None
+    actual_up = np.sign(force[axis]) * np.eye(3)[axis]
+    attitude_misfit = float(np.linalg.norm(force - response @ np.append(actual_up, 1.0)))
+    best = min(misfit, key=lambda permutation: misfit[permutation])
+    return best if MIN_MISFIT_RATIO * misfit[best] < attitude_misfit else None

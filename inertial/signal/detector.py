@@ -1,4 +1,4 @@
-"""What every detector of a fault must declare, and what it is shown of a log."""
+"""Base class of the detectors of recording faults, and the data that they examine."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
@@ -8,8 +8,6 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
-# ---- What a channel is called in a sentence.
-
 SENSOR_NAMES = {"accel": "accelerometer", "gyro": "gyro"}
 
 
@@ -18,8 +16,6 @@ def channel_name(channel: int) -> str:
     sensor, _, axis = CHANNELS[channel].partition("_")
     return f"{SENSOR_NAMES[sensor]} {axis}"
 
-
-# ---- What every detector of a fault must tell about itself, and what it is shown of a log.
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -32,7 +28,7 @@ SENSORS = {"accel": slice(0, 3), "gyro": slice(3, 6)}
 
 @dataclass(frozen=True)
 class Given:
-    """What the campaign says of all its logs.
+    """What the campaign states of all its logs.
 
     gravity, gravity_sigma: m/s²; normal_gravity: m/s², at its latitude and height, NaN where these
     are not stated. interval: s, of the instrument, NaN where not stated. date: ISO, or unknown.
@@ -77,7 +73,7 @@ class Windows:
 
 @dataclass(frozen=True, eq=False)
 class Log:
-    """What is known of a log before its records are looked at one by one.
+    """Properties of a log that are known before its records are examined singly.
 
     interval: s, median sample interval, NaN where there is no time; recorded_on: UTC date, or None.
     step: s, the mean interval, which a sample counts for in a sum over time.
@@ -88,7 +84,7 @@ class Log:
     limit: (6,), how far the channel reaches, infinite where not stated.
     count: (6,), what one count is by the campaign, m/s² and rad/s, NaN where not stated.
     records: how many. increments: readings are increments over `step`, and what a count leaves
-    over goes into the next. imu: the types of IMU that its messages tell, by NovAtel's list.
+    over goes into the next. imu: the types of IMU in its messages, by NovAtel's list.
     """
 
     name: str
@@ -121,8 +117,8 @@ class Piece:
 
     record, line: (n,), numbers in the log; time: (n,), s, NaN where there is none; values:
     (n, 6), NaN where not recorded or masked by an earlier detector; status, temperature: (n,),
-    NaN where there is none. Records [first, after) are those that are to be looked at; the
-    others are there to compare with. reached: s, how far time had come before the first of all.
+    NaN where there is none. Records [first, after) are to be examined; the others are
+    there for comparison. reached: s, the latest time before the first of all.
     """
 
     record: Integers
@@ -166,11 +162,11 @@ class Piece:
 
 @dataclass(frozen=True)
 class Event:
-    """One thing seen at one place: records [first, after) of a log.
+    """A detection at one place: records [first, after) of a log.
 
     from_s, to_s: time of its first and last record, NaN where there is none; size: in the
     detector's unit, or in that of the channel; p_value: chance of it if nothing is wrong, the
-    search paid for; count: how many equal things it stands for; facts: what the words need;
+    search paid for; count: how many equal things it stands for; facts: what its description needs;
     severity: where it is not that of the detector.
     """
 
@@ -197,12 +193,12 @@ class Description:
 
 
 class Detector(ABC):
-    """One fault of a recording: its name, its cause, its source, what it costs, how it is seen.
+    """One fault of a recording: its name, cause and source, its effect, and its detection.
 
     `unit` of the size, empty where it is that of the channel; `sensor`: accel or gyro, where all
-    axes of one are concerned. `severity`: 3 spoils a result, 2 weakens it, 1 is good to know.
-    `masks`: what it finds is not used any more; `repeats`: no time passes with the records that it
-    masks. `everywhere`: the same in several logs is one finding.
+    axes of one are concerned. `severity`: 3 invalidates a result, 2 degrades it, 1 is a remark.
+    `masks`: readings that it detects are not used by others; `repeats`: no time passes with the
+    records that it masks. `everywhere`: the same in several logs is one finding.
     """
 
     name: ClassVar[str]
@@ -217,21 +213,21 @@ class Detector(ABC):
     everywhere: ClassVar[bool] = False
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
-        """What it sees in a piece of a log, in the order of the records."""
+        """Events in a piece of a log, in the order of the records."""
         yield from ()
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:
-        """What it sees in a log as a whole."""
+        """Events that concern a log as a whole."""
         yield from ()
 
     def detect_in_campaign(self, given: Given) -> Iterator[Event]:
-        """What it sees in what the campaign says of itself."""
+        """Events in what the campaign states."""
         yield from ()
 
     def detect_between_logs(self, logs: Mapping[str, Log]) -> Iterator[Event]:
-        """What it sees when the logs of the campaign, by name, lie side by side."""
+        """Events in the comparison of the logs of the campaign, by name."""
         yield from ()
 
     @abstractmethod
     def describe(self, event: Event, name: str) -> Description:
-        """One event in words; `name` is that of the log or rest, empty for the campaign."""
+        """An event in words; `name` is that of the log or rest, empty for the campaign."""

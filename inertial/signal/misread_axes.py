@@ -1,4 +1,4 @@
-"""How axes that are taken for others are told."""
+"""The description of exchanged or reversed axes of a sensor."""
 
 import numpy as np
 
@@ -7,50 +7,55 @@ from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, Misread, Recorded
 from inertial.text.numbers import counted, significant
 
-SENSOR = {"accel": "accelerometers", "gyro": "gyros"}
-LISTED = 6  # names that are told
+SENSOR_NAMES = {"accel": "accelerometers", "gyro": "gyros"}
+MAX_NAMES = 6  # in a sentence
 
 
-def deviation(one: Misread, recorded: Recorded) -> Deviation:
+def deviation(misread: Misread, recorded: Recorded) -> Deviation:
     """A misread sensor as a deviation: of its log, or of the campaign."""
-    of_log = [i for i, log in enumerate(recorded.log) if log == one.log]
+    of_log = [i for i, log in enumerate(recorded.log) if log == misread.log]
     alone = of_log[0] if len(of_log) == 1 else None
     first = min((int(recorded.first[i]) for i in of_log), default=-1)
     after = max((int(recorded.after[i]) for i in of_log), default=-1)
     times = [float(t) for t in (*recorded.from_s[of_log], *recorded.to_s[of_log]) if np.isfinite(t)]
     return Deviation(
         alone,
-        one.log,
-        float(len(one.explains)),
-        one.sensor,
+        misread.log,
+        float(len(misread.explains)),
+        misread.sensor,
         first=first,
         after=after,
         from_s=min(times, default=None),
         to_s=max(times, default=None),
-        facts=one,
+        facts=misread,
     )
 
 
-def misread_words(one: Misread, recorded: Recorded) -> Description:
+def describe_misread(misread: Misread, recorded: Recorded) -> Description:
     """A misread sensor in words."""
-    sensor = SENSOR[one.sensor]
-    where = f"in {one.log}" if one.log else "in all logs"
-    names = ", ".join(one.explains[:LISTED])
-    names += f" and {len(one.explains) - LISTED} more" if len(one.explains) > LISTED else ""
-    sentence = (
-        f"Of the {sensor}, {where}, {_reads(one.axes)}: only so"
-        f" {counted(len(one.explains), 'manoeuvre')} {'fits' if len(one.explains) == 1 else 'fit'}"
-        f" the plan ({names}). {_handed(one, recorded)}"
+    sensor = SENSOR_NAMES[misread.sensor]
+    where = f"in {misread.log}" if misread.log else "in all logs"
+    names = ", ".join(misread.explains[:MAX_NAMES])
+    names += (
+        f" and {len(misread.explains) - MAX_NAMES} more"
+        if len(misread.explains) > MAX_NAMES
+        else ""
     )
-    if not one.log:
+    number = len(misread.explains)
+    agree = f"{counted(number, 'manoeuvre')} {'agrees' if number == 1 else 'agree'}"
+    sentence = (
+        f"Of the {sensor}, {where}, {_reads(misread.axes)}: only so {agree} with the plan"
+        f" ({names}). {_handed(misread, recorded)}"
+    )
+    if not misread.log:
         consequence = (
             f"The parameters of the {sensor} come out under wrong names:"
-            f" {_in_the_matrix(one.axes)}; the biases likewise."
+            f" {_in_the_matrix(misread.axes)}; the biases likewise."
         )
-        if one.sensor == "gyro":
+        if misread.sensor == "gyro":
             consequence = (
                 "The turns give no parameters of the gyros. Used, they would give"
-                f" {_in_the_matrix(one.axes)}; the biases are under wrong names."
+                f" {_in_the_matrix(misread.axes)}; the biases are under wrong names."
             )
         action = (
             "The manoeuvres are found by the right axes; the data are not changed. Correct the axes"
@@ -58,8 +63,8 @@ def misread_words(one: Misread, recorded: Recorded) -> Description:
         )
     else:
         consequence = (
-            f"Used, its readings would be off by up to {significant(_off(one, recorded), 3)}"
-            f" {'m/s²' if one.sensor == 'accel' else '°'}, for the other logs are not so."
+            f"Used, its readings would be off by up to {significant(_off(misread, recorded), 3)}"
+            f" {'m/s²' if misread.sensor == 'accel' else '°'}, for the other logs are not so."
         )
         action = "It is left out. See how this log was written, and correct it."
     return Description(sentence, consequence, action)
@@ -75,21 +80,21 @@ def determinant(axes: Permutation) -> int:
 def _reads(axes: Permutation) -> str:
     """Which axis reads what: x reads −y and y reads x."""
     back = axes.inverse
-    said = [
+    parts = [
         f"{AXES[i]} reads {'−' if back.signs[i] < 0 else ''}{AXES[back.sources[i]]}"
         for i in range(3)
         if back.changed[i]
     ]
-    return " and ".join([", ".join(said[:-1]), said[-1]] if len(said) > 1 else said)
+    return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
 
 
-def _handed(one: Misread, recorded: Recorded) -> str:
-    flips = one.axes.in_place
+def _handed(misread: Misread, recorded: Recorded) -> str:
+    flips = misread.axes.in_place
     usual = "RAWIMUS writes z, −y, x: a sign that is forgotten, or taken twice, is the usual cause."
     usual = usual if flips else "RAWIMUS writes z, −y, x: another order of the fields does this."
-    if determinant(one.axes) < 0:
+    if determinant(misread.axes) < 0:
         return f"So the triad is left-handed (determinant −1), which no mounting does. {usual}"
-    others = [other for other in recorded.misread if other.log == one.log]
+    others = [other for other in recorded.misread if other.log == misread.log]
     if len(others) == 2 and others[0].axes == others[1].axes:
         return (
             "The triads of both sensors stay right-handed (determinant +1): the IMU may be mounted"
@@ -97,26 +102,30 @@ def _handed(one: Misread, recorded: Recorded) -> str:
         )
     return (
         "The triad stays right-handed (determinant +1), so two mistakes cancel; it is no mounting,"
-        f" for the other sensor does not say so. {usual}"
+        f" for the other sensor does not agree. {usual}"
     )
 
 
 def _in_the_matrix(axes: Permutation) -> str:
     back = axes.inverse
-    said = []
+    parts = []
     for i in range(3):
         if back.changed[i]:
             sign, source = back.signs[i], back.sources[i]
             if source == i:
-                said.append(f"scale error of {AXES[i]} −200 %")
+                parts.append(f"scale error of {AXES[i]} −200 %")
             else:
-                one = "1" if sign > 0 else "−1"
-                said.append(f"scale error of {AXES[i]} −100 %, its cross term {AXES[source]} {one}")
-    return "; ".join(said)
+                unit_term = "1" if sign > 0 else "−1"
+                parts.append(
+                    f"scale error of {AXES[i]} −100 %, its cross term {AXES[source]} {unit_term}"
+                )
+    return "; ".join(parts)
 
 
-def _off(one: Misread, recorded: Recorded) -> float:
-    own = [i for i, log in enumerate(recorded.log) if log == one.log]
-    readings = recorded.force[own] if one.sensor == "accel" else np.degrees(recorded.turned[own])
+def _off(misread: Misread, recorded: Recorded) -> float:
+    own = [i for i, log in enumerate(recorded.log) if log == misread.log]
+    readings = (
+        recorded.force[own] if misread.sensor == "accel" else np.degrees(recorded.turned[own])
+    )
     there = readings[np.isfinite(readings).all(axis=1)]
-    return max((float(np.abs(one.axes.of(r) - r).max()) for r in there), default=np.nan)
+    return max((float(np.abs(misread.axes.of(r) - r).max()) for r in there), default=np.nan)

@@ -8,9 +8,7 @@ import numpy as np
 from inertial.signal.detector import Array, Booleans, Integers
 from inertial.signal.scatter import MAD_TO_SIGMA, median
 
-# ---- The running median, which takes no notice of ramps, steps and single readings far off.
-
-WIDTH = 9  # readings: of these a spike may be up to four
+MEDIAN_WIDTH = 9  # readings: of these a spike may be up to four
 
 
 def running_median(values: Array) -> Array:
@@ -20,7 +18,7 @@ def running_median(values: Array) -> Array:
     reading is its own median. Median of nine by three sorted threes: Paeth, Graphics Gems I
     (1990) 171.
     """
-    x = np.pad(values, WIDTH // 2, mode="reflect", reflect_type="odd")
+    x = np.pad(values, MEDIAN_WIDTH // 2, mode="reflect", reflect_type="odd")
     low, high = np.minimum(x[:-2], x[1:-1]), np.maximum(x[:-2], x[1:-1])
     least, most = np.minimum(low, x[2:]), np.maximum(high, x[2:])
     middle = np.maximum(low, np.minimum(high, x[2:]))
@@ -34,15 +32,13 @@ def _middle(a: Array, b: Array, c: Array) -> Array:
     return np.maximum(np.minimum(a, b), np.minimum(np.maximum(a, b), c))
 
 
-# ---- How far each reading of a channel is off those beside it, and how much they scatter.
-
-LOUD = 5.0  # scatters by which a reading is off, and not by chance
-BLOCK = 1024  # readings from which the scatter is taken
-SHORT = 64  # readings by which stretches are told in which the IMU is moved
-RESTLESS = 3.0  # times the scatter of the quiet stretches
-WIDEST = 3  # readings of a spike
-STEEP = 3.0  # scatters between the medians before and after
-HOLE = 8  # intervals that are missing: what lies beyond is no neighbour
+MIN_DEVIATION_SCATTER = 5.0  # scatters by which a reading is off, and not by chance
+SCATTER_READINGS = 1024  # readings from which the scatter is taken
+MOTION_READINGS = 64  # readings of a block that decides whether the IMU is moved
+MIN_MOTION_RATIO = 3.0  # times the scatter of the quiet stretches
+MAX_SPIKE_READINGS = 3  # readings of a spike
+MIN_SLOPE_SCATTER = 3.0  # scatters between the medians before and after
+MAX_MISSING_INTERVALS = 8  # intervals that are missing: what lies beyond is no neighbour
 
 
 @dataclass(frozen=True)
@@ -75,23 +71,25 @@ class Channel:
         # scatter there as elsewhere.
         rough = np.abs(values[1:-1] - (values[:-2] + values[2:]) / 2) / np.sqrt(1.5)
         rough = np.pad(rough, 1, mode="edge")
-        scatter = _of_readings(_around(_scatter(rough, BLOCK, count), least=True), BLOCK, values)
-        near = _scatter(rough, SHORT, count)
-        least_near = _of_readings(_around(near, least=True), SHORT, values)
+        scatter = _of_readings(
+            _around(_scatter(rough, SCATTER_READINGS, count), least=True), SCATTER_READINGS, values
+        )
+        near = _scatter(rough, MOTION_READINGS, count)
+        least_near = _of_readings(_around(near, least=True), MOTION_READINGS, values)
         least = np.minimum(scatter, least_near)
         off = _off(values, least)
         quiet = max(min(float(np.quantile(near, 0.25)), noise), count)
         # One spike of three readings is no motion yet, nor are several that lie apart.
-        pairs = _in_blocks(np.minimum(np.abs(off), np.abs(np.roll(off, 1))), SHORT)
-        third = np.sort(pairs, axis=1)[:, -WIDEST]
-        moved = np.maximum(near / RESTLESS, third / LOUD)
+        pairs = _in_blocks(np.minimum(np.abs(off), np.abs(np.roll(off, 1))), MOTION_READINGS)
+        third = np.sort(pairs, axis=1)[:, -MAX_SPIKE_READINGS]
+        moved = np.maximum(near / MIN_MOTION_RATIO, third / MIN_DEVIATION_SCATTER)
         return cls(
             places,
             np.abs(np.diff(values, prepend=values[0])),
             off,
             scatter,
             least,
-            _of_readings(_around(moved, least=False), SHORT, values) > quiet,
+            _of_readings(_around(moved, least=False), MOTION_READINGS, values) > quiet,
             _beside_a_hole(places, time),
         )
 
@@ -107,16 +105,16 @@ def _off(values: Array, least: Array) -> Array:
     """
     course = running_median(values)
     off = values - course
-    half, last = WIDTH // 2, len(values) - 1
-    far = np.flatnonzero(np.abs(off) > LOUD * least)
+    half, last = MEDIAN_WIDTH // 2, len(values) - 1
+    far = np.flatnonzero(np.abs(off) > MIN_DEVIATION_SCATTER * least)
     before, after = np.maximum(far - half - 1, 0), np.minimum(far + half + 1, last)
     slope = (course[after] - course[before]) / np.maximum(after - before, 1)
     near = np.clip(far[:, None] + np.arange(-half, half + 1), 0, last)
     flat = values[far] - np.median(values[near] - slope[:, None] * (near - far[:, None]), axis=1)
     distances = [off[far], flat]
     for side in (-1, 1):
-        beyond = values[np.clip(far[:, None] + side * np.arange(half, WIDTH), 0, last)]
-        steep = np.abs(slope) * (after - before) > STEEP * least[far]
+        beyond = values[np.clip(far[:, None] + side * np.arange(half, MEDIAN_WIDTH), 0, last)]
+        steep = np.abs(slope) * (after - before) > MIN_SLOPE_SCATTER * least[far]
         distances.append(np.where(steep, values[far] - _continued(beyond), off[far]))
     one_side = np.all(np.sign(distances) == np.sign(off[far]), axis=0)
     off[far] = np.where(one_side, np.sign(off[far]) * np.min(np.abs(distances), axis=0), 0.0)
@@ -125,7 +123,7 @@ def _off(values: Array, least: Array) -> Array:
 
 def _continued(readings: Array) -> Array:
     """What straight lines through (k, 5) readings, 4 to 8 places away, read at place 0, (k,)."""
-    away = np.arange(WIDTH // 2, WIDTH)
+    away = np.arange(MEDIAN_WIDTH // 2, MEDIAN_WIDTH)
     middle = away.mean()
     slope = readings @ (away - middle) / ((away - middle) @ (away - middle))
     return np.asarray(readings.mean(axis=1) - slope * middle)
@@ -157,8 +155,8 @@ def _of_readings(blocks: Array, length: int, values: Array) -> Array:
 def _beside_a_hole(places: Integers, time: Array) -> Booleans:
     """Which readings have others masked, or much missing, within four on either side."""
     apart = np.diff(places)
-    holes = np.flatnonzero((apart > np.median(apart)) | (np.diff(time) > HOLE)) + 1
-    near = holes[:, None] + np.arange(-(WIDTH // 2), WIDTH // 2)
+    holes = np.flatnonzero((apart > np.median(apart)) | (np.diff(time) > MAX_MISSING_INTERVALS)) + 1
+    near = holes[:, None] + np.arange(-(MEDIAN_WIDTH // 2), MEDIAN_WIDTH // 2)
     alone = np.zeros(len(places), bool)
     alone[np.clip(near, 0, len(places) - 1)] = True
     return alone

@@ -1,4 +1,4 @@
-"""What a detector that compares the recording with its plan must tell, and what it is shown."""
+"""Base class of detectors that compare the recording with its plan, and their data."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
@@ -13,7 +13,7 @@ from inertial.signal.detector import Array, Booleans, Description, Given, Intege
 
 @dataclass(frozen=True)
 class Misread:
-    """A sensor whose axes are taken for others; `log` is empty where all logs have it so.
+    """A sensor with exchanged or reversed axes; `log` is empty where all logs have it so.
 
     axes: takes its readings to the axes of the plan; explains: manoeuvres that fit only so.
     """
@@ -51,7 +51,7 @@ class Recorded:
     motion, −1 and NaN where it has none.
     gyros: (m, 3), whether its log has readings of them.
     count: (m,), rad, what a count of its gyros is by the campaign, NaN where not stated.
-    gyro_signs: (3,), +1 right and −1 wrong, as the earth's rate tells, 0 where it does not.
+    gyro_signs: (3,), +1 right and −1 wrong, by the earth rate, 0 where it does not show.
     misread, swapped: what explains that the plan is not found as it is.
     tolerance: accepted difference of an angle or a rate from the plan's, 1.
     """
@@ -94,17 +94,17 @@ class Recorded:
     @property
     def explained(self) -> set[str]:
         """Manoeuvres of which something is known that explains why they are not as planned."""
-        names = {name for one in self.misread for name in one.explains}
-        return names | {name for one in self.swapped for name in one.names}
+        names = {name for each in self.misread for name in each.explains}
+        return names | {name for each in self.swapped for name in each.names}
 
 
 @dataclass(frozen=True)
 class Deviation:
-    """One thing in which the recording is not as planned.
+    """A difference between recording and plan.
 
     at: number of the manoeuvre, None where it is the whole campaign or a log; log: empty for the
-    campaign; first, after: records that show it, −1 where none do; facts: what the words need;
-    severity: where it is not that of the detector.
+    campaign; first, after: records that show it, −1 where none do; facts: what its description
+    needs; severity: where it is not that of the detector.
     """
 
     at: int | None
@@ -124,7 +124,7 @@ class Deviation:
 class PlanDetector(ABC):
     """One way in which a recording and its plan disagree; `severity` and `unit` as of a Detector.
 
-    A class tells its name, its cause, its source, and what it costs.
+    A class states its name, cause and source, and its effect.
     """
 
     name: ClassVar[str]
@@ -140,11 +140,11 @@ class PlanDetector(ABC):
 
     @abstractmethod
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        """What it sees, in the order of the plan."""
+        """Deviations, in the order of the plan."""
 
     @abstractmethod
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
-        """It in words."""
+        """A deviation in words."""
 
     def of(self, recorded: Recorded, i: int, size: float | None, **more: Any) -> Deviation:
         """A deviation of manoeuvre i, at the records that it has."""

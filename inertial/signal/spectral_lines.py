@@ -11,38 +11,42 @@ from scipy.special import gammaincc, gammainccinv
 from inertial.signal.detector import Array
 from inertial.signal.scatter import median
 
-# ---- Lines of one frequency that stand out of the spectra of a channel for some time.
-
 Complex = NDArray[np.complex128]
 Singles = NDArray[np.float32]
 
 WINDOW = 256  # readings of a spectrum
 HOP = 128  # readings from one to the next
-PART = 8  # bins; so many periods in a window at least: what is slower is not told from motion
-CAPPED = 12.0  # times the background: so much a single window may say
-LENGTHS = (4, 8, 16, 32, 64, 128)  # windows that are taken together
-CERTAIN = 1e-4  # chance of a line in a campaign
-SEARCHED = 1.2e6 / HOP * (WINDOW / 2) * len(LENGTHS)  # sums that are looked at in one like S0's
-NOISE = 2.0  # times the background: the largest of three bins, by noise alone
-ONE_SIDED = 0.76  # the last part has nothing above it: one median is less than the larger of two
-WIDE = 8  # bins on each side that a line takes with it
-IN_STEP = 0.5  # of full: how well a line must keep its phase from one window to the next but one
-PERIODS = 6  # in a log that is no longer than one window
-ABOVE = 6.0  # times the power of anything slower in it
-FINER = 4  # steps in a bin, by which its line is sought
-APART = 2.5  # bins from a line to what is beside it
-FEWEST = 6  # bins beside it
-DISAGREED = 0.3  # of the whole: difference of its two halves
-CHANNELS = 6 * 12  # of a campaign in so short logs
-MOST = 32  # stretches in one channel of a piece that are looked at
+PART_BINS = (
+    8  # bins; so many periods in a window at least: slower ones cannot be distinguished from motion
+)
+MAX_RATIO = 12.0  # times the background: limit of the contribution of a single window
+STRETCH_WINDOWS = (4, 8, 16, 32, 64, 128)  # windows that are taken together
+FALSE_ALARM_LEVEL = 1e-4  # chance of a line in a campaign
+# Sums that are tested in a campaign like S0's
+SEARCHED_SUMS = 1.2e6 / HOP * (WINDOW / 2) * len(STRETCH_WINDOWS)
+NOISE_RATIO = 2.0  # times the background: the largest of three bins, by noise alone
+# The last part has nothing above it: one median is less than the larger of two
+ONE_SIDED_FACTOR = 0.76
+LINE_BINS = 8  # bins on each side that a line takes with it
+# Of full: how well a line must keep its phase from one window to the next but one
+MIN_COHERENCE = 0.5
+MIN_PERIODS = 6  # in a log that is no longer than one window
+MIN_SLOW_RATIO = 6.0  # times the power of anything slower in it
+BIN_STEPS = 4  # steps in a bin, by which its line is sought
+MIN_DISTANCE_BINS = 2.5  # bins from a line to what is beside it
+MIN_OTHER_BINS = 6  # bins beside it
+MAX_HALF_DIFFERENCE = 0.3  # of the whole: difference of its two halves
+CAMPAIGN_CHANNELS = 6 * 12  # of a campaign in so short logs
+MAX_LINES = 32  # stretches in one channel of a piece that are examined
 
 # Of the sum over windows in white noise: its shape for each window, and its scale. The background
 # scatters too, and for windows that overlap alike: 0.7 and 1.2 fit 12 million readings for 16
 # windows and more, for 4 and 8 the tail is longer.
 SHAPE, SCALE = 0.7, 1.35
 
-_LEAST = {
-    length: SCALE * float(gammainccinv(SHAPE * length, CERTAIN / SEARCHED)) for length in LENGTHS
+_MIN_SUM = {
+    length: SCALE * float(gammainccinv(SHAPE * length, FALSE_ALARM_LEVEL / SEARCHED_SUMS))
+    for length in STRETCH_WINDOWS
 }
 
 
@@ -91,43 +95,43 @@ def lines(cut: Array, time: Array) -> Iterator[Line]:
     """
     power = np.abs(rfft(cut.astype(np.float32), axis=1)[:, :-1]) ** 2
     ratio = _ratio(power)
-    for _ in range(MOST):
+    for _ in range(MAX_LINES):
         seed = _clearest(ratio)
         if seed is None:
             return
         first, after, bin_, chance = seed
         first, after = _stretch(ratio[:, bin_ - 1 : bin_ + 2].max(axis=1), first, after)
-        near = slice(max(bin_ - WIDE, PART), bin_ + WIDE + 1)
-        if after - first >= LENGTHS[0]:
+        near = slice(max(bin_ - LINE_BINS, PART_BINS), bin_ + LINE_BINS + 1)
+        if after - first >= STRETCH_WINDOWS[0]:
             # A strong line is capped in several bins; the largest of them is nearest to it, by the
             # median, for in a single window a motion may be larger.
             peak = near.start + int(np.argmax(np.median(power[first:after, near], axis=0)))
             inside = slice(first, after)
             frequency, in_step = _tuned(cut[inside], time[inside], peak / WINDOW)
-            if in_step > IN_STEP:
-                yield Line(first, after, frequency, min(chance * SEARCHED, 1.0))
+            if in_step > MIN_COHERENCE:
+                yield Line(first, after, frequency, min(chance * SEARCHED_SUMS, 1.0))
         ratio[max(first - 2, 0) : after + 2, near] = 0.0
 
 
 def line_of_one(cut: Array, time: Array) -> Iterator[Line]:
     """The line of a single window (1, length), if there is one.
 
-    It must stand out of the median of all other bins, be larger than anything slower, which
+    It must exceed the median of all other bins significantly, be larger than anything slower, which
     coloured noise and motion are not, and be the same in both halves.
     """
     length = cut.shape[1]
-    power = np.abs(np.fft.rfft(cut[0], FINER * length)) ** 2
-    bins = np.arange(len(power)) / FINER
-    peak = int(np.argmax(np.where(bins < PERIODS, 0.0, power)))
-    apart = np.abs(bins - bins[peak]) > APART
-    others = power[apart & (bins >= PERIODS)][::FINER]
+    power = np.abs(np.fft.rfft(cut[0], BIN_STEPS * length)) ** 2
+    bins = np.arange(len(power)) / BIN_STEPS
+    peak = int(np.argmax(np.where(bins < MIN_PERIODS, 0.0, power)))
+    apart = np.abs(bins - bins[peak]) > MIN_DISTANCE_BINS
+    others = power[apart & (bins >= MIN_PERIODS)][::BIN_STEPS]
     slower = power[apart & (bins < bins[peak])]
-    if len(others) < FEWEST or power[peak] < ABOVE * slower.max(initial=0.0):
+    if len(others) < MIN_OTHER_BINS or power[peak] < MIN_SLOW_RATIO * slower.max(initial=0.0):
         return
     ratio = float(np.log(2) * power[peak] / np.median(others))
     # Of a background from m bins, of which a Hann window makes two thirds independent.
     m = len(others) / 1.5
-    p_value = min(float((1 + ratio / m) ** -m) * CHANNELS * length / 2, 1.0)
+    p_value = min(float((1 + ratio / m) ** -m) * CAMPAIGN_CHANNELS * length / 2, 1.0)
     frequency = float(bins[peak] / length)
     half = length // 2
     raw = cut / np.maximum(hann(length), 1e-3)
@@ -135,8 +139,8 @@ def line_of_one(cut: Array, time: Array) -> Iterator[Line]:
         phasors(raw[:, part] * hann(half), time[:, part], frequency)[0]
         for part in (slice(0, half), slice(length - half, length))
     ]
-    agreed = abs(parts[0] - parts[1]) < DISAGREED * (abs(parts[0]) + abs(parts[1]))
-    if agreed and p_value < CERTAIN:
+    agreed = abs(parts[0] - parts[1]) < MAX_HALF_DIFFERENCE * (abs(parts[0]) + abs(parts[1]))
+    if agreed and p_value < FALSE_ALARM_LEVEL:
         yield Line(0, 1, frequency, p_value)
 
 
@@ -147,12 +151,12 @@ def phasors(cut: Array, time: Array, frequency: float) -> Complex:
 
 
 def _ratio(power: Singles) -> Singles:
-    """How far the spectra (k, WINDOW / 2) stand out of what is beside each bin, the same shape.
+    """The spectra (k, WINDOW / 2) over the background beside each bin, the same shape.
 
     Beside it: the larger of the medians of 16 bins below and of 16 above, without the 8 to which
     it belongs. The flank of a motion lies above the bins on its right, not above those on its left.
     """
-    parts = power.reshape(len(power), -1, PART)
+    parts = power.reshape(len(power), -1, PART_BINS)
     pairs = np.concatenate([parts[:, :-1], parts[:, 1:]], axis=2)
     of_pairs = median(pairs)
     ends = median(parts[:, 0, 1:]), median(parts[:, -1])
@@ -160,11 +164,11 @@ def _ratio(power: Singles) -> Singles:
     none = np.zeros_like(lowest)
     below = np.hstack([none, lowest, of_pairs[:, :-1]])
     above = np.hstack([of_pairs[:, 1:], highest, none])
-    beside = np.repeat(np.maximum(below, above), PART, axis=1)
+    beside = np.repeat(np.maximum(below, above), PART_BINS, axis=1)
     ratio = np.divide(np.log(2) * power, beside, out=np.zeros_like(power), where=beside > 0)
-    ratio[:, :PART] = 0.0
-    ratio[:, -PART:] *= ONE_SIDED
-    return np.asarray(np.minimum(ratio, CAPPED))
+    ratio[:, :PART_BINS] = 0.0
+    ratio[:, -PART_BINS:] *= ONE_SIDED_FACTOR
+    return np.asarray(np.minimum(ratio, MAX_RATIO))
 
 
 def _clearest(ratio: Singles) -> tuple[int, int, int, float] | None:
@@ -172,13 +176,13 @@ def _clearest(ratio: Singles) -> tuple[int, int, int, float] | None:
     sums = np.cumsum(ratio, axis=0, dtype=np.float64)
     sums = np.vstack([np.zeros((1, sums.shape[1])), sums])
     best = None
-    for length in LENGTHS:
+    for length in STRETCH_WINDOWS:
         if length > len(ratio):
             break
         together = sums[length:] - sums[:-length]
         first, bin_ = divmod(int(np.argmax(together)), ratio.shape[1])
         largest = float(together[first, bin_])
-        if largest > _LEAST[length]:
+        if largest > _MIN_SUM[length]:
             chance = float(gammaincc(SHAPE * length, largest / SCALE))
             if best is None or chance < best[3]:
                 best = first, first + length, bin_, chance
@@ -186,13 +190,13 @@ def _clearest(ratio: Singles) -> tuple[int, int, int, float] | None:
 
 
 def _stretch(ratio: Singles, first: int, after: int) -> tuple[int, int]:
-    """The windows in which a line stands out, (k,) ratios, from those in which it was found.
+    """The windows that hold a line, by (k,) ratios, from those in which it was detected.
 
     Halfway between the line and noise is the level; the sum above it is the largest.
     """
-    found = ratio[first:after]
+    inside = ratio[first:after]
     # Windows taken together may hold a break; the median is then that of the line.
-    above = ratio - (max(found.mean(), np.median(found)) + NOISE) / 2
+    above = ratio - (max(inside.mean(), np.median(inside)) + NOISE_RATIO) / 2
     sums = np.append(0.0, np.cumsum(above))
     middle = first + int(np.argmax(above[first:after]))
     start = int(np.argmin(sums[: middle + 1]))
@@ -208,22 +212,22 @@ def _tuned(cut: Array, time: Array, frequency: float) -> tuple[float, float]:
     while lag < max(len(cut) / 2, 3) and lag < len(cut):
         tones = phasors(cut, time, frequency)
         sizes = np.abs(tones)
-        tones /= np.maximum(sizes, 2 * np.median(sizes))  # no window says more than twice its share
+        tones /= np.maximum(
+            sizes, 2 * np.median(sizes)
+        )  # no window weighs more than twice its share
         product = tones[lag:] * tones[:-lag].conj()
         coherence = float(np.abs(product.sum()) / max(np.abs(product).sum(), 1e-300))
         if lag == 2:
             in_step = coherence
-        if coherence < IN_STEP:
+        if coherence < MIN_COHERENCE:
             break
         frequency += float(np.angle(product.sum())) / (2 * np.pi * lag * HOP)
         lag *= 2
     return frequency, in_step
 
 
-# ---- Where an oscillation begins and ends, to the record.
-
-FITTED = 512  # readings at the most, inside, from which amplitude and phase are had
-LONGEST = 101  # readings of the moving mean that is taken off
+MAX_FITTED_READINGS = 512  # readings at the most, inside, from which amplitude and phase are had
+MAX_MEAN_READINGS = 101  # readings of the moving mean that is taken off
 
 
 def edges(
@@ -231,21 +235,21 @@ def edges(
 ) -> tuple[int, int]:
     """The first reading of an oscillation, and the one after its last.
 
-    From readings well inside it the oscillation s is continued to the outside. Each reading y says
-    by (y − s/2) s whether it has it or not (the logarithm of the likelihood ratio in white noise);
-    the edge is where the sum of this over all readings within is largest.
+    From readings well inside it the oscillation s is continued to the outside. Each reading y
+    contributes (y − s/2) s, the logarithm of the likelihood ratio in white noise; the edge is where
+    the sum of this over all readings within is largest.
 
     Parameters
     ----------
     values : (n,), readings
     time : (n,), intervals
     inside : places between which it certainly is
-    outside : places beyond which it is not looked for
+    outside : places beyond which it is not sought
     frequency : cycles per interval
     """
     level = _levelled(values, frequency)
     first, after = inside
-    length = min(after - first, FITTED)
+    length = min(after - first, MAX_FITTED_READINGS)
     start = _edge(level, time, slice(first, first + length), outside[0], frequency)
     end = _edge(
         level[::-1],
@@ -264,17 +268,17 @@ def _edge(level: Array, time: Array, inside: slice, outside: int, frequency: flo
     columns = np.column_stack([np.cos(phase), np.sin(phase)])
     parts = np.linalg.lstsq(columns[inside], level[inside], rcond=None)[0]
     tone = columns[outside : inside.start] @ parts
-    # The corner of a ramp leaves more than any oscillation; no reading says more than twice its.
+    # The corner of a ramp leaves more than any oscillation; no reading weighs more than twice its.
     most = 2 * float(np.linalg.norm(parts))
-    says = (np.clip(level[outside : inside.start], -most, most) - tone / 2) * tone
+    contribution = (np.clip(level[outside : inside.start], -most, most) - tone / 2) * tone
     # Summed from the inside out; nothing more than what is inside is one of the choices.
-    together = np.append(0.0, np.cumsum(says[::-1]))
+    together = np.append(0.0, np.cumsum(contribution[::-1]))
     return int(inside.start) - int(np.argmax(together))
 
 
 def _levelled(values: Array, frequency: float) -> Array:
     """Readings less their moving mean over as near to whole periods as an odd number may be."""
-    lengths = np.arange(3, min(int(4 / frequency) + 3, LONGEST, len(values)) + 1, 2)
+    lengths = np.arange(3, min(int(4 / frequency) + 3, MAX_MEAN_READINGS, len(values)) + 1, 2)
     passed = np.abs(np.sin(np.pi * frequency * lengths) / (lengths * np.sin(np.pi * frequency)))
     length = int(lengths[np.argmin(passed)])
     padded = np.pad(values - values.mean(), length // 2, mode="reflect", reflect_type="odd")

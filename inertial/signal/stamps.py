@@ -7,9 +7,7 @@ import numpy as np
 
 from inertial.signal.detector import Array, Booleans, Integers, Log, Piece
 
-# ---- The stamps of a piece, one for each sample, whichever way the sensors are written.
-
-PRINTED = 1e-9  # s, the last digit of a stamp at best
+STAMP_DIGIT_S = 1e-9  # s, the last digit of a stamp at best
 MAX_RATE_ERROR = 0.01  # of the stated rate: more than any crystal is off
 
 
@@ -47,14 +45,12 @@ def stamps_of(piece: Piece, log: Log) -> Stamps:
 
 def unit_of(steps: Array) -> float:
     """Of what these steps between stamps, (m,), s, are whole multiples, s; at least 1 ns."""
-    ticks = np.rint(steps / PRINTED).astype(np.int64)
-    return float(max(np.gcd.reduce(ticks), 1)) * PRINTED if len(ticks) else PRINTED
+    ticks = np.rint(steps / STAMP_DIGIT_S).astype(np.int64)
+    return float(max(np.gcd.reduce(ticks), 1)) * STAMP_DIGIT_S if len(ticks) else STAMP_DIGIT_S
 
 
-# ---- Which stamps of a log are out of order.
-
-AHEAD = 1.5  # intervals: a longer one is a gap, or the stamps jump ahead
-GLITCHES = 1000  # stretches of a piece that are told apart
+MAX_INTERVALS = 1.5  # intervals: a longer one is a gap, or the stamps jump ahead
+MAX_DISORDERS = 1000  # stretches of a piece that are distinguished
 
 
 @dataclass(frozen=True)
@@ -71,37 +67,34 @@ def disorders(time: Array, reached: float, interval: float) -> list[Disorder]:
     """The stretches of stamps, (n,), that are out of order; time had come to `reached` before."""
     if not np.isfinite(time).all():
         return []
-    left = time
-    found: list[Disorder] = []
+    corrected = time
+    disordered: list[Disorder] = []
     start = 0
-    while len(found) < GLITCHES:
-        behind = _behind(left, reached)
+    while len(disordered) < MAX_DISORDERS:
+        behind = _behind(corrected, reached)
         start += int(np.argmax(behind[start:])) if behind[start:].any() else len(time)
         if start >= len(time):
             break
         end = start + int(np.argmin(np.append(behind[start:], False)))
-        after = start - int(np.argmax(left[:start][::-1] <= left[start])) if start else 0
-        jump = left[after] - left[after - 1] if 0 < after < start else 0.0
-        if jump > AHEAD * interval and start - after < end - start:
-            off = float(time[after] - left[after - 1] - interval)
-            found.append(Disorder(after, start, off, ahead=True))
-            left = left.copy()
-            left[after:start] = left[after - 1]
+        after = start - int(np.argmax(corrected[:start][::-1] <= corrected[start])) if start else 0
+        jump = corrected[after] - corrected[after - 1] if 0 < after < start else 0.0
+        if jump > MAX_INTERVALS * interval and start - after < end - start:
+            off = float(time[after] - corrected[after - 1] - interval)
+            disordered.append(Disorder(after, start, off, ahead=True))
+            corrected = corrected.copy()
+            corrected[after:start] = corrected[after - 1]
             start = after
         else:
-            before = max(reached, float(left[:start].max(initial=-np.inf)))
-            found.append(Disorder(start, end, before - float(time[start]), ahead=False))
+            before = max(reached, float(corrected[:start].max(initial=-np.inf)))
+            disordered.append(Disorder(start, end, before - float(time[start]), ahead=False))
             start = end
-    return found
+    return disordered
 
 
 def _behind(time: Array, reached: float) -> Booleans:
     """Which stamps lie before one that came earlier, (n,)."""
     former = np.maximum.accumulate(np.append(reached, time[:-1]))
     return np.asarray(time < former)
-
-
-# ---- The records of a piece by what they hold: sensors may come in rows of their own.
 
 
 def kinds(piece: Piece) -> Iterator[tuple[Integers, Integers]]:

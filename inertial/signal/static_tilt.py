@@ -9,11 +9,12 @@ from inertial.physics.vectors import cross
 from inertial.signal.detector import SENSORS, Array, Booleans, Log, Piece
 from inertial.signal.scatter import MAD_TO_SIGMA
 
-RECORDED = 0.2  # of the records of a rest that a channel must be in
-AROUND = 2.0  # s on each side of a place whose means are compared
-BESIDE = 0.15  # s on each side of a place that a sudden motion may take
-JERK = 4.0  # times the usual change of readings: 10⁻¹⁶ a block of 10 in both sensors by chance
-TELLING = 0.25  # share of a motion to which the other sensor must know it
+MIN_RECORDED_SHARE = 0.2  # of the records of a rest that a channel must be in
+SIDE_S = 2.0  # s on each side of a place whose means are compared
+MOTION_S = 0.15  # s on each side of a place that a sudden motion may take
+# Times the usual change of readings: 10⁻¹⁶ a block of 10 in both sensors by chance
+MIN_JERK_RATIO = 4.0
+MAX_SHARE_SIGMA = 0.25  # largest sigma of the share of a motion that the other sensor confirms
 
 
 @dataclass(frozen=True)
@@ -25,16 +26,16 @@ class Agreement:
 
     @property
     def conclusive(self) -> bool:
-        """Whether the other sensor is good enough to tell."""
-        return self.sigma < TELLING
+        """Whether the other sensor is precise enough to decide."""
+        return self.sigma < MAX_SHARE_SIGMA
 
     @property
     def moved(self) -> bool:
-        """Whether both say that the IMU moved."""
+        """Whether both sensors agree that the IMU moved."""
         return self.conclusive and 0.5 < self.share < 1.5
 
 
-UNTOLD = Agreement(0.0, np.inf)
+UNCONFIRMED = Agreement(0.0, np.inf)
 
 
 class Resting:
@@ -52,7 +53,7 @@ class Resting:
         self.noise = np.full(6, np.nan)
         for i in range(6):
             there, read = piece.channel(i)
-            if len(there) > max(RECORDED * n, 2):
+            if len(there) > max(MIN_RECORDED_SHARE * n, 2):
                 self.values[:, i] = np.interp(np.arange(n), there, read)
                 scatter = MAD_TO_SIGMA / np.sqrt(2) * float(np.median(np.abs(np.diff(read))))
                 self.noise[i] = max(scatter, float(np.nan_to_num(log.quantum[i])) / np.sqrt(12))
@@ -102,7 +103,7 @@ class Resting:
         With it, how much of it the gyros turned meanwhile. Nothing else happens from `start` to
         `stop`.
         """
-        side, beside = round(AROUND / self.interval), round(BESIDE / self.interval)
+        side, beside = round(SIDE_S / self.interval), round(MOTION_S / self.interval)
         first, after = max(first - beside, start + 1), min(after + beside, stop - 1)
         earlier, later = (
             slice(max(first - side, start), first),
@@ -111,7 +112,7 @@ class Resting:
         tilt = self.tilt(self.force[later].mean(axis=0) - self.force[earlier].mean(axis=0))
         size = float(np.linalg.norm(tilt))
         if not (self.recorded("gyro") and size > 0):
-            return tilt, UNTOLD
+            return tilt, UNCONFIRMED
         usual = (self.rate[earlier].mean(axis=0) + self.rate[later].mean(axis=0)) / 2
         turned = (self.rate[first:after] - usual).sum(axis=0) * self.interval
         by_rate = float(np.max(self.noise[3:])) * self.interval * np.sqrt(after - first)
@@ -125,13 +126,13 @@ class Resting:
         Nothing else happens from `start` to `stop`.
         """
         if not self.recorded("accel"):
-            return UNTOLD
+            return UNCONFIRMED
         jump = self.rate[place:stop].mean(axis=0) - self.rate[start:place].mean(axis=0)
         level = self.level(jump)
         size = float(np.linalg.norm(level))
         # A turn about an axis near the vertical hardly tilts.
         if size < 0.5 * float(np.linalg.norm(jump)):
-            return UNTOLD
+            return UNCONFIRMED
         time = (np.arange(start, stop) - place) * self.interval
         design = np.column_stack([np.ones(len(time)), time, np.maximum(time, 0.0)])
         inverse = np.linalg.pinv(design)
@@ -151,5 +152,5 @@ class Resting:
             change = np.abs(np.diff(self.values[: k * length, own], axis=0, append=np.nan))
             usual = self.noise[own] * np.sqrt(2) / MAD_TO_SIGMA
             blocks = np.nanmedian(change.reshape(k, length, len(own)), axis=1)
-            both &= (blocks > JERK * usual).any(axis=1)
+            both &= (blocks > MIN_JERK_RATIO * usual).any(axis=1)
         return both

@@ -11,26 +11,27 @@ from scipy.special import ndtri, stdtr
 from inertial.signal.detector import Array, Integers
 from inertial.signal.scatter import MAD_TO_SIGMA, median
 
-# ---- A sudden change of level in noisy readings: where, how large, how sure.
-
-SIDE = 10.0  # s on each side that are compared at most: further away a bias may have wandered
-SHORTEST = 0.2  # s that a level has to last: what is shorter is a knock or a spike
-FEWEST = 4  # readings that a level has to last
-APART = 16  # windows that fit into a record, at least, for its own scatter to tell their noise
-SURE = 128  # and as many for the noise to be known well: about 30 degrees of freedom
-SHARED = 8  # differences that are looked at in each width
-CLIPPED = 5.0  # sigmas from the running median: a spike is no step
-PLACE = 7.35  # fall of twice the log likelihood about a change, 95 %: Hansen, Econometrica 68, 2000
-ABRUPT = 60.0  # chi-squared by which a ramp of the width that is excluded fits worse on average
-QUICK = 0.25  # s, what an instrument's own filter may make of a step
-BETTER = 12.0  # chi-squared by which a step must fit better than everything smooth
-COLOURED = 1.6  # times what shorter means scatter by, for their length: noise that grows
-TOLD = 800.0  # readings on each side that tell a step of one sigma from a bend
-UNSTEADY = 3.0  # times the usual variance about the two levels: a motion, no level
-LEFT = 0.3  # of a step, what may be left of it at first
-CLEAR = 6.0  # sigmas that are left of a step once all others and the trend are taken off
-MOST = 40  # steps of one record
-POINTS = 500  # to which a window is reduced where smooth courses are fitted
+MAX_SIDE_S = 10.0  # s on each side that are compared at most: further away a bias may have wandered
+MIN_LEVEL_S = 0.2  # s that a level has to last: what is shorter is a knock or a spike
+MIN_LEVEL_READINGS = 4  # readings that a level has to last
+# Windows that fit into a record, at least, for its own scatter to give their noise
+MIN_WINDOWS = 16
+MIN_SURE_WINDOWS = 128  # and as many for the noise to be known well: about 30 degrees of freedom
+DIFFERENCES_PER_WIDTH = 8  # differences that are examined in each width
+MAX_DEVIATION_SIGMA = 5.0  # sigmas from the running median: a spike is no step
+# Fall of twice the log likelihood about a change, 95 %: Hansen, Econometrica 68, 2000
+PLACE_LIKELIHOOD = 7.35
+# Chi-squared by which a ramp of the width that is excluded fits worse on average
+RAMP_CHI_SQUARED = 60.0
+FILTER_S = 0.25  # s, what an instrument's own filter may make of a step
+MIN_CHI_SQUARED_GAIN = 12.0  # chi-squared by which a step must fit better than everything smooth
+MIN_COLOURED_RATIO = 1.6  # times what shorter means scatter by, for their length: noise that grows
+RESOLVING_READINGS = 800.0  # readings on each side that distinguish a step of one sigma from a bend
+MAX_VARIANCE_RATIO = 3.0  # times the usual variance about the two levels: a motion, no level
+MAX_CORRECTION_SHARE = 0.3  # of a step, what may be left of it at first
+MIN_STEP_SIGMA = 6.0  # sigmas that are left of a step once all others and the trend are taken off
+MAX_STEPS = 40  # steps of one record
+FIT_POINTS = 500  # to which a window is reduced where smooth courses are fitted
 
 
 @dataclass(frozen=True)
@@ -62,53 +63,65 @@ def steps(readings: Array, interval: float, quantum: float, level: float) -> lis
     interval: s; quantum: smallest step of the readings; level: accepted p-value.
     """
     n = len(readings)
-    shortest = max(FEWEST, round(SHORTEST / interval))
-    longest = min(n // 2, round(SIDE / interval))
-    if n < APART * FEWEST or longest < shortest:
+    shortest = max(MIN_LEVEL_READINGS, round(MIN_LEVEL_S / interval))
+    longest = min(n // 2, round(MAX_SIDE_S / interval))
+    if n < MIN_WINDOWS * MIN_LEVEL_READINGS or longest < shortest:
         return []
     clean = without_spikes(readings)
-    found: list[Step] = []
+    detected: list[Step] = []
     refused = np.full(n, longest + 1)  # from this width on, what is there was refused
-    while len(found) < MOST:
-        rest = clean - _course(found, n)
+    while len(detected) < MAX_STEPS:
+        rest = clean - _course(detected, n)
         noise = _Noise(rest, longest, quantum)
         p_value, place, width = _strongest(noise, shortest, refused)
         if p_value > level:
             break
-        step = _fitted(rest, place, width, noise, QUICK / interval)
-        beside = [] if step is None else [one for one in found if _corrects(step, one, shortest)]
+        step = _fitted(rest, place, width, noise, FILTER_S / interval)
+        beside = (
+            []
+            if step is None
+            else [other for other in detected if _corrects(step, other, shortest)]
+        )
         if step is None or beside:
             near = slice(max(place - width, 0), place + width + 1)
             refused[near] = np.minimum(refused[near], width)
         if beside:
             # Its size was taken from too few readings.
-            found = [replace(one, reach=longest) if one in beside else one for one in found]
+            detected = [
+                replace(other, reach=longest) if other in beside else other for other in detected
+            ]
         elif step is not None:
-            found = [*found, replace(step, p_value=p_value)]
-        found = _together(clean, found, noise, places=False)
-    if not found:
+            detected = [*detected, replace(step, p_value=p_value)]
+        detected = _together(clean, detected, noise, places=False)
+    if not detected:
         return []
     # With all others known, each is fitted to all that is between them.
-    noise = _Noise(clean - _course(found, n), longest, quantum)
-    wide = [replace(step, reach=longest) for step in found]
-    found = _together(clean, wide, noise, places=True)
-    edges = np.array([0, *(step.place for step in found), n])
+    noise = _Noise(clean - _course(detected, n), longest, quantum)
+    wide = [replace(step, reach=longest) for step in detected]
+    detected = _together(clean, wide, noise, places=True)
+    edges = np.array([0, *(step.place for step in detected), n])
     lasts = np.minimum(edges[1:-1] - edges[:-2], edges[2:] - edges[1:-1]) >= shortest
-    stands_out = np.array([abs(step.size) > CLEAR * step.sigma for step in found], bool)
-    return [step for step, kept in zip(found, lasts & stands_out, strict=True) if kept]
+    significant = np.array(
+        [abs(step.size) > MIN_STEP_SIGMA * step.sigma for step in detected], bool
+    )
+    return [step for step, kept in zip(detected, lasts & significant, strict=True) if kept]
 
 
 def _corrects(step: Step, other: Step, shortest: int) -> bool:
     """Whether a step is what is left of another one whose size was not well known."""
     near = abs(step.place - other.place) < shortest
-    return near and abs(step.size) < LEFT * abs(other.size)
+    return near and abs(step.size) < MAX_CORRECTION_SHARE * abs(other.size)
 
 
 def without_spikes(readings: Array) -> Array:
     """The readings, (n,), with what one or two of them stick out of their neighbours cut off."""
     middle = median_filter(readings, 5, mode="nearest")
     scatter = MAD_TO_SIGMA / np.sqrt(2) * median(np.abs(np.diff(readings)))
-    return np.asarray(np.clip(readings, middle - CLIPPED * scatter, middle + CLIPPED * scatter))
+    return np.asarray(
+        np.clip(
+            readings, middle - MAX_DEVIATION_SIGMA * scatter, middle + MAX_DEVIATION_SIGMA * scatter
+        )
+    )
 
 
 def _cumulative(readings: Array) -> Array:
@@ -143,9 +156,9 @@ class _Noise:
         changes: list[Array] = []
         self.total = _cumulative(readings)
         width = 1
-        while width <= min(longest, len(readings) // APART):
-            # Neighbours share nearly all their readings: some tell the scatter as well as all.
-            change = _differences(self.total, width)[:: max(width // SHARED, 1)]
+        while width <= min(longest, len(readings) // MIN_WINDOWS):
+            # Neighbours share nearly all their readings: some give the scatter as well as all.
+            change = _differences(self.total, width)[:: max(width // DIFFERENCES_PER_WIDTH, 1)]
             trend = float(median(change))
             self.widths.append(width)
             self.trend.append(trend)
@@ -154,15 +167,15 @@ class _Noise:
             width *= 2
         # The drift not taken off.
         whole = [_white(*each) for each in zip(changes[-4:], self.widths[-4:], strict=True)]
-        self.coloured = whole[-1] > COLOURED * min(whole)
-        # How drift and noise that grows go on beyond the lengths they were seen at, nobody knows.
+        self.coloured = whole[-1] > MIN_COLOURED_RATIO * min(whole)
+        # Drift and noise that grows are unknown beyond the lengths at which they were observed.
         self.longest = min(longest, self.widths[-1]) if self.coloured else longest
 
     def white(self, width: int) -> float:
         """Scatter of a reading such that white noise makes means of this width scatter so.
 
-        The largest of four lengths up to this one, or to the longest that the record can tell:
-        so noise that grows with time, or is badly known, is rather taken too large.
+        The largest of four lengths up to this one, or to the longest that the record resolves:
+        so noise that grows with time, or is poorly known, is overestimated rather than under.
         """
         known = [s for w, s in zip(self.widths, self.single, strict=True) if w <= width]
         return float(max(self.least, *known[-4:]))
@@ -178,12 +191,14 @@ class _Noise:
     def degrees(self, width: int) -> float:
         """Degrees of freedom of this scatter: the median uses 0.37 of n/1.5 independent ones."""
         n = len(self.readings)
-        return 0.37 / 1.5 * n / (width if self.coloured else min(width, max(n // SURE, 1)))
+        return (
+            0.37 / 1.5 * n / (width if self.coloured else min(width, max(n // MIN_SURE_WINDOWS, 1)))
+        )
 
     def variance(self, width: int) -> float:
         """Usual variance of the readings about their mean over this width."""
-        away = self.readings - uniform_filter1d(self.readings, width)
-        return float(max((MAD_TO_SIGMA * median(np.abs(away))) ** 2, self.least**2))
+        deviation = self.readings - uniform_filter1d(self.readings, width)
+        return float(max((MAD_TO_SIGMA * median(np.abs(deviation))) ** 2, self.least**2))
 
 
 def _strongest(noise: _Noise, shortest: int, refused: Integers) -> tuple[float, int, int]:
@@ -205,13 +220,13 @@ def _strongest(noise: _Noise, shortest: int, refused: Integers) -> tuple[float, 
 def _fitted(rest: Array, place: int, width: int, noise: _Noise, quick: float) -> Step | None:
     """The step at about this place, if nothing smooth explains what is seen there.
 
-    Where the windows are too short to tell, longer ones are tried as well.
+    Where the windows are too short to decide, longer ones are tried as well.
     """
     step = _within(rest, place - width, place + width, noise, quick)
     if step is None:
         size = _placed(rest[place - width : place + width], noise, width).size
-        told = TOLD * (noise.white(width) / max(abs(size), 1e-300)) ** 2
-        wider = int(min(told, place, len(rest) - place, noise.longest))
+        resolving = RESOLVING_READINGS * (noise.white(width) / max(abs(size), 1e-300)) ** 2
+        wider = int(min(resolving, place, len(rest) - place, noise.longest))
         if wider > width:
             step = _within(rest, place - wider, place + wider, noise, quick)
     return step
@@ -223,21 +238,21 @@ def _within(rest: Array, first: int, after: int, noise: _Noise, quick: float) ->
     sigma = noise.white((after - first) // 2)
     # Readings that hardly leave one count jump by a count where something drifts past its border.
     rounded = noise.single[0] < noise.quantum / 2 and abs(step.size) < 1.5 * noise.quantum
-    narrow = max(12 * ABRUPT * (sigma / max(abs(step.size), 1e-300)) ** 2, quick)
+    narrow = max(12 * RAMP_CHI_SQUARED * (sigma / max(abs(step.size), 1e-300)) ** 2, quick)
     if rounded or narrow > len(y):
         return None
     # Chi-squared of block means is that of the readings, less what is within the blocks.
-    per = -(-len(y) // POINTS)
+    per = -(-len(y) // FIT_POINTS)
     blocks = y[: len(y) // per * per].reshape(-1, per).mean(axis=1)
     at = np.asarray((np.arange(len(blocks)) + 0.5) * per, np.float64)
     weight = per / sigma**2
     best = _misfit(blocks, at, np.clip((at - step.place) / per + 0.5, 0, 1)) * weight
     smooth = min(_misfit(blocks, at, course) for course in _courses(at, step.place, narrow))
-    if smooth * weight - best < BETTER:
+    if smooth * weight - best < MIN_CHI_SQUARED_GAIN:
         return None
     left = y - step.size * (np.arange(len(y)) >= step.place)
     near = slice(max(step.place - 64, 0), step.place + 64)
-    if float(np.var(left[near])) > UNSTEADY * noise.variance(2 * len(y)):
+    if float(np.var(left[near])) > MAX_VARIANCE_RATIO * noise.variance(2 * len(y)):
         return None
     return replace(
         step,
@@ -254,14 +269,18 @@ def _placed(y: Array, noise: _Noise, width: int, only: int | None = None) -> Ste
     t = np.arange(m) - (m - 1) / 2
     level = y - y.mean()
     straight = level - t * float(level @ t) / float(t @ t)
-    k = np.arange(FEWEST, m - FEWEST + 1) if only is None else np.array([only])
+    k = (
+        np.arange(MIN_LEVEL_READINGS, m - MIN_LEVEL_READINGS + 1)
+        if only is None
+        else np.array([only])
+    )
     after = -np.cumsum(straight)[k - 1]  # the sum of what follows
     own = k * (m - k) / m - (k * (m - k) / 2) ** 2 / float(t @ t)
     size, sigma = after / own, noise.white(width)
     # An oscillation that a long mean does not see moves the place nevertheless.
     gain = after**2 / own / max(sigma, *noise.single) ** 2
     best = int(np.argmax(gain))
-    likely = k[gain >= gain[best] - PLACE]
+    likely = k[gain >= gain[best] - PLACE_LIKELIHOOD]
     return Step(
         int(k[best]),
         int(likely[0]),
@@ -272,7 +291,7 @@ def _placed(y: Array, noise: _Noise, width: int, only: int | None = None) -> Ste
 
 
 def _courses(at: Array, place: int, narrow: float) -> Iterator[Array]:
-    """What may look like a step and is none: bends, settling, ramps of at least this width."""
+    """Courses that resemble a step: bends, settling, ramps of at least this width."""
     end = float(at[-1])
     yield np.column_stack([at**2, at**3])
     for share in (1 / 32, 1 / 16, 1 / 8, 1 / 4, 1 / 2, 1):
@@ -292,27 +311,29 @@ def _misfit(y: Array, at: Array, course: Array) -> float:
     return float(np.sum((y - design @ solution) ** 2))
 
 
-def _course(found: Sequence[Step], n: int) -> Array:
+def _course(detected: Sequence[Step], n: int) -> Array:
     """What these steps make of n readings."""
     course = np.zeros(n)
-    for step in found:
+    for step in detected:
         course[step.place :] += step.size
     return course
 
 
-def _together(readings: Array, found: Sequence[Step], noise: _Noise, *, places: bool) -> list[Step]:
+def _together(
+    readings: Array, detected: Sequence[Step], noise: _Noise, *, places: bool
+) -> list[Step]:
     """Every step once more, between its neighbours and without the others; in their order.
 
-    places: they are looked for again; else the sizes alone.
+    places: they are estimated again; else the sizes alone.
     """
     n = len(readings)
-    now = sorted(found, key=lambda step: step.place)
+    now = sorted(detected, key=lambda step: step.place)
     for _ in range(2):
         edges = [0, *(step.place for step in now), n]
         for i, step in enumerate(now):
             first = max(edges[i], step.place - step.reach)
             after = min(edges[i + 2], step.place + step.reach)
-            if min(step.place - first, after - step.place) < FEWEST:
+            if min(step.place - first, after - step.place) < MIN_LEVEL_READINGS:
                 continue
             others = [other for other in now if other is not step]
             own = (readings - _course(others, n))[first:after]
@@ -331,8 +352,8 @@ def _together(readings: Array, found: Sequence[Step], noise: _Noise, *, places: 
 
 # ---- Where the mean of a series changes, and stays changed for a while.
 
-CERTAIN = 5.0  # sigma: 6·10⁻⁷ for one place, and errors of stamps cancel, so in truth less
-KINKS = 4  # of the largest differences of blocks, which may be what is looked for
+MIN_CHANGE_SIGMA = 5.0  # sigma: 6·10⁻⁷ for one place, and errors of stamps cancel, so in truth less
+MAX_BORDERS = 4  # of the largest differences of blocks, which may be borders
 
 
 def changes(series: Array, length: int, shortest: int, least: float, finest: float) -> list[int]:
@@ -368,7 +389,7 @@ def changes(series: Array, length: int, shortest: int, least: float, finest: flo
 def _scatter(blocks: Array) -> float:
     """The sigma of a block, from differences of neighbours without the largest."""
     squares = np.sort(np.diff(blocks) ** 2)
-    kept = max(len(squares) - KINKS, 1)
+    kept = max(len(squares) - MAX_BORDERS, 1)
     # What is left of the variance of Gaussian values without those beyond the bound.
     share = kept / len(squares)
     bound = float(ndtri((1 + share) / 2))
@@ -393,7 +414,7 @@ def _step(blocks: Array, shortest: int, sigma: float) -> int:
     away = np.cumsum(blocks - blocks.mean())[k - 1]
     likely = np.abs(away) / np.sqrt(k * (n - k) / n)
     best = int(np.argmax(likely))
-    return int(k[best]) if likely[best] > CERTAIN * sigma else 0
+    return int(k[best]) if likely[best] > MIN_CHANGE_SIGMA * sigma else 0
 
 
 def _to_the_value(series: Array, border: int, length: int) -> int:
@@ -412,7 +433,9 @@ def _told_apart(series: Array, borders: list[int], least: float, sigma: float) -
     """
     while len(borders) > 2:
         means = [float(series[a:b].mean()) for a, b in pairwise(borders)]
-        unsure = CERTAIN * sigma * np.sqrt(1 / np.diff(borders)[1:] + 1 / np.diff(borders)[:-1])
+        unsure = (
+            MIN_CHANGE_SIGMA * sigma * np.sqrt(1 / np.diff(borders)[1:] + 1 / np.diff(borders)[:-1])
+        )
         apart = np.abs(np.diff(means)) / np.maximum(unsure, least)
         nearest = int(np.argmin(apart))
         if apart[nearest] >= 1:

@@ -9,8 +9,8 @@ from scipy.fft import rfft
 from inertial.signal.detector import SENSORS, Array, Integers, Log, Piece
 from inertial.signal.spectral_lines import (
     HOP,
-    LENGTHS,
-    PART,
+    PART_BINS,
+    STRETCH_WINDOWS,
     WINDOW,
     Line,
     edges,
@@ -22,13 +22,14 @@ from inertial.signal.spectral_lines import (
     windows,
 )
 
-LOWEST = 2.0  # Hz: what is slower is motion
-COUPLED = 5.0  # sigma: what another channel has of an oscillation at the least, to be named
-BRIDGED = 8  # intervals between two readings at the most, to be interpolated
-RECORDED = 0.5  # of the readings of a channel at the least
-EXCERPT = (24, 64)  # readings of a log that is looked at as a whole
-WHOLE = 0.9  # of the usual size: a window in which the oscillation is there all the time
-FEWEST = 2  # such windows
+MIN_FREQUENCY = 2.0  # Hz: what is slower is motion
+# Sigma: what another channel has of an oscillation at the least, to be named
+MIN_COUPLING_SIGMA = 5.0
+MAX_INTERPOLATED = 8  # intervals between two readings at the most, to be interpolated
+MIN_RECORDED_SHARE = 0.5  # of the readings of a channel at the least
+EXCERPT_READINGS = (24, 64)  # readings of a log that is examined as a whole
+MIN_FULL_SHARE = 0.9  # of the usual size: a window in which the oscillation is there all the time
+MIN_FULL_WINDOWS = 2  # such windows
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ class Triad:
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class AxisLine:
     """A line of one axis of a triad, its amplitude and that in units of the noise."""
 
     triad: Triad
@@ -109,17 +110,19 @@ class Seen:
 
 
 def tones(piece: Piece, log: Log) -> Iterator[Tone]:
-    """The oscillations of a piece, each told of the channel in which it is largest."""
+    """The oscillations of a piece, each with the channel in which it is largest."""
     triads = [
         triad for axes in SENSORS.values() for triad in _triads(piece, log.interval, axes.start)
     ]
-    seen = [one for triad in triads for axis in range(3) for one in _seen(triad, axis, log)]
-    while seen:
-        clearest = max(seen, key=lambda one: one.clear)
-        alike = [one for one in seen if _same(one, clearest)]
-        seen = [one for one in seen if one not in alike]
-        own = [one for one in alike if one.triad is clearest.triad]
-        largest = max(own, key=lambda one: one.amplitude)
+    remaining = [
+        line for triad in triads for axis in range(3) for line in _axis_lines(triad, axis, log)
+    ]
+    while remaining:
+        strongest = max(remaining, key=lambda line: line.clear)
+        alike = [line for line in remaining if _same(line, strongest)]
+        remaining = [line for line in remaining if line not in alike]
+        own = [line for line in alike if line.triad is strongest.triad]
+        largest = max(own, key=lambda line: line.amplitude)
         yield _tone(largest, alike, triads, log)
 
 
@@ -135,22 +138,24 @@ def _triads(piece: Piece, interval: float, first_channel: int) -> Iterator[Triad
     steps = np.maximum(steps, 1.0)
     read = np.append(0.0, np.cumsum(steps))
     # A few that are missing are interpolated like single channels; a longer gap stays one.
-    known = np.repeat(np.arange(len(steps)), np.where(steps <= BRIDGED, steps, 1).astype(np.int64))
+    known = np.repeat(
+        np.arange(len(steps)), np.where(steps <= MAX_INTERPOLATED, steps, 1).astype(np.int64)
+    )
     since = np.arange(len(known)) - np.searchsorted(known, known)
     time = np.append(read[known] + since, read[-1])
     values = np.full((len(time), 3), np.nan)
     for axis in range(3):
         own = there[places, axis]
-        if own.mean() > RECORDED:
+        if own.mean() > MIN_RECORDED_SHARE:
             values[:, axis] = np.interp(time, read[own], readings[places[own], axis])
-    excerpt = EXCERPT[0] <= len(time) <= EXCERPT[1]
-    if excerpt or len(time) >= WINDOW + (LENGTHS[0] - 1) * HOP:
+    excerpt = EXCERPT_READINGS[0] <= len(time) <= EXCERPT_READINGS[1]
+    if excerpt or len(time) >= WINDOW + (STRETCH_WINDOWS[0] - 1) * HOP:
         even = np.append(places[known], places[-1])
         window = len(time) if excerpt else WINDOW
         yield Triad(first_channel, even, values, time, 1 / interval, window)
 
 
-def _seen(triad: Triad, axis: int, log: Log) -> Iterator[Seen]:
+def _axis_lines(triad: Triad, axis: int, log: Log) -> Iterator[AxisLine]:
     """The lines of one axis that are faster than a motion and larger than rounding makes them."""
     if not np.isfinite(triad.values[:, axis]).all():
         return
@@ -158,17 +163,19 @@ def _seen(triad: Triad, axis: int, log: Log) -> Iterator[Seen]:
     count = float(np.nan_to_num(log.quantum[triad.first_channel + axis]))
     for line in lines(cut, time) if triad.window == WINDOW else line_of_one(cut, time):
         # Windows at its ends may hold but part of it.
-        inner = 1 if line.after - line.first > LENGTHS[0] else 0
+        inner = 1 if line.after - line.first > STRETCH_WINDOWS[0] else 0
         part = slice(line.first + inner, line.after - inner)
         amplitude, noise = _size(cut[part], time[part], line.frequency)
-        if line.frequency * triad.rate >= LOWEST and (amplitude > count or noise > count / 2):
-            yield Seen(triad, axis, line, amplitude, amplitude / noise)
+        if line.frequency * triad.rate >= MIN_FREQUENCY and (
+            amplitude > count or noise > count / 2
+        ):
+            yield AxisLine(triad, axis, line, amplitude, amplitude / noise)
 
 
 def _size(cut: Array, time: Array, frequency: float) -> tuple[float, float]:
     """The amplitude of a line over windows, and the noise of one reading."""
     weights = hann(cut.shape[1])
-    power = np.abs(rfft(cut, axis=1)[:, PART:-1]) ** 2
+    power = np.abs(rfft(cut, axis=1)[:, PART_BINS:-1]) ** 2
     variance = float(np.median(power) / np.log(2) / (weights @ weights))
     square = float(np.mean(np.abs(phasors(cut, time, frequency)) ** 2))
     # What noise adds to the square of a phasor.
@@ -176,51 +183,51 @@ def _size(cut: Array, time: Array, frequency: float) -> tuple[float, float]:
     return float(np.sqrt(max(square, 0.0))), float(np.sqrt(max(variance, 1e-300)))
 
 
-def _same(one: Seen, other: Seen) -> bool:
+def _same(line: AxisLine, other: AxisLine) -> bool:
     """Whether two lines may be one oscillation: the same frequency at the same time."""
-    (start, end), (begin, finish) = one.extent, other.extent
+    (start, end), (begin, finish) = line.extent, other.extent
     shared = min(end, finish) - max(start, begin)
     shorter = min(end - start, finish - begin)
-    near = abs(one.frequency - other.frequency) < max(one.resolved, other.resolved)
+    near = abs(line.frequency - other.frequency) < max(line.resolved, other.resolved)
     return near and shared > shorter / 2
 
 
-def _tone(seen: Seen, alike: list[Seen], triads: list[Triad], log: Log) -> Tone:
-    """What is told of a line, and of the other channels that have it."""
-    triad, frequency = seen.triad, seen.line.frequency
-    line, start, end = seen.line, 0, len(triad.places)
+def _tone(largest: AxisLine, alike: list[AxisLine], triads: list[Triad], log: Log) -> Tone:
+    """A line with the other channels that have it."""
+    triad, frequency = largest.triad, largest.line.frequency
+    line, start, end = largest.line, 0, len(triad.places)
     if triad.window == WINDOW:
-        start, end = _extent(seen)
-        # Windows that lie within it as a whole tell how large it is.
+        start, end = _extent(largest)
+        # Windows that lie within it as a whole give its amplitude.
         line = replace(line, first=-(-start // HOP), after=(end - WINDOW) // HOP + 1)
-        line = line if line.after - line.first >= FEWEST else seen.line
-    amplitude, noise = _size(triad.cut(seen.axis, line), triad.times(line), frequency)
+        line = line if line.after - line.first >= MIN_FULL_WINDOWS else largest.line
+    amplitude, noise = _size(triad.cut(largest.axis, line), triad.times(line), frequency)
     # An increment is the mean over its interval, which is less than the rate at an instant.
     whole = 1 / float(np.sinc(frequency)) if log.increments else 1.0
-    shares = _shares(replace(seen, line=line), alike, triads)
+    shares = _shares(replace(largest, line=line), alike, triads)
     return Tone(
-        channel=triad.first_channel + seen.axis,
+        channel=triad.first_channel + largest.axis,
         start=int(triad.places[start]),
         end=int(triad.places[end - 1]) + 1,
-        frequency=seen.frequency,
-        resolved=seen.resolved,
+        frequency=largest.frequency,
+        resolved=largest.resolved,
         amplitude=whole * amplitude,
         clear=amplitude / noise,
         others=tuple((channel, whole * amplitude * share) for channel, share in shares),
         rate=triad.rate,
-        p_value=min(one.line.p_value for one in alike),
+        p_value=min(other.line.p_value for other in alike),
     )
 
 
-def _extent(seen: Seen) -> tuple[int, int]:
+def _extent(largest: AxisLine) -> tuple[int, int]:
     """The readings of a line: the first, and the one after the last."""
-    triad, line = seen.triad, seen.line
-    sizes = np.abs(phasors(triad.cut(seen.axis, line), triad.times(line), line.frequency))
-    whole = line.first + np.flatnonzero(sizes > WHOLE * np.median(sizes))
+    triad, line = largest.triad, largest.line
+    sizes = np.abs(phasors(triad.cut(largest.axis, line), triad.times(line), line.frequency))
+    whole = line.first + np.flatnonzero(sizes > MIN_FULL_SHARE * np.median(sizes))
     inside = int(whole[0]) * HOP + WINDOW // 2, int(whole[-1]) * HOP + WINDOW // 2
     outside = line.first * HOP - WINDOW, (line.after + 1) * HOP + WINDOW
     return edges(
-        triad.values[:, seen.axis],
+        triad.values[:, largest.axis],
         triad.time,
         inside,
         (max(outside[0], 0), min(outside[1], len(triad.time))),
@@ -228,23 +235,29 @@ def _extent(seen: Seen) -> tuple[int, int]:
     )
 
 
-def _shares(seen: Seen, alike: list[Seen], triads: list[Triad]) -> Iterator[tuple[int, float]]:
+def _shares(
+    largest: AxisLine, alike: list[AxisLine], triads: list[Triad]
+) -> Iterator[tuple[int, float]]:
     """The other channels that have an oscillation, and their part of its amplitude."""
-    line, time = seen.line, seen.triad.times(seen.line)
-    own = phasors(seen.triad.cut(seen.axis, line), time, line.frequency)
+    line, time = largest.line, largest.triad.times(largest.line)
+    own = phasors(largest.triad.cut(largest.axis, line), time, line.frequency)
     square = float(np.vdot(own, own).real)
     for triad in triads:
-        found = {one.axis: one.amplitude for one in alike if one.triad is triad}
+        amplitudes = {
+            other_line.axis: other_line.amplitude
+            for other_line in alike
+            if other_line.triad is triad
+        }
         for axis in range(3):
-            if (triad is seen.triad and axis == seen.axis) or np.isnan(triad.values[0, axis]):
+            if (triad is largest.triad and axis == largest.axis) or np.isnan(triad.values[0, axis]):
                 continue
-            if len(own) == 1 or not np.array_equal(triad.places, seen.triad.places):
-                share, clear = found.get(axis, 0.0) / seen.amplitude, axis in found
+            if len(own) == 1 or not np.array_equal(triad.places, largest.triad.places):
+                share, clear = amplitudes.get(axis, 0.0) / largest.amplitude, axis in amplitudes
             else:
                 other = phasors(triad.cut(axis, line), time, line.frequency)
                 in_step = np.vdot(own, other) / square
                 left = float(np.linalg.norm(other - in_step * own)) / np.sqrt(len(own) - 1)
                 share = float(np.abs(in_step))
-                clear = share * np.sqrt(square) > COUPLED * left
+                clear = share * np.sqrt(square) > MIN_COUPLING_SIGMA * left
             if clear:
                 yield triad.first_channel + axis, share

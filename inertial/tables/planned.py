@@ -122,10 +122,10 @@ PUBLISHED = Table(
     (
         Column("parameter", TEXT, "", "stage and parameter, such as gyroscope/bias_x"),
         Column("value", DOUBLE, "as unit", "what others found for it"),
-        Column("sigma", DOUBLE, "as unit", "its standard deviation, if told", nullable=True),
+        Column("sigma", DOUBLE, "as unit", "its standard deviation, if stated", nullable=True),
         Column("unit", TEXT, "", "unit of value and sigma, SI"),
         Column("source", TEXT, "", "where it is published"),
-        Column("window", DOUBLE, "rad", "angle of the window it is from, if told", nullable=True),
-        Column("samples", DOUBLE, "1", "intervals of that window, if told", nullable=True),
+        Column("window", DOUBLE, "rad", "angle of the window it is from, if stated", nullable=True),
+        Column("samples", DOUBLE, "1", "intervals of that window, if stated", nullable=True),
     ),
 )

@@ -3,8 +3,6 @@
 from inertial.tables.shared import AS_CHANNEL, AXIS, BODY, LOG, PHASES, RECORDS, SENSOR, channels
 from inertial.tables.table import DOUBLE, INTEGER, LABEL, TEXT, TRUTH, WORD, Column, Table
 
-# ---- Samples, the account of every byte, and the clocks.
-
 SAMPLES = Table(
     "samples",
     1,
@@ -99,8 +97,6 @@ CHANNEL_STATISTICS = Table(
 )
 
 
-# ---- What is wrong with a recording, and its parts: findings, masks, segments, blocks.
-
 FINDINGS = Table(
     "findings",
     1,
@@ -117,7 +113,7 @@ FINDINGS = Table(
         Column("size", DOUBLE, "as unit", "how large", nullable=True),
         Column("unit", TEXT, "", "unit of size"),
         Column("p_value", DOUBLE, "1", "chance of such a size if nothing is wrong", nullable=True),
-        Column("severity", INTEGER, "", "3 spoils a result, 2 weakens it, 1 is good to know"),
+        Column("severity", INTEGER, "", "3 invalidates a result, 2 degrades it, 1 is a remark"),
         Column("consequence", TEXT, "", "what it does to the result"),
         Column("action", TEXT, "", "what the pipeline did, or what the laboratory should do"),
         Column("sentence", TEXT, "", "the finding in words"),

@@ -1,4 +1,4 @@
-"""What a piece of a log gives, and what its first pieces tell of its clock."""
+"""A decoded piece of a log, and the clock of a log by its first pieces."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class Decoded:
     samples: dict[str, Any]  # columns of the table samples by name, (n,) each, SI
     refused: list[RefusedLine]
     account: Account
-    imu_types: frozenset[int] = frozenset()  # that the messages tell, by NovAtel's list
+    imu_types: frozenset[int] = frozenset()  # in the messages, by NovAtel's list
 
 
 def look_ahead(
@@ -32,12 +32,12 @@ def look_ahead(
     That is the median, and the mean of those steps that are no gaps: stamps of a
     millisecond make the median jump, not the mean.
     """
-    seen: list[NDArray[Any]] = []
+    times_so_far: list[NDArray[Any]] = []
     for some in times:
-        seen.append(some)
-        if sum(len(part) for part in seen) > LOOK_AHEAD:
+        times_so_far.append(some)
+        if sum(len(part) for part in times_so_far) > LOOK_AHEAD:
             break
-    together = np.concatenate(seen) if seen else np.array([])
+    together = np.concatenate(times_so_far) if times_so_far else np.array([])
     steps = np.diff(together)
     forward = steps[steps > 0]
     if not len(forward):

@@ -58,8 +58,8 @@ class ReceiverLog:
                 **self._rates(records.counts),
             }
             types = np.bincount(records.imu[records.imu > 0])
-            told = frozenset(np.flatnonzero(types).tolist())
-            yield Decoded(samples, reading.refused, reading.account, told)
+            types_in_messages = frozenset(np.flatnonzero(types).tolist())
+            yield Decoded(samples, reading.refused, reading.account, types_in_messages)
 
     def _rates(self, counts: NDArray[np.int32]) -> dict[str, Reals]:
         if self.interval is None:

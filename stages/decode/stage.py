@@ -39,7 +39,7 @@ def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
     """
     rows = [row for batch in logs for row in batch.to_pylist()]
     opened = [_open(row, raw) for row in rows]
-    table = TableAngle.told(rows, raw)
+    table = TableAngle.of_logs(rows, raw)
     stamps = [log.first for log in opened if isinstance(log, ReceiverLog) and log.first is not None]
     origin = min(stamps, default=0)
     for log in opened:

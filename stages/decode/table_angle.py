@@ -25,7 +25,7 @@ class TableAngle:
     unit: float  # rad
 
     @classmethod
-    def told(cls, rows: Sequence[Mapping[str, str]], raw: list[Path]) -> "TableAngle | None":
+    def of_logs(cls, rows: Sequence[Mapping[str, str]], raw: list[Path]) -> "TableAngle | None":
         """Of a campaign's logs; None where it has none."""
         stated = json.loads(rows[0]["layout"]).get("encoder") if rows else None
         if stated is None:

@@ -43,13 +43,13 @@ def published_values(file: YamlFile) -> Iterator[Row]:
     file.check("published")
     window = file.content.get("gyro_window")
     for sensor, stage in STAGES.items():
-        for name, told in file.content.get(sensor, {}).items():
-            size = SIZES[told["unit"]] if "unit" in told else 1.0
+        for name, entry in file.content.get(sensor, {}).items():
+            size = SIZES[entry["unit"]] if "unit" in entry else 1.0
             by_time = window if stage == "gyroscope" and name.startswith("scale") else None
             yield {
                 "parameter": f"{stage}/{name}",
-                "value": told["value"] * size,
-                "sigma": told["sigma"] * size if "sigma" in told else None,
+                "value": entry["value"] * size,
+                "sigma": entry["sigma"] * size if "sigma" in entry else None,
                 "unit": SI.get((sensor, name.partition("_")[0]), "1"),
                 "source": file.content["source"],
                 "window": by_time["degrees"] * DEGREE if by_time else None,

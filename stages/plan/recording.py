@@ -11,8 +11,6 @@ from inertial.physics.site import STANDARD_GRAVITY
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.campaign_units import CHANNEL_UNITS, DEGREE, PER_ROOT_HOUR, in_si
 
-# ---- The log of the table's encoder, where a campaign has one beside the IMU's.
-
 KEY = "encoder"
 
 
@@ -45,8 +43,6 @@ def encoder(file: YamlFile) -> dict[str, Any] | None:
         "offset": stated.get("offset_s", 0.0),
     }
 
-
-# ---- Where each manoeuvre is recorded, and how its log is read.
 
 Row = dict[str, Any]
 
@@ -210,7 +206,7 @@ def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[
 def logs(
     manoeuvres: list[Row], entry: dict[str, Any], encoder: dict[str, Any] | None
 ) -> Iterator[Row]:
-    """Every log with the layout of its bytes, complete with what the instrument says of it.
+    """Every log with the layout of its bytes, complete with the properties of the instrument.
 
     `encoder`: the log of the table's encoder, if there is one.
     """

@@ -8,7 +8,7 @@ from inertial.physics.site import EARTH_RATE, earth_rate, normal_gravity
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.campaign_units import ARC_SECOND
 
-# Where a campaign states no sigma, these are taken, and the report says so.
+# Where a campaign states no sigma, these are assumed, and the report states that.
 ASSUMED_POSITION = 30 * ARC_SECOND
 ASSUMED_ANGLE = 30 * ARC_SECOND
 ASSUMED_RATE = 1e-3

@@ -1,4 +1,4 @@
-"""What was recorded of each manoeuvre, against what the plan says of it."""
+"""What was recorded of each manoeuvre, compared with its plan."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -15,23 +15,21 @@ from stages.segment.matching import motion
 from stages.segment.motion import Stretch
 from stages.segment.windows import Binned
 
-# ---- What is missing of a turn, and whether the rate about it tells the angle that is missing.
-
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
-FEW = 3  # masked samples in a row that may be interpolated where the rate changes
-SMALL = 0.1  # of the time of the ramps: what may be interpolated there in all
+MAX_MASKED_RUN = 3  # masked samples in a row that may be interpolated where the rate changes
+MAX_MASKED_SHARE = 0.1  # of the time of the ramps: what may be interpolated there in all
 # s of steady rate that must be recorded on either side of what is missing, or as much as is
-# missing where that is less: ten of the bins in which the end of a ramp is looked for, so that no
+# missing where that is less: ten of the bins in which the end of a ramp is sought, so that no
 # part of a ramp hides in the gap; on S0's turn the rate before and the rate after are then known
 # to 20 ppm each, better than the table keeps it.
-ENOUGH = 1.0
+MIN_STEADY_S = 1.0
 
 
 @dataclass(frozen=True)
 class Missing:
-    """What is missing of a turn: time, s, and the angle that the rate about it tells, rad.
+    """What is missing of a turn: time, s, and its angle by the rate before and after, rad.
 
     `hindrance`: why it cannot be bridged, in words; empty where it can, or nothing is missing.
     """
@@ -80,7 +78,7 @@ def _hindrance(
     if (missing < -step / 2).any():
         return "the time goes back while it turns"
     for hole in holes[inside[holes]]:
-        enough = min(ENOUGH, missing[hole])
+        enough = min(MIN_STEADY_S, missing[hole])
         before = float(seconds[:hole][steady[:hole]].sum())
         after = float(seconds[hole:][steady[hole:]].sum())
         if min(before, after) < enough - step / 2:
@@ -97,71 +95,72 @@ def _hindrance(
     lost = gaps["record"].to_numpy(np.int64)
     if ((lost[:, None] >= first) & (lost[:, None] <= last)).any():
         return where
-    if missing[ramps].max() > (FEW + 0.5) * step:
-        return f"{where}, and more than {FEW} samples in a row are masked"
-    if missing[ramps].sum() > SMALL * seconds[~steady].sum():
-        return f"{where}, and more than {SMALL:.0%} of its samples are masked"
+    if missing[ramps].max() > (MAX_MASKED_RUN + 0.5) * step:
+        return f"{where}, and more than {MAX_MASKED_RUN} samples in a row are masked"
+    if missing[ramps].sum() > MAX_MASKED_SHARE * seconds[~steady].sum():
+        return f"{where}, and more than {MAX_MASKED_SHARE:.0%} of its samples are masked"
     return ""
-
-
-# ---- What was recorded of each manoeuvre, against what the plan says of it.
 
 
 def not_found(m: Manoeuvre) -> Performed:
     """A manoeuvre of which the log has nothing."""
     what = "no rest in the planned direction" if m.do == "rest" else "no turn about its axis"
-    told = f"{m.name} is not in {m.log}: {what} was found where the plan has it."
-    return Performed(m.name, told, found=False, complete=False)
+    sentence = f"{m.name} is not in {m.log}: {what} was found where the plan has it."
+    return Performed(m.name, sentence, found=False, complete=False)
 
 
 def left_out(explained: Explained, plan: Sequence[Manoeuvre]) -> Iterator[tuple[str, Performed]]:
-    """Manoeuvres that are found otherwise than planned, so that only the laboratory can say more.
+    """Manoeuvres that are found otherwise than planned, so that only the laboratory can decide.
 
     They bear another's name, or stand in its place, or their log alone has axes that are taken
     for others.
     """
     why: dict[str, str] = {}
-    for one in explained.exchanged:
-        half = len(one.names) // 2
-        pairs = [*zip(one.names, one.names[half:] + one.names[:half], strict=True)]
+    for exchanged in explained.exchanged:
+        half = len(exchanged.names) // 2
+        pairs = [
+            *zip(exchanged.names, exchanged.names[half:] + exchanged.names[:half], strict=True)
+        ]
         for name, other in pairs:
-            what = "its log holds" if len(one.logs) == 2 else "in its place stands"
+            what = "its log holds" if len(exchanged.logs) == 2 else "in its place stands"
             why[name] = f"{name} is left out: {what} {other}."
     for m in plan:
         if m.log in explained.misread:
-            why[m.name] = f"{m.name} is left out: in {m.log} axes are taken for others."
+            why[m.name] = f"{m.name} is left out: in {m.log} axes are exchanged or reversed."
     for name, sentence in why.items():
         yield name, Performed(name, sentence, found=False, complete=False)
 
 
 def by_other_axes(done: Performed) -> Performed:
-    """A turn that is found only because axes of the gyros are taken for others.
+    """A turn that is found only because axes of the gyros are exchanged or reversed.
 
     An estimate that takes them as they are named would be led far astray.
     """
-    why = " It is left out of the estimates, for axes of the gyros are taken for others."
+    why = " It is left out of the estimates, for axes of the gyros are exchanged or reversed."
     return replace(done, complete=False, bridged=False, sentence=done.sentence + why)
 
 
 def positions(m: Manoeuvre, number: int) -> Performed:
     """A search for positions, and how many it found."""
-    told = f"{number} rests of at least {m.seconds:g} s were found; their attitudes are unknown."
-    return Performed(m.name, told, found=number > 0, complete=number > 0)
+    sentence = (
+        f"{number} rests of at least {m.seconds:g} s were found; their attitudes are unknown."
+    )
+    return Performed(m.name, sentence, found=number > 0, complete=number > 0)
 
 
-def rest(one: Binned, m: Manoeuvre, stretch: Stretch) -> Performed:
+def rest(binned: Binned, m: Manoeuvre, stretch: Stretch) -> Performed:
     """A rest and its duration."""
-    seconds = one.duration(stretch.first, stretch.after)
-    if not np.isfinite(one.first_s[stretch.first]):
-        records = int(one.edges[stretch.after] - one.edges[stretch.first])
+    seconds = binned.duration(stretch.first, stretch.after)
+    if not np.isfinite(binned.first_s[stretch.first]):
+        records = int(binned.edges[stretch.after] - binned.edges[stretch.first])
         return Performed(m.name, f"{records} records at rest, without time.")
     of = f" of the {m.seconds:g} s planned" if m.seconds else ""
     return Performed(m.name, f"{seconds:.2f} s at rest{of}.", seconds=seconds)
 
 
 def turn(
-    one: Binned,
-    found: Sequence[Stretch],
+    binned: Binned,
+    stretches: Sequence[Stretch],
     place: int,
     m: Manoeuvre,
     moving: pd.DataFrame,
@@ -175,43 +174,43 @@ def turn(
     """
     if moving.empty:
         return Performed(m.name, "it turns, but its gyros are masked.", True, False)
-    first, after = motion(one, found, place)
+    first, after = motion(binned, stretches, place)
     about = _about(moving, m.axis, level)
     length = moving["seconds"].to_numpy(np.float64)
     timed = bool(np.isfinite(length).all())
     angle = float(np.nansum(about * length)) if timed else None
-    lacking = missing_of(moving, np.nan_to_num(about), gaps[gaps["log"] == one.window.log])
+    lacking = missing_of(moving, np.nan_to_num(about), gaps[gaps["log"] == binned.window.log])
     rate = _steady_rate(moving, about)
-    seconds = one.duration(first, after)
+    seconds = binned.duration(first, after)
     if m.recorded == "steady":
-        said = (
+        sentence = (
             f"steady at {_signed(degrees(rate), 4)} °/s." if rate is not None else "no steady rate."
         )
         whole = lacking.seconds == 0
-        return Performed(m.name, said, True, whole, angle, None, lacking.seconds, rate, seconds)
+        return Performed(m.name, sentence, True, whole, angle, None, lacking.seconds, rate, seconds)
 
     if angle is None:
         return Performed(m.name, "it turns, but has no time.", True, False, rate=rate)
     of = f"{_signed(degrees(angle), 2)}°"
     of += f" of {_signed(degrees(m.angle), 0)}°" if m.angle else ""
-    reasons, remark = _cut_off(one, first, after, one.about(m.axis, level), m)
+    reasons, remark = _cut_off(binned, first, after, binned.about(m.axis, level), m)
     known = 0.0 if lacking.hindrance else lacking.angle
     off = m.angle and abs((angle + known) / m.angle - 1) > tolerance
     if off and not (reasons or lacking.hindrance):
         reasons.append("the angle is not the planned one")
-    gone = [f"{lacking.seconds:.2f} s are missing while it turns"] if lacking.seconds else []
-    gone += [lacking.hindrance] if lacking.hindrance else []
-    if not reasons and not gone:
-        told = f"{of} from rest to rest{remark}."
-        return Performed(m.name, told, True, True, angle, 0.0, 0.0, rate, seconds)
+    lost = [f"{lacking.seconds:.2f} s are missing while it turns"] if lacking.seconds else []
+    lost += [lacking.hindrance] if lacking.hindrance else []
+    if not reasons and not lost:
+        sentence = f"{of} from rest to rest{remark}."
+        return Performed(m.name, sentence, True, True, angle, 0.0, 0.0, rate, seconds)
     bridged = not reasons and not lacking.hindrance
     missing = lacking.angle if bridged else m.angle - angle if m.angle is not None else None
-    told = f"{of} recorded{remark}: {', and '.join([*gone, *reasons])}"
-    told += f"; {_signed(degrees(missing), 2)}° are missing." if missing is not None else "."
+    sentence = f"{of} recorded{remark}: {', and '.join([*lost, *reasons])}"
+    sentence += f"; {_signed(degrees(missing), 2)}° are missing." if missing is not None else "."
     if bridged:
-        told += " The rate about it tells them, so the joint estimate bridges what is missing."
+        sentence += " The rate before and after gives them, so the joint estimate uses the turn."
     return Performed(
-        m.name, told, True, False, angle, missing, lacking.seconds, rate, seconds, bridged
+        m.name, sentence, True, False, angle, missing, lacking.seconds, rate, seconds, bridged
     )
 
 
@@ -223,7 +222,7 @@ def _about(moving: pd.DataFrame, axis: Array, level: Array) -> Array:
 
 
 def _cut_off(
-    one: Binned, first: int, after: int, about: Array, m: Manoeuvre
+    binned: Binned, first: int, after: int, about: Array, m: Manoeuvre
 ) -> tuple[list[str], str]:
     """Where the log begins or ends while it turns: as reasons against it, and as a remark.
 
@@ -232,9 +231,9 @@ def _cut_off(
     reasons: list[str] = []
     remark = ""
     edges = [("begins", about[0])] if first == 0 else []
-    edges += [("ends", about[-1])] if after == one.bins else []
+    edges += [("ends", about[-1])] if after == binned.bins else []
     for what, edge in edges:
-        if abs(edge) * one.bin_seconds / 2 < (m.angle_sigma or 0.0):
+        if abs(edge) * binned.bin_seconds / 2 < (m.angle_sigma or 0.0):
             remark += f"; the log {what} at {degrees(abs(edge)):.0f} °/s, which its sigma covers"
         else:
             reasons.append(f"the log {what} while it turns")

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.axis_permutations import Permutation
-from stages.segment.matching import Seen, match, points, seen
+from stages.segment.matching import Observation, match, observe, points
 from stages.segment.motion import Stretch, moving, stretches, with_slow_ends
 from stages.segment.windows import Binned
 
@@ -40,11 +40,11 @@ AS_PLANNED = Axes()
 
 
 @dataclass(frozen=True)
-class Shown:
+class Division:
     """A window cut into stretches that move or rest, in one way or another."""
 
-    one: Binned
-    ways: Sequence[tuple[Sequence[Stretch], Sequence[Seen]]]
+    binned: Binned
+    ways: Sequence[tuple[Sequence[Stretch], Sequence[Observation]]]
 
 
 @dataclass(frozen=True)
@@ -54,11 +54,11 @@ class Located:
     `plan`: the manoeuvres as the sensors read their directions, by these axes.
     """
 
-    one: Binned
+    binned: Binned
     axes: Axes
     plan: Sequence[Manoeuvre]
-    found: Sequence[Stretch]
-    seen: Sequence[Seen]
+    stretches: Sequence[Stretch]
+    observed: Sequence[Observation]
     matched: Mapping[str, int | None]
 
     def place(self, m: Manoeuvre) -> int | None:
@@ -68,9 +68,11 @@ class Located:
     def rest_before(self, m: Manoeuvre) -> int | None:
         """The stretch at rest just before a turn that was found, or before all that moves."""
         place = self.place(m)
-        if place is None and self.one.window.alone:
-            place = next((k for k, shown in enumerate(self.seen) if shown.moves), None)
-        if not place or self.seen[place - 1].moves or place - 1 in self.matched.values():
+        if place is None and self.binned.window.alone:
+            place = next(
+                (k for k, observation in enumerate(self.observed) if observation.moves), None
+            )
+        if not place or self.observed[place - 1].moves or place - 1 in self.matched.values():
             return None
         return place - 1
 
@@ -78,53 +80,60 @@ class Located:
     def agreeing(self) -> tuple[int, int]:
         """How many observations agree with the plan, and how many there are.
 
-        A rest tells the direction of gravity, a turn its axis and sense, and the rest before it
-        the direction of gravity once more; a sensor of which an axis is lacking tells nothing.
+        A rest gives the direction of gravity, a turn its axis and sense, and the rest before it
+        the direction of gravity once more; a sensor of which an axis is lacking gives none.
         """
-        said = [agrees for m in self.plan for agrees in self._agree(m)]
-        return sum(said), len(said)
+        agreements = [agrees for m in self.plan for agrees in self._agree(m)]
+        return sum(agreements), len(agreements)
 
     def _agree(self, m: Manoeuvre) -> list[bool]:
         place = self.place(m)
         if m.do == "positions":
             return []
         if m.do == "rest":
-            told = m.up is not None and any(np.isfinite(shown.force).all() for shown in self.seen)
-            return [place is not None] if told else []
-        said = []
-        if any(np.isfinite(shown.rate).all() for shown in self.seen):
-            wanted = m.rate if m.recorded == "steady" else m.angle
-            turned = 0.0 if place is None else _about(self.seen[place], m)
-            said.append(turned != 0 if wanted is None else turned * wanted > 0)
+            known = m.up is not None and any(
+                np.isfinite(observation.force).all() for observation in self.observed
+            )
+            return [place is not None] if known else []
+        agreements = []
+        if any(np.isfinite(observation.rate).all() for observation in self.observed):
+            planned = m.rate if m.recorded == "steady" else m.angle
+            turned = 0.0 if place is None else _about(self.observed[place], m)
+            agreements.append(turned != 0 if planned is None else turned * planned > 0)
         before = self.rest_before(m)
-        if before is not None and m.up is not None and np.isfinite(self.seen[before].force).all():
-            said.append(points(self.seen[before].force, m.up))
-        return said
+        if (
+            before is not None
+            and m.up is not None
+            and np.isfinite(self.observed[before].force).all()
+        ):
+            agreements.append(points(self.observed[before].force, m.up))
+        return agreements
 
 
-def shown(one: Binned, level: Array, threshold: float, noise: float) -> Shown:
+def divide(binned: Binned, level: Array, threshold: float, noise: float) -> Division:
     """A window in which rates beyond the threshold, or else beyond the noise, count as motion."""
     ways = []
-    above_noise = moving(one.rates, one.forces, level, noise)
+    above_noise = moving(binned.rates, binned.forces, level, noise)
     for lowest in (threshold, noise):
-        found = stretches(moving(one.rates, one.forces, level, lowest), one.bin_seconds)
-        found = with_slow_ends(found, above_noise, one.bin_seconds)
-        ways.append((found, seen(one, found, level)))
-    return Shown(one, ways)
+        moves = moving(binned.rates, binned.forces, level, lowest)
+        divided = stretches(moves, binned.bin_seconds)
+        divided = with_slow_ends(divided, above_noise, binned.bin_seconds)
+        ways.append((divided, observe(binned, divided, level)))
+    return Division(binned, ways)
 
 
 def locate(
-    window: Shown, axes: Axes = AS_PLANNED, manoeuvres: Sequence[Manoeuvre] | None = None
+    window: Division, axes: Axes = AS_PLANNED, manoeuvres: Sequence[Manoeuvre] | None = None
 ) -> Located:
     """Match the manoeuvres of a window, or others, to its stretches.
 
     A wrong unit makes a turn too slow to count as motion; where a turn is not found, all that is
     above the noise counts.
     """
-    plan = [axes.plan_of(m) for m in manoeuvres or window.one.window.manoeuvres]
+    plan = [axes.plan_of(m) for m in manoeuvres or window.binned.window.manoeuvres]
     best: Located | None = None
-    for found, what in window.ways:
-        located = Located(window.one, axes, plan, found, what, match(plan, what))
+    for divided, observed in window.ways:
+        located = Located(window.binned, axes, plan, divided, observed, match(plan, observed))
         lost = [m for m in plan if located.matched.get(m.name, 0) is None]
         if best is None or len(lost) < list(best.matched.values()).count(None):
             best = located
@@ -134,5 +143,7 @@ def locate(
     return best
 
 
-def _about(shown: Seen, m: Manoeuvre) -> float:
-    return float(np.nan_to_num(shown.rate if m.recorded == "steady" else shown.turned) @ m.axis)
+def _about(observation: Observation, m: Manoeuvre) -> float:
+    return float(
+        np.nan_to_num(observation.rate if m.recorded == "steady" else observation.turned) @ m.axis
+    )

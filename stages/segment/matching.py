@@ -11,14 +11,12 @@ from inertial.campaign.records import Manoeuvre
 from stages.segment.motion import Stretch, steady_part
 from stages.segment.windows import Binned
 
-# ---- Which stretch of a log is which manoeuvre: the best match that keeps the order of both.
-
 Array = NDArray[np.float64]
 
-ASKEW = np.radians(25)  # how far an IMU may be mounted from the planned direction
-ASLANT = np.radians(45)  # and a turn about another axis than the planned one, as by hand
-UPRIGHT = 0.9  # share of the planned direction in the axes that are recorded, to tell it
-WRONG_WAY = 0.01  # score of a turn against the planned direction
+MAX_MOUNTING_ANGLE = np.radians(25)  # how far an IMU may be mounted from the planned direction
+MAX_AXIS_ANGLE = np.radians(45)  # and a turn about another axis than the planned one, as by hand
+MIN_RECORDED_SHARE = 0.9  # share of the planned direction in the axes that are recorded, to show it
+WRONG_SENSE_SCORE = 0.01  # score of a turn against the planned direction
 
 
 def align(scores: Array) -> list[int | None]:
@@ -41,7 +39,7 @@ def align(scores: Array) -> list[int | None]:
                 best[i - 1, j - 1] + scores[i - 1, j - 1] if scores[i - 1, j - 1] > 0 else -1.0
             )
             best[i, j] = max(best[i - 1, j], best[i, j - 1], together)
-    found: list[int | None] = [None] * m
+    stretches_of: list[int | None] = [None] * m
     i, j = m, n
     while i and j:
         if best[i, j] == best[i - 1, j]:
@@ -50,8 +48,8 @@ def align(scores: Array) -> list[int | None]:
             j -= 1
         else:
             i, j = i - 1, j - 1
-            found[i] = j
-    return found
+            stretches_of[i] = j
+    return stretches_of
 
 
 def rest_score(seconds: float, planned: float | None, force: Array, up: Array | None) -> float:
@@ -70,11 +68,11 @@ def rest_score(seconds: float, planned: float | None, force: Array, up: Array | 
 def points(force: Array, up: Array) -> bool:
     """Whether a specific force, (3,), points up as planned, as far as its axes are recorded."""
     there = np.isfinite(force)
-    seen = float(np.linalg.norm(up[there]))
-    if seen < UPRIGHT:
-        return True  # the axis that would tell is not recorded
-    along = float(force[there] @ up[there]) / seen
-    return bool(along >= np.cos(ASKEW) * float(np.linalg.norm(force[there])))
+    recorded = float(np.linalg.norm(up[there]))
+    if recorded < MIN_RECORDED_SHARE:
+        return True  # the axis that would show it is not recorded
+    along = float(force[there] @ up[there]) / recorded
+    return bool(along >= np.cos(MAX_MOUNTING_ANGLE) * float(np.linalg.norm(force[there])))
 
 
 def turn_score(turned: Array, about: Array, planned: float | None) -> float:
@@ -90,17 +88,15 @@ def turn_score(turned: Array, about: Array, planned: float | None) -> float:
     """
     own = np.nan_to_num(turned)
     angle = float(own @ about)
-    if abs(angle) < np.cos(ASLANT) * float(np.linalg.norm(own)):
+    if abs(angle) < np.cos(MAX_AXIS_ANGLE) * float(np.linalg.norm(own)):
         return 0.0
     if planned is None:
         return abs(angle) / (abs(angle) + 0.1)
     ratio = angle / planned
     if ratio < 0:
-        return WRONG_WAY if ratio < -0.5 else 0.0
+        return WRONG_SENSE_SCORE if ratio < -0.5 else 0.0
     return max(1.0 - abs(1.0 - ratio), 0.02) if ratio > 0.005 else 0.0
 
-
-# ---- Which stretch of a window is which manoeuvre, and which records are which phase of it.
 
 BETWEEN = "between"  # from a rest to the next, where attitudes are unknown: what carries them on
 
@@ -117,7 +113,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Seen:
+class Observation:
     """What a stretch shows: seconds; force and rate, (3,), means; turned, (3,), angles, rad.
 
     NaN where an axis is not recorded; rates and angles are those above the gyros' level at rest.
@@ -132,20 +128,20 @@ class Seen:
     unsure: Array
 
 
-def seen(one: Binned, found: Sequence[Stretch], level: Array) -> list[Seen]:
+def observe(binned: Binned, stretches: Sequence[Stretch], level: Array) -> list[Observation]:
     """What each stretch of a window shows; `level` is what the gyros read at rest."""
-    return [_seen(one, stretch, level) for stretch in found]
+    return [_observation(binned, stretch, level) for stretch in stretches]
 
 
-def _seen(one: Binned, stretch: Stretch, level: Array) -> Seen:
+def _observation(binned: Binned, stretch: Stretch, level: Array) -> Observation:
     inside = slice(stretch.first, stretch.after)
-    rates, seconds = one.rates[inside] - level, one.seconds[inside]
+    rates, seconds = binned.rates[inside] - level, binned.seconds[inside]
     mean, number = _mean(rates), np.isfinite(rates).sum(axis=0)
     angles = np.nansum(rates * seconds[:, None], axis=0)
-    return Seen(
+    return Observation(
         stretch.moves,
         float(seconds.sum()),
-        _mean(one.forces[inside]),
+        _mean(binned.forces[inside]),
         mean,
         np.where(number > 0, angles, np.nan),
         np.sqrt(_mean((rates - mean) ** 2) / np.maximum(number, 1)),
@@ -160,55 +156,61 @@ def _mean(values: Array) -> Array:
     return np.where(number > 0, total / np.maximum(number, 1), np.nan)
 
 
-def match(manoeuvres: Sequence[Manoeuvre], shown: Sequence[Seen]) -> dict[str, int | None]:
+def match(
+    manoeuvres: Sequence[Manoeuvre], observed: Sequence[Observation]
+) -> dict[str, int | None]:
     """For each manoeuvre of a window its stretch, None where it is not found."""
     sought = [m for m in manoeuvres if m.do != "positions"]
-    scores = np.array([[_score(one, m) for one in shown] for m in sought], np.float64)
-    places = align(scores.reshape(len(sought), len(shown)))
+    scores = np.array(
+        [[_score(observation, m) for observation in observed] for m in sought], np.float64
+    )
+    places = align(scores.reshape(len(sought), len(observed)))
     return {m.name: place for m, place in zip(sought, places, strict=True)}
 
 
-def _score(shown: Seen, m: Manoeuvre) -> float:
-    if shown.moves is (m.do == "rest"):
+def _score(observed: Observation, m: Manoeuvre) -> float:
+    if observed.moves is (m.do == "rest"):
         return 0.0
     if m.do == "rest":
-        return rest_score(shown.seconds, m.seconds, shown.force, m.up)
+        return rest_score(observed.seconds, m.seconds, observed.force, m.up)
     steady = m.recorded == "steady"
-    return turn_score(shown.rate if steady else shown.turned, m.axis, m.rate if steady else m.angle)
+    return turn_score(
+        observed.rate if steady else observed.turned, m.axis, m.rate if steady else m.angle
+    )
 
 
-def motion(one: Binned, found: Sequence[Stretch], place: int) -> tuple[int, int]:
+def motion(binned: Binned, stretches: Sequence[Stretch], place: int) -> tuple[int, int]:
     """The bins of a turn; in a window of its own it is all that moves, pauses included."""
-    if one.window.alone:
-        moves = [stretch for stretch in found if stretch.moves]
+    if binned.window.alone:
+        moves = [stretch for stretch in stretches if stretch.moves]
         return moves[0].first, moves[-1].after
-    return found[place].first, found[place].after
+    return stretches[place].first, stretches[place].after
 
 
-def rest_part(one: Binned, stretch: Stretch, name: str, margin: float) -> Part:
+def rest_part(binned: Binned, stretch: Stretch, name: str, margin: float) -> Part:
     """A rest without the margin beside a motion."""
-    room = one.bins_in(margin)
+    room = binned.bins_in(margin)
     first = stretch.first + (room if stretch.first > 0 else 0)
-    after = stretch.after - (room if stretch.after < one.bins else 0)
+    after = stretch.after - (room if stretch.after < binned.bins else 0)
     first, after = (first, after) if after > first else (stretch.first, stretch.after)
-    return Part(name, "rest", one.window.log, int(one.edges[first]), int(one.edges[after]))
+    return Part(name, "rest", binned.window.log, int(binned.edges[first]), int(binned.edges[after]))
 
 
 def position_parts(
-    one: Binned,
-    found: Sequence[Stretch],
+    binned: Binned,
+    stretches: Sequence[Stretch],
     m: Manoeuvre,
     matched: Mapping[str, int | None],
     margin: float,
 ) -> Iterator[Part]:
     """Every rest that is long enough and no other manoeuvre's, numbered."""
     number = 0
-    for place, stretch in enumerate(found):
-        seconds = float(one.seconds[stretch.first : stretch.after].sum())
+    for place, stretch in enumerate(stretches):
+        seconds = float(binned.seconds[stretch.first : stretch.after].sum())
         free = not stretch.moves and place not in matched.values()
         if free and seconds >= (m.seconds or 0.0):
             number += 1
-            yield rest_part(one, stretch, f"{m.name}-{number:02d}", margin)
+            yield rest_part(binned, stretch, f"{m.name}-{number:02d}", margin)
 
 
 def between_parts(rests: Sequence[Part]) -> Iterator[Part]:
@@ -234,8 +236,8 @@ def _after_of(rest: Stretch, room: int, shared: bool, bins: int) -> int:
 
 
 def turn_parts(
-    one: Binned,
-    found: Sequence[Stretch],
+    binned: Binned,
+    stretches: Sequence[Stretch],
     m: Manoeuvre,
     matched: Mapping[str, int | None],
     level: Array,
@@ -244,16 +246,16 @@ def turn_parts(
     """The phases of a turn, and the rests beside it that no other manoeuvre has."""
     place = matched[m.name]
     assert place is not None  # only a turn that was found has phases
-    first, after = motion(one, found, place)
-    room = one.bins_in(margin)
-    start, stop = max(first - room, 0), min(after + room, one.bins)
+    first, after = motion(binned, stretches, place)
+    room = binned.bins_in(margin)
+    start, stop = max(first - room, 0), min(after + room, binned.bins)
     taken = set(matched.values())
     free = [place + side not in taken for side in (-1, 1)]
-    before, behind = 0, one.bins
-    if not one.window.alone and place > 0:
-        before = _first_of(found[place - 1], room, place - 2 in taken)
-    if not one.window.alone and place + 1 < len(found):
-        behind = _after_of(found[place + 1], room, place + 2 in taken, one.bins)
+    before, behind = 0, binned.bins
+    if not binned.window.alone and place > 0:
+        before = _first_of(stretches[place - 1], room, place - 2 in taken)
+    if not binned.window.alone and place + 1 < len(stretches):
+        behind = _after_of(stretches[place + 1], room, place + 2 in taken, binned.bins)
 
     phases: list[tuple[str, int, int]] = []
     if free[0] and first > 0:
@@ -261,15 +263,15 @@ def turn_parts(
     if m.rate is None:
         phases.append(("turning", start, stop))
     else:
-        a, b = steady_part(one.about(m.axis, level)[first:after])
+        a, b = steady_part(binned.about(m.axis, level)[first:after])
         steady = (first + a, first + b)
         phases += [
             ("spin-up", start, steady[0]),
             ("steady", *steady),
             ("spin-down", steady[1], stop),
         ]
-    if free[1] and after < one.bins:
+    if free[1] and after < binned.bins:
         phases.append(("rest-after", stop, behind))
     for phase, a, b in phases:
         if b > a:
-            yield Part(m.name, phase, one.window.log, int(one.edges[a]), int(one.edges[b]))
+            yield Part(m.name, phase, binned.window.log, int(binned.edges[a]), int(binned.edges[b]))

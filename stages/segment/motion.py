@@ -1,4 +1,4 @@
-"""Where a log moves and where it rests, told from short means of its channels."""
+"""Where a log moves and where it rests, by short means of its channels."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -11,9 +11,10 @@ from inertial.signal.scatter import MAD_TO_SIGMA
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
-BLIP = 0.3  # s, a motion or a rest shorter than this is none, or a tenth of the stretch
-SLOW_END = 3.0  # s, at most, in which a motion begins or ends below what counts as motion
-LEVEL_CHANGE = 0.1  # m/s², change of the specific force that tells motion where no gyro is recorded
+MIN_STRETCH_S = 0.3  # s, a motion or a rest shorter than this is none, or a tenth of the stretch
+MAX_SLOW_END_S = 3.0  # s, at most, in which a motion begins or ends below what counts as motion
+# In m/s², change of the specific force that counts as motion where no gyro is recorded
+MIN_FORCE_CHANGE = 0.1
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ def moving(rates: Array, forces: Array, level: Array, threshold: float) -> Boole
     windows = [forces[np.clip(np.arange(k) + shift, 0, k - 1)] for shift in (-2, -1, 0, 1, 2)]
     spread = np.ptp(np.stack(windows), axis=0)
     usual = 6 * np.quantile(np.linalg.norm(spread, axis=1), 0.25)
-    return np.asarray(np.linalg.norm(spread, axis=1) > max(usual, LEVEL_CHANGE))
+    return np.asarray(np.linalg.norm(spread, axis=1) > max(usual, MIN_FORCE_CHANGE))
 
 
 def _filled(values: Array) -> Array:
@@ -73,7 +74,7 @@ def _filled(values: Array) -> Array:
 
 def stretches(moves: Booleans, bin_seconds: float) -> list[Stretch]:
     """The bins as stretches that move or rest, those shorter than a blip joined to their like."""
-    shortest = min(BLIP / bin_seconds, 0.1 * len(moves))
+    shortest = min(MIN_STRETCH_S / bin_seconds, 0.1 * len(moves))
     moves = moves.copy()
     for kind in (False, True):  # a pause within a motion first, then a knock within a rest
         for stretch in _runs(moves):
@@ -93,7 +94,7 @@ def with_slow_ends(
     """
     moves = np.repeat([s.moves for s in found], [s.after - s.first for s in found])
     for stretch in found:
-        most = min(round(SLOW_END / bin_seconds), (stretch.after - stretch.first) // 4)
+        most = min(round(MAX_SLOW_END_S / bin_seconds), (stretch.after - stretch.first) // 4)
         if stretch.moves or not most:
             continue
         if stretch.first > 0:

@@ -1,4 +1,4 @@
-"""What was recorded of every manoeuvre, as arrays for the detectors that know the plan."""
+"""What was recorded of every manoeuvre, as arrays for the detectors that compare with the plan."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -28,7 +28,7 @@ def recorded_of(
     given: Given,
     tolerance: float,
 ) -> Recorded:
-    """All that the plan and the recording say of each manoeuvre.
+    """Plan and recording of each manoeuvre.
 
     Parameters
     ----------
@@ -36,10 +36,12 @@ def recorded_of(
     counts : rad, what a count of the gyros is, by log; NaN where not stated
     tolerance : accepted difference of a turn's angle or rate from the plan's, 1
     """
-    where = {m.name: one for one in explained.located for m in one.one.window.manoeuvres}
+    where = {
+        m.name: binned for binned in explained.located for m in binned.binned.window.manoeuvres
+    }
     parts = _parts(segments)
     done = [performed[m.name] for m in plan]
-    shown = [_shown(m, where[m.name]) for m in plan]
+    observations = [_shown(m, where[m.name]) for m in plan]
     places = [parts.get(m.name) or _instead(m, where[m.name]) for m in plan]
     holes = [_hole(m, place, gaps) for m, place in zip(plan, places, strict=True)]
     return Recorded(
@@ -58,8 +60,8 @@ def recorded_of(
         complete=np.array([d.complete for d in done], bool),
         bridged=np.array([d.bridged for d in done], bool),
         said=[d.sentence for d in done],
-        force=_vectors([force for force, _ in shown]),
-        turned=_vectors([turned for _, turned in shown]),
+        force=_vectors([force for force, _ in observations]),
+        turned=_vectors([turned for _, turned in observations]),
         moved=_numbers([d.angle for d in done]),
         speed=_numbers([d.rate for d in done]),
         lacking=_numbers([d.missing_angle for d in done]),
@@ -72,11 +74,11 @@ def recorded_of(
         gap_first=np.array([hole[0] for hole in holes], np.int64),
         gap_from_s=_numbers([hole[1] for hole in holes]),
         gap_to_s=_numbers([hole[2] for hole in holes]),
-        gyros=np.array([np.isfinite(where[m.name].one.rates).any(axis=0) for m in plan], bool),
+        gyros=np.array([np.isfinite(where[m.name].binned.rates).any(axis=0) for m in plan], bool),
         count=_numbers([counts.get(m.log) for m in plan]),
         gyro_signs=explained.gyro_signs,
         misread=_misread(plan, explained),
-        swapped=[_in_order(one, [m.name for m in plan]) for one in explained.exchanged],
+        swapped=[_in_order(binned, [m.name for m in plan]) for binned in explained.exchanged],
     )
 
 
@@ -104,19 +106,19 @@ def _parts(segments: pd.DataFrame) -> dict[str, Place]:
 def _candidate(m: Manoeuvre, located: Located) -> int | None:
     """The stretch of a manoeuvre; of one that is not found, what a log of its own has instead."""
     place = located.place(m)
-    if place is not None or not located.one.window.alone:
+    if place is not None or not located.binned.window.alone:
         return place
-    alike = [k for k, what in enumerate(located.seen) if what.moves is (m.do != "rest")]
-    return max(alike, key=lambda k: located.seen[k].seconds, default=None)
+    alike = [k for k, what in enumerate(located.observed) if what.moves is (m.do != "rest")]
+    return max(alike, key=lambda k: located.observed[k].seconds, default=None)
 
 
 def _instead(m: Manoeuvre, located: Located) -> Place:
     place = _candidate(m, located)
     if place is None:
         return NOWHERE
-    one, stretch = located.one, located.found[place]
-    times = one.first_s[stretch.first], one.last_s[stretch.after - 1]
-    records = one.edges[stretch.first], one.edges[stretch.after]
+    binned, stretch = located.binned, located.stretches[place]
+    times = binned.first_s[stretch.first], binned.last_s[stretch.after - 1]
+    records = binned.edges[stretch.first], binned.edges[stretch.after]
     return int(records[0]), int(records[1]), float(times[0]), float(times[1])
 
 
@@ -126,15 +128,15 @@ def _shown(m: Manoeuvre, located: Located) -> tuple[Array | None, Array | None]:
     if m.do == "positions" or place is None:
         return None, None
     if m.do == "rest":
-        return located.seen[place].force, None
+        return located.observed[place].force, None
     before = located.rest_before(m)
-    turned = located.seen[place].turned
-    if located.one.window.alone:
-        first, after = motion(located.one, located.found, place)
-        pairs = zip(located.found, located.seen, strict=True)
+    turned = located.observed[place].turned
+    if located.binned.window.alone:
+        first, after = motion(located.binned, located.stretches, place)
+        pairs = zip(located.stretches, located.observed, strict=True)
         own = [w.turned for s, w in pairs if first <= s.first and s.after <= after]
         turned = np.asarray(np.sum(own, axis=0))
-    return None if before is None else located.seen[before].force, turned
+    return None if before is None else located.observed[before].force, turned
 
 
 def _hole(m: Manoeuvre, place: Place, gaps: pd.DataFrame) -> tuple[int, float | None, float | None]:
@@ -148,12 +150,12 @@ def _hole(m: Manoeuvre, place: Place, gaps: pd.DataFrame) -> tuple[int, float | 
     return longest["record"], longest["from_s"], longest["to_s"]
 
 
-def _in_order(one: Exchanged, plan: list[str]) -> Swapped:
+def _in_order(exchanged: Exchanged, plan: list[str]) -> Swapped:
     """Exchanged manoeuvres, that which the plan has earlier first."""
-    half = len(one.names) // 2
-    if plan.index(one.names[0]) <= plan.index(one.names[half]):
-        return Swapped(one.names, one.logs)
-    return Swapped(one.names[half:] + one.names[:half], one.logs[::-1])
+    half = len(exchanged.names) // 2
+    if plan.index(exchanged.names[0]) <= plan.index(exchanged.names[half]):
+        return Swapped(exchanged.names, exchanged.logs)
+    return Swapped(exchanged.names[half:] + exchanged.names[:half], exchanged.logs[::-1])
 
 
 def _misread(plan: Sequence[Manoeuvre], explained: Explained) -> list[Misread]:

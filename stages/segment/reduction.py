@@ -187,7 +187,7 @@ def _hidden(parts: Sequence[Part], masks: Masks) -> dict[str, Integers]:
 def _missing(turn: pd.DataFrame, after_gap: pd.Series, clock: Clock) -> Floats:
     """The time that is missing before each block of a turn, (k,), s; negative where time goes back.
 
-    By the stamps; where they tell a whole number of samples within their own scatter, that.
+    By the stamps; where they give a whole number of samples within their own scatter, that.
     """
     missing = np.zeros(len(turn))
     step = clock.duration

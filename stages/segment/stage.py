@@ -21,7 +21,7 @@ from stages.segment.declared import DECLARED
 from stages.segment.detection_against_plan import compare
 from stages.segment.detection_in_positions import ExaminationOfRests
 from stages.segment.explanations import Explained, explain
-from stages.segment.locating import AS_NAMED, Located, shown
+from stages.segment.locating import AS_NAMED, Located, divide
 from stages.segment.matching import Part, between_parts, position_parts, rest_part, turn_parts
 from stages.segment.motion import rest_level
 from stages.segment.recorded import recorded_of
@@ -81,7 +81,7 @@ def segment(
     for located, place, m in turns:
         own = in_motion.get(m.name, blocks.iloc[:0])
         done = completeness.turn(
-            located.one, located.found, place, m, own, gaps, level, angle_tolerance
+            located.binned, located.stretches, place, m, own, gaps, level, angle_tolerance
         )
         as_named = located.axes.gyro == AS_NAMED
         performed[m.name] = done if as_named else completeness.by_other_axes(done)
@@ -115,7 +115,7 @@ def _explained(
     rates = [abs(m.rate) for m in plan if m.rate]
     noise = MIN_MOTION_SIGMA * scatter
     threshold = max(MIN_RATE_SHARE * min(rates) if rates else MIN_HAND_RATE, noise)
-    ways = [shown(window, level, threshold, noise) for window in binned]
+    ways = [divide(window, level, threshold, noise) for window in binned]
     return level, explain(ways, earth_rate_up)
 
 
@@ -127,7 +127,7 @@ def _parts(
     turns: list[tuple[Located, int, Manoeuvre]] = []
     performed: dict[str, Performed] = dict(completeness.left_out(explained, plan))
     for located in explained.located:
-        binned, stretches, matched = located.one, located.found, located.matched
+        binned, stretches, matched = located.binned, located.stretches, located.matched
         first = len(parts)
         for m in located.plan:
             place = matched.get(m.name)
@@ -150,11 +150,11 @@ def _parts(
     return parts, performed, turns
 
 
-def _counts(looked: Mapping[str, Log]) -> dict[str, float]:
+def _counts(logs_by_name: Mapping[str, Log]) -> dict[str, float]:
     """What a count of the gyros is by the campaign, rad, where they write increments."""
     return {
         name: float(np.nanmedian(log.count[3:])) * log.step
-        for name, log in looked.items()
+        for name, log in logs_by_name.items()
         if log.increments and np.isfinite(log.count[3:]).any()
     }
 
@@ -162,12 +162,12 @@ def _counts(looked: Mapping[str, Log]) -> dict[str, float]:
 def _rest_level(every: Sequence[Binned]) -> tuple[Array, float]:
     """The gyros at rest over the campaign: from the windows of rests alone, if there are any.
 
-    An axis that none of them records does not count; one that some do not record is told by the
+    An axis that none of them records does not count; one that some do not record is taken from the
     others.
     """
-    rests = [one for one in every if {m.do for m in one.window.manoeuvres} == {"rest"}]
+    rests = [binned for binned in every if {m.do for m in binned.window.manoeuvres} == {"rest"}]
     for group in (rests, every):
-        rates = np.concatenate([np.empty((0, 3)), *(one.rates for one in group)])
+        rates = np.concatenate([np.empty((0, 3)), *(binned.rates for binned in group)])
         recorded = np.isfinite(rates).any(axis=0)
         whole = rates[np.isfinite(rates[:, recorded]).all(axis=1)] if recorded.any() else []
         if len(whole):

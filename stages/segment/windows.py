@@ -1,4 +1,4 @@
-"""The parts of a log in which manoeuvres are looked for, and short means of them."""
+"""The parts of a log in which manoeuvres are sought, and short means of them."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,13 +12,13 @@ from inertial.campaign.sums import MeansOver
 
 Array = NDArray[np.float64]
 
-BIN = 0.1  # s, of the short means in which motion is looked for
+BIN_S = 0.1  # s, of the short means in which motion is sought
 MAX_BINS = 2_000_000  # of them in a campaign; one of more than two days has longer ones
 
 
 @dataclass(frozen=True)
 class Window:
-    """Records [first, after) of a log, in which manoeuvres are looked for in the plan's order."""
+    """Records [first, after) of a log, in which manoeuvres are sought in the plan's order."""
 
     log: str
     first: int
@@ -57,7 +57,7 @@ class Binned:
     def bin_seconds(self) -> float:
         """The length of a bin that is not masked, s."""
         there = self.seconds[self.seconds > 0]
-        return float(np.median(there)) if len(there) else BIN
+        return float(np.median(there)) if len(there) else BIN_S
 
     def bins_in(self, seconds: float) -> int:
         """How many bins some time is; where it is any, at least one, however long a bin is."""
@@ -123,7 +123,7 @@ class Bins(MeansOver):
         self._edges: list[tuple[Integers, Integers]] = []
         by_log: dict[str, list[tuple[Integers, Integers]]] = {}
         for window in windows:
-            bin_records = round(BIN / clocks[window.log].step) if window.log in clocks else 1
+            bin_records = round(BIN_S / clocks[window.log].step) if window.log in clocks else 1
             length = max(1, bin_records, -(-records // MAX_BINS))
             first, after = regular(window.after - window.first, length)
             self._edges.append((window.first + first, window.first + after))

@@ -18,7 +18,7 @@ def test_the_gap_of_the_demo_is_bridged_and_said(gapped):
     assert done["missing_s"] == pytest.approx(11.97)
     assert degrees(done["missing_angle"]) == pytest.approx(-119.74, abs=0.02)
     assert "11.97 s are missing while it turns" in done["sentence"]
-    assert "the joint estimate bridges what is missing" in done["sentence"]
+    assert "the joint estimate uses the turn" in done["sentence"]
     fit = gapped["gyroscope/fit"].iloc[0]
     assert "z-backward" in fit["used"].split(", ") and fit["left_out"] == ""
     # S0's own formulas need the whole turn, and have it not.

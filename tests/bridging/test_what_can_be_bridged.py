@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from z_turns import STEP
 
-from stages.segment.completeness import ENOUGH, FEW, missing_of
+from stages.segment.completeness import MAX_MASKED_RUN, MIN_STEADY_S, missing_of
 
 
 def blocks(*stretches: tuple[str, float, float, bool]) -> tuple[pd.DataFrame, pd.DataFrame]:
@@ -55,8 +55,15 @@ NOT_STEADY = "the rate is not steady there"
         # a single sample needs no more beside it than itself
         ([UP_RAMP, STEADY, ("steady", 0.2, STEP, True), DOWN_RAMP], ""),
         # masked samples: few in a ramp, or many
-        ([("spin-up", 1.0, 0.0, False), ("spin-up", 1.0, FEW * STEP, False), STEADY, DOWN_RAMP],
-         ""),
+        (
+            [
+                ("spin-up", 1.0, 0.0, False),
+                ("spin-up", 1.0, MAX_MASKED_RUN * STEP, False),
+                STEADY,
+                DOWN_RAMP,
+            ],
+            "",
+        ),
         ([("spin-up", 1.0, 0.0, False), ("spin-up", 1.0, 5 * STEP, False), STEADY, DOWN_RAMP],
          f"{NOT_STEADY}, and more than 3 samples in a row are masked"),
         ([("spin-up", 0.2, 0.0, False), *[("spin-up", 0.2, 0.03, False)] * 9, STEADY,
@@ -76,4 +83,4 @@ def test_what_can_be_bridged(stretches, hindrance):
     found = missing_of(moving, np.ones(len(moving)), gaps)
     assert found.hindrance == hindrance
     assert found.seconds == pytest.approx(sum(max(missing, 0) for _, _, missing, _ in stretches))
-    assert ENOUGH == 1.0 and FEW == 3
+    assert MIN_STEADY_S == 1.0 and MAX_MASKED_RUN == 3

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from inertial.signal.axis_permutations import EVERY, Permutation, read_as_other_axes
+from inertial.signal.axis_permutations import PERMUTATIONS, Permutation, read_as_other_axes
 from inertial.signal.misread_axes import determinant
 
 Fault = dict[str, dict[str, Any]]
@@ -182,8 +182,8 @@ def test_logs_under_each_others_names_are_named_and_left_out(one, other, tmp_pat
     (finding,) = found_in(results).to_dict("records")
     assert finding["cause"] == "manoeuvre_swapped"
     assert finding["id"] == f"segment/manoeuvre_swapped/{one}"
-    assert f"{one}.asc holds what {other} should be" in finding["sentence"]
-    assert f"{other}.asc what {one} should be" in finding["sentence"]
+    assert f"{one}.asc contains {other}" in finding["sentence"]
+    assert f"{other}.asc contains {one}" in finding["sentence"]
     done = performed(results)
     assert list(done.index[~done["found"]]) == [one, other]
     assert done.drop([one, other])["complete"].all()
@@ -198,7 +198,7 @@ def test_two_pairs_of_exchanged_logs_are_two_findings(tmp_path):
 
 def test_a_sign_that_would_look_the_same_is_told(tmp_path):
     (sentence,) = found_in(segmented(tmp_path, [exchange("x-up.asc", "x-down.asc")]))["sentence"]
-    assert "A wrong sign of the x accelerometer would look the same" in sentence
+    assert "A wrong sign of the x accelerometer cannot be distinguished" in sentence
 
 
 def test_two_manoeuvres_in_each_others_place_within_a_log_are_named(tmp_path):
@@ -218,7 +218,7 @@ def test_two_manoeuvres_in_each_others_place_within_a_log_are_named(tmp_path):
     results = chain.run(campaign, tmp_path / "derived", "segment")
     (finding,) = found_in(results).to_dict("records")
     assert finding["cause"] == "manoeuvre_swapped"
-    assert "y-up and x-up stand in each other's place" in finding["sentence"]
+    assert "y-up and x-up are exchanged" in finding["sentence"]
     done = performed(results)
     assert done.drop(["x-up", "y-up"])["complete"].all()
 
@@ -366,7 +366,7 @@ def test_an_attitude_is_told_from_axes_by_the_biases_of_the_sensors():
 
     forces = np.array([read(up) for up in ups])
     right = np.array([1.0, 0.0, 0.0])
-    for permutation in EVERY:
+    for permutation in PERMUTATIONS:
         force = permutation.inverse.of(read(right))
         said = read_as_other_axes(force, right, forces, ups)
         other = permutation.inverse.of(right)
@@ -388,4 +388,4 @@ def test_the_determinant_of_a_signed_permutation():
     assert determinant(replace(one, signs=(1, -1, 1))) == -1
     assert determinant(replace(one, sources=(1, 0, 2))) == -1
     assert determinant(replace(one, sources=(1, 2, 0))) == 1
-    assert sum(determinant(permutation) for permutation in EVERY) == -1
+    assert sum(determinant(permutation) for permutation in PERMUTATIONS) == -1

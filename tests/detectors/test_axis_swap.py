@@ -7,7 +7,7 @@ from recorded_by_hand import NOISE, assert_told
 
 from inertial.detectors.axis_swap import AxisSwap, AxisSwapOfGyros
 from inertial.detectors.sign_flip import SignFlip, SignFlipOfGyros
-from inertial.signal.axis_permutations import EVERY
+from inertial.signal.axis_permutations import PERMUTATIONS
 
 EACH = (AxisSwap(), AxisSwapOfGyros(), SignFlip(), SignFlipOfGyros())
 
@@ -105,10 +105,10 @@ def test_after_a_gap_the_imu_may_stand_otherwise():
 
 def test_of_all_signed_permutations_each_has_its_inverse():
     vector = np.array([1.0, 2.0, 3.0])
-    assert len(EVERY) == 47
-    for one in EVERY:
+    assert len(PERMUTATIONS) == 47
+    for one in PERMUTATIONS:
         assert one.inverse.of(one.of(vector)).tolist() == vector.tolist()
-    assert [one.moved for one in EVERY] == sorted(one.moved for one in EVERY)
+    assert [one.moved for one in PERMUTATIONS] == sorted(one.moved for one in PERMUTATIONS)
 
 
 def test_steps_of_a_bias_are_none():

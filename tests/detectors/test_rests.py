@@ -237,7 +237,9 @@ def test_a_jump_of_a_level_gyro_is_told_from_a_turn():
 def test_a_jump_about_the_vertical_says_what_it_may_be_as_well():
     ((name, event),) = seen(jumping(5, 10))
     assert name == "bias_jump"
-    assert "about the vertical would look the same" in BiasJump().describe(event, "z-up").sentence
+    assert (
+        "about the vertical cannot be distinguished" in BiasJump().describe(event, "z-up").sentence
+    )
 
 
 def test_masked_readings_do_not_count():

@@ -335,14 +335,14 @@ def test_increments_tell_whether_the_stamps_are_off_or_the_sampling():
     slower = time + excess * (np.clip(time, 10.0, 20.0) - 10.0)
     values = rest(4000, noise=NOISE, count=COUNT * 1e-6)
     (event,) = seen(ClockScale(), piece(values, np.round(slower, 9)))
-    assert event.facts.told.stamps is True
+    assert event.facts.evidence.stamps is True
     assert "the stamps run fast by 200 ppm" in ClockScale().describe(event, "log").sentence
     values[1001:2001] *= 1 + excess  # the samples do take longer
     (event,) = seen(ClockScale(), piece(values, np.round(slower, 9)))
-    assert event.facts.told.stamps is False
+    assert event.facts.evidence.stamps is False
     assert "the sampling is off, not the stamps" in ClockScale().describe(event, "log").sentence
     (event,) = seen(ClockScale(), piece(values, np.round(slower, 9)), recorded_on=None)
-    assert event.facts.told.stamps is None
+    assert event.facts.evidence.stamps is None
 
 
 @pytest.mark.parametrize("excess", [20e-6, -500e-6, 9e-3])
@@ -372,7 +372,7 @@ def test_a_whole_campaign_that_is_off_is_one_finding():
     (event,) = ClockScale().detect_between_logs(logs)
     assert_told(ClockScale(), event, "")
     assert event.size == pytest.approx(5000)
-    assert event.facts.told.stamps is True
+    assert event.facts.evidence.stamps is True
     assert not list(
         ClockScale().detect_between_logs({"a": log(one, given(usual_interval=INTERVAL))})
     )
