@@ -129,7 +129,7 @@ def campaigns_of(
         solution = None
         if accelerometer_parameters is not None and gyroscope_parameters is not None:
             solution = solution_of(
-                with_mount("joint", name),
+                name,
                 given,
                 Estimated(accelerometer_parameters, accelerometer_positions, accelerometer_fit),
                 Estimated(gyroscope_parameters, gyroscope_positions, gyroscope_fit),

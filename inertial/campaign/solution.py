@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.records import Known, Manoeuvre, rows_of
+from inertial.campaign.records import Known, Manoeuvre, rows_of, with_mount
 from inertial.estimation.gyroscope_observations import Position
 from inertial.estimation.triad import BIAS, linear_names
 from inertial.physics.forward import Site, Triad
@@ -16,6 +16,8 @@ from inertial.physics.vectors import cross
 from inertial.tables import AXES
 
 Array = NDArray[np.float64]
+
+JOINT = "joint"
 
 
 @dataclass(frozen=True)
@@ -62,13 +64,17 @@ class Estimated:
     positions: pd.DataFrame | None = None
     fit: pd.DataFrame | None = None
 
-    def found(self, method: str, quantity: str, below: float) -> dict[tuple[str, str, int], float]:
+    def found(
+        self, method: str, mount: str, quantity: str, below: float
+    ) -> dict[tuple[str, str, int], float]:
         """What is estimated of the positions, by component, with a sigma below this."""
         rows = [] if self.positions is None else rows_of(self.positions)
         return {
             (row["position"], quantity, row["component"]): row["value"]
             for row in rows
-            if row["method"] == method and row["quantity"] == quantity and row["sigma"] < below
+            if (row["method"], row["mount"]) == (method, mount)
+            and row["quantity"] == quantity
+            and row["sigma"] < below
         }
 
     def walk(self, method: str) -> float:
@@ -78,15 +84,15 @@ class Estimated:
 
 
 def solution_of(
-    method: str, known: Mapping[str, Known], accelerometer: Estimated, gyro: Estimated
+    mount: str, known: Mapping[str, Known], accelerometer: Estimated, gyro: Estimated
 ) -> Solution:
-    """The result of a method, tilts from the accelerometers, azimuths from the gyros.
+    """The joint result of a mount, tilts from the accelerometers, azimuths from the gyros.
 
     The azimuth of a position counts as found where its level earth rate is known to a third.
     """
-    level = known["earth_rate_level"].number
-    tilts = accelerometer.found(method, "tilt", np.inf)
-    levels = gyro.found(method, "horizontal", level / 3)
+    level, method = known["earth_rate_level"].number, with_mount(JOINT, mount)
+    tilts = accelerometer.found(JOINT, mount, "tilt", np.inf)
+    levels = gyro.found(JOINT, mount, "horizontal", level / 3)
     return Solution(
         triad_of(gyro.parameters, method),
         triad_of(accelerometer.parameters, method),

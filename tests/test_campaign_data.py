@@ -1,0 +1,42 @@
+"""A campaign of two mounts: each has its own manoeuvres, parameters and positions."""
+
+import chain
+import numpy as np
+import pytest
+
+MOUNTING = (8e-3, -6e-3, 4e-3)  # rad, of the second mount against the first
+
+
+@pytest.fixture(scope="module")
+def mounts(tmp_path_factory):
+    document = chain.short()
+    plan = document["campaign"]["plan"]
+    again = [m | {"id": f"b-{m['id']}", "log": f"b-{m['log']}", "mount": "second"} for m in plan]
+    document["campaign"]["plan"] = [m | {"mount": "first"} for m in plan] + again
+    turned = [1e3 * angle for angle in MOUNTING]
+    rotations = {"first": [0, 0, 0], "second": turned}
+    document["truth"]["mounts"] = {n: {"rotation_mrad": r} for n, r in rotations.items()}
+    folder = tmp_path_factory.mktemp("mounts")
+    return chain.mounts(chain.run(chain.simulate(document, folder / "raw"), folder / "derived"))
+
+
+def test_each_mount_has_its_own_manoeuvres(mounts):
+    assert [data.mount for data in mounts] == ["first", "second"]
+    for data in mounts:
+        names = {m.name for m in data.plan}
+        assert {still.manoeuvre.name for still in data.gyro_positions[0]} == names
+        rests = [name for name in names if "-up" in name or "-down" in name]
+        assert len(data.accelerometer_positions[0]) == 6 + 2 * (len(names) - len(rests))
+        assert data.named("joint") == f"joint@{data.mount}"
+
+
+def test_each_mount_has_its_own_result(mounts):
+    """The second case is turned, so M of it is M of the first times a rotation."""
+    first, second = (data.result for data in mounts)
+    for one, other in ((first.gyro, second.gyro), (first.accelerometer, second.accelerometer)):
+        between = np.linalg.inv(one.matrix) @ other.matrix
+        off = np.array([between[2, 1], between[0, 2], between[1, 0]])
+        np.testing.assert_allclose(np.abs(off), np.abs(MOUNTING), rtol=0.05)
+    for data in mounts:
+        positions = {position for position, quantity, _ in data.result.found if quantity == "tilt"}
+        assert positions and positions <= {m.position for m in data.plan}
