@@ -21,7 +21,7 @@ from inertial.campaign.estimates import Estimates
 from inertial.campaign.noise_levels import NoiseLevels, effective_levels
 from inertial.campaign.records import Known, Manoeuvre
 from inertial.campaign.unknown_attitude import add_free_accelerometers, free_stills, in_words
-from inertial.estimation.multi_position import Unseen
+from inertial.estimation.multi_position import Unobservable
 from inertial.tables import CHANNELS
 from stages.gyroscope.free_positions import add_free_gyros
 
@@ -202,4 +202,4 @@ def test_words(shares, up, told):
     along = np.zeros(9)
     for i, share in shares.items():
         along[i] = share
-    assert in_words(Unseen(along, np.array(up, float))) == told
+    assert in_words(Unobservable(along, np.array(up, float))) == told

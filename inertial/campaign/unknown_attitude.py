@@ -24,9 +24,9 @@ from inertial.estimation.multi_position import (
     NAMES,
     PRIOR,
     FreeRest,
-    Unseen,
+    Unobservable,
     free_positions,
-    unseen,
+    unobservable,
 )
 from inertial.estimation.triad import CROSS, MOUNTING, SYMMETRIC
 from inertial.estimation.variance_components import ScatterFit, with_scatter
@@ -147,7 +147,7 @@ def add_symmetric(estimates: Estimates, method: str, estimate: Estimate) -> None
     jacobian = np.array([unit[told[n]] if n in told else np.zeros(FREE) for n in names])
     values = jacobian @ (estimate.values[:FREE] - PRIOR)  # P − I
     why = dict.fromkeys(MOUNTING, MOUNTING_UNDETERMINED)
-    lacks = unseen(estimate)
+    lacks = unobservable(estimate)
     for name, own in told.items():
         i = NAMES.index(own)
         if not estimate.determined[i]:
@@ -157,11 +157,11 @@ def add_symmetric(estimates: Estimates, method: str, estimate: Estimate) -> None
     )
 
 
-def _share(i: int, one: Unseen) -> float:
+def _share(i: int, one: Unobservable) -> float:
     return abs(float(one.along[i]))
 
 
-def in_words(one: Unseen) -> str:
+def in_words(one: Unobservable) -> str:
     """What the rests do not tell, and the rest that would."""
     cure = f"add one with {_attitude(one.up)}"
     if len(one.names) > 1:

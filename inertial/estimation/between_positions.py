@@ -161,7 +161,7 @@ class _Data:
 
     @property
     def prior_sigma(self) -> Array:
-        directions = np.full(2 * len(self.stops), forces.ANY)
+        directions = np.full(2 * len(self.stops), forces.DIRECTION_SIGMA)
         level = np.full(2 * len(self.chains), self.known.earth.level / np.sqrt(2))
         ends = [self.known.gravity_sigma, self.known.earth.up_sigma]
         return np.concatenate([PRIOR_SIGMA, forces.PRIOR_SIGMA, directions, level, ends])

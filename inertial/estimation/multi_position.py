@@ -13,40 +13,25 @@ from inertial.estimation.least_squares import MIN_SIGMA_REDUCTION, Estimate, Sys
 from inertial.estimation.triad import BIAS, SYMMETRIC
 from inertial.physics.motion import level_axes
 
-# ---- The accelerometers from rests of unknown attitude: known is only how large gravity is.
-#
-#     mean reading = P · (g v) + bias + noise,   |v| = 1
-#
-# v is the upward direction at each rest, two unknowns of its own that its three readings tell;
-# the third reading is the equation that is left, |P⁻¹ (reading − bias)| = g (Tedaldi, Pretto &
-# Menegatti, ICRA 2014; the sum of squares here is that of the readings, each with its own sigma,
-# so it is the likelihood with v at its best). So n rests tell n combinations of nine parameters.
-#
-# Of M = P R they tell P and nothing of R, for a rotation of the triad against the case turns all
-# v alike. The convention is R = I: the axes are those square to each other that lie nearest to
-# the sensors', and M = P is symmetric. That of imu_tk is that the z sensor feels z alone and the
-# y sensor no x: M upper triangular, with the same P; see `upper_triangular`.
-#
-# Noise across gravity makes a reading longer, |f|² = g² + …: what that adds, σ²/g for alike
-# channels, is taken off.
-
 Array = NDArray[np.float64]
 
 NAMES = (*SYMMETRIC, *BIAS)
 FREE = len(NAMES)
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # elements of P in the order of SYMMETRIC
 
-# Vague priors: a scale factor within 1, the bias within 10 m/s², two axes within 0.1 rad of square,
-# of which P has half: no triad is made worse, and rests on faces, of which noise alone turns the
-# readings by σ/g, must not seem to tell it.
+# Vague priors: a scale factor within 1, the bias within 10 m/s², two axes within 0.1 rad of
+# orthogonal, of which P has half: no triad is worse, and rests on faces, of which noise alone
+# rotates the readings by σ/g, must not seem to determine it.
 PRIOR = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 PRIOR_SIGMA = np.array([1.0, 1.0, 1.0, 0.05, 0.05, 0.05, 10.0, 10.0, 10.0])
-ANY = 1.0  # rad, of a direction about the one that the readings show
+DIRECTION_SIGMA = 1.0  # rad, prior of a direction about that of the readings
+MIN_COMPONENT = 0.3  # of an unobservable combination: a parameter with less is not listed
+MIN_RELATIVE_EFFECT = 0.9  # of the largest change: an attitude that reaches it is as good
 
 
 @dataclass(frozen=True)
 class FreeRest:
-    """A rest of unknown attitude: mean readings, m/s², and their sigma, (3,) each."""
+    """A static position of unknown attitude: mean readings, m/s², and their sigma, (3,) each."""
 
     name: str
     mean: Array
@@ -55,9 +40,9 @@ class FreeRest:
 
 @dataclass(frozen=True)
 class Upward:
-    """The upward directions of n rests as unknowns: two small numbers beside a first guess.
+    """The upward directions of n rests as unknowns: two small components about a first value.
 
-    `first`: (n, 3); `across`: (n, 2, 3), level directions there.
+    `first`: (n, 3); `across`: (n, 2, 3), horizontal directions there.
     """
 
     first: Array
@@ -65,15 +50,15 @@ class Upward:
 
     def at(self, places: Array) -> tuple[Array, Array]:
         """The directions, (n, 3), and how they change per unit, (n, 2, 3), at `places`, (n, 2)."""
-        long = self.first + np.einsum("na,nai->ni", places, self.across)
-        length = np.linalg.norm(long, axis=1)[:, None]
-        up = long / length
+        vector = self.first + np.einsum("na,nai->ni", places, self.across)
+        length = np.linalg.norm(vector, axis=1)[:, None]
+        up = vector / length
         along = np.einsum("nai,ni->na", self.across, up)
         return up, (self.across - along[:, :, None] * up[:, None, :]) / length[:, :, None]
 
 
 def upward_of(means: Array) -> Upward:
-    """About the directions that readings show which are taken as they are, (n, 3)."""
+    """About the directions of uncalibrated readings, (n, 3)."""
     first = means / np.linalg.norm(means, axis=1)[:, None]
     return Upward(first, np.array([level_axes(up) for up in first]))
 
@@ -87,9 +72,23 @@ def matrix_of(parameters: Array) -> Array:
 def free_positions(
     rests: Sequence[FreeRest], gravity: float, gravity_sigma: float, scatter: float = 0.0
 ) -> Estimate:
-    """P by its elements xx, yy, zz, xy, xz, yz, and the bias, with all that is unknown beside them.
+    """P by its elements xx, yy, zz, xy, xz, yz, and the bias, with all other unknowns.
 
-    `scatter`, m/s², is by what the readings differ from rest to rest beyond noise.
+        mean reading = P · (g v) + bias + noise,   |v| = 1
+
+    Of the attitude nothing is known, only the magnitude of gravity: v is the upward direction at
+    each rest, two unknowns of its own; so one equation of three remains,
+    |P⁻¹ (reading − bias)| = g (Tedaldi, Pretto & Menegatti, ICRA 2014; the sum of squares here is
+    that of the readings, each with its own sigma, so it is the likelihood maximised over v). n
+    rests determine n combinations of nine parameters.
+
+    Of M = P R they determine P and nothing of R, for a rotation of the triad against the case
+    rotates all v alike. The convention is R = I: the axes are the orthogonal ones nearest to the
+    sensors', and M = P is symmetric. That of imu_tk is M upper triangular, with the same P; see
+    `upper_triangular`.
+
+    Noise across gravity lengthens a reading, |f|² = g² + …: this bias, σ²/g for equal channels, is
+    subtracted, see `lengthened`. `scatter`, m/s²: between rests, beyond noise.
     """
     up = upward_of(np.array([rest.mean for rest in rests]))
     about = partial(equations, rests, up, (gravity, gravity_sigma), scatter)
@@ -105,7 +104,7 @@ def equations(
 ) -> System:
     """The equations of all rests, linear about `around`, (9 + 2 n + 1,).
 
-    Unknowns: P and bias, the directions, gravity, whose value and sigma are given.
+    Unknowns: P and bias, the directions, gravity with its given value and sigma.
     """
     n = len(rests)
     names = [("parameter", name) for name in NAMES]
@@ -117,7 +116,7 @@ def equations(
         observed.ravel(),
         sigma.ravel(),
         np.concatenate([PRIOR, np.zeros(2 * n), gravity[:1]]),
-        np.concatenate([PRIOR_SIGMA, np.full(2 * n, ANY), gravity[1:]]),
+        np.concatenate([PRIOR_SIGMA, np.full(2 * n, DIRECTION_SIGMA), gravity[1:]]),
         FREE + 2 * n,
         tuple(names),
     )
@@ -126,7 +125,7 @@ def equations(
 def readings(
     rests: Sequence[FreeRest], up: Upward, scatter: float, around: Array
 ) -> tuple[Array, Array, Array]:
-    """What every reading sees of the unknowns about `around`.
+    """The readings as linear functions of the unknowns about `around`.
 
     Returns
     -------
@@ -146,27 +145,27 @@ def readings(
         design[each, :, FREE + 2 * each + a] = gravity * changes[:, a] @ matrix.T
     design[:, :, -1] = along
     sigma = np.hypot(np.array([rest.sigma for rest in rests]), scatter)
-    longer = lengthened(matrix, directions, sigma, gravity)
-    means = np.array([rest.mean for rest in rests]) - longer[:, None] * along
+    increase = lengthened(matrix, directions, sigma, gravity)
+    means = np.array([rest.mean for rest in rests]) - increase[:, None] * along
     rest = means - (gravity * along + bias)
     return design, rest + design @ around, np.asarray(sigma)
 
 
 def lengthened(matrix: Array, up: Array, sigma: Array, gravity: float) -> Array:
-    """By how much noise lengthens each P⁻¹ (reading − bias) beyond what its direction takes up.
+    """Increase of |P⁻¹ (reading − bias)| by noise, beyond that along its direction.
 
     To second order: with the covariance C of that vector, (tr C − |C v|²/(v·C v)) / (2 g), which is
-    σ²/g for alike channels; (n,), m/s².
+    σ²/g for equal channels; (n,), m/s².
     """
     inverse = np.linalg.inv(matrix)
-    spread = np.einsum("ij,nj,kj->nik", inverse, sigma**2, inverse)
-    across = np.einsum("nij,nj->ni", spread, up)
-    taken = np.sum(across**2, axis=1) / np.sum(across * up, axis=1)
-    return np.asarray((np.trace(spread, axis1=1, axis2=2) - taken) / (2 * gravity))
+    covariance = np.einsum("ij,nj,kj->nik", inverse, sigma**2, inverse)
+    across = np.einsum("nij,nj->ni", covariance, up)
+    along_direction = np.sum(across**2, axis=1) / np.sum(across * up, axis=1)
+    return np.asarray((np.trace(covariance, axis1=1, axis2=2) - along_direction) / (2 * gravity))
 
 
 def upper_triangular(symmetric: Array) -> Array:
-    """The same triad as imu_tk has it: M = P R upper triangular, (3, 3).
+    """The same triad in the convention of imu_tk: M = P R upper triangular, (3, 3).
 
     Its inverse is T K of Tedaldi et al., truth = T K (reading − bias) with K diagonal and
     T = [1 −α_yz α_zy; 0 1 −α_zx; 0 0 1].
@@ -174,17 +173,6 @@ def upper_triangular(symmetric: Array) -> Array:
     upper = np.asarray(rq(symmetric, mode="r"))
     return np.asarray(upper * np.sign(np.diag(upper)))
 
-
-# ---- What rests of unknown attitude leave open: combinations of parameters that no rest sees.
-#
-# A combination is seen when the data narrow its vague prior, as one parameter is determined by
-# itself. Those that are not span what the principal axes of the covariance, in units of the
-# priors, have left wide; each parameter that lies in it most, one after another, stands for one
-# of them. Of the rests that could be added, the best is the one whose reading the combination
-# changes most.
-
-PART = 0.3  # of a combination: a parameter that has less of it is not named
-SERVES = 0.9  # of the largest change: an attitude that reaches it serves as well as the best
 
 # Faces, edges and corners of the case that point up: the simplest first.
 ATTITUDES = np.array(
@@ -197,8 +185,8 @@ ATTITUDES = np.array(
 
 
 @dataclass(frozen=True)
-class Unseen:
-    """A combination that the rests do not tell, and the rest that would.
+class Unobservable:
+    """A combination that the rests do not determine, and the rest that would.
 
     `along`: (9,), of the parameters in units of their priors, of length 1; `up`: (3,), +1, 0 or −1
     for an axis that points up, lies level or points down.
@@ -211,26 +199,37 @@ class Unseen:
     def names(self) -> list[str]:
         """The parameters in it, the largest first."""
         order = np.argsort(-np.abs(self.along), kind="stable")
-        return [NAMES[i] for i in order if abs(self.along[i]) >= PART]
+        return [NAMES[i] for i in order if abs(self.along[i]) >= MIN_COMPONENT]
 
 
-def unseen(estimate: Estimate) -> list[Unseen]:
-    """What an estimate of `free_positions` does not tell."""
+def unobservable(estimate: Estimate) -> list[Unobservable]:
+    """The unobservable combinations of an estimate of `free_positions`.
+
+    A combination is observable when the data reduce its vague prior, as a single parameter is
+    determined. The others are spanned by those principal axes of the covariance, in units of the
+    priors, that keep their prior sigma; one after another, the parameter with the largest component
+    in them represents one. Of the rests that could be added, the best is that whose reading the
+    combination changes most.
+    """
     shrunk = estimate.covariance[:FREE, :FREE] / np.outer(PRIOR_SIGMA, PRIOR_SIGMA)
     variance, axes = np.linalg.eigh(shrunk)
-    wide = axes[:, variance >= MIN_SIGMA_REDUCTION**-2]
-    within = wide @ wide.T
-    order = qr(within, mode="r", pivoting=True)[1][: wide.shape[1]]
+    unreduced = axes[:, variance >= MIN_SIGMA_REDUCTION**-2]
+    within = unreduced @ unreduced.T
+    order = qr(within, mode="r", pivoting=True)[1][: unreduced.shape[1]]
     changes = lengths(estimate) * PRIOR_SIGMA
-    found = []
+    result = []
     for along in (within[:, order] / np.linalg.norm(within[:, order], axis=0)).T:
-        told = np.abs(changes @ along)
-        found.append(Unseen(along, ATTITUDES[int(np.argmax(told >= SERVES * told.max()))]))
-    return found
+        effect = np.abs(changes @ along)
+        result.append(
+            Unobservable(
+                along, ATTITUDES[int(np.argmax(effect >= MIN_RELATIVE_EFFECT * effect.max()))]
+            )
+        )
+    return result
 
 
 def lengths(estimate: Estimate) -> Array:
-    """By how much each parameter changes |P⁻¹ (reading − bias)| at the `ATTITUDES`, (26, 9)."""
+    """The change of |P⁻¹ (reading − bias)| per unit of each parameter at `ATTITUDES`, (26, 9)."""
     ups = ATTITUDES / np.linalg.norm(ATTITUDES, axis=1)[:, None]
     normal = ups @ np.linalg.inv(matrix_of(estimate.values))
     pairs = [

@@ -11,31 +11,36 @@ from scipy.optimize import minimize_scalar
 
 from inertial.estimation.probability import chi2_isf
 
-# ---- Ripples of a turntable: lines against its angle, with one phase in all turns.
-#
-# A table that is ahead of itself by a sin nθ + b cos nθ, rad, where its angle is θ turns at
-#
-#     θ' + n θ' (a cos nθ − b sin nθ),
-#
-# so in each turn with an amplitude that goes with the rate, and backward with the sign turned
-# over. θ is counted from the start of the turn. The sums over all turns are coherent: one a and
-# one b.
-
 Array = NDArray[np.float64]
 
-STEP = 0.25  # of the orders that are tried; finer where the turns together are longer than two
-PERIODS = 8.0  # in a turn; with fewer bias and slope are not at right angles to a line
-SHARE = 1e-4  # of a shape that bias, slope and what gravity turns leave of it, else none is seen
-TIMES_OF_GRAVITY = (1.0, 2.0)  # orders at which gravity and the earth's rate act in tilted turns
+ORDER_STEP = 0.25  # of the search; finer where the turns together are longer than two
+MIN_PERIODS = 8.0  # in a turn; with fewer bias and slope are not at right angles to a line
+MIN_REMAINING_SHARE = (
+    1e-4  # of a shape that bias, slope and what gravity turns leave of it, else none is seen
+)
+GRAVITY_ORDERS = (1.0, 2.0)  # at which gravity and the earth's rate act in tilted turns
+WHITE_FROM = 0.5  # Hz, below which noise is not known to be white; as in its estimate
+NEIGHBOURS = 129  # orders of the grid whose median is the level of an order
+MIN_SEPARATION = 1.5  # periods, between an order and others that are independent of a line there
+MIN_DETECTION_SIGMAS = 5.0
+MIN_ORDER_WITH_NEIGHBOURS = 4.0  # from which there are enough of them for a level
+STEPS_PER_PERIOD = 4.0  # of all turns together, in the search for a peak
 
 
 @dataclass(frozen=True)
 class Course:
     """The residual rate in one direction over the steady part of one turn.
 
+    A table whose angle is θ + a sin nθ + b cos nθ, rad, turns at
+
+        θ' + n θ' (a cos nθ − b sin nθ),
+
+    so in each turn with an amplitude proportional to the rate, and backward with opposite sign. θ
+    is counted from the start of the turn. The sums over all turns are coherent: one a and one b.
+
     record : (n,), rad/s; angle : (n,), rad, signed, at the middle of each sample, evenly spaced
     rate : rad/s, signed; step : s, of a sample; averaged : whether a sample is a mean over it
-    sigma : rad/s, white noise of a sample; tilted : whether gravity goes round in the case
+    sigma : rad/s, white noise of a sample; tilted : whether gravity rotates in body axes
     """
 
     record: Array
@@ -48,7 +53,7 @@ class Course:
 
     @property
     def turned(self) -> float:
-        """How many whole turns it is long."""
+        """Its length in whole turns."""
         return abs(self.rate) * self.step * len(self.record) / (2 * np.pi)
 
     @property
@@ -58,19 +63,19 @@ class Course:
 
     @cached_property
     def slow(self) -> Array:
-        """Bias, slope and what is fixed to the laboratory, (n, 2) or (n, 6), orthonormal."""
+        """Bias, slope and gravity's harmonics, (n, 2) or (n, 6), orthonormal."""
         columns = [np.ones_like(self.angle), self.angle - self.angle.mean()]
-        for order in TIMES_OF_GRAVITY if self.tilted else ():
+        for order in GRAVITY_ORDERS if self.tilted else ():
             columns += [np.cos(order * self.angle), np.sin(order * self.angle)]
         return np.asarray(np.linalg.qr(np.column_stack(columns))[0])
 
     @cached_property
     def rest(self) -> Array:
-        """The record less what is slow, (n,)."""
+        """The record less its slow part, (n,)."""
         return self.less_slow(self.record)
 
     def less_slow(self, columns: Array) -> Array:
-        """Columns less their share of bias, slope and what is fixed to the laboratory."""
+        """Columns less their projection on bias, slope and gravity's harmonics."""
         return np.asarray(columns - self.slow @ (self.slow.T @ columns))
 
     def gain(self, order: Array) -> Array:
@@ -79,27 +84,27 @@ class Course:
         return np.asarray(np.where(order < self.highest, order * self.rate * share, 0.0))
 
     def shapes(self, order: float) -> Array:
-        """What a and b of 1 rad do, (n, 2), rad/s."""
+        """The rates for a and b of 1 rad, (n, 2), rad/s."""
         turned = order * self.angle
         gain = float(self.gain(np.asarray(order)))
         return np.column_stack([gain * np.cos(turned), -gain * np.sin(turned)])
 
-    def says(self, order: float) -> tuple[Array, Array]:
+    def normal_equations(self, order: float) -> tuple[Array, Array]:
         """Information of a and b, (2, 2), and its product with their estimates, (2,)."""
         shapes = self.shapes(order)
         left = self.less_slow(shapes)
-        if np.sum(left**2) <= SHARE * np.sum(shapes**2):
+        if np.sum(left**2) <= MIN_REMAINING_SHARE * np.sum(shapes**2):
             return np.zeros((2, 2)), np.zeros(2)
         return left.T @ left / self.sigma**2, left.T @ self.rest / self.sigma**2
 
 
 @dataclass(frozen=True)
 class Orders:
-    """What the turns together say of each order, (m,) each.
+    """The turns together at each order, (m,) each.
 
     drop : of chi-squared by one a and one b, two degrees of freedom
-    apart : further drop where each turn has its own; turns : how many say something
-    sigma : rad, of a and b; hertz : the highest frequency at which a turn shows it
+    apart : further drop with an own a and b for each turn; turns : number with information
+    sigma : rad, of a and b; hertz : the highest frequency at which a turn has it
     """
 
     order: Array
@@ -111,34 +116,34 @@ class Orders:
 
 
 def span(courses: Sequence[Course]) -> float:
-    """How many whole turns lie between the least and the largest angle."""
-    ends = [edge for one in courses for edge in (one.angle[0], one.angle[-1])]
+    """Whole turns between the least and the largest angle."""
+    ends = [edge for course in courses for edge in (course.angle[0], course.angle[-1])]
     return float(max(ends) - min(ends)) / (2 * np.pi)
 
 
 def grid(courses: Sequence[Course]) -> Array:
-    """The orders that are tried: from 1 up to half the sample rate of the slowest turn."""
-    step = STEP / max(np.ceil(span(courses) / 2 - 0.05), 1.0)
-    return np.asarray(np.arange(1.0, max(one.highest for one in courses), step))
+    """The orders of the search: from 1 up to half the sample rate of the slowest turn."""
+    step = ORDER_STEP / max(np.ceil(span(courses) / 2 - 0.05), 1.0)
+    return np.asarray(np.arange(1.0, max(course.highest for course in courses), step))
 
 
 def search(courses: Sequence[Course]) -> Orders:
     """Every order of the grid."""
     orders = grid(courses)
-    shortest = min(one.turned for one in courses)
-    few = int(np.searchsorted(orders, PERIODS / shortest))
+    shortest = min(course.turned for course in courses)
+    few = int(np.searchsorted(orders, MIN_PERIODS / shortest))
     information = np.zeros((len(courses), len(orders), 2, 2))
     product = np.zeros((len(courses), len(orders), 2))
-    for i, one in enumerate(courses):
+    for i, course in enumerate(courses):
         for j in range(few):
-            information[i, j], product[i, j] = one.says(float(orders[j]))
-        gain = one.gain(orders[few:]) / one.sigma
-        turned = gain * _transform(one, orders[few:]) / one.sigma
-        information[i, few:] = (len(one.record) * gain**2 / 2)[:, None, None] * np.eye(2)
+            information[i, j], product[i, j] = course.normal_equations(float(orders[j]))
+        gain = course.gain(orders[few:]) / course.sigma
+        turned = gain * _transform(course, orders[few:]) / course.sigma
+        information[i, few:] = (len(course.record) * gain**2 / 2)[:, None, None] * np.eye(2)
         product[i, few:] = np.stack([turned.real, turned.imag], axis=-1)
     drop, inverse = _dropped(information.sum(axis=0), product.sum(axis=0))
     each, _ = _dropped(information, product)
-    rates = np.array([abs(one.rate) for one in courses])
+    rates = np.array([abs(course.rate) for course in courses])
     seen = information[..., 0, 0] > 0
     return Orders(
         orders,
@@ -165,7 +170,7 @@ def _transform(course: Course, orders: Array) -> NDArray[np.complex128]:
 
 
 def _dropped(information: Array, product: Array) -> tuple[Array, Array]:
-    """v' G⁻¹ v and G⁻¹ of G (…, 2, 2) and v (…, 2); zero and infinity where nothing is seen."""
+    """v' G⁻¹ v and G⁻¹ of G (…, 2, 2) and v (…, 2); zero and infinity for singular G."""
     seen = np.linalg.det(information) > 0
     safe = np.where(seen[..., None, None], information, np.eye(2))
     inverse = np.where(seen[..., None, None], np.linalg.inv(safe), np.inf)
@@ -173,82 +178,67 @@ def _dropped(information: Array, product: Array) -> tuple[Array, Array]:
     return np.where(seen, drop, 0.0), inverse
 
 
-# ---- What noise alone brings forth in a search against the table's angle.
-#
-# Where the noise is white the drop of chi-squared of an order is exponentially distributed, 2
-# degrees of freedom. Two things may be worse. A hump of the spectrum: the level is then that of
-# the orders around, all turns by themselves. And below the band in which the noise was read
-# nothing says that it is white: there the turns tell it by how they differ among themselves, and
-# by the orders around, with an F-test. What is the same in all turns cannot be had from noise
-# that differs from turn to turn.
+def log_chance(spectrum: Orders, turned: float) -> Array:
+    """Natural logarithm of the p-value of each order's drop, (m,), without the search.
 
-WHITE_FROM = 0.5  # Hz, below which noise is not known to be white; as where it is read
-AROUND = 129  # orders of the grid whose median is the level of one
-APART = 1.5  # periods by which another order must differ to know nothing of a line
-SUFFICES = 5.0  # sigmas: what can be seen
-FROM = 4.0  # order from which the orders around are enough to tell a level
+    For white noise the drop of chi-squared is exponentially distributed, 2 degrees of freedom.
+    There are two exceptions. In a hump of the spectrum the level is that of the neighbouring
+    orders, all turns by themselves. And below `WHITE_FROM` the noise is not known to be white:
+    there it is estimated from the differences between turns and from the neighbouring orders, with
+    an F-test. A line common to all turns is not caused by noise that differs from turn to turn.
 
-
-def log_chance(said: Orders, turned: float) -> Array:
-    """Natural logarithm of the chance of each order's drop by noise, (m,), without the search.
-
-    turned : whole turns that a record is long, which says how far apart orders must be.
+    turned : length of a record in whole turns, which sets the separation of independent orders.
     """
-    each = said.drop + said.apart
-    turns = np.maximum(said.turns, 1)
-    level = median_filter(each / (2 * turns), AROUND, mode="nearest")
+    each = spectrum.drop + spectrum.apart
+    turns = np.maximum(spectrum.turns, 1)
+    level = median_filter(each / (2 * turns), NEIGHBOURS, mode="nearest")
     level /= chi2_isf(0.5, 2 * turns) / (2 * turns)
-    chance = -said.drop / 2 / np.maximum(level, 1.0)
-    for i in np.flatnonzero(said.hertz < WHITE_FROM).tolist():
-        degrees, left = _told_by_turns(said, i, turned)
-        ratio = said.drop[i] / 2 / max(left / max(degrees, 1.0), 1.0)
+    chance = -spectrum.drop / 2 / np.maximum(level, 1.0)
+    for i in np.flatnonzero(spectrum.hertz < WHITE_FROM).tolist():
+        degrees, chi_squared = _noise_by_turns(spectrum, i, turned)
+        ratio = spectrum.drop[i] / 2 / max(chi_squared / max(degrees, 1.0), 1.0)
         by_turns = -degrees / 2 * np.log1p(2 * ratio / degrees) if degrees else 0.0
-        chance[i] = max(-said.drop[i] / 2, by_turns)
-    return np.asarray(np.where(said.turns > 0, chance, 0.0))
+        chance[i] = max(-spectrum.drop[i] / 2, by_turns)
+    return np.asarray(np.where(spectrum.turns > 0, chance, 0.0))
 
 
-def sigmas_seen(said: Orders, turned: float, level: float) -> Array:
-    """From how many sigmas on an order is seen, (m,): 5, or what its F-test asks for at `level`.
+def detection_limit(spectrum: Orders, turned: float, level: float) -> Array:
+    """Detection limit of an order in sigmas, (m,): 5, or that of its F-test at `level`.
 
-    Infinite where nothing tells the noise: of a slow ripple in one turn.
+    Infinite without an estimate of the noise: for a slow ripple in one turn.
     """
-    seen = np.where(said.turns > 0, SUFFICES, np.inf)
-    for i in np.flatnonzero(said.hertz < WHITE_FROM).tolist():
-        degrees, _ = _told_by_turns(said, i, turned)
-        asked = np.sqrt(degrees * (level ** (-2 / degrees) - 1)) if degrees else np.inf
-        seen[i] = max(seen[i], asked)
+    seen = np.where(spectrum.turns > 0, MIN_DETECTION_SIGMAS, np.inf)
+    for i in np.flatnonzero(spectrum.hertz < WHITE_FROM).tolist():
+        degrees, _ = _noise_by_turns(spectrum, i, turned)
+        limit = np.sqrt(degrees * (level ** (-2 / degrees) - 1)) if degrees else np.inf
+        seen[i] = max(seen[i], limit)
     return np.asarray(seen)
 
 
-def _told_by_turns(said: Orders, i: int, turned: float) -> tuple[float, float]:
-    """Degrees of freedom that tell the noise at an order, and their chi-squared."""
-    degrees, left = 2.0 * max(said.turns[i] - 1, 0), float(said.apart[i])
-    if said.order[i] >= FROM:
-        around = _around(said.order, i, turned)
-        degrees += 2.0 * float(said.turns[around].sum())
-        left += float((said.drop + said.apart)[around].sum())
-    return degrees, left
+def _noise_by_turns(spectrum: Orders, i: int, turned: float) -> tuple[float, float]:
+    """Degrees of freedom of the noise estimate at an order, and their chi-squared."""
+    degrees, chi_squared = 2.0 * max(spectrum.turns[i] - 1, 0), float(spectrum.apart[i])
+    if spectrum.order[i] >= MIN_ORDER_WITH_NEIGHBOURS:
+        around = _around(spectrum.order, i, turned)
+        degrees += 2.0 * float(spectrum.turns[around].sum())
+        chi_squared += float((spectrum.drop + spectrum.apart)[around].sum())
+    return degrees, chi_squared
 
 
 def _around(order: Array, i: int, turned: float) -> list[int]:
     """Orders from half to twice one, one period of the record apart from it and each other."""
     step = float(order[1] - order[0])
     apart = max(round(1 / turned / step), 1)
-    first = max(round(APART / turned / step), 1)
+    first = max(round(MIN_SEPARATION / turned / step), 1)
     places = [*range(i - first, -1, -apart), *range(i + first, len(order), apart)]
     return [j for j in places if order[i] / 2 <= order[j] <= 2 * order[i]]
 
 
-# ---- One ripple of a turntable over all turns: its order, its a and b, with sigmas.
-
-FINER = 4.0  # steps over a period of all turns together, in which a peak is looked for
-
-
 @dataclass(frozen=True)
 class Ripple:
-    """One order over all turns: a and b, rad, with their covariance beside that of the order.
+    """One order over all turns: a and b, rad, with their covariance and that of the order.
 
-    own : (k, 2), a and b of each turn by itself, NaN where it shows none; power : (k,), the
+    own : (k, 2), a and b of each turn by itself, NaN without information; power : (k,), the
     squared signal-to-noise ratio of each turn for an angle of 1 rad.
     """
 
@@ -285,14 +275,14 @@ class Ripple:
 
 
 def fitted(courses: Sequence[Course], near: float, width: float) -> Ripple:
-    """The order within `width` of `near` that explains most; of width 0 that order itself."""
+    """The order within `width` of `near` with the largest drop; for width 0 that order itself."""
     order = near
     if width:
         order = _best(courses, near, width)
     drop, values, information = _coherent(courses, order)
     own, power, each = [], [], 0.0
-    for one in courses:
-        matrix, product = one.says(order)
+    for course in courses:
+        matrix, product = course.normal_equations(order)
         seen = np.linalg.det(matrix) > 0
         own.append(np.linalg.solve(matrix, product) if seen else np.full(2, np.nan))
         power.append(float(np.trace(matrix)) / 2)
@@ -313,8 +303,8 @@ def fitted(courses: Sequence[Course], near: float, width: float) -> Ripple:
 
 
 def _best(courses: Sequence[Course], near: float, width: float) -> float:
-    """The order that explains most; where several turns follow each other it has many peaks."""
-    apart = 1 / (FINER * span(courses))
+    """The order with the largest drop; where several turns follow each other it has many peaks."""
+    apart = 1 / (STEPS_PER_PERIOD * span(courses))
     tried = near + apart * np.arange(-np.ceil(width / apart), np.ceil(width / apart) + 1)
     tried = tried[tried > apart]
     best = float(tried[np.argmax([_coherent(courses, float(n))[0] for n in tried])])
@@ -329,9 +319,9 @@ def _best(courses: Sequence[Course], near: float, width: float) -> float:
 
 def _coherent(courses: Sequence[Course], order: float) -> tuple[float, Array, Array]:
     """Drop of chi-squared, a and b, and their information."""
-    said = [one.says(order) for one in courses]
-    information = np.sum([matrix for matrix, _ in said], axis=0)
-    product = np.sum([vector for _, vector in said], axis=0)
+    equations = [course.normal_equations(order) for course in courses]
+    information = np.sum([matrix for matrix, _ in equations], axis=0)
+    product = np.sum([vector for _, vector in equations], axis=0)
     values = np.linalg.pinv(information) @ product
     return float(product @ values), values, information
 
@@ -340,9 +330,11 @@ def _with_order(courses: Sequence[Course], order: float, values: Array) -> tuple
     """Covariance of a and b where the order is an unknown too, and the sigma of the order."""
     information = np.zeros((3, 3))
     small = 1e-6 * order
-    for one in courses:
-        change = (one.shapes(order + small) - one.shapes(order - small)) @ values / (2 * small)
-        columns = one.less_slow(np.column_stack([one.shapes(order), change])) / one.sigma
+    for course in courses:
+        change = (
+            (course.shapes(order + small) - course.shapes(order - small)) @ values / (2 * small)
+        )
+        columns = course.less_slow(np.column_stack([course.shapes(order), change])) / course.sigma
         information += columns.T @ columns
     # The order and the angles differ in size by powers of ten.
     size = np.sqrt(np.diag(information))

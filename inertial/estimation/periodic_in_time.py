@@ -9,13 +9,12 @@ from scipy.optimize import minimize_scalar
 
 from inertial.estimation.probability import chi2_logsf
 
-# ---- Oscillations in residuals: lines that stand out of the noise of a spectrum.
-
 Array = NDArray[np.float64]
 
-FEWEST = 64  # samples in which a line can be told from noise
-OVERSAMPLED = 2  # the search steps by half a bin, so that no line falls between two
-LEAKS = 0.05  # of a line that is taken out may be left a bin beside it: it is never quite even
+MIN_SAMPLES = 64  # in which a line can be distinguished from noise
+OVERSAMPLING = 2  # the search steps by half a bin, so that no line lies between two
+MAX_LEAKAGE = 0.05  # of the amplitude of a removed line, one bin beside it
+MIN_LOG_ODDS = 3.0  # of one of two hypotheses to be accepted alone: 20 to 1
 
 
 @dataclass(frozen=True)
@@ -23,7 +22,7 @@ class Line:
     """One oscillation A sin(2πf t + φ) of one channel.
 
     `frequency` and `sigma_frequency`: Hz; `amplitude` and `sigma_amplitude`: unit of the
-    record; `p_value`: chance of so high a peak anywhere in the spectrum, by noise alone.
+    record; `p_value`: probability of so high a peak anywhere in the spectrum by noise alone.
     """
 
     frequency: float
@@ -35,46 +34,46 @@ class Line:
 
 @dataclass(frozen=True)
 class Taken:
-    """A line that was taken out of a record: Hz, and its amplitude there."""
+    """A line that was removed from a record: Hz, and its amplitude present."""
 
     frequency: float
     amplitude: float
 
     def leaks(self, frequency: Array, seconds: float) -> Array:
-        """The amplitude that may be left of it at other frequencies, in a record of so long."""
+        """Largest amplitude of its remainder at other frequencies, in a record of so long."""
         bins = np.abs(frequency - self.frequency) * seconds
-        return np.asarray(LEAKS * self.amplitude / np.maximum(bins, LEAKS))
+        return np.asarray(MAX_LEAKAGE * self.amplitude / np.maximum(bins, MAX_LEAKAGE))
 
 
 def strongest(
     record: Array, rate: float, lowest: float, taken: Sequence[Taken] = ()
 ) -> Line | None:
-    """The line of a record that stands out most.
+    """The most significant line of a record.
 
-    The periodogram of white noise is exponentially distributed about its level, which is
-    had from its median; the search over all bins is paid for.
+    The periodogram of white noise is exponentially distributed about its level, which is estimated
+    from its median; the p-value is corrected for the search over all bins.
 
     Parameters
     ----------
     record : (n,), samples without gaps
     rate : Hz, samples per second
-    lowest : Hz, below which nothing is looked for
-    taken : lines that were taken out of it; what they may have left is none
+    lowest : Hz, lower end of the search
+    taken : lines that were removed before; their remainders are not detected again
     """
     n = len(record)
-    if n < FEWEST:
+    if n < MIN_SAMPLES:
         return None
     frequency, density = _spectrum(record, rate)
     inside = (frequency >= lowest) & (frequency < rate / 2)
     level = float(np.median(density[inside]) / np.log(2)) if inside.any() else 0.0
     if level <= 0:
         return None
-    stands = inside.copy()
-    for one in taken:
-        stands &= density > n / (2 * rate) * one.leaks(frequency, n / rate) ** 2
-    if not stands.any():
+    candidates = inside.copy()
+    for line in taken:
+        candidates &= density > n / (2 * rate) * line.leaks(frequency, n / rate) ** 2
+    if not candidates.any():
         return None
-    peak = int(np.argmax(np.where(stands, density, 0.0)))
+    peak = int(np.argmax(np.where(candidates, density, 0.0)))
     trials = float(inside.sum())
     p_value = float(-np.expm1(trials * np.log1p(-np.exp(-density[peak] / level))))
     return near(record, rate, lowest, float(frequency[peak]), p_value)
@@ -86,9 +85,9 @@ def near(record: Array, rate: float, lowest: float, frequency: float, p_value: f
 
 
 def line_at(record: Array, rate: float, lowest: float, frequency: float, p_value: float) -> Line:
-    """The line of one frequency; the noise is read from `lowest` on, Hz."""
+    """The line of one frequency; the noise is estimated from `lowest` on, Hz."""
     n = len(record)
-    # The line itself leaks into all bins, so the noise is read without it.
+    # The line itself leaks into all bins, so the noise is estimated without it.
     split = without_line(record, rate, frequency)
     bins, left = _spectrum(split.less(split.amplitude), rate)
     inside = (bins >= lowest) & (bins < rate / 2)
@@ -105,13 +104,13 @@ def _spectrum(record: Array, rate: float) -> tuple[Array, Array]:
 
     # The stubs do not know that the trend may be a line.
     frequency, density = periodogram(  # type: ignore[call-overload]
-        record, rate, "boxcar", nfft=OVERSAMPLED * len(record), detrend="linear"
+        record, rate, "boxcar", nfft=OVERSAMPLING * len(record), detrend="linear"
     )
     return frequency, density
 
 
 def _refined(record: Array, rate: float, near: float) -> float:
-    """The frequency within a bin of `near` that leaves the least of the record, Hz."""
+    """The frequency within a bin of `near` with the smallest residuals, Hz."""
     width = rate / len(record)
 
     def left(frequency: float) -> float:
@@ -138,7 +137,7 @@ class Split:
 
 
 def without_line(record: Array, rate: float, frequency: float) -> Split:
-    """Part a record, sampled at `rate` Hz, from its line at `frequency` Hz."""
+    """Split a record, sampled at `rate` Hz, into its line at `frequency` Hz and the remainder."""
     columns, parts = _fitted(record, rate, frequency)
     level = np.asarray(record - columns[:, 2:] @ parts[2:])
     line = columns[:, :2] @ parts[:2]
@@ -147,7 +146,7 @@ def without_line(record: Array, rate: float, frequency: float) -> Split:
 
 
 def energy(record: Array, rate: float, frequency: float) -> float:
-    """By how much a line of one frequency lessens the sum of squares beside mean and slope."""
+    """Drop of the sum of squares by a line of one frequency, mean and slope fitted too."""
     columns, parts = _fitted(record, rate, frequency)
     slow = np.linalg.qr(columns[:, 2:])[0]
     level = record - slow @ (slow.T @ record)
@@ -170,19 +169,16 @@ def _fitted(record: Array, rate: float, frequency: float) -> tuple[Array, Array]
     return columns, np.asarray(inverse @ (columns.T @ record))
 
 
-# ---- A line at one frequency in several records, each with a phase of its own.
-#
-# The sum of the periodograms of k records of white noise, each over its level, is distributed like
-# chi-squared with 2k degrees of freedom. So a line that no record shows by itself may stand out of
-# all together.
-
-
 def pooled(
     records: Sequence[Array], rates: Sequence[float], lowest: float
 ) -> tuple[Array, Array, Array]:
-    """Frequencies, Hz, drop of chi-squared, and natural logarithm of its chance, (m,) each.
+    """Search for a line at one frequency in several records, each with a phase of its own.
 
-    The search over all frequencies is not paid for.
+    The sum of the periodograms of k records of white noise, each over its level, has the
+    chi-squared distribution with 2k degrees of freedom. So a line that is significant in no single
+    record may be so in all common. The p-value is not corrected for the search.
+
+    Returns frequencies, Hz, drop of chi-squared, and natural logarithm of its p-value, (m,) each.
 
     Parameters
     ----------
@@ -191,8 +187,8 @@ def pooled(
     """
     from scipy.signal import czt  # here, for it loads half of scipy
 
-    longest = max(len(one) / rate for one, rate in zip(records, rates, strict=True))
-    step = 1 / (OVERSAMPLED * longest)
+    longest = max(len(record) / rate for record, rate in zip(records, rates, strict=True))
+    step = 1 / (OVERSAMPLING * longest)
     frequency = np.arange(lowest, min(rates) / 2, step)
     drop = np.zeros_like(frequency)
     for record, rate in zip(records, rates, strict=True):
@@ -210,48 +206,46 @@ def pooled(
     return frequency, drop, chi2_logsf(drop, degrees)
 
 
-# ---- Whether an oscillation is bound to time or to the table's angle.
+# ---- Whether an oscillation is periodic in time or in the table's angle.
 #
-# In time it has in each turn a phase of its own, for nothing ties one turn to the next; frequency
-# and amplitude are the same in all turns, or not. Against the angle it has an order and one a and
-# b for all turns. Each is scored by half the drop of chi-squared, less what its free parameters
-# and its search cost. At a signal-to-noise ratio R a phase takes up 1/(√(2π) R) of its room, an
-# amplitude that was known to be no larger than twice what is found √(2π)/(2 R), a frequency that
-# was known to a bin about 1/R; a search over m values costs ln m. The difference of two scores is
-# the natural logarithm of the odds.
-
-TELLS = 3.0  # natural logarithm of odds of 20 to 1, from which one of two is named alone
+# In time it has a random phase in each turn; frequency and amplitude are the same in all turns, or
+# not. Against the angle it has an order and one a and b for all turns. The score of each is half
+# the drop of chi-squared less the logarithms of the prior over posterior widths of its free
+# parameters and of the number of values searched. At a signal-to-noise ratio R the posterior of a
+# phase takes 1/(√(2π) R) of its range, an amplitude that was known to be no larger than twice the
+# estimate √(2π)/(2 R), a frequency that was known to a bin about 1/R; a search over m values costs
+# ln m. The difference of two scores is the natural logarithm of the odds.
 
 
 def in_time(own: Array, amplitudes: Array, drops: Array, searched: float) -> float:
-    """Score of an oscillation bound to time; in a turn that is better without it, it is not.
+    """Score of an oscillation periodic in time; in a turn that fits better without, it is absent.
 
     own : (k,), drops of chi-squared with a frequency, an amplitude and a phase of each turn's own
     amplitudes, drops : (k,), in each turn and by it, at one frequency for all
     searched : how many frequencies and axes were tried
     """
-    room = _phase(own) + _amplitude(own)
-    each = np.maximum(own / 2 - room - _frequency(own), 0.0)
-    there = each > 0
-    if not there.any():
+    penalty = _phase(own) + _amplitude(own)
+    each = np.maximum(own / 2 - penalty - _frequency(own), 0.0)
+    present = each > 0
+    if not present.any():
         return float(-np.log(searched))
     # One of the frequencies is that of the search.
-    apart = float(each.sum() + _frequency(own[there]).max())
-    weight = drops[there] / amplitudes[there] ** 2
-    off = amplitudes[there] - np.average(amplitudes[there], weights=weight)
-    same = (drops[there] - weight * off**2) / 2 - _phase(drops[there])
-    together = float(same.sum() - _amplitude(drops[there].sum()))
-    return max(apart, together) - float(np.log(searched))
+    separate = float(each.sum() + _frequency(own[present]).max())
+    weight = drops[present] / amplitudes[present] ** 2
+    off = amplitudes[present] - np.average(amplitudes[present], weights=weight)
+    same = (drops[present] - weight * off**2) / 2 - _phase(drops[present])
+    common = float(same.sum() - _amplitude(drops[present].sum()))
+    return max(separate, common) - float(np.log(searched))
 
 
 def in_angle(drop: float, searched: float) -> float:
-    """Score of an oscillation bound to the angle, by the drop of chi-squared in all turns."""
-    room = _phase(np.asarray(drop)) + _amplitude(np.asarray(drop))
-    return float(drop / 2 - room - np.log(searched))
+    """Score of an oscillation periodic in the angle, by the drop of chi-squared in all turns."""
+    penalty = _phase(np.asarray(drop)) + _amplitude(np.asarray(drop))
+    return float(drop / 2 - penalty - np.log(searched))
 
 
 def _phase(drop: Array) -> Array:
-    """ln of prior over posterior room of a phase; R² is the drop."""
+    """ln of prior over posterior width of a phase; R² is the drop."""
     return np.asarray(np.log(np.maximum(np.sqrt(2 * np.pi * drop), 1.0)))
 
 

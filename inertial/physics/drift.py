@@ -1,8 +1,8 @@
-"""What drifts from stretch to stretch: with the time since the start, and with the temperature.
+"""Drift from stretch to stretch: with the time since the start, and with the temperature.
 
 A stretch may last for minutes, so its mean of a function of time is not the function at its
-middle. The start is the first sample of all logs: when the instrument was switched on before it,
-a warm-up began earlier, by a factor that its amplitude takes up.
+middle. The start is the first sample of all logs: for an instrument that was switched on before,
+a warm-up began earlier, and its amplitude differs by a factor.
 """
 
 import numpy as np
@@ -20,12 +20,12 @@ NOT_EVERYWHERE = "The temperature is not recorded everywhere."
 
 
 def without_clock(motion: Motion) -> str:
-    """Why time tells nothing; empty where it does."""
+    """Why drift with time is not observable; empty where it is."""
     return "" if np.isfinite(motion.time).all() else NO_CLOCK
 
 
 def without_temperature(motion: Motion) -> str:
-    """Why temperature tells nothing; empty where it does."""
+    """Why drift with temperature is not observable; empty where it is."""
     known = np.isfinite(motion.temperature)
     if known.all():
         return ""
@@ -33,14 +33,14 @@ def without_temperature(motion: Motion) -> str:
 
 
 def evenly(motion: Motion, count: int) -> Array:
-    """So many times between the first stretch and the last, s, neither of them among these."""
+    """`count` equally spaced times between the first stretch and the last, s, without the ends."""
     if without_clock(motion):
         return np.zeros(0)
     return np.linspace(motion.time.min(), motion.time.max(), count + 2)[1:-1]
 
 
 def after(motion: Motion, time: float) -> Array:
-    """The share of each stretch that lies behind a time, (n,)."""
+    """The share of each stretch after a time, (n,)."""
     return np.clip((motion.time - time) / motion.seconds + 0.5, 0.0, 1.0)
 
 
@@ -51,6 +51,6 @@ def decayed(motion: Motion, constant: float) -> Array:
 
 
 def warmer(motion: Motion) -> Array:
-    """By how much each stretch is warmer than the mean of the campaign, (n,), K."""
+    """Temperature of each stretch less the mean of the campaign, (n,), K."""
     mean = np.average(motion.temperature, weights=motion.seconds)
     return np.asarray(motion.temperature - mean)

@@ -1,4 +1,4 @@
-"""The earth's rate in the truth, as far as it is known beforehand."""
+"""The known part of the earth's rate in the truth."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,10 +10,10 @@ Array = NDArray[np.float64]
 
 
 def known_earth(truth: Truth, motion: Motion) -> tuple[Array, Array]:
-    """Its upward and its level part in body axes, (n, 3) each, rad/s.
+    """Its upward and its horizontal component in body axes, (n, 3) each, rad/s.
 
-    The level part is zero where the azimuth is not surveyed: there the gyros tell it
-    themselves, and it takes up whatever an effect would make of it.
+    The horizontal component is zero where the azimuth is not surveyed: there the gyros estimate it
+    themselves, and the estimate absorbs any effect on it.
     """
     earth = truth.rate - motion.omega
     upward = np.sum(earth * motion.up, axis=1, keepdims=True) * motion.up

@@ -1,4 +1,4 @@
-"""What every physical effect must tell about itself."""
+"""The interface of a physical effect: name, cause, source, parameters, and how it acts."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Truth:
 
 @dataclass(frozen=True)
 class Reading:
-    """What the sensors say: gyro (n, 3), rad/s, and accel (n, 3), m/s²."""
+    """Readings of the sensors: gyro (n, 3), rad/s, and accel (n, 3), m/s²."""
 
     gyro: Array
     accel: Array
@@ -34,7 +34,7 @@ class Reading:
 
 @dataclass(frozen=True)
 class Parameter:
-    """One number that an effect needs; zero means that the effect is absent."""
+    """A parameter of an effect; zero means that the effect is absent."""
 
     name: str
     unit: str
@@ -44,9 +44,9 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Scan:
-    """A number on which an effect does not depend linearly, so that many values are tried.
+    """A nonlinear parameter of an effect, searched over a grid.
 
-    `between`: whether the true value may lie between two of those that are tried.
+    `between`: whether the true value may lie between two values of the grid.
     """
 
     name: str
@@ -58,24 +58,25 @@ class Scan:
 class Effect(ABC):
     """One physical effect: its name, its cause, its source, its parameters and how it acts.
 
-    It `moves` the truth before it is sensed, or changes what the sensor `reads`, or both, in
+    It changes the truth (`moves`) before it is sensed, or the reading (`reads`), or both, in
     proportion to its parameters as long as they are small.
 
-    `sizes`: what is usual, in the unit of the last parameter: of a sensor by its grade, fog (a
+    `sizes`: typical sizes, in the unit of the last parameter: of a sensor by its grade, fog (a
     fibre-optic gyro and its accelerometers), tactical (MEMS of the STIM300 class), mti (of the
-    MTi-100 class), consumer; of a table: good table, poor table; of a site: usual. What is more
-    than `thinkable` times the largest of them is not thought of.
+    MTi-100 class), consumer; of a table: good table, poor table; of a site: usual. Sizes of more
+    than `thinkable` times the largest of them are excluded.
 
-    `sought_in` tells where it is looked for: in the "blocks" of means that all equations rest on;
-    in the "spectrum" of the full-rate residuals, for it is faster than a block or turns with the
-    table; in the "noise", for it has no mean; by the "quality" of the samples, where `finding`
-    is the cause of the finding that tells it.
+    `sought_in`: where it is detected: in the "blocks" of means on which all equations rest; in the
+    "spectrum" of the full-rate residuals, for it is faster than a block or periodic in the angle of
+    the table; in the "noise", for its mean is zero; by the "quality" of the samples, where `finding`
+    is the cause of that finding.
 
-    `absorbed_by`: what every calibration estimates or knows that does the same, so that no plan
-    of these manoeuvres shows it; `blind` says why a certain campaign does not.
+    `absorbed_by`: what every calibration estimates or knows that has the same effect on readings,
+    so that it is not observable by any plan of these manoeuvres; `blind`: why it is not observable
+    in a certain campaign.
 
     `scan`: a nonlinear parameter. The effect in the catalogue is then a family whose
-    `candidates` for a campaign have each its own value, `at`; each is an effect like others.
+    `candidates` for a campaign have one value each, `at`; each is an effect like others.
     Without a value it acts with the middle one of them.
     """
 
@@ -100,32 +101,32 @@ class Effect(ABC):
         return reading
 
     def signature(self, motion: Motion) -> Reading | None:
-        """How the readings change per unit of each parameter, where no model is needed to tell.
+        """Change of the readings per unit of each parameter, where it needs no forward model.
 
         gyro and accel, (n, 3, number of parameters) each.
         """
         return None
 
     def blind(self, motion: Motion) -> str:
-        """Why the effect cannot be seen on this motion, in a sentence; empty where it may be."""
+        """Why the effect is not observable in this motion, in a sentence; empty where it may be."""
         return ""
 
     def grid(self, motion: Motion) -> Array:
-        """The values of what is scanned that this motion can tell apart."""
+        """The values of the nonlinear parameter that this motion can distinguish."""
         return np.zeros(0)
 
     def candidates(self, motion: Motion) -> Sequence[Self]:
-        """The effect with each value of what is scanned; without a scan the effect itself."""
+        """The effect with each value of the grid; without a scan the effect itself."""
         return [self.fixed(float(at)) for at in self.grid(motion)] if self.scan else [self]
 
     def fixed(self, at: float) -> Self:
-        """The effect with one value of what is scanned."""
-        one = copy(self)
-        one.at = at
-        return one
+        """The effect with one value of the nonlinear parameter."""
+        effect = copy(self)
+        effect.at = at
+        return effect
 
     def value(self, motion: Motion) -> float:
-        """The value of what is scanned, or the middle one of the grid; NaN where there is none."""
+        """The value of the nonlinear parameter, by default the middle of the grid; NaN without."""
         if self.at is not None:
             return self.at
         grid = self.grid(motion)
@@ -133,10 +134,10 @@ class Effect(ABC):
 
     @property
     def largest(self) -> float:
-        """The largest size that is thought of, in the unit of the last parameter."""
+        """The largest size considered, in the unit of the last parameter."""
         return self.thinkable * max(self.sizes.values())
 
     @property
     def label(self) -> str:
-        """Its name, and the value of what is scanned where it has one."""
+        """Its name, and the value of the nonlinear parameter where it has one."""
         return self.name if self.at is None else f"{self.name}@{self.at:.6g}"

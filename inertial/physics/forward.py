@@ -1,9 +1,8 @@
-"""The forward model: what happens to the IMU on the table, and what it should read.
+"""The forward model: from the motion of the table to the readings of the IMU.
 
     reading = M · truth + bias, for both triads,   truth: angular rate and specific force
 
-with the earth's rate and gravity in body axes, and one effect after another on the way
-from the motion of the table to the reading.
+with the earth's rate and gravity in body axes, and the effects one after another.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,7 +20,7 @@ Values = Mapping[str, Array]  # label of an effect → values of its parameters
 
 @dataclass(frozen=True)
 class Site:
-    """Gravity, m/s², and the earth's rate, rad/s: its upward and its level part."""
+    """Gravity, m/s², and the earth's rate, rad/s: its upward and its horizontal component."""
 
     gravity: float
     earth_up: float
@@ -37,13 +36,13 @@ class Triad:
 
 
 def truth_of(motion: Motion, site: Site) -> Truth:
-    """What the sensors would feel of the table, gravity and the earth alone; (n, 3) each."""
+    """Truth from the motion of the table, gravity and the earth's rate; (n, 3) each."""
     earth = site.earth_up * motion.up + site.earth_level * np.nan_to_num(motion.north)
     return Truth(rate=motion.omega + earth, force=site.gravity * motion.up)
 
 
 def sensed(truth: Truth, gyro: Triad, accelerometer: Triad) -> Reading:
-    """What the two triads make of the truth, (n, 3) each."""
+    """Readings of the two triads for the truth, (n, 3) each."""
     return Reading(
         gyro=truth.rate @ gyro.matrix.T + gyro.bias,
         accel=truth.force @ accelerometer.matrix.T + accelerometer.bias,
@@ -58,7 +57,7 @@ def predict(
     effects: Sequence[Effect] = (),
     values: Values | None = None,
 ) -> Reading:
-    """What the IMU should read on this motion, had it all these effects."""
+    """Predicted readings of the IMU in this motion with all these effects."""
     truth = truth_of(motion, site)
     for effect in effects:
         truth = effect.moves(truth, motion, (values or {})[effect.label])
@@ -71,10 +70,10 @@ def predict(
 def signatures(
     motion: Motion, site: Site, gyro: Triad, accelerometer: Triad, effects: Sequence[Effect]
 ) -> list[Reading]:
-    """How the readings change per unit of each parameter of effects that are absent.
+    """Change of the readings per unit of each parameter of effects that are absent.
 
-    The derivative is central, about zero. Where an effect is blind, or its trace is not known,
-    the readings do not change.
+    The derivative is central, about zero. It is zero where an effect is not observable, or its
+    input is not known.
 
     Returns
     -------
@@ -91,13 +90,13 @@ def signatures(
     def signature(effect: Effect) -> Reading:
         if (known := effect.signature(motion)) is not None:
             return known
-        traces = np.zeros((2, len(motion.rate), 3, len(effect.parameters)))
+        derivatives = np.zeros((2, len(motion.rate), 3, len(effect.parameters)))
         for i, parameter in enumerate(effect.parameters if not effect.blind(motion) else ()):
             step = np.zeros(len(effect.parameters))
             step[i] = parameter.typical
-            ahead, behind = reading(effect, step), reading(effect, -step)
-            traces[0, :, :, i] = (ahead.gyro - behind.gyro) / (2 * parameter.typical)
-            traces[1, :, :, i] = (ahead.accel - behind.accel) / (2 * parameter.typical)
-        return Reading(*np.nan_to_num(traces, posinf=0.0, neginf=0.0))
+            plus, minus = reading(effect, step), reading(effect, -step)
+            derivatives[0, :, :, i] = (plus.gyro - minus.gyro) / (2 * parameter.typical)
+            derivatives[1, :, :, i] = (plus.accel - minus.accel) / (2 * parameter.typical)
+        return Reading(*np.nan_to_num(derivatives, posinf=0.0, neginf=0.0))
 
     return [signature(effect) for effect in effects]

@@ -1,4 +1,4 @@
-"""How a turntable moves, and what is up for the IMU on it."""
+"""The motion of a turntable, and the upward direction for the IMU on it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
@@ -14,17 +14,16 @@ Array = NDArray[np.float64]
 
 
 def turned(direction: Array, about: Array, angle: float) -> Array:
-    """A direction of the laboratory as the IMU sees it after it has turned by `angle`.
+    """A direction of the laboratory in body axes after a rotation of the IMU by `angle`.
 
-    `direction` and `about` are body vectors before the turn. The IMU turns about
-    `about` by the right-hand rule, so what stands still in the laboratory turns the
-    other way in body axes.
+    `direction` and `about` are body vectors before the turn. The IMU turns about `about` by the
+    right-hand rule, so a direction fixed in the laboratory turns the other way in body axes.
     """
     return np.asarray(Rotation.from_rotvec(-angle * about).apply(direction), dtype=np.float64)
 
 
 def level_axes(up: Array) -> tuple[Array, Array]:
-    """Two level directions in body axes that make, with `up`, a right-handed triad."""
+    """Two horizontal directions in body axes that form, with `up`, a right-handed triad."""
     least = np.eye(3)[np.argmin(np.abs(up))]
     first = cross(least, up)
     first /= np.linalg.norm(first)
@@ -63,29 +62,29 @@ class Profile:
     def at(self, time: Array) -> tuple[Array, Array]:
         """Angle, rad, and rate, rad/s, at times since the start, (n,) each; still outside."""
         t = np.clip(time, 0.0, self.seconds)
-        ramp, left = self.ramp_seconds, self.seconds - t
+        ramp, remaining = self.ramp_seconds, self.seconds - t
         up = self.acceleration * t**2 / 2
         steady = self.rate * (t - ramp / 2)
-        down = self.angle - self.acceleration * left**2 / 2
-        angle = np.where(t < ramp, up, np.where(left < ramp, down, steady))
-        rate = np.minimum(self.rate, self.acceleration * np.minimum(t, left))
+        down = self.angle - self.acceleration * remaining**2 / 2
+        angle = np.where(t < ramp, up, np.where(remaining < ramp, down, steady))
+        rate = np.minimum(self.rate, self.acceleration * np.minimum(t, remaining))
         return angle, rate
 
 
 @dataclass(frozen=True)
 class Motion:
-    """What the table does to the IMU in n stretches of time, samples or blocks; body axes.
+    """Motion of the IMU on the table in n stretches of time, samples or blocks; body axes.
 
     `time`: (n,), s since the first sample of all logs, NaN where they have no common clock;
     `about`: (3,) or (n, 3), axis of the turn; `angle`, `rate`, `acceleration`: (n,), rad, rad/s,
     rad/s², turned about it since the start, at the middle of each stretch; `up`: (n, 3), the
     table's vertical; `north`: (n, 3), NaN where the azimuth is not known.
 
-    What else a stretch is: `seconds`: (n,), how long; `visit`: (n,), the place of its manoeuvre in
-    the plan, and `position`: (n,), that of its position among those of the plan; `surveyed`: (n,),
-    whether north is known from the table's heading and not from the gyros; `temperature`: (n,), K,
-    and `vibration`: (n, 3), m/s², what the samples of specific force scatter, both NaN where they
-    are not known.
+    Further properties of a stretch: `seconds`: (n,), its duration; `visit`: (n,), the place of its
+    manoeuvre in the plan, and `position`: (n,), that of its position among those of the plan;
+    `surveyed`: (n,), whether north is known from the table's heading and not from the gyros;
+    `temperature`: (n,), K, and `vibration`: (n, 3), m/s², the standard deviation of the samples of
+    specific force, both NaN where they are not known.
     """
 
     time: Array
@@ -114,18 +113,18 @@ class Motion:
 
     @property
     def up_at_start(self) -> Array:
-        """What pointed up in body axes when the manoeuvre began, (n, 3): fixed to the case."""
+        """The upward direction in body axes when the manoeuvre began, (n, 3): fixed to the case."""
         return turned_all(self.up, self.about, -self.angle)
 
     @property
     def north_at_start(self) -> Array:
-        """What pointed north in body axes when the manoeuvre began, (n, 3): fixed to the case."""
+        """The north direction in body axes when the manoeuvre began, (n, 3): fixed to the case."""
         return turned_all(self.north, self.about, -self.angle)
 
     def ripples(self, order: float, sine: float, cosine: float) -> Array:
-        """The mean rate over each stretch, (n,), rad/s, when the table is ahead of itself by
+        """The mean rate over each stretch, (n,), rad/s, for an error of the table's angle θ of
 
-        a sin nθ + b cos nθ, rad, where its angle is θ.
+        a sin nθ + b cos nθ, rad.
         """
         half = self.rate * self.seconds / 2
         first, last = order * (self.angle - half), order * (self.angle + half)
@@ -147,7 +146,7 @@ class Motion:
 
 
 def without_north(motion: Motion) -> str:
-    """Why nothing that is fixed to the laboratory is told; empty where it is."""
+    """Why directions fixed to the laboratory are not known; empty where they are."""
     if np.isfinite(motion.north).any():
         return ""
     return "Neither a heading nor the earth's rate tells the azimuth of the positions."
@@ -163,7 +162,7 @@ def turning(
     time: Array,
     seconds: Array,
 ) -> Motion:
-    """A turn from where up and north are at its start, (3,); what else it is, is not known."""
+    """A turn from given up and north at its start, (3,); further properties are not known."""
     n = len(angle)
     return Motion(
         time,
@@ -207,8 +206,8 @@ def turned_all(direction: Array, about: Array, angles: Array) -> Array:
 def mean_turned(direction: Array, about: Array, middle: Array, angle: Array) -> Array:
     """The mean of a direction while it turns by `angle` (n,) about each `middle` (n,), (n, 3).
 
-    What is across the axis becomes shorter, by sin(θ/2) / (θ/2).
+    The component across the axis is reduced by sin(θ/2) / (θ/2).
     """
     along = (direction @ about) * about
-    shorter = np.sinc(angle / (2 * np.pi))[:, None]
-    return np.asarray(along + shorter * turned_all(direction - along, about, middle))
+    reduction = np.sinc(angle / (2 * np.pi))[:, None]
+    return np.asarray(along + reduction * turned_all(direction - along, about, middle))

@@ -1,4 +1,4 @@
-"""What gravity and the turning earth are at a place.
+"""Normal gravity and the earth's rate at a site.
 
 Constants of WGS 84 (NGA.STND.0036, 2014).
 """
@@ -26,5 +26,5 @@ def normal_gravity(latitude: float, height: float) -> float:
 
 
 def earth_rate(latitude: float) -> tuple[float, float]:
-    """The earth's rate at `latitude` (rad): upward and northward parts, rad/s."""
+    """The earth's rate at `latitude` (rad): upward and northward components, rad/s."""
     return EARTH_RATE * sin(latitude), EARTH_RATE * cos(latitude)

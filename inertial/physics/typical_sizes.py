@@ -1,4 +1,4 @@
-"""How large an effect usually is, by the grade of a sensor or the quality of a table."""
+"""Typical sizes of effects, by the grade of a sensor or the quality of a table."""
 
 from collections.abc import Mapping
 
@@ -12,8 +12,8 @@ def by_grade(
 ) -> Mapping[str, float]:
     """Sizes by the grade of the sensor; `unit`: of the numbers, in SI.
 
-    fog: fibre-optic gyros and the accelerometers beside them; tactical: MEMS of the STIM300
-    class; mti: of the MTi-100 class; consumer: as in telephones.
+    fog: fibre-optic gyros and their accelerometers; tactical: MEMS of the STIM300
+    class; mti: of the MTi-100 class; consumer: as in smartphones.
     """
     numbers = zip((FOG, TACTICAL, MTI, CONSUMER), (fog, tactical, mti, consumer), strict=True)
     return {grade: number * unit for grade, number in numbers}
@@ -25,5 +25,5 @@ def of_tables(unit: float, good: float, poor: float) -> Mapping[str, float]:
 
 
 def usually(size: float) -> Mapping[str, float]:
-    """The size that is usual, in SI."""
+    """The typical size, in SI."""
     return {USUAL: size}

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.effects import CATALOGUE
 from inertial.effects.table_ripple import HIGHEST, LOWEST, STEP
-from inertial.estimation.periodic_in_angle import SUFFICES
+from inertial.estimation.periodic_in_angle import MIN_DETECTION_SIGMAS
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.tables import AXES
@@ -299,7 +299,9 @@ class Limit:
 def limit_of(result: SearchResult, name: str) -> Limit | None:
     """Of one of the three effects; None where no turn shows any size."""
     if name == IN_TIME:
-        sizes = SUFFICES * np.array([line.line.sigma_amplitude for line in result.strongest])
+        sizes = MIN_DETECTION_SIGMAS * np.array(
+            [line.line.sigma_amplitude for line in result.strongest]
+        )
     elif result.orders is None:
         return None
     else:

@@ -8,9 +8,16 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.steady_residuals import SteadyTurn
-from inertial.estimation.periodic_in_angle import Orders, Ripple, fitted, grid, search, sigmas_seen
+from inertial.estimation.periodic_in_angle import (
+    Orders,
+    Ripple,
+    detection_limit,
+    fitted,
+    grid,
+    search,
+)
 from inertial.estimation.periodic_in_time import (
-    TELLS,
+    MIN_LOG_ODDS,
     Taken,
     energy,
     in_angle,
@@ -74,7 +81,7 @@ class Oscillation:
     @property
     def decided(self) -> bool:
         """Whether the data distinguish time from angle."""
-        return self.log_odds >= TELLS
+        return self.log_odds >= MIN_LOG_ODDS
 
 
 def explanation_of(
@@ -247,7 +254,7 @@ def find_oscillations(turns: Sequence[SteadyTurn], level: float, lowest: float) 
         found = explanation_of(max(clear, key=lambda one: one.drop), left, lowest, share)
         lines.append(found)
         left = [_without(turn, found, taken[turn.name]) for turn in left]
-    seen = np.zeros(0) if orders is None else sigmas_seen(orders, shortest(turning), share)
+    seen = np.zeros(0) if orders is None else detection_limit(orders, shortest(turning), share)
     return SearchResult(turns, lines, first, orders, every, seen, bool(clear))
 
 

@@ -223,7 +223,7 @@ def gain_of_ripple(
     courses = {t.name: t.course(t.about) for t in turns if np.isfinite(t.rate)}
     if order is None or not courses:
         return
-    equations = {name: course.says(order) for name, course in courses.items()}
+    equations = {name: course.normal_equations(order) for name, course in courses.items()}
     squares = {n: float(np.sum(c.rest**2)) / c.sigma**2 for n, c in courses.items()}
     degrees = {n: len(c.record) - c.slow.shape[1] for n, c in courses.items()}
 

@@ -23,7 +23,7 @@ from inertial.estimation.multi_position import (
     FreeRest,
     free_positions,
     matrix_of,
-    unseen,
+    unobservable,
     upper_triangular,
 )
 from inertial.estimation.triad import mounting_and_symmetric
@@ -92,7 +92,7 @@ def test_what_rests_differ_by_beyond_noise_is_found():
 
 
 def named(estimate):
-    return {tuple(one.names): tuple(one.up) for one in unseen(estimate)}
+    return {tuple(one.names): tuple(one.up) for one in unobservable(estimate)}
 
 
 @pytest.mark.parametrize("scatter", [0.0, A_TENTH])
@@ -114,10 +114,10 @@ def test_the_rest_that_is_proposed_tells_what_was_missing():
     imu = Imu(np.random.default_rng(5))
     ups = list(FACES)
     for _ in range(3):
-        first = unseen(solved(rests(imu, np.array(ups), 60, 0.0)))[0]
+        first = unobservable(solved(rests(imu, np.array(ups), 60, 0.0)))[0]
         ups.append(first.up / np.linalg.norm(first.up))
     estimate = solved(rests(imu, np.array(ups), 60, 0.0))
-    assert not unseen(estimate) and estimate.determined[:FREE].all()
+    assert not unobservable(estimate) and estimate.determined[:FREE].all()
 
 
 def test_a_face_that_is_missing_leaves_scale_and_bias_together():
