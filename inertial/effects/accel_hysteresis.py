@@ -6,8 +6,8 @@ import numpy as np
 
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
-from inertial.physics.site import STANDARD_GRAVITY
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.units import STANDARD_GRAVITY
 
 REACHED = STANDARD_GRAVITY / 2  # m/s²: what turns the memory over
 

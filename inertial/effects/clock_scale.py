@@ -1,7 +1,6 @@
 """A clock of the instrument that is fast or slow."""
 
-from inertial.physics.earth_rate import known_earth
-from inertial.physics.effect import Array, Effect, Parameter, Truth
+from inertial.physics.effect import Array, Effect, Parameter, Truth, known_earth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
 

@@ -2,8 +2,7 @@
 
 from dataclasses import replace
 
-from inertial.physics.earth_rate import known_earth
-from inertial.physics.effect import Array, Effect, Parameter, Truth
+from inertial.physics.effect import Array, Effect, Parameter, Truth, known_earth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
 from inertial.physics.vectors import cross

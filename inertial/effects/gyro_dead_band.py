@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.earth_rate import known_earth
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth, known_earth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
 from inertial.text.units import DEGREE_PER_HOUR

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.earth_rate import known_earth
-from inertial.physics.effect import Array, Effect, Parameter, Truth
+from inertial.physics.effect import Array, Effect, Parameter, Truth, known_earth
 from inertial.physics.motion import Motion
 from inertial.physics.site import EARTH_RATE
 from inertial.physics.typical_sizes import usually

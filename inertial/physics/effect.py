@@ -68,8 +68,8 @@ class Effect(ABC):
 
     `sought_in`: where it is detected: in the "blocks" of means on which all equations rest; in the
     "spectrum" of the full-rate residuals, for it is faster than a block or periodic in the angle of
-    the table; in the "noise", for its mean is zero; by the "quality" of the samples, where `finding`
-    is the cause of that finding.
+    the table; in the "noise", for its mean is zero; by the "quality" of the samples, where
+    `finding` is the cause of that finding.
 
     `absorbed_by`: what every calibration estimates or knows that has the same effect on readings,
     so that it is not observable by any plan of these manoeuvres; `blind`: why it is not observable
@@ -141,3 +141,14 @@ class Effect(ABC):
     def label(self) -> str:
         """Its name, and the value of the nonlinear parameter where it has one."""
         return self.name if self.at is None else f"{self.name}@{self.at:.6g}"
+
+
+def known_earth(truth: Truth, motion: Motion) -> tuple[Array, Array]:
+    """Upward and horizontal component of the earth's rate, body axes, (n, 3) each, rad/s.
+
+    The horizontal component is zero where the azimuth is not surveyed: there the gyros estimate it
+    themselves, and the estimate absorbs any effect on it.
+    """
+    earth = truth.rate - motion.omega
+    upward = np.sum(earth * motion.up, axis=1, keepdims=True) * motion.up
+    return upward, np.where(motion.surveyed[:, None], earth - upward, 0.0)

@@ -6,7 +6,6 @@ Constants of WGS 84 (NGA.STND.0036, 2014).
 from math import cos, sin, sqrt
 
 EARTH_RATE = 7.292115e-5  # rad/s
-STANDARD_GRAVITY = 9.80665  # m/s², the unit g of data sheets
 
 
 def normal_gravity(latitude: float, height: float) -> float:

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from inertial import tables
-from inertial.physics.site import STANDARD_GRAVITY
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.campaign_units import CHANNEL_UNITS, DEGREE, PER_ROOT_HOUR, in_si
+from inertial.text.units import STANDARD_GRAVITY
 
 KEY = "encoder"
 
