@@ -40,7 +40,7 @@ def integrate(rates: Array, seconds: Array) -> IntegratedAttitude:
     Before the first stretch and behind the last one the body is at rest.
     """
     steps = coning_corrected(rates * seconds[:, None])
-    # Body axes at the end of each stretch as seen from those at the start; directions fixed in the
+    # Body axes at the end of each stretch relative to those at the start; directions fixed in the
     # laboratory rotate the other way.
     ends = running_product(Rotation.from_rotvec(steps).as_matrix())
     middles = ends @ Rotation.from_rotvec(-steps / 2).as_matrix()

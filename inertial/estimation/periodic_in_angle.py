@@ -14,10 +14,8 @@ from inertial.estimation.probability import chi2_isf
 Array = NDArray[np.float64]
 
 ORDER_STEP = 0.25  # of the search; finer where the turns together are longer than two
-MIN_PERIODS = 8.0  # in a turn; with fewer bias and slope are not at right angles to a line
-MIN_REMAINING_SHARE = (
-    1e-4  # of a shape that bias, slope and what gravity turns leave of it, else none is seen
-)
+MIN_PERIODS = 8.0  # in a turn; with fewer, bias and slope are not orthogonal to a line
+MIN_REMAINING_SHARE = 1e-4  # of a shape after removal of bias, slope and gravity's harmonics
 GRAVITY_ORDERS = (1.0, 2.0)  # at which gravity and the earth's rate act in tilted turns
 WHITE_FROM = 0.5  # Hz, below which noise is not known to be white; as in its estimate
 NEIGHBOURS = 129  # orders of the grid whose median is the level of an order
@@ -92,10 +90,10 @@ class Course:
     def normal_equations(self, order: float) -> tuple[Array, Array]:
         """Information of a and b, (2, 2), and its product with their estimates, (2,)."""
         shapes = self.shapes(order)
-        left = self.less_slow(shapes)
-        if np.sum(left**2) <= MIN_REMAINING_SHARE * np.sum(shapes**2):
+        remainder = self.less_slow(shapes)
+        if np.sum(remainder**2) <= MIN_REMAINING_SHARE * np.sum(shapes**2):
             return np.zeros((2, 2)), np.zeros(2)
-        return left.T @ left / self.sigma**2, left.T @ self.rest / self.sigma**2
+        return remainder.T @ remainder / self.sigma**2, remainder.T @ self.rest / self.sigma**2
 
 
 @dataclass(frozen=True)
@@ -144,14 +142,14 @@ def search(courses: Sequence[Course]) -> Orders:
     drop, inverse = _dropped(information.sum(axis=0), product.sum(axis=0))
     each, _ = _dropped(information, product)
     rates = np.array([abs(course.rate) for course in courses])
-    seen = information[..., 0, 0] > 0
+    observable = information[..., 0, 0] > 0
     return Orders(
         orders,
         drop,
         np.maximum(each.sum(axis=0) - drop, 0.0),
-        seen.sum(axis=0),
+        observable.sum(axis=0),
         np.sqrt(np.maximum(inverse[:, 0, 0], inverse[:, 1, 1])),
-        orders * (rates[:, None] * seen).max(axis=0) / (2 * np.pi),
+        orders * (rates[:, None] * observable).max(axis=0) / (2 * np.pi),
     )
 
 
@@ -171,11 +169,11 @@ def _transform(course: Course, orders: Array) -> NDArray[np.complex128]:
 
 def _dropped(information: Array, product: Array) -> tuple[Array, Array]:
     """v' G⁻¹ v and G⁻¹ of G (…, 2, 2) and v (…, 2); zero and infinity for singular G."""
-    seen = np.linalg.det(information) > 0
-    safe = np.where(seen[..., None, None], information, np.eye(2))
-    inverse = np.where(seen[..., None, None], np.linalg.inv(safe), np.inf)
+    observable = np.linalg.det(information) > 0
+    safe = np.where(observable[..., None, None], information, np.eye(2))
+    inverse = np.where(observable[..., None, None], np.linalg.inv(safe), np.inf)
     drop = np.einsum("...i,...ij,...j->...", product, np.linalg.inv(safe), product)
-    return np.where(seen, drop, 0.0), inverse
+    return np.where(observable, drop, 0.0), inverse
 
 
 def log_chance(spectrum: Orders, turned: float) -> Array:
@@ -207,12 +205,12 @@ def detection_limit(spectrum: Orders, turned: float, level: float) -> Array:
 
     Infinite without an estimate of the noise: for a slow ripple in one turn.
     """
-    seen = np.where(spectrum.turns > 0, MIN_DETECTION_SIGMAS, np.inf)
+    limits = np.where(spectrum.turns > 0, MIN_DETECTION_SIGMAS, np.inf)
     for i in np.flatnonzero(spectrum.hertz < WHITE_FROM).tolist():
         degrees, _ = _noise_by_turns(spectrum, i, turned)
         limit = np.sqrt(degrees * (level ** (-2 / degrees) - 1)) if degrees else np.inf
-        seen[i] = max(seen[i], limit)
-    return np.asarray(seen)
+        limits[i] = max(limits[i], limit)
+    return np.asarray(limits)
 
 
 def _noise_by_turns(spectrum: Orders, i: int, turned: float) -> tuple[float, float]:
@@ -267,9 +265,9 @@ class Ripple:
 
         The angle at which each turn starts is known to `tolerance`, rad, one sigma.
         """
-        seen = np.isfinite(self.own).all(axis=1)
-        ratio = (self.own[seen] @ [1, 1j]) / (self.values @ [1, 1j])
-        power = self.power[seen] * self.amplitude**2
+        observable = np.isfinite(self.own).all(axis=1)
+        ratio = (self.own[observable] @ [1, 1j]) / (self.values @ [1, 1j])
+        power = self.power[observable] * self.amplitude**2
         turned = ratio.imag**2 / (1 + power * (self.order * tolerance) ** 2)
         return float(np.sum(power * ((ratio.real - 1) ** 2 + turned)))
 
@@ -283,10 +281,10 @@ def fitted(courses: Sequence[Course], near: float, width: float) -> Ripple:
     own, power, each = [], [], 0.0
     for course in courses:
         matrix, product = course.normal_equations(order)
-        seen = np.linalg.det(matrix) > 0
-        own.append(np.linalg.solve(matrix, product) if seen else np.full(2, np.nan))
+        observable = np.linalg.det(matrix) > 0
+        own.append(np.linalg.solve(matrix, product) if observable else np.full(2, np.nan))
         power.append(float(np.trace(matrix)) / 2)
-        each += float(product @ own[-1]) if seen else 0.0
+        each += float(product @ own[-1]) if observable else 0.0
     covariance, order_sigma = np.asarray(np.linalg.pinv(information)), 0.0
     if width:
         covariance, order_sigma = _with_order(courses, order, values)
@@ -308,13 +306,13 @@ def _best(courses: Sequence[Course], near: float, width: float) -> float:
     tried = near + apart * np.arange(-np.ceil(width / apart), np.ceil(width / apart) + 1)
     tried = tried[tried > apart]
     best = float(tried[np.argmax([_coherent(courses, float(n))[0] for n in tried])])
-    found = minimize_scalar(
+    minimum = minimize_scalar(
         lambda n: -_coherent(courses, n)[0],
         bounds=(best - apart, best + apart),
         method="bounded",
         options={"xatol": 1e-5 * apart},
     )
-    return float(found.x)
+    return float(minimum.x)
 
 
 def _coherent(courses: Sequence[Course], order: float) -> tuple[float, Array, Array]:

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 MIN_SAMPLES = 64  # in which a line can be distinguished from noise
 OVERSAMPLING = 2  # the search steps by half a bin, so that no line lies between two
-MAX_LEAKAGE = 0.05  # of the amplitude of a removed line, one bin beside it
+MAX_LEAKAGE = 0.05  # of the amplitude of a removed line, one bin away from it
 MIN_LOG_ODDS = 3.0  # of one of two hypotheses to be accepted alone: 20 to 1
 
 
@@ -89,9 +89,9 @@ def line_at(record: Array, rate: float, lowest: float, frequency: float, p_value
     n = len(record)
     # The line itself leaks into all bins, so the noise is estimated without it.
     split = without_line(record, rate, frequency)
-    bins, left = _spectrum(split.less(split.amplitude), rate)
+    bins, noise = _spectrum(split.less(split.amplitude), rate)
     inside = (bins >= lowest) & (bins < rate / 2)
-    per_sample = float(np.sqrt(np.median(left[inside]) / np.log(2) * rate / 2))
+    per_sample = float(np.sqrt(np.median(noise[inside]) / np.log(2) * rate / 2))
     # Rife & Boorstyn, IEEE Trans. Inform. Theory 20 (1974) 591: bounds of both.
     sigma_frequency = np.sqrt(6) * per_sample * rate / (np.pi * split.amplitude * n**1.5)
     sigma_amplitude = per_sample * np.sqrt(2 / n)
@@ -113,13 +113,15 @@ def _refined(record: Array, rate: float, near: float) -> float:
     """The frequency within a bin of `near` with the smallest residuals, Hz."""
     width = rate / len(record)
 
-    def left(frequency: float) -> float:
+    def residual_squares(frequency: float) -> float:
         columns, parts = _fitted(record, rate, frequency)
         return float(np.sum((record - columns @ parts) ** 2))
 
     bounds = (max(near - width, 0.0), near + width)
     return float(
-        minimize_scalar(left, bounds=bounds, method="bounded", options={"xatol": 1e-6 * width}).x
+        minimize_scalar(
+            residual_squares, bounds=bounds, method="bounded", options={"xatol": 1e-6 * width}
+        ).x
     )
 
 
