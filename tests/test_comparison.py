@@ -207,11 +207,11 @@ def published(folder, text: str) -> pd.DataFrame:
 
 
 def test_published_values_become_si(tmp_path):
-    table = published(tmp_path, RIGHT).set_index("parameter")
-    assert table.loc["accelerometer/scale_x", "value"] == pytest.approx(328.52e-6)
-    assert table.loc["accelerometer/scale_x", "sigma"] == pytest.approx(1e-5)
-    assert table.loc["gyroscope/bias_y", "value"] == pytest.approx(-2.1e-6, rel=1e-4)
-    assert np.isnan(table.loc["gyroscope/bias_y", "sigma"])
+    table = published(tmp_path, RIGHT).set_index(["sensor", "quantity"])
+    assert table.loc[("accel", "scale_x"), "value"] == pytest.approx(328.52e-6)
+    assert table.loc[("accel", "scale_x"), "sigma"] == pytest.approx(1e-5)
+    assert table.loc[("gyro", "bias_y"), "value"] == pytest.approx(-2.1e-6, rel=1e-4)
+    assert np.isnan(table.loc[("gyro", "bias_y"), "sigma"])
     assert list(table["unit"]) == ["1", "rad/s", "rad/s", "1"]
 
 

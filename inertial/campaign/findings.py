@@ -62,7 +62,7 @@ def masks_of(detections: Sequence[Detection]) -> pd.DataFrame:
             "log": log,
             "from_record": event.first,
             "to_record": event.after,
-            "channel": None if event.channel is None else CHANNELS[event.channel],
+            **_channel(event.channel),
             "repeated": each.detector.repeats,
             "finding": each.finding.id,
         }
@@ -103,17 +103,24 @@ def detections_of(
     return list(_joined_over_logs(detections))
 
 
+def _channel(channel: int | None) -> dict[str, str | None]:
+    """Sensor and axis of a channel."""
+    if channel is None:
+        return {"sensor": None, "axis": None}
+    return {"sensor": "accel" if channel < 3 else "gyro", "axis": "xyz"[channel % 3]}
+
+
 def _finding(
     detector: Detector, event: Event, name: str, log: Log | None, identifier: str
 ) -> Finding:
     description = detector.describe(event, name)
-    channel = None if event.channel is None else CHANNELS[event.channel]
+    channel = _channel(event.channel)
     unit = detector.unit or ("1" if event.channel is None else UNITS[event.channel])
     return Finding(
         id=identifier,
         cause=detector.name,
-        sensor=channel[:-2] if channel else detector.sensor,
-        axis=channel and channel[-1],
+        sensor=channel["sensor"] or detector.sensor,
+        axis=channel["axis"],
         log=log.name if log else None,
         from_s=_number(event.from_s),
         to_s=_number(event.to_s),

@@ -149,7 +149,7 @@ class Masks:
 
     def __init__(self, table: pd.DataFrame) -> None:
         self._by_log: dict[str, list[tuple[str, Integers, Integers]]] = {}
-        kinds = table["channel"].where(table["channel"].notna(), "")
+        kinds = (table["sensor"] + "_" + table["axis"]).where(table["sensor"].notna(), "")
         kinds = kinds.mask(table["repeated"].astype(bool), "repeated")
         for (log, kind), rows in table.groupby([table["log"], kinds.rename("kind")]):
             edges = [rows[name].to_numpy(np.int64) for name in ("from_record", "to_record")]

@@ -176,7 +176,7 @@ class Clock:
 def clocks_of(table: pd.DataFrame) -> dict[str, Clock]:
     """The clocks by the name of the log."""
     return {
-        row["log"]: Clock(row["interval"], row["step"], row["clock"] == "GPS")
+        row["log"]: Clock(row["interval"], row["integration_step"], row["clock"] == "GPS")
         for row in rows_of(table)
     }
 

@@ -1,6 +1,6 @@
 """The plan: campaign, what is known, manoeuvres, what others published."""
 
-from inertial.tables.shared import AS_CHANNEL, AXIS, BODY, LOG, SENSOR, vector
+from inertial.tables.shared import AS_CHANNEL, AXIS, BODY, LOG, QUANTITY, SENSOR, vector
 from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
 
 CAMPAIGN = Table(
@@ -37,9 +37,10 @@ KNOWN = Table(
 )
 SENSORS = Table(
     "sensors",
-    1,
+    2,
     (
-        Column("channel", TEXT, "", "one of the six channels"),
+        SENSOR,
+        AXIS,
         Column("count_size", DOUBLE, "rad, m/s", "increment of one count", nullable=True),
         Column("full_scale", DOUBLE, "rad/s, m/s²", "largest input", nullable=True),
         Column(
@@ -118,9 +119,10 @@ MANOEUVRES = Table(
 )
 PUBLISHED = Table(
     "published",
-    2,
+    3,
     (
-        Column("parameter", TEXT, "", "stage and parameter, such as gyroscope/bias_x"),
+        SENSOR,
+        QUANTITY,
         Column("value", DOUBLE, "as unit", "what others found for it"),
         Column("sigma", DOUBLE, "as unit", "its standard deviation, if stated", nullable=True),
         Column("unit", TEXT, "", "unit of value and sigma, SI"),

@@ -64,7 +64,13 @@ CLOCKS = Table(
         Column("records", INTEGER, "1", "number of decoded records"),
         Column("to_record", INTEGER, "1", "number after that of the last decoded record, else 0"),
         Column("interval", DOUBLE, "s", "median sample interval", nullable=True),
-        Column("step", DOUBLE, "s", "what a sample counts for in a sum over time", nullable=True),
+        Column(
+            "integration_step",
+            DOUBLE,
+            "s",
+            "mean sample interval: what a sample counts for in a sum over time",
+            nullable=True,
+        ),
     ),
 )
 IMU_TYPES = Table(
@@ -121,11 +127,12 @@ FINDINGS = Table(
 )
 MASKS = Table(
     "masks",
-    2,
+    3,
     (
         LOG,
         *RECORDS,
-        Column("channel", TEXT, "", "the one channel that is masked, else all", nullable=True),
+        Column("sensor", TEXT, "", "accel or gyro where one channel is masked", nullable=True),
+        Column("axis", TEXT, "", "x, y or z where one channel is masked", nullable=True),
         Column("repeated", TRUTH, "", "they repeat other records: no time passes with them"),
         Column("finding", TEXT, "", "id of the finding that masks these records"),
     ),
@@ -199,7 +206,13 @@ BLOCKS = Table(
         LOG,
         *RECORDS,
         Column("time", DOUBLE, "s", "middle of the block", nullable=True),
-        Column("seconds", DOUBLE, "s", "count × step: mean × seconds is a sum", nullable=True),
+        Column(
+            "seconds",
+            DOUBLE,
+            "s",
+            "count × integration step: mean × seconds is a sum",
+            nullable=True,
+        ),
         Column("count", DOUBLE, "1", "number of samples in the means"),
         Column(
             "missing_s",

@@ -38,7 +38,11 @@ def off_by_a_sample(
     an oscillation leaves of a window that cuts it at any phase is in the sigma.
     """
     windows = [row for row in rows_of(growing) if row["by"] == "set rate"]
-    scales = [r for r in rows_of(published) if r["parameter"].startswith("gyroscope/scale_")]
+    scales = [
+        row
+        for row in rows_of(published)
+        if row["sensor"] == "gyro" and row["quantity"].startswith("scale_")
+    ]
     cases = [one for row in scales for one in [_case(row, gyro, windows)] if one is not None]
     if len(cases) < MIN_AXES:
         return
@@ -67,7 +71,7 @@ def off_by_a_sample(
 
 def _case(row: Row, gyro: Results, windows: Sequence[Row]) -> tuple[float, ...] | None:
     """Published and our scale factor, sigma of their difference, and N; none where one lacks."""
-    axis, angle = row["parameter"][-1], row["window"] or pi
+    axis, angle = row["quantity"][-1], row["window"] or pi
     ours = gyro.determined("joint", f"scale_{axis}")
     like = {w["axis"]: w for w in sorted(windows, key=lambda w: -abs(w["angle"] - angle))}
     # An axis without windows of its own counts with the worst of the others.

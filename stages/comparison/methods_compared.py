@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import pandas as pd
 
+from inertial.campaign.final_result import STAGES
 from inertial.campaign.records import rows_of
 from stages.comparison.difference import Difference, Results
 
@@ -69,8 +70,8 @@ def against_published(
 
     The sigma is of both; of ours alone where none is published.
     """
-    for told in rows_of(published):
-        stage, _, name = told["parameter"].partition("/")
+    for row in rows_of(published):
+        stage, name = STAGES[row["sensor"]], row["quantity"]
         own = results[stage]
         ours = own.of("joint", name)
         missing = ours is None or ours["value"] is None
@@ -78,25 +79,25 @@ def against_published(
         table = own.of("rate_table", name)
         if table is not None and table["reason"]:  # with the rank of what was put in
             reason = table["reason"]
-        alone = told["sigma"] is None
+        alone = row["sigma"] is None
         yield Difference(
             kind=PUBLISHED,
             mount=own.mount,
             stage=stage,
             quantity=name,
-            unit=told["unit"],
+            unit=row["unit"],
             first=own.id("joint", name),
-            second=told["source"],
+            second=row["source"],
             first_value=None if ours is None else ours["value"],
-            second_value=told["value"],
+            second_value=row["value"],
             sigma=(
                 None
                 if ours is None or missing
-                else float(np.hypot(ours["sigma"], 0.0 if alone else told["sigma"]))
+                else float(np.hypot(ours["sigma"], 0.0 if alone else row["sigma"]))
             ),
-            between=("this calibration", f"the published value ({told['source']})"),
+            between=("this calibration", f"the published value ({row['source']})"),
             remark=(
-                f"it is not determined here, so {told['source']} cannot be judged: {reason}"
+                f"it is not determined here, so {row['source']} cannot be judged: {reason}"
                 if missing
                 else "No sigma is published, so it is ours alone"
                 if alone

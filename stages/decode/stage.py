@@ -83,7 +83,7 @@ def _pieces_of(log: ReceiverLog | ColumnLog, origin: int, table: TableAngle | No
         "records": records,
         "to_record": to_record,
         "interval": log.interval,
-        "step": log.step,
+        "integration_step": log.step,
     }
     yield "clocks", batch_of_rows([clock], CLOCKS.schema)
     types = [{"log": log.name, "imu_type": number} for number in sorted(imu_types)]

@@ -228,7 +228,8 @@ def noise_of(noise: pd.DataFrame) -> list[Row]:
 
 def rate_of(clocks: pd.DataFrame) -> float | None:
     """The measured sample rate, Hz: the median of the logs; none where no log has time."""
-    steps = [row["step"] for row in rows_of(clocks) if row["step"] and isfinite(row["step"])]
+    steps = [row["integration_step"] for row in rows_of(clocks)]
+    steps = [step for step in steps if step and isfinite(step)]
     return 1 / median(steps) if steps else None
 
 

@@ -38,7 +38,7 @@ def noise(
 ) -> Tables:
     """One row for each manoeuvre, phase (rest or steady) and channel that is recorded."""
     clock = clocks_of(clocks)
-    sheet = {row["channel"]: row["white_noise"] for row in rows_of(sensors)}
+    sheet = {f"{row['sensor']}_{row['axis']}": row["white_noise"] for row in rows_of(sensors)}
     quiet = [row for row in rows_of(segments) if row["phase"] in PHASES]
     spectra: dict[tuple[str, str], _Spectra] = {}
     for log, record, values in _unbroken(samples, gaps, masks):

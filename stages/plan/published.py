@@ -9,7 +9,7 @@ from inertial.text.units import STANDARD_GRAVITY
 
 Row = dict[str, Any]
 
-STAGES = {"accelerometer": "accelerometer", "gyro": "gyroscope"}
+SENSORS = {"accelerometer": "accel", "gyro": "gyro"}
 SI = {("accelerometer", "bias"): "m/s²", ("gyro", "bias"): "rad/s"}  # all others are ratios
 SIZES = {
     "m/s2": 1.0,
@@ -42,15 +42,16 @@ def published_values(file: YamlFile) -> Iterator[Row]:
     """
     file.check("published")
     window = file.content.get("gyro_window")
-    for sensor, stage in STAGES.items():
-        for name, entry in file.content.get(sensor, {}).items():
+    for key, sensor in SENSORS.items():
+        for name, entry in file.content.get(key, {}).items():
             size = SIZES[entry["unit"]] if "unit" in entry else 1.0
-            by_time = window if stage == "gyroscope" and name.startswith("scale") else None
+            by_time = window if sensor == "gyro" and name.startswith("scale") else None
             yield {
-                "parameter": f"{stage}/{name}",
+                "sensor": sensor,
+                "quantity": name,
                 "value": entry["value"] * size,
                 "sigma": entry["sigma"] * size if "sigma" in entry else None,
-                "unit": SI.get((sensor, name.partition("_")[0]), "1"),
+                "unit": SI.get((key, name.partition("_")[0]), "1"),
                 "source": file.content["source"],
                 "window": by_time["degrees"] * DEGREE if by_time else None,
                 "samples": _samples(by_time) if by_time else None,

@@ -84,18 +84,18 @@ def sensors(entry: dict[str, Any]) -> Iterator[Row]:
     }
     for sensor, own in figures.items():
         for axis in tables.AXES:
-            yield {"channel": f"{sensor}_{axis}", **own}
+            yield {"sensor": sensor, "axis": axis, **own}
 
 
 def ranges(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
     """What one count of each channel of each log is, and how far the channel reaches, in SI."""
-    scales = {row["channel"]: row["full_scale"] for row in sensors(entry)}
+    scales = {row["sensor"]: row["full_scale"] for row in sensors(entry)}
     keys = {"accel": ("accelerometer", "count_m_s"), "gyro": ("gyro", "count_rad")}
     for log, rows in by_log(manoeuvres).items():
         layout = rows[0]["layout"]
         increments = layout["kind"] == "rawimus"
         for (sensor, (key, increment)), axis in product(keys.items(), tables.AXES):
-            triad, full = layout.get(key) or {}, scales[f"{sensor}_{axis}"]
+            triad, full = layout.get(key) or {}, scales[sensor]
             count, limit = entry.get(key, {}).get(increment) if increments else None, None
             if "counts_per_unit" in triad:
                 count = CHANNEL_UNITS[triad["unit"]] / triad["counts_per_unit"]

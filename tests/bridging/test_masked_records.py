@@ -13,15 +13,13 @@ def masked(results: chain.Results, *stretches: tuple[int, int], **more) -> dict[
     """`segment` once more, with these records of z-backward masked."""
     rows = [
         {"log": "z-backward.asc", "from_record": first, "to_record": after, "finding": "spike",
-         "channel": None, "repeated": False, **more}
+         "sensor": None, "axis": None, "repeated": False, **more}
         for first, after in stretches
     ]  # fmt: skip
     return chain.again(results, "segment", masks=pd.DataFrame(rows))
 
 
-@pytest.mark.parametrize(
-    "channel", [None, "gyro_z", "gyro_x"], ids=["all channels", "gyro z", "gyro x"]
-)
+@pytest.mark.parametrize("axis", [None, "z", "x"], ids=["all channels", "gyro z", "gyro x"])
 @pytest.mark.parametrize(
     ("stretches", "most"),
     [
@@ -32,9 +30,9 @@ def masked(results: chain.Results, *stretches: tuple[int, int], **more) -> dict[
         ([(1100, 1103), (3500, 3502)], 30.0),
     ],
 )
-def test_a_masked_record_loses_no_angle(whole, stretches, most, channel):
+def test_a_masked_record_loses_no_angle(whole, stretches, most, axis):
     """`most`: arc seconds, what the sigma may be."""
-    tables = masked(whole, *stretches, channel=channel)
+    tables = masked(whole, *stretches, sensor=axis and "gyro", axis=axis)
     done = of_z(tables)
     missing = STEP * sum(after - first for first, after in stretches)
     assert done["bridged"] and not done["complete"]
@@ -56,12 +54,12 @@ def test_a_masked_stretch_of_a_ramp_is_refused(whole):
 
 
 def test_a_repeated_record_and_a_masked_accelerometer_leave_the_turn_whole(whole):
-    for more in ({"repeated": True}, {"channel": "accel_x"}):
+    for more in ({"repeated": True}, {"sensor": "accel", "axis": "x"}):
         assert of_z(masked(whole, (1100, 1101), **more))["complete"]
 
 
 def test_a_gyro_that_is_masked_all_the_time_is_one_that_is_not_recorded(whole):
-    tables = masked(whole, (0, 6000), channel="gyro_x")
+    tables = masked(whole, (0, 6000), sensor="gyro", axis="x")
     assert of_z(tables)["complete"]
     one = inputs_of(whole, tables).turns[-1]
     assert np.isnan(one.sums[:, 0]).all() and np.isfinite(one.sums[:, 1:]).all()

@@ -55,7 +55,7 @@ def test_without_time_there_is_no_clock(tmp_path):
         "records": 2,
         "to_record": 2,
         "interval": None,
-        "step": None,
+        "integration_step": None,
     }
 
 

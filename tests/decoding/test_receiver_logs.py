@@ -32,7 +32,7 @@ def test_the_printed_lines_in_metres_degrees_and_seconds(tmp_path):  # T2
         "records": [7],
         "to_record": [7],
         "interval": [pytest.approx(0.01, abs=1e-9)],
-        "step": [pytest.approx(0.01, abs=1e-9)],
+        "integration_step": [pytest.approx(0.01, abs=1e-9)],
     }
     assert tables["imu_types"]["imu_type"] == []
 

@@ -175,7 +175,8 @@ def _mask(fault: Fault) -> dict[str, Any]:
         "log": f"{fault.manoeuvre}.asc",
         "from_record": fault.inside[0],
         "to_record": fault.inside[1],
-        "channel": fault.channel or None,
+        "sensor": fault.channel[:-2] or None,
+        "axis": fault.channel[-1:] or None,
         "repeated": fault.cause == "duplicate",
         "finding": fault.identifier,
     }

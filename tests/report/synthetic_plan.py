@@ -61,11 +61,13 @@ def sensors() -> Rows:
     white = {"accel": 0.0324 / 60, "gyro": 0.0667 * DEGREE / 60}
     return [
         {
-            "channel": channel,
-            "white_noise": white[channel[:-2]],
+            "sensor": sensor,
+            "axis": axis,
+            "white_noise": noise,
             "source": source,
         }
-        for channel in tables.CHANNELS
+        for sensor, noise in white.items()
+        for axis in tables.AXES
     ]
 
 

@@ -220,7 +220,7 @@ def trace(row: dict[str, Any], generator: np.random.Generator) -> pd.DataFrame:
 
 def noise(manoeuvres: Rows, generator: np.random.Generator) -> Rows:
     white = {"accel": 1.07e-4, "gyro": 3.49e-6}
-    sheet = {row["channel"]: row["white_noise"] for row in plan.sensors()}
+    sheet = {f"{row['sensor']}_{row['axis']}": row["white_noise"] for row in plan.sensors()}
     rows: Rows = []
     for row in manoeuvres:
         for channel in tables.CHANNELS:

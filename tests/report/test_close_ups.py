@@ -55,8 +55,13 @@ def test_only_what_is_masked_of_the_channel_counts(
     close_up = around_the_gap()
     start = int(close_up.record[0])
     rows = [
-        {"from_record": start - 5, "to_record": start + 5, "channel": channel},
-        {"from_record": start + 10, "to_record": start + 11, "channel": None},
+        {
+            "from_record": start - 5,
+            "to_record": start + 5,
+            "sensor": channel and channel[:-2],
+            "axis": channel and channel[-1],
+        },
+        {"from_record": start + 10, "to_record": start + 11, "sensor": None, "axis": None},
     ]
     masks = pd.DataFrame(rows).assign(log=close_up.log, repeated=False, finding="quality/spike")
     if channel is not None:

@@ -180,7 +180,8 @@ def masked_in(
 ) -> list[tuple[int, int]]:
     """Stretches that are masked, of all channels or of one of these: first and last place."""
     record = close_up.record
-    concerned = masks["channel"].isna() | masks["channel"].isin(channels)
+    masked = masks["sensor"] + "_" + masks["axis"]
+    concerned = masks["sensor"].isna() | masked.isin(channels)
     near = (masks["to_record"] > record[0]) & (masks["from_record"] <= record[-1])
     own = masks[(masks["log"] == close_up.log) & concerned & near]
     hidden = np.zeros(len(record) + 2, dtype=np.int64)

@@ -27,7 +27,7 @@ Sheet = Mapping[str, float | None]  # what the data sheet states of each channel
 def parts(tables: Tables) -> Iterator[outline.Part]:
     """A figure of all manoeuvres, a table by channel and one by manoeuvre."""
     rows, sensors = tables.rows("noise"), tables.rows("sensors")
-    sheet = {row["channel"]: row["white_noise"] for row in sensors}
+    sheet = {f"{row['sensor']}_{row['axis']}": row["white_noise"] for row in sensors}
     if rows:
         yield _figure(rows, sheet)
     yield _summary(rows, sheet, list(dict.fromkeys(s["source"] for s in sensors if s["source"])))
