@@ -46,6 +46,8 @@ def parameter(name: str, value: float | None, sigma: float | None, method: str =
     return {
         "id": f"gyroscope/{method}/{name}",
         "stage": "gyroscope",
+        "mount": "",
+        "sensor": "gyro",
         "method": method,
         "parameter": name,
         "value": value,
