@@ -14,6 +14,7 @@ from inertial.campaign.records import (
     Manoeuvre,
     Part,
     Performed,
+    by_mount,
     clocks_of,
     known_of,
     manoeuvres_of,
@@ -119,22 +120,20 @@ def campaigns_of(
 
     Each mount has parameters of its own, for its mounting rotation is one of them.
     """
-    plan = manoeuvres_of(manoeuvres)
-    mounts = list(dict.fromkeys(m.mount for m in plan))
     given, done, noise = known_of(known), performed_of(performed), NoiseLevels(levels)
     times = {} if clocks is None else clocks_of(clocks)
     result = []
-    for mount in mounts:
-        name = mount if len(mounts) > 1 else ""
+    shared = clocks is not None and share_a_clock(clocks)
+    for mount, plan in by_mount(manoeuvres_of(manoeuvres)):
         solution = None
         if accelerometer_parameters is not None and gyroscope_parameters is not None:
             solution = solution_of(
-                name,
+                mount,
                 given,
                 Estimated(accelerometer_parameters, accelerometer_positions, accelerometer_fit),
                 Estimated(gyroscope_parameters, gyroscope_positions, gyroscope_fit),
             )
-        own = [m for m in plan if m.mount == mount]
-        shared = clocks is not None and share_a_clock(clocks)
-        result.append(CampaignData(own, done, blocks, noise, given, name, times, shared, solution))
+        result.append(
+            CampaignData(plan, done, blocks, noise, given, mount, times, shared, solution)
+        )
     return result

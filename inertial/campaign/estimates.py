@@ -227,15 +227,6 @@ class Estimates:
         return made | {"covariance": pd.concat(self.covariances) if self.covariances else empty}
 
 
-def by_mount(plan: list[Manoeuvre]) -> list[tuple[str, list[Manoeuvre]]]:
-    """The manoeuvres of each mount, and the end of its methods' names where there are several."""
-    mounts = list(dict.fromkeys(m.mount for m in plan))
-    return [
-        ("" if len(mounts) == 1 else f"@{mount}", [m for m in plan if m.mount == mount])
-        for mount in mounts
-    ]
-
-
 def stops_between_turns(plan: Sequence[Manoeuvre]) -> bool:
     """Whether several manoeuvres stand at one set position, as S3 turns and stops."""
     return len({m.position for m in plan}) < len(plan)

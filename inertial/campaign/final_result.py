@@ -1,21 +1,20 @@
-"""Which result of a sensor counts, the joint one or the extended one, and how their rows belong."""
+"""The final result of a sensor, the joint or the extended one, and how their rows correspond."""
 
 from collections.abc import Iterable, Sequence
-from typing import Any
 
-Row = dict[str, Any]
+from inertial.campaign.records import Row, with_mount
 
 STAGES = {"gyro": "gyroscope", "accel": "accelerometer"}
 EXTENDED = "extended"
 
 
 def extended_methods(decision: Iterable[Row]) -> set[str]:
-    """The methods of the extension that count: stage, with @ and the mount where there are several.
+    """The methods of the extension whose result is final.
 
     `decision`: the rows of the extension's table.
     """
     return {
-        STAGES[row["sensor"]] + (f"@{row['mount']}" if row["mount"] else "")
+        with_mount(STAGES[row["sensor"]], row["mount"])
         for row in decision
         if row["result"] == EXTENDED
     }

@@ -65,6 +65,15 @@ def with_mount(name: str, mount: str) -> str:
     return f"{name}@{mount}" if mount else name
 
 
+def by_mount(plan: Sequence[Manoeuvre]) -> list[tuple[str, list[Manoeuvre]]]:
+    """The manoeuvres of each mount, whose name is empty where the campaign has a single one."""
+    mounts = list(dict.fromkeys(m.mount for m in plan))
+    return [
+        (mount if len(mounts) > 1 else "", [m for m in plan if m.mount == mount])
+        for mount in mounts
+    ]
+
+
 def manoeuvres_of(table: pd.DataFrame) -> list[Manoeuvre]:
     """The manoeuvres of the plan in their order."""
     return [

@@ -14,8 +14,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.estimates import UNIT, by_mount
-from inertial.campaign.records import Manoeuvre, Row, rows_of
+from inertial.campaign.estimates import UNIT
+from inertial.campaign.records import Manoeuvre, Row, by_mount, rows_of, with_mount
 from inertial.estimation.triad import linear_names
 from inertial.tables import CHANNELS
 from stages.export.examples import Example
@@ -153,30 +153,32 @@ def mounts_of(
     examples : mount → worked examples
     """
 
-    def triad(kind: str, suffix: str) -> Triad:
-        if f"{kind}{suffix}" in extended:
-            return _triad(kind, f"extension/{kind}{suffix}", *fits["extension"])
-        return _triad(kind, f"{kind}/joint{suffix}", *fits[kind])
+    def triad(kind: str, mount: str) -> Triad:
+        method = with_mount(kind, mount)
+        if method in extended:
+            return _triad(kind, "extension", method, *fits["extension"])
+        return _triad(kind, kind, with_mount("joint", mount), *fits[kind])
 
     return [
         Mount(
             name := manoeuvres[0].mount,
-            triad("accelerometer", suffix),
-            triad("gyroscope", suffix),
+            triad("accelerometer", mount),
+            triad("gyroscope", mount),
             examples.get(name, ()),
         )
-        for suffix, manoeuvres in by_mount(plan)
+        for mount, manoeuvres in by_mount(plan)
     ]
 
 
 def _triad(
     kind: str,
-    id_prefix: str,
+    stage: str,
+    method: str,
     parameters: pd.DataFrame,
     covariance: pd.DataFrame,
     fit: pd.DataFrame,
 ) -> Triad:
-    method = id_prefix.partition("/")[2]
+    id_prefix = f"{stage}/{method}"
     rows = {row["parameter"]: row for row in rows_of(parameters) if row["method"] == method}
     determined = [n for n in PARAMETERS if rows.get(n, {}).get("value") is not None]
     ids = [f"{id_prefix}/{name}" for name in determined]
