@@ -42,7 +42,7 @@ class Cause:
 
 
 @dataclass(frozen=True)
-class Asked:
+class EffectTest:
     """What the data say of an effect beside the causes that were found.
 
     `p_value`: its own search paid for; `after_search`: that of the whole catalogue too;
@@ -62,5 +62,5 @@ class Named:
     """The causes, and what the data say of every effect of the catalogue."""
 
     causes: tuple[Cause, ...]
-    asked: tuple[Asked, ...]
+    tests: tuple[EffectTest, ...]
     excesses: tuple[tuple[float, float], ...]

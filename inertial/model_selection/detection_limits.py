@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.estimation.least_squares import MIN_INFORMATION_SHARE
-from inertial.model_selection.evidence import Evidence, Sought
+from inertial.model_selection.evidence import Evidence, SearchedEffect
 
 Array = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ class Visible:
     share: float
 
 
-def visible(evidence: Evidence, effects: Sequence[Sought]) -> list[Visible]:
+def visible(evidence: Evidence, effects: Sequence[SearchedEffect]) -> list[Visible]:
     """For every parameter of every effect what would have been five sigma; the median of a scan."""
     return [
         _of_parameter(evidence, one, parameter)
@@ -47,7 +47,7 @@ def visible(evidence: Evidence, effects: Sequence[Sought]) -> list[Visible]:
     ]
 
 
-def _of_parameter(evidence: Evidence, effect: Sought, parameter: int) -> Visible:
+def _of_parameter(evidence: Evidence, effect: SearchedEffect, parameter: int) -> Visible:
     sizes, reasons, shares = [], [], []
     for columns in effect.candidates:
         size, reason, share = _of_column(evidence, columns, parameter)

@@ -16,7 +16,7 @@ from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
 
 
 @dataclass(frozen=True)
-class Sought:
+class SearchedEffect:
     """An effect and its columns, once for every value of what is scanned.
 
     `candidates`: the columns of each candidate; an effect without a scan has one. `free`: no
@@ -31,12 +31,12 @@ class Sought:
     between: bool = True
 
 
-def sought(
+def searched_effect(
     name: str, *candidates: Sequence[int], free: bool = False, between: bool = True
-) -> Sought:
+) -> SearchedEffect:
     """An effect by the columns of its candidates."""
     each = tuple(tuple(int(i) for i in columns) for columns in candidates)
-    return Sought(name, each, free, between)
+    return SearchedEffect(name, each, free, between)
 
 
 # ---- What the equations of all sensors say of the effects.

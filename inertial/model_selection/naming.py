@@ -10,12 +10,12 @@ from inertial.model_selection.cause import (
     FOUND,
     ONE_OF_CLASS,
     UNKNOWN_STRUCTURE,
-    Asked,
     Cause,
+    EffectTest,
     Named,
 )
 from inertial.model_selection.effect_classes import Alike, alike, with_rivals
-from inertial.model_selection.evidence import Evidence, Sought
+from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.model_selection.null_simulation import Chance
 from inertial.model_selection.scan import Candidates
 from inertial.model_selection.search import Search
@@ -25,14 +25,14 @@ ROUNDS = 3  # of how large the residuals are with what is found, and what is fou
 
 
 def name_causes(
-    evidence: Evidence, effects: Sequence[Sought], level: float, seed: int = 0
+    evidence: Evidence, effects: Sequence[SearchedEffect], level: float, seed: int = 0
 ) -> Named:
     """Name the causes at the level of this campaign, see `causes` and `law_of`."""
     return causes(evidence, effects, law_of(evidence, effects, level, seed))
 
 
 def law_of(
-    evidence: Evidence, effects: Sequence[Sought], level: float, seed: int = 0
+    evidence: Evidence, effects: Sequence[SearchedEffect], level: float, seed: int = 0
 ) -> Chance | None:
     """What chance would bring in this campaign; None where nothing is said of any effect."""
     if not evidence.sensors:
@@ -40,7 +40,7 @@ def law_of(
     return null_simulation.chance(evidence.seen().total.information, effects, level, seed=seed)
 
 
-def causes(evidence: Evidence, effects: Sequence[Sought], law: Chance | None) -> Named:
+def causes(evidence: Evidence, effects: Sequence[SearchedEffect], law: Chance | None) -> Named:
     """Name the causes.
 
     Where the residuals of a sensor exceed the noise also with what is found, something else is
@@ -52,7 +52,7 @@ def causes(evidence: Evidence, effects: Sequence[Sought], law: Chance | None) ->
     law : the laws of the campaign without effects; also where scans have finer values since
     """
     if law is None:
-        return Named((), tuple(Asked(e.name, 0, 0.0, 0, 1.0, 1.0) for e in effects), ())
+        return Named((), tuple(EffectTest(e.name, 0, 0.0, 0, 1.0, 1.0) for e in effects), ())
     evidence = evidence.seen()
     candidates = Candidates(effects)
     excesses: tuple[tuple[float, float], ...] = tuple(
@@ -72,7 +72,7 @@ def causes(evidence: Evidence, effects: Sequence[Sought], law: Chance | None) ->
     named = [_cause(weakened, candidates, law, known, one, found) for one in found]
     return Named(
         _beside_unknown(weakened, named),
-        _asked(weakened, candidates, law, known, found),
+        _tests(weakened, candidates, law, known, found),
         excesses,
     )
 
@@ -149,19 +149,19 @@ def _cause(
     )
 
 
-def _verdict(effect: Sought, one: Alike) -> str:
+def _verdict(effect: SearchedEffect, one: Alike) -> str:
     if effect.free:
         return UNKNOWN_STRUCTURE
     return FOUND if len(one.members) == 1 else ONE_OF_CLASS
 
 
-def _asked(
+def _tests(
     evidence: Evidence,
     candidates: Candidates,
     law: Chance,
     known: Sequence[float],
     found: Sequence[Alike],
-) -> tuple[Asked, ...]:
+) -> tuple[EffectTest, ...]:
     """Every effect beside what was found; what was found beside the others."""
     total = evidence.total
     beside = candidates.around([one.place for one in found])
@@ -173,13 +173,13 @@ def _asked(
     for number, effect in enumerate(candidates.effects):
         own = np.flatnonzero(candidates.effect == number)
         if not len(own) or not degrees[own].any():
-            rows.append(Asked(effect.name, 0, 0.0, 0, 1.0, 1.0))
+            rows.append(EffectTest(effect.name, 0, 0.0, 0, 1.0, 1.0))
             continue
         best = own[np.argmax(np.where(degrees[own] > 0, drops[own], -np.inf))]
         drop, own_degrees = float(drops[best]), int(degrees[best])
         p_value = law.p_value(number, drop, own_degrees, known[number])
         rows.append(
-            Asked(
+            EffectTest(
                 effect.name,
                 int(candidates.value[best]),
                 drop,

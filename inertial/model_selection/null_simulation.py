@@ -16,7 +16,7 @@ from inertial.estimation.probability import (
     f_sf,
     ncx2_sf,
 )
-from inertial.model_selection.evidence import Sought
+from inertial.model_selection.evidence import SearchedEffect
 from inertial.model_selection.scan import Candidates
 
 # ---- What noise alone would bring forth in this very campaign, by simulation.
@@ -138,7 +138,7 @@ class Chance:
 
 def chance(
     information: Array,
-    effects: Sequence[Sought],
+    effects: Sequence[SearchedEffect],
     level: float,
     draws: int = DRAWS,
     seed: int = 0,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.model_selection.evidence import Sought
+from inertial.model_selection.evidence import SearchedEffect
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -29,7 +29,7 @@ class Candidates:
     `effect`: (c,) which effect each belongs to; `value`: (c,) which value of its scan.
     """
 
-    def __init__(self, effects: Sequence[Sought]) -> None:
+    def __init__(self, effects: Sequence[SearchedEffect]) -> None:
         self.effects = tuple(effects)
         listed = [
             (number, value, columns)

@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.model_selection.cause import Named
-from inertial.model_selection.evidence import Evidence, Sought
+from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.model_selection.scan import Candidates
 
 Array = NDArray[np.float64]
 
 
 def to_refine(
-    evidence: Evidence, named: Named, effects: Sequence[Sought], sharp: float = 0.0
+    evidence: Evidence, named: Named, effects: Sequence[SearchedEffect], sharp: float = 0.0
 ) -> dict[str, tuple[int, ...]]:
     """Which values of which scans: those of every member of a cause, beside the others and alone.
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.cause import Cause
-from inertial.model_selection.evidence import Sought
+from inertial.model_selection.evidence import SearchedEffect
 from inertial.model_selection.scan import Candidates
 
 Array = NDArray[np.float64]
@@ -64,7 +64,7 @@ class Split:
 def split(
     now: EffectInformation,
     further: Mapping[str, EffectInformation],
-    effects: Sequence[Sought],
+    effects: Sequence[SearchedEffect],
     causes: Sequence[Cause],
     number: int,
 ) -> list[Split]:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.estimation.probability import chi2_isf, chi2_sf, f_sf
-from inertial.model_selection.evidence import sought
+from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.null_simulation import chance
 from inertial.model_selection.scan import SEEN, Candidates
 
@@ -246,7 +246,7 @@ def _together(kind: str, some: list[Structure], level: float) -> Structure:
 def _tested(answer: Answer, seed: int) -> Structure | None:
     """The group of functions that explains most; none where all of them were fitted."""
     question = answer.question
-    one = sought(answer.kind, *question.groups)
+    one = searched_effect(answer.kind, *question.groups)
     drops, degrees = Candidates([one]).drops(answer.information, answer.right)
     if not degrees.any():
         return None

@@ -7,7 +7,7 @@ import numpy as np
 from inertial.campaign.equations import Campaign
 from inertial.effects import CATALOGUE
 from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
-from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Asked, Cause
+from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause, EffectTest
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.physics.effect import Effect
 from inertial.text.cause_names import in_words
@@ -25,7 +25,7 @@ from stages.criticism.finding_rows import (
     member_rows,
     parameter_row,
 )
-from stages.criticism.selection import Judged
+from stages.criticism.selection import Selection
 
 NAMED = (FOUND, ONE_OF_CLASS)
 MAX_RIVAL_DROP = 6.0  # of chi-squared between two positions that are both possible: 95 % of 2
@@ -39,7 +39,7 @@ NOT_TESTED = "Not detected."
 OF_NOISE = {
     "gyro_flicker": "One campaign does not distinguish it from a random walk, which is estimated.",
 }
-OF_QUALITY = "Sought in the quality of the samples: findings “{finding}”."
+OF_QUALITY = "SearchedEffect in the quality of the samples: findings “{finding}”."
 WALK_SCORE = "The biases of the gyros follow a random walk of {size}, which the sigmas allow for."
 WALK_OR = (
     "The biases of the {sensors} change as by a random walk of {size}. It may also be {others}:"
@@ -65,28 +65,30 @@ INSPECT = "Look at the residuals of each manoeuvre, and how the positions were s
 class BlockResults:
     """The rows of one mount."""
 
-    def __init__(self, campaign: Campaign, judged: Judged, foreseen: Foreseen, mount: str) -> None:
-        self.campaign, self.judged, self.mount = campaign, judged, mount
+    def __init__(
+        self, campaign: Campaign, selection: Selection, foreseen: Foreseen, mount: str
+    ) -> None:
+        self.campaign, self.selection, self.mount = campaign, selection, mount
         self.foreseen = foreseen
-        self.causes = {cause.effect: cause for cause in judged.named.causes}
+        self.causes = {cause.effect: cause for cause in selection.named.causes}
 
     def rows(self) -> Iterator[TableRow]:
         """Scores and parameters of every effect, detection limits, and findings."""
-        for test in self.judged.named.asked:
-            if test.effect in self.judged.families:
+        for test in self.selection.named.tests:
+            if test.effect in self.selection.families:
                 yield from self._of_effect(test)
         yield from self._limits()
-        for number, cause in enumerate(self.judged.named.causes):
+        for number, cause in enumerate(self.selection.named.causes):
             yield from self._finding(number, cause)
 
-    def _of_effect(self, test: Asked) -> Iterator[TableRow]:
+    def _of_effect(self, test: EffectTest) -> Iterator[TableRow]:
         cause = self.causes.get(test.effect)
         value = cause.value if cause else test.value
-        effect = self.judged.effect(test.effect, value)
+        effect = self.selection.effect(test.effect, value)
         identifier = finding_id(effect.name, self.mount)
         parameters = self._parameters(effect, value)
         if cause is None:
-            reasons = [one.reason for one in self.judged.visible if one.effect == test.effect]
+            reasons = [one.reason for one in self.selection.limits if one.effect == test.effect]
             sentence = sentences.not_named_sentence(
                 effect, test, next(iter(reasons), NOT_EXCITED), self.campaign.blind(effect)
             )
@@ -119,7 +121,7 @@ class BlockResults:
 
     def _limits(self) -> Iterator[TableRow]:
         """What this campaign could have detected of each parameter, or why nothing."""
-        for limit in self.judged.visible:
+        for limit in self.selection.limits:
             effect = CATALOGUE[limit.effect]
             parameter = effect.parameters[limit.parameter]
             visible = limit.reason == VISIBLE
@@ -145,8 +147,8 @@ class BlockResults:
 
     def _finding(self, number: int, cause: Cause) -> Iterator[TableRow]:
         split = self.foreseen.splitting(number)
-        free = cause.effect not in self.judged.families
-        effect = None if free else self.judged.effect(cause.effect, cause.value)
+        free = cause.effect not in self.selection.families
+        effect = None if free else self.selection.effect(cause.effect, cause.value)
         parameters = [] if effect is None else self._parameters(effect, cause.value)
         positions = self._positions(effect)
         identifier = finding_id(cause.effect, self.mount)
@@ -158,7 +160,7 @@ class BlockResults:
                 "id": identifier,
                 "mount": self.mount,
                 "cause": cause.effect,
-                "sensor": self.judged.sensor(cause),
+                "sensor": self.selection.sensor(cause),
                 "count": 1,
                 "size": cause.snr,
                 "unit": "sigma",
@@ -188,9 +190,9 @@ class BlockResults:
         """The positions that an effect of a single position may be at, and its χ² drop there."""
         if effect is None or effect.at is None or effect.scan is None or effect.scan.between:
             return []
-        total, family = self.judged.said.total, self.judged.families[effect.name]
+        total, family = self.selection.evidence.total, self.selection.families[effect.name]
         others = [i for n, c in self.causes.items() if n != effect.name for i in c.columns]
-        searched = next(one for one in self.judged.asked if one.name == effect.name)
+        searched = next(one for one in self.selection.searched if one.name == effect.name)
         drops = [total.drop([*columns, *others])[0] for columns in searched.candidates]
         near = [i for i in np.argsort(drops)[::-1] if drops[i] > max(drops) - MAX_RIVAL_DROP]
         return [(self.campaign.positions[int(family[i].at or 0)], float(drops[i])) for i in near]
@@ -204,17 +206,17 @@ class BlockResults:
 
     def _parameters(self, effect: Effect, value: int) -> list[Estimated]:
         """An effect's parameters, estimated with those of the causes."""
-        evidence = self.judged.said
+        evidence = self.selection.evidence
         if not evidence.sensors:
             return [Estimated(one.name, one.unit, one.meaning) for one in effect.parameters]
         place = {name: i for i, name in enumerate(evidence.names)}
         own = [place[f"{effect.label}.{parameter.name}"] for parameter in effect.parameters]
-        others = [c.columns for c in self.judged.named.causes if c.effect != effect.name]
+        others = [c.columns for c in self.selection.named.causes if c.effect != effect.name]
         chosen = list(dict.fromkeys([*own, *(i for columns in others for i in columns)]))
         values, covariance = evidence.total.estimate(chosen)
         limits = {
             effect.parameters[one.parameter].name: one.size
-            for one in self.judged.visible
+            for one in self.selection.limits
             if one.effect == effect.name and one.reason == VISIBLE
         }
         parameters = []
@@ -227,14 +229,14 @@ class BlockResults:
             parameters.append(Estimated(one.name, one.unit, one.meaning, estimate, sigma, limit))
         if effect.scan is not None and effect.name in self.causes:
             scan, at = effect.scan, effect.at or 0.0
-            apart = [abs((one.at or 0.0) - at) for one in self.judged.families[effect.name]]
+            apart = [abs((one.at or 0.0) - at) for one in self.selection.families[effect.name]]
             step = min((one for one in apart if one), default=0.0)
             sigma = step / 12**0.5 if scan.between else None  # uniform within a step
             parameters.append(Estimated(scan.name, scan.unit, scan.meaning, at, sigma))
         return parameters
 
 
-def _tested(test: Asked, number: float) -> float | None:
+def _tested(test: EffectTest, number: float) -> float | None:
     """A number of a test; None where the effect was not tested, for no reading depends on it."""
     return number if test.degrees else None
 
@@ -320,11 +322,11 @@ def _walk_size(sensor: str, walk: Walk) -> str:
     return f"{' ± '.join(with_sigma(value, sigma, decimals_of(sigma)))} {unit}/√h"
 
 
-def unexplained_rows(judged: Judged, mount: str) -> Iterator[TableRow]:
+def unexplained_rows(selection: Selection, mount: str) -> Iterator[TableRow]:
     """A finding for each sensor whose residuals the named effects do not explain."""
-    chosen = list(dict.fromkeys(i for cause in judged.named.causes for i in cause.columns))
-    for sensor, reduced in zip(judged.said.labels, judged.said.sensors, strict=True):
-        rest, degrees, p_value = judged.said.left_over(reduced, chosen)
+    chosen = list(dict.fromkeys(i for cause in selection.named.causes for i in cause.columns))
+    for sensor, reduced in zip(selection.evidence.labels, selection.evidence.sensors, strict=True):
+        rest, degrees, p_value = selection.evidence.left_over(reduced, chosen)
         if p_value >= MIN_CONSISTENT_P_VALUE or rest <= MIN_EXCESS * degrees:
             continue
         ratio = float(np.sqrt(rest / degrees))

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, Asked, Cause
+from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, Cause, EffectTest
 from inertial.model_selection.detection_limits import (
     ABSORBED,
     NOT_EXCITED,
@@ -95,7 +95,7 @@ def cause_sentence(
     return CONSISTENT.format_map(values)
 
 
-def not_named_sentence(effect: Effect, test: Asked, reason: str, blind: str) -> str:
+def not_named_sentence(effect: Effect, test: EffectTest, reason: str, blind: str) -> str:
     """Why an effect is not named; `reason`: that of the limit of its first parameter."""
     title = _capital(in_words(effect.name))
     if test.degrees:

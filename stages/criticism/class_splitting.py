@@ -15,7 +15,7 @@ from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.splitting import TELLS, split
 from inertial.physics.effect import Effect
 from inertial.tables import GYRO
-from stages.criticism.selection import Judged, said_of
+from stages.criticism.selection import Selection, columns_of, evidence_of
 
 # ---- Manoeuvres that a laboratory might add: copies of what it did, to foresee what they would
 # tell.
@@ -123,8 +123,8 @@ class Splitting:
 class Foreseen:
     """What the campaign would say with each further manoeuvre; reckoned when it is asked for."""
 
-    def __init__(self, judged: Judged, further: Mapping[str, Callable[[], Campaign]]) -> None:
-        self._judged, self._further = judged, further
+    def __init__(self, selection: Selection, further: Mapping[str, Callable[[], Campaign]]) -> None:
+        self._selection, self._further = selection, further
         self._made: dict[str, Campaign] = {}
 
     def with_(self, manoeuvre: str) -> Campaign:
@@ -135,16 +135,16 @@ class Foreseen:
 
     def splitting(self, number: int) -> Splitting | None:
         """For one of the causes; None where it is alone in its class, or nothing tells."""
-        causes = self._judged.named.causes
+        causes = self._selection.named.causes
         if len(causes[number].members) < 2 or not self._further:
             return None
         concerned = {*causes[number].members, *(cause.effect for cause in causes)}
-        families = {n: one for n, one in self._judged.families.items() if n in concerned}
+        families = {n: one for n, one in self._selection.families.items() if n in concerned}
         every = {}
         for manoeuvre in self._further:
-            said, asked = said_of(self.with_(manoeuvre), families, np.inf)
+            said, asked = evidence_of(self.with_(manoeuvre), families, np.inf)
             every[manoeuvre] = said.total
-            now = self._judged.said.total.of(said.names)
+            now = self._selection.evidence.total.of(said.names)
         found = split(now, every, asked, causes, number)
         return Splitting(found[0].manoeuvre, found[0].separation) if found else None
 
@@ -153,10 +153,10 @@ class Foreseen:
 
         None: unseen, or less than nearly all of it now.
         """
-        if manoeuvre not in self._further or not self._judged.said.sensors:
+        if manoeuvre not in self._further or not self._selection.evidence.sensors:
             return None
-        two = [self._judged.effect(name, 0) for name in (effect, other)]
-        now = _mimicked(self._judged.said.total, *two)
+        two = [self._selection.effect(name, 0) for name in (effect, other)]
+        now = _mimicked(self._selection.evidence.total, *two)
         if now is None or now < LIKE:
             return None
         then = _mimicked(evidence(self.with_(manoeuvre), two).total, *two)
@@ -166,7 +166,7 @@ class Foreseen:
 def _mimicked(reduced: EffectInformation, effect: Effect, other: Effect) -> float | None:
     """Which share of an effect another can mimic; None where either is not seen."""
     own, theirs = (
-        [i for i, name in enumerate(reduced.names) if name.startswith(f"{one.label}.")]
+        [i for i, name in enumerate(reduced.names) if name in columns_of(one)]
         for one in (effect, other)
     )
     total = float(np.trace(reduced.information[np.ix_(own, own)]))

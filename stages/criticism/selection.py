@@ -1,4 +1,12 @@
-"""Selection of the unmodelled effects of one mount from its block means."""
+"""Selection of the unmodelled effects of one mount from its block means.
+
+Where something is scanned the selection is repeated with ever finer values about the first one.
+
+A random walk of a bias may be mistaken for effects, or they for it: a jump, a ramp, any drift. So
+the two explanations are compared by their likelihoods, and the random walk is estimated anew beside
+the named effects. With an effect that a random walk describes as well the data are said to be
+consistent, no more, for a random walk follows no law that could be tested.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -9,35 +17,36 @@ from inertial.campaign.equations import Campaign, evidence
 from inertial.estimation.variance_components import MIN_DEVIANCE_DROP
 from inertial.model_selection.cause import UNKNOWN_STRUCTURE, Cause, Named
 from inertial.model_selection.detection_limits import Visible, visible
-from inertial.model_selection.evidence import Evidence, Sought, sought
+from inertial.model_selection.evidence import Evidence, SearchedEffect, searched_effect
 from inertial.model_selection.naming import causes, law_of
 from inertial.model_selection.scan_refinement import finer, to_refine
 from inertial.physics.effect import Effect
 from stages.criticism.bias_drift import course_of, courses, slight, walks_beside
 
-OCCAM = 20.0  # of the deviance: so much the sizes that were possible beforehand weigh at most
-FINER = 4  # steps of the second look in each interval of the first
-SHARP = 20.0  # signal-to-noise ratio from which a third look is finer still
-WALKLIKE = 0.2  # share of its information that a walk leaves an effect, below which it is like one
+MAX_OCCAM_DEVIANCE = 20.0  # what the range of sizes possible beforehand counts at most
+FINER_STEPS = 4  # of the second search in each interval of the first
+MIN_THIRD_SEARCH_SNR = 20.0  # from which a third search is finer still
+MAX_WALK_SHARE = 0.2  # of its information that a random walk leaves an effect that is like one
 SENSORS = ("gyro", "accel")
 
 
 @dataclass(frozen=True)
-class Judged:
-    """What the blocks of one mount say: of every effect, of those that are named, and unseen.
+class Selection:
+    """The named effects of one mount, and the evidence on every effect.
 
-    `campaign`: with the random walks that the equations had; `instead`: causes that would explain
-    about as well what a walk explains; `asked`: the columns of each effect in
-    `said`; `families`: its candidates by its name, in the order of `Sought.candidates`.
+    `campaign`: with the random walks of its equations; `alternatives`: causes that would explain
+    about as well what a random walk explains; `searched`: the columns of each effect in
+    `evidence`; `families`: its candidates by its name, in the order of
+    `SearchedEffect.candidates`; `limits`: the detection limits.
     """
 
     campaign: Campaign
-    instead: tuple[str, ...]
-    said: Evidence
-    asked: Sequence[Sought]
+    alternatives: tuple[str, ...]
+    evidence: Evidence
+    searched: Sequence[SearchedEffect]
     families: Mapping[str, Sequence[Effect]]
     named: Named
-    visible: Sequence[Visible]
+    limits: Sequence[Visible]
 
     def effect(self, name: str, value: int) -> Effect:
         """A candidate."""
@@ -45,7 +54,7 @@ class Judged:
 
     @property
     def effects(self) -> list[Effect]:
-        """The named effects; a course without a law is none."""
+        """The named effects; a drift without a law is none."""
         found = [cause for cause in self.named.causes if cause.effect in self.families]
         return [self.effect(cause.effect, cause.value) for cause in found]
 
@@ -54,8 +63,8 @@ class Judged:
         """Random walks of the biases of gyros and accelerometers, rad/s/√s and m/s²/√s."""
         return self.campaign.solution.walks
 
-    def demoted(self, sensors: Sequence[str]) -> "Judged":
-        """The same where structures are left in these sensors: no name of theirs is certain."""
+    def without_certain_names(self, sensors: Sequence[str]) -> "Selection":
+        """The same with structure in the residuals of these sensors, so no certain name there."""
 
         def uncertain(cause: Cause) -> Cause:
             inside = self.sensor(cause) in sensors
@@ -65,8 +74,8 @@ class Judged:
         return replace(self, named=replace(self.named, causes=causes))
 
     def sensor(self, cause: Cause) -> str:
-        """The sensor that sees a cause best."""
-        return self.said.labels[self.said.sensor_of(cause.columns)]
+        """The sensor that determines a cause best."""
+        return self.evidence.labels[self.evidence.sensor_of(cause.columns)]
 
     def consistent(self) -> dict[str, list[str]]:
         """Of each sensor the causes with which the data are no more than consistent."""
@@ -77,14 +86,14 @@ class Judged:
         return found
 
     def deviance(self) -> float:
-        """−2 log of the likelihood with what is named, and what each size costs beforehand.
+        """−2 log of the likelihood with the named effects, and the cost of each size.
 
-        An effect is as large as it was found, in its typical sizes: an effect of nine numbers has
-        one size, as a walk has one.
+        The size of an effect is that of its estimate, in its typical sizes: an effect of nine
+        parameters has one size, as a random walk has one.
         """
-        sizes = [self._size(place) for place in _clear(self)]
-        asked = len(sizes) + sum(map(bool, self.walks))
-        return self.campaign.deviance(self.effects, sizes) + MIN_DEVIANCE_DROP * asked
+        sizes = [self._size(place) for place in _effects(self)]
+        count = len(sizes) + sum(map(bool, self.walks))
+        return self.campaign.deviance(self.effects, sizes) + MIN_DEVIANCE_DROP * count
 
     def _size(self, place: int) -> float:
         """How large a named effect is, in its typical sizes."""
@@ -94,46 +103,52 @@ class Judged:
         return float(np.sqrt(np.mean(np.nan_to_num(np.array(cause.values) / typical) ** 2))) or 1.0
 
 
-def judge(
+def select_effects(
     campaign: Campaign, effects: Sequence[Effect], level: float, noise_degrees: float
-) -> Judged:
-    """Name the causes among `effects`; `level`: accepted chance of naming one where none is."""
+) -> Selection:
+    """Name the causes among `effects`; `level`: accepted probability of a false name."""
 
-    def judged(walks: tuple[float, float]) -> Judged:
-        return _judge(campaign.walking(walks), effects, level, noise_degrees)
+    def with_walks(walks: tuple[float, float]) -> Selection:
+        return _select(campaign.walking(walks), effects, level, noise_degrees)
 
-    still = judged((0.0, 0.0))
+    without = with_walks((0.0, 0.0))
     walks = campaign.solution.walks
     if not any(walks):
-        walks = _walks_instead(still)
+        walks = _walks_instead(without)
     if not any(walks):
-        return still
-    walking = judged(walks)
-    found = _likelier(still, walking)
-    if found.effects:
-        walks = walks_beside(found.campaign, found.effects)
-        if walks != found.walks:
-            found = replace(judged(walks), instead=found.instead) if any(walks) else still
-    if not any(found.walks):
-        return found
-    other = tuple(member for member in found.instead if member not in _members(found))
-    return _consistent(replace(found, instead=other))
+        return without
+    selection = _likelier(without, with_walks(walks))
+    if selection.effects:
+        walks = walks_beside(selection.campaign, selection.effects)
+        if walks != selection.walks:
+            selection = (
+                replace(with_walks(walks), alternatives=selection.alternatives)
+                if any(walks)
+                else without
+            )
+    if not any(selection.walks):
+        return selection
+    named = _members(selection)
+    others = tuple(member for member in selection.alternatives if member not in named)
+    return _consistent(replace(selection, alternatives=others))
 
 
-def _likelier(still: Judged, walking: Judged) -> Judged:
-    """Effects without walks, or with them, or with the others as what may stand for the walks."""
-    if not still.effects:
+def _likelier(without: Selection, walking: Selection) -> Selection:
+    """Effects without random walks, or with them, or random walks that may be these effects."""
+    if not without.effects:
         return walking
-    more = still.deviance() - walking.deviance()
+    more = without.deviance() - walking.deviance()
     if more < -MIN_DEVIANCE_DROP:
-        return still
-    return replace(walking, instead=_members(still)) if more < OCCAM else walking
+        return without
+    if more >= MAX_OCCAM_DEVIANCE:
+        return walking
+    return replace(walking, alternatives=_members(without))
 
 
-def _walks_instead(judged: Judged) -> tuple[float, float]:
-    """The likeliest random walks that may stand for effects like them; 0 where none may."""
-    campaign, effects = judged.campaign, judged.effects
-    like = _like_a_walk(campaign.walking(slight(campaign)), judged)
+def _walks_instead(selection: Selection) -> tuple[float, float]:
+    """The most likely random walks in place of effects like them; 0 where there is none."""
+    campaign, effects = selection.campaign, selection.effects
+    like = _like_a_walk(campaign.walking(slight(campaign)), selection)
     if not any(like):
         return (0.0, 0.0)
     return walks_beside(
@@ -141,88 +156,91 @@ def _walks_instead(judged: Judged) -> tuple[float, float]:
     )
 
 
-def _members(judged: Judged) -> tuple[str, ...]:
-    members = [member for cause in judged.named.causes for member in cause.members]
+def _members(selection: Selection) -> tuple[str, ...]:
+    members = [member for cause in selection.named.causes for member in cause.members]
     return tuple(dict.fromkeys(members))
 
 
-def _consistent(judged: Judged) -> Judged:
-    """The same; of causes that a walk could do as well no more is said than that they may be."""
-    like = dict(zip(_clear(judged), _like_a_walk(judged.campaign, judged), strict=True))
+def _consistent(selection: Selection) -> Selection:
+    """The same; a cause that a random walk describes as well is consistent with the data only."""
+    like = dict(zip(_effects(selection), _like_a_walk(selection.campaign, selection), strict=True))
     causes = tuple(
         replace(cause, verdict=UNKNOWN_STRUCTURE) if like.get(place) else cause
-        for place, cause in enumerate(judged.named.causes)
+        for place, cause in enumerate(selection.named.causes)
     )
-    return replace(judged, named=replace(judged.named, causes=causes))
+    return replace(selection, named=replace(selection.named, causes=causes))
 
 
-def _clear(judged: Judged) -> list[int]:
-    """Which of the causes are effects, and no courses without a law."""
-    return [i for i, cause in enumerate(judged.named.causes) if cause.effect in judged.families]
+def _effects(selection: Selection) -> list[int]:
+    """Which of the causes are effects of the catalogue, not drifts without a law."""
+    causes = selection.named.causes
+    return [place for place, cause in enumerate(causes) if cause.effect in selection.families]
 
 
-def _like_a_walk(walking: Campaign, judged: Judged) -> list[bool]:
-    """Of each named effect whether walks leave little of what is known of it."""
-    named = judged.effects
+def _like_a_walk(walking: Campaign, selection: Selection) -> list[bool]:
+    """Of each named effect whether random walks leave little of its information."""
+    named = selection.effects
     if not named:
         return []
-    said = [evidence(campaign, named).total for campaign in (walking, walking.without_walk())]
+    totals = [evidence(campaign, named).total for campaign in (walking, walking.without_walk())]
+    column = {name: i for i, name in enumerate(totals[0].names)}
     result = []
-    for place, effect in zip(_clear(judged), named, strict=True):
-        own = [i for i, name in enumerate(said[0].names) if name.startswith(f"{effect.label}.")]
-        values = np.nan_to_num(judged.named.causes[place].values)
-        left, whole = (values @ one.information[np.ix_(own, own)] @ values for one in said)
-        result.append(bool(left < WALKLIKE * whole))
+    for place, effect in zip(_effects(selection), named, strict=True):
+        own = [column[name] for name in columns_of(effect) if name in column]
+        values = np.nan_to_num(selection.named.causes[place].values)
+        left, whole = (values @ one.information[np.ix_(own, own)] @ values for one in totals)
+        result.append(bool(left < MAX_WALK_SHARE * whole))
     return result
 
 
-def _judge(
+def _select(
     campaign: Campaign, effects: Sequence[Effect], level: float, noise_degrees: float
-) -> Judged:
+) -> Selection:
     families = {name: tuple(family) for name, family in campaign.candidates(effects).items()}
-    said, asked = said_of(campaign, families, noise_degrees)
-    law = law_of(said, asked, level)
-    named = causes(said, asked, law)
-    seen = visible(said, [one for one in asked if not one.free])
-    sharp = 0.0
-    while refined := to_refine(said, named, asked, sharp):
+    found, searched = evidence_of(campaign, families, noise_degrees)
+    law = law_of(found, searched, level)
+    named = causes(found, searched, law)
+    limits = visible(found, [one for one in searched if not one.free])
+    min_snr = 0.0
+    while refined := to_refine(found, named, searched, min_snr):
         families |= {name: _finer(families[name], places) for name, places in refined.items()}
-        said, asked = said_of(campaign, families, noise_degrees)
-        named = causes(said, asked, law)
-        if sharp:
+        found, searched = evidence_of(campaign, families, noise_degrees)
+        named = causes(found, searched, law)
+        if min_snr:
             break
-        sharp = SHARP
-    return Judged(campaign, (), said, asked, families, named, seen)
+        min_snr = MIN_THIRD_SEARCH_SNR
+    return Selection(campaign, (), found, searched, families, named, limits)
 
 
 def _finer(family: Sequence[Effect], places: Sequence[int]) -> tuple[Effect, ...]:
     values = np.array([one.at for one in family], np.float64)
-    return tuple(family[0].fixed(float(at)) for at in finer(values, places, FINER))
+    return tuple(family[0].fixed(float(at)) for at in finer(values, places, FINER_STEPS))
 
 
-def _between(effect: Effect) -> bool:
-    return effect.scan is None or effect.scan.between
+def columns_of(effect: Effect) -> list[str]:
+    """The names of the columns of an effect in the evidence."""
+    return [f"{effect.label}.{parameter.name}" for parameter in effect.parameters]
 
 
-def said_of(
+def evidence_of(
     campaign: Campaign, families: Mapping[str, Sequence[Effect]], noise_degrees: float
-) -> tuple[Evidence, list[Sought]]:
-    """What the equations say of all candidates and of free courses, and what is sought there."""
-    free = {course_of(sensor): tuple(courses(sensor)) for sensor in SENSORS}
-    every = [one for family in [*families.values(), *free.values()] for one in family]
-    said = evidence(campaign, every, noise_degrees)
-    place = {name: i for i, name in enumerate(said.names)}
+) -> tuple[Evidence, list[SearchedEffect]]:
+    """The evidence on all candidates and on drifts without a law, and the columns of each."""
+    drifts = {course_of(sensor): tuple(courses(sensor)) for sensor in SENSORS}
+    every = [one for family in [*families.values(), *drifts.values()] for one in family]
+    found = evidence(campaign, every, noise_degrees)
+    if not found.sensors:
+        return found, [searched_effect(name) for name in families]
+    column = {name: i for i, name in enumerate(found.names)}
 
     def columns(one: Effect) -> list[int]:
-        return [place[f"{one.label}.{parameter.name}"] for parameter in one.parameters]
+        return [column[name] for name in columns_of(one)]
 
-    if not said.sensors:
-        return said, [sought(name) for name in families]
-    asked = [
-        sought(name, *(columns(one) for one in family), between=_between(family[0]))
-        for name, family in families.items()
-    ]
-    for name, waves in free.items():
+    searched = []
+    for name, family in families.items():
+        between = family[0].scan is None or family[0].scan.between
+        searched.append(searched_effect(name, *map(columns, family), between=between))
+    for name, waves in drifts.items():
         axes = np.array([columns(one) for one in waves]).T  # (3, waves)
-        asked.append(sought(name, *axes.tolist(), axes.ravel().tolist(), free=True))
-    return said, asked
+        searched.append(searched_effect(name, *axes.tolist(), axes.ravel().tolist(), free=True))
+    return found, searched

@@ -25,7 +25,7 @@ from stages.criticism.finding_rows import Row, TableRow
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations, without_lines
 from stages.criticism.residual_structure import structure_rows, structure_tests
-from stages.criticism.selection import SENSORS, judge
+from stages.criticism.selection import SENSORS, select_effects
 from stages.criticism.temperature_findings import temperature_rows
 
 BLOCKS_SHARE = 0.9  # of the accepted chance of a false name; the rest is that of the spectrum
@@ -64,22 +64,24 @@ def _of_mount(
     quiet = without_lines(data.blocks, turns, spectrum.oscillations)
     campaign = campaign_of(replace(data, blocks=quiet))
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
-    judged = judge(campaign, in_blocks, level * BLOCKS_SHARE, degrees)
-    tested = structure_tests(judged.campaign, judged.effects, degrees)
-    judged = judged.demoted([sensor for sensor in SENSORS if tested.of(sensor)])
-    walks = walks_with_sigmas(judged.campaign, judged.effects)
+    selection = select_effects(campaign, in_blocks, level * BLOCKS_SHARE, degrees)
+    tested = structure_tests(selection.campaign, selection.effects, degrees)
+    selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
+    walks = walks_with_sigmas(selection.campaign, selection.effects)
     more = {
         name: partial(_with, make, data)
         for name, make in further(data.plan, data.performed, quiet).items()
     }
     for sensor, walk in walks.items():
         structured = bool(tested.of(sensor))
-        yield from random_walk_rows(sensor, walk, judged.instead, mount, structured=structured)
-    yield from BlockResults(campaign, judged, Foreseen(judged, more), mount).rows()
+        yield from random_walk_rows(
+            sensor, walk, selection.alternatives, mount, structured=structured
+        )
+    yield from BlockResults(campaign, selection, Foreseen(selection, more), mount).rows()
     yield from OscillationResults(spectrum, mount).rows()
     yield from other_scores(walks.get("gyro"), mount)
-    yield from structure_rows(tested, judged.consistent(), mount)
-    yield from unexplained_rows(judged, mount)
+    yield from structure_rows(tested, selection.consistent(), mount)
+    yield from unexplained_rows(selection, mount)
     yield from temperature_rows(data.blocks, data.plan, level, mount)
 
 

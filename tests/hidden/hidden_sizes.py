@@ -19,12 +19,12 @@ from hidden_ways import WAYS
 import laboratory
 from inertial.campaign.equations import Campaign, campaign_of, evidence
 from inertial.effects import CATALOGUE
-from inertial.model_selection.evidence import Evidence, Sought
+from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.model_selection.naming import law_of
 from inertial.model_selection.null_simulation import Chance, power, power_limit
 from inertial.physics.effect import Effect
 from inertial.tables.code import code_of, hash_of
-from stages.criticism.selection import said_of
+from stages.criticism.selection import evidence_of
 from stages.criticism.stage import BLOCKS_SHARE
 
 SEED = 9_999
@@ -46,7 +46,7 @@ class Reference:
 
     campaign: Campaign
     said: Evidence
-    asked: Sequence[Sought]
+    asked: Sequence[SearchedEffect]
     families: Mapping[str, Sequence[Effect]]
     law: Chance
     noise_degrees: float
@@ -146,7 +146,7 @@ def _made(plan: str) -> Reference:
     shutil.rmtree(folder)
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
     families = {name: tuple(one) for name, one in campaign.candidates(in_blocks).items()}
-    said, asked = said_of(campaign, families, degrees)
+    said, asked = evidence_of(campaign, families, degrees)
     law = law_of(said, asked, LEVEL)
     assert law is not None  # the plans show effects
     return Reference(campaign, said.seen(), asked, families, law, degrees)

@@ -16,7 +16,7 @@ from hidden_sizes import Reference, code, reference
 from hidden_ways import POSITIVE, WAYS, Array
 
 from inertial.estimation.least_squares import EffectInformation
-from inertial.model_selection.evidence import Evidence, Sought
+from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.model_selection.naming import causes
 from inertial.model_selection.scan import SEEN
 
@@ -91,7 +91,7 @@ def _false_names(plan: str, part: int, trials: int) -> int:
 
 def _columns(known: Reference, name: str, random: np.random.Generator) -> list[int]:
     """The columns of an effect, of any value of its scan that is seen and not at its ends."""
-    effect: Sought = next(one for one in known.asked if one.name == name)
+    effect: SearchedEffect = next(one for one in known.asked if one.name == name)
     number = len(effect.candidates)
     place = 0 if number == 1 else int(random.integers(number // 8, number - number // 8))
     return list(effect.candidates[place])

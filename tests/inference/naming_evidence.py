@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.estimation.least_squares import EffectInformation
-from inertial.model_selection.evidence import Evidence, Sought, sought
+from inertial.model_selection.evidence import Evidence, SearchedEffect, searched_effect
 from inertial.model_selection.scan import Candidates
 from inertial.model_selection.structure_tests import TESTS, Answer, Where
 from tests.inference.naming_plans import (
@@ -34,7 +34,7 @@ class Plan:
     """A campaign's equations, and a way to draw what they would say."""
 
     rows: Rows
-    effects: tuple[Sought, ...]
+    effects: tuple[SearchedEffect, ...]
     informations: tuple[Array, Array]  # gyros, accelerometers
     roots: tuple[Array, Array]  # of the informations
     raw: Array
@@ -148,7 +148,7 @@ def plan_of(plan: str, jumps: tuple[float, ...] = ()) -> Plan:
             blocks.append(parts)
             candidates.append(range(start, start + width))
             start += width
-        effects.append(sought(name, *candidates, free=name.startswith("any")))
+        effects.append(searched_effect(name, *candidates, free=name.startswith("any")))
     informations, degrees = [], []
     raw = np.zeros(start)
     for side, (sigma, columns) in enumerate(sensors):

@@ -8,7 +8,7 @@ from scipy.stats import chi2
 
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Named
-from inertial.model_selection.evidence import Evidence, sought
+from inertial.model_selection.evidence import Evidence, searched_effect
 from inertial.model_selection.naming import causes, name_causes
 from inertial.model_selection.null_simulation import Chance, chance, power_limit
 from inertial.model_selection.scan import Candidates
@@ -58,7 +58,7 @@ def test_what_is_named_is_what_stands_above_its_price():
     quiet = np.zeros(len(p.raw))
     found = [causes(p.draw(quiet, rng), p.effects, law_of("b")) for _ in range(30)]
     assert sum(bool(one.causes) for one in found) <= 3
-    assert all(asked.after_search > LEVEL for one in found if not one.causes for asked in one.asked)
+    assert all(asked.after_search > LEVEL for one in found if not one.causes for asked in one.tests)
 
 
 def test_no_power_is_lost_to_the_limit():
@@ -150,7 +150,7 @@ def test_a_second_look_names_a_strong_jump_alone():
     fine = plan_of("b", tuple(times))
     place = fine.index("gyro_jump")
     kept = [int(np.argmin(np.abs(times - time))) for time in coarse]
-    seldom = sought("gyro_jump", *[fine.effects[place].candidates[i] for i in kept])
+    seldom = searched_effect("gyro_jump", *[fine.effects[place].candidates[i] for i in kept])
     seldom_too = (*fine.effects[:place], seldom, *fine.effects[place + 1 :])
     truth = int(np.argmin(np.abs(times - 0.5 * (coarse[16] + coarse[17]))))
     columns = list(fine.effects[place].candidates[truth])
@@ -224,7 +224,7 @@ def test_an_effect_must_stand_out_of_residuals_that_are_too_large():
 
 def test_the_chance_of_a_scan_is_that_of_its_largest_drop():
     """Columns that have nothing to do with each other: n trials."""
-    scan = sought("scan", *[[i] for i in range(20)])
+    scan = searched_effect("scan", *[[i] for i in range(20)])
     law = chance(np.eye(20), [scan], LEVEL, draws=20000).tails[0]
     for drop in (12.0, 16.0, 25.0):
         assert law(drop) == pytest.approx(1 - chi2.cdf(drop, 1) ** 20, rel=0.15)
@@ -234,15 +234,15 @@ def test_the_chance_of_a_scan_is_that_of_its_largest_drop():
 
 
 def test_noise_known_from_few_readings_asks_for_more():
-    law = chance(np.eye(3), [sought("one", [0, 1, 2])], LEVEL, draws=20000)
+    law = chance(np.eye(3), [searched_effect("one", [0, 1, 2])], LEVEL, draws=20000)
     assert law.price(0, 10.0) > law.price(0) == pytest.approx(chi2.isf(LEVEL, 3), abs=0.5)
     assert law.p_value(0, law.price(0, 10.0), 3, 10.0) == pytest.approx(law.share, rel=1e-3)
 
 
 def test_no_equations_name_nothing():
-    found = name_causes(Evidence((), ()), [sought("one", [0])], LEVEL)
+    found = name_causes(Evidence((), ()), [searched_effect("one", [0])], LEVEL)
     assert not found.causes
-    assert found.asked[0].degrees == 0
+    assert found.tests[0].degrees == 0
     blind = EffectInformation(("a",), np.zeros((1, 1)), np.zeros(1), 10.0, 10)
-    found = name_causes(Evidence((blind,), ("gyro",)), [sought("one", [0])], LEVEL)
-    assert (found.causes, found.asked[0].degrees) == ((), 0)
+    found = name_causes(Evidence((blind,), ("gyro",)), [searched_effect("one", [0])], LEVEL)
+    assert (found.causes, found.tests[0].degrees) == ((), 0)

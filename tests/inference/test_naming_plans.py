@@ -11,7 +11,7 @@ from inertial.model_selection.detection_limits import (
     VISIBLE,
     visible,
 )
-from inertial.model_selection.evidence import Evidence, sought
+from inertial.model_selection.evidence import Evidence, searched_effect
 from inertial.model_selection.naming import causes
 from inertial.model_selection.null_simulation import chance
 from inertial.model_selection.splitting import split
@@ -49,7 +49,7 @@ def test_what_is_not_seen_has_a_reason():
 def test_parameters_that_are_seen_together_alone():
     information = np.ones((2, 2))
     said = EffectInformation(("a", "b"), information, np.zeros(2), 5.0, 5)
-    seen = visible(Evidence((said,), ("gyro",), raw=np.ones(2)), [sought("pair", [0, 1])])
+    seen = visible(Evidence((said,), ("gyro",), raw=np.ones(2)), [searched_effect("pair", [0, 1])])
     assert [one.reason for one in seen] == [ONLY_TOGETHER] * 2
 
 
