@@ -23,7 +23,12 @@ from stages.gyroscope.stage import STAGE as GYROSCOPE
 NAMES = [f"{s}/{n}" for s in ("accelerometer", "gyroscope") for n in linear_names()]
 RATE = 100.0  # samples per second
 CLOCKS = pd.DataFrame(
-    {"log": ["session.asc"], "clock": ["GPS"], "interval": [1 / RATE], "step": [1 / RATE]}
+    {
+        "log": ["session.asc"],
+        "clock": ["GPS"],
+        "interval": [1 / RATE],
+        "integration_step": [1 / RATE],
+    }
 )
 MISALIGNED, BIAS = 5e-3, (0.01, 1e-5)  # spread of M; of the biases, m/s² and rad/s
 
