@@ -9,7 +9,7 @@ from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
 from inertial.text.units import STANDARD_GRAVITY
 
-REACHED = STANDARD_GRAVITY / 2  # m/s²: what turns the memory over
+MIN_REVERSAL = STANDARD_GRAVITY / 2  # m/s², of a force that reverses the hysteresis
 
 
 def remembered(force: Array, order: Array) -> Array:
@@ -18,7 +18,7 @@ def remembered(force: Array, order: Array) -> Array:
     0 before the first one.
     """
     sequence = np.argsort(order, kind="stable")
-    signs = np.where(np.abs(force) > REACHED, np.sign(force), 0.0)[sequence]
+    signs = np.where(np.abs(force) > MIN_REVERSAL, np.sign(force), 0.0)[sequence]
     place = np.where(signs != 0, np.arange(len(signs))[:, None], 0)
     last = np.maximum.accumulate(place, axis=0)
     result = np.zeros_like(signs)
@@ -31,7 +31,7 @@ class AccelHysteresis(Effect):
 
     A loop that is widest where the axis is level and closed at ±g. Shown by an axis that comes
     to level from above and from below; in the order of the plan. A level axis is also what the
-    error of a set position moves, so the loop must stand out of that.
+    error of a set position moves, so the loop must exceed that.
     """
 
     name = "accel_hysteresis"

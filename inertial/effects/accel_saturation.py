@@ -8,7 +8,7 @@ from inertial.text.units import STANDARD_GRAVITY
 class AccelSaturation(Effect):
     """Reading = ±limit where the specific force is beyond it.
 
-    No part of the fit: the samples at the limit are found, and masked, by their equal extreme
+    No part of the fit: the samples at the limit are detected, and masked, by their equal extreme
     counts. What a mean over them would be wrong by nobody knows.
     """
 

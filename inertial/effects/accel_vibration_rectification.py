@@ -15,7 +15,7 @@ class AccelVibrationRectification(Effect):
 
     Told from a bias by two levels of vibration: a quiet table and a shaking one. The sensor's own
     noise is in σ too, alike everywhere, and so in the bias. Vibration that is too fast for the
-    samples is not seen in them.
+    samples is not observable in them.
     """
 
     name = "accel_vibration_rectification"

@@ -11,7 +11,7 @@ from inertial.physics.typical_sizes import by_grade
 from inertial.text.units import STANDARD_GRAVITY
 
 SHORTEST, LONGEST = 30.0, 3000.0  # s, of τ: a shorter one is over before the first rest is
-TRIED = 9  # three in each decade of three; between two of them the trace changes by a tenth
+CANDIDATES = 9  # three in each decade of three; between two of them the trace changes by a tenth
 
 
 class AccelWarmUp(Effect):
@@ -40,7 +40,7 @@ class AccelWarmUp(Effect):
         return without_clock(motion)
 
     def grid(self, motion: Motion) -> Array:
-        return np.geomspace(SHORTEST, LONGEST, TRIED)
+        return np.geomspace(SHORTEST, LONGEST, CANDIDATES)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         settling = decayed(motion, self.value(motion))

@@ -10,13 +10,13 @@ from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
 from inertial.text.units import DEGREE_PER_HOUR
 
-TRIED = 36  # times of the jump; in half an hour about one for every minute
+CANDIDATES = 36  # times of the jump; in half an hour about one for every minute
 
 
 class GyroBiasJump(Effect):
     """Reading += b H(t − t₀); t₀ is scanned.
 
-    Told from a drift by being over at once. A jump between logs is seen only if they share a
+    Unlike a drift it is instantaneous. A jump between logs is observable only if they share a
     clock.
     """
 
@@ -33,7 +33,7 @@ class GyroBiasJump(Effect):
         return without_clock(motion)
 
     def grid(self, motion: Motion) -> Array:
-        return evenly(motion, TRIED)
+        return evenly(motion, CANDIDATES)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         jumped = after(motion, self.value(motion))

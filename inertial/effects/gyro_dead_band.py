@@ -9,15 +9,16 @@ from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
 from inertial.text.units import DEGREE_PER_HOUR
 
-WIDEST = 16  # °/h: the rate of the earth is 15
-TRIED = 8
+MAX_WIDTH = 16  # °/h: the rate of the earth is 15
+CANDIDATES = 8
 
 
 class GyroDeadBand(Effect):
     """ω̃_i −= l_i ω_i where |ω_i| < w: inside the band the share l of the rate is lost.
 
     All of it is lost for l = 1; the width w is scanned. The only rates so small are those of the
-    earth at rest, so only bands up to 15 °/h can be told apart. Told from a scale factor by turns.
+    earth at rest, so only bands up to 15 °/h are observable. Turns distinguish it from
+    a scale factor.
     """
 
     name = "gyro_dead_band"
@@ -38,4 +39,4 @@ class GyroDeadBand(Effect):
         return replace(reading, gyro=reading.gyro - values * rate * small)
 
     def grid(self, motion: Motion) -> Array:
-        return np.linspace(WIDEST / TRIED, WIDEST, TRIED) * DEGREE_PER_HOUR
+        return np.linspace(MAX_WIDTH / CANDIDATES, MAX_WIDTH, CANDIDATES) * DEGREE_PER_HOUR

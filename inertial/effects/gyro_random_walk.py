@@ -1,4 +1,4 @@
-"""A bias of the gyros that walks."""
+"""A random walk of the biases of the gyros."""
 
 from inertial.physics.effect import Effect, Parameter
 from inertial.physics.typical_sizes import by_grade

@@ -11,7 +11,7 @@ from inertial.physics.typical_sizes import by_grade
 from inertial.text.units import DEGREE_PER_HOUR
 
 SHORTEST, LONGEST = 30.0, 3000.0  # s, of τ: a shorter one is over before the first rest is
-TRIED = 9  # three in each decade of three; between two of them the trace changes by a tenth
+CANDIDATES = 9  # three in each decade of three; between two of them the trace changes by a tenth
 
 
 class GyroWarmUp(Effect):
@@ -35,7 +35,7 @@ class GyroWarmUp(Effect):
         return without_clock(motion)
 
     def grid(self, motion: Motion) -> Array:
-        return np.geomspace(SHORTEST, LONGEST, TRIED)
+        return np.geomspace(SHORTEST, LONGEST, CANDIDATES)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         settling = decayed(motion, self.value(motion))

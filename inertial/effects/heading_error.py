@@ -10,7 +10,7 @@ from inertial.text.units import DEGREE
 
 
 class HeadingError(Effect):
-    """ω += Δψ up × ω_level: seen from above, north lies Δψ further counter-clockwise of the mark.
+    """ω += Δψ up × ω_level: viewed from above, north lies Δψ further counter-clockwise of the mark.
 
     Told by the level gyros at rest. Where no heading is stated the gyros tell the azimuth
     themselves, and there is none to be wrong.

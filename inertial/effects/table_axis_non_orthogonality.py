@@ -11,7 +11,7 @@ from inertial.physics.vectors import cross
 from inertial.text.units import ARC_SECOND
 
 HOME = np.array([0.0, 0.0, 1.0])  # of the case: up where the middle axis is at zero
-UPRIGHT = 0.1  # sine of the angle of the middle axis, below which it alone does not tell that axis
+MIN_MIDDLE_SINE = 0.1  # of the angle of the middle axis, from which it gives that axis alone
 
 
 class TableAxisNonOrthogonality(Effect):
@@ -52,18 +52,18 @@ class TableAxisNonOrthogonality(Effect):
 def _middle(up: Array, north: Array) -> tuple[Array, Array]:
     """The middle axis in body axes, (n, 3), and the sine of its angle, (n,).
 
-    It is one line in the laboratory, told by the first side whose azimuth is known; a tumble that
+    It is one line in the laboratory, given by the first side whose azimuth is known; a tumble that
     goes on beyond down turns about it still.
     """
     across = cross(up, HOME)
     size = np.linalg.norm(across, axis=1)
     level = np.stack([north, cross(north, up)], axis=1)  # (n, 2, 3), north and east
     azimuth = np.einsum("nij,nj->ni", level, across)
-    sides = np.flatnonzero((size > UPRIGHT) & azimuth.any(axis=1))
+    sides = np.flatnonzero((size > MIN_MIDDLE_SINE) & azimuth.any(axis=1))
     if not len(sides):
         return np.zeros_like(up), size
     first = azimuth[sides[0]] / np.linalg.norm(azimuth[sides[0]])
     sign = np.where(azimuth @ first < -0.5 * size, -1.0, 1.0)
     beside = np.einsum("nij,i->nj", level, first)
-    own = sign[:, None] * across / np.maximum(size, UPRIGHT)[:, None]
-    return np.where(size[:, None] > UPRIGHT, own, beside), sign * size
+    own = sign[:, None] * across / np.maximum(size, MIN_MIDDLE_SINE)[:, None]
+    return np.where(size[:, None] > MIN_MIDDLE_SINE, own, beside), sign * size

@@ -16,7 +16,7 @@ class TableRipple(Effect):
     """The table is at θ + a sin nθ + b cos nθ where it shows θ; the order n is scanned.
 
     Whole turns are free of it where n is whole. It is sought in the rates of the steady part, as a
-    line against the angle; told from an oscillation in time by turns at two rates, where its
+    line against the angle; unlike an oscillation in time in turns at two rates, where its
     frequency n θ'/2π goes with the rate.
     """
 

@@ -1,4 +1,4 @@
-"""A table that turns at another speed than it is told to."""
+"""A scale factor error of the table's rate."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ class TableSpeedError(Effect):
 
     A turn of a known angle is sooner over, but no larger: from rest to rest the gyros sum up the
     same. In a turn that is known by its rate alone it is a scale factor common to all gyros,
-    but for the earth's rate. So it is seen where both kinds are at hand, or the table's encoder.
+    but for the earth's rate. So it is observable with both kinds, or with the table's encoder.
     """
 
     name = "table_speed_error"

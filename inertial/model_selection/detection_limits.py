@@ -11,7 +11,7 @@ from inertial.model_selection.evidence import Evidence, SearchedEffect
 
 Array = NDArray[np.float64]
 
-SUFFICES = 5.0  # sigmas: what a campaign can see
+DETECTION_SIGMAS = 5.0  # size that a campaign detects
 
 VISIBLE = "visible"
 NOT_EXCITED = "not_excited"  # no reading changes
@@ -93,4 +93,4 @@ def _of_column(
     variance = float(covariance[parameter, parameter])
     if not np.isfinite(variance):
         return np.nan, ONLY_TOGETHER, share
-    return SUFFICES * float(np.sqrt(variance)), VISIBLE, share
+    return DETECTION_SIGMAS * float(np.sqrt(variance)), VISIBLE, share

@@ -12,7 +12,7 @@ from inertial.estimation.least_squares import MIN_INFORMATION_SHARE, EffectInfor
 from inertial.estimation.probability import chi2_sf, f_sf
 from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
 
-# ---- What is sought: effects, each by its columns in the evidence.
+# ---- Searched effects, each by its columns in the evidence.
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ def searched_effect(
     return SearchedEffect(name, each, free, between)
 
 
-# ---- What the equations of all sensors say of the effects.
+# ---- The information of the equations of all sensors about the effects.
 
 Array = NDArray[np.float64]
 

@@ -19,7 +19,7 @@ from inertial.estimation.probability import (
 from inertial.model_selection.evidence import SearchedEffect
 from inertial.model_selection.scan import Candidates
 
-# ---- What noise alone would bring forth in this very campaign, by simulation.
+# ---- The distribution of the statistics under noise alone in this campaign, by simulation.
 #
 # Where no effect acts, what the equations say of all candidates is b ~ N(0, F): that is drawn
 # some thousand times. The largest drop among the values of a scan then has its own law, and the

@@ -11,7 +11,7 @@ from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.null_simulation import chance
 from inertial.model_selection.scan import SEEN, Candidates
 
-# ---- The functions whose trace in the residuals would be a structure.
+# ---- The functions of the tests.
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -160,7 +160,7 @@ TESTS: dict[str, Asking] = {
 }
 
 
-# ---- Whether the residuals of a refit still have a structure, whatever its cause.
+# ---- Score tests of the residuals of a refit for structure of any cause.
 #
 # Each test asks whether functions of something (time, angle, rate, attitude, temperature) would
 # explain the residuals. Residuals of a fit are not independent: if the model is right their

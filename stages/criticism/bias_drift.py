@@ -21,19 +21,19 @@ from inertial.physics.drift import without_clock
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 
-# ---- By how much the biases of a sensor walk at random, beside the effects that are named.
+# ---- Random walk of the biases of a sensor beside the named effects.
 
 SENSORS = ("gyro", "accel")
 
 
 def walks_beside(campaign: Campaign, effects: Sequence[Effect]) -> tuple[float, float]:
-    """The likeliest random walks of gyros and accelerometers; 0 where none is asked for."""
+    """The most likely random walks of gyros and accelerometers; 0 where none is significant."""
     found = [_walk(campaign, sensor, effects) for sensor in SENSORS]
     return found[0], found[1]
 
 
 def slight(campaign: Campaign) -> tuple[float, float]:
-    """Walks that take a bias three times as far in the whole campaign as the noise of a stretch."""
+    """Random walks over the campaign of three times the noise of a stretch: hardly detectable."""
     times = [_times(campaign, sensor) for sensor in SENSORS]
     found = [0.0 if one is None else 3 * one.noise / float(np.sqrt(one.span)) for one in times]
     return found[0], found[1]
@@ -80,7 +80,7 @@ def _deviance(
 
 
 def _times(campaign: Campaign, sensor: str) -> WalkSearch | None:
-    """What the times of a sensor's stretches can tell of a walk; None where they tell nothing."""
+    """The range of random walks that the times of a sensor's stretches allow; None: none."""
     parts: Sequence[StaticRate | RateSegment | StaticForce]
     if sensor == "gyro":
         solved, largest = campaign.solution.gyro, MAX_OF_GYROS
@@ -95,14 +95,14 @@ def _times(campaign: Campaign, sensor: str) -> WalkSearch | None:
     return walk_search(stretches, float(np.nanmedian([rest.sigma for rest in rests])), largest)
 
 
-# ---- A drift that could be anything: half waves over the campaign, of one sensor.
+# ---- Drift without a law: half waves over the campaign, of one sensor.
 
-HALF_WAVES = 8  # in the campaign: the fastest that is told from a jump
+MAX_HALF_WAVES = 8  # in the campaign: the fastest that is distinguishable from a jump
 STRENGTH = {"gyro": ("rad/s", 5e-6), "accel": ("m/s²", 1e-4)}  # a degree per hour, 10 µg
 
 
 class Course(Effect):
-    """Reading += c cos(k π t/T): no physical effect, but what a drift without a law is made of.
+    """Reading += c cos(k π t/T): no physical effect, but a component of a drift without a law.
 
     It takes the place of several effects that together would only imitate it.
     """
@@ -141,4 +141,4 @@ def course_of(sensor: str) -> str:
 
 def courses(sensor: str) -> Iterator[Course]:
     """The half waves of a sensor."""
-    return (Course(sensor, k) for k in range(1, HALF_WAVES + 1))
+    return (Course(sensor, k) for k in range(1, MAX_HALF_WAVES + 1))

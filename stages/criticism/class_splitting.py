@@ -17,13 +17,12 @@ from inertial.physics.effect import Effect
 from inertial.tables import GYRO
 from stages.criticism.selection import Selection, columns_of, evidence_of
 
-# ---- Manoeuvres that a laboratory might add: copies of what it did, to foresee what they would
-# tell.
+# ---- Manoeuvres that a laboratory might add: copies of those performed, to predict their value.
 #
 # Only their information counts, which depends on attitude, rate and noise; the readings are those
 # of the originals and mean nothing.
 
-PAUSE = 60.0  # s, before a manoeuvre that is added
+PAUSE = 60.0  # s, before an added manoeuvre
 TURNED_OVER = "turn also at the same rate with the axis down"
 FASTER = "turn also at twice the rate"
 BETWEEN_AXES = "rest also with two axes at 45° to the vertical"
@@ -42,7 +41,7 @@ class Further:
 def further(
     plan: Sequence[Manoeuvre], performed: Mapping[str, Performed], blocks: pd.DataFrame
 ) -> dict[str, Callable[[], Further]]:
-    """What might be added to a campaign, by its name; made when it is asked for."""
+    """Manoeuvres that might be added to a campaign, by name; each is made when it is used."""
     rows = blocks.groupby("manoeuvre").indices
     complete = [m for m in plan if performed[m.name].complete]
     whole = [m for m in complete if m.up is not None and m.name in rows]
@@ -96,20 +95,20 @@ def _named(m: Manoeuvre, what: str) -> Manoeuvre:
 
 
 def _turned_over(m: Manoeuvre) -> Manoeuvre:
-    assert m.up is not None  # else it is not chosen
+    assert m.up is not None  # else it is not copied
     return replace(_named(m, "turned over"), up=-m.up)
 
 
-# ---- Which further manoeuvre would tell the members of a class apart, by this campaign's noise.
+# ---- The manoeuvre that best distinguishes the members of a class, by this campaign's noise.
 
 Array = NDArray[np.float64]
 
-LIKE = 0.9  # share of a signal that another effect can mimic, from which the two are one
+MIN_MIMICRY = 0.9  # share of a signal that another effect can mimic, to compare manoeuvres
 
 
 @dataclass(frozen=True)
 class Splitting:
-    """The manoeuvre that tells best, and the signal-to-noise ratio of its telling."""
+    """The manoeuvre that distinguishes best, and its signal-to-noise ratio."""
 
     manoeuvre: str
     separation: float
@@ -121,20 +120,20 @@ class Splitting:
 
 
 class Foreseen:
-    """What the campaign would say with each further manoeuvre; reckoned when it is asked for."""
+    """The campaign with each further manoeuvre, computed at its first use."""
 
     def __init__(self, selection: Selection, further: Mapping[str, Callable[[], Campaign]]) -> None:
         self._selection, self._further = selection, further
         self._made: dict[str, Campaign] = {}
 
     def with_(self, manoeuvre: str) -> Campaign:
-        """The campaign with a manoeuvre more."""
+        """The campaign with a further manoeuvre."""
         if manoeuvre not in self._made:
             self._made[manoeuvre] = self._further[manoeuvre]()
         return self._made[manoeuvre]
 
     def splitting(self, number: int) -> Splitting | None:
-        """For one of the causes; None where it is alone in its class, or nothing tells."""
+        """For one of the causes; None where it is alone in its class, or nothing distinguishes."""
         causes = self._selection.named.causes
         if len(causes[number].members) < 2 or not self._further:
             return None
@@ -157,7 +156,7 @@ class Foreseen:
             return None
         two = [self._selection.effect(name, 0) for name in (effect, other)]
         now = _mimicked(self._selection.evidence.total, *two)
-        if now is None or now < LIKE:
+        if now is None or now < MIN_MIMICRY:
             return None
         then = _mimicked(evidence(self.with_(manoeuvre), two).total, *two)
         return None if then is None else (now, then)

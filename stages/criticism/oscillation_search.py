@@ -272,7 +272,7 @@ def _without(turn: SteadyTurn, found: Oscillation, taken: list[Taken]) -> Steady
     return replace(turn, truth=np.column_stack(less))
 
 
-# ---- The blocks of turns without the oscillations that were found in them.
+# ---- Removal of the oscillations from the blocks of turns.
 #
 # Where a block holds no whole number of periods the mean of an oscillation over it is not zero,
 # and over many blocks that beats: it would be taken for whatever goes with time or angle.

@@ -146,7 +146,7 @@ def _at(turn: Sweep, rest: Sweep, i: int) -> Array:
     return np.asarray(np.interp(turn.temperature, at, level, left=np.nan, right=np.nan))
 
 
-# ---- Each axis of a sweep of temperatures, judged: which polynomial it follows, and what is left.
+# ---- The polynomial that each axis follows, and its residuals.
 
 ICE_POINT = 273.15  # K
 MIN_LOG_ODDS = float(np.log(20))  # from which a knee is told

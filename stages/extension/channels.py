@@ -18,7 +18,7 @@ from inertial.physics.forward import Triad, signatures, truth_of
 from inertial.physics.motion import Motion, level_axes, turned_all
 from inertial.physics.vectors import cross
 
-# ---- What each channel by itself says of the effects: its means over rests, and over turns.
+# ---- The means of each channel over static positions and over turns.
 #
 # The blocks of a turn mix the channels, for the angle of each is known from them alone. So a
 # channel is judged by its mean reading of every stretch, less what the joint result predicts,

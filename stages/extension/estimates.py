@@ -127,7 +127,7 @@ def solved(models: Models, sensor: str, system: System, walk: float, mount: str)
     return Solved(sensor, method, rows, covariance, estimate, walk, effects, mount)
 
 
-# ---- How far the effects move each of the 24 parameters.
+# ---- The change of each of the 24 parameters by the effects.
 
 
 def moved(solution: Solved, joint: Sequence[Row], scatter: bool, mount: str) -> Iterator[Row]:
