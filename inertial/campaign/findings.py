@@ -28,7 +28,7 @@ class Finding:
     sentence: str
     consequence: str
     action: str
-    severity: int  # 3 invalidates a result, 2 degrades it, 1 is a remark
+    severity: int  # 3 spoils a result, 2 weakens it, 1 is good to know
     sensor: str | None = None
     axis: str | None = None
     log: str | None = None

@@ -6,6 +6,7 @@ import numpy as np
 
 from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.stamps import disorders, stamps_of
+from inertial.text.messages import _, plural
 from inertial.text.numbers import fixed
 
 MIN_GAP_INTERVALS = 1.5  # median intervals: what is no jitter of the stamps any more
@@ -48,10 +49,21 @@ class Gap(Detector):
                 )
 
     def describe(self, event: Event, name: str) -> Description:
-        missing = "1 sample is" if event.size == 1 else f"{event.size:.0f} samples are"
         return Description(
-            f"{name}: {missing} missing between {fixed(event.from_s, 3)} s and"
-            f" {fixed(event.to_s, 3)} s; line {event.line} is the first after them.",
-            "A sum over this stretch lacks what was not recorded; means of a rest hardly change.",
-            "A turn whose steady part has the gap is bridged; one whose ramp has it is left out.",
+            plural(
+                "{name}: {count} sample is missing between {from_s} s and {to_s} s; line {line} is"
+                " the first after it.",
+                "{name}: {count} samples are missing between {from_s} s and {to_s} s; line {line}"
+                " is the first after them.",
+                round(event.size),
+                name=name,
+                from_s=fixed(event.from_s, 3),
+                to_s=fixed(event.to_s, 3),
+                line=event.line,
+            ),
+            _("A sum over the gap lacks what was not recorded; means of a rest hardly change."),
+            _(
+                "A turn with the gap in its steady part is interpolated; one with the gap in a ramp"
+                " is left out."
+            ),
         )

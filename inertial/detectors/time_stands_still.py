@@ -7,7 +7,8 @@ import numpy as np
 from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.runs import runs
 from inertial.signal.stamps import kinds
-from inertial.text.numbers import counted, fixed
+from inertial.text.messages import _, plural
+from inertial.text.numbers import fixed
 
 
 class TimeStandsStill(Detector):
@@ -22,20 +23,27 @@ class TimeStandsStill(Detector):
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         still = np.zeros(len(piece), bool)
-        for places, _ in kinds(piece):
+        for places, _channels in kinds(piece):
             still[places[1:]] = np.diff(piece.time[places]) == 0
         for start, end in runs(still):
             yield piece.event(start, end, float(end - start), facts=log.interval)
 
     def describe(self, event: Event, name: str) -> Description:
-        single = event.size == 1
-        time = event.size * event.facts
         return Description(
-            f"{name}: {counted(int(event.size), 'record')} from line {event.line}"
-            f" {'has' if single else 'have'} the stamp of the one before,"
-            f" {fixed(event.from_s, 3)} s, but other readings.",
-            f"Whether {time:.3g} s passed with {'it' if single else 'them'} is not known, so a sum"
-            " over them, the angle of a turn, is unknown by the rate times as much; the mean of a"
-            " rest stands.",
-            f"{'It is' if single else 'They are'} masked. Look at the clock of the logger.",
+            plural(
+                "{name}: {count} record from line {line} has the stamp of the record before,"
+                " {stamp} s, but other readings.",
+                "{name}: {count} records from line {line} have the stamp of the record before,"
+                " {stamp} s, but other readings.",
+                int(event.size),
+                name=name,
+                line=event.line,
+                stamp=fixed(event.from_s, 3),
+            ),
+            _(
+                "Whether {time} s passed meanwhile is not known, so the angle of a turn is"
+                " uncertain by the rate times this time; the mean of a rest is not affected.",
+                time=f"{event.size * event.facts:.3g}",
+            ),
+            _("These records are masked. Check the clock of the logger."),
         )

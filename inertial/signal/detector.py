@@ -196,7 +196,7 @@ class Detector(ABC):
     """One fault of a recording: its name, cause and source, its effect, and its detection.
 
     `unit` of the size, empty where it is that of the channel; `sensor`: accel or gyro, where all
-    axes of one are concerned. `severity`: 3 invalidates a result, 2 degrades it, 1 is a remark.
+    axes of one are concerned. `severity`: 3 spoils a result, 2 weakens it, 1 is good to know.
     `masks`: readings that it detects are not used by others; `repeats`: no time passes with the
     records that it masks. `everywhere`: the same in several logs is one finding.
     """

@@ -119,7 +119,7 @@ FINDINGS = Table(
         Column("size", DOUBLE, "as unit", "how large", nullable=True),
         Column("unit", TEXT, "", "unit of size"),
         Column("p_value", DOUBLE, "1", "chance of such a size if nothing is wrong", nullable=True),
-        Column("severity", INTEGER, "", "3 invalidates a result, 2 degrades it, 1 is a remark"),
+        Column("severity", INTEGER, "", "3 spoils a result, 2 weakens it, 1 is good to know"),
         Column("consequence", TEXT, "", "what it does to the result"),
         Column("action", TEXT, "", "what the pipeline did, or what the laboratory should do"),
         Column("sentence", TEXT, "", "the finding in words"),
