@@ -123,10 +123,10 @@ def test_whu_every_turn_is_refused_for_the_angle_method(recorded):
     table = results["gyroscope/parameters"]
     static = table["method"] == "static"
     # Rests alone show the earth, and by it a scale factor that is of no use to anybody.
-    shown = table[static & table["quantity"].str.startswith("scale")]
+    shown = table[static & table["parameter"].str.startswith("scale")]
     assert (shown["sigma"] > 0.04).all()
     table = table[~static]
-    scales = table[table["quantity"].str.startswith("scale")]
+    scales = table[table["parameter"].str.startswith("scale")]
     assert scales["value"].isna().all() and (scales["reason"] != "").all()
 
 

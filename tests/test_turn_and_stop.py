@@ -3,7 +3,7 @@
 import chain
 import numpy as np
 import pytest
-from test_closure import TRUTH, pulls
+from test_closure import pulls
 
 
 @pytest.fixture(scope="module")
