@@ -227,8 +227,8 @@ def _reference(parts: Sequence[_Part], piece: Piece, log: Log) -> tuple[float, f
         part for part in parts if abs((1 + part.mean) / stated - 1) < MAX_CRYSTAL_ERROR
     ] or parts
 
-    def alike(part: _Part) -> int:
-        own = [part for part in near if abs(part.mean - part.mean) <= MIN_CHANGE]
+    def alike(candidate: _Part) -> int:
+        own = [part for part in near if abs(part.mean - candidate.mean) <= MIN_CHANGE]
         return sum(part.end - part.start for part in own)
 
     return max(near, key=alike).mean, MIN_CHANGE, "elsewhere in this log"

@@ -37,7 +37,7 @@ def recorded_of(
     tolerance : accepted difference of a turn's angle or rate from the plan's, 1
     """
     where = {
-        m.name: binned for binned in explained.located for m in binned.binned.window.manoeuvres
+        m.name: located for located in explained.located for m in located.binned.window.manoeuvres
     }
     parts = _parts(segments)
     done = [performed[m.name] for m in plan]

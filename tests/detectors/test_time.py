@@ -436,3 +436,15 @@ def test_scattered_and_rounded_stamps_set_no_clock():
     scatter = np.random.default_rng(5).normal(0, 1e-3, 2000)
     for time in (stamps(2000) + scatter, np.round(np.arange(2000) * 11.888e-3, 3)):
         assert "clock_step" not in causes(piece(rest(2000), np.sort(time)))
+
+
+@pytest.mark.parametrize("first", [True, False], ids=["shorter part first", "longer part first"])
+def test_the_interval_of_most_of_a_log_is_the_reference(first):
+    """Neither part has the stated rate; the one with fewer records is the one that differs."""
+    few, many = 800, 2400
+    intervals = np.r_[np.full(few, 0.01172), np.full(many, 0.01167)]
+    time = np.append(0.0, np.cumsum(intervals if first else intervals[::-1]))
+    readings = rest(len(time))
+    (event,) = seen(ClockScale(), piece(readings, time), given(interval=np.nan), recorded_on=None)
+    assert abs(event.after - event.first - few) < 20
+    assert event.size == pytest.approx((0.01172 / 0.01167 - 1) * 1e6, rel=0.02)
