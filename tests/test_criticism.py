@@ -166,7 +166,7 @@ def test_a_random_walk_is_no_ramp_and_no_g_sensitivity(tmp_path):
     (finding,) = results["criticism/findings"].to_dict("records")
     assert finding["cause"] == "gyro_random_walk" and finding["severity"] == 1
     walk = results["criticism/scores"].set_index("effect").loc["gyro_random_walk", "sentence"]
-    assert "walk by 0." in walk and "°/h/√h" in walk
+    assert "random walk of 0." in walk and "°/h/√h" in walk
 
 
 def test_an_oscillation_that_beats_with_the_blocks_is_no_structure(tmp_path):
@@ -175,4 +175,4 @@ def test_an_oscillation_that_beats_with_the_blocks_is_no_structure(tmp_path):
     campaign = chain.simulate(chain.demo(effects={"oscillation": ringing}, seed=17), tmp_path / "c")
     results = chain.run(campaign, tmp_path / "derived", "criticism")
     assert results["criticism/findings"]["cause"].tolist() == ["oscillation"]
-    assert not results["criticism/structures"]["fires"].any()
+    assert not results["criticism/structures"]["detected"].any()

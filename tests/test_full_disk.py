@@ -11,7 +11,7 @@ import pytest
 from inertial.tables.errors import Refusal
 from inertial.tables.whole_files import write_whole
 
-DECODE = [sys.executable, "-m", "stages.decode.stage"]
+DECODE = [sys.executable, "-m", "stages.decode"]
 
 
 def limited(size: int):
@@ -26,11 +26,9 @@ def limited(size: int):
     return limit
 
 
-def run(results: chain.Results, raw: Path, output: Path, size: int | None):
-    told = [f"--logs={results.folder}/plan/logs.parquet", f"--output={output}"]
-    told += [f"--raw={path}" for path in sorted(raw.glob("*.asc"))]
+def run(results: chain.Results, raw: Path, size: int | None):
     return subprocess.run(
-        [*DECODE, *told],
+        [*DECODE, str(results.folder), "--raw", *map(str, sorted(raw.glob("*.asc")))],
         cwd=chain.ROOT,
         capture_output=True,
         text=True,
@@ -44,12 +42,12 @@ def test_a_stage_without_room_leaves_the_tables_that_were_there(tmp_path, size):
     document = chain.demo(faults=[], effects={})
     campaign = chain.simulate(document, tmp_path / "raw")
     results = chain.run(campaign, tmp_path / "derived", "plan")
-    output = tmp_path / "decode"
-    done = run(results, campaign, output, None)
+    output = results.folder / "decode"
+    done = run(results, campaign, None)
     assert done.returncode == 0, done.stderr
     before = {path.name: path.read_bytes() for path in output.iterdir()}
 
-    failed = run(results, campaign, output, size)
+    failed = run(results, campaign, size)
     assert failed.returncode == 1
     assert f"decode: {output}" in failed.stderr
     assert "found:    no room" in failed.stderr

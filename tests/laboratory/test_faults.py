@@ -469,7 +469,7 @@ REFUSED: list[tuple[list[dict[str, Any]], str]] = [
         [{"spikes": ACCEL | {"lines": [9], "size_rad_s": 1}}],
         "faults[0].spikes.size_m_s2: found nothing; expected m/s², for an accelerometer\n"
         "trial.yaml: faults[0].spikes.size_rad_s: found 1 (number); "
-        "expected nothing, for the channel is an accelerometer: m/s²",
+        "expected nothing, because the channel is an accelerometer: m/s²",
     ),
     (
         [{"clip": TURN_LOG | {"channel": "gyro_x", "limit_rad_s": -1}}],
@@ -490,7 +490,7 @@ REFUSED: list[tuple[list[dict[str, Any]], str]] = [
     ),
     (
         [{"jitter": TURN_LOG}],
-        "faults[0].jitter: found {'log': 'turn.asc'} (mapping); expected stamps that scatter, "
+        "faults[0].jitter: found {'log': 'turn.asc'} (mapping); expected jitter of the stamps, "
         "sigma_s, or that are rounded, rounded_to_s: one of the two",
     ),
     (
@@ -503,7 +503,7 @@ REFUSED: list[tuple[list[dict[str, Any]], str]] = [
     (
         [{"kill": ACCEL | {"reads": "nothing"}}],
         "faults[0].kill.reads: found 'nothing' (text); "
-        "expected zero: no counts at all; frozen: the counts of `line` over and over",
+        "expected zero: no counts at all; frozen: always the counts of `line`",
     ),
 ]
 
