@@ -25,11 +25,12 @@ from inertial.physics.effect import Effect, Reading
 from inertial.physics.forward import Triad, signatures
 from inertial.physics.motion import Motion, joined, mean_turned
 from inertial.tables import ACCEL
+from inertial.text.messages import _
 
 Array = NDArray[np.float64]
 
 USUAL_SIZE = 10.0  # prior sigma of an effect, in its typical sizes
-NOT_SIMULATED = "Nothing is simulated, for the joint estimate determines no sensor wholly."
+NOT_SIMULATED = _("Nothing is simulated, for the joint estimate determines no sensor wholly.")
 MIN_VISIBLE_SIGMA = 5.0  # of an effect at its largest size: less is not observable
 MIN_PIECE_S = 30.0  # s, of a static position that counts as one
 MAX_PIECES = 100  # pieces of all rests together
@@ -72,7 +73,11 @@ class Campaign:
 
     @property
     def _motions(self) -> list[Motion]:
-        return [*self.still_motions, *self.turn_motions, *(motion for _, _, motion in self.rests)]
+        return [
+            *self.still_motions,
+            *self.turn_motions,
+            *(motion for _, _, motion in self.rests),
+        ]
 
     def stretches(self, sensor: str) -> slice:
         """Which stretches of `motion` are those of a sensor, `gyro` or `accel`."""

@@ -13,6 +13,7 @@ from inertial.campaign.records import Manoeuvre, Part, omissions, with_mount
 from inertial.estimation import triad
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.variance_components import ScatterFit
+from inertial.text.messages import _
 
 
 @dataclass(frozen=True)
@@ -145,14 +146,14 @@ class Estimates:
             jacobian[12:, :9] = triad.jacobian_of_mounting(matrix)
             values[12:] = triad.mounting_and_symmetric(matrix)
         else:  # two axes are taken for each other, or a sign is wrong: the findings say so
-            reasons = reasons | {name: "M is left-handed: it is no mounting" for name in derived}
+            reasons = reasons | {name: _("M is left-handed: it is no mounting") for name in derived}
         if any(name.startswith(("scale", "cross")) for name in reasons):
-            reasons = reasons | {name: "it needs all nine elements of M" for name in derived}
+            reasons = reasons | {name: _("it needs all nine elements of M") for name in derived}
         self.add(method, NAMES + derived, values, jacobian @ covariance @ jacobian.T, reasons)
 
     def add_nothing(self, method: str, reason: str) -> None:
         """None of the twelve parameters is determined, for one reason."""
-        reason = reason or "there is no rest whose upward direction is known, and no turn"
+        reason = reason or _("there is no rest whose upward direction is known, and no turn")
         nothing = (np.zeros(len(NAMES)), np.zeros((len(NAMES), len(NAMES))))
         self.add(method, NAMES, *nothing, dict.fromkeys(NAMES, reason))
 
@@ -246,7 +247,7 @@ def reasons(
     for i, name in enumerate(NAMES):
         row, column = name.partition("_")[2][0], name[-1]
         if not recorded["xyz".index(row)]:
-            result[name] = f"the {row} {sensor} is not recorded"
+            result[name] = _("the {row} {sensor} is not recorded", row=row, sensor=sensor)
         elif not determined[i]:
             kind = "bias" if name.startswith("bias") else "matrix"
             result[name] = cures[kind].format(axis=column)
@@ -255,15 +256,49 @@ def reasons(
 
 def described(stage: str, name: str) -> tuple[str, str, str]:
     """Unit, frame and meaning of a parameter."""
-    kind, _, axes = name.partition("_")
+    kind, _unused, axes = name.partition("_")
     sensed, unit = SENSED[stage], UNIT[stage]
     sensor = "accelerometer" if stage == "accelerometer" else "gyro"
     if kind == "bias":
-        return unit, "body", f"reading of the {axes} {sensor} without input"
+        return (
+            unit,
+            "body",
+            _("reading of the {axes} {sensor} without input", axes=axes, sensor=sensor),
+        )
     if kind == "scale":
-        return "1", "body", f"scale factor error of the {axes} {sensor}: M_{axes}{axes} − 1"
+        return (
+            "1",
+            "body",
+            _(
+                "scale factor error of the {axes} {sensor}: M_{axes}{axes} − 1",
+                axes=axes,
+                sensor=sensor,
+            ),
+        )
     if kind == "cross":
-        return "1", "body", f"the {axes[0]} {sensor}'s response to {sensed} along {axes[1]}"
+        return (
+            "1",
+            "body",
+            _(
+                "the {axes} {sensor}'s response to {sensed} along {axes_2}",
+                axes=axes[0],
+                sensor=sensor,
+                sensed=sensed,
+                axes_2=axes[1],
+            ),
+        )
     if kind == "mounting":
-        return "rad", "body", f"rotation of the {sensor} triad against the case, about {axes}"
-    return "1", "sensor triad", f"symmetric part of M without the mounting rotation, P_{axes} − I"
+        return (
+            "rad",
+            "body",
+            _(
+                "rotation of the {sensor} triad against the case, about {axes}",
+                sensor=sensor,
+                axes=axes,
+            ),
+        )
+    return (
+        "1",
+        "sensor triad",
+        _("symmetric part of M without the mounting rotation, P_{axes} − I", axes=axes),
+    )

@@ -14,6 +14,7 @@ from inertial.campaign.detection import Events
 from inertial.signal.detector import CHANNELS, UNITS, Detector, Event, Log
 from inertial.signal.plan_detector import PlanDetector
 from inertial.tables import FINDINGS, MASKS
+from inertial.text.messages import _
 
 MAX_SINGLE_EVENTS = 8  # in one place; more equal ones are one finding with a count
 MAX_NAMED_LOGS = 6  # in a sentence; of more the number is given
@@ -170,7 +171,7 @@ def _joined_over_logs(detections: Sequence[Detection]) -> Iterator[Detection]:
         others = [name for name in names if name != largest.log]
         shown = ", ".join(others[:MAX_NAMED_LOGS])
         if len(others) > MAX_NAMED_LOGS:
-            shown += f" and {len(others) - MAX_NAMED_LOGS} more"
+            shown += _(" and {others} more", others=len(others) - MAX_NAMED_LOGS)
         finding = replace(
             largest,
             id=largest.id.replace(f"/{largest.log}", ""),

@@ -22,10 +22,11 @@ from inertial.estimation.triad import BIAS, errors_of
 from inertial.estimation.turn_and_stop import CROSS_SIGMA, turn_and_stop
 from inertial.estimation.variance_components import ScatterFit
 from inertial.tables import AXES
+from inertial.text.messages import _
 
 Array = NDArray[np.float64]
 
-NO_TURNS = "no axis {axis} was turned about both ways over the same known angle: add such turns"
+NO_TURNS = _("no axis {axis} was turned about both ways over the same known angle: add such turns")
 MIN_SIGMA = 1e-15  # rad/s, a sigma as good as none
 NOT_RECORDED = "the {axis} gyro is not recorded"
 
@@ -66,7 +67,7 @@ def _add_static(
     scatter, wanted = sigmas_of
     seconds = [s.seconds.sum() for s in inputs.stills if s.manoeuvre.do == "rest"]
     for i, axis in enumerate(AXES):
-        read = [rest for _, rest in uprights(inputs, i)]
+        read = [rest for _unused, rest in uprights(inputs, i)]
         rests = [replace(rest, sigma=float(np.hypot(rest.sigma, scatter))) for rest in read]
         about = (cross[i] * (np.arange(3) != i), inputs.earth, inputs.position_sigma)
         found = two_positions(rests, *about)
@@ -74,7 +75,7 @@ def _add_static(
             continue
         names, values = (f"bias_{axis}", f"scale_{axis}"), [found.bias, found.scale or 0.0]
         sigmas = np.array([found.bias_sigma, found.scale_sigma or 0.0])
-        reason = "the upward earth rate is not known well enough to be an input"
+        reason = _("the upward earth rate is not known well enough to be an input")
         why = {names[1]: reason} if found.scale is None else {}
         estimates.add("static", names, np.array(values), np.diag(sigmas**2), why)
         ideal = two_positions(
@@ -91,15 +92,15 @@ def _add_known_angle(estimates: Estimates, data: CampaignData, scatter: float) -
     for i, axis in enumerate(AXES):
         whole = [r for r in inputs.recorded if r.plan.recorded == "whole"]
         own = [r for r in whole if abs(r.plan.axis[i]) > 1 - 1e-9]
-        turns = [angle for _, angle in angles_about(data, i)]
+        turns = [angle for _unused, angle in angles_about(data, i)]
         names = (f"bias_{axis}", f"scale_{axis}")
         if len({np.sign(turn.angle) for turn in turns}) == 2:
             estimate = gyroscopes.bias_and_scale(turns, inputs.earth, scatter)
             estimates.add(method, names, estimate.values[:2], estimate.covariance[:2, :2], {})
         elif own:
-            reason = f"the formula needs whole turns about {axis} forward and backward"
+            reason = _("the formula needs whole turns about {axis} forward and backward", axis=axis)
             refused = [r.plan.name for r in own if r.refusal or not r.done.complete]
-            reason += f"; not whole: {', '.join(refused)}" if refused else ""
+            reason += _("; not whole: {refused}", refused=", ".join(refused)) if refused else ""
             nothing = (np.zeros(2), np.zeros((2, 2)))
             estimates.add(method, names, *nothing, dict.fromkeys(names, reason))
 

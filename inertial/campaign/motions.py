@@ -15,6 +15,7 @@ from inertial.estimation.gyroscope_observations import RateSegment
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import Motion, Profile, turned_all, turning
 from inertial.tables import ACCEL
+from inertial.text.messages import _
 
 # --- One static position, a rotation block by block, a rotation sample by sample ---
 
@@ -74,7 +75,7 @@ def angles_seen(
     truth = (sums - np.outer(seconds, gyro.bias)) @ inverse.T
     level = site.earth_level * np.nan_to_num(north)
     angle = truth @ about
-    for _ in range(2):
+    for _unused in range(2):
         middle = at_middle(angle)
         earth = site.earth_up * turned_all(up, about, middle) + turned_all(level, about, middle)
         angle = truth @ about - earth @ about * seconds
@@ -136,7 +137,7 @@ def in_samples(
         angles = np.append(0.0, np.cumsum(seen)) * (m.angle / float(seen.sum()))
         rates = np.gradient(angles, step)
         first, after, rate, rate_after = angles[:-1], angles[1:], rates[:-1], rates[1:]
-        how = "as the gyros have it"
+        how = _("as the gyros have it")
     motion = turning(
         m.axis,
         up,

@@ -24,6 +24,7 @@ from inertial.estimation.gyroscope_observations import (
 from inertial.estimation.spectrum import rate_deviation
 from inertial.physics.vectors import cross
 from inertial.tables import GYRO
+from inertial.text.messages import _
 
 if TYPE_CHECKING:
     from inertial.campaign.campaign_data import CampaignData
@@ -214,19 +215,21 @@ def _recorded_turns(data: "CampaignData") -> Iterator[Recorded]:
 def refusal_of(m: Manoeuvre, done: Performed, part: Blocks) -> str:
     """Why a turn cannot be used; empty where it can."""
     if not done.found:
-        return "not found in its log"
+        return _("not found in its log")
     if m.up is None:
-        return "which way is up is not known"
+        return _("which way is up is not known")
     if not len(part) or np.isnan(part.seconds).any() or bool((part.counts == 0).any()):
-        return "it has no time, so no angle can be summed"
+        return _("it has no time, so no angle can be summed")
     if m.recorded == "steady":
-        return "" if bool(part.steady.any()) else "no steady rate was found"
+        return "" if bool(part.steady.any()) else _("no steady rate was found")
     if not (done.complete or done.bridged):
-        return f"the angle method needs the whole turn, and {done.sentence}"
+        return _("the angle method needs the whole turn, and {sentence}", sentence=done.sentence)
     if m.angle is None or m.angle_sigma is None:
-        return "its angle is not stated"
+        return _("its angle is not stated")
     if done.angle is None or done.angle * m.angle < 0:
-        return f"it turned by {degrees(done.angle or 0.0):.1f}°, against the plan"
+        return _(
+            "it turned by {degrees:.1f}°, against the plan", degrees=degrees(done.angle or 0.0)
+        )
     return ""
 
 

@@ -13,6 +13,7 @@ from inertial.campaign.records import Manoeuvre, Part
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
 from inertial.physics.motion import turned
 from inertial.tables import ACCEL, AXES, GYRO
+from inertial.text.messages import _
 
 if TYPE_CHECKING:
     from inertial.campaign.campaign_data import CampaignData
@@ -77,9 +78,9 @@ def _blocks(table: pd.DataFrame) -> Blocks:
 # --- Static positions of known attitude ---
 
 UNTIMED = Stretch("")
-NO_UP = "which way is up is not known"
-NO_ATTITUDE = "its attitude is not known, for the turn is not whole"
-NO_NOISE = "its noise is not known, for it has no time or is too short"
+NO_UP = _("which way is up is not known")
+NO_ATTITUDE = _("its attitude is not known, for the turn is not whole")
+NO_NOISE = _("its noise is not known, for it has no time or is too short")
 PER_BLOCK = ("means", "counts", "seconds", "time", "temperature")
 BLOCK_COLUMNS = ("count", "seconds", "time", "temperature")
 
@@ -177,9 +178,9 @@ def stills(data: "CampaignData", sensor: str) -> tuple[list[Still], list[Part]]:
     rows = at_rest.groupby(["manoeuvre", "phase"]).indices
     for m in data.plan:
         if m.do == "positions":
-            left_out.append(Part(m.name, None, "the attitudes of its rests are not known"))
+            left_out.append(Part(m.name, None, _("the attitudes of its rests are not known")))
         if m.do == "rest" and not performed[m.name].found:
-            left_out.append(Part(m.name, None, "not found in its log"))
+            left_out.append(Part(m.name, None, _("not found in its log")))
         for phase in ("rest", "rest-before", "rest-after"):
             own = rows.get((m.name, phase))
             if own is None or np.isnan(read[own]).all():

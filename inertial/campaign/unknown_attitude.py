@@ -31,16 +31,17 @@ from inertial.estimation.multi_position import (
 from inertial.estimation.triad import CROSS, MOUNTING, SYMMETRIC
 from inertial.estimation.variance_components import ScatterFit, with_scatter
 from inertial.tables import ACCEL, AXES, GYRO
+from inertial.text.messages import _
 
 Array = NDArray[np.float64]
 
 METHOD = "free_positions"
 SCATTER_RANGE = (1e-7, 1.0)  # m/s²: how much rests may differ beyond the noise
 UNKNOWN = np.full(3, np.nan)  # an attitude
-MOUNTING_UNDETERMINED = (
-    "a rotation of the triad against the case changes no length, so |f| = g cannot tell it; the"
-    " axes here are those square to each other that lie nearest to the sensors': add rests whose"
-    " upward direction is known"
+MOUNTING_UNDETERMINED = _(
+    "a rotation of the triad against the case changes no length, so |f| = g cannot "
+    "tell it; the axes here are those square to each other that lie nearest to the "
+    "sensors': add rests whose upward direction is known"
 )
 
 
@@ -163,25 +164,34 @@ def _share(i: int, one: Unobservable) -> float:
 
 def in_words(one: Unobservable) -> str:
     """What the rests do not tell, and the rest that would."""
-    cure = f"add one with {_attitude(one.up)}"
+    cure = _("add one with {up}", up=_attitude(one.up))
     if len(one.names) > 1:
         *most, last = map(_called, one.names)
-        return f"the rests do not tell {', '.join(most)} from {last}: {cure}"
+        return _(
+            "the rests do not tell {most} from {last}: {cure}",
+            most=", ".join(most),
+            last=last,
+            cure=cure,
+        )
     axes = one.names[0].partition("_")[2]
     if len(set(axes)) == 2:
-        both = f"both {axes[0]} and {axes[1]}"
-        return f"no rest has {both} far from level, which would show their angle: {cure}"
-    both = f"one with +{axes[0]} up and one with -{axes[0]} up"
-    return f"too few rests have {axes[0]} up or down: add {both}"
+        both = _("both {axes} and {axes_2}", axes=axes[0], axes_2=axes[1])
+        return _(
+            "no rest has {both} far from level, which would show their angle: {cure}",
+            both=both,
+            cure=cure,
+        )
+    both = _("one with +{axes} up and one with -{axes} up", axes=axes[0])
+    return _("too few rests have {axes} up or down: add {both}", axes=axes[0], both=both)
 
 
 def _called(name: str) -> str:
-    kind, _, axes = name.partition("_")
+    kind, _unused, axes = name.partition("_")
     if kind == "bias":
-        return f"the bias of {axes}"
+        return _("the bias of {axes}", axes=axes)
     if axes[0] == axes[1]:
-        return f"the scale factor of {axes[0]}"
-    return f"the angle between {axes[0]} and {axes[1]}"
+        return _("the scale factor of {axes}", axes=axes[0])
+    return _("the angle between {axes} and {axes_2}", axes=axes[0], axes_2=axes[1])
 
 
 def _attitude(up: Array) -> str:
@@ -192,5 +202,15 @@ def _attitude(up: Array) -> str:
         return f"{axes[0]} up"
     if len(axes) == 2:
         level = next(axis for axis, sign in signs.items() if not sign)
-        return f"{axes[0]} and {axes[1]} both 45° above level, and {level} level"
-    return f"{axes[0]}, {axes[1]} and {axes[2]} all 35° above level"
+        return _(
+            "{axes} and {axes_2} both 45° above level, and {level} level",
+            axes=axes[0],
+            axes_2=axes[1],
+            level=level,
+        )
+    return _(
+        "{axes}, {axes_2} and {axes_3} all 35° above level",
+        axes=axes[0],
+        axes_2=axes[1],
+        axes_3=axes[2],
+    )

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from inertial.signal.axis_permutations import describe_exchange, exchanges_of
 from inertial.signal.detector import Description, Detector, Event, Log, Piece
+from inertial.text.messages import _
 
 
 class AxisSwap(Detector):
@@ -17,9 +18,9 @@ class AxisSwap(Detector):
     """
 
     name = "axis_swap"
-    cause = "the driver or the logger wrote the fields in another order"
+    cause = _("the driver or the logger wrote the fields in another order")
     source = "RAWIMUS writes z, −y, x: a reader that mixes orders does this"
-    costs = "scale factors and biases of both axes"
+    costs = _("scale factors and biases of both axes")
     unit = "samples"
     severity = 3
     masks = True

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from inertial.signal.detector import Description
 from inertial.signal.misread_axes import describe_misread, deviation
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
+from inertial.text.messages import _
 
 
 class AxisSwapAgainstPlan(PlanDetector):
@@ -16,9 +17,9 @@ class AxisSwapAgainstPlan(PlanDetector):
     """
 
     name = "axis_swap"
-    cause = "the axes of the instrument, or the columns, are named in another order"
+    cause = _("the axes of the instrument, or the columns, are named in another order")
     source = "design study, 41d: the tables of gravity and of turns must be a signed permutation"
-    costs = "scale factors, cross terms and biases of these axes"
+    costs = _("scale factors, cross terms and biases of these axes")
     unit = "manoeuvres"
     severity = 3
 

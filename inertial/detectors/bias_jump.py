@@ -9,6 +9,7 @@ from inertial.signal.detector import CHANNELS, UNITS, Description, Detector, Eve
 from inertial.signal.level_jumps import Jump, jumps
 from inertial.signal.static_tilt import Resting
 from inertial.signal.steps import Step
+from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
 
 MAX_RETURN_SHARE = 0.25  # of a jump: largest remainder where the bias has returned
@@ -45,9 +46,9 @@ class BiasJump(Detector):
     """
 
     name = "bias_jump"
-    cause = "a loose contact, a jump of temperature or supply, or the sensor itself"
+    cause = _("a loose contact, a jump of temperature or supply, or the sensor itself")
     source = "design study, 0: a jump at any time must be sought at every time"
-    costs = "the mean of this rest, hence bias and scale factor of the axis"
+    costs = _("the mean of this rest, hence bias and scale factor of the axis")
     severity = 2
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
@@ -62,42 +63,63 @@ class BiasJump(Detector):
         assert i is not None  # it is one channel that jumps
         unit, axis = UNITS[i], CHANNELS[i][-1]
         sensor = "accelerometer" if i < 3 else "gyro"
-        back = f" and back at {fixed(event.to_s, 2)} s" if jumped.back else ""
+        back = _(" and back at {to_s} s", to_s=fixed(event.to_s, 2)) if jumped.back else ""
         place = f"{fixed(event.from_s, 2)} s"
         if jumped.early + jumped.late > 0:
-            place += (
-                f" (95 %: {fixed(jumped.early, 2)} s earlier to {fixed(jumped.late, 2)} s later)"
+            place += _(
+                " (95 %: {early} s earlier to {late} s later)",
+                early=fixed(jumped.early, 2),
+                late=fixed(jumped.late, 2),
             )
-        sentence = (
-            f"{name}: the {axis} {sensor} jumps by {_signed(event.size)} {unit}"
-            f" (sigma {significant(jumped.jump.step.sigma, 2)}) at {place}{back};"
-            f" {significant(abs(event.size) / jumped.noise, 2)} times the noise of a reading."
+        sentence = _(
+            "{name}: the {axis} {sensor} jumps by {size} {unit} (sigma {sigma}) at "
+            "{place}{back}; {significant} times the noise of a reading.",
+            name=name,
+            axis=axis,
+            sensor=sensor,
+            size=_signed(event.size),
+            unit=unit,
+            sigma=significant(jumped.jump.step.sigma, 2),
+            place=place,
+            back=back,
+            significant=significant(abs(event.size) / jumped.noise, 2),
         )
         if i >= 3 and not jumped.jump.agreement.conclusive:
-            sentence += " A slow turn about the vertical cannot be distinguished from it."
+            sentence += _(" A slow turn about the vertical cannot be distinguished from it.")
         off = event.size * jumped.share
-        consequence = (
-            f"The mean of this rest is off by {_signed(off)} {unit} (the jump, over"
-            f" {jumped.share:.0%} of it)"
+        consequence = _(
+            "The mean of this rest is off by {off} {unit} (the jump, over {share:.0%} of it)",
+            off=_signed(off),
+            unit=unit,
+            share=jumped.share,
         )
         if i >= 3:
-            consequence += f", and with it the bias of the {axis} gyro as this rest has it."
+            consequence += _(
+                ", and with it the bias of the {axis} gyro as this rest has it.", axis=axis
+            )
         elif abs(jumped.upright) > MIN_UPRIGHT_SHARE:
             ppm = off * np.sign(jumped.upright) / (2 * jumped.gravity) * 1e6
-            consequence += (
-                f". In a pair of {axis} up and {axis} down that is {_signed(off / 2)} {unit} of"
-                f" bias and {_signed(ppm)} ppm of scale factor."
+            consequence += _(
+                ". In a pair of {axis} up and {axis} down that is {signed} {unit} of bias and "
+                "{ppm} ppm of scale factor.",
+                axis=axis,
+                signed=_signed(off / 2),
+                unit=unit,
+                ppm=_signed(ppm),
             )
         else:
-            consequence += (
-                f", and with it bias and cross-axis terms of the {axis} accelerometer as this rest"
-                " has them."
+            consequence += _(
+                ", and with it bias and cross-axis terms of the {axis} accelerometer as this "
+                "rest has them.",
+                axis=axis,
             )
         return Description(
             sentence,
             consequence,
-            "The rest is used as it is. Record it again; see whether contact, supply or temperature"
-            " changed then.",
+            _(
+                "The rest is used as it is. Record it again; see whether contact, supply or "
+                "temperature changed then."
+            ),
         )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from inertial.signal.detector import Array, Description, Detector, Event, Integers, Log, Piece
 from inertial.signal.runs import joined
 from inertial.signal.stamps import STAMP_DIGIT_S, stamps_of, unit_of
+from inertial.text.messages import _
 from inertial.text.numbers import significant
 
 # Share of an interval by which stamps may scatter. A rate made from stamp to stamp would then
@@ -47,9 +48,9 @@ class ClockJitter(Detector):
     """
 
     name = "clock_jitter"
-    cause = "stamps are given when a record is written, not when it is sampled, or are rounded"
+    cause = _("stamps are given when a record is written, not when it is sampled, or are rounded")
     source = "design study, 41c; rounding to u scatters by u/√12"
-    costs = "a rate made from stamp to stamp scatters; when something happens is less sure"
+    costs = _("a rate made from stamp to stamp scatters; when something happens is less sure")
     unit = "s"
     severity = 1
     everywhere = True
@@ -92,34 +93,46 @@ class ClockJitter(Detector):
         facts = event.facts
         rms = significant(event.size * 1e3, 2)
         if facts.unit:
-            sentence = (
-                f"{name}: the stamps are rounded to {significant(facts.unit * 1e3, 1)} ms:"
-                f" {facts.shorter * 1e3:.4g} ms and {facts.longer * 1e3:.4g} ms take turns, where"
-                f" {facts.mean * 1e3:.5g} ms pass from sample to sample. So they are off an even"
-                f" clock by {rms} ms, {_percent(facts.share)} of an interval."
+            sentence = _(
+                "{name}: the stamps are rounded to {significant} ms: {shorter:.4g} ms and "
+                "{longer:.4g} ms take turns, where {mean:.5g} ms pass from sample to sample. So "
+                "they are off an even clock by {rms} ms, {share} of an interval.",
+                name=name,
+                significant=significant(facts.unit * 1000.0, 1),
+                shorter=facts.shorter * 1000.0,
+                longer=facts.longer * 1000.0,
+                mean=facts.mean * 1000.0,
+                rms=rms,
+                share=_percent(facts.share),
             )
         else:
-            sentence = (
-                f"{name}: the stamps scatter by {rms} ms about an even clock,"
-                f" {_percent(facts.share)} of an interval."
+            sentence = _(
+                "{name}: the stamps scatter by {rms} ms about an even clock, {share} of an "
+                "interval.",
+                name=name,
+                rms=rms,
+                share=_percent(facts.share),
             )
-        consequence = (
-            "A rate made from stamp to stamp would scatter by"
-            f" {_percent(np.sqrt(2) * facts.share)}; the pipeline makes none. When something"
-            f" happens is known to {rms} ms."
+        consequence = _(
+            "A rate made from stamp to stamp would scatter by {percent}; the pipeline makes "
+            "none. When something happens is known to {rms} ms.",
+            percent=_percent(np.sqrt(2) * facts.share),
+            rms=rms,
         )
-        action = "One interval is taken for the whole log, so no parameter depends on the stamps."
+        action = _(
+            "One interval is taken for the whole log, so no parameter depends on the stamps."
+        )
         if abs(facts.biased) > MIN_INTERVAL_BIAS:
-            consequence += (
-                " The median interval, with which increments become rates, is off the mean by"
-                f" {significant(facts.biased * 1e6, 2)} ppm, so every rate of this log is off by as"
-                " much the other way."
+            consequence += _(
+                " The median interval, with which increments become rates, is off the mean by "
+                "{significant} ppm, so every rate of this log is off by as much the other way.",
+                significant=significant(facts.biased * 1000000.0, 2),
             )
             action = "Nothing is corrected."
         return Description(
             sentence,
             consequence,
-            f"{action} Let the logger stamp a sample when it is taken, in µs.",
+            _("{action} Let the logger stamp a sample when it is taken, in µs.", action=action),
         )
 
 

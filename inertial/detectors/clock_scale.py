@@ -19,6 +19,7 @@ from inertial.signal.detector import (
 from inertial.signal.sample_interval import StampEvidence, evidence_of_log, evidence_of_part
 from inertial.signal.stamps import MAX_RATE_ERROR, STAMP_DIGIT_S, Stamps, stamps_of, unit_of
 from inertial.signal.steps import changes
+from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant
 
 # Crystals are cut and trimmed to some 20 to 50 ppm, cheap ones to 100 ppm (Ethernet, IEEE 802.3,
@@ -72,9 +73,9 @@ class ClockScale(Detector):
     """
 
     name = "clock_scale"
-    cause = "the clock that gives the stamps runs fast or slow, or that which takes the samples"
+    cause = _("the clock that gives the stamps runs fast or slow, or that which takes the samples")
     source = "design study, 41b"
-    costs = "rates by the stamps, and with them all scale factors, are off by as much"
+    costs = _("rates by the stamps, and with them all scale factors, are off by as much")
     unit = "ppm"
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
@@ -104,7 +105,7 @@ class ClockScale(Detector):
                     here=log.interval * (1 + part.mean),
                     usual=log.interval * (1 + reference),
                     used=log.interval if log.recorded_on is not None else log.step,
-                    against=against if whole else "elsewhere in this log",
+                    against=against if whole else _("elsewhere in this log"),
                     part=not whole,
                     increments=log.recorded_on is not None,
                     evidence=evidence_of_log(log, away)
@@ -131,7 +132,7 @@ class ClockScale(Detector):
             here=usual,
             usual=given.interval,
             used=usual,
-            against="by the stated rate",
+            against=_("by the stated rate"),
             part=False,
             increments=all(log.recorded_on is not None for log in logs.values()),
             evidence=next(iter(evidence.values())) if len(evidence) == 1 else StampEvidence(),
@@ -140,31 +141,51 @@ class ClockScale(Detector):
 
     def describe(self, event: Event, name: str) -> Description:
         facts = event.facts
-        intervals = f"{_ms(facts.here)} from record to record, {_ms(facts.usual)} {facts.against}"
+        intervals = _(
+            "{here} from record to record, {usual} {against}",
+            here=_ms(facts.here),
+            usual=_ms(facts.usual),
+            against=facts.against,
+        )
         size = _ppm(abs(event.size) * 1e-6)
         if facts.evidence.stamps:
-            off = f"the stamps run {'fast' if event.size > 0 else 'slow'} by {size}"
+            off = _(
+                "the stamps run {value} by {size}",
+                value="fast" if event.size > 0 else "slow",
+                size=size,
+            )
         else:
-            off = (
-                f"the interval by the stamps is {size} {'longer' if event.size > 0 else 'shorter'}"
+            off = _(
+                "the interval by the stamps is {size} {value}",
+                size=size,
+                value="longer" if event.size > 0 else "shorter",
             )
         if not name:
-            sentence = f"In most logs of the campaign {off}: {intervals}."
+            sentence = _(
+                "In most logs of the campaign {off}: {intervals}.", off=off, intervals=intervals
+            )
         elif facts.part:
             seconds = f"{fixed(event.from_s, 3)} s to {fixed(event.to_s, 3)} s"
-            sentence = (
-                f"{name}: in {counted(event.after - event.first, 'record')} from line"
-                f" {event.line}, {seconds}, {off}: {intervals}."
+            sentence = _(
+                "{name}: in {counted} from line {line}, {seconds}, {off}: {intervals}.",
+                name=name,
+                counted=counted(event.after - event.first, "record"),
+                line=event.line,
+                seconds=seconds,
+                off=off,
+                intervals=intervals,
             )
         else:
             sentence = f"{name}: {off}: {intervals}."
         return Description(
             f"{sentence} {_evidence_in_words(facts)}",
             _consequence(event, facts),
-            "Nothing is changed. Compare the clock of the logger with another, such as GPS time."
+            _("Nothing is changed. Compare the clock of the logger with another, such as GPS time.")
             if facts.part
-            else "Nothing is changed. Correct rate_hz of the instrument, or check the clocks of"
-            " logger and IMU.",
+            else _(
+                "Nothing is changed. Correct rate_hz of the instrument, or check the clocks of "
+                "logger and IMU."
+            ),
         )
 
 
@@ -215,13 +236,13 @@ def _reference(parts: Sequence[_Part], piece: Piece, log: Log) -> tuple[float, f
     given = log.given
     if _agree(given):
         tolerance = max(MIN_CHANGE, 6 * given.unlike)
-        return given.usual_interval / log.interval - 1, tolerance, "in the other logs"
+        return given.usual_interval / log.interval - 1, tolerance, _("in the other logs")
     if len(parts) == 1 and not np.isfinite(given.usual_interval):
         here = log.interval * (1 + parts[0].mean)
         if _off_the_stated(here, given):
-            return given.interval / log.interval - 1, MAX_CRYSTAL_ERROR, "by the stated rate"
+            return given.interval / log.interval - 1, MAX_CRYSTAL_ERROR, _("by the stated rate")
     if log.records > len(piece):
-        return 0.0, MIN_CHANGE, "at the beginning of this log"
+        return 0.0, MIN_CHANGE, _("at the beginning of this log")
     stated = given.interval / log.interval
     near = [
         part for part in parts if abs((1 + part.mean) / stated - 1) < MAX_CRYSTAL_ERROR
@@ -231,7 +252,7 @@ def _reference(parts: Sequence[_Part], piece: Piece, log: Log) -> tuple[float, f
         own = [part for part in near if abs(part.mean - candidate.mean) <= MIN_CHANGE]
         return sum(part.end - part.start for part in own)
 
-    return max(near, key=alike).mean, MIN_CHANGE, "elsewhere in this log"
+    return max(near, key=alike).mean, MIN_CHANGE, _("elsewhere in this log")
 
 
 def _agree(given: Given) -> bool:
@@ -264,17 +285,24 @@ def _evidence_in_words(facts: _Facts) -> str:
     evidence = facts.evidence
     if evidence.stamps is None:
         what = "readings" if facts.increments else "rates"
-        return f"The {what} do not show whether the stamps or the sampling is off."
+        return _("The {what} do not show whether the stamps or the sampling is off.", what=what)
     change = f"{significant(evidence.change * 1e6, 2)} ± {significant(evidence.sigma * 1e6, 2)} ppm"
-    off = "the stamps are off, not the sampling"
+    off = _("the stamps are off, not the sampling")
     if not facts.part:
-        off = off if evidence.stamps else "the stamps are right"
-        return f"At rest the specific force is {change} off gravity, so {off}."
+        off = off if evidence.stamps else _("the stamps are right")
+        return _(
+            "At rest the specific force is {change} off gravity, so {off}.", change=change, off=off
+        )
     if evidence.stamps:
-        return f"The specific force per record does not change with it ({change}), so {off}."
-    return (
-        f"The specific force per record changes as much ({change}), so the sampling is off, not"
-        " the stamps."
+        return _(
+            "The specific force per record does not change with it ({change}), so {off}.",
+            change=change,
+            off=off,
+        )
+    return _(
+        "The specific force per record changes as much ({change}), so the sampling is "
+        "off, not the stamps.",
+        change=change,
     )
 
 
@@ -282,34 +310,46 @@ def _consequence(event: Event, facts: _Facts) -> str:
     used = _ms(facts.used)
     if facts.increments and abs(facts.usual / facts.used - 1) > MIN_CHANGE / 2:
         wrong = facts.usual / facts.used - 1
-        return (
-            f"Rates are made with {used}. Where the stamps are wrong, every rate that is made with"
-            f" it is off by {_ppm(wrong)}, and the scale factors of the accelerometers, as far as"
-            " they rest on it. Angles, which are sums of increments, stand."
+        return _(
+            "Rates are made with {used}. Where the stamps are wrong, every rate that is "
+            "made with it is off by {wrong}, and the scale factors of the accelerometers, "
+            "as far as they rest on it. Angles, which are sums of increments, stand.",
+            used=used,
+            wrong=_ppm(wrong),
         )
     if facts.increments:
         after = abs(event.size) * 1e-6 * (event.to_s - event.from_s) * 1e3
-        rates = f"Rates are made with {used}, the median interval of the log, and stand"
+        rates = _(
+            "Rates are made with {used}, the median interval of the log, and stand", used=used
+        )
         if facts.evidence.stamps is False:
             uneven = _ppm(facts.here / facts.used - 1)
-            rates = (
-                f"Rates are made with {used} throughout; in this stretch they are off by {uneven}"
+            rates = _(
+                "Rates are made with {used} throughout; in this stretch they are off by {uneven}",
+                used=used,
+                uneven=uneven,
             )
-        return (
-            f"{rates}. Angles, which are sums of increments, stand. After the stretch the stamps"
-            f" are {significant(after, 2)} ms off."
+        return _(
+            "{rates}. Angles, which are sums of increments, stand. After the stretch the "
+            "stamps are {after} ms off.",
+            rates=rates,
+            after=significant(after, 2),
         )
     throughout = _ppm(facts.used / facts.usual - 1)
     if facts.part:
-        return (
-            f"The specific force stands. An angle is a sum of rates, over {used} each: where the"
-            f" stamps are right, it is off by {_ppm(facts.used / facts.here - 1)} in this stretch;"
-            f" where they are wrong, by {throughout} throughout."
+        return _(
+            "The specific force stands. An angle is a sum of rates, over {used} each: where "
+            "the stamps are right, it is off by {ppm} in this stretch; where they are "
+            "wrong, by {throughout} throughout.",
+            used=used,
+            ppm=_ppm(facts.used / facts.here - 1),
+            throughout=throughout,
         )
-    return (
-        "Where the stamps are wrong, an angle that is a sum of rates over time is off by"
-        f" {throughout}, and a rate that is made of increments by as much the other way; the"
-        " specific force of columns stands."
+    return _(
+        "Where the stamps are wrong, an angle that is a sum of rates over time is off "
+        "by {throughout}, and a rate that is made of increments by as much the other "
+        "way; the specific force of columns stands.",
+        throughout=throughout,
     )
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.stamps import stamps_of
+from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
 
 MIN_STEP_SHARE = 0.02  # of an interval: smaller steps have no effect
@@ -23,9 +24,9 @@ class ClockStep(Detector):
     """
 
     name = "clock_step"
-    cause = "the clock of the receiver or logger was set, or it began to follow another clock"
+    cause = _("the clock of the receiver or logger was set, or it began to follow another clock")
     source = "design study, 5: a clock step is in no catalogue of effects, and must not be silent"
-    costs = "when things happened, by the step; angles and means are sums of samples and stay"
+    costs = _("when things happened, by the step; angles and means are sums of samples and stay")
     unit = "s"
     severity = 1
 
@@ -56,8 +57,15 @@ class ClockStep(Detector):
         later = "later" if event.facts else "earlier"
         size = significant(event.size * 1e3, 3)
         return Description(
-            f"{name}: from line {event.line} on, at {fixed(event.to_s, 3)} s, all stamps are"
-            f" {size} ms {later} than those of an even clock, and no sample is missing.",
-            "What is taken against time is off by that much; angles and means hardly change.",
-            "All samples are used. Let the clock settle before recording.",
+            _(
+                "{name}: from line {line} on, at {to_s} s, all stamps are {size} ms {later} "
+                "than those of an even clock, and no sample is missing.",
+                name=name,
+                line=event.line,
+                to_s=fixed(event.to_s, 3),
+                size=size,
+                later=later,
+            ),
+            _("What is taken against time is off by that much; angles and means hardly change."),
+            _("All samples are used. Let the clock settle before recording."),
         )

@@ -20,6 +20,7 @@ from inertial.signal.detector import (
     channel_name,
 )
 from inertial.signal.scatter import BLOCK, MIN_NOISE_COUNTS, roughness, smallest_step
+from inertial.text.messages import _
 from inertial.text.numbers import significant, whole
 
 MAX_CHANCE = 1e-4  # chance of so long a run of equal readings in a log
@@ -52,9 +53,9 @@ class DeadAxis(Detector):
     """
 
     name = "dead_axis"
-    cause = "a sensor, its wire or its converter failed, or the driver writes an old value"
+    cause = _("a sensor, its wire or its converter failed, or the driver writes an old value")
     source = "the chance that two Gaussian readings fall into one count"
-    costs = "bias and scale factor of the axis, and every cross term with it"
+    costs = _("bias and scale factor of the axis, and every cross term with it")
     unit = "samples"
     severity = 3
     masks = True
@@ -101,19 +102,28 @@ class DeadAxis(Detector):
         assert event.channel is not None
         facts, unit = event.facts, UNITS[event.channel]
         level, number = f"{significant(facts.level, 6)} {unit}", whole(event.size)
-        means = f"Their mean is {level}, whatever the IMU did"
+        means = _("Their mean is {level}, whatever the IMU did", level=level)
         if event.channel >= 3 and np.isfinite(facts.seconds):
             angle = significant(facts.level * facts.seconds, 3)
-            means = f"They add {angle} rad in {facts.seconds:.2f} s, whatever the IMU did"
+            means = _(
+                "They add {angle} rad in {seconds:.2f} s, whatever the IMU did",
+                angle=angle,
+                seconds=facts.seconds,
+            )
         return Description(
             f"{name}: {channel_name(event.channel)} reads {level} "
             + (
-                f"in all {number} readings of the log."
+                _("in all {number} readings of the log.", number=number)
                 if facts.always
-                else f"{number} times in a row, from line {event.line} on."
+                else _(
+                    "{number} times in a row, from line {line} on.", number=number, line=event.line
+                )
             ),
-            f"{means}: bias, scale factor and cross terms of this axis would be wrong.",
-            "The readings are masked; what cannot do without them must be recorded again.",
+            _(
+                "{means}: bias, scale factor and cross terms of this axis would be wrong.",
+                means=means,
+            ),
+            _("The readings are masked; what cannot do without them must be recorded again."),
         )
 
 

@@ -16,6 +16,7 @@ from inertial.signal.detector import (
     Piece,
 )
 from inertial.signal.runs import runs
+from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed
 
 # Share of stamps that stand still while the readings change: above it the stamps are so coarse
@@ -31,9 +32,9 @@ class Duplicate(Detector):
     """
 
     name = "duplicate"
-    cause = "a record was written twice, or logs were joined that overlap"
+    cause = _("a record was written twice, or logs were joined that overlap")
     source = "design study, 41c: by chance six readings are equal once in 10⁷ pairs or less"
-    costs = "a sum counts it twice: at 10 °/s and 100 Hz a turn gains 0.1° with each"
+    costs = _("a sum counts it twice: at 10 °/s and 100 Hz a turn gains 0.1° with each")
     unit = "records"
     severity = 1
     masks = True
@@ -47,15 +48,29 @@ class Duplicate(Detector):
 
     def describe(self, event: Event, name: str) -> Description:
         single = event.size == 1
-        what = f"{counted(int(event.size), 'record')} from line {event.line}"
+        what = _(
+            "{counted} from line {line}",
+            counted=counted(int(event.size), "record"),
+            line=event.line,
+        )
         does = "repeats" if single else "repeat"
-        where = "earlier ones, stamps and all" if event.facts else "the one before, stamp and all"
+        where = (
+            _("earlier ones, stamps and all") if event.facts else _("the one before, stamp and all")
+        )
         many = "it" if single else "them"
         return Description(
             f"{name}: {what} {does} {where}, at {fixed(event.from_s, 3)} s.",
-            f"A sum over time would count {many} twice: the angle of a turn by the rate times"
-            f" {counted(int(event.size), 'sample interval')}; the mean of a rest hardly moves.",
-            f"{'It is' if single else 'They are'} masked, and no time is counted for {many}.",
+            _(
+                "A sum over time would count {value} twice: the angle of a turn by the rate "
+                "times {counted}; the mean of a rest hardly moves.",
+                value=many,
+                counted=counted(int(event.size), "sample interval"),
+            ),
+            _(
+                "{value} masked, and no time is counted for {value_2}.",
+                value="It is" if single else "They are",
+                value_2=many,
+            ),
         )
 
 

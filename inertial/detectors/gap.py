@@ -17,9 +17,9 @@ class Gap(Detector):
     """An interval between two records in which at least one sample is missing."""
 
     name = "gap"
-    cause = "the logger lost samples, or the file was not written whole"
+    cause = _("the logger lost samples, or the file was not written whole")
     source = "S0, lines 2192 and 2193 of its z counter-clockwise log: 11.98 s are missing"
-    costs = "a sum over it lacks what was not recorded: the scale factor of a turn"
+    costs = _("a sum over it lacks what was not recorded: the scale factor of a turn")
     unit = "samples"
     severity = 1
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from inertial.signal.detector import Description, Detector, Event, Given
+from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
 from inertial.text.units import STANDARD_GRAVITY
 
@@ -23,9 +24,9 @@ class GravityError(Detector):
     """
 
     name = "gravity_error"
-    cause = "gravity of another place, the unit g in its stead, or a slip of the pen"
+    cause = _("gravity of another place, the unit g in its stead, or a slip of the pen")
     source = "normal gravity: WGS 84; anomalies: Tscherning & Rapp, OSU Report 208, 1974"
-    costs = "the scale factors of all accelerometers are off by as much as gravity"
+    costs = _("the scale factors of all accelerometers are off by as much as gravity")
     unit = "m/s²"
     sensor = "accel"
 
@@ -38,16 +39,28 @@ class GravityError(Detector):
     def describe(self, event: Event, name: str) -> Description:
         given, sigma = event.facts
         unit = abs(given.gravity - STANDARD_GRAVITY) < MAX_ROUNDING
-        why = " It is the size of the unit g, which is gravity of no place." if unit else ""
+        why = _(" It is the size of the unit g, which is gravity of no place.") if unit else ""
         times = significant(abs(event.size) / sigma, 2)
         parts = -event.size / given.gravity * 1e6
         return Description(
-            f"Gravity is stated as {fixed(given.gravity, 5)} m/s²; at this latitude and height"
-            f" normal gravity is {fixed(given.normal_gravity, 5)} m/s², from which it differs by"
-            f" {significant(event.size / MGAL, 3)} mGal, {times} sigma of what the field of the"
-            f" earth and the stated sigma explain.{why}",
-            f"If it is wrong, the scale factors of all accelerometers are off by"
-            f" {significant(parts, 3)} ppm, all by the same.",
-            "The stated value is used. Correct it, latitude or height; or leave it out, and normal"
-            " gravity is taken.",
+            _(
+                "Gravity is stated as {gravity} m/s²; at this latitude and height normal "
+                "gravity is {normal_gravity} m/s², from which it differs by {significant} mGal, "
+                "{times} sigma of what the field of the earth and the stated sigma "
+                "explain.{why}",
+                gravity=fixed(given.gravity, 5),
+                normal_gravity=fixed(given.normal_gravity, 5),
+                significant=significant(event.size / MGAL, 3),
+                times=times,
+                why=why,
+            ),
+            _(
+                "If it is wrong, the scale factors of all accelerometers are off by {parts} "
+                "ppm, all by the same.",
+                parts=significant(parts, 3),
+            ),
+            _(
+                "The stated value is used. Correct it, latitude or height; or leave it out, and "
+                "normal gravity is taken."
+            ),
         )

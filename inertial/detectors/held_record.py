@@ -16,6 +16,7 @@ from inertial.signal.detector import (
 )
 from inertial.signal.runs import runs
 from inertial.signal.stamps import kinds
+from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, p_is
 
 MAX_CHANCE = 1e-3  # probability in the whole log below which a run is not random
@@ -37,9 +38,9 @@ class HeldRecord(Detector):
     """
 
     name = "held_record"
-    cause = "the logger wrote the last record again where it had no new one"
+    cause = _("the logger wrote the last record again where it had no new one")
     source = "design study, 41c: identical consecutive readings of all six channels"
-    costs = "a sum over time takes old readings for new ones: the scale factor of a turn"
+    costs = _("a sum over time takes old readings for new ones: the scale factor of a turn")
     unit = "records"
     severity = 1
     masks = True
@@ -63,15 +64,30 @@ class HeldRecord(Detector):
         records = counted(int(event.size), "record")
         at = f", {fixed(event.from_s, 3)} s," if np.isfinite(event.from_s) else ""
         return Description(
-            f"{name}: {records} from line {event.line}{at}"
-            f" {'has' if single else 'have'} the readings of the one before in all {event.facts}"
-            f" channels, though time goes on; by chance that happens with"
-            f" {p_is(event.p_value)} in this log.",
-            "Used, a sum over time would take old readings for new ones: while it turns the angle"
-            f" is then unknown by what the rate changes in {records}; a mean hardly moves, the"
-            " noise seems smaller.",
-            f"{'It is' if single else 'They are'} masked; time passes with"
-            f" {'it' if single else 'them'}. Look at the logger's buffer and cable.",
+            _(
+                "{name}: {records} from line {line}{at} {value} the readings of the one before "
+                "in all {facts} channels, though time goes on; by chance that happens with "
+                "{p_value} in this log.",
+                name=name,
+                records=records,
+                line=event.line,
+                at=at,
+                value="has" if single else "have",
+                facts=event.facts,
+                p_value=p_is(event.p_value),
+            ),
+            _(
+                "Used, a sum over time would take old readings for new ones: while it turns the "
+                "angle is then unknown by what the rate changes in {records}; a mean hardly "
+                "moves, the noise seems smaller.",
+                records=records,
+            ),
+            _(
+                "{value} masked; time passes with {value_2}. Look at the logger's buffer and "
+                "cable.",
+                value="It is" if single else "They are",
+                value_2="it" if single else "them",
+            ),
         )
 
 
@@ -150,7 +166,7 @@ def _all_equal(shares: Array) -> Array:
     than one channel changes in such a pair there is no P below 1.
     """
     low, high = np.zeros(len(shares)), np.ones(len(shares))
-    for _ in range(BISECTIONS):
+    for _unused in range(BISECTIONS):
         middle = (low + high) / 2
         more = (shares * (1 - middle[:, None]) + middle[:, None]).prod(axis=1) > middle
         low, high = np.where(more, middle, low), np.where(more, high, middle)

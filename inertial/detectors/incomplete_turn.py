@@ -7,6 +7,7 @@ import numpy as np
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.signal.scale_factor import MAX_RATIO_SPREAD, common_turn_ratio, turn_ratios
+from inertial.text.messages import _
 from inertial.text.numbers import fixed, whole
 
 
@@ -14,9 +15,9 @@ class IncompleteTurn(PlanDetector):
     """A turn that was not recorded from rest to rest, or not to the planned angle."""
 
     name = "incomplete_turn"
-    cause = "samples were lost, or the log begins or ends while the table turns"
+    cause = _("samples were lost, or the log begins or ends while the table turns")
     source = "S0, figure 5-9: 11.98 s are missing of a turn, so 240° of 360° are recorded"
-    costs = "its angle, and with it a scale factor, if the planned or a rounded one is taken"
+    costs = _("its angle, and with it a scale factor, if the planned or a rounded one is taken")
     unit = "°"
     sensor = "gyro"
 
@@ -52,10 +53,14 @@ class IncompleteTurn(PlanDetector):
         return Description(
             f"{recorded.name[i]}: {recorded.said[i]}",
             _if_taken(recorded, i),
-            "The joint estimate bridges what is missing; every formula that needs the whole angle"
-            " leaves the turn out."
+            _(
+                "The joint estimate bridges what is missing; every formula that needs the whole "
+                "angle leaves the turn out."
+            )
             if bridged
-            else "It is left out of the joint estimate and of the angle method. Record it again.",
+            else _(
+                "It is left out of the joint estimate and of the angle method. Record it again."
+            ),
         )
 
 
@@ -65,24 +70,40 @@ def _if_taken(recorded: Recorded, i: int) -> str:
     scale = common[0] if common else 1.0
     planned, read = np.degrees([recorded.angle[i], recorded.moved[i] / scale]).tolist()
     if not np.isfinite(planned * read) or not planned * read:
-        return "Its angle is not known, so it gives no scale factor."
-    said = [f"Taken for {fixed(planned, 0)}°, {_wrong_by(read / planned - 1)}"]
+        return _("Its angle is not known, so it gives no scale factor.")
+    said = [
+        _(
+            "Taken for {planned}°, {wrong_by}",
+            planned=fixed(planned, 0),
+            wrong_by=_wrong_by(read / planned - 1),
+        )
+    ]
     if common:
-        said[0] = f"Without the common ratio it is {fixed(read, 2)}°. {said[0]}"
+        said[0] = _(
+            "Without the common ratio it is {read}°. {said}", read=fixed(read, 2), said=said[0]
+        )
     # The formula of two turns takes the time of a whole one, whatever the log holds of it.
     whole_turn = abs(recorded.angle[i] / recorded.rate[i]) if recorded.rate[i] else 0.0
     seconds = float(np.fmax(recorded.duration[i], whole_turn))
     if seconds > 0 and abs(planned - read) > 0:
-        said[0] += f", bias by {fixed(abs(planned - read) / (2 * seconds), 4)} °/s"
+        said[0] += _(", bias by {fixed} °/s", fixed=fixed(abs(planned - read) / (2 * seconds), 4))
     rounded = round(read)
     if rounded and abs(read / rounded - 1) < 0.5:
-        said.append(f"rounded to {fixed(rounded, 0)}°, {_wrong_by(read / rounded - 1)}")
+        said.append(
+            _(
+                "rounded to {rounded}°, {wrong_by}",
+                rounded=fixed(rounded, 0),
+                wrong_by=_wrong_by(read / rounded - 1),
+            )
+        )
     return "; ".join(said) + "."
 
 
 def _wrong_by(error: float) -> str:
     """A scale error of one turn, and of a pair with one that is right the other way."""
-    return (
-        f"its scale error is wrong by {whole(error * 1e6)} ppm"
-        f" ({whole(error / 2 * 1e6)} ppm in a pair with a turn that is right)"
+    return _(
+        "its scale error is wrong by {whole} ppm ({whole_2} ppm in a pair with a turn "
+        "that is right)",
+        whole=whole(error * 1000000.0),
+        whole_2=whole(error / 2 * 1000000.0),
     )

@@ -7,6 +7,7 @@ import numpy as np
 from inertial.signal.axis_permutations import AXES
 from inertial.signal.detector import Array, Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
+from inertial.text.messages import _
 from inertial.text.numbers import fixed
 
 MIN_SAME_COSINE = float(np.cos(np.radians(25)))  # directions that are the same
@@ -16,9 +17,9 @@ class ManoeuvreMissing(PlanDetector):
     """A planned rest or turn of which the log has nothing, and nothing explains why."""
 
     name = "manoeuvre_missing"
-    cause = "it was not done, not recorded, or the plan has it in the wrong place"
+    cause = _("it was not done, not recorded, or the plan has it in the wrong place")
     source = "S0: a log that was not written whole"
-    costs = "what it alone would determine"
+    costs = _("what it alone would determine")
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         for i, name in enumerate(recorded.name):
@@ -30,8 +31,8 @@ class ManoeuvreMissing(PlanDetector):
         assert i is not None  # it is a manoeuvre that is missing
         return Description(
             recorded.said[i] + _instead(recorded, i),
-            f"It is left out; the others are used. {_left(recorded, i)}",
-            "Correct the plan, or record it.",
+            _("It is left out; the others are used. {recorded}", recorded=_left(recorded, i)),
+            _("Correct the plan, or record it."),
         )
 
 
@@ -43,21 +44,28 @@ def _instead(recorded: Recorded, i: int) -> str:
             return ""
         direction = force / np.linalg.norm(force)
         away = np.degrees(np.arccos(np.clip(direction @ up, -1, 1)))
-        sentence = f" Its log rests {away:.0f}° from there, with {_axis(direction)} up."
+        sentence = _(
+            " Its log rests {away:.0f}° from there, with {direction} up.",
+            away=away,
+            direction=_axis(direction),
+        )
         if float(np.abs(direction).max()) > MIN_SAME_COSINE:
-            sentence += (
+            sentence += _(
                 " Either the IMU had this attitude, or two axes or a sign of the accelerometers are"
             )
-            sentence += " wrong; this log alone cannot decide."
+            sentence += _(" wrong; this log alone cannot decide.")
         return sentence
     turned = np.degrees(recorded.turned[i])
     about = recorded.about[i]
     blind = np.flatnonzero(~recorded.gyros[i] & (np.abs(about) > MIN_SAME_COSINE))
     if len(blind):
-        return f" The {AXES[int(blind[0])]} gyro, which would see it, has no reading to be used."
+        return _(
+            " The {axes} gyro, which would see it, has no reading to be used.",
+            axes=AXES[int(blind[0])],
+        )
     if recorded.first[i] >= 0 and np.isfinite(turned).any():
         angles = ", ".join(fixed(float(angle), 0) for angle in turned)
-        return f" What moves there turns by ({angles})° about x, y, z."
+        return _(" What moves there turns by ({angles})° about x, y, z.", angles=angles)
     return ""
 
 
@@ -81,8 +89,17 @@ def _left(recorded: Recorded, i: int) -> str:
     others &= np.isfinite(directions).all(axis=1)
     if others.any():
         names = [recorded.name[k] for k in np.flatnonzero(others)[:4]]
-        return f"The same {'direction' if rest else 'axis'} is seen in {', '.join(names)}."
+        return _(
+            "The same {value} is seen in {names}.",
+            value="direction" if rest else "axis",
+            names=", ".join(names),
+        )
     axis = _axis(own)
     if rest:
-        return f"No other rest has {axis} up, which parts its bias from its scale factor."
-    return f"No other turn is about {axis.strip('+−')}: its scale factor is not determined."
+        return _(
+            "No other rest has {axis} up, which parts its bias from its scale factor.", axis=axis
+        )
+    return _(
+        "No other turn is about {strip}: its scale factor is not determined.",
+        strip=axis.strip("+−"),
+    )

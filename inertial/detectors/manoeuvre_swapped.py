@@ -6,6 +6,7 @@ import numpy as np
 
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded, Swapped
+from inertial.text.messages import _
 
 
 class ManoeuvreSwapped(PlanDetector):
@@ -15,9 +16,9 @@ class ManoeuvreSwapped(PlanDetector):
     """
 
     name = "manoeuvre_swapped"
-    cause = "two files were handed over under each other's names, or the order was another"
+    cause = _("two files were handed over under each other's names, or the order was another")
     source = "S0 took another group's log in place of a broken one: names are given by hand"
-    costs = "the sign of a bias or scale factor, were they used"
+    costs = _("the sign of a bias or scale factor, were they used")
     unit = "manoeuvres"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
@@ -31,17 +32,29 @@ class ManoeuvreSwapped(PlanDetector):
         first, second = ", ".join(swapped.names[:half]), ", ".join(swapped.names[half:])
         if len(swapped.logs) == 2:
             one, other = swapped.logs
-            sentence = (
-                f"{one} contains {second}, and {other} contains {first}: their names are exchanged."
+            sentence = _(
+                "{value} contains {second}, and {other} contains {first}: their names are "
+                "exchanged.",
+                value=one,
+                second=second,
+                other=other,
+                first=first,
             )
         else:
-            sentence = f"In {swapped.logs[0]}, {first} and {second} are exchanged."
+            sentence = _(
+                "In {logs}, {first} and {second} are exchanged.",
+                logs=swapped.logs[0],
+                first=first,
+                second=second,
+            )
         own = [i for i, name in enumerate(recorded.name) if name in swapped.names]
         return Description(
             sentence + (_or_a_sign(recorded, own) if len(swapped.logs) == 2 else ""),
             _if_used(recorded, own),
-            "Both are left out, for only the laboratory knows which is which. Correct the names, or"
-            " the plan, and run it again.",
+            _(
+                "Both are left out, for only the laboratory knows which is which. Correct the "
+                "names, or the plan, and run it again."
+            ),
         )
 
 
@@ -56,27 +69,36 @@ def _or_a_sign(recorded: Recorded, own: list[int]) -> str:
         return ""
     axis = "xyz"[int(np.argmax(np.abs(unit[0])))]
     if rests:
-        return (
-            f" A wrong sign of the {axis} accelerometer cannot be distinguished from it, if no"
-            " other manoeuvre shows its sign."
+        return _(
+            " A wrong sign of the {axis} accelerometer cannot be distinguished from it, if "
+            "no other manoeuvre shows its sign.",
+            axis=axis,
         )
     if recorded.gyro_signs["xyz".index(axis)] > 0:
-        return (
-            f" Planned angles of the wrong sign cannot be distinguished from it; the sign of the"
-            f" {axis} gyro is right, as the earth rate shows."
+        return _(
+            " Planned angles of the wrong sign cannot be distinguished from it; the sign of "
+            "the {axis} gyro is right, as the earth rate shows.",
+            axis=axis,
         )
-    return (
-        f" A wrong sign of the {axis} gyro, or of the planned angles, cannot be distinguished from"
-        " it."
+    return _(
+        " A wrong sign of the {axis} gyro, or of the planned angles, cannot be "
+        "distinguished from it.",
+        axis=axis,
     )
 
 
 def _if_used(recorded: Recorded, own: list[int]) -> str:
     if all(recorded.do[i] == "rest" for i in own):
         gravity = 2 * recorded.given.gravity
-        return f"Used, each mean would be wrong by up to {gravity:.3g} m/s², twice gravity."
+        return _(
+            "Used, each mean would be wrong by up to {gravity:.3g} m/s², twice gravity.",
+            gravity=gravity,
+        )
     angles = np.degrees(np.abs(recorded.angle[own]))
     if np.isfinite(angles).all():
         wrong = f"{2 * angles.max():.0f}°"
-        return f"Used, each angle would be wrong by up to {wrong}, a scale error of −200 %."
-    return "Used, each would be evaluated as the other."
+        return _(
+            "Used, each angle would be wrong by up to {wrong}, a scale error of −200 %.",
+            wrong=wrong,
+        )
+    return _("Used, each would be evaluated as the other.")

@@ -16,6 +16,7 @@ from inertial.signal.detector import (
     channel_name,
 )
 from inertial.signal.tones import Tone, tones
+from inertial.text.messages import _
 from inertial.text.numbers import significant
 
 MIN_TURN_RATE = 0.03  # rad/s, which no table does at rest
@@ -53,9 +54,9 @@ class Oscillation(Detector):
     """
 
     name = "oscillation"
-    cause = "the case, a loose screw, the drive of the table or the electronics ring"
+    cause = _("the case, a loose screw, the drive of the table or the electronics ring")
     source = "S0, figures 5-14 to 5-16: 20 Hz, 0.01 rad/s about x while the table turns"
-    costs = "angles and means over part of a turn; the noise level, if it counts as noise"
+    costs = _("angles and means over part of a turn; the noise level, if it counts as noise")
     severity = 1
     everywhere = True
 
@@ -94,16 +95,36 @@ class Oscillation(Detector):
         )
         besides = " and ".join(f"{frequency:.2f} Hz" for frequency in ringing.besides)
         return Description(
-            f"{name}: {channel_name(tone.channel)} oscillates at {tone.frequency:.2f} Hz by"
-            f" {significant(event.size, 2)} {unit}, from {event.from_s:.2f} s to"
-            f" {event.to_s:.2f} s{_when(ringing)}."
-            + (f" In step with it {others}, which may be coupling." if others else "")
-            + (f" It has {besides} as well." if besides else "")
-            + f" At {rate:.4g} samples per second {rate - tone.frequency:.2f} or"
-            f" {rate + tone.frequency:.2f} Hz cannot be distinguished from it.",
+            _(
+                "{name}: {channel} oscillates at {frequency:.2f} Hz by {size} {unit}, from "
+                "{from_s:.2f} s to {to_s:.2f} s{ringing}.",
+                name=name,
+                channel=channel_name(tone.channel),
+                frequency=tone.frequency,
+                size=significant(event.size, 2),
+                unit=unit,
+                from_s=event.from_s,
+                to_s=event.to_s,
+                ringing=_when(ringing),
+            )
+            + (
+                _(" In step with it {others}, which may be coupling.", others=others)
+                if others
+                else ""
+            )
+            + (_(" It has {besides} as well.", besides=besides) if besides else "")
+            + _(
+                " At {rate:.4g} samples per second {rate_2:.2f} or {rate_3:.2f} Hz cannot be "
+                "distinguished from it.",
+                rate=rate,
+                rate_2=rate - tone.frequency,
+                rate_3=rate + tone.frequency,
+            ),
             _consequence(tone, ringing.not_at_rest and ringing.turning > MIN_MAJORITY),
-            "Nothing is changed: over many periods it averages out. Look for a loose screw, and"
-            " whether it is there with the drive of the table switched off.",
+            _(
+                "Nothing is changed: over many periods it averages out. Look for a loose screw, "
+                "and whether it is there with the drive of the table switched off."
+            ),
         )
 
 
@@ -111,9 +132,11 @@ def _when(ringing: Ringing) -> str:
     if not np.isfinite(ringing.turning):
         return ""
     if ringing.turning > MIN_MAJORITY:
-        return ", while the IMU turns" + (", and not at rest" if ringing.not_at_rest else "")
+        return _(", while the IMU turns") + (_(", and not at rest") if ringing.not_at_rest else "")
     return (
-        ", at rest" if ringing.turning < 1 - MIN_MAJORITY else ", at rest and while the IMU turns"
+        ", at rest"
+        if ringing.turning < 1 - MIN_MAJORITY
+        else _(", at rest and while the IMU turns")
     )
 
 
@@ -121,17 +144,24 @@ def _consequence(tone: Tone, only_turning: bool) -> str:
     """A sine of amplitude A has an integral of ±A / (2πf), and a mean over T of ±A / (πfT)."""
     unit = UNITS[tone.channel]
     swing = tone.amplitude / (2 * np.pi * tone.frequency)
-    mean = (
-        f"A mean over 1 s is off by up to {significant(2 * swing, 2)} {unit}, over 100 s by up to"
-        f" {significant(swing / 50, 2)}."
+    mean = _(
+        "A mean over 1 s is off by up to {significant} {unit}, over 100 s by up to "
+        "{significant_2}.",
+        significant=significant(2 * swing, 2),
+        unit=unit,
+        significant_2=significant(swing / 50, 2),
     )
     if tone.channel < 3:
-        return f"{mean} Bias and scale factor from long rests hardly notice."
+        return _("{mean} Bias and scale factor from long rests hardly notice.", mean=mean)
     parts = [significant(swing / turn * 1e6, 2) for turn in (2 * np.pi, np.pi)]
-    return (
-        f"The angle swings by {significant(swing, 3)} rad: at most {parts[0]} ppm of a turn of"
-        f" 360°, {parts[1]} ppm of one of 180°."
-        f"{' Summed from rest to rest it adds nothing.' if only_turning else ''} {mean}"
+    return _(
+        "The angle swings by {swing} rad: at most {parts} ppm of a turn of 360°, "
+        "{parts_2} ppm of one of 180°.{value} {mean}",
+        swing=significant(swing, 3),
+        parts=parts[0],
+        parts_2=parts[1],
+        value=" Summed from rest to rest it adds nothing." if only_turning else "",
+        mean=mean,
     )
 
 

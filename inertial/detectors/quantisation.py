@@ -16,6 +16,7 @@ from inertial.signal.detector import (
     Piece,
 )
 from inertial.signal.scatter import BLOCK, in_blocks, roughness, smallest_step
+from inertial.text.messages import _
 from inertial.text.numbers import significant
 
 MAX_CHANCE = 1e-6  # chance that all changes are multiples of k counts, in the channels of 12 logs
@@ -59,9 +60,9 @@ class Quantisation(Detector):
     """
 
     name = "quantisation"
-    cause = "the converter, its range, or the format of the log has fewer digits than needed"
+    cause = _("the converter, its range, or the format of the log has fewer digits than needed")
     source = "Widrow & Kollár, Quantization Noise, 2008: the mean of a rounded Gaussian"
-    costs = "means do not become better with time: bias"
+    costs = _("means do not become better with time: bias")
     severity = 1
     everywhere = True
 
@@ -80,31 +81,44 @@ class Quantisation(Detector):
         sensor = "accelerometer" if event.channel < 3 else "gyro"
         step, times = significant(event.size, 4), event.size / facts.stated
         off = event.size / np.pi * float(np.exp(-2 * (np.pi * facts.noise) ** 2))
-        of_stated = f", {times:.0f} times the stated count" if times > 1.5 else ""
+        of_stated = _(", {times:.0f} times the stated count", times=times) if times > 1.5 else ""
         if facts.increments:
-            consequence = (
-                "None for sums: what a count leaves over goes into the next increment, so a sum of"
-                f" any number of them is good to one step, {step} {unit} for one interval."
+            consequence = _(
+                "None for sums: what a count leaves over goes into the next increment, so a sum "
+                "of any number of them is good to one step, {step} {unit} for one interval.",
+                step=step,
+                unit=unit,
             )
         elif off < event.size / 1000:
-            consequence = (
-                f"None for means: the noise is {significant(facts.noise, 2)} steps, which averages"
-                " them out. But what is stated of the counts is not what the log has."
+            consequence = _(
+                "None for means: the noise is {noise} steps, which averages them out. But what "
+                "is stated of the counts is not what the log has.",
+                noise=significant(facts.noise, 2),
             )
         else:
-            consequence = (
-                f"The noise is {significant(facts.noise, 2)} steps, so a mean of any length may be"
-                f" off by {significant(off, 2)} {unit}: so uncertain is the bias, whatever its"
-                " sigma says."
+            consequence = _(
+                "The noise is {noise} steps, so a mean of any length may be off by {off} "
+                "{unit}: so uncertain is the bias, whatever its sigma says.",
+                noise=significant(facts.noise, 2),
+                off=significant(off, 2),
+                unit=unit,
             )
         return Description(
-            f"{name}: the steps of {sensor} {', '.join(facts.axes)} are {step} {unit}{of_stated}.",
+            _(
+                "{name}: the steps of {sensor} {axes} are {step} {unit}{of_stated}.",
+                name=name,
+                sensor=sensor,
+                axes=", ".join(facts.axes),
+                step=step,
+                unit=unit,
+                of_stated=of_stated,
+            ),
             consequence,
             "Nothing is changed. "
             + (
-                "Compare the count size with the data sheet and the range that was set."
+                _("Compare the count size with the data sheet and the range that was set.")
                 if of_stated
-                else "Choose a smaller range, or a format with more digits."
+                else _("Choose a smaller range, or a format with more digits.")
             ),
         )
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from inertial.signal.detector import Description, Detector, Event, Log
 from inertial.signal.stamps import MAX_RATE_ERROR
+from inertial.text.messages import _
 from inertial.text.numbers import significant
 
 FACTORS = (2, 4, 5, 10)  # of rates that instruments offer
@@ -15,9 +16,9 @@ class RateOff(Detector):
     """The mean interval of a log, gaps left out, is not one over the stated rate."""
 
     name = "rate_off"
-    cause = "the rate was set otherwise, records are left out, or another instrument is named"
+    cause = _("the rate was set otherwise, records are left out, or another instrument is named")
     source = "design study, 41e: 200 against 100 Hz"
-    costs = "nothing where stamps are recorded; where they are counted, rates by this factor"
+    costs = _("nothing where stamps are recorded; where they are counted, rates by this factor")
     unit = "1"
     severity = 1
     everywhere = True
@@ -31,12 +32,23 @@ class RateOff(Detector):
     def describe(self, event: Event, name: str) -> Description:
         rate, stated, instrument = event.facts
         return Description(
-            f"{name}: {significant(rate)} samples per second by the stamps, but"
-            f" {significant(stated)} are stated: {_factor(event.size)}.",
-            "None where the stamps are right: sums over time, and rates of increments, are made"
-            " with the log's own interval. Where they are wrong, both are off by this factor.",
-            f"Nothing is changed. Correct rate_hz of {instrument}, or check whether it is the"
-            " instrument that recorded this, and whether samples are left out.",
+            _(
+                "{name}: {rate} samples per second by the stamps, but {stated} are stated: {size}.",
+                name=name,
+                rate=significant(rate),
+                stated=significant(stated),
+                size=_factor(event.size),
+            ),
+            _(
+                "None where the stamps are right: sums over time, and rates of increments, are "
+                "made with the log's own interval. Where they are wrong, both are off by this "
+                "factor."
+            ),
+            _(
+                "Nothing is changed. Correct rate_hz of {instrument}, or check whether it is "
+                "the instrument that recorded this, and whether samples are left out.",
+                instrument=instrument,
+            ),
         )
 
 
@@ -46,5 +58,5 @@ def _factor(factor: float) -> str:
         if abs(factor / whole - 1) < MAX_RATE_ERROR:
             return f"×{whole}"
         if abs(factor * whole - 1) < MAX_RATE_ERROR:
-            return f"÷{whole}, as if only one record in {whole} were written"
+            return _("÷{whole}, as if only one record in {whole} were written", whole=whole)
     return f"factor {significant(factor)}"

@@ -19,6 +19,7 @@ from inertial.signal.detector import (
 )
 from inertial.signal.runs import joined
 from inertial.signal.scatter import MAD_TO_SIGMA
+from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 
 # Readings that accumulate at an extreme of a channel, as at the end of its range.
@@ -178,9 +179,9 @@ class Saturation(Detector):
     """
 
     name = "saturation"
-    cause = "the motion went beyond the range of the sensor or of its converter"
+    cause = _("the motion went beyond the range of the sensor or of its converter")
     source = "MPU-6050 of the Universidad Nacional de Cuyo: gyros at ±32768 counts"
-    costs = "a turn's angle is too small, and with it the scale factor"
+    costs = _("a turn's angle is too small, and with it the scale factor")
     unit = "samples"
     severity = 3
     masks = True
@@ -216,19 +217,41 @@ class Saturation(Detector):
         what, unit = ("velocity", "m/s") if event.channel < 3 else ("angle", "rad")
         percent = abs(visit.limit) * visit.seconds / 100
         return Description(
-            f"{name}: {counted(round(event.size), 'reading')} of {channel_name(event.channel)}"
-            f" {'stand' if many else 'stands'} at {significant(visit.limit, 6)}"
-            f" {UNITS[event.channel]}, the end of the range, from line {event.line} on.",
-            f"The {what} over {'them' if many else 'it'} is too small by all that went beyond: "
-            + (
-                f"about {significant(visit.lost, 2)} {unit}, if the readings beside are continued."
-                if np.isfinite(visit.lost)
-                else f"{significant(percent, 2)} {unit} for each 1 % beyond."
-                if np.isfinite(percent)
-                else "by an unknown amount."
+            _(
+                "{name}: {counted} of {channel} {value} at {limit} {units}, the end of the "
+                "range, from line {line} on.",
+                name=name,
+                counted=counted(round(event.size), "reading"),
+                channel=channel_name(event.channel),
+                value="stand" if many else "stands",
+                limit=significant(visit.limit, 6),
+                units=UNITS[event.channel],
+                line=event.line,
             ),
-            f"{'The readings are' if many else 'The reading is'} masked. Turn more slowly, or"
-            " choose a wider range.",
+            _(
+                "The {what} over {value} is too small by all that went beyond: ",
+                what=what,
+                value="them" if many else "it",
+            )
+            + (
+                _(
+                    "about {lost} {unit}, if the readings beside are continued.",
+                    lost=significant(visit.lost, 2),
+                    unit=unit,
+                )
+                if np.isfinite(visit.lost)
+                else _(
+                    "{percent} {unit} for each 1 % beyond.",
+                    percent=significant(percent, 2),
+                    unit=unit,
+                )
+                if np.isfinite(percent)
+                else _("by an unknown amount.")
+            ),
+            _(
+                "{value} masked. Turn more slowly, or choose a wider range.",
+                value="The readings are" if many else "The reading is",
+            ),
         )
 
 

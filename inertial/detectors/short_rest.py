@@ -6,6 +6,7 @@ import numpy as np
 
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
+from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
 
 MIN_DURATION_SHARE = 1 / 3  # of the planned time
@@ -15,9 +16,9 @@ class ShortRest(PlanDetector):
     """A rest that lasts less than a third of what was planned."""
 
     name = "short_rest"
-    cause = "the log was cut off, or is an excerpt"
+    cause = _("the log was cut off, or is an excerpt")
     source = "S0: white noise averages out with the root of the time at rest"
-    costs = "the sigma of its mean"
+    costs = _("the sigma of its mean")
     unit = "s"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
@@ -32,8 +33,15 @@ class ShortRest(PlanDetector):
         planned = float(recorded.seconds[i])
         times = significant(float(np.sqrt(planned / deviation.size)), 2)
         return Description(
-            f"{recorded.name[i]} rests for {significant(deviation.size, 3)} s of the"
-            f" {fixed(planned, 0)} s planned.",
-            f"What white noise leaves in its mean is {times} times what was planned.",
-            "It is used with the sigma that it has. Record it whole.",
+            _(
+                "{name} rests for {size} s of the {planned} s planned.",
+                name=recorded.name[i],
+                size=significant(deviation.size, 3),
+                planned=fixed(planned, 0),
+            ),
+            _(
+                "What white noise leaves in its mean is {times} times what was planned.",
+                times=times,
+            ),
+            _("It is used with the sigma that it has. Record it whole."),
         )

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from inertial.signal.axis_permutations import describe_exchange, exchanges_of
 from inertial.signal.detector import Description, Detector, Event, Log, Piece
+from inertial.text.messages import _
 
 
 class SignFlip(Detector):
@@ -15,9 +16,9 @@ class SignFlip(Detector):
     """
 
     name = "sign_flip"
-    cause = "the driver or the logger changed the convention of an axis"
+    cause = _("the driver or the logger changed the convention of an axis")
     source = "RAWIMUS writes −y: a reader that forgets this, or does it twice"
-    costs = "scale factor and bias of the axis"
+    costs = _("scale factor and bias of the axis")
     unit = "samples"
     severity = 3
     masks = True

@@ -5,15 +5,16 @@ from collections.abc import Iterator
 from inertial.signal.detector import Description
 from inertial.signal.misread_axes import describe_misread, deviation
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
+from inertial.text.messages import _
 
 
 class SignFlipAgainstPlan(PlanDetector):
     """Rests, or turns, that fit the plan only if an axis of a sensor reads its negative."""
 
     name = "sign_flip"
-    cause = "a sign of the raw fields is forgotten, or taken twice"
+    cause = _("a sign of the raw fields is forgotten, or taken twice")
     source = "design study, 41d: RAWIMUS −y; two wrong flips cancel, so the determinant is given"
-    costs = "scale factor and bias of the axis"
+    costs = _("scale factor and bias of the axis")
     unit = "manoeuvres"
     severity = 3
 

@@ -21,6 +21,7 @@ from inertial.signal.detector import (
 from inertial.signal.outliers import MAX_SPIKE_READINGS, MIN_DEVIATION_SCATTER, Channel
 from inertial.signal.runs import joined
 from inertial.signal.scatter import MAD_TO_SIGMA
+from inertial.text.messages import _
 from inertial.text.numbers import counted, significant, whole
 
 MIN_READINGS = 18  # readings of a channel that a spike can be compared with
@@ -57,9 +58,9 @@ class Spikes(Detector):
     """
 
     name = "spike"
-    cause = "a reading was spoilt on its way, or the clock of the IMU was set while it turned"
+    cause = _("a reading was spoilt on its way, or the clock of the IMU was set while it turned")
     source = "robust z: Iglewicz & Hoaglin, How to Detect and Handle Outliers, 1993"
-    costs = "it moves the mean of its block, and inflates the noise"
+    costs = _("it moves the mean of its block, and inflates the noise")
     severity = 1
     masks = True
 
@@ -98,12 +99,26 @@ class Spikes(Detector):
         many = facts.readings > 1
         moves = event.size * facts.readings
         return Description(
-            f"{name}: {counted(facts.readings, 'reading')} of {channel_name(event.channel)}"
-            f" {'are' if many else 'is'} off the neighbours by {_signed(event.size)} {unit},"
-            f" at line {event.line}.",
-            f"Used, {'they' if many else 'it'} would move a mean: that of 1 s by"
-            f" {_signed(moves / facts.in_second)} {unit}, and that of all {whole(facts.in_log)}"
-            f" readings by {_signed(moves / facts.in_log)} {unit}.",
+            _(
+                "{name}: {readings} of {channel} {value} off the neighbours by {size} {unit}, "
+                "at line {line}.",
+                name=name,
+                readings=counted(facts.readings, "reading"),
+                channel=channel_name(event.channel),
+                value="are" if many else "is",
+                size=_signed(event.size),
+                unit=unit,
+                line=event.line,
+            ),
+            _(
+                "Used, {value} would move a mean: that of 1 s by {signed} {unit}, and that of "
+                "all {in_log} readings by {signed_2} {unit}.",
+                value="they" if many else "it",
+                signed=_signed(moves / facts.in_second),
+                unit=unit,
+                in_log=whole(facts.in_log),
+                signed_2=_signed(moves / facts.in_log),
+            ),
             f"{'The readings are' if many else 'The reading is'} masked.",
         )
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.runs import runs
+from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed
 
 
@@ -13,9 +14,9 @@ class StatusInvalid(Detector):
     """A record whose status lacks a bit that must be set, or has one that must be clear."""
 
     name = "status_invalid"
-    cause = "the instrument found a fault in itself: a sensor, its temperature, a start-up"
+    cause = _("the instrument found a fault in itself: a sensor, its temperature, a start-up")
     source = "the status word in the instrument's manual, as data/instruments.yaml quotes it"
-    costs = "what it reads then is not to be trusted"
+    costs = _("what it reads then is not to be trusted")
     unit = "records"
     masks = True
 
@@ -32,14 +33,31 @@ class StatusInvalid(Detector):
         status, lacks, has = event.facts
         single = event.size == 1
         at = f", {fixed(event.from_s, 3)} s," if np.isfinite(event.from_s) else ""
-        why = [f"{_bits(lacks)} {'is' if lacks.bit_count() == 1 else 'are'} not set"] * bool(lacks)
+        why = [
+            _(
+                "{lacks} {value} not set",
+                lacks=_bits(lacks),
+                value="is" if lacks.bit_count() == 1 else "are",
+            )
+        ] * bool(lacks)
         why += [f"{_bits(has)} {'is' if has.bit_count() == 1 else 'are'} set"] * bool(has)
         return Description(
-            f"{name}: the instrument marks {counted(int(event.size), 'record')} from line"
-            f" {event.line}{at} as invalid: status {status:08x}, {' and '.join(why)}.",
-            "Their readings are not to be trusted, by up to the full range of the sensor.",
-            f"{'It is' if single else 'They are'} masked; the time is counted. See the status word"
-            " in the instrument's manual.",
+            _(
+                "{name}: the instrument marks {counted} from line {line}{at} as invalid: status "
+                "{status:08x}, {why}.",
+                name=name,
+                counted=counted(int(event.size), "record"),
+                line=event.line,
+                at=at,
+                status=status,
+                why=" and ".join(why),
+            ),
+            _("Their readings are not to be trusted, by up to the full range of the sensor."),
+            _(
+                "{value} masked; the time is counted. See the status word in the instrument's "
+                "manual.",
+                value="It is" if single else "They are",
+            ),
         )
 
 

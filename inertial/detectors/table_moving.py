@@ -12,6 +12,7 @@ from inertial.signal.level_jumps import CAMPAIGN_RESTS, FALSE_ALARM_LEVEL, Jump,
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.signal.static_tilt import UNCONFIRMED, Agreement, Resting
 from inertial.signal.steps import MAX_SIDE_S
+from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
 from inertial.text.units import ARC_SECOND
 
@@ -74,9 +75,9 @@ class TableMoving(Detector):
     """
 
     name = "table_moving"
-    cause = "the table creeps, a brake slips, or somebody touches it"
+    cause = _("the table creeps, a brake slips, or somebody touches it")
     source = "design study, 2b; S1: at rest an accelerometer reads gravity alone"
-    costs = "the attitude of this rest, hence biases and cross-axis terms"
+    costs = _("the attitude of this rest, hence biases and cross-axis terms")
     unit = "″"
     severity = 2
 
@@ -103,30 +104,55 @@ class TableMoving(Detector):
         moved: Moved = event.facts
         motion = moved.motion
         size = f"{significant(event.size, 3)}″"
-        span = f"between {fixed(event.from_s, 2)} s and {fixed(event.to_s, 2)} s"
+        span = _(
+            "between {from_s} s and {to_s} s",
+            from_s=fixed(event.from_s, 2),
+            to_s=fixed(event.to_s, 2),
+        )
         if motion.kind == "knock":
             return Description(
-                f"{name}: the IMU is knocked {span}; it swings by {size} and stands again.",
-                "The mean of this rest hardly changes; its noise does.",
-                "The rest is used as it is. Keep off the table while it records.",
+                _(
+                    "{name}: the IMU is knocked {span}; it swings by {size} and stands again.",
+                    name=name,
+                    span=span,
+                    size=size,
+                ),
+                _("The mean of this rest hardly changes; its noise does."),
+                _("The rest is used as it is. Keep off the table while it records."),
             )
         confirmation = (
-            f"the gyros turn along ({motion.agreement.share:.0%} of it)"
+            _("the gyros turn along ({share:.0%} of it)", share=motion.agreement.share)
             if motion.agreement.conclusive
-            else "too slowly for the gyros to confirm, and by more than the biases of the"
-            " accelerometers do by themselves"
+            else _(
+                "too slowly for the gyros to confirm, and by more than the biases of the "
+                "accelerometers do by themselves"
+            )
         )
         kind = "tilts" if motion.kind == "tilt" else "creeps"
         off = motion.off / ARC_SECOND
-        times = f", {significant(motion.off / moved.position, 2)} times the stated uncertainty of a"
+        times = _(
+            ", {significant} times the stated uncertainty of a",
+            significant=significant(motion.off / moved.position, 2),
+        )
         times = times + " position" if moved.position > 0 else ""
         return Description(
-            f"{name}: the table {kind} by {size} {span}, while it should rest: the direction of"
-            f" gravity turns in the case, {confirmation}.",
-            f"The mean attitude of this rest is off by {significant(off, 3)}″{times}: its level"
-            f" axes by up to {significant(motion.off * moved.gravity, 2)} m/s², with them biases"
-            " and cross-axis terms.",
-            "The rest is used as it is. Record it again, once the table stands.",
+            _(
+                "{name}: the table {kind} by {size} {span}, while it should rest: the direction "
+                "of gravity turns in the case, {confirmation}.",
+                name=name,
+                kind=kind,
+                size=size,
+                span=span,
+                confirmation=confirmation,
+            ),
+            _(
+                "The mean attitude of this rest is off by {off}″{times}: its level axes by up "
+                "to {significant} m/s², with them biases and cross-axis terms.",
+                off=significant(off, 3),
+                times=times,
+                significant=significant(motion.off * moved.gravity, 2),
+            ),
+            _("The rest is used as it is. Record it again, once the table stands."),
         )
 
 

@@ -16,6 +16,7 @@ from inertial.signal.detector import (
     Log,
     Windows,
 )
+from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.units import DEGREE, STANDARD_GRAVITY
 
@@ -52,12 +53,12 @@ class TemperatureDrift(Detector):
     """
 
     name = "temperature_drift"
-    cause = "the IMU warms up after it is switched on, or its surroundings change"
+    cause = _("the IMU warms up after it is switched on, or its surroundings change")
     source = (
         "design study 9, 22, 23: consumer MEMS 0.1 to 1 mg, 0.005 to 0.08 °/s, 0.02 % per K by data"
         " sheets; tactical some 0.1 mg and 1 °/h per K, judged"
     )
-    costs = "bias and scale factors are means over temperatures, and sure of none of them"
+    costs = _("bias and scale factors are means over temperatures, and sure of none of them")
     unit = "K"
     everywhere = True
 
@@ -85,17 +86,31 @@ class TemperatureDrift(Detector):
         low, high = (f"{_celsius(value)} °C" for value in (facts.lowest, facts.highest))
         size = f"{significant(kelvin, 3)} K"
         if facts.logs:
-            sentence = f"From log to log the temperature is between {low} and {high}, {size}."
+            sentence = _(
+                "From log to log the temperature is between {low} and {high}, {size}.",
+                low=low,
+                high=high,
+                size=size,
+            )
         else:
             first, last = (low, high) if facts.warms else (high, low)
-            sentence = f"{name}: the temperature goes from {first} to {last}, by {size}."
+            sentence = _(
+                "{name}: the temperature goes from {first} to {last}, by {size}.",
+                name=name,
+                first=first,
+                last=last,
+                size=size,
+            )
         moved = [
             f"{CHANNELS[i].replace('_', ' ')} {_change(i, change)}"
             for i, change in facts.changes.items()
         ]
         seen = ""
         if moved:
-            seen = f" From its coldest third to its warmest the means move: {', '.join(moved)}."
+            seen = _(
+                " From its coldest third to its warmest the means move: {moved}.",
+                moved=", ".join(moved),
+            )
         force, rate, scale = CONSUMER
         forces = " to ".join(significant(each * kelvin, 2) for each in force)
         rates = " to ".join(significant(each * kelvin / DEGREE, 2) for each in rate)
@@ -103,12 +118,20 @@ class TemperatureDrift(Detector):
         slow = significant(TACTICAL[1] * kelvin / DEGREE * 3600, 2)
         return Description(
             f"{sentence}{seen}",
-            "Biases and scale factors hold for the mean temperature. Over so much those of a"
-            f" consumer MEMS typically move by {forces} m/s², {rates} °/s and"
-            f" {significant(scale * kelvin * 100, 2)} %; the biases of a tactical IMU by some"
-            f" {tactical} m/s² and {slow} °/h.",
-            "Nothing is masked. Let it warm up before recording; or calibrate at several"
-            " temperatures, for the model has none.",
+            _(
+                "Biases and scale factors hold for the mean temperature. Over so much those of "
+                "a consumer MEMS typically move by {forces} m/s², {rates} °/s and {significant} "
+                "%; the biases of a tactical IMU by some {tactical} m/s² and {slow} °/h.",
+                forces=forces,
+                rates=rates,
+                significant=significant(scale * kelvin * 100, 2),
+                tactical=tactical,
+                slow=slow,
+            ),
+            _(
+                "Nothing is masked. Let it warm up before recording; or calibrate at several "
+                "temperatures, for the model has none."
+            ),
         )
 
 

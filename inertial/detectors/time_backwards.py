@@ -7,6 +7,7 @@ import numpy as np
 
 from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.stamps import disorders
+from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed
 
 
@@ -28,9 +29,9 @@ class TimeBackwards(Detector):
     """
 
     name = "time_backwards"
-    cause = "logs were joined, the clock was set, or a stamp was spoilt"
+    cause = _("logs were joined, the clock was set, or a stamp was spoilt")
     source = "design study, 41c"
-    costs = "when these records were taken is not known"
+    costs = _("when these records were taken is not known")
     unit = "s"
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
@@ -50,27 +51,44 @@ class TimeBackwards(Detector):
     def describe(self, event: Event, name: str) -> Description:
         facts, records = event.facts, counted(event.after - event.first, "record")
         if facts.ahead:
-            sentence = (
-                f"{name}: the stamps of {records} from line {event.line} are {event.size:.6f} s"
-                f" ahead; then time goes back to {fixed(event.from_s, 3)} s."
+            sentence = _(
+                "{name}: the stamps of {records} from line {line} are {size:.6f} s ahead; then "
+                "time goes back to {from_s} s.",
+                name=name,
+                records=records,
+                line=event.line,
+                size=event.size,
+                from_s=fixed(event.from_s, 3),
             )
         else:
-            sentence = (
-                f"{name}: at line {event.line} time goes back by {event.size:.6f} s, from"
-                f" {fixed(facts.before, 3)} s to {fixed(event.from_s, 3)} s; {records} lie behind."
+            sentence = _(
+                "{name}: at line {line} time goes back by {size:.6f} s, from {before} s to "
+                "{from_s} s; {records} lie behind.",
+                name=name,
+                line=event.line,
+                size=event.size,
+                before=fixed(facts.before, 3),
+                from_s=fixed(event.from_s, 3),
+                records=records,
             )
         if facts.replayed == 1:
             return Description(
-                f"{sentence} They repeat earlier ones.",
-                "None beyond that of the repetition.",
-                "The repetition is masked. Look for logs that were joined.",
+                _("{sentence} They repeat earlier ones.", sentence=sentence),
+                _("None beyond that of the repetition."),
+                _("The repetition is masked. Look for logs that were joined."),
             )
-        masked = "What repeats earlier ones is masked" if facts.replayed else "Nothing is masked"
+        masked = _("What repeats earlier ones is masked") if facts.replayed else "Nothing is masked"
         return Description(
             sentence,
-            "Means and sums do not use the stamps and stand. When these records were taken is"
-            f" unknown by {event.size:.3g} s: so is what depends on it, a drift of a bias and the"
-            " order of the manoeuvres.",
-            f"{masked}; a turn in which time goes back is left out. Look for logs that"
-            " were joined, or for a clock that was set.",
+            _(
+                "Means and sums do not use the stamps and stand. When these records were taken "
+                "is unknown by {size:.3g} s: so is what depends on it, a drift of a bias and "
+                "the order of the manoeuvres.",
+                size=event.size,
+            ),
+            _(
+                "{masked}; a turn in which time goes back is left out. Look for logs that were "
+                "joined, or for a clock that was set.",
+                masked=masked,
+            ),
         )

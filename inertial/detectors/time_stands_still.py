@@ -15,9 +15,9 @@ class TimeStandsStill(Detector):
     """A record with the stamp of the one before, and other readings."""
 
     name = "time_stands_still"
-    cause = "the clock of the logger hung, or counts in steps longer than a sample"
+    cause = _("the clock of the logger hung, or counts in steps longer than a sample")
     source = "design study, 41c"
-    costs = "when it was taken is not known, nor whether time passed with it"
+    costs = _("when it was taken is not known, nor whether time passed with it")
     unit = "records"
     masks = True
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from datetime import date
 
 from inertial.signal.detector import Description, Detector, Event, Log
+from inertial.text.messages import _
 from inertial.text.numbers import counted
 
 MAX_ZONE_DAYS = 1  # day: between UTC and the laboratory's own time
@@ -14,9 +15,9 @@ class WrongDay(Detector):
     """The UTC date of the first stamp is not the stated date, by more than a time zone makes."""
 
     name = "wrong_day"
-    cause = "the log belongs to another session, or the date was written down wrong"
+    cause = _("the log belongs to another session, or the date was written down wrong")
     source = "S0: GPS week 2283 is 8 October 2023, where 18 October is stated; design study, 41h"
-    costs = "all results are those of another campaign, if the log is"
+    costs = _("all results are those of another campaign, if the log is")
     unit = "days"
     everywhere = True
 
@@ -34,15 +35,26 @@ class WrongDay(Detector):
         when = "before" if recorded < stated else "after"
         why = ""
         if abs(event.size - ROLLOVER_DAYS) <= MAX_ZONE_DAYS:
-            why = " That is 1024 weeks, after which receivers count from 0 again."
+            why = _(" That is 1024 weeks, after which receivers count from 0 again.")
         elif event.size == 10:
-            why = " One wrong digit would make that."
+            why = _(" One wrong digit would make that.")
         return Description(
-            f"{name}: its stamps give {recorded.isoformat()} (UTC), {days} {when} the stated"
-            f" {stated.isoformat()}.{why}",
-            "If the log is of another session, its biases are those of another switch-on; if the"
-            " date was written down wrong, nothing changes but the order of the history.",
-            "The log is used. Correct the date of the campaign, or put the right log there.",
+            _(
+                "{name}: its stamps give {isoformat} (UTC), {days} {when} the stated "
+                "{isoformat_2}.{why}",
+                name=name,
+                isoformat=recorded.isoformat(),
+                days=days,
+                when=when,
+                isoformat_2=stated.isoformat(),
+                why=why,
+            ),
+            _(
+                "If the log is of another session, its biases are those of another switch-on; "
+                "if the date was written down wrong, nothing changes but the order of the "
+                "history."
+            ),
+            _("The log is used. Correct the date of the campaign, or put the right log there."),
         )
 
 

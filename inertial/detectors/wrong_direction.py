@@ -6,6 +6,7 @@ import numpy as np
 
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
+from inertial.text.messages import _
 from inertial.text.numbers import fixed
 
 
@@ -13,9 +14,9 @@ class WrongDirection(PlanDetector):
     """A turn that is opposite to the planned direction by its gyro."""
 
     name = "wrong_direction"
-    cause = "the sign of the planned angle, or the table turned the other way"
+    cause = _("the sign of the planned angle, or the table turned the other way")
     source = "S0: shun and ni; judge a turn by the sign on the gyro, not by the word"
-    costs = "the sign of a scale factor"
+    costs = _("the sign of a scale factor")
     severity = 3
     sensor = "gyro"
 
@@ -34,11 +35,20 @@ class WrongDirection(PlanDetector):
             turned, planned, unit = recorded.speed[i], recorded.rate[i], " °/s"
         far = [fixed(float(np.degrees(turned)), 2), fixed(float(np.degrees(planned)), 0)]
         return Description(
-            f"{name} turns against the planned direction: by {far[0]}{unit} in place of"
-            f" {far[1]}{unit}.",
-            f"Taken as planned, its scale error would be {fixed((deviation.size - 1) * 100, 0)} %;"
-            " it is left out of all methods.",
-            "Correct the sign of degrees or rate, or the axes of the gyros.",
+            _(
+                "{name} turns against the planned direction: by {far}{unit} in place of "
+                "{far_2}{unit}.",
+                name=name,
+                far=far[0],
+                unit=unit,
+                far_2=far[1],
+            ),
+            _(
+                "Taken as planned, its scale error would be {fixed} %; it is left out of all "
+                "methods.",
+                fixed=fixed((deviation.size - 1) * 100, 0),
+            ),
+            _("Correct the sign of degrees or rate, or the axes of the gyros."),
         )
 
 

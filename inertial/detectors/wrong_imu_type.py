@@ -7,6 +7,7 @@ from math import radians
 import numpy as np
 
 from inertial.signal.detector import Description, Detector, Event, Log
+from inertial.text.messages import _
 from inertial.text.numbers import significant
 
 # ---- The types of IMU by the number that NovAtel's messages tell, and what a count of theirs is.
@@ -77,9 +78,9 @@ class WrongImuType(Detector):
     """The type in the messages has counts of another size than the campaign's instrument."""
 
     name = "wrong_imu_type"
-    cause = "the campaign names another instrument, or the receiver was set up for another IMU"
+    cause = _("the campaign names another instrument, or the receiver was set up for another IMU")
     source = "NovAtel OEM7 manual, RAWIMUSX and Table: Raw IMU Scale Factors"
-    costs = "all readings and with them biases and scale factors, by the ratio of the counts"
+    costs = _("all readings and with them biases and scale factors, by the ratio of the counts")
     unit = "1"
     severity = 3
     everywhere = True
@@ -101,17 +102,32 @@ class WrongImuType(Detector):
     def describe(self, event: Event, name: str) -> Description:
         if event.facts is None:
             return Description(
-                f"{name}: its messages name {round(event.size)} types of IMU.",
-                "At most one of them is this instrument; the counts of the others are of another"
-                " size.",
-                "The log is used as one. Record each IMU in a log of its own.",
+                _(
+                    "{name}: its messages name {size} types of IMU.",
+                    name=name,
+                    size=round(event.size),
+                ),
+                _(
+                    "At most one of them is this instrument; the counts of the others are of "
+                    "another size."
+                ),
+                _("The log is used as one. Record each IMU in a log of its own."),
             )
         number, (gyro, force) = event.facts
         return Description(
-            f"{name}: its messages name IMU type {number}, {IMU_TYPES[number].name}; a count of"
-            f" this campaign's instrument is {significant(float(gyro), 5)} times that type's in the"
-            f" gyros and {significant(float(force), 5)} times in the accelerometers.",
-            "If the receiver is right, all readings are off by these ratios, and no motion of"
-            " the table would agree with the plan.",
-            "The campaign's figures are used. Name the instrument that was recorded.",
+            _(
+                "{name}: its messages name IMU type {number}, {name_2}; a count of this "
+                "campaign's instrument is {significant} times that type's in the gyros and "
+                "{significant_2} times in the accelerometers.",
+                name=name,
+                number=number,
+                name_2=IMU_TYPES[number].name,
+                significant=significant(float(gyro), 5),
+                significant_2=significant(float(force), 5),
+            ),
+            _(
+                "If the receiver is right, all readings are off by these ratios, and no motion "
+                "of the table would agree with the plan."
+            ),
+            _("The campaign's figures are used. Name the instrument that was recorded."),
         )

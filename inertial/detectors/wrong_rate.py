@@ -7,6 +7,7 @@ import numpy as np
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.signal.scale_factor import common_turn_ratio, turn_ratios
+from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
 
 
@@ -14,9 +15,9 @@ class WrongRate(PlanDetector):
     """A turn whose rate is not the planned one, where no ratio explains all of them."""
 
     name = "wrong_rate"
-    cause = "the rate of the plan, or of the table"
+    cause = _("the rate of the plan, or of the table")
     source = "S0, table 5-6: the rate in the steady part"
-    costs = "a scale factor, where the rate is the reference"
+    costs = _("a scale factor, where the rate is the reference")
     sensor = "gyro"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
@@ -32,24 +33,32 @@ class WrongRate(PlanDetector):
         i, ratio = deviation.at, deviation.size
         assert i is not None and ratio is not None
         read, planned = np.degrees([recorded.speed[i], recorded.rate[i]]).tolist()
-        _, angle = turn_ratios(recorded)
+        _unused, angle = turn_ratios(recorded)
         if deviation.severity == 1:
-            consequence = (
-                f"Its angle is as planned ({fixed(float(np.degrees(recorded.moved[i])), 2)}°), so"
-                " its scale factor holds; the rate is not used."
+            consequence = _(
+                "Its angle is as planned ({fixed}°), so its scale factor holds; the rate is not "
+                "used.",
+                fixed=fixed(float(np.degrees(recorded.moved[i])), 2),
             )
         elif np.isfinite(angle[i]):
-            consequence = (
-                f"Its angle is {significant(float(angle[i]), 4)} times the planned one, so it is"
-                " left out."
+            consequence = _(
+                "Its angle is {significant} times the planned one, so it is left out.",
+                significant=significant(float(angle[i]), 4),
             )
         else:
-            consequence = (
-                f"Taken as planned, its scale error would be {fixed((ratio - 1) * 100, 1)} %."
+            consequence = _(
+                "Taken as planned, its scale error would be {fixed} %.",
+                fixed=fixed((ratio - 1) * 100, 1),
             )
         return Description(
-            f"{recorded.name[i]} turns at {significant(read)} °/s, {significant(ratio, 5)} times"
-            f" the planned {significant(planned)} °/s; the other turns are not off by this ratio.",
+            _(
+                "{name} turns at {read} °/s, {ratio} times the planned {planned} °/s; the other "
+                "turns are not off by this ratio.",
+                name=recorded.name[i],
+                read=significant(read),
+                ratio=significant(ratio, 5),
+                planned=significant(planned),
+            ),
             consequence,
-            "Correct the rate of the plan, or see what the table did.",
+            _("Correct the rate of the plan, or see what the table did."),
         )

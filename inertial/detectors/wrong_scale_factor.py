@@ -6,18 +6,19 @@ import numpy as np
 
 from inertial.signal.detector import Description, Detector, Event, Log
 from inertial.signal.scale_factor import MAX_SCALE_ERROR, explanation_of, force_at_rest
+from inertial.text.messages import _
 from inertial.text.numbers import significant
 
-UNKNOWN_CAUSE = "no known unit explains it; the bias may be large, or the IMU was not at rest"
+UNKNOWN_CAUSE = _("no known unit explains it; the bias may be large, or the IMU was not at rest")
 
 
 class WrongScaleFactor(Detector):
     """The specific force at rest is not gravity, by more than any bias explains."""
 
     name = "wrong_scale_factor"
-    cause = "another unit, another full scale, or the counts of another instrument"
+    cause = _("another unit, another full scale, or the counts of another instrument")
     source = "design study 41e; S0 names the iMAR-FSAS, but its gyro counts are 57.3 times as large"
-    costs = "every parameter is wrong by this factor"
+    costs = _("every parameter is wrong by this factor")
     unit = "1"
     sensor = "accel"
     severity = 3
@@ -35,10 +36,21 @@ class WrongScaleFactor(Detector):
     def describe(self, event: Event, name: str) -> Description:
         force, cause = event.facts
         return Description(
-            f"{name}: at rest the specific force is {significant(force)} m/s²,"
-            f" {significant(event.size)} times gravity: {cause}.",
-            f"Bias, scale factors and cross-axis terms of the accelerometers are"
-            f" {significant(event.size)} times what they should be.",
-            "Nothing is changed. Correct the unit, counts_per_unit or count size, or the name of"
-            " the instrument in the campaign.",
+            _(
+                "{name}: at rest the specific force is {force} m/s², {size} times gravity: "
+                "{cause}.",
+                name=name,
+                force=significant(force),
+                size=significant(event.size),
+                cause=cause,
+            ),
+            _(
+                "Bias, scale factors and cross-axis terms of the accelerometers are {size} "
+                "times what they should be.",
+                size=significant(event.size),
+            ),
+            _(
+                "Nothing is changed. Correct the unit, counts_per_unit or count size, or the "
+                "name of the instrument in the campaign."
+            ),
         )

@@ -7,6 +7,7 @@ import numpy as np
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.signal.scale_factor import common_turn_ratio, turn_ratios
+from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant
 
 
@@ -14,9 +15,9 @@ class WrongScaleOfTurns(PlanDetector):
     """All turns are off by one ratio, in rate and in angle."""
 
     name = "wrong_scale_factor"
-    cause = "another unit, another full scale, or the counts of another instrument"
+    cause = _("another unit, another full scale, or the counts of another instrument")
     source = "design study, 0: S0's log, read by the count of the iMAR-FSAS, turns at 0.17 °/s"
-    costs = "every parameter of the gyros is wrong by this ratio"
+    costs = _("every parameter of the gyros is wrong by this ratio")
     severity = 3
     sensor = "gyro"
 
@@ -36,16 +37,33 @@ class WrongScaleOfTurns(PlanDetector):
         read = fixed(float(np.degrees(recorded.speed[i])), 5)
         far = ""
         if np.isfinite(angle[i]):
-            far = f" and by {fixed(float(np.degrees(recorded.moved[i])), 3)}°"
-        turns = "The turn" if deviation.count == 1 else f"All {deviation.count} turns"
+            far = _(" and by {fixed}°", fixed=fixed(float(np.degrees(recorded.moved[i])), 3))
+        turns = (
+            "The turn" if deviation.count == 1 else _("All {count} turns", count=deviation.count)
+        )
         verb = "is" if deviation.count == 1 else "are"
         return Description(
-            f"{turns} {verb} {significant(ratio, 5)} times as fast and as far as planned"
-            f" ({recorded.name[i]}: {read} °/s{far} in place of"
-            f" {fixed(float(np.degrees(recorded.rate[i])), 0)} °/s): {why}.",
-            f"Bias, scale factors and cross terms of the gyros are {significant(ratio, 5)} times"
-            f" what they should be; no angle fits the plan, so"
-            f" {counted(deviation.count, 'turn')} {verb} left out.",
-            "Nothing is changed. Correct the unit, counts_per_unit or count size, or the name of"
-            " the instrument in the campaign.",
+            _(
+                "{turns} {verb} {ratio} times as fast and as far as planned ({name}: {read} "
+                "°/s{far} in place of {fixed} °/s): {why}.",
+                turns=turns,
+                verb=verb,
+                ratio=significant(ratio, 5),
+                name=recorded.name[i],
+                read=read,
+                far=far,
+                fixed=fixed(float(np.degrees(recorded.rate[i])), 0),
+                why=why,
+            ),
+            _(
+                "Bias, scale factors and cross terms of the gyros are {ratio} times what they "
+                "should be; no angle fits the plan, so {count} {verb} left out.",
+                ratio=significant(ratio, 5),
+                count=counted(deviation.count, "turn"),
+                verb=verb,
+            ),
+            _(
+                "Nothing is changed. Correct the unit, counts_per_unit or count size, or the "
+                "name of the instrument in the campaign."
+            ),
         )

@@ -8,6 +8,7 @@ from inertial.physics.drift import after, evenly, without_clock
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
 CANDIDATES = 36  # times of the jump; in half an hour about one for every minute
@@ -21,14 +22,21 @@ class AccelBiasJump(Effect):
     """
 
     name = "accel_bias_jump"
-    cause = "stress is released, the electronics switch, or the instrument is knocked or restarted"
+    cause = _(
+        "stress is released, the electronics switch, or the instrument is knocked or restarted"
+    )
     source = "Basseville & Nikiforov 1993, Detection of Abrupt Changes, chapter 2"
     parameters = tuple(
-        Parameter(f"b_{axis}", "m/s²", 1e-5 * STANDARD_GRAVITY, f"of the {axis} specific force")
+        Parameter(
+            f"b_{axis}",
+            "m/s²",
+            1e-5 * STANDARD_GRAVITY,
+            _("of the {axis} specific force", axis=axis),
+        )
         for axis in "xyz"
     )
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 20, 100, 200, 1000)
-    scan = Scan("t0", "s", "time of the jump since the first sample of all logs")
+    scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
 
     def blind(self, motion: Motion) -> str:
         return without_clock(motion)

@@ -8,6 +8,7 @@ from inertial.physics.drift import without_clock
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import HOUR, STANDARD_GRAVITY
 
 
@@ -18,14 +19,16 @@ class AccelBiasRamp(Effect):
     """
 
     name = "accel_bias_ramp"
-    cause = "the bias of the accelerometers drifts, as the sensor or its electronics warm up or age"
+    cause = _(
+        "the bias of the accelerometers drifts, as the sensor or its electronics warm up or age"
+    )
     source = "IEEE Std 1554-2005, 'ramp' of the Allan variance"
     parameters = tuple(
         Parameter(
             f"c_{axis}",
             "m/s³",
             1e-5 * STANDARD_GRAVITY / HOUR,
-            f"drift of the {axis} specific force, per second",
+            _("drift of the {axis} specific force, per second", axis=axis),
         )
         for axis in "xyz"
     )

@@ -8,6 +8,7 @@ from inertial.physics.drift import warmer, without_temperature
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
 
@@ -18,14 +19,14 @@ class AccelBiasTemperature(Effect):
     """
 
     name = "accel_bias_temperature"
-    cause = "the bias of the accelerometers changes with the temperature of the instrument"
+    cause = _("the bias of the accelerometers changes with the temperature of the instrument")
     source = "IEEE Std 1293-2018, temperature sensitivity of bias and scale factor"
     parameters = tuple(
         Parameter(
             f"k_{axis}",
             "m/s²/K",
             1e-5 * STANDARD_GRAVITY,
-            f"of the {axis} specific force, per kelvin",
+            _("of the {axis} specific force, per kelvin", axis=axis),
         )
         for axis in "xyz"
     )

@@ -7,6 +7,7 @@ import numpy as np
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
 PAIRS = ((0, 1), (1, 2), (2, 0))
@@ -20,14 +21,19 @@ class AccelCrossProducts(Effect):
     """
 
     name = "accel_cross_products"
-    cause = "a force across the input axis changes what the proof mass does along it"
+    cause = _("a force across the input axis changes what the proof mass does along it")
     source = "IEEE Std 1293-2018, model equation, cross-coupling coefficients"
     parameters = tuple(
         Parameter(
             f"k_{i}_{pair}",
             "(m/s²)/(m/s²)²",
             1e-5 / STANDARD_GRAVITY,
-            f"of the {i} accelerometer per product of the forces along {pair[0]} and {pair[1]}",
+            _(
+                "of the {i} accelerometer per product of the forces along {pair} and {pair_2}",
+                i=i,
+                pair=pair[0],
+                pair_2=pair[1],
+            ),
         )
         for i in "xyz"
         for pair in NAMES

@@ -5,6 +5,7 @@ from dataclasses import replace
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
 
@@ -16,14 +17,14 @@ class AccelCubic(Effect):
     """
 
     name = "accel_cubic"
-    cause = "the suspension or the loop of the proof mass is not linear: third-order term K3"
+    cause = _("the suspension or the loop of the proof mass is not linear: third-order term K3")
     source = "IEEE Std 1293-2018, model equation, K3"
     parameters = tuple(
         Parameter(
             f"k3_{axis}",
             "(m/s²)/(m/s²)³",
             1e-5 / STANDARD_GRAVITY**2,
-            f"of the {axis} accelerometer",
+            _("of the {axis} accelerometer", axis=axis),
         )
         for axis in "xyz"
     )

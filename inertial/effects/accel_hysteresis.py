@@ -7,6 +7,7 @@ import numpy as np
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
 MIN_REVERSAL = STANDARD_GRAVITY / 2  # m/s², of a force that reverses the hysteresis
@@ -35,10 +36,15 @@ class AccelHysteresis(Effect):
     """
 
     name = "accel_hysteresis"
-    cause = "the suspension does not return quite to where it was before the load"
+    cause = _("the suspension does not return quite to where it was before the load")
     source = "IEEE Std 528-2019, 'hysteresis error'"
     parameters = tuple(
-        Parameter(f"h_{axis}", "m/s²", 1e-5 * STANDARD_GRAVITY, f"half the loop of the {axis} axis")
+        Parameter(
+            f"h_{axis}",
+            "m/s²",
+            1e-5 * STANDARD_GRAVITY,
+            _("half the loop of the {axis} axis", axis=axis),
+        )
         for axis in "xyz"
     )
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 5, 20, 50, 500)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
 
@@ -16,11 +17,14 @@ class AccelQuadratic(Effect):
     """
 
     name = "accel_quadratic"
-    cause = "the suspension of the proof mass is not symmetric: second-order nonlinearity K2"
+    cause = _("the suspension of the proof mass is not symmetric: second-order nonlinearity K2")
     source = "IEEE Std 1293-2018, model equation, K2"
     parameters = tuple(
         Parameter(
-            f"k2_{axis}", "(m/s²)/(m/s²)²", 1e-5 / STANDARD_GRAVITY, f"of the {axis} accelerometer"
+            f"k2_{axis}",
+            "(m/s²)/(m/s²)²",
+            1e-5 / STANDARD_GRAVITY,
+            _("of the {axis} accelerometer", axis=axis),
         )
         for axis in "xyz"
     )

@@ -2,6 +2,7 @@
 
 from inertial.physics.effect import Effect, Parameter
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
 
@@ -13,7 +14,7 @@ class AccelSaturation(Effect):
     """
 
     name = "accel_saturation"
-    cause = "the specific force exceeds what the accelerometer or its converter can tell"
+    cause = _("the specific force exceeds what the accelerometer or its converter can tell")
     source = "IEEE Std 528-2019, 'input limits'"
     parameters = (Parameter("limit", "m/s²", STANDARD_GRAVITY, "the largest reading"),)
     sizes = by_grade(STANDARD_GRAVITY, 5, 10, 5, 8)

@@ -7,6 +7,7 @@ import numpy as np
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 
 
 class AccelScaleAsymmetry(Effect):
@@ -16,14 +17,14 @@ class AccelScaleAsymmetry(Effect):
     """
 
     name = "accel_scale_asymmetry"
-    cause = "the suspension or the read-out answers unlike to push and pull"
+    cause = _("the suspension or the read-out answers unlike to push and pull")
     source = "IEEE Std 1293-2018, model equation, scale factor asymmetry"
     parameters = tuple(
         Parameter(
             f"a_{axis}",
             "1",
             1e-5,
-            f"of the {axis} accelerometer, half the difference of both scale factors",
+            _("of the {axis} accelerometer, half the difference of both scale factors", axis=axis),
         )
         for axis in "xyz"
     )

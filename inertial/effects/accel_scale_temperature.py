@@ -6,6 +6,7 @@ from inertial.physics.drift import warmer, without_temperature
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 
 
 class AccelScaleTemperature(Effect):
@@ -15,10 +16,12 @@ class AccelScaleTemperature(Effect):
     """
 
     name = "accel_scale_temperature"
-    cause = "the scale factor of the accelerometers changes with the temperature of the instrument"
+    cause = _(
+        "the scale factor of the accelerometers changes with the temperature of the instrument"
+    )
     source = "IEEE Std 1293-2018, temperature sensitivity of bias and scale factor"
     parameters = tuple(
-        Parameter(f"k_{axis}", "1/K", 1e-5, f"of the {axis} accelerometer, per kelvin")
+        Parameter(f"k_{axis}", "1/K", 1e-5, _("of the {axis} accelerometer, per kelvin", axis=axis))
         for axis in "xyz"
     )
     sizes = by_grade(1e-6, 5, 20, 50, 200)

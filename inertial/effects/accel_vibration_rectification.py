@@ -7,6 +7,7 @@ import numpy as np
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
 
@@ -19,11 +20,14 @@ class AccelVibrationRectification(Effect):
     """
 
     name = "accel_vibration_rectification"
-    cause = "vibration does not average out where the accelerometer is not linear"
+    cause = _("vibration does not average out where the accelerometer is not linear")
     source = "IEEE Std 1293-2018, vibration rectification error"
     parameters = tuple(
         Parameter(
-            f"k_{axis}", "(m/s²)/(m/s²)²", 1e-4 / STANDARD_GRAVITY, f"of the {axis} accelerometer"
+            f"k_{axis}",
+            "(m/s²)/(m/s²)²",
+            1e-4 / STANDARD_GRAVITY,
+            _("of the {axis} accelerometer", axis=axis),
         )
         for axis in "xyz"
     )
@@ -35,4 +39,4 @@ class AccelVibrationRectification(Effect):
     def blind(self, motion: Motion) -> str:
         if np.isfinite(motion.vibration).all():
             return ""
-        return "How much the table shakes is not known everywhere."
+        return _("How much the table shakes is not known everywhere.")

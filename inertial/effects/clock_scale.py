@@ -3,6 +3,7 @@
 from inertial.physics.effect import Array, Effect, Parameter, Truth, known_earth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 
 
 class ClockScale(Effect):
@@ -15,11 +16,11 @@ class ClockScale(Effect):
     """
 
     name = "clock_scale"
-    cause = "the oscillator that counts the sample interval is off its frequency"
+    cause = _("the oscillator that counts the sample interval is off its frequency")
     source = "Allan, Ashby & Hodge 1997, The Science of Timekeeping, quartz oscillators"
-    parameters = (Parameter("e", "1", 2e-5, "by how much an interval is longer than stated"),)
+    parameters = (Parameter("e", "1", 2e-5, _("by how much an interval is longer than stated")),)
     sizes = by_grade(1e-6, 1, 20, 20, 50)
-    absorbed_by = "the scale factors of the accelerometers"
+    absorbed_by = _("the scale factors of the accelerometers")
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         upward, level = known_earth(truth, motion)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from inertial.physics.effect import Array, Effect, Parameter, Truth, known_earth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import usually
+from inertial.text.messages import _
 
 
 class EarthRateOmitted(Effect):
@@ -15,9 +16,9 @@ class EarthRateOmitted(Effect):
     """
 
     name = "earth_rate_omitted"
-    cause = "the earth's rate was taken out of the log before, or never put in"
+    cause = _("the earth's rate was taken out of the log before, or never put in")
     source = "Titterton & Weston 2004, earth's rate in the local frame"
-    parameters = (Parameter("s", "1", 1.0, "share of the earth's rate that is missing"),)
+    parameters = (Parameter("s", "1", 1.0, _("share of the earth's rate that is missing")),)
     sizes = usually(1.0)
     thinkable = 1.0
 

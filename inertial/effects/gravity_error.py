@@ -5,6 +5,7 @@ from dataclasses import replace
 from inertial.physics.effect import Array, Effect, Parameter, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import usually
+from inertial.text.messages import _
 
 
 class GravityError(Effect):
@@ -15,11 +16,11 @@ class GravityError(Effect):
     """
 
     name = "gravity_error"
-    cause = "gravity at the site was taken from a formula, or of another place or height"
+    cause = _("gravity at the site was taken from a formula, or of another place or height")
     source = "Heiskanen & Moritz 1967, Physical Geodesy, gravity anomalies"
-    parameters = (Parameter("dg", "m/s²", 5e-5, "true gravity less the one that is known"),)
+    parameters = (Parameter("dg", "m/s²", 5e-5, _("true gravity less the one that is known")),)
     sizes = usually(5e-5)  # 5 mGal
-    absorbed_by = "the scale factors of the accelerometers"
+    absorbed_by = _("the scale factors of the accelerometers")
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         return replace(truth, force=truth.force + values[0] * motion.up)

@@ -6,6 +6,7 @@ from inertial.physics.effect import Array, Effect, Parameter, Truth, known_earth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
 from inertial.physics.vectors import cross
+from inertial.text.messages import _
 
 
 class GyroAccelMisalignment(Effect):
@@ -16,15 +17,20 @@ class GyroAccelMisalignment(Effect):
     """
 
     name = "gyro_accel_misalignment"
-    cause = "the block of the gyros and that of the accelerometers are not mounted alike"
+    cause = _("the block of the gyros and that of the accelerometers are not mounted alike")
     source = "Titterton & Weston 2004, mounting misalignment"
     parameters = tuple(
-        Parameter(f"phi_{axis}", "rad", 1e-3, f"rotation about {axis} from the case to the gyros")
+        Parameter(
+            f"phi_{axis}",
+            "rad",
+            1e-3,
+            _("rotation about {axis} from the case to the gyros", axis=axis),
+        )
         for axis in "xyz"
     )
     sizes = by_grade(1e-3, 1, 1, 1, 10)
     thinkable = 10.0
-    absorbed_by = "the cross terms of the gyros"
+    absorbed_by = _("the cross terms of the gyros")
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         upward, level = known_earth(truth, motion)

@@ -8,6 +8,7 @@ from inertial.physics.drift import after, evenly, without_clock
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
 
 CANDIDATES = 36  # times of the jump; in half an hour about one for every minute
@@ -21,13 +22,16 @@ class GyroBiasJump(Effect):
     """
 
     name = "gyro_bias_jump"
-    cause = "stress is released, the electronics switch, or the instrument is knocked or restarted"
+    cause = _(
+        "stress is released, the electronics switch, or the instrument is knocked or restarted"
+    )
     source = "Basseville & Nikiforov 1993, Detection of Abrupt Changes, chapter 2"
     parameters = tuple(
-        Parameter(f"b_{axis}", "rad/s", DEGREE_PER_HOUR, f"of the {axis} rate") for axis in "xyz"
+        Parameter(f"b_{axis}", "rad/s", DEGREE_PER_HOUR, _("of the {axis} rate", axis=axis))
+        for axis in "xyz"
     )
     sizes = by_grade(DEGREE_PER_HOUR, 0.3, 10, 30, 100)
-    scan = Scan("t0", "s", "time of the jump since the first sample of all logs")
+    scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
 
     def blind(self, motion: Motion) -> str:
         return without_clock(motion)

@@ -8,6 +8,7 @@ from inertial.physics.drift import without_clock
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, HOUR
 
 
@@ -18,14 +19,14 @@ class GyroBiasRamp(Effect):
     """
 
     name = "gyro_bias_ramp"
-    cause = "the bias of the gyros drifts, as the sensor or its electronics warm up or age"
+    cause = _("the bias of the gyros drifts, as the sensor or its electronics warm up or age")
     source = "IEEE Std 952-1997, annex C, rate ramp"
     parameters = tuple(
         Parameter(
             f"c_{axis}",
             "rad/s²",
             0.1 * DEGREE_PER_HOUR / HOUR,
-            f"drift of the {axis} rate, per second",
+            _("drift of the {axis} rate, per second", axis=axis),
         )
         for axis in "xyz"
     )

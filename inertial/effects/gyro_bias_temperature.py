@@ -8,6 +8,7 @@ from inertial.physics.drift import warmer, without_temperature
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
 
 
@@ -18,10 +19,15 @@ class GyroBiasTemperature(Effect):
     """
 
     name = "gyro_bias_temperature"
-    cause = "the bias of the gyros changes with the temperature of the instrument"
+    cause = _("the bias of the gyros changes with the temperature of the instrument")
     source = "IEEE Std 952-1997, model equation, terms of temperature"
     parameters = tuple(
-        Parameter(f"k_{axis}", "rad/s/K", 0.1 * DEGREE_PER_HOUR, f"of the {axis} rate, per kelvin")
+        Parameter(
+            f"k_{axis}",
+            "rad/s/K",
+            0.1 * DEGREE_PER_HOUR,
+            _("of the {axis} rate, per kelvin", axis=axis),
+        )
         for axis in "xyz"
     )
     sizes = by_grade(DEGREE_PER_HOUR, 0.05, 1, 5, 18)

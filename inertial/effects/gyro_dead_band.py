@@ -7,6 +7,7 @@ import numpy as np
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth, known_earth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
 
 MAX_WIDTH = 16  # °/h: the rate of the earth is 15
@@ -22,15 +23,17 @@ class GyroDeadBand(Effect):
     """
 
     name = "gyro_dead_band"
-    cause = "lock-in of counter-rotating waves, or a step of the converter, swallows small rates"
+    cause = _("lock-in of counter-rotating waves, or a step of the converter, swallows small rates")
     source = "IEEE Std 528-2019, 'dead band'; IEEE Std 647-2006, lock-in of laser gyros"
     parameters = tuple(
-        Parameter(f"l_{axis}", "1", 0.1, f"share of a small rate that the {axis} gyro loses")
+        Parameter(
+            f"l_{axis}", "1", 0.1, _("share of a small rate that the {axis} gyro loses", axis=axis)
+        )
         for axis in "xyz"
     )
     sizes = by_grade(1, 0.01, 0.01, 0.01, 1)
     thinkable = 1.0
-    scan = Scan("width", "rad/s", "largest rate that is lost")
+    scan = Scan("width", "rad/s", _("largest rate that is lost"))
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         upward, level = known_earth(truth, motion)

@@ -2,6 +2,7 @@
 
 from inertial.physics.effect import Effect, Parameter
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
 
 
@@ -13,8 +14,10 @@ class GyroFlicker(Effect):
     """
 
     name = "gyro_flicker"
-    cause = "flicker of the electronics and of what is sensed: bias instability"
+    cause = _("flicker of the electronics and of what is sensed: bias instability")
     source = "IEEE Std 952-1997, annex C, bias instability"
-    parameters = (Parameter("b", "rad/s", 0.1 * DEGREE_PER_HOUR, "bias instability of each gyro"),)
+    parameters = (
+        Parameter("b", "rad/s", 0.1 * DEGREE_PER_HOUR, _("bias instability of each gyro")),
+    )
     sizes = by_grade(DEGREE_PER_HOUR, 0.1, 0.5, 10, 20)
     sought_in = "noise"

@@ -5,6 +5,7 @@ from dataclasses import replace
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
 
 UNIT = DEGREE_PER_HOUR / STANDARD_GRAVITY**2
@@ -17,10 +18,12 @@ class GyroG2Sensitivity(Effect):
     """
 
     name = "gyro_g2_sensitivity"
-    cause = "the suspension of the gyro yields unlike in its directions under load (anisoelastic)"
+    cause = _(
+        "the suspension of the gyro yields unlike in its directions under load (anisoelastic)"
+    )
     source = "IEEE Std 528-2019, 'drift rate, acceleration-squared-sensitive'"
     parameters = tuple(
-        Parameter(f"g2_{axis}", "(rad/s)/(m/s²)²", 1.0 * UNIT, f"of the {axis} gyro")
+        Parameter(f"g2_{axis}", "(rad/s)/(m/s²)²", 1.0 * UNIT, _("of the {axis} gyro", axis=axis))
         for axis in "xyz"
     )
     sizes = by_grade(UNIT, 0.01, 0.05, 0.5, 5)

@@ -5,6 +5,7 @@ from dataclasses import replace
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
 
 UNIT = DEGREE_PER_HOUR / STANDARD_GRAVITY
@@ -19,10 +20,12 @@ class GyroGSensitivity(Effect):
     """
 
     name = "gyro_g_sensitivity"
-    cause = "mass unbalance, or stress of the package, pulls the gyro off null under load"
+    cause = _("mass unbalance, or stress of the package, pulls the gyro off null under load")
     source = "IEEE Std 528-2019, 'drift rate, acceleration-sensitive'"
     parameters = tuple(
-        Parameter(f"g_{i}{j}", "(rad/s)/(m/s²)", 1.0 * UNIT, f"{i} gyro per force along {j}")
+        Parameter(
+            f"g_{i}{j}", "(rad/s)/(m/s²)", 1.0 * UNIT, _("{i} gyro per force along {j}", i=i, j=j)
+        )
         for i in "xyz"
         for j in "xyz"
     )

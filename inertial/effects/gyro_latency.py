@@ -5,6 +5,7 @@ from dataclasses import replace
 from inertial.physics.effect import Array, Effect, Parameter, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 
 
 class GyroLatency(Effect):
@@ -16,11 +17,11 @@ class GyroLatency(Effect):
     """
 
     name = "gyro_latency"
-    cause = "the bandwidth of the gyros and the time that filters and transfer take"
+    cause = _("the bandwidth of the gyros and the time that filters and transfer take")
     source = "Titterton & Weston 2004, bandwidth of gyroscopes"
-    parameters = (Parameter("tau", "s", 1e-3, "by which the gyros lag behind the table"),)
+    parameters = (Parameter("tau", "s", 1e-3, _("by which the gyros lag behind the table")),)
     sizes = by_grade(1e-3, 5, 3, 5, 10)
-    absorbed_by = "the angle of the table in each block, which only the gyros tell"
+    absorbed_by = _("the angle of the table in each block, which only the gyros tell")
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         return replace(truth, rate=truth.rate - values[0] * motion.alpha)

@@ -2,6 +2,7 @@
 
 from inertial.physics.effect import Effect, Parameter
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, HOUR
 
 UNIT = DEGREE_PER_HOUR / HOUR**0.5
@@ -16,8 +17,8 @@ class GyroRandomWalk(Effect):
     """
 
     name = "gyro_random_walk"
-    cause = "the bias wanders as the temperature, the light source or the electronics do"
+    cause = _("the bias wanders as the temperature, the light source or the electronics do")
     source = "IEEE Std 952-1997, annex C, rate random walk"
-    parameters = (Parameter("k", "rad/s/√s", 0.1 * UNIT, "rate random walk of each gyro"),)
+    parameters = (Parameter("k", "rad/s/√s", 0.1 * UNIT, _("rate random walk of each gyro")),)
     sizes = by_grade(UNIT, 0.02, 0.3, 3, 10)
     sought_in = "noise"

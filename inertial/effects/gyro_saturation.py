@@ -2,6 +2,7 @@
 
 from inertial.physics.effect import Effect, Parameter
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import DEGREE
 
 
@@ -13,7 +14,7 @@ class GyroSaturation(Effect):
     """
 
     name = "gyro_saturation"
-    cause = "the angular rate exceeds what the gyro or its converter can tell"
+    cause = _("the angular rate exceeds what the gyro or its converter can tell")
     source = "IEEE Std 528-2019, 'input limits'"
     parameters = (Parameter("limit", "rad/s", DEGREE, "the largest reading"),)
     sizes = by_grade(DEGREE, 450, 400, 450, 1000)

@@ -7,6 +7,7 @@ import numpy as np
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 
 
 class GyroScaleAsymmetry(Effect):
@@ -17,11 +18,14 @@ class GyroScaleAsymmetry(Effect):
     """
 
     name = "gyro_scale_asymmetry"
-    cause = "the loop or the read-out of the gyro answers unlike to the two senses of rotation"
+    cause = _("the loop or the read-out of the gyro answers unlike to the two senses of rotation")
     source = "IEEE Std 528-2019, 'asymmetry error'"
     parameters = tuple(
         Parameter(
-            f"a_{axis}", "1", 1e-4, f"of the {axis} gyro, half the difference of both scale factors"
+            f"a_{axis}",
+            "1",
+            1e-4,
+            _("of the {axis} gyro, half the difference of both scale factors", axis=axis),
         )
         for axis in "xyz"
     )

@@ -5,6 +5,7 @@ from dataclasses import replace
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import DEGREE
 
 
@@ -15,10 +16,13 @@ class GyroScaleCubic(Effect):
     """
 
     name = "gyro_scale_cubic"
-    cause = "the loop or the read-out of the gyro is not linear in the rate, alike for both senses"
+    cause = _(
+        "the loop or the read-out of the gyro is not linear in the rate, alike for both senses"
+    )
     source = "IEEE Std 528-2019, 'nonlinearity'"
     parameters = tuple(
-        Parameter(f"k_{axis}", "s²/rad²", 1e-8 / DEGREE**2, f"of the {axis} gyro") for axis in "xyz"
+        Parameter(f"k_{axis}", "s²/rad²", 1e-8 / DEGREE**2, _("of the {axis} gyro", axis=axis))
+        for axis in "xyz"
     )
     sizes = by_grade(1e-6 / DEGREE**2, 1e-3, 1e-4, 5e-3, 0.05)
 

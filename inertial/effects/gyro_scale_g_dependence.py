@@ -5,6 +5,7 @@ from dataclasses import replace
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
 
@@ -16,10 +17,12 @@ class GyroScaleGDependence(Effect):
     """
 
     name = "gyro_scale_g_dependence"
-    cause = "load on the sensing element changes what a rate does to it"
+    cause = _("load on the sensing element changes what a rate does to it")
     source = "Sensonor, STIM300 data sheet, linear acceleration effect on the scale factor"
     parameters = tuple(
-        Parameter(f"k_{axis}", "1/(m/s²)", 1e-4 / STANDARD_GRAVITY, f"of the {axis} gyro")
+        Parameter(
+            f"k_{axis}", "1/(m/s²)", 1e-4 / STANDARD_GRAVITY, _("of the {axis} gyro", axis=axis)
+        )
         for axis in "xyz"
     )
     sizes = by_grade(1e-6 / STANDARD_GRAVITY, 2, 30, 100, 500)

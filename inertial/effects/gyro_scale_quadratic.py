@@ -7,6 +7,7 @@ import numpy as np
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import DEGREE
 
 
@@ -18,10 +19,11 @@ class GyroScaleQuadratic(Effect):
     """
 
     name = "gyro_scale_quadratic"
-    cause = "the loop or the read-out of the gyro is not linear in the rate"
+    cause = _("the loop or the read-out of the gyro is not linear in the rate")
     source = "IEEE Std 528-2019, 'nonlinearity'"
     parameters = tuple(
-        Parameter(f"k_{axis}", "1/(rad/s)", 1e-6 / DEGREE, f"of the {axis} gyro") for axis in "xyz"
+        Parameter(f"k_{axis}", "1/(rad/s)", 1e-6 / DEGREE, _("of the {axis} gyro", axis=axis))
+        for axis in "xyz"
     )
     sizes = by_grade(1e-6 / DEGREE, 0.1, 0.1, 1, 5)
 

@@ -6,6 +6,7 @@ from inertial.physics.drift import warmer, without_temperature
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 
 
 class GyroScaleTemperature(Effect):
@@ -15,10 +16,11 @@ class GyroScaleTemperature(Effect):
     """
 
     name = "gyro_scale_temperature"
-    cause = "the scale factor of the gyros changes with the temperature of the instrument"
+    cause = _("the scale factor of the gyros changes with the temperature of the instrument")
     source = "IEEE Std 952-1997, model equation, terms of temperature"
     parameters = tuple(
-        Parameter(f"k_{axis}", "1/K", 1e-5, f"of the {axis} gyro, per kelvin") for axis in "xyz"
+        Parameter(f"k_{axis}", "1/K", 1e-5, _("of the {axis} gyro, per kelvin", axis=axis))
+        for axis in "xyz"
     )
     sizes = by_grade(1e-6, 5, 10, 50, 200)
 

@@ -8,6 +8,7 @@ from inertial.physics.drift import decayed, without_clock
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
+from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
 
 SHORTEST, LONGEST = 30.0, 3000.0  # s, of τ: a shorter one is over before the first rest is
@@ -22,14 +23,19 @@ class GyroWarmUp(Effect):
     """
 
     name = "gyro_warm_up"
-    cause = "the sensor and its electronics warm up after they are switched on"
+    cause = _("the sensor and its electronics warm up after they are switched on")
     source = "IEEE Std 528-2019, 'warm-up time'"
     parameters = tuple(
-        Parameter(f"b_{axis}", "rad/s", DEGREE_PER_HOUR, f"of the {axis} rate at the first sample")
+        Parameter(
+            f"b_{axis}",
+            "rad/s",
+            DEGREE_PER_HOUR,
+            _("of the {axis} rate at the first sample", axis=axis),
+        )
         for axis in "xyz"
     )
     sizes = by_grade(DEGREE_PER_HOUR, 0.3, 5, 30, 300)
-    scan = Scan("tau", "s", "time constant of the settling")
+    scan = Scan("tau", "s", _("time constant of the settling"))
 
     def blind(self, motion: Motion) -> str:
         return without_clock(motion)

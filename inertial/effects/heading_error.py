@@ -6,6 +6,7 @@ from inertial.physics.effect import Array, Effect, Parameter, Truth, known_earth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import usually
 from inertial.physics.vectors import cross
+from inertial.text.messages import _
 from inertial.text.units import DEGREE
 
 
@@ -17,9 +18,11 @@ class HeadingError(Effect):
     """
 
     name = "heading_error"
-    cause = "the azimuth of the table's zero mark was taken wrong"
+    cause = _("the azimuth of the table's zero mark was taken wrong")
     source = "Titterton & Weston 2004, gyrocompassing"
-    parameters = (Parameter("dpsi", "rad", DEGREE, "true azimuth of the mark less the known one"),)
+    parameters = (
+        Parameter("dpsi", "rad", DEGREE, _("true azimuth of the mark less the known one")),
+    )
     sizes = usually(DEGREE)
     thinkable = 180.0
 
@@ -28,4 +31,4 @@ class HeadingError(Effect):
         return replace(truth, rate=truth.rate + values[0] * cross(motion.up, level))
 
     def blind(self, motion: Motion) -> str:
-        return "" if motion.surveyed.any() else "No heading of the table is stated."
+        return "" if motion.surveyed.any() else _("No heading of the table is stated.")

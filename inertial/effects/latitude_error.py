@@ -8,6 +8,7 @@ from inertial.physics.effect import Array, Effect, Parameter, Truth, known_earth
 from inertial.physics.motion import Motion
 from inertial.physics.site import EARTH_RATE
 from inertial.physics.typical_sizes import usually
+from inertial.text.messages import _
 from inertial.text.units import DEGREE
 
 
@@ -19,9 +20,9 @@ class LatitudeError(Effect):
     """
 
     name = "latitude_error"
-    cause = "the latitude was rounded, or of another place, so the earth's rate is wrong"
+    cause = _("the latitude was rounded, or of another place, so the earth's rate is wrong")
     source = "Titterton & Weston 2004, earth's rate in the local frame"
-    parameters = (Parameter("dphi", "rad", 0.02 * DEGREE, "true latitude less the known one"),)
+    parameters = (Parameter("dphi", "rad", 0.02 * DEGREE, _("true latitude less the known one")),)
     sizes = usually(0.02 * DEGREE)
     thinkable = 1000.0
 

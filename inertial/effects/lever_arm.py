@@ -6,6 +6,7 @@ from inertial.physics.effect import Array, Effect, Parameter, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
 from inertial.physics.vectors import cross
+from inertial.text.messages import _
 
 
 class LeverArm(Effect):
@@ -16,10 +17,12 @@ class LeverArm(Effect):
     """
 
     name = "lever_arm"
-    cause = "the accelerometers stand beside the axis of the table and feel its rotation"
+    cause = _("the accelerometers stand beside the axis of the table and feel its rotation")
     source = "IEEE Std 1293-2018, centrifuge and rate table tests"
     parameters = tuple(
-        Parameter(f"r_{axis}", "m", 0.01, f"from the table's axis to the case, along {axis}")
+        Parameter(
+            f"r_{axis}", "m", 0.01, _("from the table's axis to the case, along {axis}", axis=axis)
+        )
         for axis in "xyz"
     )
     sizes = by_grade(1e-3, 30, 30, 30, 30)

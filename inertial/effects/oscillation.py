@@ -2,6 +2,7 @@
 
 from inertial.physics.effect import Effect, Parameter
 from inertial.physics.typical_sizes import of_tables
+from inertial.text.messages import _
 
 
 class Oscillation(Effect):
@@ -13,11 +14,11 @@ class Oscillation(Effect):
     """
 
     name = "oscillation"
-    cause = "the case, the table's drive or a loose screw vibrates about one axis"
+    cause = _("the case, the table's drive or a loose screw vibrates about one axis")
     source = "the Wuhan University laboratory report of 2023, figures 5-14 to 5-16"
     parameters = (
-        Parameter("frequency", "Hz", 1.0, "frequency, or an alias of it"),
-        Parameter("amplitude", "rad/s", 1e-4, "amplitude of the rate"),
+        Parameter("frequency", "Hz", 1.0, _("frequency, or an alias of it")),
+        Parameter("amplitude", "rad/s", 1e-4, _("amplitude of the rate")),
     )
     sizes = of_tables(1, 1e-5, 1e-2)
     sought_in = "spectrum"

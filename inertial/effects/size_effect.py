@@ -8,6 +8,7 @@ from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import by_grade
 from inertial.physics.vectors import cross
+from inertial.text.messages import _
 
 
 class SizeEffect(Effect):
@@ -18,10 +19,15 @@ class SizeEffect(Effect):
     """
 
     name = "size_effect"
-    cause = "each accelerometer stands at a place of its own and feels the rotation there"
+    cause = _("each accelerometer stands at a place of its own and feels the rotation there")
     source = "Savage 2000, Strapdown Analytics, size effect of the accelerometers"
     parameters = tuple(
-        Parameter(f"r_{i}{j}", "m", 0.01, f"from the table's axis to accelerometer {i}, along {j}")
+        Parameter(
+            f"r_{i}{j}",
+            "m",
+            0.01,
+            _("from the table's axis to accelerometer {i}, along {j}", i=i, j=j),
+        )
         for i in "xyz"
         for j in "xyz"
     )

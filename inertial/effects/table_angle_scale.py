@@ -5,6 +5,7 @@ from dataclasses import replace
 from inertial.physics.effect import Array, Effect, Parameter, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import of_tables
+from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND, DEGREE
 
 
@@ -16,11 +17,11 @@ class TableAngleScale(Effect):
     """
 
     name = "table_angle_scale"
-    cause = "the scale of the encoder, or where a turn starts and stops, is off"
+    cause = _("the scale of the encoder, or where a turn starts and stops, is off")
     source = "IEEE Std 1554-2005, position accuracy of tables"
-    parameters = (Parameter("e", "1", 1e-5, "relative error of all angles"),)
+    parameters = (Parameter("e", "1", 1e-5, _("relative error of all angles")),)
     sizes = of_tables(ARC_SECOND / (360 * DEGREE), 3, 15)
-    absorbed_by = "the scale factors of the gyros"
+    absorbed_by = _("the scale factors of the gyros")
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         return replace(truth, rate=truth.rate + values[0] * motion.omega)

@@ -8,6 +8,7 @@ from inertial.physics.effect import Array, Effect, Parameter, Truth
 from inertial.physics.motion import Motion, without_north
 from inertial.physics.typical_sizes import of_tables
 from inertial.physics.vectors import cross
+from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND
 
 HOME = np.array([0.0, 0.0, 1.0])  # of the case: up where the middle axis is at zero
@@ -26,11 +27,11 @@ class TableAxisNonOrthogonality(Effect):
     """
 
     name = "table_axis_non_orthogonality"
-    cause = "the middle axis of the table is not at a right angle to its outer one"
+    cause = _("the middle axis of the table is not at a right angle to its outer one")
     source = "IEEE Std 1554-2005, orthogonality of table axes"
     parameters = (
-        Parameter("lean", "rad", 1e-5, "δ, by which the middle axis points above the horizon"),
-        Parameter("quarter", "rad", 1e-5, "ε, by which a quarter turn about it is too large"),
+        Parameter("lean", "rad", 1e-5, _("δ, by which the middle axis points above the horizon")),
+        Parameter("quarter", "rad", 1e-5, _("ε, by which a quarter turn about it is too large")),
     )
     sizes = of_tables(ARC_SECOND, 2, 30)
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from inertial.physics.effect import Array, Effect, Parameter, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import of_tables
+from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND
 
 
@@ -18,11 +19,13 @@ class TableEccentricity(Effect):
     """
 
     name = "table_eccentricity"
-    cause = "the encoder of the table is mounted off its axis"
+    cause = _("the encoder of the table is mounted off its axis")
     source = "IEEE Std 1554-2005, position accuracy of tables"
     parameters = (
-        Parameter("a", "rad", 1e-5, "part with the sine of the angle since the start of the turn"),
-        Parameter("b", "rad", 1e-5, "part with the cosine"),
+        Parameter(
+            "a", "rad", 1e-5, _("part with the sine of the angle since the start of the turn")
+        ),
+        Parameter("b", "rad", 1e-5, _("part with the cosine")),
     )
     sizes = of_tables(ARC_SECOND, 3, 30)
     sought_in = "spectrum"

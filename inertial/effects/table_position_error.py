@@ -6,6 +6,7 @@ from inertial.physics.effect import Array, Effect, Parameter, Scan, Truth
 from inertial.physics.motion import Motion, all_level_axes
 from inertial.physics.typical_sizes import of_tables
 from inertial.physics.vectors import cross
+from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND
 
 
@@ -18,14 +19,19 @@ class TablePositionError(Effect):
     """
 
     name = "table_position_error"
-    cause = "the position was set wrong, or encoder, backlash and clamping leave it off"
+    cause = _("the position was set wrong, or encoder, backlash and clamping leave it off")
     source = "IEEE Std 1554-2005, position accuracy of tables"
     parameters = tuple(
-        Parameter(f"lean_{i}", "rad", 2 * ARC_SECOND, f"about the {which} level axis of the case")
+        Parameter(
+            f"lean_{i}",
+            "rad",
+            2 * ARC_SECOND,
+            _("about the {which} level axis of the case", which=which),
+        )
         for i, which in ((1, "first"), (2, "second"))
     )
     sizes = of_tables(ARC_SECOND, 2, 30)
-    scan = Scan("position", "1", "place of the position among those of the plan", between=False)
+    scan = Scan("position", "1", _("place of the position among those of the plan"), between=False)
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         lean = np.zeros_like(motion.up)

@@ -7,6 +7,7 @@ import numpy as np
 from inertial.physics.effect import Array, Effect, Parameter, Scan, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import of_tables
+from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND
 
 LOWEST, HIGHEST, STEP = 1.5, 60.0, 0.25  # orders: periods in one turn
@@ -21,15 +22,15 @@ class TableRipple(Effect):
     """
 
     name = "table_ripple"
-    cause = "teeth of a gear, poles of the motor or balls of a bearing pass by"
+    cause = _("teeth of a gear, poles of the motor or balls of a bearing pass by")
     source = "IEEE Std 1554-2005, rate smoothness of tables"
     parameters = (
-        Parameter("a", "rad", 5e-7, "part with the sine of n times the angle since the start"),
-        Parameter("b", "rad", 5e-7, "part with the cosine"),
+        Parameter("a", "rad", 5e-7, _("part with the sine of n times the angle since the start")),
+        Parameter("b", "rad", 5e-7, _("part with the cosine")),
     )
     sizes = of_tables(ARC_SECOND, 0.5, 5)
     sought_in = "spectrum"
-    scan = Scan("n", "per turn", "periods in one turn")
+    scan = Scan("n", "per turn", _("periods in one turn"))
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         ahead = motion.ripples(self.value(motion), values[0], values[1])

@@ -7,6 +7,7 @@ import numpy as np
 from inertial.physics.effect import Array, Effect, Parameter, Truth
 from inertial.physics.motion import Motion
 from inertial.physics.typical_sizes import of_tables
+from inertial.text.messages import _
 
 
 class TableSpeedError(Effect):
@@ -18,12 +19,12 @@ class TableSpeedError(Effect):
     """
 
     name = "table_speed_error"
-    cause = "the clock of the drive, or its loop, keeps another speed"
+    cause = _("the clock of the drive, or its loop, keeps another speed")
     source = "IEEE Std 1554-2005, rate accuracy of tables"
-    parameters = (Parameter("e", "1", 1e-4, "relative error of the speed"),)
+    parameters = (Parameter("e", "1", 1e-4, _("relative error of the speed")),)
     sizes = of_tables(1e-6, 50, 1000)
     thinkable = 10.0
-    absorbed_by = "the angle of the table in each block, which only the gyros tell"
+    absorbed_by = _("the angle of the table in each block, which only the gyros tell")
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         # In the first and last block the table is at rest for half: so it adds up to nothing.

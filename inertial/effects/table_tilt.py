@@ -8,6 +8,7 @@ from inertial.physics.effect import Array, Effect, Parameter, Truth
 from inertial.physics.motion import Motion, without_north
 from inertial.physics.typical_sizes import of_tables
 from inertial.physics.vectors import cross
+from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND
 
 
@@ -19,11 +20,11 @@ class TableTilt(Effect):
     """
 
     name = "table_tilt"
-    cause = "the base of the table is not level, so all its axes lean the same way"
+    cause = _("the base of the table is not level, so all its axes lean the same way")
     source = "IEEE Std 517-1974, table errors"
     parameters = (
-        Parameter("north", "rad", 2e-5, "lean of the table's vertical towards north"),
-        Parameter("east", "rad", 2e-5, "lean of the table's vertical towards east"),
+        Parameter("north", "rad", 2e-5, _("lean of the table's vertical towards north")),
+        Parameter("east", "rad", 2e-5, _("lean of the table's vertical towards east")),
     )
     sizes = of_tables(ARC_SECOND, 3, 60)
 

@@ -8,6 +8,7 @@ from inertial.physics.effect import Array, Effect, Parameter, Truth
 from inertial.physics.motion import Motion, turned_all, without_north
 from inertial.physics.typical_sizes import of_tables
 from inertial.physics.vectors import cross
+from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND
 
 
@@ -21,11 +22,11 @@ class TableWobble(Effect):
     """
 
     name = "table_wobble"
-    cause = "the bearing of the axis is not round: it sways twice a turn"
+    cause = _("the bearing of the axis is not round: it sways twice a turn")
     source = "IEEE Std 1554-2005, wobble of table axes"
     parameters = (
-        Parameter("north", "rad", 5e-6, "lean of the axis towards north at the start of a turn"),
-        Parameter("east", "rad", 5e-6, "lean of the axis towards east at the start of a turn"),
+        Parameter("north", "rad", 5e-6, _("lean of the axis towards north at the start of a turn")),
+        Parameter("east", "rad", 5e-6, _("lean of the axis towards east at the start of a turn")),
     )
     sizes = of_tables(ARC_SECOND, 1, 10)
 

@@ -4,6 +4,7 @@ from enum import Enum
 from pathlib import Path
 
 from inertial.tables.errors import Refusal
+from inertial.text.messages import _
 
 
 class FileType(Enum):
@@ -16,7 +17,7 @@ class FileType(Enum):
     HDF5 = "HDF5 or MATLAB 7.3"
     MATLAB_5 = "MATLAB 5"
     ROS_1 = "ROS 1 bag"
-    ROS_2 = "ROS 2 bag of SQLite"
+    ROS_2 = _("ROS 2 bag of SQLite")
     MCAP = "MCAP"
 
 
@@ -79,9 +80,9 @@ def refuse_compressed(path: Path) -> None:
         raise Refusal(
             path.name,
             "",
-            f"a file that is packed with {kinds[0]}",
+            _("a file that is packed with {kinds}", kinds=kinds[0]),
             "the log itself",
-            "unpack it, put the log into the campaign's folder, and name it in campaign.yaml",
+            _("unpack it, put the log into the campaign's folder, and name it in campaign.yaml"),
         )
 
 

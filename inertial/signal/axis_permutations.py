@@ -10,6 +10,7 @@ import numpy as np
 from inertial.physics.vectors import cross
 from inertial.signal.detector import SENSORS, Array, Description, Event, Integers, Log, Piece
 from inertial.signal.scatter import MAD_TO_SIGMA
+from inertial.text.messages import _
 from inertial.text.numbers import significant, whole
 
 AXES = "xyz"
@@ -104,20 +105,40 @@ def describe_exchange(event: Event, name: str, sensor: str) -> Description:
     """An exchange in words."""
     exchange: Exchange = event.facts
     unit, what = ("m/s²", "accelerometer") if sensor == "accel" else ("rad/s", "gyro")
-    other = f" So do those of the gyros: {exchange.with_it.in_words}." if exchange.with_it else ""
+    other = (
+        _(" So do those of the gyros: {in_words}.", in_words=exchange.with_it.in_words)
+        if exchange.with_it
+        else ""
+    )
     worst = int(np.argmax(np.abs(exchange.after - exchange.before)))
     before, after = (
         significant(float(part[worst]), 5) for part in (exchange.before, exchange.after)
     )
     return Description(
-        f"{name}: from line {event.line} on, {'to the end, ' if exchange.lasting else ''}for"
-        f" {whole(event.size)} records, the axes of the {what}s differ from those of the records"
-        f" before: {exchange.permutation.in_words}.{other} No motion does that from one record to"
-        " the next.",
-        f"Used, their mean on {AXES[worst]} would be {after} in place of {before} {unit}: bias,"
-        " scale factor and cross terms would be wrong.",
-        "These records are masked. Find out which order and signs of the axes are right, and"
-        " whether the records before are.",
+        _(
+            "{name}: from line {line} on, {value}for {size} records, the axes of the "
+            "{what}s differ from those of the records before: {in_words}.{other} No motion "
+            "does that from one record to the next.",
+            name=name,
+            line=event.line,
+            value="to the end, " if exchange.lasting else "",
+            size=whole(event.size),
+            what=what,
+            in_words=exchange.permutation.in_words,
+            other=other,
+        ),
+        _(
+            "Used, their mean on {axes} would be {after} in place of {before} {unit}: bias, "
+            "scale factor and cross terms would be wrong.",
+            axes=AXES[worst],
+            after=after,
+            before=before,
+            unit=unit,
+        ),
+        _(
+            "These records are masked. Find out which order and signs of the axes are "
+            "right, and whether the records before are."
+        ),
     )
 
 

@@ -5,6 +5,7 @@ import numpy as np
 from inertial.signal.axis_permutations import AXES, Permutation
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, Misread, Recorded
+from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 
 SENSOR_NAMES = {"accel": "accelerometers", "gyro": "gyros"}
@@ -37,36 +38,46 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
     where = f"in {misread.log}" if misread.log else "in all logs"
     names = ", ".join(misread.explains[:MAX_NAMES])
     names += (
-        f" and {len(misread.explains) - MAX_NAMES} more"
+        _(" and {explains} more", explains=len(misread.explains) - MAX_NAMES)
         if len(misread.explains) > MAX_NAMES
         else ""
     )
     number = len(misread.explains)
     agree = f"{counted(number, 'manoeuvre')} {'agrees' if number == 1 else 'agree'}"
-    sentence = (
-        f"Of the {sensor}, {where}, {_reads(misread.axes)}: only so {agree} with the plan"
-        f" ({names}). {_handed(misread, recorded)}"
+    sentence = _(
+        "Of the {sensor}, {where}, {axes}: only so {agree} with the plan ({names}). {misread}",
+        sensor=sensor,
+        where=where,
+        axes=_reads(misread.axes),
+        agree=agree,
+        names=names,
+        misread=_handed(misread, recorded),
     )
     if not misread.log:
-        consequence = (
-            f"The parameters of the {sensor} come out under wrong names:"
-            f" {_in_the_matrix(misread.axes)}; the biases likewise."
+        consequence = _(
+            "The parameters of the {sensor} come out under wrong names: {axes}; the biases "
+            "likewise.",
+            sensor=sensor,
+            axes=_in_the_matrix(misread.axes),
         )
         if misread.sensor == "gyro":
-            consequence = (
-                "The turns give no parameters of the gyros. Used, they would give"
-                f" {_in_the_matrix(misread.axes)}; the biases are under wrong names."
+            consequence = _(
+                "The turns give no parameters of the gyros. Used, they would give {axes}; the "
+                "biases are under wrong names.",
+                axes=_in_the_matrix(misread.axes),
             )
-        action = (
-            "The manoeuvres are found by the right axes; the data are not changed. Correct the axes"
-            " of the instrument, or the columns, and run it again."
+        action = _(
+            "The manoeuvres are found by the right axes; the data are not changed. Correct "
+            "the axes of the instrument, or the columns, and run it again."
         )
     else:
-        consequence = (
-            f"Used, its readings would be off by up to {significant(_off(misread, recorded), 3)}"
-            f" {'m/s²' if misread.sensor == 'accel' else '°'}, for the other logs are not so."
+        consequence = _(
+            "Used, its readings would be off by up to {significant} {value}, for the other "
+            "logs are not so.",
+            significant=significant(_off(misread, recorded), 3),
+            value="m/s²" if misread.sensor == "accel" else "°",
         )
-        action = "It is left out. See how this log was written, and correct it."
+        action = _("It is left out. See how this log was written, and correct it.")
     return Description(sentence, consequence, action)
 
 
@@ -90,19 +101,25 @@ def _reads(axes: Permutation) -> str:
 
 def _handed(misread: Misread, recorded: Recorded) -> str:
     flips = misread.axes.in_place
-    usual = "RAWIMUS writes z, −y, x: a sign that is forgotten, or taken twice, is the usual cause."
-    usual = usual if flips else "RAWIMUS writes z, −y, x: another order of the fields does this."
+    usual = _(
+        "RAWIMUS writes z, −y, x: a sign that is forgotten, or taken twice, is the usual cause."
+    )
+    usual = usual if flips else _("RAWIMUS writes z, −y, x: another order of the fields does this.")
     if determinant(misread.axes) < 0:
-        return f"So the triad is left-handed (determinant −1), which no mounting does. {usual}"
+        return _(
+            "So the triad is left-handed (determinant −1), which no mounting does. {usual}",
+            usual=usual,
+        )
     others = [other for other in recorded.misread if other.log == misread.log]
     if len(others) == 2 and others[0].axes == others[1].axes:
-        return (
-            "The triads of both sensors stay right-handed (determinant +1): the IMU may be mounted"
-            " turned against the plan, or two mistakes cancel."
+        return _(
+            "The triads of both sensors stay right-handed (determinant +1): the IMU may be "
+            "mounted turned against the plan, or two mistakes cancel."
         )
-    return (
-        "The triad stays right-handed (determinant +1), so two mistakes cancel; it is no mounting,"
-        f" for the other sensor does not agree. {usual}"
+    return _(
+        "The triad stays right-handed (determinant +1), so two mistakes cancel; it is "
+        "no mounting, for the other sensor does not agree. {usual}",
+        usual=usual,
     )
 
 
@@ -113,11 +130,16 @@ def _in_the_matrix(axes: Permutation) -> str:
         if back.changed[i]:
             sign, source = back.signs[i], back.sources[i]
             if source == i:
-                parts.append(f"scale error of {AXES[i]} −200 %")
+                parts.append(_("scale error of {axes} −200 %", axes=AXES[i]))
             else:
                 unit_term = "1" if sign > 0 else "−1"
                 parts.append(
-                    f"scale error of {AXES[i]} −100 %, its cross term {AXES[source]} {unit_term}"
+                    _(
+                        "scale error of {axes} −100 %, its cross term {axes_2} {unit_term}",
+                        axes=AXES[i],
+                        axes_2=AXES[source],
+                        unit_term=unit_term,
+                    )
                 )
     return "; ".join(parts)
 

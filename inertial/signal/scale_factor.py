@@ -6,6 +6,7 @@ import numpy as np
 
 from inertial.signal.detector import Array, Given, Log
 from inertial.signal.plan_detector import Recorded
+from inertial.text.messages import _
 from inertial.text.units import DEGREE, STANDARD_GRAVITY
 
 # Of gravity. A consumer accelerometer may be off by 80 mg and 3 % (MPU-6050, PS-MPU-6000A), an old
@@ -18,12 +19,12 @@ FULL_SCALE_FACTORS = (2, 4, 8, 16)
 QUIET_VARIANCE_RATIO = 4.0  # over the lower quartile: a window of 1 s in which the IMU is at rest
 UNIT_FACTORS = {
     "accel": {
-        STANDARD_GRAVITY: "the values are in m/s² but are read as g",
-        1 / STANDARD_GRAVITY: "the values are in g but are read as m/s²",
+        STANDARD_GRAVITY: _("the values are in m/s² but are read as g"),
+        1 / STANDARD_GRAVITY: _("the values are in g but are read as m/s²"),
     },
     "gyro": {
-        1 / DEGREE: "the values are in degrees but are read as radians",
-        DEGREE: "the values are in radians but are read as degrees",
+        1 / DEGREE: _("the values are in degrees but are read as radians"),
+        DEGREE: _("the values are in radians but are read as degrees"),
     },
 }
 
@@ -55,7 +56,7 @@ def explanation_of(ratio: float, sensor: str, given: Given, count: float = np.na
         near = [f for f in distance if abs(f / nearest - 1) < MAX_FACTOR_DIFFERENCE]
         return ", or ".join(known[factor] for factor in sorted(near, key=lambda f: distance[f]))
     if abs(ratio) > MIN_RAW_COUNT_RATIO:
-        return "the values are counts, and counts_per_unit is missing"
+        return _("the values are counts, and counts_per_unit is missing")
     return None
 
 
@@ -64,9 +65,13 @@ def _known_factors(sensor: str, given: Given, count: float) -> Iterator[tuple[fl
     yield from UNIT_FACTORS[sensor].items()
     for scale in FULL_SCALE_FACTORS:
         for factor, size in ((float(scale), "small"), (1 / scale, "large")):
-            cause = f"counts_per_unit is {scale} times too {size}, as of another full scale"
+            cause = _(
+                "counts_per_unit is {scale} times too {size}, as of another full scale",
+                scale=scale,
+                size=size,
+            )
             if sensor == "gyro" and scale == FULL_SCALE_FACTORS[0]:
-                cause += f", or the sample rate is off by {scale}"
+                cause += _(", or the sample rate is off by {scale}", scale=scale)
             yield factor, cause
     size_of = {name: sizes[sensor == "gyro"] for name, sizes in given.count_sizes.items()}
     for used in [count] if np.isfinite(count) else sorted(set(size_of.values())):
@@ -76,7 +81,10 @@ def _known_factors(sensor: str, given: Given, count: float) -> Iterator[tuple[fl
                 instruments.setdefault(used / other, []).append(name)
         for factor, names in instruments.items():
             # Slightly beside the factor itself, which may be that of a unit as well.
-            yield factor * (1 + 1e-12), f"the counts are those of {' or '.join(names)}"
+            yield (
+                factor * (1 + 1e-12),
+                _("the counts are those of {names}", names=" or ".join(names)),
+            )
 
 
 def turn_ratios(recorded: Recorded) -> tuple[Array, Array]:
@@ -110,4 +118,4 @@ def common_turn_ratio(recorded: Recorded) -> tuple[float, str] | None:
     cause = explanation_of(ratio, "gyro", recorded.given, size)
     if cause is None and known.sum() == 1:
         return None
-    return ratio, cause or "no known unit, full scale or instrument explains it"
+    return ratio, cause or _("no known unit, full scale or instrument explains it")

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from inertial.tables.errors import Refusal
+from inertial.text.messages import _
 
 FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
@@ -27,9 +28,9 @@ def room_for(path: Path) -> Iterator[None]:
         raise Refusal(
             str(path),
             "",
-            f"no room: {error.strerror or error}",
-            "room on the disk for what is written here",
-            "make room and run again: nothing is half-written, and what was there is whole",
+            _("no room: {value}", value=error.strerror or error),
+            _("room on the disk for what is written here"),
+            _("make room and run again: nothing is half-written, and what was there is whole"),
         ) from None
 
 

@@ -18,6 +18,7 @@ from ruamel.yaml.resolver import VersionedResolver
 from ruamel.yaml.scalarbool import ScalarBoolean
 
 from inertial.tables.errors import Refusal
+from inertial.text.messages import _
 
 Key = Sequence[str | int]
 MAX_BYTES = 4_000_000  # a campaign file of a person is a thousand times smaller
@@ -89,8 +90,10 @@ class YamlFile:
             unknown = next(k for k in given if k not in allowed)
             near = difflib.get_close_matches(str(unknown), allowed, n=1)
             cure = f"write {near[0]}" if near else "remove it"
-            found = f"the key {shown(unknown)}"
-            return self.refuse_text([*key, unknown], found, f"one of {', '.join(allowed)}", cure)
+            found = _("the key {unknown}", unknown=shown(unknown))
+            return self.refuse_text(
+                [*key, unknown], found, _("one of {allowed}", allowed=", ".join(allowed)), cure
+            )
         if error.validator == "required":
             required: Any = error.validator_value
             instance: Any = error.instance
@@ -98,13 +101,18 @@ class YamlFile:
             description = rule.get("properties", {}).get(missing, {}).get("description", "")
             return self.refuse_text(
                 key,
-                f"no key {missing!r}",
+                _("no key {missing!r}", missing=missing),
                 f"{missing}: {description}".rstrip(": "),
                 f"add {missing}",
             )
         if key and key[-1] in ("serial", "date") and not isinstance(error.instance, str):
-            found = f"the number {shown(error.instance)}, in which leading zeros are lost"
-            return self.refuse_text(key, found, meaning, f'put it in quotes: {key[-1]}: "…"')
+            found = _(
+                "the number {instance}, in which leading zeros are lost",
+                instance=shown(error.instance),
+            )
+            return self.refuse_text(
+                key, found, meaning, _('put it in quotes: {key}: "…"', key=key[-1])
+            )
         expected = f"{meaning} ({error.message})" if meaning else error.message
         return self.refuse(key, error.instance, expected, "correct the value")
 
@@ -116,7 +124,11 @@ class YamlFile:
         size = self.path.stat().st_size
         if size > MAX_BYTES:
             raise Refusal(
-                str(self.path), "", f"{size} bytes", f"at most {MAX_BYTES}", "is this a log?"
+                str(self.path),
+                "",
+                f"{size} bytes",
+                _("at most {max_bytes}", max_bytes=MAX_BYTES),
+                "is this a log?",
             )
         yaml = YAML(typ="rt", pure=True)
         yaml.Resolver = _DatesAreText
@@ -124,35 +136,50 @@ class YamlFile:
             return yaml.load(self.path.read_text(encoding="utf-8"))
         except UnicodeDecodeError as error:
             raise Refusal(
-                str(self.path), f"byte {error.start}", "no UTF-8", "UTF-8 text", "save it as UTF-8"
+                str(self.path),
+                f"byte {error.start}",
+                "no UTF-8",
+                "UTF-8 text",
+                _("save it as UTF-8"),
             ) from None
         except MarkedYAMLError as error:
             mark = error.problem_mark
-            line = f"line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+            line = (
+                _("line {line}, column {column}", line=mark.line + 1, column=mark.column + 1)
+                if mark
+                else ""
+            )
             found = str(error.problem)
             raise Refusal(
-                str(self.path), line, found, "YAML 1.2", "correct this line or the one before"
+                str(self.path), line, found, "YAML 1.2", _("correct this line or the one before")
             ) from None
         except (YAMLError, ValueError) as error:
             raise Refusal(str(self.path), "", str(error), "YAML 1.2", "correct the file") from None
         except RecursionError:
-            raise self._too_much("levels without end", f"at most {MAX_DEPTH} levels") from None
+            raise self._too_much(
+                "levels without end", _("at most {max_depth} levels", max_depth=MAX_DEPTH)
+            ) from None
 
     def _too_much(self, found: str, expected: str) -> Refusal:
-        return Refusal(str(self.path), "", found, expected, "write it out without aliases")
+        return Refusal(str(self.path), "", found, expected, _("write it out without aliases"))
 
     def _plain(self, node: Any, key: tuple[str | int, ...]) -> Any:
         self._values += 1
         if self._values > MAX_VALUES:
-            raise self._too_much(f"more than {MAX_VALUES} values, aliases written out", "fewer")
+            raise self._too_much(
+                _("more than {max_values} values, aliases written out", max_values=MAX_VALUES),
+                "fewer",
+            )
         if len(key) > MAX_DEPTH:
-            raise self._too_much("more levels", f"at most {MAX_DEPTH} levels")
+            raise self._too_much(
+                "more levels", _("at most {max_depth} levels", max_depth=MAX_DEPTH)
+            )
         if getattr(getattr(node, "tag", None), "value", None):
-            raise self.refuse(key, str(node), "text, a number, a list or keys", "remove its tag")
+            raise self.refuse(key, str(node), _("text, a number, a list or keys"), "remove its tag")
         if isinstance(node, CommentedMap):
             for name in node:
                 if not isinstance(name, str | int):
-                    raise self.refuse(key, name, "a key of text", "put the key in quotes")
+                    raise self.refuse(key, name, "a key of text", _("put the key in quotes"))
                 self._lines[(*key, name)] = node.lc.key(name)[0] + 1
             return {name: self._plain(value, (*key, name)) for name, value in node.items()}
         if isinstance(node, CommentedSeq):
@@ -170,11 +197,16 @@ class YamlFile:
             if not isfinite(node):
                 raise self.refuse(key, float(node), "a finite number", "correct the value")
             if abs(node) > MAX_NUMBER:
-                raise self.refuse(key, node, f"at most {MAX_NUMBER:g}", "correct the value")
+                raise self.refuse(
+                    key,
+                    node,
+                    _("at most {max_number:g}", max_number=MAX_NUMBER),
+                    "correct the value",
+                )
             return int(node) if isinstance(node, int) else float(node)
         if node is None:
             return None
-        raise self.refuse(key, str(node), "text or a number", "put it in quotes")
+        raise self.refuse(key, str(node), "text or a number", _("put it in quotes"))
 
 
 @cache

@@ -11,6 +11,7 @@ from inertial.campaign.findings import Finding
 from inertial.campaign.records import with_mount
 from inertial.estimation.position_outlier import OffPosition
 from inertial.tables import AXES
+from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
 from inertial.text.units import quantity
 
@@ -18,9 +19,9 @@ Array = NDArray[np.float64]
 
 MIN_NOTABLE_SIGMA = 1.0  # sigmas of the estimate by which a term must move to be named
 WORDS = {
-    "bias": "bias of the {row} accelerometer",
-    "scale": "scale factor of the {row} accelerometer",
-    "cross": "response of the {row} accelerometer to force along {column}",
+    "bias": _("bias of the {row} accelerometer"),
+    "scale": _("scale factor of the {row} accelerometer"),
+    "cross": _("response of the {row} accelerometer to force along {column}"),
 }
 
 
@@ -44,23 +45,39 @@ def findings(off: OffPosition, sigma: Array, mount: str) -> Iterator[Finding]:
         unit="rad",
         p_value=off.p_value,
         severity=2,
-        sentence=f"The position {names} stands off by {size} ± {fixed(degrees(off.sigma), 4)}°,"
-        f" mostly about {AXES[axis]}, against all others."
-        + (" The readings do not tell which of these it is." if several else "")
-        + " Or the accelerometers have an error that the twelve parameters lack: criticism weighs"
-        " the two.",
-        consequence=(
-            f"With it left free, {'; '.join(spoilt)}. The joint estimate holds it as a scatter"
-            " between positions."
-            if spoilt
-            else "No parameter moves by more than its sigma."
+        sentence=_(
+            "The position {names} stands off by {size} ± {fixed}°, mostly about {axes}, "
+            "against all others.",
+            names=names,
+            size=size,
+            fixed=fixed(degrees(off.sigma), 4),
+            axes=AXES[axis],
+        )
+        + (_(" The readings do not tell which of these it is.") if several else "")
+        + _(
+            " Or the accelerometers have an error that the twelve parameters lack: "
+            "criticism weighs the two."
         ),
-        action="Set this position again and record it; or state position_sigma_arcsec as it is.",
+        consequence=(
+            _(
+                "With it left free, {spoilt}. The joint estimate holds it as a scatter between "
+                "positions.",
+                spoilt="; ".join(spoilt),
+            )
+            if spoilt
+            else _("No parameter moves by more than its sigma.")
+        ),
+        action=_("Set this position again and record it; or state position_sigma_arcsec as it is."),
     )
 
 
 def _moved(name: str, by: float) -> str:
-    kind, _, axes = name.partition("_")
+    kind, _unused, axes = name.partition("_")
     words = WORDS[kind].format(row=axes[0], column=axes[-1])
     unit = quantity(name, "m/s²" if kind == "bias" else "1").laboratory
-    return f"the {words} moves by {significant(unit.of(by), 3)} {unit.name}"
+    return _(
+        "the {words} moves by {significant} {name}",
+        words=words,
+        significant=significant(unit.of(by), 3),
+        name=unit.name,
+    )

@@ -16,6 +16,7 @@ from inertial.estimation.accelerometers import StaticForce, equations, weighted
 from inertial.estimation.position_outlier import off_position
 from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
 from inertial.tables.stage import Stage, Tables
+from inertial.text.messages import _
 from stages.accelerometer.declared import DECLARED
 from stages.accelerometer.position_findings import findings
 from stages.accelerometer.rotating_positions import LEVER_ARM, turning_rests
@@ -24,9 +25,13 @@ from stages.accelerometer.source_formulas import add_pooled_positions, add_six_p
 Array = NDArray[np.float64]
 
 CURES = {
-    "bias": "the rests do not part it from the scale factors: turn the IMU over, so that an axis"
-    " points up once and down once",
-    "matrix": "no rests differ enough along {axis}: add one with +{axis} up, one with -{axis} up",
+    "bias": _(
+        "the rests do not part it from the scale factors: turn the IMU over, so that an "
+        "axis points up once and down once"
+    ),
+    "matrix": _(
+        "no rests differ enough along {axis}: add one with +{axis} up, one with -{axis} up"
+    ),
 }
 
 

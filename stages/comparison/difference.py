@@ -11,14 +11,15 @@ from inertial import tables
 from inertial.campaign.estimates import SENSOR_OF
 from inertial.campaign.records import Row, rows_of, with_mount
 from inertial.estimation.consistency import holm_rejections, normal_p_value
+from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, fixed, p_is, with_sigma
 from inertial.text.units import quantity
 
 SENSORS = {"accelerometer": ("accelerometer", "force"), "gyroscope": ("gyro", "rate")}
 FORMS = {
-    "cubic": "what all gyros read beyond a straight line, with the cube of the rate",
-    "asymmetry": "what all gyros read beyond a straight line, with the size of the rate",
-    "scale": "scale factors of the gyros",
+    "cubic": _("what all gyros read beyond a straight line, with the cube of the rate"),
+    "asymmetry": _("what all gyros read beyond a straight line, with the size of the rate"),
+    "scale": _("scale factors of the gyros"),
 }
 MAX_AGREEING_SIGMAS = 2.0  # sigmas within which values simply agree
 
@@ -87,13 +88,30 @@ class Difference:
         chance = f"({p_is(self.p_value)})"
         remark = f" {self.remark}." if self.remark else ""
         if beyond:
-            told = f"{one} and {other} differ by {far}: more than chance {chance}."
+            told = _(
+                "{value} and {other} differ by {far}: more than chance {chance}.",
+                value=one,
+                other=other,
+                far=far,
+                chance=chance,
+            )
         elif abs(self.in_sigmas) <= MAX_AGREEING_SIGMAS:
-            told = f"{one} and {other} agree within their sigmas: they differ by {far} {chance}."
+            told = _(
+                "{value} and {other} agree within their sigmas: they differ by {far} {chance}.",
+                value=one,
+                other=other,
+                far=far,
+                chance=chance,
+            )
         else:
-            told = (
-                f"{one} and {other} differ by {far}: no more than chance among {among}"
-                f" comparisons {chance}."
+            told = _(
+                "{value} and {other} differ by {far}: no more than chance among {among} "
+                "comparisons {chance}.",
+                value=one,
+                other=other,
+                far=far,
+                among=among,
+                chance=chance,
             )
         return f"{subject}: {told}{remark}"
 
@@ -102,12 +120,18 @@ def named(stage: str, name: str) -> str:
     """A parameter in words: bias_y of the gyroscope is the bias of the y gyro."""
     if name in FORMS:
         return FORMS[name]
-    kind, _, axes = name.partition("_")
+    kind, _unused, axes = name.partition("_")
     sensor, input_ = SENSORS[stage]
     if kind == "cross":
-        return f"response of the {axes[0]} {sensor} to {input_} along {axes[1]}"
+        return _(
+            "response of the {axes} {sensor} to {input} along {axes_2}",
+            axes=axes[0],
+            sensor=sensor,
+            input=input_,
+            axes_2=axes[1],
+        )
     what = {"bias": "bias", "scale": "scale factor"}[kind]
-    return f"{what} of the {axes} {sensor}"
+    return _("{what} of the {axes} {sensor}", what=what, axes=axes, sensor=sensor)
 
 
 def table_of(differences: Sequence[Difference], level: float) -> pd.DataFrame:

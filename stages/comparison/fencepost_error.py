@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.angle_windows import Fencepost, fencepost
 from inertial.estimation.consistency import common_cause
+from inertial.text.messages import _
 from inertial.text.numbers import fixed, whole
 from inertial.text.units import PPM
 from stages.comparison.difference import Difference, Results
@@ -109,13 +110,17 @@ def _words(found: Fencepost, samples: Array, told: bool, speed: tuple[float, flo
     counts = sorted({round(n) for n in samples})
     each = ", ".join(f"{whole(n + found.whole)} samples for {whole(n)}" for n in counts)
     factor = f"{fixed(found.cause.amount, 2)} ± {fixed(found.cause.sigma, 2)}"
-    said = (
-        f"fencepost: the published ones differ from ours by {ratios} ppm, {factor} samples of their"
-        f" windows, as if {each} had been summed; a window of N samples has N + 1 edges"
+    said = _(
+        "fencepost: the published ones differ from ours by {ratios} ppm, {factor} "
+        "samples of their windows, as if {each} had been summed; a window of N samples "
+        "has N + 1 edges",
+        ratios=ratios,
+        factor=factor,
+        each=each,
     )
     if not told:
-        said += " (their window is not told; it is taken as 180° by time)"
+        said += _(" (their window is not told; it is taken as 180° by time)")
     if speed is not None:
         real = f"{fixed(PPM.of(speed[0]), 1)} ± {fixed(PPM.of(speed[1]), 1)} ppm"
-        said += f". The speed of the table is not the cause: here it is off by {real}"
+        said += _(". The speed of the table is not the cause: here it is off by {real}", real=real)
     return said

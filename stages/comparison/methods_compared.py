@@ -7,6 +7,7 @@ import pandas as pd
 
 from inertial.campaign.final_result import STAGES
 from inertial.campaign.records import rows_of
+from inertial.text.messages import _
 from stages.comparison.difference import Difference, Results
 
 # --- The joint estimate against the formulas of the sources, from the same data ---
@@ -14,12 +15,12 @@ from stages.comparison.difference import Difference, Results
 METHOD_AGAINST_METHOD = "method_against_method"
 MIN_SIGMA_DIFFERENCE = 0.01  # relative difference of two sigmas below which two methods are one
 WORDS = {
-    "six_position": "the six-position formula",
-    "pooled_positions": "the formula for pooled positions",
-    "turns": "the formula for turns",
-    "turn_and_stop": "the turn-and-stop formulas",
-    "stops": "the mean of the stops",
-    "rate_table": "the least squares of the rate table",
+    "six_position": _("the six-position formula"),
+    "pooled_positions": _("the formula for pooled positions"),
+    "turns": _("the formula for turns"),
+    "turn_and_stop": _("the turn-and-stop formulas"),
+    "stops": _("the mean of the stops"),
+    "rate_table": _("the least squares of the rate table"),
 }
 
 
@@ -50,10 +51,13 @@ def method_against_method(results: Results, method: str) -> Iterator[Difference]
             between=(WORDS[method], "the joint estimate"),
             place=method,
             remark=(
-                f"{WORDS[method]} and the joint estimate use the same data with the same sigma:"
-                " there is nothing to compare"
+                _(
+                    "{words} and the joint estimate use the same data with the same sigma: there "
+                    "is nothing to compare",
+                    words=WORDS[method],
+                )
                 if alike
-                else "Both are from the same data, so their variances are subtracted"
+                else _("Both are from the same data, so their variances are subtracted")
             ),
         )
 
@@ -75,7 +79,7 @@ def against_published(
         own = results[stage]
         ours = own.of("joint", name)
         missing = ours is None or ours["value"] is None
-        reason = ours["reason"] if ours else "nothing was recorded that shows it"
+        reason = ours["reason"] if ours else _("nothing was recorded that shows it")
         table = own.of("rate_table", name)
         if table is not None and table["reason"]:  # with the rank of what was put in
             reason = table["reason"]
@@ -95,11 +99,15 @@ def against_published(
                 if ours is None or missing
                 else float(np.hypot(ours["sigma"], 0.0 if alone else row["sigma"]))
             ),
-            between=("this calibration", f"the published value ({row['source']})"),
+            between=("this calibration", _("the published value ({source})", source=row["source"])),
             remark=(
-                f"it is not determined here, so {row['source']} cannot be judged: {reason}"
+                _(
+                    "it is not determined here, so {source} cannot be judged: {reason}",
+                    source=row["source"],
+                    reason=reason,
+                )
                 if missing
-                else "No sigma is published, so it is ours alone"
+                else _("No sigma is published, so it is ours alone")
                 if alone
                 else ""
             ),

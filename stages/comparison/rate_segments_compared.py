@@ -11,6 +11,7 @@ from inertial.estimation.gyroscope_formulas import both_ways, two_positions
 from inertial.estimation.gyroscope_observations import WholeTurn
 from inertial.estimation.gyroscopes import bias_and_scale
 from inertial.tables import AXES
+from inertial.text.messages import _
 from stages.comparison.difference import Difference, Results
 
 # --- Rotation forward against backward about the same axis ---
@@ -76,11 +77,11 @@ def static_against_turns(data: CampaignData, gyro: Results) -> Iterator[Differen
     for i, axis in enumerate(AXES):
         rests = list(uprights(data.gyro_inputs, i))
         static = two_positions(
-            [rest for _, rest in rests], _cross(gyro, axis), data.earth, data.position_sigma
+            [rest for _unused, rest in rests], _cross(gyro, axis), data.earth, data.position_sigma
         )
         if static is None or gyro.determined("turns", f"bias_{axis}") is None:
             continue
-        turns = bias_and_scale([turn for _, turn in angles_about(data, i)], data.earth)
+        turns = bias_and_scale([turn for _unused, turn in angles_about(data, i)], data.earth)
         found = {
             "bias": (static.bias, static.bias_sigma, 0, "rad/s"),
             "scale": (static.scale, static.scale_sigma, 1, "1"),
@@ -94,7 +95,11 @@ def static_against_turns(data: CampaignData, gyro: Results) -> Iterator[Differen
                 stage="gyroscope",
                 quantity=f"{name}_{axis}",
                 unit=unit,
-                first=f"rests with {axis} up and {axis} down: {', '.join(n for n, _ in rests)}",
+                first=_(
+                    "rests with {axis} up and {axis} down: {join}",
+                    axis=axis,
+                    join=", ".join((n for n, _unused in rests)),
+                ),
                 second=gyro.id("turns", f"{name}_{axis}"),
                 first_value=value,
                 second_value=float(turns.values[column]),

@@ -7,6 +7,7 @@ import numpy as np
 from inertial.estimation.consistency import outliers
 from inertial.estimation.gyroscope_observations import Earth, SteadyRate
 from inertial.estimation.rate_linearity import columns_of, nonlinearities, own_axis
+from inertial.text.messages import _
 from stages.comparison.difference import Difference
 
 KIND = "straight_line"
@@ -40,14 +41,16 @@ def straight_line(
                 stage="gyroscope",
                 quantity=form,
                 unit=unit,
-                first=f"{len(data.rate) - len(apart)} steady runs",
-                second="a scale factor and a bias for each gyro",
+                first=_("{rate} steady runs", rate=len(data.rate) - len(apart)),
+                second=_("a scale factor and a bias for each gyro"),
                 first_value=float(test.values[0]),
                 second_value=0.0,
                 sigma=float(test.sigma[0]),
                 degrees=test.degrees,
                 between=("the steady runs", "straight lines"),
-                remark=f"Left out, for they do not belong to the others: {left_out}"
+                remark=_(
+                    "Left out, for they do not belong to the others: {left_out}", left_out=left_out
+                )
                 if apart
                 else "",
             )

@@ -19,6 +19,7 @@ from inertial.campaign.static_positions import Still
 from inertial.estimation.gyroscope_observations import Earth, Position
 from inertial.physics.forward import Triad
 from inertial.tables import GYRO
+from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, fixed, with_sigma
 from inertial.text.units import DEGREES, DEGREES_PER_HOUR, MICRO_G, SECONDS_OF_ARC, Unit
 from stages.compensation.correction import truth_of
@@ -29,7 +30,7 @@ UNITS = {
     # quantity: (its name in a sentence, unit of the value, unit of the difference)
     "gravity": ("|f|", Unit("m/s²", 1.0), MICRO_G),
     "force_up": ("f along up", Unit("m/s²", 1.0), MICRO_G),
-    "rate_up": ("the rate along up", DEGREES_PER_HOUR, DEGREES_PER_HOUR),
+    "rate_up": (_("the rate along up"), DEGREES_PER_HOUR, DEGREES_PER_HOUR),
     "angle": ("the angle", DEGREES, SECONDS_OF_ARC),
 }
 SI = {"gravity": "m/s²", "force_up": "m/s²", "rate_up": "rad/s", "angle": "rad"}
@@ -60,7 +61,9 @@ class Check:
             if abs(far) <= 1
             else f"{fixed(abs(far), 1)} sigma"
             if abs(far) <= MAX_EXPECTED_SIGMAS
-            else f"{fixed(abs(far), 1)} sigma, so these parameters are not all there is"
+            else _(
+                "{fixed} sigma, so these parameters are not all there is", fixed=fixed(abs(far), 1)
+            )
         )
         value = fixed(unit.of(self.expected), 4) + (
             unit.name if unit is DEGREES else f" {unit.name}"
@@ -77,9 +80,18 @@ class Check:
             "after": self.after,
             "after_sigma": self.sigma,
             "in_sigmas_after": far,
-            "sentence": f"{self.manoeuvre}: {name} differs from {value} by {before}"
-            f" {fine.name} before and by {left} ± {spread} {fine.name} after compensation:"
-            f" {verdict}.",
+            "sentence": _(
+                "{manoeuvre}: {name} differs from {value} by {before} {name_2} before and by "
+                "{left} ± {spread} {name_2} after compensation: {verdict}.",
+                manoeuvre=self.manoeuvre,
+                name=name,
+                value=value,
+                before=before,
+                name_2=fine.name,
+                left=left,
+                spread=spread,
+                verdict=verdict,
+            ),
         }
 
 
@@ -112,8 +124,11 @@ def missing(parameters: pd.DataFrame, sensor: str, mount: str) -> Row:
         "manoeuvre": None,
         "quantity": sensor,
         "unit": "",
-        "sentence": f"The {sensor}s are not compensated, for not all of M and bias is determined."
-        f" {told or 'Nothing was recorded that shows them'}.",
+        "sentence": _(
+            "The {sensor}s are not compensated, for not all of M and bias is determined. {value}.",
+            sensor=sensor,
+            value=told or "Nothing was recorded that shows them",
+        ),
     }
 
 

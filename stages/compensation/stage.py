@@ -14,6 +14,7 @@ from inertial.campaign.records import Row, rows_of
 from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Pieces, Stage
+from inertial.text.messages import _
 from stages.compensation.checks import checks, missing, table_of
 from stages.compensation.compensated_samples import CompensatedStream
 from stages.compensation.correction import mounted
@@ -23,11 +24,16 @@ from stages.compensation.envelope import envelope
 ALREADY = Finding(
     id="compensation/already_compensated/campaign",
     cause="already_compensated",
-    sentence="The campaign says that its logs are compensated already, so they are not compensated"
-    " again.",
-    consequence="The parameters are what the first compensation has left over, not those of the"
-    " IMU.",
-    action="No sample is compensated. Give the raw logs, or remove compensated from campaign.yaml.",
+    sentence=_(
+        "The campaign says that its logs are compensated already, so they are not "
+        "compensated again."
+    ),
+    consequence=_(
+        "The parameters are what the first compensation has left over, not those of the IMU."
+    ),
+    action=_(
+        "No sample is compensated. Give the raw logs, or remove compensated from campaign.yaml."
+    ),
     severity=3,
 )
 
@@ -55,9 +61,9 @@ def compensation(
         raise Refusal(
             str(samples.path),
             "",
-            f"samples made by {maker}",
-            "samples as decode makes them from the logs, not compensated",
-            "give the samples of decode: a second compensation would take out the errors twice",
+            _("samples made by {maker}", maker=maker),
+            _("samples as decode makes them from the logs, not compensated"),
+            _("give the samples of decode: a second compensation would take out the errors twice"),
         )
     (facts,) = rows_of(campaign)
     if facts["compensated"]:

@@ -20,6 +20,7 @@ from inertial.estimation.variance_components import (
 from inertial.physics.drift import without_clock
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
+from inertial.text.messages import _
 
 # ---- Random walk of the biases of a sensor beside the named effects.
 
@@ -107,7 +108,7 @@ class Course(Effect):
     It takes the place of several effects that together would only imitate it.
     """
 
-    cause = "the bias drifts, by no law of the catalogue"
+    cause = _("the bias drifts, by no law of the catalogue")
     source = "Fourier, by cosines over the time of the campaign"
     thinkable = 1e4
 
@@ -116,7 +117,8 @@ class Course(Effect):
         self.sensor, self.at = sensor, float(half_waves)
         self.name = course_of(sensor)  # type: ignore[misc]
         self.parameters = tuple(  # type: ignore[misc]
-            Parameter(f"c_{axis}", unit, size, f"of the {axis} reading") for axis in "xyz"
+            Parameter(f"c_{axis}", unit, size, _("of the {axis} reading", axis=axis))
+            for axis in "xyz"
         )
         self.sizes = {"usual": size}  # type: ignore[misc]
 

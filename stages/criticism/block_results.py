@@ -11,6 +11,7 @@ from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTUR
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.physics.effect import Effect
 from inertial.text.cause_names import in_words
+from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, with_sigma
 from inertial.text.units import DEGREE_PER_HOUR, MICRO_G
 from stages.criticism import block_sentences as sentences
@@ -37,29 +38,33 @@ MIN_EXCESS = 1.2  # of chi-squared per degree; the uncertainty of the noise leve
 
 NOT_TESTED = "Not detected."
 OF_NOISE = {
-    "gyro_flicker": "One campaign does not distinguish it from a random walk, which is estimated.",
+    "gyro_flicker": _(
+        "One campaign does not distinguish it from a random walk, which is estimated."
+    ),
 }
-OF_QUALITY = "SearchedEffect in the quality of the samples: findings “{finding}”."
-WALK_SCORE = "The biases of the gyros follow a random walk of {size}, which the sigmas allow for."
-WALK_OR = (
-    "The biases of the {sensors} change as by a random walk of {size}. It may also be {others}:"
-    " this campaign cannot distinguish them."
+OF_QUALITY = _("SearchedEffect in the quality of the samples: findings “{finding}”.")
+WALK_SCORE = _(
+    "The biases of the gyros follow a random walk of {size}, which the sigmas allow for."
 )
-WALK_ALONE = (
-    "The biases of the {sensors} change as by a random walk of {size}. Any other change without a"
-    " law would look much the same."
+WALK_OR = _(
+    "The biases of the {sensors} change as by a random walk of {size}. It may also "
+    "be {others}: this campaign cannot distinguish them."
 )
-WALK_CONSEQUENCE = "The sigmas of all parameters allow for it."
-REPEAT = (
+WALK_ALONE = _(
+    "The biases of the {sensors} change as by a random walk of {size}. Any other "
+    "change without a law would look much the same."
+)
+WALK_CONSEQUENCE = _("The sigmas of all parameters allow for it.")
+REPEAT = _(
     "Record the positions once more, in another order, to distinguish a random walk from others."
 )
-SHORTEN = "A shorter campaign, or turns there and back, reduce its influence."
-UNEXPLAINED = (
-    "The residuals of the {sensors} are {ratio:.1f} times as large as noise, and no effect of the"
-    " catalogue explains it."
+SHORTEN = _("A shorter campaign, or turns there and back, reduce its influence.")
+UNEXPLAINED = _(
+    "The residuals of the {sensors} are {ratio:.1f} times as large as noise, and no "
+    "effect of the catalogue explains it."
 )
-SCATTER = "The joint estimate allows for it as a scatter between manoeuvres."
-INSPECT = "Look at the residuals of each manoeuvre, and how the positions were set."
+SCATTER = _("The joint estimate allows for it as a scatter between manoeuvres.")
+INSPECT = _("Look at the residuals of each manoeuvre, and how the positions were set.")
 
 
 class BlockResults:
@@ -309,7 +314,7 @@ def random_walk_rows(
     )
     yield from member_rows(identifier, mount, [cause, *others])
     sigma = walk.sigma if np.isfinite(walk.sigma) else None
-    size = Estimated("K", unit, "random walk of the biases", walk.size, sigma)
+    size = Estimated("K", unit, _("random walk of the biases"), walk.size, sigma)
     yield parameter_row(mount, cause, size, identifier, identifier)
     row: Row = {"mount": mount, "sensor": sensor, "value": walk.size, "sigma": sigma, "unit": unit}
     yield "random_walks", {**row, "finding": identifier}

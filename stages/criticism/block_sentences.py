@@ -12,6 +12,7 @@ from inertial.model_selection.detection_limits import (
 )
 from inertial.physics.effect import Effect
 from inertial.text.cause_names import in_words
+from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, p_is, significant, with_sigma
 from inertial.text.units import quantity
 from stages.criticism.class_splitting import TURNED_OVER, Splitting
@@ -19,54 +20,54 @@ from stages.criticism.finding_rows import Estimated
 
 MIN_SIGMAS = 3.0  # from which a parameter is given in a sentence, if any reaches it
 REASONS = {
-    NOT_EXCITED: "no manoeuvre of this plan changes a reading by it",
-    ABSORBED: "it cannot be separated here from the parameters that are always estimated",
-    ONLY_TOGETHER: "only combinations of its parameters are determined, none by itself",
+    NOT_EXCITED: _("no manoeuvre of this plan changes a reading by it"),
+    ABSORBED: _("it cannot be separated here from the parameters that are always estimated"),
+    ONLY_TOGETHER: _("only combinations of its parameters are determined, none by itself"),
 }
 
-ACTION = (
+ACTION = _(
     "Use the parameters of the extended model where they predict data that it was not fitted to."
 )
-ACTION_WITHOUT_LAW = (
+ACTION_WITHOUT_LAW = _(
     "Look at the residuals against time; record again with the IMU switched on long before."
 )
-CONSEQUENCE = (
-    "Without it bias, scale factors and cross terms absorb a part of it and do not hold in other"
-    " motions; the extension tells how much that is."
+CONSEQUENCE = _(
+    "Without it bias, scale factors and cross terms absorb a part of it and do not "
+    "hold in other motions; the extension tells how much that is."
 )
-CONSEQUENCE_WITHOUT_LAW = (
+CONSEQUENCE_WITHOUT_LAW = _(
     "The joint estimate allows for it as a random walk or as a scatter of the manoeuvres."
 )
 
-DETECTED = "Detected: {effect}{place}: {cause}. {numbers}."
-DETECTED_CLASS = (
-    "Detected: {effect}{place} ({cause}), or {others}: this campaign cannot distinguish them. As"
-    " {effect}: {numbers}."
+DETECTED = _("Detected: {effect}{place}: {cause}. {numbers}.")
+DETECTED_CLASS = _(
+    "Detected: {effect}{place} ({cause}), or {others}: this campaign cannot "
+    "distinguish them. As {effect}: {numbers}."
 )
-CONSISTENT = (
-    "The data are consistent with {effects}; no more can be said, for the remaining residuals, or a"
-    " random walk, follow no law. As {effect}: {numbers}."
+CONSISTENT = _(
+    "The data are consistent with {effects}; no more can be said, for the remaining "
+    "residuals, or a random walk, follow no law. As {effect}: {numbers}."
 )
-DRIFT = "The biases drift in a way that no effect of the catalogue explains{nearest}."
-NO_NUMBER = "no parameter by itself"
+DRIFT = _("The biases drift in a way that no effect of the catalogue explains{nearest}.")
+NO_NUMBER = _("no parameter by itself")
 
-NOT_SIGNIFICANT = "{effect}: not significant ({p_value})."
-NOTHING_BESIDE = "{effect}: no signal of its own beside what is named."
-NOT_OBSERVABLE = "{effect}: not observable in this campaign, for {reason}."
-ABSORBED_BY = "it is absorbed by {parameters}"
+NOT_SIGNIFICANT = _("{effect}: not significant ({p_value}).")
+NOTHING_BESIDE = _("{effect}: no signal of its own beside what is named.")
+NOT_OBSERVABLE = _("{effect}: not observable in this campaign, for {reason}.")
+ABSORBED_BY = _("it is absorbed by {parameters}")
 
-LIMIT = "{parameter}: detected from {size} on."
-LIMIT_SCANNED = (
+LIMIT = _("{parameter}: detected from {size} on.")
+LIMIT_SCANNED = _(
     "{parameter}: detected from {size} on, from {smallest} to {largest} depending on {scanned}."
 )
-NO_LIMIT = "{parameter}: not observable, for {reason}."
-SAME_RATE = (
-    "{now:.0f} % of it could as well be a scale factor that depends on the rate;"
-    " {manoeuvre}, and it is {then:.0f} %."
+NO_LIMIT = _("{parameter}: not observable, for {reason}.")
+SAME_RATE = _(
+    "{now:.0f} % of it could as well be a scale factor that depends on the rate; "
+    "{manoeuvre}, and it is {then:.0f} %."
 )
 
-SPLIT = " To distinguish them, {manoeuvre}: expected separation {sigmas} sigma."
-SPLIT_TOO_WEAK = " Not even this would distinguish them: {manoeuvre} ({sigmas} sigma)."
+SPLIT = _(" To distinguish them, {manoeuvre}: expected separation {sigmas} sigma.")
+SPLIT_TOO_WEAK = _(" Not even this would distinguish them: {manoeuvre} ({sigmas} sigma).")
 
 
 def cause_sentence(
@@ -79,7 +80,9 @@ def cause_sentence(
     title = in_words(cause.effect)
     others = [in_words(member) for member in cause.members if member != cause.effect]
     if effect is None:
-        return DRIFT.format(nearest=f"; nearest is {', '.join(others)}" if others else "")
+        return DRIFT.format(
+            nearest=_("; nearest is {others}", others=", ".join(others)) if others else ""
+        )
     values = {
         "effect": title,
         "place": f" at {' or '.join(positions)}" if positions else "",

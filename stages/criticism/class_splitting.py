@@ -15,6 +15,7 @@ from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.splitting import TELLS, split
 from inertial.physics.effect import Effect
 from inertial.tables import GYRO
+from inertial.text.messages import _
 from stages.criticism.selection import Selection, columns_of, evidence_of
 
 # ---- Manoeuvres that a laboratory might add: copies of those performed, to predict their value.
@@ -23,10 +24,10 @@ from stages.criticism.selection import Selection, columns_of, evidence_of
 # of the originals and mean nothing.
 
 PAUSE = 60.0  # s, before an added manoeuvre
-TURNED_OVER = "turn also at the same rate with the axis down"
-FASTER = "turn also at twice the rate"
-BETWEEN_AXES = "rest also with two axes at 45° to the vertical"
-ONCE_MORE = "do the rests once more, in the reverse order"
+TURNED_OVER = _("turn also at the same rate with the axis down")
+FASTER = _("turn also at twice the rate")
+BETWEEN_AXES = _("rest also with two axes at 45° to the vertical")
+ONCE_MORE = _("do the rests once more, in the reverse order")
 
 
 @dataclass(frozen=True)

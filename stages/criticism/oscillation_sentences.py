@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.periodic_in_angle import Ripple
 from inertial.text.cause_names import in_words
+from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, fixed, significant, with_sigma
 from inertial.text.units import ARC_SECOND
 from stages.criticism.oscillation_fits import MIN_EXCESS_SIGMA, TABLE, Coupled
@@ -19,80 +20,84 @@ MIN_PERIODS_IN_TURN = 1.5  # below which a turn determines little of an eccentri
 MAX_INTEGER_SIGMAS = 3.0  # within which an order is a whole number
 MAX_RATES = 3  # of the table that a sentence lists
 
-NO_TURN = "no whole turn at a steady rate was recorded"
-NO_ANGLE = "of no whole turn at a steady rate both rate and acceleration are stated"
-SPLIT = "record the same turns at twice the rate"
-SINGLE_TURN = (
-    "Noise at so low a frequency is estimated from the differences between turns; there is one turn"
-    " only."
+NO_TURN = _("no whole turn at a steady rate was recorded")
+NO_ANGLE = _("of no whole turn at a steady rate both rate and acceleration are stated")
+SPLIT = _("record the same turns at twice the rate")
+SINGLE_TURN = _(
+    "Noise at so low a frequency is estimated from the differences between turns; "
+    "there is one turn only."
 )
 
-IN_TIME = (
-    "The case oscillates about {axis} while the table turns: {frequency} Hz, {amplitude} rad/s"
-    " ({arc:.1f}″), in {manoeuvres}."
+IN_TIME = _(
+    "The case oscillates about {axis} while the table turns: {frequency} Hz, "
+    "{amplitude} rad/s ({arc:.1f}″), in {manoeuvres}."
 )
-IN_ANGLE = " It is periodic in the table's angle: {order} per revolution."
-NO_NET_ANGLE = " Over a whole turn it adds no angle."
-RIPPLE = "The table's rate has a ripple {order} per revolution, of {size} of its angle, {turns}."
-ECCENTRIC = "The angle of the table has an error once per revolution, of {size}, {turns}."
-SAME_IN_TURNS = "the same in {count} turns against the table's angle"
+IN_ANGLE = _(" It is periodic in the table's angle: {order} per revolution.")
+NO_NET_ANGLE = _(" Over a whole turn it adds no angle.")
+RIPPLE = _("The table's rate has a ripple {order} per revolution, of {size} of its angle, {turns}.")
+ECCENTRIC = _("The angle of the table has an error once per revolution, of {size}, {turns}.")
+SAME_IN_TURNS = _("the same in {count} turns against the table's angle")
 IN_ONE_TURN = "in one turn"
 AT_RATES = " That is {each}."
-AT_RATE = "{frequency} Hz and {amplitude} rad/s at {rate} °/s"
+AT_RATE = _("{frequency} Hz and {amplitude} rad/s at {rate} °/s")
 
-UNDECIDED = (
-    " The data do not distinguish whether it is periodic in time or in the table's angle: the first"
-    " is {odds} as likely."
+UNDECIDED = _(
+    " The data do not distinguish whether it is periodic in time or in the table's "
+    "angle: the first is {odds} as likely."
 )
-NOT_IN_TIME = (
-    " As an oscillation in time, with a phase of its own in each turn, it would be {odds} less"
-    " likely."
+NOT_IN_TIME = _(
+    " As an oscillation in time, with a phase of its own in each turn, it would be "
+    "{odds} less likely."
 )
-NOT_IN_ANGLE = (
-    " It is periodic in time: as a ripple of order {orders} of the table's angle it would be {odds}"
-    " less likely."
+NOT_IN_ANGLE = _(
+    " It is periodic in time: as a ripple of order {orders} of the table's angle it "
+    "would be {odds} less likely."
 )
 VERY_LARGE_ODDS = "more than 10¹⁷ times"
 
-COUPLED_UNKNOWN = " Through their cross terms the other axes contain it too."
-COUPLED = " Through their cross terms {each}."
-COUPLED_HIDDEN = "{axis} contains {expected} rad/s, less than its noise shows"
-COUPLED_READ = "{axis} contains {expected} rad/s and reads {read}"
+COUPLED_UNKNOWN = _(" Through their cross terms the other axes contain it too.")
+COUPLED = _(" Through their cross terms {each}.")
+COUPLED_HIDDEN = _("{axis} contains {expected} rad/s, less than its noise shows")
+COUPLED_READ = _("{axis} contains {expected} rad/s and reads {read}")
 COUPLED_MORE = (
     " In {axis} {excess} rad/s is more than coupling; the case tips into the table's rate, which"
     " brings {tipping}."
 )
 
-CONSEQUENCE = (
-    "{turn} bias, scale factors and cross terms. Part of a turn is in error by up to {swing}″. The"
-    " finding “oscillation” of the logs at this frequency is the same."
+CONSEQUENCE = _(
+    "{turn} bias, scale factors and cross terms. Part of a turn is in error by up "
+    "to {swing}″. The finding “oscillation” of the logs at this frequency is the "
+    "same."
 )
-CLOSED = "A whole turn is free of it, and so are"
-NOT_CLOSED = (
-    "As its order is no whole number it does not close over a turn, but blocks of turns take their"
-    " angle from the gyros; it does no harm to"
+CLOSED = _("A whole turn is free of it, and so are")
+NOT_CLOSED = _(
+    "As its order is no whole number it does not close over a turn, but blocks of "
+    "turns take their angle from the gyros; it does no harm to"
 )
-CLOSED_IN_TIME = "Over whole turns it adds no angle, so it does no harm to"
-ACTION_UNDECIDED = "To distinguish them, {split}: if periodic in angle its frequency doubles."
-ACTION_ANGLE = "Turn by whole turns; look at the table's gear, motor, bearing and encoder."
-ACTION_TIME = "Turn by whole turns; look for what vibrates: the drive, a loose screw, the mounting."
+CLOSED_IN_TIME = _("Over whole turns it adds no angle, so it does no harm to")
+ACTION_UNDECIDED = _("To distinguish them, {split}: if periodic in angle its frequency doubles.")
+ACTION_ANGLE = _("Turn by whole turns; look at the table's gear, motor, bearing and encoder.")
+ACTION_TIME = _(
+    "Turn by whole turns; look for what vibrates: the drive, a loose screw, the mounting."
+)
 
-NOT_SEARCHED = "{effect}: not searched for beside {count} oscillations that are named."
-NOT_OBSERVABLE = "{effect}: not observable in this campaign: {reason}."
-NOT_SIGNIFICANT = "{effect}: not significant against the noise of the turns."
-NOTHING_BESIDE = "{effect}: none beside what is named."
-MAY_BE = "What is named {named} may be {effect}."
-WOULD_BE = "It would be {detected}"
+NOT_SEARCHED = _("{effect}: not searched for beside {count} oscillations that are named.")
+NOT_OBSERVABLE = _("{effect}: not observable in this campaign: {reason}.")
+NOT_SIGNIFICANT = _("{effect}: not significant against the noise of the turns.")
+NOTHING_BESIDE = _("{effect}: none beside what is named.")
+MAY_BE = _("What is named {named} may be {effect}.")
+WOULD_BE = _("It would be {detected}")
 
-FROM_AMPLITUDE = "detected from {size} rad/s on in each turn."
-FROM_ANGLE = "detected from {size}″ on."
-FROM_ANGLE_BY_ORDER = (
-    "detected from {size}″ on; from {largest}″ where it has {lowest} periods per revolution, from"
-    " {smallest}″ where it has {highest}."
+FROM_AMPLITUDE = _("detected from {size} rad/s on in each turn.")
+FROM_ANGLE = _("detected from {size}″ on.")
+FROM_ANGLE_BY_ORDER = _(
+    "detected from {size}″ on; from {largest}″ where it has {lowest} periods per "
+    "revolution, from {smallest}″ where it has {highest}."
 )
-SHORT_TURN = (
-    "The steady part of a turn holds {share:.2f} of its periods: bias and slope absorb most of it,"
-    " and noise at so low a frequency is estimated from the differences between turns."
+SHORT_TURN = _(
+    "The steady part of a turn holds {share:.2f} of its periods: bias and slope "
+    "absorb most of it, and noise at so low a frequency is estimated from the "
+    "differences between turns."
 )
 
 

@@ -17,6 +17,7 @@ from inertial.model_selection.structure_tests import TESTS, Answer, Structure, W
 from inertial.physics.effect import Array, Effect, Parameter, Reading
 from inertial.physics.motion import Motion
 from inertial.text.cause_names import in_words
+from inertial.text.messages import _
 from inertial.text.numbers import p_is, significant
 from stages.criticism.finding_rows import SENSORS, TableRow, finding_id, member_rows, snr_of
 
@@ -208,14 +209,14 @@ X_UNITS = {
 }
 SCAN_UNITS = {"time": "Hz", "change": "s", "angle": "cycles per revolution"}
 
-NOT_NOISE = "The residuals of the {sensors} are not noise: {description} ({p_value})."
-ALSO = "The structure shows in {others} too."
-ONLY_CONSISTENT = "The data are no more than consistent with {effects}."
-CONSEQUENCE = (
-    "The joint result stands as it is: no effect by name is added to it for this sensor, and its"
-    " sigmas do not allow for the structure."
+NOT_NOISE = _("The residuals of the {sensors} are not noise: {description} ({p_value}).")
+ALSO = _("The structure shows in {others} too.")
+ONLY_CONSISTENT = _("The data are no more than consistent with {effects}.")
+CONSEQUENCE = _(
+    "The joint result stands as it is: no effect by name is added to it for this "
+    "sensor, and its sigmas do not allow for the structure."
 )
-ACTION = "Look at the picture of the residuals; record the manoeuvres concerned again."
+ACTION = _("Look at the picture of the residuals; record the manoeuvres concerned again.")
 DESCRIPTIONS = {  # by the kind of the test, and whether a value of a scan is known
     ("time", True): "about {axis} they oscillate in time, every {period} s",
     ("time", False): "about {axis} they drift smoothly with time",

@@ -17,6 +17,7 @@ from inertial.campaign.records import Manoeuvre
 from inertial.effects import CATALOGUE
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE
 from inertial.text.cause_names import in_words
+from inertial.text.messages import _
 from inertial.text.numbers import counted, decimals_of, fixed, p_is, significant, with_sigma
 from inertial.text.units import DEGREE, STANDARD_GRAVITY
 from stages.criticism.finding_rows import (
@@ -43,50 +44,50 @@ MIN_UPRIGHT = 0.99  # cosine from which an accelerometer is taken to be along th
 CURVES = {1: "a straight line", 2: "a parabola", 3: "a cubic"}
 
 CHANGE = "From {cold} to {warm} °C ({manoeuvre}) {readings} change, {axis} by {change},"
-NO_LAW = (
-    "but not along a straight line nor {curve} ({p_value}): {curve} leaves {residual}, neighbours"
-    " scatter by {noise}."
+NO_LAW = _(
+    "but not along a straight line nor {curve} ({p_value}): {curve} leaves "
+    "{residual}, neighbours scatter by {noise}."
 )
-NO_KNEE = "A knee does not fit significantly better."
-KNEE = (
-    "A knee at {at} °C ({low} to {high}) fits better: {below} below, {above} above; it leaves"
-    " {residual}."
+NO_KNEE = _("A knee does not fit significantly better.")
+KNEE = _(
+    "A knee at {at} °C ({low} to {high}) fits better: {below} below, {above} above; "
+    "it leaves {residual}."
 )
 LAW = "along {curve} ({p_value}): {slope} at {at} °C."
-SLOPES = (
-    "The slope goes from {cold} in the cold to {warm} in the warm; a straight line would leave"
-    " {residual}, neighbours scatter by {noise}."
+SLOPES = _(
+    "The slope goes from {cold} in the cold to {warm} in the warm; a straight line "
+    "would leave {residual}, neighbours scatter by {noise}."
 )
-ONLY_CONSISTENT = "The data are no more than consistent with {effects}."
-IDENTIFIED = "The cause is {effects}."
-AMBIGUOUS = "The cause is {effects}: this campaign cannot distinguish them."
-OMITTED = "Omitted: {means} of fewer than {least:.0f} samples."
-NO_TILT = (
-    "No tilt changes {axis} so: it would take {angle:.0f}° and change horizontal axes by"
-    " {expected}, not by {change}."
+ONLY_CONSISTENT = _("The data are no more than consistent with {effects}.")
+IDENTIFIED = _("The cause is {effects}.")
+AMBIGUOUS = _("The cause is {effects}: this campaign cannot distinguish them.")
+OMITTED = _("Omitted: {means} of fewer than {least:.0f} samples.")
+NO_TILT = _(
+    "No tilt changes {axis} so: it would take {angle:.0f}° and change horizontal "
+    "axes by {expected}, not by {change}."
 )
-CONSEQUENCE = (
-    "The finding “temperature drift” of the log reports the change; this one what it does to the"
-    " model. Parameters without a temperature are in error by up to {changes} over this range; with"
-    " a straight line {residuals} rms would remain. The log has no times: a drift during the one"
-    " sweep would look the same."
+CONSEQUENCE = _(
+    "The finding “temperature drift” of the log reports the change; this one what "
+    "it does to the model. Parameters without a temperature are in error by up to "
+    "{changes} over this range; with a straight line {residuals} rms would remain. "
+    "The log has no times: a drift during the one sweep would look the same."
 )
-INTERPOLATE = (
-    "Correct by interpolating between the means, for no polynomial up to a cubic describes them."
-    " To know more, {split}."
+INTERPOLATE = _(
+    "Correct by interpolating between the means, for no polynomial up to a cubic "
+    "describes them. To know more, {split}."
 )
-CORRECT = "Correct by {curve} of the temperature. To know more, {split}."
-WITH_TIMES = (
+CORRECT = _("Correct by {curve} of the temperature. To know more, {split}.")
+WITH_TIMES = _(
     "record the sweep with times, cooling after warming: that distinguishes drift and hysteresis"
 )
-WITH_RESTS = (
-    "record the sweep with static positions of the same attitude, and with the table's angle or the"
-    " time of whole turns"
+WITH_RESTS = _(
+    "record the sweep with static positions of the same attitude, and with the "
+    "table's angle or the time of whole turns"
 )
-WITH_ANGLE = "record the sweep with the table's angle or the time of whole turns"
-OTHER_ATTITUDES = (
-    "record the same sweep upside down and with another axis up: a bias stays, what depends on"
-    " gravity changes its sign; {with_times}"
+WITH_ANGLE = _("record the sweep with the table's angle or the time of whole turns")
+OTHER_ATTITUDES = _(
+    "record the same sweep upside down and with another axis up: a bias stays, what "
+    "depends on gravity changes its sign; {with_times}"
 )
 
 
@@ -112,8 +113,8 @@ class Kind:
 
 KINDS = {
     ACCELEROMETERS: Kind("the accelerometers", "m/s²", "mg", STANDARD_GRAVITY * 1e-3),
-    GYROS: Kind("the gyros at rest", "rad/s", "°/s", DEGREE),
-    SCALE: Kind("the scale factors of the gyros", "1", "ppm", 1e-6),
+    GYROS: Kind(_("the gyros at rest"), "rad/s", "°/s", DEGREE),
+    SCALE: Kind(_("the scale factors of the gyros"), "1", "ppm", 1e-6),
 }
 
 
@@ -192,13 +193,18 @@ def members(dependence: TemperatureDependence) -> dict[str, list[str]]:
 
 def _parameters(dependence: TemperatureDependence) -> Iterator[Estimated]:
     """Coefficients about a temperature; or a knee with slopes."""
-    yield Estimated("T0", "K", "temperature about which polynomials are given", dependence.middle)
+    yield Estimated(
+        "T0", "K", _("temperature about which polynomials are given"), dependence.middle
+    )
     unit = f"{KINDS[dependence.sweep.kind].si}/K"
     for one in dependence.axes:
         axis, knee = one.axis, one.knee
         if knee is not None:
-            at = f"temperature of the knee of {axis}"
-            below, above = (f"slope of {axis} {side} the knee" for side in ("below", "above"))
+            at = _("temperature of the knee of {axis}", axis=axis)
+            below, above = (
+                _("slope of {axis} {side} the knee", axis=axis, side=side)
+                for side in ("below", "above")
+            )
             yield Estimated(f"knee_{axis}", "K", at, knee.at, knee.sigma)
             yield Estimated(f"below_{axis}", unit, below, knee.slopes[0], knee.sigmas[0])
             yield Estimated(f"above_{axis}", unit, above, knee.slopes[1], knee.sigmas[1])
@@ -206,7 +212,11 @@ def _parameters(dependence: TemperatureDependence) -> Iterator[Estimated]:
         values, sigmas = one.curve.coefficients(one.described_degree, dependence.middle)
         for power, (value, sigma) in enumerate(zip(values, sigmas, strict=True), 1):
             powers = unit if power == 1 else f"{unit}{'²³'[power - 2]}"
-            meaning = f"coefficient of {axis} of power {power} of the temperature less T0"
+            meaning = _(
+                "coefficient of {axis} of power {power} of the temperature less T0",
+                axis=axis,
+                power=power,
+            )
             yield Estimated(f"k{power}_{axis}", powers, meaning, float(value), float(sigma))
 
 

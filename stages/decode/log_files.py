@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from inertial.tables.errors import Refusal
+from inertial.text.messages import _
 
 
 def path_of(file: str, raw: list[Path]) -> Path:
@@ -13,8 +14,11 @@ def path_of(file: str, raw: list[Path]) -> Path:
             file,
             "",
             "no such file",
-            f"the log of the campaign beside {', '.join(sorted(paths)) or 'its campaign.yaml'}",
-            "put it into the campaign's folder, or correct its name in campaign.yaml",
+            _(
+                "the log of the campaign beside {value}",
+                value=", ".join(sorted(paths)) or "its campaign.yaml",
+            ),
+            _("put it into the campaign's folder, or correct its name in campaign.yaml"),
         )
     return paths[file]
 
@@ -25,7 +29,7 @@ def refuse_grown(path: Path, size: int) -> None:
         raise Refusal(
             path.name,
             "",
-            f"{now} bytes, {now - size} more than when it was opened",
-            "a log that is finished",
-            "copy it when the recording has ended, and run again",
+            _("{now} bytes, {now_2} more than when it was opened", now=now, now_2=now - size),
+            _("a log that is finished"),
+            _("copy it when the recording has ended, and run again"),
         )

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from inertial.formats.file_type import FileType, file_type_of, refuse_compressed
 from inertial.formats.gps_time import NANOSECONDS, utc
 from inertial.tables.errors import Refusal
+from inertial.text.messages import _
 from stages.decode.decoded import Decoded, Reals, look_ahead
 
 if TYPE_CHECKING:
@@ -99,7 +100,7 @@ def _refuse_other_than_messages(path: Path) -> None:
         raise Refusal(
             path.name,
             "",
-            f"a file of {file_type.value}",
-            "messages of a NovAtel receiver, text or binary, as the instrument's format says",
-            "name the right log, or give its manoeuvres a format of kind columns",
+            _("a file of {value}", value=file_type.value),
+            _("messages of a NovAtel receiver, text or binary, as the instrument's format says"),
+            _("name the right log, or give its manoeuvres a format of kind columns"),
         )

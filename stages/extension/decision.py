@@ -10,6 +10,7 @@ from typing import Any
 
 from inertial.estimation.triad import linear_names
 from inertial.text.cause_names import in_words
+from inertial.text.messages import _
 from stages.extension.cross_validation import MIN_SNR_SQUARED, CrossValidation
 from stages.extension.estimates import Solved
 from stages.extension.named_effects import Alarm, Named
@@ -20,37 +21,38 @@ TableRow = tuple[str, Row]  # the name of a table that the stage writes, and a r
 JOINT, EXTENDED = "joint", "extended"
 SENSORS = {"gyro": "gyros", "accel": "accelerometers"}
 
-NO_JOINT = "There is no joint result of the {sensors}."
-UNEXPLAINED = (
-    "The joint result of the {sensors} is final, and its sigmas are doubtful: some findings are not"
-    " explained ({causes})."
+NO_JOINT = _("There is no joint result of the {sensors}.")
+UNEXPLAINED = _(
+    "The joint result of the {sensors} is final, and its sigmas are doubtful: some "
+    "findings are not explained ({causes})."
 )
-NO_EFFECT = "The joint result of the {sensors} is final: they show no effect that was named."
-KEPT = "The joint result of the {sensors} is final, though {effects} was named: {reason}."
-NOT_EXPLAINED = "beside it some findings are not explained ({causes})"
-NOT_VALIDATED = (
-    "it is not cross-validatable, for the manoeuvres that can be predicted from the others hold too"
-    " little of it (SNR² {snr_squared:.1f}, less than {least:.0f})"
+NO_EFFECT = _("The joint result of the {sensors} is final: they show no effect that was named.")
+KEPT = _("The joint result of the {sensors} is final, though {effects} was named: {reason}.")
+NOT_EXPLAINED = _("beside it some findings are not explained ({causes})")
+NOT_VALIDATED = _(
+    "it is not cross-validatable, for the manoeuvres that can be predicted from the "
+    "others hold too little of it (SNR² {snr_squared:.1f}, less than {least:.0f})"
 )
-NO_BETTER = (
-    "manoeuvres that the fit has not seen are predicted no better with it (χ² grows by"
-    " {growth:.1f})"
+NO_BETTER = _(
+    "manoeuvres that the fit has not seen are predicted no better with it (χ² grows "
+    "by {growth:.1f})"
 )
-NOT_DETERMINED = "beside it {parameters} would not be determined"
-REPLACED = (
-    "The extended result of the {sensors} is final, with {effects}: χ² of manoeuvres that the fit"
-    " has not seen is reduced by {drop:.1f}, of {expected:.1f} that exactly known effects would"
-    " bring, and no finding remains unexplained."
+NOT_DETERMINED = _("beside it {parameters} would not be determined")
+REPLACED = _(
+    "The extended result of the {sensors} is final, with {effects}: χ² of "
+    "manoeuvres that the fit has not seen is reduced by {drop:.1f}, of "
+    "{expected:.1f} that exactly known effects would bring, and no finding remains "
+    "unexplained."
 )
-AGAINST_WALK = (
-    " Against the joint fit, which describes some of it by a random walk of the biases, it is"
-    " reduced by {drop:.1f}."
+AGAINST_WALK = _(
+    " Against the joint fit, which describes some of it by a random walk of the "
+    "biases, it is reduced by {drop:.1f}."
 )
-OTHER_MEMBERS = (
-    " Instead of {effect} it may be {others}: that would do the same to these data, within their"
-    " noise."
+OTHER_MEMBERS = _(
+    " Instead of {effect} it may be {others}: that would do the same to these data, "
+    "within their noise."
 )
-NOT_COUNTED = (
+NOT_COUNTED = _(
     " Not counted: {manoeuvres}; without {each} the others show less than half of the effect."
 )
 

@@ -13,6 +13,7 @@ from inertial.campaign.estimates import UNIT, described
 from inertial.campaign.records import with_mount
 from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.triad import UNKNOWNS, errors_of, linear_names
+from inertial.text.messages import _
 from stages.extension.models import Models
 
 # ---- The parameters of the extended model with their covariance, and how well it fits.
@@ -21,7 +22,7 @@ Array = NDArray[np.float64]
 Row = Mapping[str, Any]
 
 STAGES = {"gyro": "gyroscope", "accel": "accelerometer"}
-NOT_DETERMINED = "beside the effects the manoeuvres do not determine it"
+NOT_DETERMINED = _("beside the effects the manoeuvres do not determine it")
 
 
 @dataclass(frozen=True)

@@ -21,15 +21,18 @@ from inertial.campaign.unknown_attitude import METHOD, FreeStill, fitted_to, fre
 from inertial.estimation.between_positions import Passage, Prior, Stop, between_rests
 from inertial.estimation.variance_components import with_scatter
 from inertial.tables import GYRO
+from inertial.text.messages import _
 
 Array = NDArray[np.float64]
 
 BETWEEN = "between"  # phase of the blocks from one rest to the next
 SCATTER_RANGE = (1e-11, 0.1)  # rad/s: how much rests and motions may differ beyond the noise
 CURES = {
-    "bias": "no rest shows it: add a rest",
-    "matrix": "between the rests the IMU hardly turned about {axis} while {axis} lay level: add"
-    " turns of 90° or more about {axis}, there and back",
+    "bias": _("no rest shows it: add a rest"),
+    "matrix": _(
+        "between the rests the IMU hardly turned about {axis} while {axis} lay level: "
+        "add turns of 90° or more about {axis}, there and back"
+    ),
 }
 
 
@@ -40,7 +43,7 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> None:
     recorded = np.isfinite(np.array([stop.mean for stop in stops]).reshape(-1, 3)).any(axis=0)
     if not recorded.any():
         if left_out or found:
-            estimates.add_nothing(METHOD, omissions(left_out) or "no gyro is recorded")
+            estimates.add_nothing(METHOD, omissions(left_out) or _("no gyro is recorded"))
         return
     passages, moving, broken = passages_of(found, data.blocks, data.noise)
     between = fitted_to(data, found).scatter
@@ -91,15 +94,20 @@ def passages_of(
 def refusal_of(part: pd.DataFrame, before: FreeStill, behind: FreeStill, density: Array) -> str:
     """Why no attitude can be carried from one rest to the next; empty where it can."""
     if part.empty:
-        return "nothing of the motion between them is kept"
+        return _("nothing of the motion between them is kept")
     ends = np.append(before.after, part["to_record"].to_numpy(np.int64))
     starts = np.append(part["from_record"].to_numpy(np.int64), behind.first)
     masked = int((starts - ends).sum())
     if masked:
-        return f"{masked} records are masked while it moves, so no attitude is carried through"
+        return _(
+            "{masked} records are masked while it moves, so no attitude is carried through",
+            masked=masked,
+        )
     lost = float(part["missing_s"].sum())
     if lost:
-        return f"{lost:.2f} s are lost while it moves, so no attitude is carried through"
+        return _(
+            "{lost:.2f} s are lost while it moves, so no attitude is carried through", lost=lost
+        )
     if not np.isfinite(density).all() or part[[*GYRO, "seconds"]].isna().any(axis=None):
-        return "all three gyros and the time are needed to carry an attitude through"
+        return _("all three gyros and the time are needed to carry an attitude through")
     return ""

@@ -13,12 +13,13 @@ from inertial.campaign.records import omissions
 from inertial.campaign.static_positions import averaging_times
 from inertial.estimation import gyroscopes
 from inertial.tables.stage import Stage, Tables
+from inertial.text.messages import _
 from stages.gyroscope.declared import DECLARED
 from stages.gyroscope.free_positions import add_free_gyros
 
 CURES = {
-    "bias": "neither a rest nor a turn there and back shows it: add a rest",
-    "matrix": "no whole turn about {axis} was recorded: add one of 360° about {axis}",
+    "bias": _("neither a rest nor a turn there and back shows it: add a rest"),
+    "matrix": _("no whole turn about {axis} was recorded: add one of 360° about {axis}"),
 }
 
 

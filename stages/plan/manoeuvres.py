@@ -10,6 +10,7 @@ from inertial import tables
 from inertial.physics.motion import Array, Profile, turned
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.campaign_units import ARC_SECOND, DEGREE, in_si
+from inertial.text.messages import _
 from stages.plan.taken_as_known import ASSUMED_ANGLE
 
 AXES = np.eye(3)
@@ -51,16 +52,23 @@ def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
     for name in set(item) - allowed - _ALWAYS:
         raise file.refuse_text(
             [*key, name],
-            f"the key {name!r}",
-            f"for do: {item['do']} one of {', '.join(sorted(allowed | _ALWAYS))}",
-            f"remove {name}, or correct do",
+            _("the key {name!r}", name=name),
+            _(
+                "for do: {do} one of {join}",
+                do=item["do"],
+                join=", ".join(sorted(allowed | _ALWAYS)),
+            ),
+            _("remove {name}, or correct do", name=name),
         )
     if item["do"] == "turn":
         about = _direction(file, [*key, "about"], item)
         about = up if about is None else about
         if about is None:
             raise file.refuse_text(
-                key, "a turn without an axis", "about, or up", "add about: the axis of the turn"
+                key,
+                _("a turn without an axis"),
+                "about, or up",
+                _("add about: the axis of the turn"),
             )
         yield row | _vectors(up, mark, about) | _turn(file, key, item)
     elif item["do"] == "tumble":
@@ -68,7 +76,7 @@ def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
     else:
         if item["do"] == "positions" and "seconds" not in item:
             raise file.refuse_text(
-                key, "no key 'seconds'", "seconds: the shortest rest, s", "add seconds"
+                key, "no key 'seconds'", _("seconds: the shortest rest, s"), "add seconds"
             )
         yield row | _vectors(up, mark, None)
 
@@ -84,7 +92,7 @@ def _direction(file: YamlFile, key: Key, item: dict[str, Any]) -> Array | None:
     vector = np.array(stated, dtype=np.float64)
     length = float(np.linalg.norm(vector))
     if length == 0:
-        raise file.refuse(key, stated, "a vector that is not zero", "correct the vector")
+        raise file.refuse(key, stated, _("a vector that is not zero"), "correct the vector")
     return np.asarray(vector / length, dtype=np.float64)
 
 
@@ -110,8 +118,11 @@ def _turn(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:
             raise file.refuse(
                 [*key, "seconds"],
                 seconds,
-                f"about {profile.seconds:.4g} s by degrees, rate_deg_s and accel_deg_s2",
-                "leave out one of degrees, rate_deg_s and seconds",
+                _(
+                    "about {seconds:.4g} s by degrees, rate_deg_s and accel_deg_s2",
+                    seconds=profile.seconds,
+                ),
+                _("leave out one of degrees, rate_deg_s and seconds"),
             )
         seconds = profile.seconds
     elif rate is not None and seconds is not None:
@@ -121,9 +132,9 @@ def _turn(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:
     elif not _by_hand(file) and not (rate is not None and item.get("recorded") == "steady"):
         raise file.refuse_text(
             key,
-            "fewer than two of degrees, rate_deg_s and seconds",
-            "two of them; for recorded: steady a signed rate; by hand none is needed",
-            "add what the table was set to",
+            _("fewer than two of degrees, rate_deg_s and seconds"),
+            _("two of them; for recorded: steady a signed rate; by hand none is needed"),
+            _("add what the table was set to"),
         )
     sigma = None if angle is None else _angle_sigma(file, key, item)
     return {"angle": angle, "angle_sigma": sigma, "rate": rate, "seconds": seconds}
@@ -133,13 +144,13 @@ def _check_signs(file: YamlFile, key: Key, item: dict[str, Any]) -> None:
     """The sign of a turn stands in degrees, or in the rate where degrees is not given."""
     for name in ("degrees", "rate_deg_s"):
         if item.get(name) == 0:
-            raise file.refuse([*key, name], 0, "a number that is not 0", f"correct {name}")
+            raise file.refuse([*key, name], 0, _("a number that is not 0"), f"correct {name}")
     if "degrees" in item and item.get("rate_deg_s", 1) < 0:
         raise file.refuse(
             [*key, "rate_deg_s"],
             item["rate_deg_s"],
-            "a magnitude, for degrees has the sign",
-            "leave the sign to degrees",
+            _("a magnitude, for degrees has the sign"),
+            _("leave the sign to degrees"),
         )
 
 
@@ -157,8 +168,8 @@ def _angle_sigma(file: YamlFile, key: Key, item: dict[str, Any]) -> float:
     if _by_hand(file):
         raise file.refuse_text(
             key,
-            "a turn by hand without degrees_sigma",
-            "degrees_sigma: how well the angle is known, degrees",
+            _("a turn by hand without degrees_sigma"),
+            _("degrees_sigma: how well the angle is known, degrees"),
             "add degrees_sigma",
         )
     return ASSUMED_ANGLE
@@ -172,13 +183,13 @@ def _tumble(
     if missing or up is None or about is None:
         raise file.refuse_text(
             key,
-            f"a tumble without {', '.join(missing) or 'known directions'}",
-            "up, about, step_degrees and steps",
-            "add what is missing",
+            _("a tumble without {value}", value=", ".join(missing) or "known directions"),
+            _("up, about, step_degrees and steps"),
+            _("add what is missing"),
         )
     if abs(up @ about) > cos(radians(1)):
         raise file.refuse(
-            [*key, "about"], item["about"], "an axis across up", "name the level axis"
+            [*key, "about"], item["about"], _("an axis across up"), _("name the level axis")
         )
     there = list(range(item["steps"]))
     for way, numbers in (("", there), ("-back", there[::-1] if item.get("and_back") else [])):

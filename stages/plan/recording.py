@@ -9,6 +9,7 @@ from typing import Any
 from inertial import tables
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.campaign_units import CHANNEL_UNITS, DEGREE, PER_ROOT_HOUR, in_si
+from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
 KEY = "encoder"
@@ -24,8 +25,8 @@ def encoder(file: YamlFile) -> dict[str, Any] | None:
         raise file.refuse(
             [KEY, "format"],
             stated["format"],
-            f"one of {', '.join(formats) or 'formats, of which there are none'}",
-            "correct the name or add it to formats",
+            _("one of {value}", value=", ".join(formats) or "formats, of which there are none"),
+            _("correct the name or add it to formats"),
         )
     layout = formats[stated["format"]]
     for key in ("time", "table_angle"):
@@ -33,7 +34,7 @@ def encoder(file: YamlFile) -> dict[str, Any] | None:
             raise file.refuse_text(
                 ["formats", stated["format"]],
                 f"no {key}",
-                "time and table_angle, the columns of the encoder's log",
+                _("time and table_angle, the columns of the encoder's log"),
                 f"add {key}",
             )
     return {
@@ -58,8 +59,11 @@ def instrument(file: YamlFile, instruments: Path) -> dict[str, Any]:
         raise file.refuse(
             ["instrument"],
             stated,
-            f"one of {', '.join(listed.content)}",
-            f"correct the name, add the instrument to {instruments.name}, or write it out here",
+            _("one of {content}", content=", ".join(listed.content)),
+            _(
+                "correct the name, add the instrument to {name}, or write it out here",
+                name=instruments.name,
+            ),
         )
     return dict(listed.content[stated])
 
@@ -126,7 +130,10 @@ def recording(file: YamlFile, key: Key, item: dict[str, Any], entry: dict[str, A
     name = item.get("log", file.content.get("log"))
     if name is None:
         raise file.refuse_text(
-            key, "no log", "log here, or a default log of the campaign", "add log: its file name"
+            key,
+            "no log",
+            _("log here, or a default log of the campaign"),
+            _("add log: its file name"),
         )
     layout, layout_key = _layout(file, key, item, entry)
     _check_layout(file, layout_key, layout, entry)
@@ -137,7 +144,9 @@ def recording(file: YamlFile, key: Key, item: dict[str, Any], entry: dict[str, A
         )
     for way in ("span", "rows"):
         if way in item and not item[way][0] < item[way][1]:
-            raise file.refuse([*key, way], item[way], "[from, to] with from < to", "swap the two")
+            raise file.refuse(
+                [*key, way], item[way], _("[from, to] with from < to"), "swap the two"
+            )
     where = item.get("where", {})
     span, rows = item.get("span", [None, None]), item.get("rows", [None, None])
     return {
@@ -163,16 +172,16 @@ def _layout(
             raise file.refuse(
                 [*key, "format"],
                 item["format"],
-                f"one of {', '.join(formats) or 'formats, of which there are none'}",
-                "correct the name or add it to formats",
+                _("one of {value}", value=", ".join(formats) or "formats, of which there are none"),
+                _("correct the name or add it to formats"),
             )
         return formats[item["format"]], ["formats", item["format"]]
     if "format" not in entry:
         raise file.refuse_text(
             key,
             "no format",
-            f"format, for the instrument {entry['name']} has none of its own",
-            "name one of formats",
+            _("format, for the instrument {name} has none of its own", name=entry["name"]),
+            _("name one of formats"),
         )
     return entry["format"], ["instrument", "format"]
 
@@ -184,21 +193,21 @@ def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[
             if count not in entry.get(sensor, {}) or "axes" not in entry:
                 raise file.refuse_text(
                     ["instrument"],
-                    f"no {sensor}.{count} or no axes",
-                    "the count sizes and axes of the raw fields",
-                    "add them to the instrument",
+                    _("no {sensor}.{count} or no axes", sensor=sensor, count=count),
+                    _("the count sizes and axes of the raw fields"),
+                    _("add them to the instrument"),
                 )
         return
     if "gyro" not in layout and "accelerometer" not in layout:
         raise file.refuse_text(
-            key, "neither gyro nor accelerometer", "at least one of them", "add its columns"
+            key, _("neither gyro nor accelerometer"), _("at least one of them"), "add its columns"
         )
     for sensor, units in (("gyro", ("rad/s", "deg/s")), ("accelerometer", ("m/s2", "g"))):
         if sensor in layout and layout[sensor]["unit"] not in units:
             raise file.refuse(
                 [*key, sensor, "unit"],
                 layout[sensor]["unit"],
-                f"one of {', '.join(units)}",
+                _("one of {units}", units=", ".join(units)),
                 "correct the unit",
             )
 

@@ -14,6 +14,7 @@ from inertial import tables
 from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
 from inertial.tables.yaml_file import Key, YamlFile
+from inertial.text.messages import _
 from stages.plan.declared import DECLARED
 from stages.plan.manoeuvres import expanded
 from stages.plan.published import published_values
@@ -49,7 +50,10 @@ def plan(
     version = file.content.get("campaign") if isinstance(file.content, dict) else None
     if version != 1:
         raise file.refuse(
-            ["campaign"], version, "campaign: 1", "write the campaign in version 1 of the grammar"
+            ["campaign"],
+            version,
+            "campaign: 1",
+            _("write the campaign in version 1 of the grammar"),
         )
     file.check("campaign")
     entry = instrument(file, instruments[0])
@@ -63,12 +67,12 @@ def plan(
             raise file.refuse(
                 key,
                 log,
-                f"a log in {campaign[0].parent}",
-                "put the log there, or correct its name",
+                _("a log in {parent}", parent=campaign[0].parent),
+                _("put the log there, or correct its name"),
             )
         _stays_inside(file, key, present[log])
     others = [row for path in published for row in published_values(YamlFile(path))]
-    used = sorted({present[log] for _, log in named})
+    used = sorted({present[log] for _unused, log in named})
     return {
         "campaign": pd.DataFrame([_campaign(file, campaign[0].parent.name, entry)]),
         "known": pd.DataFrame(taken_as_known),
@@ -90,9 +94,9 @@ def _stays_inside(file: YamlFile, key: Key, log: Path) -> None:
     if (target := log.resolve()).parent != file.path.resolve().parent:
         raise file.refuse_text(
             key,
-            f"{log.name}, a link to {target}",
-            f"a log in {file.path.parent}",
-            "copy the log there instead of the link",
+            _("{name}, a link to {target}", name=log.name, target=target),
+            _("a log in {parent}", parent=file.path.parent),
+            _("copy the log there instead of the link"),
         )
 
 
@@ -123,8 +127,8 @@ def _manoeuvres(file: YamlFile, entry: dict[str, Any]) -> list[Row]:
                 raise file.refuse(
                     ["plan", number, "id"],
                     row["manoeuvre"],
-                    "an id of its own",
-                    "rename one of the two",
+                    _("an id of its own"),
+                    _("rename one of the two"),
                 )
             where = recording(file, ["plan", number], item, entry)
             rows[row["manoeuvre"]] = row | where

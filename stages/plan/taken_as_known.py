@@ -7,6 +7,7 @@ from typing import Any
 from inertial.physics.site import EARTH_RATE, earth_rate, normal_gravity
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.campaign_units import ARC_SECOND
+from inertial.text.messages import _
 
 # Where a campaign states no sigma, these are assumed, and the report states that.
 ASSUMED_POSITION = 30 * ARC_SECOND
@@ -34,26 +35,30 @@ def known(file: YamlFile) -> Iterator[Row]:
 
     def table_row(quantity: str, key: str, unit_size: float, assumed: float, unit: str) -> Row:
         if key in table:
-            return row(quantity, 0.0, table[key] * unit_size, unit, f"stated: table.{key}")
-        return row(quantity, 0.0, assumed, unit, f"assumed, for table.{key} is not stated")
+            return row(
+                quantity, 0.0, table[key] * unit_size, unit, _("stated: table.{key}", key=key)
+            )
+        return row(
+            quantity, 0.0, assumed, unit, _("assumed, for table.{key} is not stated", key=key)
+        )
 
     if table.get("name") == "by hand" and "position_sigma_arcsec" not in table:
         raise file.refuse_text(
             ["table"],
-            "no position_sigma_arcsec",
-            "position_sigma_arcsec for positions set by hand",
-            "state how well the faces were set, for example position_sigma_arcsec: 3600 for 1°",
+            _("no position_sigma_arcsec"),
+            _("position_sigma_arcsec for positions set by hand"),
+            _("state how well the faces were set, for example position_sigma_arcsec: 3600 for 1°"),
         )
     yield row("gravity", *_gravity(file), "m/s²", _gravity_origin(site))
     if site["latitude_deg"] is None:
         # A direction of which nothing is known: each part has a third of the squared rate.
-        unknown = "assumed, for the latitude is not known"
+        unknown = _("assumed, for the latitude is not known")
         yield row("earth_rate_up", 0.0, EARTH_RATE / 3**0.5, "rad/s", unknown)
         yield row("earth_rate_level", EARTH_RATE * (2 / 3) ** 0.5, None, "rad/s", unknown)
     else:
         latitude = radians(site["latitude_deg"])
         up, level = earth_rate(latitude)
-        computed = "computed from the latitude, whose sigma is assumed as 0.01°"
+        computed = _("computed from the latitude, whose sigma is assumed as 0.01°")
         sigma = EARTH_RATE * abs(cos(latitude)) * ASSUMED_LATITUDE
         yield row("earth_rate_up", up, sigma, "rad/s", computed)
         yield row("earth_rate_level", level, None, "rad/s", computed)
@@ -63,7 +68,7 @@ def known(file: YamlFile) -> Iterator[Row]:
         None if heading is None else radians(heading),
         None,
         "rad",
-        "not known" if heading is None else "stated: table.heading_deg",
+        "not known" if heading is None else _("stated: table.heading_deg"),
     )
     yield table_row("position", "position_sigma_arcsec", ARC_SECOND, ASSUMED_POSITION, "rad")
     yield table_row("turn_angle", "angle_sigma_arcsec", ARC_SECOND, ASSUMED_ANGLE, "rad")
@@ -78,9 +83,9 @@ def _gravity(file: YamlFile) -> tuple[float, float]:
     if site["latitude_deg"] is None:
         raise file.refuse_text(
             ["site"],
-            "neither gravity_m_s2 nor a latitude",
-            "one of the two",
-            "state gravity_m_s2, or latitude_deg and height_m for normal gravity",
+            _("neither gravity_m_s2 nor a latitude"),
+            _("one of the two"),
+            _("state gravity_m_s2, or latitude_deg and height_m for normal gravity"),
         )
     value = normal_gravity(radians(site["latitude_deg"]), site.get("height_m", 0.0))
     return value, site.get("gravity_sigma_m_s2", ASSUMED_ANOMALY)
@@ -89,6 +94,14 @@ def _gravity(file: YamlFile) -> tuple[float, float]:
 def _gravity_origin(site: dict[str, Any]) -> str:
     if "gravity_m_s2" in site:
         stated = "stated: site.gravity_m_s2"
-        return stated if "gravity_sigma_m_s2" in site else f"{stated}, its sigma assumed as 5 mGal"
-    height = f"{site['height_m']:g} m" if "height_m" in site else "0 m, for no height is stated"
-    return f"normal gravity at latitude {site['latitude_deg']:g}°, height {height}"
+        return (
+            stated
+            if "gravity_sigma_m_s2" in site
+            else _("{stated}, its sigma assumed as 5 mGal", stated=stated)
+        )
+    height = f"{site['height_m']:g} m" if "height_m" in site else _("0 m, for no height is stated")
+    return _(
+        "normal gravity at latitude {latitude_deg:g}°, height {height}",
+        latitude_deg=site["latitude_deg"],
+        height=height,
+    )

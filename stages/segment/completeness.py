@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.tables import CHANNELS
+from inertial.text.messages import _
 from stages.segment.explanations import Explained
 from stages.segment.matching import motion
 from stages.segment.motion import Stretch
@@ -74,18 +75,21 @@ def _hindrance(
     step = float(seconds.sum() / moving["count"].sum())
     steady = (moving["phase"] == "steady").to_numpy(bool)
     by_hand = bool((moving["phase"] == "turning").any())
-    where = "a turn by hand has no steady rate" if by_hand else "the rate is not steady there"
+    where = _("a turn by hand has no steady rate") if by_hand else _("the rate is not steady there")
     if (missing < -step / 2).any():
-        return "the time goes back while it turns"
+        return _("the time goes back while it turns")
     for hole in holes[inside[holes]]:
         enough = min(MIN_STEADY_S, missing[hole])
         before = float(seconds[:hole][steady[:hole]].sum())
         after = float(seconds[hole:][steady[hole:]].sum())
         if min(before, after) < enough - step / 2:
             side = "before" if before < after else "after"
-            return (
-                f"only {min(before, after):.2f} s of steady rate are recorded {side} them, of"
-                f" {enough:.2f} s that are needed"
+            return _(
+                "only {before:.2f} s of steady rate are recorded {side} them, of {enough:.2f} s "
+                "that are needed",
+                before=min(before, after),
+                side=side,
+                enough=enough,
             )
     ramps = holes[~inside[holes]]
     if not len(ramps):
@@ -96,16 +100,29 @@ def _hindrance(
     if ((lost[:, None] >= first) & (lost[:, None] <= last)).any():
         return where
     if missing[ramps].max() > (MAX_MASKED_RUN + 0.5) * step:
-        return f"{where}, and more than {MAX_MASKED_RUN} samples in a row are masked"
+        return _(
+            "{where}, and more than {max_masked_run} samples in a row are masked",
+            where=where,
+            max_masked_run=MAX_MASKED_RUN,
+        )
     if missing[ramps].sum() > MAX_MASKED_SHARE * seconds[~steady].sum():
-        return f"{where}, and more than {MAX_MASKED_SHARE:.0%} of its samples are masked"
+        return _(
+            "{where}, and more than {max_masked_share:.0%} of its samples are masked",
+            where=where,
+            max_masked_share=MAX_MASKED_SHARE,
+        )
     return ""
 
 
 def not_found(m: Manoeuvre) -> Performed:
     """A manoeuvre of which the log has nothing."""
-    what = "no rest in the planned direction" if m.do == "rest" else "no turn about its axis"
-    sentence = f"{m.name} is not in {m.log}: {what} was found where the plan has it."
+    what = _("no rest in the planned direction") if m.do == "rest" else _("no turn about its axis")
+    sentence = _(
+        "{name} is not in {log}: {what} was found where the plan has it.",
+        name=m.name,
+        log=m.log,
+        what=what,
+    )
     return Performed(m.name, sentence, found=False, complete=False)
 
 
@@ -122,11 +139,15 @@ def left_out(explained: Explained, plan: Sequence[Manoeuvre]) -> Iterator[tuple[
             *zip(exchanged.names, exchanged.names[half:] + exchanged.names[:half], strict=True)
         ]
         for name, other in pairs:
-            what = "its log holds" if len(exchanged.logs) == 2 else "in its place stands"
-            why[name] = f"{name} is left out: {what} {other}."
+            what = "its log holds" if len(exchanged.logs) == 2 else _("in its place stands")
+            why[name] = _("{name} is left out: {what} {other}.", name=name, what=what, other=other)
     for m in plan:
         if m.log in explained.misread:
-            why[m.name] = f"{m.name} is left out: in {m.log} axes are exchanged or reversed."
+            why[m.name] = _(
+                "{name} is left out: in {log} axes are exchanged or reversed.",
+                name=m.name,
+                log=m.log,
+            )
     for name, sentence in why.items():
         yield name, Performed(name, sentence, found=False, complete=False)
 
@@ -136,14 +157,16 @@ def by_other_axes(done: Performed) -> Performed:
 
     An estimate that takes them as they are named would be led far astray.
     """
-    why = " It is left out of the estimates, for axes of the gyros are exchanged or reversed."
+    why = _(" It is left out of the estimates, for axes of the gyros are exchanged or reversed.")
     return replace(done, complete=False, bridged=False, sentence=done.sentence + why)
 
 
 def positions(m: Manoeuvre, number: int) -> Performed:
     """A search for positions, and how many it found."""
-    sentence = (
-        f"{number} rests of at least {m.seconds:g} s were found; their attitudes are unknown."
+    sentence = _(
+        "{number} rests of at least {seconds:g} s were found; their attitudes are unknown.",
+        number=number,
+        seconds=m.seconds,
     )
     return Performed(m.name, sentence, found=number > 0, complete=number > 0)
 
@@ -153,9 +176,11 @@ def rest(binned: Binned, m: Manoeuvre, stretch: Stretch) -> Performed:
     seconds = binned.duration(stretch.first, stretch.after)
     if not np.isfinite(binned.first_s[stretch.first]):
         records = int(binned.edges[stretch.after] - binned.edges[stretch.first])
-        return Performed(m.name, f"{records} records at rest, without time.")
-    of = f" of the {m.seconds:g} s planned" if m.seconds else ""
-    return Performed(m.name, f"{seconds:.2f} s at rest{of}.", seconds=seconds)
+        return Performed(m.name, _("{records} records at rest, without time.", records=records))
+    of = _(" of the {seconds:g} s planned", seconds=m.seconds) if m.seconds else ""
+    return Performed(
+        m.name, _("{seconds:.2f} s at rest{of}.", seconds=seconds, of=of), seconds=seconds
+    )
 
 
 def turn(
@@ -173,7 +198,7 @@ def turn(
     `moving`: its blocks in motion; `gaps`: of all logs; `level`: (3,), rad/s, the gyros at rest.
     """
     if moving.empty:
-        return Performed(m.name, "it turns, but its gyros are masked.", True, False)
+        return Performed(m.name, _("it turns, but its gyros are masked."), True, False)
     first, after = motion(binned, stretches, place)
     about = _about(moving, m.axis, level)
     length = moving["seconds"].to_numpy(np.float64)
@@ -184,31 +209,41 @@ def turn(
     seconds = binned.duration(first, after)
     if m.recorded == "steady":
         sentence = (
-            f"steady at {_signed(degrees(rate), 4)} °/s." if rate is not None else "no steady rate."
+            _("steady at {signed} °/s.", signed=_signed(degrees(rate), 4))
+            if rate is not None
+            else "no steady rate."
         )
         whole = lacking.seconds == 0
         return Performed(m.name, sentence, True, whole, angle, None, lacking.seconds, rate, seconds)
 
     if angle is None:
-        return Performed(m.name, "it turns, but has no time.", True, False, rate=rate)
+        return Performed(m.name, _("it turns, but has no time."), True, False, rate=rate)
     of = f"{_signed(degrees(angle), 2)}°"
     of += f" of {_signed(degrees(m.angle), 0)}°" if m.angle else ""
     reasons, remark = _cut_off(binned, first, after, binned.about(m.axis, level), m)
     known = 0.0 if lacking.hindrance else lacking.angle
     off = m.angle and abs((angle + known) / m.angle - 1) > tolerance
     if off and not (reasons or lacking.hindrance):
-        reasons.append("the angle is not the planned one")
-    lost = [f"{lacking.seconds:.2f} s are missing while it turns"] if lacking.seconds else []
+        reasons.append(_("the angle is not the planned one"))
+    lost = (
+        [_("{seconds:.2f} s are missing while it turns", seconds=lacking.seconds)]
+        if lacking.seconds
+        else []
+    )
     lost += [lacking.hindrance] if lacking.hindrance else []
     if not reasons and not lost:
-        sentence = f"{of} from rest to rest{remark}."
+        sentence = _("{of} from rest to rest{remark}.", of=of, remark=remark)
         return Performed(m.name, sentence, True, True, angle, 0.0, 0.0, rate, seconds)
     bridged = not reasons and not lacking.hindrance
     missing = lacking.angle if bridged else m.angle - angle if m.angle is not None else None
     sentence = f"{of} recorded{remark}: {', and '.join([*lost, *reasons])}"
-    sentence += f"; {_signed(degrees(missing), 2)}° are missing." if missing is not None else "."
+    sentence += (
+        _("; {signed}° are missing.", signed=_signed(degrees(missing), 2))
+        if missing is not None
+        else "."
+    )
     if bridged:
-        sentence += " The rate before and after gives them, so the joint estimate uses the turn."
+        sentence += _(" The rate before and after gives them, so the joint estimate uses the turn.")
     return Performed(
         m.name, sentence, True, False, angle, missing, lacking.seconds, rate, seconds, bridged
     )
@@ -234,9 +269,13 @@ def _cut_off(
     edges += [("ends", about[-1])] if after == binned.bins else []
     for what, edge in edges:
         if abs(edge) * binned.bin_seconds / 2 < (m.angle_sigma or 0.0):
-            remark += f"; the log {what} at {degrees(abs(edge)):.0f} °/s, which its sigma covers"
+            remark += _(
+                "; the log {what} at {degrees:.0f} °/s, which its sigma covers",
+                what=what,
+                degrees=degrees(abs(edge)),
+            )
         else:
-            reasons.append(f"the log {what} while it turns")
+            reasons.append(_("the log {what} while it turns", what=what))
     return reasons, remark
 
 

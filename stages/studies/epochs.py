@@ -14,6 +14,7 @@ from inertial.campaign.records import Manoeuvre, Performed, rows_of, with_mount
 from inertial.estimation.averaging_epochs import Formula, in_epochs, spread
 from inertial.estimation.triad import errors_of, linear_names
 from inertial.tables import AXES, CHANNELS
+from inertial.text.messages import _
 from stages.studies.stretches import Samples, Stretch
 
 Array = NDArray[np.float64]
@@ -28,8 +29,8 @@ MIN_LENGTH_SHARE = (
 MAX_INTERVAL_DIFFERENCE = 0.05  # relative, of sample intervals from log to log
 MIN_EPOCHS = 8  # for a variance
 NEEDED = {
-    "accelerometer": "four or more attitudes, of about the same length, that span all axes",
-    "gyroscope": "an axis that points up and down, for about the same time",
+    "accelerometer": _("four or more attitudes, of about the same length, that span all axes"),
+    "gyroscope": _("an axis that points up and down, for about the same time"),
 }
 SENSORS = {"accelerometer": 0, "gyroscope": 3}  # place of their x among the channels
 
@@ -104,19 +105,22 @@ def studied(
     rows: dict[str, list[Row]] = {"epochs": [], "spreads": [], "not_studied": []}
     there = {name: one for name, one in rests.items() if name in samples}
     length = min((len(samples[name].time) for name in there), default=0)
-    step = np.array([data.clocks[m.log].step for m, _ in there.values()])
+    step = np.array([data.clocks[m.log].step for m, _unused in there.values()])
     if length < MIN_SAMPLES or np.ptp(step) > MAX_INTERVAL_DIFFERENCE * step.min():
-        short = f"no rest of known attitude and {MIN_SAMPLES} samples or more was found"
-        reason = short if length < MIN_SAMPLES else "the rests differ in their sample interval"
+        short = _(
+            "no rest of known attitude and {min_samples} samples or more was found",
+            min_samples=MIN_SAMPLES,
+        )
+        reason = short if length < MIN_SAMPLES else _("the rests differ in their sample interval")
         rows["not_studied"].append(_not_studied(data.mount, data.named("rests"), reason))
         return rows
-    ups = np.array([m.up for m, _ in there.values()])
+    ups = np.array([m.up for m, _unused in there.values()])
     found = formulas(ups, data.gravity.number)
     for stage in SENSORS:
         if stage not in [named.stage for named in found]:
             needed = NEEDED[stage]
             rows["not_studied"].append(
-                _not_studied(data.mount, data.named(stage), f"it needs {needed}")
+                _not_studied(data.mount, data.named(stage), _("it needs {needed}", needed=needed))
             )
     for named in found:
         place = SENSORS[named.stage]
@@ -143,7 +147,7 @@ def _add(
     needed = (named.formula.weights != 0) @ ~told == 0
     for name in np.array(named.names)[~needed]:
         what = f"{with_mount(named.stage, mount)}: {name}"
-        reason = "not all of its rests were recorded, with their noise"
+        reason = _("not all of its rests were recorded, with their noise")
         rows["not_studied"].append(_not_studied(mount, what, reason))
     names = [name for name, has in zip(named.names, needed, strict=True) if has]
     if not names:

@@ -10,6 +10,7 @@ from inertial.campaign.masked_samples import Masks
 from inertial.campaign.records import rows_of
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
+from inertial.text.messages import _
 from stages.studies import motion_rows
 from stages.studies.declared import DECLARED
 from stages.studies.epochs import rests_of, studied
@@ -102,7 +103,7 @@ def _of_turns(
         if not windows:
             names = f"{pair.forward.plan.name}, {pair.backward.plan.name}"
             rows["not_studied"].append(
-                _not_studied(data, names, "the steady part is less than 180°")
+                _not_studied(data, names, _("the steady part is less than 180°"))
             )
     return rows
 

@@ -25,6 +25,7 @@ from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Site, Triad
 from inertial.physics.vectors import cross
 from inertial.tables import AXES, GYRO
+from inertial.text.messages import _
 from stages.studies.stretches import Samples, Stretch
 
 Array = NDArray[np.float64]
@@ -144,10 +145,10 @@ def why_not(one: Recorded) -> str:
     if one.refusal:
         return one.refusal
     if one.plan.recorded != "whole":
-        return "only its steady part was planned, so no whole angle ties it"
+        return _("only its steady part was planned, so no whole angle ties it")
     if not one.done.complete:
         return one.done.sentence
-    return "" if one.blocks.steady.any() else "it has no steady part"
+    return "" if one.blocks.steady.any() else _("it has no steady part")
 
 
 def motion_of(
@@ -173,9 +174,9 @@ def motion_of(
     even = np.abs(np.diff(time) / step - 1) < MAX_DELAY_STEPS
     about = m.axis
     if not even.all() or len(time) < 2:
-        return "its samples do not follow each other step by step"
+        return _("its samples do not follow each other step by step")
     if not np.isfinite(rates[:, about != 0]).all() or not np.isfinite(gyros.along(about)):
-        return f"the gyro along its axis is not recorded, or has no bias ({m.name})"
+        return _("the gyro along its axis is not recorded, or has no bias ({name})", name=m.name)
     increments = rates * step
     first = int(np.argmin(np.abs(time - steady[0])))
     after = int(np.argmin(np.abs(time - steady[1]))) + 1
@@ -200,7 +201,7 @@ def motion_of(
     ringing = lines[int(np.argmax(np.abs(about)))]
     offset = [gyros.along(about), scatter, earth.up_sigma * float(about @ m.up), unknown_level]
     if not np.isfinite(density).all():
-        return "its white noise is not known"
+        return _("its white noise is not known")
     errors = Errors(
         density=float(np.linalg.norm(density)),
         offset=float(np.linalg.norm(np.array(offset))),

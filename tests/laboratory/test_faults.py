@@ -491,7 +491,7 @@ REFUSED: list[tuple[list[dict[str, Any]], str]] = [
     (
         [{"jitter": TURN_LOG}],
         "faults[0].jitter: found {'log': 'turn.asc'} (mapping); expected jitter of the stamps, "
-        "sigma_s, or that are rounded, rounded_to_s: one of the two",
+        "sigma_s, or rounding, rounded_to_s: one of the two",
     ),
     (
         [{"turn_back": TURN_LOG | {"line": 3, "second": 1}}],

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from inertial.tables.errors import Refusal
+from inertial.text.messages import _
 
 _TICKS = {"s": 1.0, "ms": 1e3, "us": 1e6}  # in a second
 _NAMES_SHOWN = 60  # of a container, that may have thousands
@@ -151,7 +152,16 @@ class _Finder:
         if isinstance(name, str) and (times := Counter(self._names)[name]):
             if times > 1:
                 holder = "file" if self._container else "header"
-                raise self._refusal(key, f"the {holder} has {times} columns '{name}'", "one")
+                raise self._refusal(
+                    key,
+                    _(
+                        "the {holder} has {times} columns '{name}'",
+                        holder=holder,
+                        times=times,
+                        name=name,
+                    ),
+                    "one",
+                )
             self.by_name = True
             return Column(name, self._names.index(name))
         # A key of a JSON object is always text, so a number may come as text too.
@@ -159,9 +169,9 @@ class _Finder:
             return Column(str(name), int(name) - 1)
         shown = list(self._names[:_NAMES_SHOWN])
         if len(self._names) > len(shown):
-            shown.append(f"and {len(self._names) - len(shown)} more")
-        there = f"one of {', '.join(shown)}" if shown else "a number, from 1"
-        raise self._refusal(key, f"no column '{name}'", there)
+            shown.append(_("and {names} more", names=len(self._names) - len(shown)))
+        there = _("one of {shown}", shown=", ".join(shown)) if shown else "a number, from 1"
+        raise self._refusal(key, _("no column '{name}'", name=name), there)
 
     @property
     def _most(self) -> float:
@@ -170,9 +180,11 @@ class _Finder:
 
     def _refusal(self, key: str, found: str, expected: str) -> Refusal:
         cure = (
-            "name the column as the file does, or by its number from 1"
+            _("name the column as the file does, or by its number from 1")
             if self._container
-            else "name the column as the last header line does, or by its number from 1; "
-            "header_lines tells how many lines come before the data"
+            else _(
+                "name the column as the last header line does, or by its number from 1; "
+                "header_lines tells how many lines come before the data"
+            )
         )
         return Refusal(self._file, key, found, expected, cure)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from inertial.formats.account import Account, Integers, RefusedLine, quoted
 from inertial.formats.columns.column_layout import Column, ColumnLayout, Triad
 from inertial.formats.columns.column_values import ColumnValues, Reals
+from inertial.text.messages import _
 
 Truths = NDArray[np.bool_]
 
@@ -76,12 +77,16 @@ def sort_rows(
     wanted = [(column, selected) for column in columns.of_every_row]
     for triad, holds in zip(columns.triads, held, strict=True):
         wanted += [(column, holds) for column in triad.columns if column]
-    numbers = {column: fields[column.index].numbers() for column, _ in wanted}
+    numbers = {column: fields[column.index].numbers() for column, _unused in wanted}
 
     for column, needed in wanted:
         for row in np.flatnonzero(intact & needed & ~np.isfinite(numbers[column])).tolist():
             value = quoted(fields[column.index].text(row).encode())
-            reasons[row] = f"column {column.name} is '{value}', expected a finite number"
+            reasons[row] = _(
+                "column {name} is '{value}', expected a finite number",
+                name=column.name,
+                value=value,
+            )
             intact[row] = False
     taken = intact & selected
 

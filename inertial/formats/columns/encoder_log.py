@@ -15,6 +15,7 @@ from inertial.formats.account import Account, RefusedLine
 from inertial.formats.columns import column_reader
 from inertial.formats.columns.column_layout import ticks_per_second
 from inertial.tables.errors import Refusal
+from inertial.text.messages import _
 
 Reals = NDArray[np.float64]
 
@@ -48,9 +49,12 @@ class Encoder:
                 raise Refusal(
                     path.name,
                     "",
-                    f"more than {MAX_READINGS} readings of the encoder",
+                    _(
+                        "more than {max_readings} readings of the encoder",
+                        max_readings=MAX_READINGS,
+                    ),
                     "fewer",
-                    "thin them out: between two readings the table turns evenly",
+                    _("thin them out: between two readings the table turns evenly"),
                 )
         time = np.concatenate([np.zeros(0), *ticks]) / ticks_per_second(layout)
         later = np.diff(time, prepend=-np.inf) > 0  # of equal times the first counts

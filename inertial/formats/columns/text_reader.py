@@ -40,6 +40,7 @@ from inertial.formats.columns.text_chunks import (
     Chunk,
     text_chunks,
 )
+from inertial.text.messages import _
 
 FIRST_ROWS = 1000  # that determine the number of fields
 SEPARATOR = b"\x1f"  # between the fields of rows that are examined one by one
@@ -308,14 +309,20 @@ def _length(row: bytes) -> int:
 def _why_not_a_row(text: bytes, row: bytes, length: int, fields: int) -> str:
     """Why a line is not a data row; empty where it is one."""
     if length > MAX_LINE_BYTES:
-        return f"{length} bytes without a line end, expected at most {MAX_LINE_BYTES}"
+        return _(
+            "{length} bytes without a line end, expected at most {max_line_bytes}",
+            length=length,
+            max_line_bytes=MAX_LINE_BYTES,
+        )
     if b"\r" in text:
-        return "a carriage return inside the line, expected LF or CRLF at its end"
+        return _("a carriage return inside the line, expected LF or CRLF at its end")
     if not text.isascii():
         try:
             text.decode()
         except UnicodeDecodeError as error:
-            return f"byte '{quoted(text[error.start : error.end])}', expected text in UTF-8"
+            return _(
+                "byte '{text}', expected text in UTF-8", text=quoted(text[error.start : error.end])
+            )
     if _length(row) != fields:
-        return f"{_length(row)} fields, expected {fields}"
+        return _("{row} fields, expected {fields}", row=_length(row), fields=fields)
     return ""

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from inertial.formats.containers.imu_topic import Gap
+from inertial.text.messages import _
 
 
 @dataclass(frozen=True)
@@ -65,10 +66,10 @@ def bag_records(
         except MemoryError:
             raise
         except Exception as error:  # rosbags' own, and any that damage causes in it
-            yield Gap(f"the bag cannot be read any further: {error}")
+            yield Gap(_("the bag cannot be read any further: {error}", error=error))
             return
     if not closed:
-        yield Gap("the bag was not closed: messages may be missing at its end")
+        yield Gap(_("the bag was not closed: messages may be missing at its end"))
 
 
 def _records_in(chunk: Record, framing: Framing, kinds: Collection[int]) -> Iterator[Record | Gap]:
@@ -81,7 +82,7 @@ def _records_in(chunk: Record, framing: Framing, kinds: Collection[int]) -> Iter
     except MemoryError:
         raise
     except Exception as error:  # as above, and those of the compression
-        yield Gap(f"a chunk of messages is damaged: {error}")
+        yield Gap(_("a chunk of messages is damaged: {error}", error=error))
 
 
 def _heads(file: BinaryIO, framing: Framing, size: int) -> Iterator[tuple[int, Any, int]]:
@@ -99,7 +100,14 @@ def _heads(file: BinaryIO, framing: Framing, size: int) -> Iterator[tuple[int, A
             return
         end = file.tell() + head[2]
         if end > size:
-            raise EOFError(f"the record at byte {place} ends at byte {end}, the file at {size}")
+            raise EOFError(
+                _(
+                    "the record at byte {place} ends at byte {end}, the file at {size}",
+                    place=place,
+                    end=end,
+                    size=size,
+                )
+            )
         yield head
         file.seek(end)
         place = end

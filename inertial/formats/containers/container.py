@@ -29,6 +29,7 @@ from inertial.formats.columns.column_values import ColumnValues, NumberValues
 from inertial.formats.columns.data_rows import Place, Reading, sort_rows
 from inertial.formats.containers import memory_limit
 from inertial.tables.errors import Refusal
+from inertial.text.messages import _
 
 BATCH_ROWS = 1 << 16  # rows that are returned at once
 MAX_ROWS_PER_BYTE = 1032  # the largest ratio of deflate; a row has a byte at least
@@ -112,9 +113,9 @@ def refuse_excessive_rows(path: Path, rows: int) -> None:
         raise Refusal(
             path.name,
             "",
-            f"{rows} rows stated in {size} bytes",
-            f"at most {MAX_ROWS_PER_BYTE} rows per byte",
-            "copy the log anew from where it was recorded; this file is damaged or no log",
+            _("{rows} rows stated in {size} bytes", rows=rows, size=size),
+            _("at most {max_rows_per_byte} rows per byte", max_rows_per_byte=MAX_ROWS_PER_BYTE),
+            _("copy the log anew from where it was recorded; this file is damaged or no log"),
         )
 
 
@@ -131,17 +132,22 @@ def _guarded(path: Path, call: Callable[[], T]) -> T:
             raise Refusal(
                 path.name,
                 "",
-                f"a file that unpacks to too much at once: {message}",
-                f"at most {memory_limit.MAX_READER_BYTES} bytes of memory to read it",
-                "write the log anew in smaller pieces; if it never was that large, "
-                "the file is damaged",
+                _("a file that unpacks to too much at once: {value}", value=message),
+                _(
+                    "at most {max_reader_bytes} bytes of memory to read it",
+                    max_reader_bytes=memory_limit.MAX_READER_BYTES,
+                ),
+                _(
+                    "write the log anew in smaller pieces; if it never was that large, the file is "
+                    "damaged"
+                ),
             ) from error
         raise Refusal(
             path.name,
             "",
-            f"a file that cannot be read: {message}",
+            _("a file that cannot be read: {value}", value=message),
             "a whole file",
-            "copy the log anew from where it was recorded; this one is cut off or damaged",
+            _("copy the log anew from where it was recorded; this one is cut off or damaged"),
         ) from error
 
 

@@ -25,6 +25,7 @@ from inertial.formats.containers.container import (
 )
 from inertial.formats.containers.matrices import MAX_DEPTH, MatrixColumn, columns_of, samples_of
 from inertial.tables.errors import Refusal
+from inertial.text.messages import _
 
 # Per matrix: its columns are read one by one, and each chunk should be unpacked once.
 _CACHE_BYTES = 1 << 26
@@ -102,9 +103,9 @@ def _refuse_external(path: Path, matrix: h5py.Dataset) -> None:
         raise Refusal(
             path.name,
             matrix.name,
-            "a matrix whose values lie in another file",
-            "values in the log itself",
-            "write the log anew as one file",
+            _("a matrix whose values lie in another file"),
+            _("values in the log itself"),
+            _("write the log anew as one file"),
         )
 
 

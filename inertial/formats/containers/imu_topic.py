@@ -25,6 +25,7 @@ from inertial.formats.account import OTHER_MESSAGE, Account
 from inertial.formats.columns.column_values import NumberValues
 from inertial.formats.containers.container import BATCH_ROWS, Batch, Table
 from inertial.tables.errors import Refusal
+from inertial.text.messages import _
 
 IMU = "sensor_msgs/msg/Imu"
 NANOSECONDS = 1e9  # in a second
@@ -90,15 +91,15 @@ def _topic(path: Path, named: str | None, topics: Mapping[int, Topic]) -> str:
         return there[0]
     others = sorted({f"{topic.name} ({topic.kind})" for topic in topics.values()})
     if named is not None:
-        problem = f"no topic '{named}' with {IMU}"
+        problem = _("no topic '{named}' with {imu}", named=named, imu=IMU)
     else:
-        problem = f"{len(there) or 'no'} topics with {IMU}"
+        problem = _("{value} topics with {imu}", value=len(there) or "no", imu=IMU)
     raise Refusal(
         path.name,
         "topic",
         problem,
-        f"one of {', '.join(there or others) or 'its topics, of which it has none'}",
-        "name the topic of the IMU in the format's key topic",
+        _("one of {value}", value=", ".join(there or others) or "its topics, of which it has none"),
+        _("name the topic of the IMU in the format's key topic"),
     )
 
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from inertial.tables.errors import Refusal
+from inertial.text.messages import _
 
 MAX_COLUMNS = 1000  # a wider matrix is not one of samples
 MAX_DEPTH = 4  # structures within structures
@@ -56,7 +57,7 @@ def samples_of(path: Path, columns: Mapping[int, MatrixColumn]) -> int:
             path.name,
             "",
             ", ".join(f"{samples} samples of {name}" for samples, name in lengths.items()),
-            "as many of each",
-            "name columns that were recorded together",
+            _("as many of each"),
+            _("name columns that were recorded together"),
         )
     return next(iter(lengths), 0)

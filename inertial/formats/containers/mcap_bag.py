@@ -17,6 +17,7 @@ from inertial.formats.containers.bag_records import Framing, Record, bag_records
 from inertial.formats.containers.container import Table
 from inertial.formats.containers.imu_topic import Bag, Gap, Message, Topic, imu_table
 from inertial.formats.containers.ros2_bag import deserialize, kind_of
+from inertial.text.messages import _
 
 _MAGIC = b"\x89MCAP0\r\n"
 _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK = 2, 3, 4, 5, 6  # kinds of records
@@ -78,7 +79,7 @@ def _messages(path: Path) -> Iterator[Message | Gap]:
         if isinstance(record, Gap):
             yield record
         elif len(record.data) < _MESSAGE_HEAD.size:
-            yield Gap(f"a message of {len(record.data)} bytes, expected at least 22")
+            yield Gap(_("a message of {data} bytes, expected at least 22", data=len(record.data)))
         else:
-            channel, _, received, _ = _MESSAGE_HEAD.unpack_from(record.data)
+            channel, _unused, received, _unused = _MESSAGE_HEAD.unpack_from(record.data)
             yield Message(channel, received, record.data[_MESSAGE_HEAD.size :])

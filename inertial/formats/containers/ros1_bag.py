@@ -18,6 +18,7 @@ from rosbags.typesys.store import Typestore
 from inertial.formats.containers.bag_records import Framing, Record, bag_records
 from inertial.formats.containers.container import Table
 from inertial.formats.containers.imu_topic import IMU, Bag, Gap, Message, Topic, imu_table
+from inertial.text.messages import _
 
 _MAGIC = b"#ROSBAG V2.0\n"
 
@@ -56,10 +57,16 @@ def unpacked(chunk: Record) -> bytes:
     """The records in a chunk."""
     compression, size = chunk.header.get_string("compression"), chunk.header.get_uint32("size")
     if compression not in decompressors:
-        raise ReaderError(f"compression '{compression[:20]}', expected {', '.join(decompressors)}")
+        raise ReaderError(
+            _(
+                "compression '{compression}', expected {decompressors}",
+                compression=compression[:20],
+                decompressors=", ".join(decompressors),
+            )
+        )
     data = decompressors[compression](chunk.data)
     if len(data) != size:
-        raise ReaderError(f"a chunk of {len(data)} bytes, expected {size}")
+        raise ReaderError(_("a chunk of {data} bytes, expected {size}", data=len(data), size=size))
     return data
 
 

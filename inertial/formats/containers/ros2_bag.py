@@ -19,12 +19,14 @@ from rosbags.typesys.store import Typestore
 from inertial.formats.containers.container import Table
 from inertial.formats.containers.imu_topic import IMU, Bag, Gap, Message, Topic, imu_table
 from inertial.tables.errors import Refusal
+from inertial.text.messages import _
 
 MAX_MESSAGE_BYTES = 1 << 26
 _ENCODING = "cdr"  # of the messages of ROS 2
 _TABLES = (
     "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('messages', 'topics')"
 )
+
 _TOPICS = "SELECT id, name, type, serialization_format FROM topics"
 _MESSAGES = "SELECT id, topic_id, timestamp, data FROM messages ORDER BY id"
 
@@ -80,9 +82,9 @@ def _refuse_open_bag(path: Path) -> None:
         raise Refusal(
             path.name,
             "",
-            f"a bag that was not closed: messages lie in {journal.name}",
-            "all messages in the bag",
-            f"put them there: sqlite3 {path.name} 'PRAGMA wal_checkpoint(TRUNCATE)'",
+            _("a bag that was not closed: messages lie in {name}", name=journal.name),
+            _("all messages in the bag"),
+            _("put them there: sqlite3 {name} 'PRAGMA wal_checkpoint(TRUNCATE)'", name=path.name),
         )
 
 
@@ -92,12 +94,18 @@ def _messages(database: sqlite3.Connection) -> Iterator[Message | Gap]:
         for number, topic, received, data in database.execute(_MESSAGES):
             # Damage can lead the library in circles, but never to larger numbers.
             if not isinstance(number, int) or (last is not None and number <= last):
-                yield Gap(f"the bag cannot be read any further: message {number} after {last}")
+                yield Gap(
+                    _(
+                        "the bag cannot be read any further: message {number} after {last}",
+                        number=number,
+                        last=last,
+                    )
+                )
                 return
             last = number
             if all(map(isinstance, (topic, received, data), (int, int, bytes))):
                 yield Message(topic, received, data)
             else:
-                yield Gap(f"message {number} is no message")
+                yield Gap(_("message {number} is no message", number=number))
     except (sqlite3.Error, OverflowError) as error:
-        yield Gap(f"the bag cannot be read any further: {error}")
+        yield Gap(_("the bag cannot be read any further: {error}", error=error))

@@ -26,6 +26,7 @@ from inertial.formats.novatel.kernel import (
     SYNC,
     WEEK_S,
 )
+from inertial.text.messages import _
 
 _ONES = 0xFFFFFFFF
 _HEXADECIMAL = re.compile("[0-9a-fA-F]{1,8}")
@@ -50,7 +51,11 @@ def checksum(text: bytes) -> int:
 
 def too_long(size: int) -> str:
     """Why a stretch without a line end is refused."""
-    return f"{size} bytes without a line end, expected at most {MAX_LINE_BYTES}"
+    return _(
+        "{size} bytes without a line end, expected at most {max_line_bytes}",
+        size=size,
+        max_line_bytes=MAX_LINE_BYTES,
+    )
 
 
 def why_refused(text: bytes) -> str:
@@ -62,28 +67,49 @@ def why_refused(text: bytes) -> str:
         return _why_not_binary(text)
     if text[:1] not in (b"%", b"#"):
         begins = quoted(text[:1])
-        return f"begins with '{begins}', expected '%', '#' or a binary message's AA 44"
+        return _(
+            "begins with '{begins}', expected '%', '#' or a binary message's AA 44", begins=begins
+        )
     body, star, stated = line[1:].partition(b"*")
     if not star:
-        return f"no checksum, expected '*' and {CRC_DIGITS} hexadecimal digits at the end"
-    return f"checksum '{quoted(stated)}', computed '{checksum(body):08x}'"
+        return _(
+            "no checksum, expected '*' and {crc_digits} hexadecimal digits at the end",
+            crc_digits=CRC_DIGITS,
+        )
+    return _(
+        "checksum '{stated}', computed '{body:08x}'", stated=quoted(stated), body=checksum(body)
+    )
 
 
 def _why_not_binary(text: bytes) -> str:
     long = text[2] == LONG_SYNC
     if len(text) < SHORT_BYTES:
-        return f"{len(text)} bytes of a binary message, too few for its header"
+        return _("{text} bytes of a binary message, too few for its header", text=len(text))
     header = text[3] if long else SHORT_BYTES
     if header != (LONG_BYTES if long else SHORT_BYTES):
-        return f"a binary message with a header of {header} bytes, expected {LONG_BYTES}"
+        return _(
+            "a binary message with a header of {header} bytes, expected {long_bytes}",
+            header=header,
+            long_bytes=LONG_BYTES,
+        )
     body = int.from_bytes(text[8:10], "little") if long else text[3]
     number = int.from_bytes(text[4:6], "little")
     total = header + body + CRC_BYTES
     if len(text) != total:
-        return f"{len(text)} bytes of binary message {number}, by its header it has {total}"
+        return _(
+            "{text} bytes of binary message {number}, by its header it has {total}",
+            text=len(text),
+            number=number,
+            total=total,
+        )
     stated = int.from_bytes(text[-CRC_BYTES:], "little")
     computed = checksum(text[:-CRC_BYTES])
-    return f"binary message {number}: checksum '{stated:08x}', computed '{computed:08x}'"
+    return _(
+        "binary message {number}: checksum '{stated:08x}', computed '{computed:08x}'",
+        number=number,
+        stated=stated,
+        computed=computed,
+    )
 
 
 def fields_of(text: bytes, code: int) -> Fields:
@@ -122,11 +148,19 @@ def _why_no_fields(text: bytes) -> str:
     """Why the fields of a binary IMU message are invalid."""
     body = text[LONG_BYTES if text[2] == LONG_SYNC else SHORT_BYTES : -CRC_BYTES]
     if len(body) != BODY_BYTES:
-        return f"a body of {len(body)} bytes, expected {BODY_BYTES}"
+        return _(
+            "a body of {body} bytes, expected {body_bytes}", body=len(body), body_bytes=BODY_BYTES
+        )
     extended = int.from_bytes(text[4:6], "little") in NUMBERS[2:]
     week = int.from_bytes(body[2:4] if extended else body[:4], "little")
     (seconds,) = struct.unpack_from("<d", body, 4)
-    return f"week {week}, seconds {seconds!r}, expected up to {LAST_WEEK} and from 0 to {WEEK_S}"
+    return _(
+        "week {week}, seconds {seconds!r}, expected up to {last_week} and from 0 to {week_s}",
+        week=week,
+        seconds=seconds,
+        last_week=LAST_WEEK,
+        week_s=WEEK_S,
+    )
 
 
 def _number(
@@ -134,8 +168,13 @@ def _number(
 ) -> float:
     """The value of the field `name`, which must lie between `least` and `most`."""
     noun = "a whole number" if kind is int else "a number"
-    expected = (
-        f"{name} is '{quoted(fields[name].encode())}', expected {noun} from {least} to {most}"
+    expected = _(
+        "{name} is '{quoted}', expected {noun} from {least} to {most}",
+        name=name,
+        quoted=quoted(fields[name].encode()),
+        noun=noun,
+        least=least,
+        most=most,
     )
     if not _NUMBER.fullmatch(fields[name]):
         raise ValueError(expected)

@@ -34,6 +34,7 @@ from inertial.formats.novatel.imu_messages import (
 )
 from inertial.formats.novatel.kernel import BINARY, IMU, UNPARSED, Bytes, Integers
 from inertial.formats.novatel.message_errors import fields_of, too_long, why_refused
+from inertial.text.messages import _
 
 CHUNK_BYTES = 7 << 19  # of the shortest IMU messages as many as rows of a batch
 WEEK_NS = kernel.WEEK_S * kernel.SECOND_NS
@@ -210,7 +211,7 @@ def _parse_unusual(data: Bytes, items: Items) -> dict[int, str]:
         try:
             fields = fields_of(_bytes(data, items, index), int(items.code[index]))
         except ValueError as error:
-            reasons[index] = f"right checksum, but {error}"
+            reasons[index] = _("right checksum, but {error}", error=error)
         else:
             items.stamp[index], items.status[index] = fields.stamp, fields.status
             items.counts[index], items.imu_type[index] = fields.counts, fields.imu_type
