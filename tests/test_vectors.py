@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from inertial.physics.vectors import cross
+from inertial.physics.motion import cross
 
 
 @pytest.mark.parametrize(

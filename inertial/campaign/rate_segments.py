@@ -22,7 +22,7 @@ from inertial.estimation.gyroscope_observations import (
     WholeTurn,
 )
 from inertial.estimation.spectrum import rate_deviation
-from inertial.physics.vectors import cross
+from inertial.physics.motion import cross
 from inertial.tables import GYRO
 from inertial.text.messages import _
 

@@ -11,8 +11,7 @@ from inertial.campaign.records import Known, Manoeuvre, rows_of, with_mount
 from inertial.estimation.gyroscope_observations import Position
 from inertial.estimation.triad import BIAS, linear_names
 from inertial.physics.forward import Site, Triad
-from inertial.physics.motion import level_axes
-from inertial.physics.vectors import cross
+from inertial.physics.motion import cross, level_axes
 from inertial.tables import AXES
 
 Array = NDArray[np.float64]

@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from inertial.physics.drift import after, evenly, without_clock
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth, by_grade
 from inertial.physics.motion import Motion
-from inertial.physics.typical_sizes import by_grade
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 

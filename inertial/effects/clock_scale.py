@@ -1,8 +1,7 @@
 """A clock of the instrument that is fast or slow."""
 
-from inertial.physics.effect import Array, Effect, Parameter, Truth, known_earth
+from inertial.physics.effect import Array, Effect, Parameter, Truth, by_grade, known_earth
 from inertial.physics.motion import Motion
-from inertial.physics.typical_sizes import by_grade
 from inertial.text.messages import _
 
 

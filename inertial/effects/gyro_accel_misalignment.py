@@ -2,10 +2,8 @@
 
 from dataclasses import replace
 
-from inertial.physics.effect import Array, Effect, Parameter, Truth, known_earth
-from inertial.physics.motion import Motion
-from inertial.physics.typical_sizes import by_grade
-from inertial.physics.vectors import cross
+from inertial.physics.effect import Array, Effect, Parameter, Truth, by_grade, known_earth
+from inertial.physics.motion import Motion, cross
 from inertial.text.messages import _
 
 

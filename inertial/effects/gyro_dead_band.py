@@ -4,9 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth, known_earth
+from inertial.physics.effect import (
+    Array,
+    Effect,
+    Parameter,
+    Reading,
+    Scan,
+    Truth,
+    by_grade,
+    known_earth,
+)
 from inertial.physics.motion import Motion
-from inertial.physics.typical_sizes import by_grade
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
 

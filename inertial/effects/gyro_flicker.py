@@ -1,7 +1,6 @@
 """A bias of the gyros that is not stable."""
 
-from inertial.physics.effect import Effect, Parameter
-from inertial.physics.typical_sizes import by_grade
+from inertial.physics.effect import Effect, Parameter, by_grade
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
 

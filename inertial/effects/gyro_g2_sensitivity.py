@@ -2,9 +2,8 @@
 
 from dataclasses import replace
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
 from inertial.physics.motion import Motion
-from inertial.physics.typical_sizes import by_grade
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
 

@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
 from inertial.physics.motion import Motion
-from inertial.physics.typical_sizes import by_grade
 from inertial.text.messages import _
 
 

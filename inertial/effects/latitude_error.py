@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Truth, known_earth
+from inertial.physics.effect import Array, Effect, Parameter, Truth, known_earth, usually
 from inertial.physics.motion import Motion
 from inertial.physics.site import EARTH_RATE
-from inertial.physics.typical_sizes import usually
 from inertial.text.messages import _
 from inertial.text.units import DEGREE
 

@@ -1,7 +1,6 @@
 """A case that rings while the table turns."""
 
-from inertial.physics.effect import Effect, Parameter
-from inertial.physics.typical_sizes import of_tables
+from inertial.physics.effect import Effect, Parameter, of_tables
 from inertial.text.messages import _
 
 

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.gyroscope_formulas import Readings, Solution
 from inertial.estimation.least_squares import pseudo_inverse
-from inertial.physics.motion import level_axes
-from inertial.physics.vectors import cross
+from inertial.physics.motion import cross, level_axes
 
 CROSS_SIGMA = 0.01  # rad, of a cross term that is not determined: mounting within half a degree
 

@@ -24,8 +24,7 @@ from inertial.estimation.random_walk import Stretch, linear_trend, with_drifts
 from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
 from inertial.estimation.triad import UNKNOWNS
 from inertial.estimation.variance_components import ScatterFit, walk_search, with_random_walk
-from inertial.physics.motion import all_level_axes
-from inertial.physics.vectors import cross
+from inertial.physics.motion import all_level_axes, cross
 
 Array = NDArray[np.float64]
 

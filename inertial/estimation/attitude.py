@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from inertial.physics.vectors import cross
+from inertial.physics.motion import cross
 
 Array = NDArray[np.float64]
 

@@ -33,7 +33,7 @@ from inertial.estimation.gyroscopes import PRIOR, PRIOR_SIGMA
 from inertial.estimation.least_squares import Estimate, System, solve_iterated
 from inertial.estimation.multi_position import FreeRest, Upward, upward_of
 from inertial.estimation.triad import UNKNOWNS, design_of
-from inertial.physics.vectors import cross
+from inertial.physics.motion import cross
 
 Array = NDArray[np.float64]
 Rows = tuple[Array, Array, Array]  # coefficients (m, p), residuals (m,), their sigma (m,)

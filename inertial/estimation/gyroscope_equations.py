@@ -39,8 +39,7 @@ from inertial.estimation.gyroscope_observations import (
 )
 from inertial.estimation.random_walk import Stretch
 from inertial.estimation.triad import UNKNOWNS, design_of
-from inertial.physics.motion import all_level_axes, level_axes, turned_all
-from inertial.physics.vectors import cross
+from inertial.physics.motion import all_level_axes, cross, level_axes, turned_all
 
 Array = NDArray[np.float64]
 

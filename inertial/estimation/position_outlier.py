@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from inertial.estimation.accelerometers import StaticForce, equations
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.triad import UNKNOWNS
-from inertial.physics.motion import level_axes
-from inertial.physics.vectors import cross
+from inertial.physics.motion import cross, level_axes
 
 Array = NDArray[np.float64]
 

@@ -28,8 +28,7 @@ from inertial.estimation.gyroscope_formulas import Readings, Solution
 from inertial.estimation.gyroscope_observations import Earth, RateSegment, StaticRate
 from inertial.estimation.horizontal_earth_rate import SummedEarthRate, summed_earth_rate
 from inertial.estimation.least_squares import pseudo_inverse
-from inertial.physics.motion import level_axes, turned
-from inertial.physics.vectors import cross
+from inertial.physics.motion import cross, level_axes, turned
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from itertools import permutations, product
 
 import numpy as np
 
-from inertial.physics.vectors import cross
+from inertial.physics.motion import cross
 from inertial.signal.detector import SENSORS, Array, Description, Event, Integers, Log, Piece
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.text.messages import _

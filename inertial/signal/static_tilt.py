@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from inertial.physics.vectors import cross
+from inertial.physics.motion import cross
 from inertial.signal.detector import SENSORS, Array, Booleans, Log, Piece
 from inertial.signal.scatter import MAD_TO_SIGMA
 

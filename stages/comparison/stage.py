@@ -11,8 +11,11 @@ from stages.comparison.declared import DECLARED
 from stages.comparison.difference import Difference, Results, table_of
 from stages.comparison.fencepost_error import off_by_a_sample
 from stages.comparison.methods_compared import against_published, method_against_method
-from stages.comparison.rate_segments_compared import forward_against_backward, static_against_turns
-from stages.comparison.straight_line import straight_line
+from stages.comparison.rate_segments_compared import (
+    forward_against_backward,
+    static_against_turns,
+    straight_line,
+)
 
 
 def comparison(

@@ -1,19 +1,26 @@
-"""Which M and bias apply to which records, and how the errors are taken out of a reading.
+"""The errors taken out of the samples, and the envelope of what is left."""
 
-m = M⁻¹ (m̃ − b)                                                       (S0, compensation)
-"""
-
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 from numpy.typing import NDArray
 
+from inertial import tables
 from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.masked_samples import Masks
 from inertial.campaign.records import rows_of
 from inertial.campaign.solution import Solution
+from inertial.campaign.sums import extremes_over
 from inertial.physics.forward import Triad
+from inertial.tables import CHANNELS
+from inertial.tables.parquet import Stream
+
+# ---- Which M and bias apply to which records, and how the errors are taken out of a reading.
+#
+# m = M⁻¹ (m̃ − b)                                                       (S0, compensation)
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -74,3 +81,69 @@ def mounted(mounts: Sequence[CampaignData], segments: pd.DataFrame) -> dict[str,
 
 def _start(row: Mapping[str, int]) -> int:
     return row["from_record"]
+
+
+# ---- The samples with the errors taken out, batch by batch, however long the log.
+
+
+@dataclass(frozen=True)
+class CompensatedStream(Stream):
+    """A stream of samples whose six channels are compensated; all else stays as it is.
+
+    What is masked has no compensated reading.
+    """
+
+    mounted: Mapping[str, Sequence[Mounted]]  # by log
+    masks: Masks
+
+    def columns(self, names: list[str]) -> Iterator[pa.RecordBatch]:
+        """Batch by batch, of some columns only."""
+        needed = dict.fromkeys([*names, "log", "record", *CHANNELS])
+        for batch in super().columns(list(needed)):
+            truth = self._truth(batch)
+            arrays = [
+                pa.array(truth[:, CHANNELS.index(name)], from_pandas=True)
+                if name in CHANNELS
+                else batch.column(name)
+                for name in names
+            ]
+            yield pa.RecordBatch.from_arrays(arrays, names)
+
+    def _truth(self, batch: pa.RecordBatch) -> Array:
+        """The six channels of a batch with the errors taken out, (n, 6)."""
+        readings = np.column_stack(
+            [batch.column(channel).to_numpy(zero_copy_only=False) for channel in CHANNELS]
+        )
+        record = batch.column("record").to_numpy()
+        logs = batch.column("log").dictionary_encode()
+        names, index = logs.dictionary.to_pylist(), logs.indices.to_numpy()
+        truth = np.full(readings.shape, np.nan)
+        for number, log in enumerate(names):
+            for part in self.mounted.get(log, ()):
+                own = (index == number) & (record >= part.first) & (record < part.after)
+                if own.any():
+                    masked = self.masks.of(log, record[own])
+                    kept = np.where(masked.channels, np.nan, readings[own])
+                    kept[masked.whole] = np.nan
+                    truth[own] = part.truth(kept)
+        return truth
+
+
+# ---- The extremes of the compensated samples between the edges that the traces of segment have.
+
+
+def envelope(samples: CompensatedStream, traces: pd.DataFrame) -> pd.DataFrame:
+    """The same stretches as in `traces`, so that before, after and difference can be drawn."""
+    edges = {
+        str(log): (rows["from_record"].to_numpy(np.int64), rows["to_record"].to_numpy(np.int64))
+        for log, rows in traces.groupby("log", sort=False)
+    }
+    own = dict(list(traces.groupby("log", sort=False)))
+    frames = [
+        own[log][["log", "from_record", "to_record", "from_s", "to_s"]].assign(
+            **{f"least_{c}": total.least[:, i] for i, c in enumerate(tables.CHANNELS)},
+            **{f"most_{c}": total.most[:, i] for i, c in enumerate(tables.CHANNELS)},
+        )
+        for log, total in extremes_over(samples, edges).items()
+    ]
+    return pd.concat(frames) if frames else tables.TRACES.empty()

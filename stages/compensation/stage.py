@@ -16,10 +16,8 @@ from inertial.tables.parquet import Stream
 from inertial.tables.stage import Pieces, Stage
 from inertial.text.messages import _
 from stages.compensation.checks import checks, missing, table_of
-from stages.compensation.compensated_samples import CompensatedStream
-from stages.compensation.correction import mounted
+from stages.compensation.correction import CompensatedStream, envelope, mounted
 from stages.compensation.declared import DECLARED
-from stages.compensation.envelope import envelope
 
 ALREADY = Finding(
     id="compensation/already_compensated/campaign",

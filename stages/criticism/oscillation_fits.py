@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.periodic_in_angle import Orders, log_chance
 from inertial.estimation.periodic_in_time import Line, Taken, phasor, pooled, strongest
-from inertial.physics.vectors import cross
+from inertial.physics.motion import cross
 from inertial.tables import AXES
 
 # ---- Oscillations in the residuals of the rate segments, fitted in time and in angle.

@@ -19,7 +19,7 @@ from inertial.model_selection.cause import UNKNOWN_STRUCTURE, Cause, Named
 from inertial.model_selection.detection_limits import Visible, visible
 from inertial.model_selection.evidence import Evidence, SearchedEffect, searched_effect
 from inertial.model_selection.naming import causes, law_of
-from inertial.model_selection.scan_refinement import finer, to_refine
+from inertial.model_selection.search import finer, to_refine
 from inertial.physics.effect import Effect
 from stages.criticism.bias_drift import course_of, courses, slight, walks_beside
 

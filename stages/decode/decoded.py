@@ -1,13 +1,77 @@
-"""A decoded piece of a log, and the clock of a log by its first pieces."""
+"""The logs as files, what a piece of a log gives, and its rows in the tables."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import Any
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
+import pyarrow as pa
 from numpy.typing import NDArray
 
 from inertial.formats.account import Account, RefusedLine
+from inertial.formats.arrow_arrays import (
+    array_of_numbers,
+    array_of_texts,
+    batch_of_rows,
+    repeated_text,
+)
+from inertial.tables import ACCOUNTS, REFUSED, SAMPLES
+from inertial.tables.errors import Refusal
+from inertial.text.messages import _
+
+# ---- Iteration with the next items made in a thread while the current one is used.
+
+Item = TypeVar("Item")
+_END = object()
+_DEPTH = 2  # with one, producer and consumer wait for each other wherever items differ in size
+
+
+def prefetched(items: Iterator[Item]) -> Iterator[Item]:
+    """The same items; the next ones are made in a thread while the current one is used."""
+    with ThreadPoolExecutor(1) as thread:
+        pending = deque(thread.submit(next, items, _END) for _ in range(_DEPTH))
+        while (item := pending.popleft().result()) is not _END:
+            pending.append(thread.submit(next, items, _END))
+            yield item  # type: ignore[misc]
+
+
+# ---- The logs of a campaign as files: they are there, and finished.
+
+
+def path_of(file: str, raw: list[Path]) -> Path:
+    """The log of this name; refused where there is none."""
+    paths = {path.name: path for path in raw if path.is_file()}
+    if file not in paths:
+        raise Refusal(
+            file,
+            "",
+            "no such file",
+            _(
+                "the log of the campaign beside {value}",
+                value=", ".join(sorted(paths)) or "its campaign.yaml",
+            ),
+            _("put it into the campaign's folder, or correct its name in campaign.yaml"),
+        )
+    return paths[file]
+
+
+def refuse_grown(path: Path, size: int) -> None:
+    """A log that is still written to would be another one in every run."""
+    if (now := path.stat().st_size) != size:
+        raise Refusal(
+            path.name,
+            "",
+            _("{now} bytes, {now_2} more than when it was opened", now=now, now_2=now - size),
+            _("a log that is finished"),
+            _("copy it when the recording has ended, and run again"),
+        )
+
+
+# ---- A decoded piece of a log, and the clock of a log by its first pieces.
 
 LOOK_AHEAD = 1000  # samples, where there are as many, of which the interval is the median
 
@@ -44,3 +108,47 @@ def look_ahead(
         return (together[0].item() if len(together) else None, None, None)
     median = float(np.median(forward))
     return together[0].item(), median, float(np.mean(forward[forward < 1.5 * median]))
+
+
+# ---- What was decoded as rows of the tables.
+
+Pieces = Iterator[tuple[str, pa.RecordBatch]]
+
+
+def account_of(log: str, account: Account, refused: list[RefusedLine]) -> Pieces:
+    """What became of every byte, and the lines that were refused."""
+    yield from refused_rows(log, refused)
+    sums = [
+        {"log": log, "kind": kind, "name": name, "lines": lines, "bytes": size}
+        for kind, name, lines, size in account
+    ]
+    yield "accounts", batch_of_rows(sums, ACCOUNTS.schema)
+
+
+def refused_rows(log: str, refused: list[RefusedLine]) -> Pieces:
+    """The lines that were refused, if any."""
+    if refused:
+        lines = [{"log": log, **asdict(line)} for line in refused]
+        yield "refused", batch_of_rows(lines, REFUSED.schema)
+
+
+def sample_rows(log: str, samples: Mapping[str, Any]) -> pa.RecordBatch:
+    """The samples in the columns of the table; what the log does not record is null."""
+    rows = len(samples["record"])
+    filled = {"log": repeated_text(log, rows)}
+    for name, values in samples.items():
+        if isinstance(values, list):
+            filled[name] = array_of_texts(values).dictionary_encode()
+        elif values is not None:
+            filled[name] = array_of_numbers(values)
+    arrays = [
+        filled[column.name] if column.name in filled else _nulls(rows, column.type)
+        for column in SAMPLES.schema
+    ]
+    return pa.RecordBatch.from_arrays(arrays, schema=SAMPLES.schema)
+
+
+@lru_cache(4)  # most pieces have as many rows
+def _nulls(rows: int, of: pa.DataType) -> pa.Array:
+    """What is not recorded, (rows,)."""
+    return pa.nulls(rows, of)

@@ -12,17 +12,23 @@ import pyarrow as pa
 
 from inertial.formats.account import Account
 from inertial.formats.arrow_arrays import batch_of_rows
-from inertial.formats.prefetch import prefetched
 from inertial.tables import CLOCKS, IMU_TYPES
 from inertial.tables.parquet import BATCH_ROWS
 from inertial.tables.stage import Stage
 from stages.decode.column_log import ColumnLog
 from stages.decode.declared import DECLARED
-from stages.decode.decoded import Decoded
-from stages.decode.log_files import path_of, refuse_grown
+from stages.decode.decoded import (
+    Decoded,
+    Pieces,
+    account_of,
+    path_of,
+    prefetched,
+    refuse_grown,
+    refused_rows,
+    sample_rows,
+)
 from stages.decode.receiver_log import ReceiverLog
 from stages.decode.table_angle import TableAngle
-from stages.decode.table_rows import Pieces, account_of, refused_rows, sample_rows
 
 
 def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:

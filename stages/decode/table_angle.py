@@ -8,8 +8,7 @@ from pathlib import Path
 
 from inertial.formats.columns.encoder_log import Encoder
 from inertial.formats.gps_time import WEEK
-from stages.decode.decoded import Reals
-from stages.decode.log_files import path_of
+from stages.decode.decoded import Reals, path_of
 
 ANGLE_UNITS = {"deg": math.radians(1), "rad": 1.0}
 

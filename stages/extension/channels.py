@@ -15,8 +15,7 @@ from inertial.estimation.gyroscope_observations import Position, RateSegment
 from inertial.estimation.least_squares import System
 from inertial.physics.effect import Effect, Truth
 from inertial.physics.forward import Triad, signatures, truth_of
-from inertial.physics.motion import Motion, level_axes, turned_all
-from inertial.physics.vectors import cross
+from inertial.physics.motion import Motion, cross, level_axes, turned_all
 
 # ---- The means of each channel over static positions and over turns.
 #

@@ -10,11 +10,9 @@ from numpy.typing import NDArray
 from inertial.campaign.equations import Campaign
 from inertial.effects import CATALOGUE
 from inertial.estimation.triad import UNKNOWNS, linear_names
-from inertial.physics.effect import Effect
+from inertial.physics.effect import GOOD, POOR, USUAL, Effect
 from inertial.physics.forward import Triad, signatures, truth_of
-from inertial.physics.motion import Motion, turned_all
-from inertial.physics.typical_sizes import GOOD, POOR, USUAL
-from inertial.physics.vectors import cross
+from inertial.physics.motion import Motion, cross, turned_all
 from stages.extension.estimates import Solved
 
 # ---- How errors of the sensors grow in free inertial navigation over a minute.

@@ -18,8 +18,7 @@ from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from stages.segment import completeness, reduction
 from stages.segment.declared import DECLARED
-from stages.segment.detection_against_plan import compare
-from stages.segment.detection_in_positions import ExaminationOfRests
+from stages.segment.detection import ExaminationOfRests, compare
 from stages.segment.explanations import Explained, explain
 from stages.segment.locating import AS_NAMED, Located, divide
 from stages.segment.matching import Part, between_parts, position_parts, rest_part, turn_parts

@@ -15,7 +15,7 @@ from inertial.estimation.averaging_epochs import Formula, in_epochs, spread
 from inertial.estimation.triad import errors_of, linear_names
 from inertial.tables import AXES, CHANNELS
 from inertial.text.messages import _
-from stages.studies.stretches import Samples, Stretch
+from stages.studies.table_motion import Samples, Stretch
 
 Array = NDArray[np.float64]
 Row = dict[str, Any]

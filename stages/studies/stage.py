@@ -14,13 +14,13 @@ from inertial.text.messages import _
 from stages.studies import motion_rows
 from stages.studies.declared import DECLARED
 from stages.studies.epochs import rests_of, studied
-from stages.studies.stretches import samples_in
 from stages.studies.table_motion import (
     Gyros,
     WholeMotion,
     gyros_of,
     motion_of,
     pairs_of,
+    samples_in,
     steady_times,
     stretch_of,
     why_not,

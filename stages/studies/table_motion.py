@@ -1,4 +1,4 @@
-"""Turns recorded whole, sample by sample: what the gyros summed, and the angle of the table."""
+"""The motion of the table in each rate segment, from its gyro and its whole angle."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,6 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.masked_samples import Masks, pieces
 from inertial.campaign.motions import angles_seen
 from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Manoeuvre, rows_of
@@ -23,12 +24,57 @@ from inertial.estimation.time_angle import (
 )
 from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Site, Triad
-from inertial.physics.vectors import cross
-from inertial.tables import AXES, GYRO
+from inertial.physics.motion import cross
+from inertial.tables import AXES, CHANNELS, GYRO
+from inertial.tables.parquet import Stream
 from inertial.text.messages import _
-from stages.studies.stretches import Samples, Stretch
+
+# ---- The samples of some stretches of the logs, in one pass, what is masked left out.
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Records of a log, from `first` to the one before `after`."""
+
+    log: str
+    first: int
+    after: int
+
+
+@dataclass(frozen=True)
+class Samples:
+    """n samples: `time` (n,), s; `values` (n, 6), in the order of CHANNELS, NaN where masked."""
+
+    time: Array
+    values: Array
+
+
+def samples_in(
+    samples: Stream, stretches: Mapping[str, Stretch], masks: Masks
+) -> dict[str, Samples]:
+    """The samples of each stretch by its name; repeated records are left out."""
+    found: dict[str, list[tuple[Array, Array]]] = {name: [] for name in stretches}
+    for log, piece in pieces(samples, ["record", "time", *CHANNELS]):
+        record = piece["record"]
+        for name, stretch in stretches.items():
+            if stretch.log != log or record[-1] < stretch.first or record[0] >= stretch.after:
+                continue
+            here = (record >= stretch.first) & (record < stretch.after)
+            masked = masks.of(log, record[here])
+            values = np.column_stack([piece[channel][here] for channel in CHANNELS])
+            values[masked.channels | masked.lost[:, None]] = np.nan
+            kept = ~masked.repeated
+            found[name].append((piece["time"][here][kept], values[kept]))
+    return {
+        name: Samples(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+        for name, parts in found.items()
+        if parts
+    }
+
+
+# ---- Turns recorded whole, sample by sample: what the gyros summed, and the angle of the table.
 
 UNKNOWN_CROSS = 0.01  # rad, a mounting askew by half a degree: a cross term that no one determined
 MIN_LINE_HZ = 2.0  # Hz, above which a turn rings; what is slower is the table's own motion

@@ -7,8 +7,7 @@ from scipy.stats import f as f_distribution
 
 from inertial.estimation.consistency import largest_outlier, outliers
 from inertial.estimation.gyroscope_observations import Earth, Position, SteadyRate
-from inertial.estimation.rate_linearity import columns_of, nonlinearities, own_axis
-from inertial.estimation.rate_table import rate_table
+from inertial.estimation.rate_table import columns_of, nonlinearities, own_axis, rate_table
 
 NO_EARTH = Earth(0.0, 0.0, 0.0)  # the program knows of none; 15 °/h are 0.004 °/s
 DEGREE = np.radians(1)

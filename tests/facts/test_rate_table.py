@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from inertial.estimation.gyroscope_observations import Earth, Position, SteadyRate
-from inertial.estimation.rate_linearity import nonlinearities, own_axis
-from inertial.estimation.rate_table import rate_table
+from inertial.estimation.rate_table import nonlinearities, own_axis, rate_table
 from inertial.physics.motion import turned_all
 from inertial.physics.site import earth_rate
 

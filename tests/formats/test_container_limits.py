@@ -17,7 +17,7 @@ from rosbags.typesys import Stores, get_typestore
 from scipy.io import savemat
 
 from inertial.formats.columns import column_reader
-from inertial.formats.containers import memory_limit
+from inertial.formats.containers import container
 from inertial.tables.errors import Refusal
 from tests.formats import written
 
@@ -34,7 +34,7 @@ def limit(tmp_path, monkeypatch):
         small = tmp_path / f"small {number}"
         layout = written.WRITERS[name](small, written.rows(10))
         list(column_reader.read(small, layout))
-    monkeypatch.setattr(memory_limit, "MAX_READER_BYTES", LIMIT)
+    monkeypatch.setattr(container, "MAX_READER_BYTES", LIMIT)
     pool = pa.default_memory_pool()
     pa.set_memory_pool(pa.system_memory_pool())  # pyarrow's own has a reserve of a gigabyte
     yield

@@ -12,7 +12,7 @@ from inertial.model_selection.evidence import Evidence, searched_effect
 from inertial.model_selection.naming import causes, name_causes
 from inertial.model_selection.null_simulation import Chance, chance, power_limit
 from inertial.model_selection.scan import Candidates
-from inertial.model_selection.scan_refinement import finer, to_refine
+from inertial.model_selection.search import finer, to_refine
 from tests.inference.naming_evidence import Plan, plan_of, whitened
 from tests.inference.naming_plans import catalogue, times_of_jumps
 

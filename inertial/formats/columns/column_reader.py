@@ -10,7 +10,7 @@ from typing import Any
 
 from inertial.formats.columns import text_reader
 from inertial.formats.columns.data_rows import Reading, Rows
-from inertial.formats.columns.text_chunks import CHUNK_BYTES
+from inertial.formats.columns.text_reader import CHUNK_BYTES
 from inertial.formats.containers import container
 from inertial.formats.file_type import FileType, file_type_of, refuse_compressed
 

@@ -1,16 +1,9 @@
-"""Reader of a text log of columns: some header lines, then one data row per sample.
-
-The fields of a row stand between delimiters, by default any white space; blanks around a value do
-not count. Numbers have the units of the file. A row is refused that has another number of fields
-than the others, or no finite number where the layout requires one.
-
-pyarrow parses a chunk of lines at once. Lines with another number of fields, and chunks that it
-cannot parse as the layout requires, are examined line by line.
-"""
+"""Columns of text: whole chunks by pyarrow, lines that it refuses one by one."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from io import BufferedReader
 from pathlib import Path
 from typing import Any
 
@@ -34,13 +27,113 @@ from inertial.formats.arrow_arrays import numbers_of
 from inertial.formats.columns.column_layout import ColumnLayout, column_layout
 from inertial.formats.columns.column_values import ColumnValues, NumberValues, TextValues
 from inertial.formats.columns.data_rows import Place, Reading, sort_rows
-from inertial.formats.columns.text_chunks import (
-    CHUNK_BYTES,
-    MAX_LINE_BYTES,
-    Chunk,
-    text_chunks,
-)
 from inertial.text.messages import _
+
+# ---- A text log in chunks of whole lines, so that a log of any length passes through memory.
+#
+# A line ends with LF or CRLF, also mixed in one file; the last one may have no end. A lone CR ends
+# nothing: it is part of the text.
+
+CHUNK_BYTES = 7 << 19
+MAX_LINE_BYTES = 1 << 20  # longer is no line of a log, such as the zeros after a crash
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Some consecutive lines of a log; the arrays have one entry per line, (n,).
+
+    Of a line longer than `MAX_LINE_BYTES`, `data` may hold only the beginning; `lengths` has
+    its true length. The reader refuses it.
+    """
+
+    data: bytes
+    starts: Integers  # byte in `data` where a line begins
+    ends: Integers  # byte in `data` after its text, the line end left out
+    lengths: Integers  # byte in the file, with the line end
+    offset: int  # byte in the file where `data` begins
+    first_line: int  # number of the first line, from 1
+
+    @property
+    def offsets(self) -> Integers:
+        """Where each line begins in the file, byte."""
+        return self.offset + self.starts
+
+    @property
+    def lines(self) -> Integers:
+        """Number of each line in the file, from 1."""
+        return self.first_line + np.arange(len(self.starts))
+
+    def text(self, index: int) -> bytes:
+        """The line `index` of the chunk without its line end."""
+        return self.data[self.starts[index] : self.ends[index]]
+
+
+def text_chunks(path: Path, size: int = CHUNK_BYTES) -> Iterator[Chunk]:
+    """The lines of the file at `path`, about `size` bytes at a time.
+
+    No more than the rest of a line and one reading of `size` bytes are held.
+    """
+    offset, line = 0, 1
+    with path.open("rb") as file:
+        rest = b""
+        while read := file.read(size):
+            data = rest + read
+            end = data.rfind(b"\n") + 1
+            if end == 0 and len(data) > MAX_LINE_BYTES:
+                length = len(data) + _skip_to_line_end(file, size)
+                yield _overlong(data[:MAX_LINE_BYTES], length, offset, line)
+                offset, line, rest = offset + length, line + 1, b""
+                continue
+            if end:
+                chunk = _cut(data[:end], offset, line)
+                yield chunk
+                offset, line = offset + end, line + len(chunk.starts)
+            rest = data[end:]
+        if rest:
+            yield _cut(rest, offset, line)
+
+
+def _cut(data: bytes, offset: int, line: int) -> Chunk:
+    characters = np.frombuffer(data, np.uint8)
+    feeds = np.flatnonzero(characters == ord("\n"))
+    stops, ends = feeds + 1, feeds
+    if not data.endswith(b"\n"):
+        stops, ends = np.append(stops, len(data)), np.append(ends, len(data))
+    starts = np.concatenate([[0], stops[:-1]])
+    before_the_end = characters[np.maximum(ends - 1, 0)]
+    returns = (before_the_end == ord("\r")) & (ends > starts)
+    return Chunk(data, starts, ends - returns, stops - starts, offset, line)
+
+
+def _skip_to_line_end(file: BufferedReader, size: int) -> int:
+    """Read on past the next line end; the number of bytes read."""
+    skipped = 0
+    while read := file.readline(size):
+        skipped += len(read)
+        if read.endswith(b"\n"):
+            break
+    return skipped
+
+
+def _overlong(beginning: bytes, length: int, offset: int, line: int) -> Chunk:
+    return Chunk(
+        beginning,
+        np.array([0]),
+        np.array([len(beginning)]),
+        np.array([length]),
+        offset,
+        line,
+    )
+
+
+# ---- Reader of a text log of columns: some header lines, then one data row per sample.
+#
+# The fields of a row stand between delimiters, by default any white space; blanks around a value
+# do not count. Numbers have the units of the file. A row is refused that has another number of
+# fields than the others, or no finite number where the layout requires one.
+#
+# pyarrow parses a chunk of lines at once. Lines with another number of fields, and chunks that it
+# cannot parse as the layout requires, are examined line by line.
 
 FIRST_ROWS = 1000  # that determine the number of fields
 SEPARATOR = b"\x1f"  # between the fields of rows that are examined one by one

@@ -17,12 +17,7 @@ import pyarrow as pa
 from pyarrow import ipc, parquet
 
 from inertial.formats.columns.column_values import arrow_values
-from inertial.formats.containers.container import (
-    BATCH_ROWS,
-    Batch,
-    Table,
-    refuse_excessive_rows,
-)
+from inertial.formats.containers.container import BATCH_ROWS, Batch, Table, refuse_excessive_rows
 
 MAX_FOOTER_BYTES = 1 << 26  # of the strings and containers in a Parquet footer
 

@@ -1,17 +1,11 @@
-"""Reader of a container: a table whose columns a library returns, some rows at a time.
+"""Logs in containers: their columns as rows, read under a limit of memory."""
 
-Its rows are not lines. `line` is the number of the row from 1, `offset` is 0 and a refused row has
-0 bytes, because a row has no place in such a file. The account assigns the size of the whole file
-to the rows that were decoded, or to `header` where there are none.
-
-A row is refused that has no finite number where the layout requires one. Words are never numbers.
-Where the plan selects rows by the text of a number, a whole number has no point.
-"""
-
+import resource
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, ExitStack
+from contextlib import AbstractContextManager, ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from threading import Lock
 from typing import Any, TypeVar
 
 import numpy as np
@@ -27,9 +21,48 @@ from inertial.formats.account import (
 from inertial.formats.columns.column_layout import ColumnLayout, column_layout
 from inertial.formats.columns.column_values import ColumnValues, NumberValues
 from inertial.formats.columns.data_rows import Place, Reading, sort_rows
-from inertial.formats.containers import memory_limit
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
+
+# ---- A limit on the memory that a library may take while it reads a container.
+#
+# A few bytes of a compressed file can unpack to more than any memory holds. The limit is one of
+# the kernel on the address space of the process (RLIMIT_AS): what a library allocates beyond it
+# fails there and then. It counts from the address space in use, of which pyarrow and numba
+# reserve much.
+
+MAX_READER_BYTES = 4 << 30
+
+_STATM = Path("/proc/self/statm")  # its first number: pages of address space
+_LOCK = Lock()  # the limit is the whole process's
+
+
+@contextmanager
+def limited_memory() -> Iterator[None]:
+    """Limit the memory that is allocated inside; without effect where there is no /proc."""
+    if not _STATM.exists():
+        yield
+        return
+    with _LOCK:
+        used = int(_STATM.read_text().split()[0]) * resource.getpagesize()
+        soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+        set_limits = [limit for limit in (soft, hard) if limit != resource.RLIM_INFINITY]
+        limit = min([used + MAX_READER_BYTES, *set_limits])
+        resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
+        try:
+            yield
+        finally:
+            resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
+
+
+# ---- Reader of a container: a table whose columns a library returns, some rows at a time.
+#
+# Its rows are not lines. `line` is the number of the row from 1, `offset` is 0 and a refused row
+# has 0 bytes, because a row has no place in such a file. The account assigns the size of the
+# whole file to the rows that were decoded, or to `header` where there are none.
+#
+# A row is refused that has no finite number where the layout requires one. Words are never
+# numbers. Where the plan selects rows by the text of a number, a whole number has no point.
 
 BATCH_ROWS = 1 << 16  # rows that are returned at once
 MAX_ROWS_PER_BYTE = 1032  # the largest ratio of deflate; a row has a byte at least
@@ -122,7 +155,7 @@ def refuse_excessive_rows(path: Path, rows: int) -> None:
 def _guarded(path: Path, call: Callable[[], T]) -> T:
     """The library's result within the memory limit; its error becomes a refusal."""
     try:
-        with memory_limit.limited_memory():
+        with limited_memory():
             return call()
     except Refusal:
         raise
@@ -135,7 +168,7 @@ def _guarded(path: Path, call: Callable[[], T]) -> T:
                 _("a file that unpacks to too much at once: {value}", value=message),
                 _(
                     "at most {max_reader_bytes} bytes of memory to read it",
-                    max_reader_bytes=memory_limit.MAX_READER_BYTES,
+                    max_reader_bytes=MAX_READER_BYTES,
                 ),
                 _(
                     "write the log anew in smaller pieces; if it never was that large, the file is "

@@ -17,12 +17,7 @@ import h5py
 import numpy as np
 
 from inertial.formats.columns.column_values import ColumnValues, NumberValues
-from inertial.formats.containers.container import (
-    BATCH_ROWS,
-    Batch,
-    Table,
-    refuse_excessive_rows,
-)
+from inertial.formats.containers.container import BATCH_ROWS, Batch, Table, refuse_excessive_rows
 from inertial.formats.containers.matrices import MAX_DEPTH, MatrixColumn, columns_of, samples_of
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
