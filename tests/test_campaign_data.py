@@ -24,7 +24,7 @@ def test_each_mount_has_its_own_manoeuvres(mounts):
     assert [data.mount for data in mounts] == ["first", "second"]
     for data in mounts:
         names = {m.name for m in data.plan}
-        assert {still.manoeuvre.name for still in data.gyro_positions[0]} == names
+        assert {position.manoeuvre.name for position in data.gyro_positions[0]} == names
         rests = [name for name in names if "-up" in name or "-down" in name]
         assert len(data.accelerometer_positions[0]) == 6 + 2 * (len(names) - len(rests))
         assert data.named("joint") == f"joint@{data.mount}"
@@ -38,5 +38,9 @@ def test_each_mount_has_its_own_result(mounts):
         off = np.array([between[2, 1], between[0, 2], between[1, 0]])
         np.testing.assert_allclose(np.abs(off), np.abs(MOUNTING), rtol=0.05)
     for data in mounts:
-        positions = {position for position, quantity, _ in data.result.found if quantity == "tilt"}
+        positions = {
+            position
+            for position, quantity, _ in data.result.position_parameters
+            if quantity == "tilt"
+        }
         assert positions and positions <= {m.position for m in data.plan}

@@ -20,7 +20,11 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import Estimates
 from inertial.campaign.noise_levels import NoiseLevels, effective_levels
 from inertial.campaign.records import Known, Manoeuvre
-from inertial.campaign.unknown_attitude import add_free_accelerometers, free_stills, in_words
+from inertial.campaign.unknown_attitude import (
+    add_free_accelerometers,
+    free_static_positions,
+    in_words,
+)
 from inertial.estimation.multi_position import Unobservable
 from inertial.tables import CHANNELS
 from stages.gyroscope.free_positions import add_free_gyros
@@ -171,7 +175,7 @@ def test_where_every_attitude_is_known_the_method_has_no_rows(imu, recorded):
 
 def test_an_accelerometer_that_is_not_recorded_is_named(imu, recorded):
     unread = recorded.assign(accel_y=np.nan)
-    found, left = free_stills(CampaignData(PLAN, {}, unread, noise(imu), KNOWN))
+    found, left = free_static_positions(CampaignData(PLAN, {}, unread, noise(imu), KNOWN))
     assert not found and left[0].omission == "settle: |f| = g needs y too"
     table, _, _ = rows(add_free_accelerometers, "accelerometer", unread, imu)
     assert table["value"].isna().all()

@@ -23,7 +23,7 @@ from inertial.campaign.records import (
     with_mount,
 )
 from inertial.campaign.solution import Estimated, Solution, solution_of
-from inertial.campaign.static_positions import Still, stills
+from inertial.campaign.static_positions import StaticPosition, static_positions
 from inertial.estimation.gyroscope_observations import Earth
 
 
@@ -87,14 +87,14 @@ class CampaignData:
         return self.solution
 
     @cached_property
-    def accelerometer_positions(self) -> tuple[list[Still], list[Part]]:
+    def accelerometer_positions(self) -> tuple[list[StaticPosition], list[Part]]:
         """The static positions with readings of accelerometers; those left out, with the reason."""
-        return stills(self, "accel")
+        return static_positions(self, "accel")
 
     @cached_property
-    def gyro_positions(self) -> tuple[list[Still], list[Part]]:
+    def gyro_positions(self) -> tuple[list[StaticPosition], list[Part]]:
         """The same of the gyros."""
-        return stills(self, "gyro")
+        return static_positions(self, "gyro")
 
     @cached_property
     def gyro_inputs(self) -> GyroInputs:

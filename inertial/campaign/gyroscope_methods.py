@@ -43,19 +43,26 @@ def add_formulas(
     cross = np.where(told, joint.estimate.values[:9], CROSS_SIGMA).reshape(3, 3)
     _add_static(estimates, inputs, cross, (scatter, wanted))
     _add_known_angle(estimates, data, scatter)
-    found = rate_table(inputs.steadies, inputs.earth, inputs.position_sigma, scatter)
+    found = rate_table(inputs.steady_rates, inputs.earth, inputs.position_sigma, scatter)
     if found is not None:
         _add(estimates, "rate_table", found.solution, found.refusals())
 
 
 def uprights(inputs: GyroInputs, i: int) -> Iterator[tuple[str, Upright]]:
     """The rests of the plan with body axis i up or down, each with its name."""
-    for still in inputs.stills:
-        up = float(still.up_now[i])
-        mean, sigma = still.over()
-        if still.manoeuvre.do == "rest" and abs(up) > 1 - 1e-9 and np.isfinite(mean[i] * sigma[i]):
-            position = position_of(still.manoeuvre, inputs.heading)
-            yield still.manoeuvre.name, Upright(position, up, float(mean[i]), float(sigma[i]))
+    for position in inputs.static_positions:
+        up = float(position.up_now[i])
+        mean, sigma = position.over()
+        if (
+            position.manoeuvre.do == "rest"
+            and abs(up) > 1 - 1e-9
+            and np.isfinite(mean[i] * sigma[i])
+        ):
+            set_position = position_of(position.manoeuvre, inputs.heading)
+            yield (
+                position.manoeuvre.name,
+                Upright(set_position, up, float(mean[i]), float(sigma[i])),
+            )
 
 
 def _add_static(
@@ -65,7 +72,7 @@ def _add_static(
     sigmas_of: tuple[float, float],  # between manoeuvres, and wanted of a bias, rad/s
 ) -> None:
     scatter, wanted = sigmas_of
-    seconds = [s.seconds.sum() for s in inputs.stills if s.manoeuvre.do == "rest"]
+    seconds = [s.seconds.sum() for s in inputs.static_positions if s.manoeuvre.do == "rest"]
     for i, axis in enumerate(AXES):
         read = [rest for _unused, rest in uprights(inputs, i)]
         rests = [replace(rest, sigma=float(np.hypot(rest.sigma, scatter))) for rest in read]
@@ -107,7 +114,9 @@ def _add_known_angle(estimates: Estimates, data: CampaignData, scatter: float) -
 
 def add_turn_and_stop(estimates: Estimates, inputs: GyroInputs, scatter: float) -> None:
     """S3's formulas, for plans that turn both ways and stop at positions in common."""
-    found = turn_and_stop(inputs.turns, inputs.rests, inputs.earth, inputs.position_sigma, scatter)
+    found = turn_and_stop(
+        inputs.turns, inputs.static_rates, inputs.earth, inputs.position_sigma, scatter
+    )
     if not found.pairs or found.by_turns is None:
         return
     _add(estimates, "turn_and_stop", found.by_turns, _untold(found.by_turns))

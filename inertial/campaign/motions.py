@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Manoeuvre
-from inertial.campaign.static_positions import Still
+from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_observations import RateSegment
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import Motion, Profile, turned_all, turning
@@ -22,29 +22,29 @@ from inertial.text.messages import _
 Array = NDArray[np.float64]
 
 
-def at_rest(data: CampaignData, still: Still, time: float) -> Motion:
+def at_rest(data: CampaignData, position: StaticPosition, time: float) -> Motion:
     """A rest as one stretch of time, about its middle `time`, s."""
-    m = still.manoeuvre
-    position = position_of(m, data.heading)
-    up, north = data.result.upright(m), data.result.north(position)
+    m = position.manoeuvre
+    set_position = position_of(m, data.heading)
+    up, north = data.result.upright(m), data.result.north(set_position)
     zero = np.zeros(1)
     rest = turning(
-        still.about,
+        position.about,
         up,
         north,
-        np.array([still.angle]),
+        np.array([position.angle]),
         zero,
         zero,
         np.array([time]),
-        np.array([still.seconds.sum()]),
+        np.array([position.seconds.sum()]),
     )
-    return replace(rest, surveyed=np.array([position.north is not None]))
+    return replace(rest, surveyed=np.array([set_position.north is not None]))
 
 
 def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) -> Motion:
     """A turn in the k blocks of its sums; the angle of each is what the gyros saw of it."""
-    solution, position = data.result, position_of(m, data.heading)
-    up, north = solution.upright(m), solution.north(position)
+    solution, set_position = data.result, position_of(m, data.heading)
+    up, north = solution.upright(m), solution.north(set_position)
     gyro, site = solution.gyro, solution.site
     assert gyro is not None  # else nothing is simulated
     angle = angles_seen(turn.sums, turn.seconds, m.axis, up, north, gyro, site, turn.turned)
@@ -53,7 +53,7 @@ def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) 
     edges = np.concatenate([[0.0], (rate[1:] + rate[:-1]) / 2, [0.0]])
     acceleration = np.diff(edges) / turn.seconds
     blocks = turning(m.axis, up, north, turn.turned(angle), rate, acceleration, time, turn.seconds)
-    return replace(blocks, surveyed=np.full(len(time), position.north is not None))
+    return replace(blocks, surveyed=np.full(len(time), set_position.north is not None))
 
 
 def angles_seen(
@@ -179,21 +179,21 @@ class CampaignMotions:
         self._places = {m.name: float(names.index(m.position)) for m in data.plan}
         self._at_rest: dict[tuple[str, float], Motion] = {}
 
-    def at_rest(self, still: Still) -> Motion:
+    def at_rest(self, position: StaticPosition) -> Motion:
         """A rest as one stretch."""
-        name, time = still.manoeuvre.name, still.mean_of(still.time)
+        name, time = position.manoeuvre.name, position.mean_of(position.time)
         time = time if self._data.shared_clock else np.nan
-        later = AFTER if still.part.phase == "rest-after" else 0.0
-        place = (name, still.angle)  # all pieces of a rest stand alike
+        later = AFTER if position.part.phase == "rest-after" else 0.0
+        place = (name, position.angle)  # all pieces of a rest stand alike
         if place not in self._at_rest:
-            self._at_rest[place] = at_rest(self._data, still, time)
+            self._at_rest[place] = at_rest(self._data, position, time)
         return replace(
             self._at_rest[place],
             time=np.array([time]),
-            seconds=np.array([still.seconds.sum()]),
+            seconds=np.array([position.seconds.sum()]),
             visit=np.array([self._visits[name] + later]),
             position=np.array([self._places[name]]),
-            temperature=np.array([still.mean_of(still.temperature)]),
+            temperature=np.array([position.mean_of(position.temperature)]),
             vibration=self._data.noise.of_samples(name, "rest", ACCEL)[None],
         )
 

@@ -11,7 +11,13 @@ from numpy.typing import NDArray
 
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Manoeuvre, Part, Performed
-from inertial.campaign.static_positions import NO_BLOCKS, Blocks, Still, by_manoeuvre, stretch_of
+from inertial.campaign.static_positions import (
+    NO_BLOCKS,
+    Blocks,
+    StaticPosition,
+    by_manoeuvre,
+    stretch_of,
+)
 from inertial.estimation.gyroscope_observations import (
     Earth,
     Gap,
@@ -142,10 +148,10 @@ class Recorded:
 class GyroInputs:
     """All that a campaign gives the equations of the gyros, of one mount."""
 
-    stills: list[Still]
+    static_positions: list[StaticPosition]
     recorded: list[Recorded]
     turns: list[RateSegment]  # from rest to rest, with their angle known
-    steadies: list[SteadyRate]  # at a known rate
+    steady_rates: list[SteadyRate]  # at a known rate
     earth: Earth
     position_sigma: float
     heading: float | None
@@ -159,21 +165,25 @@ class GyroInputs:
     @property
     def used(self) -> list[Part]:
         """The manoeuvres of the equations."""
-        return [s.part for s in self.stills] + [Part(one.plan.name) for one in self.usable]
+        return [s.part for s in self.static_positions] + [
+            Part(one.plan.name) for one in self.usable
+        ]
 
     @property
-    def nothing(self) -> bool:
+    def is_empty(self) -> bool:
         """Whether there is neither a rest nor a turn."""
-        return not (self.stills or self.turns or self.steadies)
+        return not (self.static_positions or self.turns or self.steady_rates)
 
     @cached_property
-    def rests(self) -> list[StaticRate]:
+    def static_rates(self) -> list[StaticRate]:
         """The rests as the equations have them."""
-        return self.first_of_rests(np.inf)
+        return self.first_static_rates(np.inf)
 
-    def first_of_rests(self, seconds: float) -> list[StaticRate]:
+    def first_static_rates(self, seconds: float) -> list[StaticRate]:
         """The same of the first seconds of each."""
-        return [still_of(still, self.heading, seconds) for still in self.stills]
+        return [
+            static_rate_of(position, self.heading, seconds) for position in self.static_positions
+        ]
 
 
 def gyro_inputs(data: "CampaignData") -> GyroInputs:
@@ -187,12 +197,12 @@ def gyro_inputs(data: "CampaignData") -> GyroInputs:
         positions,
         recorded,
         [
-            replace(turn_of(r, *given), stretch=stretch_of(r.plan.name, r.blocks, shared))
+            replace(rate_segment_of(r, *given), stretch=stretch_of(r.plan.name, r.blocks, shared))
             for r in usable
             if r.plan.recorded == "whole"
         ],
         [
-            replace(steady_of(r, *given), stretch=stretch_of(r.plan.name, r.steady, shared))
+            replace(steady_rate_of(r, *given), stretch=stretch_of(r.plan.name, r.steady, shared))
             for r in usable
             if r.plan.recorded == "steady"
         ],
@@ -247,15 +257,15 @@ def position_of(m: Manoeuvre, heading: float | None) -> Position:
     return Position(m.position, up, north=cos(heading) * mark + sin(heading) * cross(up, mark))
 
 
-def still_of(still: Still, heading: float | None, seconds: float) -> StaticRate:
+def static_rate_of(position: StaticPosition, heading: float | None, seconds: float) -> StaticRate:
     """A rest, or its first seconds."""
-    position = position_of(still.manoeuvre, heading)
-    mean, sigma = still.over(seconds)
-    stretch = still.during(seconds)
-    return StaticRate(position, mean, sigma, still.about, still.angle, stretch=stretch)
+    set_position = position_of(position.manoeuvre, heading)
+    mean, sigma = position.over(seconds)
+    stretch = position.during(seconds)
+    return StaticRate(set_position, mean, sigma, position.about, position.angle, stretch=stretch)
 
 
-def turn_of(
+def rate_segment_of(
     one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float
 ) -> RateSegment:
     """A turn from rest to rest with its blocks in motion; gaps are interpolated.
@@ -281,7 +291,7 @@ def turn_of(
     )
 
 
-def steady_of(
+def steady_rate_of(
     one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float
 ) -> SteadyRate:
     m, part = one.plan, one.steady

@@ -21,37 +21,37 @@ JOINT = "joint"
 
 @dataclass(frozen=True)
 class Solution:
-    """M and bias of both triads, the site, and what was found of each position.
+    """M and bias of both triads, the site, and the parameters of the positions.
 
-    A triad that is not wholly determined is None. `walks`: random walks of the biases of gyros and
+    A triad that is not wholly determined is None. `random_walks`: of the biases of gyros and
     accelerometers, rad/s/√s and m/s²/√s.
     """
 
     gyro: Triad | None
     accelerometer: Triad | None
     site: Site
-    found: Mapping[tuple[str, str, int], float]  # position, quantity, component: rad or rad/s
-    walks: tuple[float, float] = (0.0, 0.0)
+    position_parameters: Mapping[tuple[str, str, int], float]  # position, quantity, component; SI
+    random_walks: tuple[float, float] = (0.0, 0.0)
 
     def upright(self, m: Manoeuvre) -> Array:
         """The direction that points up at the start of a manoeuvre, its tilt included, (3,)."""
         assert m.up is not None  # a manoeuvre without it is not simulated
-        lean = np.zeros(3)
+        tilt = np.zeros(3)
         for i, axis in enumerate(level_axes(m.up)):
-            lean = lean + self.found.get((m.position, "tilt", i), 0.0) * axis
-        return np.asarray(m.up + cross(lean, m.up))
+            tilt = tilt + self.position_parameters.get((m.position, "tilt", i), 0.0) * axis
+        return np.asarray(m.up + cross(tilt, m.up))
 
     def north(self, position: Position) -> Array:
-        """The direction of the level earth rate in body axes, times its size over the known one.
+        """The direction of the horizontal earth rate in body axes, relative to the known size.
 
-        NaN where neither mark and heading nor the gyros tell the azimuth.
+        NaN where the azimuth follows neither from mark and heading nor from the gyros.
         """
         if position.north is not None:
             return position.north
         axes, name = level_axes(position.up), position.name
         if position.mark is not None:
             axes, name = (position.mark, cross(position.up, position.mark)), "the table"
-        parts = [self.found.get((name, "horizontal", i), np.nan) for i in (0, 1)]
+        parts = [self.position_parameters.get((name, "horizontal", i), np.nan) for i in (0, 1)]
         return np.asarray((parts[0] * axes[0] + parts[1] * axes[1]) / self.site.earth_level)
 
 
@@ -63,10 +63,10 @@ class Estimated:
     positions: pd.DataFrame | None = None
     fit: pd.DataFrame | None = None
 
-    def found(
+    def position_parameters(
         self, method: str, mount: str, quantity: str, below: float
     ) -> dict[tuple[str, str, int], float]:
-        """What is estimated of the positions, by component, with a sigma below this."""
+        """The parameters of the positions, by component, whose sigma is `below` this limit."""
         rows = [] if self.positions is None else rows_of(self.positions)
         return {
             (row["position"], quantity, row["component"]): row["value"]
@@ -76,8 +76,8 @@ class Estimated:
             and row["sigma"] < below
         }
 
-    def walk(self, method: str) -> float:
-        """The random walk of the bias."""
+    def random_walk(self, method: str) -> float:
+        """The random walk of the bias, 0 where none was estimated."""
         rows = [] if self.fit is None else rows_of(self.fit)
         return float(next((r["random_walk"] or 0.0 for r in rows if r["method"] == method), 0.0))
 
@@ -87,17 +87,17 @@ def solution_of(
 ) -> Solution:
     """The joint result of a mount, tilts from the accelerometers, azimuths from the gyros.
 
-    The azimuth of a position counts as found where its level earth rate is known to a third.
+    An azimuth counts as determined where its horizontal earth rate is known to a third.
     """
     level, method = known["earth_rate_level"].number, with_mount(JOINT, mount)
-    tilts = accelerometer.found(JOINT, mount, "tilt", np.inf)
-    levels = gyro.found(JOINT, mount, "horizontal", level / 3)
+    tilts = accelerometer.position_parameters(JOINT, mount, "tilt", np.inf)
+    levels = gyro.position_parameters(JOINT, mount, "horizontal", level / 3)
     return Solution(
         triad_of(gyro.parameters, method),
         triad_of(accelerometer.parameters, method),
         Site(known["gravity"].number, known["earth_rate_up"].number, level),
         tilts | levels,
-        (gyro.walk(method), accelerometer.walk(method)),
+        (gyro.random_walk(method), accelerometer.random_walk(method)),
     )
 
 

@@ -86,7 +86,7 @@ BLOCK_COLUMNS = ("count", "seconds", "time", "temperature")
 
 
 @dataclass(frozen=True)
-class Still:
+class StaticPosition:
     """One stretch at rest in k blocks.
 
     `part`: of the plan; `up`, `about`: (3,), body axes at the start of its manoeuvre; `angle`: rad,
@@ -129,7 +129,7 @@ class Still:
         """The mean of something over all samples, from its means in the blocks, (k,)."""
         return float(np.average(values, weights=self.counts))
 
-    def pieces(self, seconds: float) -> list["Still"]:
+    def pieces(self, seconds: float) -> list["StaticPosition"]:
         """The same in pieces of about so many seconds, each a stretch of its own."""
         count = max(round(float(self.seconds.sum()) / seconds), 1)
         edges = np.linspace(0, len(self.seconds), min(count, len(self.seconds)) + 1).round()
@@ -138,7 +138,7 @@ class Still:
             for number, (first, after) in enumerate(pairwise(edges))
         ]
 
-    def _piece(self, some: slice, number: int) -> "Still":
+    def _piece(self, some: slice, number: int) -> "StaticPosition":
         start, end = _ends(self.time[some], self.seconds[some])
         stretch = Stretch(f"{self.label} {number}", self.stretch.clock, start, end - start)
         each = {name: getattr(self, name)[some] for name in PER_BLOCK}
@@ -161,14 +161,14 @@ class Still:
         return np.cumsum([samples * np.nan_to_num(self.means), samples, lasted], axis=1)
 
 
-def stills(data: "CampaignData", sensor: str) -> tuple[list[Still], list[Part]]:
+def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosition], list[Part]]:
     """The static positions of known attitude, and those left out with the reason.
 
     After a turn the IMU stands where the turn has brought it, so that stretch counts
     where the turn was recorded from rest to rest. `sensor` is accel or gyro.
     """
     blocks, performed = data.blocks, data.performed
-    positions: list[Still] = []
+    positions: list[StaticPosition] = []
     left_out: list[Part] = []
     channels = [f"{sensor}_{axis}" for axis in AXES]
     at_rest = blocks[blocks["phase"].str.startswith("rest") & (blocks["count"] > 0)]
@@ -197,7 +197,7 @@ def stills(data: "CampaignData", sensor: str) -> tuple[list[Still], list[Part]]:
                 left_out.append(replace(part, reason=NO_NOISE))
             else:
                 positions.append(
-                    Still(
+                    StaticPosition(
                         part,
                         m,
                         m.up,
@@ -230,9 +230,9 @@ def _ends(time: Array, seconds: Array) -> tuple[float, float]:
     return float(time[0] - seconds[0] / 2), float(time[-1] + seconds[-1] / 2)
 
 
-def averaging_times(found: list[Still], steps: int) -> list[float]:
+def averaging_times(found: list[StaticPosition], steps: int) -> list[float]:
     """Lengths of rest from one block to the longest, in equal ratios, s."""
-    lengths = [still.seconds for still in found if still.manoeuvre.do == "rest"]
+    lengths = [position.seconds for position in found if position.manoeuvre.do == "rest"]
     if not lengths:
         return []
     shortest = max(float(seconds.max()) for seconds in lengths)

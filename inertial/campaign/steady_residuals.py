@@ -151,8 +151,8 @@ def _angle(rows: pd.DataFrame, rate: Array, step: float) -> Array:
     `rate`: (n,), rad/s, about the axis, as it was simulated: with the earth's, which is what is
     there at rest. Where samples were lost the table went on at the rate of those after.
     """
-    still = rows["phase"].isin(RESTS).to_numpy()
-    turning = rate - (np.median(rate[still]) if still.any() else 0.0)
+    quiet = rows["phase"].isin(RESTS).to_numpy()
+    turning = rate - (np.median(rate[quiet]) if quiet.any() else 0.0)
     time = rows["time"].to_numpy(np.float64)
     passed = np.ones(len(time))
     if np.isfinite(time).all():

@@ -17,7 +17,7 @@ from inertial.campaign.estimates import NAMES as LINEAR
 from inertial.campaign.estimates import Estimates
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Manoeuvre, Part, omissions
-from inertial.campaign.static_positions import NO_NOISE, Still
+from inertial.campaign.static_positions import NO_NOISE, StaticPosition
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.multi_position import (
     FREE,
@@ -46,11 +46,11 @@ MOUNTING_UNDETERMINED = _(
 
 
 @dataclass(frozen=True)
-class FreeStill:
+class FreeStaticPosition:
     """A stretch at rest, whatever its attitude: both sensors, and its records [first, after)."""
 
-    force: Still
-    rate: Still
+    force: StaticPosition
+    rate: StaticPosition
     log: str
     first: int
     after: int
@@ -66,7 +66,7 @@ class FreeStill:
         return FreeRest(self.label, *self.force.over())
 
 
-def free_stills(data: CampaignData) -> tuple[list[FreeStill], list[Part]]:
+def free_static_positions(data: CampaignData) -> tuple[list[FreeStaticPosition], list[Part]]:
     """All stretches at rest of one mount in the order of the logs; those left out, with reasons.
 
     None at all where the plan knows every attitude: there the other methods serve.
@@ -74,7 +74,7 @@ def free_stills(data: CampaignData) -> tuple[list[FreeStill], list[Part]]:
     blocks, plan = data.blocks, data.plan
     if all(m.up is not None for m in plan if m.do != "turn"):
         return [], []
-    found: list[FreeStill] = []
+    found: list[FreeStaticPosition] = []
     left_out: list[Part] = []
     named = {m.name: m for m in plan}
     at_rest = blocks[blocks["phase"].str.startswith("rest") & (blocks["count"] > 0)]
@@ -94,7 +94,7 @@ def free_stills(data: CampaignData) -> tuple[list[FreeStill], list[Part]]:
         elif not np.isfinite(force.over()).all():
             left_out.append(replace(own, reason=NO_NOISE))
         else:
-            found.append(FreeStill(force, rate, str(part["log"].iloc[0]), first, after))
+            found.append(FreeStaticPosition(force, rate, str(part["log"].iloc[0]), first, after))
     return found, left_out
 
 
@@ -104,8 +104,8 @@ def _still(
     part: pd.DataFrame,
     noise: NoiseLevels,
     channels: list[str],
-) -> Still:
-    return Still(
+) -> StaticPosition:
+    return StaticPosition(
         own,
         m,
         UNKNOWN,
@@ -120,7 +120,7 @@ def _still(
     )
 
 
-def fitted_to(data: CampaignData, found: Sequence[FreeStill]) -> ScatterFit:
+def fitted_to(data: CampaignData, found: Sequence[FreeStaticPosition]) -> ScatterFit:
     """P and bias of the accelerometers, with a scatter between rests where noise cannot explain."""
     gravity, rests = data.gravity, [one.rest for one in found]
     fit = partial(free_positions, rests, gravity.number, gravity.scatter)
@@ -129,7 +129,7 @@ def fitted_to(data: CampaignData, found: Sequence[FreeStill]) -> ScatterFit:
 
 def add_free_accelerometers(estimates: Estimates, data: CampaignData) -> None:
     """The method's rows; none where the plan knows every attitude."""
-    found, left_out = free_stills(data)
+    found, left_out = free_static_positions(data)
     if found:
         fitted = fitted_to(data, found)
         add_symmetric(estimates, METHOD, fitted.estimate)

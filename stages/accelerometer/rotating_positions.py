@@ -83,6 +83,6 @@ def _angles(m: Manoeuvre, part: Blocks, quiet: Blocks) -> Array:
     """The angle of each block, (k,), rad: as the gyros along the axis share out the known whole."""
     assert m.angle is not None  # else the turn is refused
     along = np.nan_to_num(part.gyro) @ m.axis
-    still = float(np.nan_to_num(quiet.gyro @ m.axis).mean())
-    own = (along - still) * part.seconds
-    return np.asarray(own * (m.angle / own.sum()))
+    offset = float(np.nan_to_num(quiet.gyro @ m.axis).mean())
+    increments = (along - offset) * part.seconds
+    return np.asarray(increments * (m.angle / increments.sum()))

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.estimates import NAMES, Estimates, Wanted
-from inertial.campaign.static_positions import Still
+from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.accelerometer_formulas import Upright, pooled_positions, up_and_down
 from inertial.estimation.accelerometers import StaticForce, six_position_formula
 from inertial.estimation.triad import UNKNOWNS, errors_of
@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 def add_six_positions(
     estimates: Estimates,
-    planned: Sequence[tuple[Still, StaticForce]],
+    planned: Sequence[tuple[StaticPosition, StaticForce]],
     about: tuple[float, float, float],  # gravity, its sigma, m/s², sigma of a position, rad
     scatter: float,
     wanted: float,
@@ -42,7 +42,7 @@ def add_six_positions(
     estimates.add("six_position", NAMES, errors_of(unknowns), covariance, {})
     ideal = six_position_formula([replace(rest, sigma=np.zeros(3)) for rest in rests], *about)
     assert ideal is not None  # it depends on the same attitudes
-    seconds = float(np.mean([still.seconds.sum() for still, _ in planned]))
+    seconds = float(np.mean([position.seconds.sum() for position, _ in planned]))
     for i, axis in enumerate(AXES, UNKNOWNS - 3):
         sigma, floor = (float(np.sqrt(of[i, i])) for of in (covariance, ideal[1]))
         estimates.add_wanted("six_position", axis, Wanted(sigma, floor, seconds), wanted)

@@ -9,7 +9,7 @@ from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
 from inertial.campaign.records import omissions
-from inertial.campaign.static_positions import Still, averaging_times
+from inertial.campaign.static_positions import StaticPosition, averaging_times
 from inertial.campaign.unknown_attitude import add_free_accelerometers
 from inertial.estimation import accelerometers, triad
 from inertial.estimation.accelerometers import StaticForce, equations, weighted
@@ -58,21 +58,23 @@ def accelerometer(
         turns = turning_rests(data)
         wide = LEVER_ARM if turns else None
         moving = [rest for _, rest in turns]
-        rests = [*(_rest(still) for still in found), *moving]
+        rests = [*(_rest(position) for position in found), *moving]
         fitted = accelerometers.fit(rests, *about, data.noise.degrees, wide)
         recorded = np.isfinite(np.array([rest.mean for rest in rests])).any(axis=0)
         why = reasons(fitted.estimate.determined, recorded, "accelerometer", CURES)
         estimates.add_triad("joint", fitted.estimate, why)
-        used = [still.part for still in found] + list(dict.fromkeys(part for part, _ in turns))
+        used = [position.part for position in found] + list(
+            dict.fromkeys(part for part, _ in turns)
+        )
         estimates.add_fit("joint", fitted, used, left_out)
         matrix = fitted.estimate.values[:9].reshape(3, 3)
         if fitted.p_value < MIN_CONSISTENT_P_VALUE:
             told += _off(rests, about, matrix, wide, data.mount)
         for seconds in averaging_times(found, averaging_steps):
-            part = [*(_rest(still, seconds) for still in found), *moving]
+            part = [*(_rest(position, seconds) for position in found), *moving]
             shorter = equations(part, *about, fitted.scatter, matrix, wide, fitted.random_walk)
             estimates.add_averaging("joint", seconds, shorter.solve_shared())
-        stops = [_rest(still) for still in found]
+        stops = [_rest(position) for position in found]
         planned = [
             pair for pair in zip(found, stops, strict=True) if pair[0].manoeuvre.do == "rest"
         ]
@@ -96,10 +98,10 @@ def _off(
         yield from findings(off, sigma, mount)
 
 
-def _rest(still: Still, seconds: float = np.inf) -> StaticForce:
-    stretch = still.during(seconds)
+def _rest(position: StaticPosition, seconds: float = np.inf) -> StaticForce:
+    stretch = position.during(seconds)
     return StaticForce(
-        still.manoeuvre.position, still.up_now, *still.over(seconds), stretch=stretch
+        position.manoeuvre.position, position.up_now, *position.over(seconds), stretch=stretch
     )
 
 

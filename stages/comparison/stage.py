@@ -47,7 +47,7 @@ def comparison(
 
     found = [difference for data in mounts for difference in of_mount(data)]
     found += straight_line(
-        [run for data in mounts for run in data.gyro_inputs.steadies],
+        [run for data in mounts for run in data.gyro_inputs.steady_rates],
         mounts[0].earth,
         [scatter.get(data.named("joint")) or 0.0 for data in mounts],
     )

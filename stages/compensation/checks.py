@@ -15,7 +15,7 @@ from inertial import tables
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Row, rows_of, with_mount
-from inertial.campaign.static_positions import Still
+from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_observations import Earth, Position
 from inertial.physics.forward import Triad
 from inertial.tables import GYRO
@@ -98,11 +98,11 @@ class Check:
 def checks(data: CampaignData) -> Iterator[Check]:
     """Every rest and every whole turn of one mount."""
     if (triad := data.result.accelerometer) is not None:
-        for still in data.accelerometer_positions[0]:
-            yield from _forces(still, triad, data)
+        for position in data.accelerometer_positions[0]:
+            yield from _forces(position, triad, data)
     if (triad := data.result.gyro) is not None:
-        for still in data.gyro_positions[0]:
-            yield from _rate(still, triad, data)
+        for position in data.gyro_positions[0]:
+            yield from _rate(position, triad, data)
         for one in data.gyro_inputs.usable:
             if one.plan.recorded == "whole" and one.done.complete:
                 yield from _angle(one, triad, data)
@@ -144,16 +144,16 @@ def table_of(rows: list[Row]) -> pd.DataFrame:
 # --- Static positions ---
 
 
-def _forces(still: Still, triad: Triad, data: CampaignData) -> Iterator[Check]:
+def _forces(position: StaticPosition, triad: Triad, data: CampaignData) -> Iterator[Check]:
     """|f|, which no tilt changes, and the force along up, which tilt lessens by its square."""
-    reading, noise = still.over()
+    reading, noise = position.over()
     force = truth_of(reading, triad)
     gravity = data.gravity
     size = float(np.linalg.norm(force))
     if not np.isfinite(size):
         return
     yield Check(
-        still.label,
+        position.label,
         "gravity",
         gravity.number,
         gravity.scatter,
@@ -161,10 +161,10 @@ def _forces(still: Still, triad: Triad, data: CampaignData) -> Iterator[Check]:
         size,
         _noise_along(force / size, triad, noise),
     )
-    up = still.up_now
+    up = position.up_now
     tilted = gravity.number * data.position_sigma**2
     yield Check(
-        still.label,
+        position.label,
         "force_up",
         gravity.number,
         gravity.scatter,
@@ -174,16 +174,16 @@ def _forces(still: Still, triad: Triad, data: CampaignData) -> Iterator[Check]:
     )
 
 
-def _rate(still: Still, triad: Triad, data: CampaignData) -> Iterator[Check]:
+def _rate(position: StaticPosition, triad: Triad, data: CampaignData) -> Iterator[Check]:
     """The rate along up; a tilt turns part of the level earth rate into it."""
-    reading, noise = still.over()
-    up, earth = still.up_now, data.earth
+    reading, noise = position.over()
+    up, earth = position.up_now, data.earth
     after = float(truth_of(reading, triad) @ up)
     if np.isfinite(after):
         tilted = earth.level * data.position_sigma
         spread = (_noise_along(up, triad, noise), tilted, earth.up_sigma)
         yield Check(
-            still.label,
+            position.label,
             "rate_up",
             earth.up,
             earth.up_sigma,

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from inertial.campaign.equations import USUAL_SIZE, Campaign
+from inertial.campaign.equations import PRIOR_SIZE, Campaign
 from inertial.estimation.accelerometers import MAX_RANDOM_WALK as MAX_OF_ACCELEROMETERS
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.gyroscope_observations import RateSegment, StaticRate
@@ -62,7 +62,7 @@ def walks_with_sigmas(campaign: Campaign, effects: Sequence[Effect]) -> dict[str
     """The random walks that the equations of a campaign have, by sensor."""
     return {
         sensor: Walk(size, sigma_of(_deviance(campaign, sensor, effects), size))
-        for sensor, size in zip(SENSORS, campaign.solution.walks, strict=True)
+        for sensor, size in zip(SENSORS, campaign.solution.random_walks, strict=True)
         if size
     }
 
@@ -70,7 +70,7 @@ def walks_with_sigmas(campaign: Campaign, effects: Sequence[Effect]) -> dict[str
 def _deviance(
     campaign: Campaign, sensor: str, effects: Sequence[Effect]
 ) -> Callable[[float], float]:
-    equations = campaign.walked(sensor, effects, USUAL_SIZE)
+    equations = campaign.system_of_random_walk(sensor, effects, PRIOR_SIZE)
 
     def deviance(size: float) -> float:
         system = equations(size)
@@ -85,11 +85,11 @@ def _times(campaign: Campaign, sensor: str) -> WalkSearch | None:
     parts: Sequence[StaticRate | RateSegment | StaticForce]
     if sensor == "gyro":
         solved, largest = campaign.solution.gyro, MAX_OF_GYROS
-        rests: Sequence[StaticRate | StaticForce] = campaign.inputs.rests
+        rests: Sequence[StaticRate | StaticForce] = campaign.inputs.static_rates
         parts = [*rests, *campaign.inputs.turns]
     else:
         solved, largest = campaign.solution.accelerometer, MAX_OF_ACCELEROMETERS
-        parts = rests = [rest for _, rest, _ in campaign.rests]
+        parts = rests = [rest for _, rest, _ in campaign.static_forces]
     if solved is None or not rests:
         return None
     stretches = [part.stretch for part in parts if part.stretch is not None]

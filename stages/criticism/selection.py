@@ -59,9 +59,9 @@ class Selection:
         return [self.effect(cause.effect, cause.value) for cause in found]
 
     @property
-    def walks(self) -> tuple[float, float]:
+    def random_walks(self) -> tuple[float, float]:
         """Random walks of the biases of gyros and accelerometers, rad/s/√s and m/s²/√s."""
-        return self.campaign.solution.walks
+        return self.campaign.solution.random_walks
 
     def without_certain_names(self, sensors: Sequence[str]) -> "Selection":
         """The same with structure in the residuals of these sensors, so no certain name there."""
@@ -92,7 +92,7 @@ class Selection:
         parameters has one size, as a random walk has one.
         """
         sizes = [self._size(place) for place in _effects(self)]
-        count = len(sizes) + sum(map(bool, self.walks))
+        count = len(sizes) + sum(map(bool, self.random_walks))
         return self.campaign.deviance(self.effects, sizes) + MIN_DEVIANCE_DROP * count
 
     def _size(self, place: int) -> float:
@@ -109,10 +109,10 @@ def select_effects(
     """Name the causes among `effects`; `level`: accepted probability of a false name."""
 
     def with_walks(walks: tuple[float, float]) -> Selection:
-        return _select(campaign.walking(walks), effects, level, noise_degrees)
+        return _select(campaign.with_random_walks(walks), effects, level, noise_degrees)
 
     without = with_walks((0.0, 0.0))
-    walks = campaign.solution.walks
+    walks = campaign.solution.random_walks
     if not any(walks):
         walks = _walks_instead(without)
     if not any(walks):
@@ -120,13 +120,13 @@ def select_effects(
     selection = _likelier(without, with_walks(walks))
     if selection.effects:
         walks = walks_beside(selection.campaign, selection.effects)
-        if walks != selection.walks:
+        if walks != selection.random_walks:
             selection = (
                 replace(with_walks(walks), alternatives=selection.alternatives)
                 if any(walks)
                 else without
             )
-    if not any(selection.walks):
+    if not any(selection.random_walks):
         return selection
     named = _members(selection)
     others = tuple(member for member in selection.alternatives if member not in named)
@@ -148,7 +148,7 @@ def _likelier(without: Selection, walking: Selection) -> Selection:
 def _walks_instead(selection: Selection) -> tuple[float, float]:
     """The most likely random walks in place of effects like them; 0 where there is none."""
     campaign, effects = selection.campaign, selection.effects
-    like = _like_a_walk(campaign.walking(slight(campaign)), selection)
+    like = _like_a_walk(campaign.with_random_walks(slight(campaign)), selection)
     if not any(like):
         return (0.0, 0.0)
     return walks_beside(
@@ -182,7 +182,9 @@ def _like_a_walk(walking: Campaign, selection: Selection) -> list[bool]:
     named = selection.effects
     if not named:
         return []
-    totals = [evidence(campaign, named).total for campaign in (walking, walking.without_walk())]
+    totals = [
+        evidence(campaign, named).total for campaign in (walking, walking.without_random_walks())
+    ]
     column = {name: i for i, name in enumerate(totals[0].names)}
     result = []
     for place, effect in zip(_effects(selection), named, strict=True):

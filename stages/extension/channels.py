@@ -68,13 +68,14 @@ class Channels:
     def _traces(self) -> list[tuple[Motion, Truth, Array, Array]]:
         """Each stretch: motion, truth, and traces of gyros and accelerometers, (n, 3, k)."""
         campaign = self.campaign
-        motions = [*campaign.still_motions, *campaign.turn_motions]
-        motions += [motion for _, _, motion in campaign.rests]
+        motions = [*campaign.static_motions, *campaign.turn_motions]
+        motions += [motion for _, _, motion in campaign.static_forces]
         triads = [campaign.solution.gyro, campaign.solution.accelerometer]
         gyro, accel = (one or Triad(np.eye(3), np.zeros(3)) for one in triads)
-        told = signatures(campaign.motion, campaign.solution.site, gyro, accel, self.effects)
+        responses = signatures(campaign.motion, campaign.solution.site, gyro, accel, self.effects)
         traces = [
-            np.concatenate([getattr(one, s) for one in told], axis=2) for s in ("gyro", "accel")
+            np.concatenate([getattr(one, s) for one in responses], axis=2)
+            for s in ("gyro", "accel")
         ]
         found, start = [], 0
         for motion in motions:
@@ -92,18 +93,22 @@ class Channels:
 
     def _of_gyros(self) -> list[Mean]:
         campaign, inputs = self.campaign, self.campaign.inputs
-        stills, turns = len(campaign.still_motions), len(campaign.turn_motions)
+        static, turns = len(campaign.static_motions), len(campaign.turn_motions)
         found = []
-        rests = zip(inputs.stills, inputs.rests, self._traces[:stills], strict=True)
-        for still, rest, (motion, truth, traces, _) in rests:
+        rests = zip(
+            inputs.static_positions, inputs.static_rates, self._traces[:static], strict=True
+        )
+        for position, rest, (motion, truth, traces, _) in rests:
             known = _known_rate(motion, truth, rest.position)[0]
             errors = self._earth(rest.position, motion, np.ones(1))
             residual = rest.mean - self._gyro.matrix @ known - self._gyro.bias
-            name, time = still.manoeuvre.name, float(motion.time[0])
+            name, time = position.manoeuvre.name, float(motion.time[0])
             found.append(Mean(name, residual, rest.sigma, known, traces[0], errors, time))
         whole = [one for one in inputs.usable if one.plan.recorded == "whole"]
-        told = self._traces[stills : stills + turns]
-        for one, turn, (motion, truth, traces, _) in zip(whole, inputs.turns, told, strict=True):
+        responses = self._traces[static : static + turns]
+        for one, turn, (motion, truth, traces, _) in zip(
+            whole, inputs.turns, responses, strict=True
+        ):
             found.append(self._of_turn(one, turn, motion, truth, traces))
         return found
 
@@ -150,8 +155,10 @@ class Channels:
         campaign, triad = self.campaign, self.campaign.solution.accelerometer
         assert triad is not None  # else nothing is said of it
         gravity, found = campaign.gravity, []
-        told = self._traces[len(self._traces) - len(campaign.rests) :]
-        for (name, rest, _), (motion, _, _, traces) in zip(campaign.rests, told, strict=True):
+        responses = self._traces[len(self._traces) - len(campaign.static_forces) :]
+        for (name, rest, _), (motion, _, _, traces) in zip(
+            campaign.static_forces, responses, strict=True
+        ):
             force = gravity.number * rest.up
             errors: Errors = {("gravity", ""): (triad.matrix @ rest.up, gravity.scatter)}
             for i, axis in enumerate(level_axes(rest.up / np.linalg.norm(rest.up))):

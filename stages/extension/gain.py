@@ -44,7 +44,7 @@ def gain(models: Models, validated: dict[str, CrossValidation], mount: str) -> I
         yield from (("gain", {**shared, "axis": None, **row}) for row in _of_sensor(one))
         counted = [fold for fold, _ in one.counted]
         yield from _fold_rows(shared, [(fold, fold in counted) for fold, _ in one.folds])
-        walk = models.extended.solution.walks[number]
+        walk = models.extended.solution.random_walks[number]
         means = channels.means(sensor)
         for channel, axis in enumerate(AXES):
             for row in _of_channel(one, means, channels.names, channel, walk):

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from inertial.campaign.equations import MIN_VISIBLE_SIGMA, Campaign
+from inertial.campaign.equations import MIN_OBSERVABLE_SIGMAS, Campaign
 from inertial.estimation.least_squares import (
     MIN_INFORMATION_SHARE,
     EffectInformation,
@@ -67,7 +67,7 @@ class Models:
         """What gyros and accelerometers tell in some manoeuvres, or in all."""
         systems = self.systems(only)
         walking: list[System | None] = [None, None]
-        walks, others = self.joint.solution.walks, self.extended.solution.walks
+        walks, others = self.joint.solution.random_walks, self.extended.solution.random_walks
         if any(walk and walk != other for walk, other in zip(walks, others, strict=True)):
             walking = [
                 system if walk and walk != other else None
@@ -86,7 +86,7 @@ def models_of(campaign: Campaign, effects: Sequence[Effect], walks: tuple[float,
 
     `walks`: of the biases of gyros and accelerometers beside the effects, rad/s/√s and m/s²/√s.
     """
-    return Models(campaign, campaign.walking(walks), tuple(effects))
+    return Models(campaign, campaign.with_random_walks(walks), tuple(effects))
 
 
 def _evidence(system: System, walking: System | None) -> SensorEvidence:
@@ -102,7 +102,7 @@ def _shown(system: System | None, largest: np.ndarray) -> frozenset[str]:
     reduced = system.effect_information()
     information = np.diag(reduced.information)
     seen = information > MIN_INFORMATION_SHARE * system.raw_information()
-    clear = largest * np.sqrt(np.maximum(information, 0.0)) > MIN_VISIBLE_SIGMA
+    clear = largest * np.sqrt(np.maximum(information, 0.0)) > MIN_OBSERVABLE_SIGMAS
     return frozenset(np.array(reduced.names)[seen & clear].tolist())
 
 

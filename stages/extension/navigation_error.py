@@ -128,11 +128,11 @@ def worth(
 def _parts(campaign: Campaign) -> dict[str, dict[str, list[int]]]:
     """Manoeuvre → sensor → the places of its stretches among all stretches of the campaign."""
     whole = [one.plan.name for one in campaign.inputs.usable if one.plan.recorded == "whole"]
-    names = [("gyro", still.manoeuvre.name) for still in campaign.inputs.stills]
+    names = [("gyro", position.manoeuvre.name) for position in campaign.inputs.static_positions]
     names += [("gyro", name) for name in whole[: len(campaign.turn_motions)]]
-    names += [("accel", name) for name, _, _ in campaign.rests]
-    motions = [*campaign.still_motions, *campaign.turn_motions]
-    motions += [motion for _, _, motion in campaign.rests]
+    names += [("accel", name) for name, _, _ in campaign.static_forces]
+    motions = [*campaign.static_motions, *campaign.turn_motions]
+    motions += [motion for _, _, motion in campaign.static_forces]
     found: dict[str, dict[str, list[int]]] = {}
     start = 0
     for (sensor, name), motion in zip(names, motions, strict=True):

@@ -90,7 +90,7 @@ class Extension:
         walks: tuple[float, float],
     ) -> None:
         self.data, self.named, self.joint, self.fits = data, named, joint, fits
-        self.walks = walks
+        self.random_walks = walks
         self.solutions: dict[str, Solved] = {}
         self.validated: Mapping[str, CrossValidation] = {}
 
@@ -105,8 +105,8 @@ class Extension:
 
     def _of_blocks(self) -> Iterator[tuple[str, Any]]:
         data, mount = self.data, self.data.mount
-        models = models_of(campaign_of(data), self.named.in_blocks, self.walks)
-        for sensor, system, walk in zip(SENSORS, models.systems(), self.walks, strict=True):
+        models = models_of(campaign_of(data), self.named.in_blocks, self.random_walks)
+        for sensor, system, walk in zip(SENSORS, models.systems(), self.random_walks, strict=True):
             if system is not None:
                 one = solved(models, sensor, system, walk, mount)
                 self.solutions[sensor] = one

@@ -17,7 +17,12 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import Estimates, reasons
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Part, omissions
-from inertial.campaign.unknown_attitude import METHOD, FreeStill, fitted_to, free_stills
+from inertial.campaign.unknown_attitude import (
+    METHOD,
+    FreeStaticPosition,
+    fitted_to,
+    free_static_positions,
+)
 from inertial.estimation.between_positions import Passage, Prior, Stop, between_rests
 from inertial.estimation.variance_components import with_scatter
 from inertial.tables import GYRO
@@ -38,7 +43,7 @@ CURES = {
 
 def add_free_gyros(estimates: Estimates, data: CampaignData) -> None:
     """The method's rows; none where the plan knows every attitude."""
-    found, left_out = free_stills(data)
+    found, left_out = free_static_positions(data)
     stops = [_stop(one) for one in found]
     recorded = np.isfinite(np.array([stop.mean for stop in stops]).reshape(-1, 3)).any(axis=0)
     if not recorded.any():
@@ -63,12 +68,12 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> None:
     estimates.add_fit(METHOD, fitted, used, left_out + broken)
 
 
-def _stop(one: FreeStill) -> Stop:
+def _stop(one: FreeStaticPosition) -> Stop:
     return Stop(one.rest, *one.rate.over(), float(one.rate.seconds.sum()))
 
 
 def passages_of(
-    found: Sequence[FreeStill], blocks: pd.DataFrame, noise: NoiseLevels
+    found: Sequence[FreeStaticPosition], blocks: pd.DataFrame, noise: NoiseLevels
 ) -> tuple[list[Passage], list[Part], list[Part]]:
     """The motions from each rest to the next, their blocks, and those left out with the reason."""
     moving = blocks[blocks["phase"] == BETWEEN].sort_values(["log", "from_record"])
@@ -91,7 +96,9 @@ def passages_of(
     return passages, used, left_out
 
 
-def refusal_of(part: pd.DataFrame, before: FreeStill, behind: FreeStill, density: Array) -> str:
+def refusal_of(
+    part: pd.DataFrame, before: FreeStaticPosition, behind: FreeStaticPosition, density: Array
+) -> str:
     """Why no attitude can be carried from one rest to the next; empty where it can."""
     if part.empty:
         return _("nothing of the motion between them is kept")

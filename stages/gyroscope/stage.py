@@ -37,20 +37,20 @@ def gyroscope(
     for data in mounts:
         estimates, inputs = collected.on(data.mount), data.gyro_inputs
         add_free_gyros(estimates, data)
-        if inputs.nothing:
+        if inputs.is_empty:
             estimates.add_nothing("joint", omissions(inputs.left_out))
             continue
-        moving = (inputs.turns, inputs.steadies, inputs.earth, inputs.position_sigma)
-        fitted = gyroscopes.fit(inputs.rests, *moving, data.noise.degrees)
+        moving = (inputs.turns, inputs.steady_rates, inputs.earth, inputs.position_sigma)
+        fitted = gyroscopes.fit(inputs.static_rates, *moving, data.noise.degrees)
         why = reasons(fitted.estimate.determined, _channels(inputs), "gyro", CURES)
         estimates.add_triad("joint", fitted.estimate, why)
         estimates.add_fit("joint", fitted, inputs.used, inputs.left_out)
         linear = gyroscopes.linearised(
             gyroscopes.linearisation_at(fitted.estimate, inputs.earth), *moving
         )
-        for seconds in averaging_times(inputs.stills, averaging_steps):
+        for seconds in averaging_times(inputs.static_positions, averaging_steps):
             shorter = linear.system(
-                inputs.first_of_rests(seconds), fitted.scatter, fitted.random_walk
+                inputs.first_static_rates(seconds), fitted.scatter, fitted.random_walk
             )
             estimates.add_averaging("joint", seconds, shorter.solve_shared())
         add_formulas(estimates, data, fitted, wanted_bias)
@@ -61,8 +61,8 @@ def gyroscope(
 
 def _channels(inputs: GyroInputs) -> NDArray[np.bool_]:
     """Which gyros are in the logs, (3,)."""
-    readings = [rest.mean for rest in inputs.rests]
-    readings += [steady.mean for steady in inputs.steadies]
+    readings = [rest.mean for rest in inputs.static_rates]
+    readings += [steady.mean for steady in inputs.steady_rates]
     readings += [turn.sums.sum(axis=0) for turn in inputs.turns]
     return np.asarray(np.isfinite(np.array(readings)).any(axis=0))
 

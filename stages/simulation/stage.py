@@ -25,7 +25,7 @@ from stages.simulation.declared import DECLARED
 
 Array = NDArray[np.float64]
 
-OF_CHANNELS = ("said", "residual")
+OF_CHANNELS = ("predicted", "residual")
 NOTHING = Triad(np.full((3, 3), np.nan), np.full(3, np.nan))  # of a triad that is not determined
 
 
@@ -34,7 +34,7 @@ def simulation(
     samples: Stream,
     segments: pd.DataFrame,
 ) -> Pieces:
-    """Turns sample by sample, rests block by block, each with what is left of the reading."""
+    """Rotations sample by sample, static positions block by block, with their residuals."""
     for data in mounts:
         rests = list(_rests(data))
         if rests:
@@ -58,9 +58,9 @@ def _whole(m: Manoeuvre, done: Performed) -> bool:
 
 @dataclass(frozen=True)
 class Simulated:
-    """n samples of a turn or blocks of a rest: what the six channels should have read, and did.
+    """n samples of a rotation or blocks of a static position: predicted and measured readings.
 
-    `phase`, `record`, `time`, s: (n,); `said`, `read`: m/s² and rad/s, (n, 6).
+    `phase`, `record`, `time`, s: (n,); `predicted`, `readings`: m/s² and rad/s, (n, 6).
     """
 
     manoeuvre: str
@@ -68,32 +68,40 @@ class Simulated:
     phase: NDArray[Any]
     record: NDArray[Any]
     time: Array
-    said: Array
-    read: Array
+    predicted: Array
+    readings: Array
 
     @cached_property
     def residual(self) -> Array:
-        """What is left of the reading, (n, 6)."""
-        return self.read - self.said
+        """Readings less predictions, (n, 6)."""
+        return self.readings - self.predicted
 
 
 def _rests(data: CampaignData) -> Iterator[tuple[Simulated, float]]:
-    """Every rest in its blocks, each with how long a block lasts, s."""
+    """Every static position in its blocks, with the median duration of a block, s."""
     both = [*data.gyro_positions[0], *data.accelerometer_positions[0]]
-    positions = {still.part: still for still in both}
+    positions = {static.part: static for static in both}
     blocks = data.blocks
     rows = blocks.groupby(["manoeuvre", "phase"]).indices
     log, phase, record = (blocks[name].to_numpy() for name in ("log", "phase", "from_record"))
     time, seconds = (blocks[name].to_numpy(np.float64) for name in ("time", "seconds"))
-    read = blocks[list(tables.CHANNELS)].to_numpy(np.float64)
-    for position, still in positions.items():
+    readings = blocks[list(tables.CHANNELS)].to_numpy(np.float64)
+    for position, static in positions.items():
         name = position.manoeuvre
-        own = rows[name, position.phase]
-        said = _predicted(at_rest(data, still, 0.0), data.result)
-        row = np.concatenate([said.accel[0], said.gyro[0]])
-        every = np.tile(row, (len(own), 1))
-        part = Simulated(name, log[own[0]], phase[own], record[own], time[own], every, read[own])
-        yield part, float(np.median(seconds[own]))
+        indices = rows[name, position.phase]
+        predicted = _predicted(at_rest(data, static, 0.0), data.result)
+        row = np.concatenate([predicted.accel[0], predicted.gyro[0]])
+        repeated = np.tile(row, (len(indices), 1))
+        part = Simulated(
+            name,
+            log[indices[0]],
+            phase[indices],
+            record[indices],
+            time[indices],
+            repeated,
+            readings[indices],
+        )
+        yield part, float(np.median(seconds[indices]))
 
 
 def _predicted(motion: Motion, solution: Solution) -> Reading:
@@ -131,24 +139,25 @@ def _turn(
     """A turn sample by sample; what is in none of its blocks is masked, and not compared."""
     record, step = parts["record"], data.clocks[m.log].step
     blocks = data.blocks[data.blocks["manoeuvre"] == m.name]
-    own = [row for row in rows_of(segments) if row["manoeuvre"] == m.name]
     phase = np.full(len(record), "rest", dtype=object)
-    for row in own:
+    for row in rows_of(segments[segments["manoeuvre"] == m.name]):
         phase[(record >= row["from_record"]) & (record < row["to_record"])] = row["phase"]
-    read = np.column_stack([parts[channel] for channel in tables.CHANNELS])
+    readings = np.column_stack([parts[channel] for channel in tables.CHANNELS])
     edges = [blocks[name].to_numpy(np.int64) for name in ("from_record", "to_record")]
-    read[~inside(record, *edges)] = np.nan
-    increments = read[:, len(GYRO) :] * step
+    readings[~inside(record, *edges)] = np.nan
+    increments = readings[:, len(GYRO) :] * step
     steady = phase == "steady"
     motion, how = in_samples(data, m, increments, step, steady, parts["time"])
-    said = _predicted(motion, data.result)
-    both = np.hstack([said.accel, said.gyro])
-    return Simulated(m.name, m.log, phase, record, parts["time"], both, read), how
+    predicted = _predicted(motion, data.result)
+    both = np.hstack([predicted.accel, predicted.gyro])
+    return Simulated(m.name, m.log, phase, record, parts["time"], both, readings), how
 
 
 def _frame(parts: Sequence[Simulated]) -> pd.DataFrame:
     counts = [len(part.record) for part in parts]
-    said, residual = (np.concatenate([getattr(p, name) for p in parts]) for name in OF_CHANNELS)
+    predicted, residual = (
+        np.concatenate([getattr(p, name) for p in parts]) for name in OF_CHANNELS
+    )
     return pd.DataFrame(
         {
             "manoeuvre": np.repeat([part.manoeuvre for part in parts], counts),
@@ -156,14 +165,17 @@ def _frame(parts: Sequence[Simulated]) -> pd.DataFrame:
             "log": np.repeat([part.log for part in parts], counts),
             "record": np.concatenate([part.record for part in parts]),
             "time": np.concatenate([part.time for part in parts]),
-            **dict(zip(tables.CHANNELS, said.T, strict=True)),
-            **{f"residual_{c}": left for c, left in zip(tables.CHANNELS, residual.T, strict=True)},
+            **dict(zip(tables.CHANNELS, predicted.T, strict=True)),
+            **{
+                f"residual_{c}": values
+                for c, values in zip(tables.CHANNELS, residual.T, strict=True)
+            },
         }
     )
 
 
 def _fidelity(part: Simulated, data: CampaignData, how: str, seconds: float) -> Iterator[Row]:
-    """How large the residuals are beside what white noise alone would leave of means so long."""
+    """Rms of the residuals, and rms of white noise alone in means of this length."""
     white = data.noise.of(part.manoeuvre, "rest", tables.CHANNELS)
     for channel, residual, level in zip(tables.CHANNELS, part.residual.T, white, strict=True):
         there = residual[np.isfinite(residual)]

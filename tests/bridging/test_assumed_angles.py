@@ -44,7 +44,7 @@ def test_an_assumed_angle_is_wrong_by_far_more_than_its_sigma(gapped):
 
     # The joint estimate, with nothing but this turn about z.
     def together(turn: RateSegment):
-        fit = joint(inputs.rests, [turn], [], inputs.earth, inputs.position_sigma)
+        fit = joint(inputs.static_rates, [turn], [], inputs.earth, inputs.position_sigma)
         return fit.values[Z_SCALE] - 1 - scale, fit.sigma[Z_SCALE]
 
     gap = inputs.turns[-1]
@@ -64,7 +64,7 @@ def test_criticism_and_extension_take_the_turn_as_the_joint_estimate_does(tmp_pa
     campaign = chain.simulate(document, tmp_path / "raw")
     results = chain.run(campaign, tmp_path / "derived", "gyroscope")
     (data,) = chain.mounts(results)
-    campaign = campaign_of(data).without_walk()
+    campaign = campaign_of(data).without_random_walks()
     assert "z-backward" in campaign.manoeuvres
     system, _ = campaign.systems([], 1.0)
     assert system.column("gap angle", "z-backward 5") is not None
@@ -77,7 +77,7 @@ def test_criticism_and_extension_take_the_turn_as_the_joint_estimate_does(tmp_pa
 
 def test_the_bridged_turn_lowers_the_sigma_of_the_scale_factor(gapped):
     inputs = inputs_of(gapped)
-    fixed = (inputs.rests, [], inputs.earth, inputs.position_sigma)
+    fixed = (inputs.static_rates, [], inputs.earth, inputs.position_sigma)
 
     def sigma(turns: list[RateSegment]) -> float:
         return float(joint(fixed[0], turns, *fixed[1:]).sigma[Z_SCALE])

@@ -142,7 +142,7 @@ def _made(plan: str) -> Reference:
     with in_memory.recorded(recording, folder / "raw") as raw:
         results = chain.run(raw, folder / "derived", "gyroscope", BESIDE)
     (data,) = chain.mounts(results)
-    campaign, degrees = campaign_of(data).without_walk(), data.noise.degrees
+    campaign, degrees = campaign_of(data).without_random_walks(), data.noise.degrees
     shutil.rmtree(folder)
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
     families = {name: tuple(one) for name, one in campaign.candidates(in_blocks).items()}
