@@ -33,6 +33,7 @@ ENDINGS = (
 SCHEMA = chain.ROOT / "stages/export/calibration.schema.json"
 GRAVITY, GRAVITY_SIGMA = 9.7936174, 5e-5
 KINDS = {"accelerometer": slice(0, 3), "gyroscope": slice(3, 6)}
+ESTIMATES = ("parameters", "covariance", "fit", "fit_manoeuvres")
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +47,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> chain.Results:
 
 def write_nothing_extended(folder: Path) -> None:
     """The tables of an extension that had no effect to add."""
-    writes = {name: EXTENSION.writes[name] for name in ("parameters", "covariance", "fit")}
+    writes = {name: EXTENSION.writes[name] for name in ESTIMATES}
     writes["decision"] = tables.DECISION
     made_by = {"stage": "extension", "settings": {}, "code": "c0", "inputs": {}}
     with Writer(folder / "extension", writes, lambda: made_by) as writer:
@@ -180,9 +181,7 @@ def test_the_worked_samples_are_real_readings_and_come_out_right(
         assert row[channels[own]].to_numpy()[0].tolist() == turn[kind]["reading"]
         mean = inside[channels[own]].to_numpy().mean(axis=0)
         assert mean == pytest.approx(rest[kind]["reading"], rel=0, abs=1e-12)
-        truth = truth_of(
-            numbers([turn[kind]["reading"]]), triad_of(results[f"{kind}/parameters"], "joint")
-        )
+        truth = truth_of(numbers([turn[kind]["reading"]]), triad_of(results[f"{kind}/parameters"]))
         assert truth[0] == pytest.approx(turn[kind]["corrected"], rel=0, abs=1e-12)
     force = numbers(rest["accelerometer"]["corrected"])
     sigma = numbers(content["mounts"][0]["accelerometer"]["bias"]["sigma"])
@@ -232,13 +231,14 @@ def test_a_temperature_that_was_recorded_is_exported(results: chain.Results) -> 
 def extended(results: chain.Results) -> dict[str, pd.DataFrame]:
     """An extended result of the gyros: the joint one with another bias, and one effect."""
     rows = results["gyroscope/parameters"].query("method == 'joint'")
-    rows = rows[rows["parameter"].str.match("scale|cross|bias")].assign(method="gyroscope")
+    rows = rows[rows["parameter"].str.match("scale|cross|bias")].assign(method="extended")
     rows["id"] = "extension/gyroscope/" + rows["parameter"]
     moved = rows["parameter"] == "bias_x"
     rows.loc[moved, "value"] += 1e-5
     effect = rows[moved].assign(
         id="extension/gyroscope/gyro_bias_ramp.c_x",
         parameter="gyro_bias_ramp.c_x",
+        effect="gyro_bias_ramp",
         value=2.5e-9,
         unit="rad/s²",
     )
@@ -256,7 +256,10 @@ def extended(results: chain.Results) -> dict[str, pd.DataFrame]:
         ),
         "extension_fit": results["gyroscope/fit"]
         .query("method == 'joint'")
-        .assign(method="gyroscope", chi_squared=77.0),
+        .assign(method="extended", chi_squared=77.0),
+        "extension_fit_manoeuvres": results["gyroscope/fit_manoeuvres"]
+        .query("method == 'joint'")
+        .assign(method="extended"),
         "decision": pd.DataFrame(decided | {"sensor": ["gyro"], "result": ["extended"]}),
     }
 
@@ -301,7 +304,7 @@ def said(text: str) -> str:
 def test_a_sensor_that_was_not_recorded_is_null_everywhere(results: chain.Results) -> None:
     blocks = results["segment/blocks"].assign(gyro_y=np.nan)
     made = chain.again(results, "gyroscope", blocks=blocks)
-    changed = {f"gyroscope_{name}": made[name] for name in ("parameters", "covariance", "fit")}
+    changed = {f"gyroscope_{name}": made[name] for name in ESTIMATES}
     texts = exported(results, blocks=blocks, **changed)
     (mount,) = valid(texts["calibration.json"])["mounts"]
     gyros = mount["gyroscope"]
@@ -323,7 +326,7 @@ def test_each_mount_has_its_own_result(results: chain.Results) -> None:
     changed: dict[str, Any] = {"manoeuvres": plan}
     for kind in KINDS:
         made = chain.again(results, kind, manoeuvres=plan)
-        changed |= {f"{kind}_{name}": made[name] for name in ("parameters", "covariance", "fit")}
+        changed |= {f"{kind}_{name}": made[name] for name in ESTIMATES}
     texts = exported(results, **changed)
     upright, lying = valid(texts["calibration.json"])["mounts"]
     assert (upright["mount"], lying["mount"]) == ("upright", "lying")
@@ -343,6 +346,7 @@ def test_a_campaign_that_determines_nothing_exports_nulls(results: chain.Results
             ("parameters", tables.PARAMETERS),
             ("covariance", tables.COVARIANCE),
             ("fit", tables.FIT),
+            ("fit_manoeuvres", tables.FIT_MANOEUVRES),
         )
     }
     texts = exported(results, **none, noise=tables.NOISE.empty(), blocks=tables.BLOCKS.empty())

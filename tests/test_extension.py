@@ -28,15 +28,15 @@ def quadratic(tmp_path_factory):
 
 
 def test_the_parameters_that_the_effect_had_spoiled_come_back(demo_criticised):
-    table = demo_criticised["extension/parameters"].set_index(["method", "parameter"])
+    table = demo_criticised["extension/parameters"].set_index(["sensor", "parameter"])
     truth = truth_of("gyroscope")
-    rows = table.loc["gyroscope"].loc[list(truth)]
+    rows = table.loc["gyro"].loc[list(truth)]
     pulls = (rows["value"] - list(truth.values())) / rows["sigma"]
     assert np.abs(pulls).max() < 4
     joint = demo_criticised.parameters("gyroscope")
     # Sigmas of noise alone again: the scatter that covered the effect is gone.
-    assert table.loc[("gyroscope", "scale_x"), "sigma"] < joint.loc["scale_x", "sigma"] / 3
-    assert "accelerometer" not in table.index.get_level_values(0)  # they show nothing of it
+    assert table.loc[("gyro", "scale_x"), "sigma"] < joint.loc["scale_x", "sigma"] / 3
+    assert "accel" not in table.index.get_level_values(0)  # they show nothing of it
     decided = demo_criticised["extension/decision"].set_index("sensor")["result"]
     assert dict(decided) == {"gyro": "extended", "accel": "joint"}
 

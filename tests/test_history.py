@@ -8,6 +8,7 @@ import os
 import signal
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from multiprocessing.synchronize import Barrier
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from hypothesis import strategies as st
 
 from inertial import tables
 from inertial.tables.errors import Refusal
-from inertial.tables.parquet import Table, Writer, provenance
+from inertial.tables.parquet import Table, Writer, provenance, write_once
 from stages.history.archive import Archive, file_name
 from stages.history.stage import STAGE
 
@@ -49,6 +50,7 @@ def parameter(name: str, value: float | None, sigma: float | None, method: str =
         "mount": "",
         "sensor": "gyro",
         "method": method,
+        "effect": None,
         "parameter": name,
         "value": value,
         "sigma": sigma,
@@ -113,7 +115,7 @@ def run(
     for stage, rows, product in (("accelerometer", [], []), ("gyroscope", estimates, spread)):
         write(derived / stage, "parameters", tables.PARAMETERS, rows, gyro | {"stage": stage})
         write(derived / stage, "covariance", tables.COVARIANCE, product, gyro | {"stage": stage})
-    better = {"id": "extension/gyroscope/bias_x", "stage": "extension", "method": "gyroscope"}
+    better = {"id": "extension/gyroscope/bias_x", "stage": "extension", "method": "extended"}
     rows = [] if extended is None else [parameter("bias_x", extended, 2e-7) | better]
     product = [{"first": r["id"], "second": r["id"], "covariance": r["sigma"] ** 2} for r in rows]
     by_extension = gyro | {"stage": "extension"}
@@ -187,6 +189,9 @@ def test_the_report_gets_the_earlier_calibrations_of_the_same_imu(tmp_path: Path
         "date": "2026-03-02",
         "file": held["file"],
         "id": "gyroscope/joint/bias_x",
+        "mount": "",
+        "sensor": "gyro",
+        "quantity": "bias_x",
         "value": 2e-5,
         "sigma": 1e-7,
         "unit": "rad/s",
@@ -209,6 +214,44 @@ def test_the_extended_result_is_kept_beside_the_joint_one_and_compared_later(
     run(tmp_path, bias=2e-5, campaign="autumn", date="2026-10-02")
     (then,) = earlier(tmp_path, "autumn").to_dict("records")
     assert (then["id"], then["value"], then["sigma"]) == ("gyroscope/joint/bias_x", 3e-5, 2e-7)
+
+
+def test_a_file_of_version_1_is_read_by_its_identifiers(tmp_path: Path) -> None:
+    """It had neither mount nor sensor nor parameter, and the mount in the method."""
+    ids = {
+        "gyroscope/joint@a/bias_x": "joint@a",
+        "gyroscope/joint@a/bias_y": "joint@a",
+        "gyroscope/turns@a/bias_x": "turns@a",
+        "extension/gyroscope@a/bias_x": "gyroscope@a",
+        "extension/gyroscope@a/gyro_bias_ramp.c_x": "gyroscope@a",
+    }
+    numbers = {"sigma": 1e-7, "unit": "rad/s", "frame": "body", "meaning": "", "reason": ""}
+    (nested,) = (column for column in tables.CALIBRATION.columns if column.name == "parameters")
+    kept = tuple(f for f in nested.type if f.name not in ("mount", "sensor", "parameter"))
+    older = replace(
+        tables.CALIBRATION,
+        version=1,
+        columns=tuple(
+            replace(column, type=kept) if column is nested else column
+            for column in tables.CALIBRATION.columns
+        ),
+    )
+    rows = [
+        {"id": i, "method": m, "value": 1e-6 * n, **numbers} for n, (i, m) in enumerate(ids.items())
+    ]
+    row = calibration(campaign="spring", date="2026-03-02") | {"parameters": rows}
+    folder = tmp_path / "history/span-cpt/A-017"
+    write_once(
+        older,
+        folder / "2026-03-02-spring-0123456789ab.parquet",
+        [row | {"content": "", "supersedes": []}],
+    )
+    run(tmp_path, campaign="autumn", date="2026-10-02")
+    found = earlier(tmp_path, "autumn").set_index("id")
+    assert list(found.index) == ["gyroscope/joint@a/bias_x", "gyroscope/joint@a/bias_y"]
+    assert list(found["value"]) == [3e-6, 1e-6]
+    assert set(found["mount"]) == {"a"} and set(found["sensor"]) == {"gyro"}
+    assert list(found["quantity"]) == ["bias_x", "bias_y"]
 
 
 def test_imus_without_a_serial_number_are_not_taken_for_one(tmp_path: Path) -> None:

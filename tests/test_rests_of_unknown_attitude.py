@@ -19,7 +19,7 @@ from moved_by_hand import (
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import Estimates
 from inertial.campaign.noise_levels import NoiseLevels, effective_levels
-from inertial.campaign.records import Known, Manoeuvre
+from inertial.campaign.records import Known, Manoeuvre, labels, omissions, parts_of, rows_of
 from inertial.campaign.unknown_attitude import (
     add_free_accelerometers,
     free_static_positions,
@@ -104,7 +104,9 @@ def rows(add, stage, blocks, imu, plan=PLAN):
     tables = estimates.tables()
     parameters = tables["parameters"]
     assert parameters.empty or set(parameters["method"]) == {"free_positions"}
-    return parameters.set_index("parameter"), tables["fit"], tables["covariance"]
+    parts = parts_of(rows_of(tables["fit_manoeuvres"]))
+    fit = tables["fit"].assign(used=labels(parts), left_out=omissions(parts))
+    return parameters.set_index("parameter"), fit, tables["covariance"]
 
 
 def test_accelerometers(imu, recorded):

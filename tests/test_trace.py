@@ -20,6 +20,7 @@ import pytest
 from commands.trace import provenance
 from commands.trace.__main__ import main
 from inertial import tables
+from inertial.campaign.records import parts_of, rows_of
 from inertial.tables.code import code_of, hash_of, hash_of_file
 from inertial.tables.parquet import Writer
 from stages.extension import stage
@@ -130,8 +131,9 @@ def test_it_begins_with_the_number_and_its_method(trace, data: Path) -> None:
 def test_the_lines_are_those_of_the_log(trace, data: Path) -> None:
     """Number, byte, time and text of each line against the log itself."""
     said = trace()
-    fit = pq.read_table(data / "derived/short/gyroscope/fit.parquet").to_pandas().iloc[0]
-    labels = fit["used"].split(", ")
+    fit = tables.FIT_MANOEUVRES.read(data / "derived/short/gyroscope/fit_manoeuvres.parquet")
+    parts = parts_of(rows_of(fit[fit["method"] == "joint"]))
+    labels = [part.label for part in parts if not part.reason]
     assert {"x-up", "x-down", "x-forward", "x-backward", "x-forward (rest-after)"} <= {*labels}
     seen = 0
     for label in labels:

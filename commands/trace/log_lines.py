@@ -7,11 +7,10 @@ import numpy as np
 import pandas as pd
 
 from inertial.campaign.masked_samples import Columns, pieces
-from inertial.campaign.records import rows_of
+from inertial.campaign.records import Part, rows_of
 from inertial.tables.parquet import Stream
 
-# Phases that a fit names together with their turn: `turn (phase)`.
-STATIC_PHASES_OF_TURNS = ("rest-before", "rest-after")
+OF_TURN = ("spin-up", "steady", "spin-down", "turning")  # phases in which the table turns
 
 
 @dataclass(frozen=True)
@@ -57,27 +56,28 @@ class LogLines:
 
 
 def used_phases(
-    labels: Sequence[str], blocks: pd.DataFrame, manoeuvres: pd.DataFrame, masks: pd.DataFrame
+    parts: Sequence[Part], blocks: pd.DataFrame, manoeuvres: pd.DataFrame, masks: pd.DataFrame
 ) -> list[UsedPhase]:
-    """The phases that a fit names by `labels`, in its order.
+    """The phases of the parts that a fit has used, in its order.
 
-    Of a turn that is recorded `steady` only the steady part is used, because its rate is known
-    and its angle is not.
+    A part without a phase is a turn as a whole, without the rests beside it; of one that is
+    recorded `steady` only the steady part, because its rate is known and its angle is not.
     """
     recorded = dict(zip(manoeuvres["manoeuvre"], manoeuvres["recorded"], strict=True))
-    by_label: dict[str, list[UsedPhase]] = {}
+    used: dict[Part, list[UsedPhase]] = {part: [] for part in parts}
     for (manoeuvre, phase, log), rows in blocks.groupby(["manoeuvre", "phase", "log"], sort=False):
-        static = phase in STATIC_PHASES_OF_TURNS
-        if static or phase in ("rest", "steady") or recorded.get(manoeuvre) != "steady":
-            label = f"{manoeuvre} ({phase})" if static else str(manoeuvre)
-            first, after = int(rows["from_record"].min()), int(rows["to_record"].max())
-            records = RecordRange(str(log), first, after)
-            samples = float(rows["count"].sum())
-            findings = _masking_findings(masks, records)
-            by_label.setdefault(label, []).append(
-                UsedPhase(label, str(phase), len(rows), samples, records, findings)
-            )
-    return [phase for label in labels for phase in by_label.get(label, [])]
+        whole = phase == "steady" if recorded.get(manoeuvre) == "steady" else phase in OF_TURN
+        candidates = [Part(str(manoeuvre), str(phase)), *([Part(str(manoeuvre))] if whole else [])]
+        first, after = int(rows["from_record"].min()), int(rows["to_record"].max())
+        records = RecordRange(str(log), first, after)
+        samples = float(rows["count"].sum())
+        for part in candidates:
+            if part in used:
+                findings = _masking_findings(masks, records)
+                used[part].append(
+                    UsedPhase(part.label, str(phase), len(rows), samples, records, findings)
+                )
+    return [phase for part in parts for phase in used[part]]
 
 
 def _masking_findings(masks: pd.DataFrame, records: RecordRange) -> list[str]:

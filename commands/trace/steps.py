@@ -17,12 +17,15 @@ import pandas as pd
 from commands.trace.log_lines import LogLines, RecordRange, UsedPhase, lines_of, used_phases
 from commands.trace.provenance import Campaign, Provenance, StageRun
 from inertial import tables
-from inertial.campaign.records import Row, rows_of
+from inertial.campaign.final_result import STAGES
+from inertial.campaign.records import Part, Row, labels, parts_of, rows_of
+from inertial.campaign.solution import JOINT
 from inertial.tables.errors import Refusal
 from inertial.tables.table import Table
 from inertial.text.numbers import visible
 
 GPS_WEEK = 604_800  # s
+OF_SENSOR = ("mount", "sensor")
 MAX_SHOWN_BYTES = 100  # of a line
 MAX_SUGGESTIONS = 6  # identifiers, where one is not known
 
@@ -48,15 +51,22 @@ class Number:
     """A row of PARAMETERS, and the table it stands in: folder/file."""
 
     row: Row
-    table: str
+    stage: str
+    file: str
+
+    @property
+    def table(self) -> str:
+        """The table as a provenance names it."""
+        return f"{self.stage}/{self.file}"
 
 
 @dataclass(frozen=True)
 class Fit:
-    """A row of FIT, and the stage that made it."""
+    """A row of FIT, the stage that made it, and its manoeuvres, those left out with the reason."""
 
     stage: str
     row: Row
+    manoeuvres: Sequence[Part]
 
 
 def trace(campaign: Campaign, identifier: str, settings: Mapping[str, Any]) -> Trace:
@@ -70,8 +80,9 @@ def trace(campaign: Campaign, identifier: str, settings: Mapping[str, Any]) -> T
         where there is no such number
     """
     number = number_of(campaign, identifier)
-    stage = number.table.partition("/")[0]
-    roots = [number.table, f"{stage}/fit.parquet", "plan/inputs.parquet"]
+    stage = number.stage
+    roots = [number.table, f"{stage}/fit.parquet", f"{stage}/fit_manoeuvres.parquet"]
+    roots.append("plan/inputs.parquet")
     provenance = Provenance(campaign, roots, settings)
     content = _Tables(campaign)
     fits = _fits(number, content, provenance)
@@ -94,9 +105,8 @@ def number_of(campaign: Campaign, identifier: str) -> Number:
     """
     numbers: dict[str, Number] = {}
     for path in sorted(campaign.derived.glob("*/parameters.parquet")):
-        table = f"{path.parent.name}/{path.name}"
         rows = rows_of(tables.PARAMETERS.read(path))
-        numbers |= {row["id"]: Number(row, table) for row in rows}
+        numbers |= {row["id"]: Number(row, path.parent.name, path.name) for row in rows}
     if not numbers:
         raise Refusal(
             str(campaign.derived),
@@ -172,25 +182,32 @@ def _method(number: Number, provenance: Provenance) -> Step:
 def _fits(number: Number, content: _Tables, provenance: Provenance) -> list[Fit]:
     """The fits that say what a number was estimated from: its own, or those that it rests on.
 
-    A method that keeps no fit uses what the joint one of its mount used. A stage that keeps none
-    rests on the stages behind it, and where its method is named after one, on that one.
+    A method that keeps no fit uses what the joint one of its sensor and mount used. A stage that
+    keeps none rests on the stage behind it that estimates its sensor.
     """
-    method, _, mount = number.row["method"].partition("@")
-    joint = f"joint@{mount}" if mount else "joint"
-    stage = number.table.partition("/")[0]
+    own = [number.row[key] for key in OF_SENSOR]
     by_stage = {
-        run.stage: {row["method"]: row for row in content.rows(f"{run.stage}/fit", tables.FIT)}
+        run.stage: [
+            row
+            for row in content.rows(f"{run.stage}/fit", tables.FIT)
+            if [row[key] for key in OF_SENSOR] == own
+        ]
         for run in provenance.runs
         if content.campaign.path(f"{run.stage}/fit.parquet").is_file()
     }
     if not by_stage:
         content.unreadable.append(f"No table says what {number.row['id']} was estimated from.")
-    nearest = [name for name in (stage, method) if name in by_stage][:1]
+    stages = (number.stage, STAGES[number.row["sensor"]])
+    nearest = [name for name in stages if name in by_stage][:1]
     fits = []
     for name in nearest or by_stage:
-        own = by_stage[name].get(number.row["method"]) if name == stage else None
-        row = own or by_stage[name].get(joint)
-        fits += [Fit(name, row)] if row else []
+        by_method = {row["method"]: row for row in by_stage[name]}
+        row = by_method.get(number.row["method"]) if name == number.stage else None
+        if row := row or by_method.get(JOINT):
+            key = [row[key] for key in (*OF_SENSOR, "method")]
+            listed = content.rows(f"{name}/fit_manoeuvres", tables.FIT_MANOEUVRES)
+            used = [each for each in listed if [each[k] for k in (*OF_SENSOR, "method")] == key]
+            fits.append(Fit(name, row, parts_of(used)))
     return fits
 
 
@@ -200,8 +217,8 @@ def _fit(fit: Fit, number: Number) -> Step:
         f"chi-squared {row['chi_squared']:.1f} with {row['degrees']} degrees of freedom, "
         f"p = {row['p_value']:.2g}",
         f"scatter between manoeuvres beyond the noise: {row['scatter']:.3g}{_unit(row['unit'])}",
-        f"used: {row['used'] or 'nothing'}",
-        *(f"left out: {omitted}" for omitted in row["left_out"].split("; ") if omitted),
+        f"used: {labels(fit.manoeuvres) or 'nothing'}",
+        *(f"left out: {part.omission}" for part in fit.manoeuvres if part.reason),
     ]
     if (fit.stage, row["method"]) != (number.row["stage"], number.row["method"]):
         method = f"{number.row['stage']}, method {number.row['method']}"
@@ -235,9 +252,9 @@ def _made_by(run: StageRun) -> list[str]:
 
 def _manoeuvres(fits: Sequence[Fit], content: _Tables, provenance: Provenance) -> list[Step]:
     """A step for each manoeuvre that the fits have used, with every phase of it."""
-    labels = [label for fit in fits for label in fit.row["used"].split(", ")]
+    used = [part for fit in fits for part in fit.manoeuvres if not part.reason]
     phases = used_phases(
-        list(dict.fromkeys(labels)),
+        list(dict.fromkeys(used)),
         content.read("segment/blocks", tables.BLOCKS),
         content.read("plan/manoeuvres", tables.MANOEUVRES),
         content.read("quality/masks", tables.MASKS),

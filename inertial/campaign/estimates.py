@@ -9,7 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.records import Manoeuvre, Part, omissions, with_mount
+from inertial.campaign.records import Manoeuvre, Part, with_mount
 from inertial.estimation import triad
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.variance_components import ScatterFit
@@ -104,7 +104,7 @@ class Estimates:
                     "id": ids[i],
                     "stage": self.stage,
                     **self._key(method),
-                    "method": with_mount(method, self.mount),
+                    "effect": None,
                     "parameter": name,
                     "value": None if missing else float(values[i]),
                     "sigma": None if missing else float(sigma[i]),
@@ -147,7 +147,7 @@ class Estimates:
             values[12:] = triad.mounting_and_symmetric(matrix)
         else:  # two axes are taken for each other, or a sign is wrong: the findings say so
             reasons = reasons | {name: _("M is left-handed: it is no mounting") for name in derived}
-        if any(name.startswith(("scale", "cross")) for name in reasons):
+        if any(name in triad.SCALE + triad.CROSS for name in reasons):
             reasons = reasons | {name: _("it needs all nine elements of M") for name in derived}
         self.add(method, NAMES + derived, values, jacobian @ covariance @ jacobian.T, reasons)
 
@@ -187,14 +187,11 @@ class Estimates:
         self.rows["fit"].append(
             self._key(method)
             | {
-                "method": with_mount(method, self.mount),
                 "chi_squared": fitted.estimate.chi_squared,
                 "degrees": fitted.estimate.degrees,
                 "p_value": fitted.p_value,
                 "scatter": fitted.scatter,
                 "unit": UNIT[self.stage],
-                "used": ", ".join(part.label for part in used),
-                "left_out": omissions(left_out),
                 "random_walk": fitted.random_walk,
                 "random_walk_sigma": fitted.random_walk_sigma,
             }
@@ -245,18 +242,19 @@ def reasons(
     """
     result = {}
     for i, name in enumerate(NAMES):
-        row, column = name.partition("_")[2][0], name[-1]
+        parts = triad.PARTS[name]
+        row = parts.sensor_axis
         if not recorded["xyz".index(row)]:
             result[name] = _("the {row} {sensor} is not recorded", row=row, sensor=sensor)
         elif not determined[i]:
-            kind = "bias" if name.startswith("bias") else "matrix"
-            result[name] = cures[kind].format(axis=column)
+            kind = "bias" if parts.kind == "bias" else "matrix"
+            result[name] = cures[kind].format(axis=parts.input_axis)
     return result
 
 
 def described(stage: str, name: str) -> tuple[str, str, str]:
     """Unit, frame and meaning of a parameter."""
-    kind, _unused, axes = name.partition("_")
+    kind, axes = triad.PARTS[name]
     sensed, unit = SENSED[stage], UNIT[stage]
     sensor = "accelerometer" if stage == "accelerometer" else "gyro"
     if kind == "bias":

@@ -1,41 +1,40 @@
 """The final result of a sensor, the joint or the extended one, and how their rows correspond."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 
-from inertial.campaign.records import Row, with_mount
+from inertial.campaign.records import Row
+from inertial.campaign.solution import JOINT
 
 STAGES = {"gyro": "gyroscope", "accel": "accelerometer"}
 EXTENDED = "extended"
 
 
-def extended_methods(decision: Iterable[Row]) -> set[str]:
-    """The methods of the extension whose result is final.
+def extended_sensors(decision: Iterable[Row]) -> set[tuple[str, str]]:
+    """Sensor and mount of every extended result that is final.
 
     `decision`: the rows of the extension's table.
     """
-    return {
-        with_mount(STAGES[row["sensor"]], row["mount"])
-        for row in decision
-        if row["result"] == EXTENDED
-    }
+    return {(row["sensor"], row["mount"]) for row in decision if row["result"] == EXTENDED}
 
 
-def extended_id(joint: str) -> str:
-    """What the extension calls the parameter that the joint fit calls `joint`.
+def of_sensors(rows: Iterable[Row], sensors: Container[tuple[str, str]]) -> list[Row]:
+    """The rows of these sensors and mounts."""
+    return [row for row in rows if (row["sensor"], row["mount"]) in sensors]
 
-    gyroscope/joint@upright/bias_x is extension/gyroscope@upright/bias_x.
+
+def with_extended(parameters: Sequence[Row], extended: Iterable[Row]) -> list[Row]:
+    """The rows, those of the joint method with value and sigma of the extended fit where it has.
+
+    The ids stay.
     """
-    stage, _, rest = joint.partition("/")
-    method, _, parameter = rest.rpartition("/")
-    return f"extension/{stage}{method.removeprefix('joint')}/{parameter}"
-
-
-def counting(parameters: Sequence[Row], extended: Iterable[Row]) -> list[Row]:
-    """The rows, with value and sigma of the extended fit where it has them; the ids stay."""
-    better = {row["id"]: row for row in extended if row["value"] is not None}
+    better = {_key(row): row for row in extended if row["value"] is not None}
     return [
-        row | {key: better[other][key] for key in ("value", "sigma")}
-        if (other := extended_id(row["id"])) in better
+        row | {key: better[_key(row)][key] for key in ("value", "sigma")}
+        if row["method"] == JOINT and _key(row) in better
         else row
         for row in parameters
     ]
+
+
+def _key(row: Row) -> tuple[str, str, str]:
+    return row["mount"], row["sensor"], row["parameter"]

@@ -30,6 +30,7 @@ class Finding:
     consequence: str
     action: str
     severity: int  # 3 spoils a result, 2 weakens it, 1 is good to know
+    mount: str = ""
     sensor: str | None = None
     axis: str | None = None
     log: str | None = None

@@ -1,6 +1,6 @@
 """Rows of the small tables as records with types: manoeuvres, what was performed, what is known."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -135,9 +135,19 @@ class Part:
         return f"{self.label}: {self.reason}"
 
 
-def omissions(parts: Sequence[Part]) -> str:
+def parts_of(rows: Iterable[Row]) -> list[Part]:
+    """The parts in rows of a table of the manoeuvres of a fit."""
+    return [Part(row["manoeuvre"], row["phase"], row["reason"] or "") for row in rows]
+
+
+def labels(parts: Iterable[Part]) -> str:
+    """In words: what is used."""
+    return ", ".join(part.label for part in parts if not part.reason)
+
+
+def omissions(parts: Iterable[Part]) -> str:
     """In words: what is left out, each with the reason."""
-    return "; ".join(part.omission for part in parts)
+    return "; ".join(part.omission for part in parts if part.reason)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.records import Known, Manoeuvre, rows_of, with_mount
+from inertial.campaign.records import Known, Manoeuvre, Row, rows_of
 from inertial.estimation.gyroscope_observations import Position
 from inertial.estimation.triad import BIAS, linear_names
 from inertial.physics.forward import Site, Triad
@@ -64,22 +64,20 @@ class Estimated:
     fit: pd.DataFrame | None = None
 
     def position_parameters(
-        self, method: str, mount: str, quantity: str, below: float
+        self, mount: str, quantity: str, below: float
     ) -> dict[tuple[str, str, int], float]:
         """The parameters of the positions, by component, whose sigma is `below` this limit."""
-        rows = [] if self.positions is None else rows_of(self.positions)
+        rows = [] if self.positions is None else joint_rows(self.positions, mount)
         return {
             (row["position"], quantity, row["component"]): row["value"]
             for row in rows
-            if (row["method"], row["mount"]) == (method, mount)
-            and row["quantity"] == quantity
-            and row["sigma"] < below
+            if row["quantity"] == quantity and row["sigma"] < below
         }
 
-    def random_walk(self, method: str) -> float:
-        """The random walk of the bias, 0 where none was estimated."""
-        rows = [] if self.fit is None else rows_of(self.fit)
-        return float(next((r["random_walk"] or 0.0 for r in rows if r["method"] == method), 0.0))
+    def random_walk(self, mount: str) -> float:
+        """The random walk of the bias by the joint fit."""
+        rows = [] if self.fit is None else joint_rows(self.fit, mount)
+        return float(next((row["random_walk"] or 0.0 for row in rows), 0.0))
 
 
 def solution_of(
@@ -89,21 +87,31 @@ def solution_of(
 
     An azimuth counts as determined where its horizontal earth rate is known to a third.
     """
-    level, method = known["earth_rate_level"].number, with_mount(JOINT, mount)
-    tilts = accelerometer.position_parameters(JOINT, mount, "tilt", np.inf)
-    levels = gyro.position_parameters(JOINT, mount, "horizontal", level / 3)
+    level = known["earth_rate_level"].number
+    tilts = accelerometer.position_parameters(mount, "tilt", np.inf)
+    levels = gyro.position_parameters(mount, "horizontal", level / 3)
     return Solution(
-        triad_of(gyro.parameters, method),
-        triad_of(accelerometer.parameters, method),
+        triad_of(gyro.parameters, mount),
+        triad_of(accelerometer.parameters, mount),
         Site(known["gravity"].number, known["earth_rate_up"].number, level),
         tilts | levels,
-        (gyro.random_walk(method), accelerometer.random_walk(method)),
+        (gyro.random_walk(mount), accelerometer.random_walk(mount)),
     )
 
 
-def triad_of(parameters: pd.DataFrame, method: str) -> Triad | None:
-    """M and bias by a method; none where they are not wholly determined."""
-    values = {r["parameter"]: r["value"] for r in rows_of(parameters) if r["method"] == method}
+def joint_rows(table: pd.DataFrame, mount: str) -> list[Row]:
+    """The rows of the joint method of a mount, whose name is empty where there is a single one."""
+    return [row for row in rows_of(table) if (row["method"], row["mount"]) == (JOINT, mount)]
+
+
+def scatter_by_mount(fit: pd.DataFrame) -> dict[str, float]:
+    """The scatter between manoeuvres by the joint fit of each mount, in the unit of the table."""
+    return {r["mount"]: r["scatter"] or 0.0 for r in rows_of(fit) if r["method"] == JOINT}
+
+
+def triad_of(parameters: pd.DataFrame, mount: str = "") -> Triad | None:
+    """M and bias of the joint result; none where they are not wholly determined."""
+    values = {row["parameter"]: row["value"] for row in joint_rows(parameters, mount)}
     names = linear_names()
     if any(values.get(name) is None for name in names):
         return None

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inertial.campaign.records import Manoeuvre, Part
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
 from inertial.physics.motion import turned
-from inertial.tables import ACCEL, AXES, GYRO
+from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 from inertial.text.messages import _
 
 if TYPE_CHECKING:
@@ -171,7 +171,7 @@ def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosi
     positions: list[StaticPosition] = []
     left_out: list[Part] = []
     channels = [f"{sensor}_{axis}" for axis in AXES]
-    at_rest = blocks[blocks["phase"].str.startswith("rest") & (blocks["count"] > 0)]
+    at_rest = blocks[blocks["phase"].isin(STATIC_PHASES) & (blocks["count"] > 0)]
     read = at_rest[channels].to_numpy(np.float64)
     each = {name: at_rest[name].to_numpy(np.float64) for name in BLOCK_COLUMNS}
     logs = at_rest["log"].to_numpy()

@@ -28,9 +28,9 @@ from inertial.estimation.multi_position import (
     free_positions,
     unobservable,
 )
-from inertial.estimation.triad import CROSS, MOUNTING, SYMMETRIC
+from inertial.estimation.triad import CROSS, MOUNTING, PARTS, SYMMETRIC
 from inertial.estimation.variance_components import ScatterFit, with_scatter
-from inertial.tables import ACCEL, AXES, GYRO
+from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 from inertial.text.messages import _
 
 Array = NDArray[np.float64]
@@ -77,7 +77,7 @@ def free_static_positions(data: CampaignData) -> tuple[list[FreeStaticPosition],
     found: list[FreeStaticPosition] = []
     left_out: list[Part] = []
     named = {m.name: m for m in plan}
-    at_rest = blocks[blocks["phase"].str.startswith("rest") & (blocks["count"] > 0)]
+    at_rest = blocks[blocks["phase"].isin(STATIC_PHASES) & (blocks["count"] > 0)]
     at_rest = at_rest.sort_values(["log", "from_record"])
     for (key, phase), part in at_rest.groupby(["manoeuvre", "phase"], sort=False):
         name = str(key)
@@ -173,7 +173,7 @@ def in_words(one: Unobservable) -> str:
             last=last,
             cure=cure,
         )
-    axes = one.names[0].partition("_")[2]
+    axes = PARTS[one.names[0]].axes
     if len(set(axes)) == 2:
         both = _("both {axes} and {axes_2}", axes=axes[0], axes_2=axes[1])
         return _(
@@ -186,7 +186,7 @@ def in_words(one: Unobservable) -> str:
 
 
 def _called(name: str) -> str:
-    kind, _unused, axes = name.partition("_")
+    kind, axes = PARTS[name]
     if kind == "bias":
         return _("the bias of {axes}", axes=axes)
     if axes[0] == axes[1]:

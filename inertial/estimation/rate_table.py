@@ -11,7 +11,7 @@ from inertial.estimation.gyroscope_observations import Earth, SteadyRate
 from inertial.estimation.horizontal_earth_rate import summed_earth_rate
 from inertial.estimation.least_squares import pseudo_inverse
 from inertial.estimation.regression import NestedTest, nested_test
-from inertial.estimation.triad import AXES, linear_names
+from inertial.estimation.triad import AXES, PARTS, linear_names
 from inertial.physics.motion import cross, level_axes
 
 # ---- The gyros from many steady runs of a rate table: S4's least squares, with sigma and rank.
@@ -63,7 +63,8 @@ class RateTable:
         """Why a parameter is not determined, with the rank and the cure, by its name."""
         refusals = {}
         for name, there in zip(linear_names(), self.solution.determined, strict=True):
-            gyro, about = name.partition("_")[2][0], name[-1]
+            parts = PARTS[name]
+            gyro, about = parts.sensor_axis, parts.input_axis
             rank, runs = self.ranks[AXES.index(gyro)], self.recorded[AXES.index(gyro)]
             if there:
                 continue
@@ -73,7 +74,7 @@ class RateTable:
             what = f"the inputs of the {gyro} gyro have rank {rank} of {COLUMNS}"
             cure = (
                 "add a run of another rate"
-                if name.startswith("bias")
+                if parts.kind == "bias"
                 else f"record all three gyros while the table turns about {about}"
             )
             refusals[name] = f"{what}: {cure}"

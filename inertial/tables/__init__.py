@@ -46,7 +46,16 @@ from inertial.tables.recorded import (
     SEGMENTS,
     TRACES,
 )
-from inertial.tables.shared import ACCEL, AXES, BODY, CHANNELS, GYRO, UNITS
+from inertial.tables.shared import (
+    ACCEL,
+    AXES,
+    BODY,
+    CHANNEL_PARTS,
+    CHANNELS,
+    GYRO,
+    STATIC_PHASES,
+    UNITS,
+)
 from inertial.tables.unmodelled import (
     ALARMS,
     CAUSE_POSITIONS,
@@ -84,6 +93,7 @@ __all__ = [
     "CAUSES",
     "CAUSE_POSITIONS",
     "CHANNELS",
+    "CHANNEL_PARTS",
     "CHANNEL_STATISTICS",
     "CHECKS",
     "CLOCKS",
@@ -133,6 +143,7 @@ __all__ = [
     "SENSORS",
     "SIMULATED",
     "SPREADS",
+    "STATIC_PHASES",
     "STRUCTURES",
     "STRUCTURE_POINTS",
     "TIME_ANGLE",

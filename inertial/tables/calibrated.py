@@ -1,6 +1,6 @@
 """Compensated samples, their checks, and the archive of calibrations."""
 
-from inertial.tables.shared import MOUNT, channels
+from inertial.tables.shared import MOUNT, QUANTITY, SENSOR, channels
 from inertial.tables.table import DOUBLE, INTEGER, LABEL, TEXT, TEXTS, TRUTH, Column, Table
 
 # ---- Samples with the errors taken out, and the checks of them.
@@ -66,7 +66,7 @@ def _rows(*fields: tuple[str, str, str]) -> tuple[Column, ...]:
 # version up writes how the older files are read.
 CALIBRATION = Table(
     "calibration",
-    1,
+    2,
     (
         Column("campaign", TEXT, "", "name of the campaign's folder"),
         Column("simulated", TRUTH, "", "recorded by the simulated laboratory"),
@@ -81,8 +81,11 @@ CALIBRATION = Table(
         Column(
             "parameters",
             _rows(
-                ("id", TEXT, "stable identifier: stage/method/parameter"),
+                ("id", TEXT, "stable identifier; no code reads anything from it"),
+                ("mount", TEXT, "of the plan; empty where the campaign has a single one"),
+                ("sensor", TEXT, "accel or gyro"),
                 ("method", TEXT, "method of estimation"),
+                ("parameter", TEXT, "name within the method"),
                 ("value", DOUBLE, "estimate in this unit; none where it is not determined"),
                 ("sigma", DOUBLE, "its standard deviation"),
                 ("unit", TEXT, "unit of value and sigma"),
@@ -140,12 +143,15 @@ ARCHIVED = Table(
 )
 EARLIER = Table(
     "earlier",
-    2,
+    3,
     (
         Column("campaign", TEXT, "", "campaign of another calibration of the same IMU"),
         Column("date", TEXT, "", "its date, not later than this campaign's, or unknown"),
         Column("file", TEXT, "", "the archive's file that holds it"),
         Column("id", TEXT, "", "identifier of the parameter by the joint method"),
+        MOUNT,
+        SENSOR,
+        QUANTITY,
         Column("value", DOUBLE, "as unit", "its estimate then, by the result that counted"),
         Column("sigma", DOUBLE, "as unit", "standard deviation of the estimate"),
         Column("unit", TEXT, "", "unit of value and sigma"),

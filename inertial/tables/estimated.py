@@ -36,13 +36,20 @@ LEVELS = Table(
 )
 PARAMETERS = Table(
     "parameters",
-    2,
+    3,
     (
-        Column("id", TEXT, "", "stable identifier: stage/method/parameter"),
+        Column("id", TEXT, "", "stable identifier; no code reads anything from it"),
         Column("stage", TEXT, "", "stage that estimated it"),
         MOUNT,
         SENSOR,
-        Column("method", TEXT, "", "method of estimation"),
+        METHOD,
+        Column(
+            "effect",
+            TEXT,
+            "",
+            "effect in the model that it is a parameter of; none: of the sensor",
+            nullable=True,
+        ),
         Column("parameter", TEXT, "", "name within the method"),
         Column(
             "value", DOUBLE, "as unit", "estimate; none where it is not determined", nullable=True
@@ -65,11 +72,11 @@ COVARIANCE = Table(
 )
 FIT = Table(
     "fit",
-    3,
+    4,
     (
         MOUNT,
         SENSOR,
-        Column("method", TEXT, "", "method of estimation"),
+        METHOD,
         Column(
             "chi_squared",
             DOUBLE,
@@ -82,8 +89,6 @@ FIT = Table(
             "scatter", DOUBLE, "as unit", "what manoeuvres differ by beyond noise; 0 where p ≥ 1 %"
         ),
         Column("unit", TEXT, "", "unit of the scatter"),
-        Column("used", TEXT, "", "the manoeuvres that were used"),
-        Column("left_out", TEXT, "", "the manoeuvres that were not, each with the reason"),
         Column(
             "random_walk", DOUBLE, "unit/√s", "of the bias, which is that of the middle; 0: none"
         ),
@@ -109,7 +114,7 @@ POSITIONS = Table(
     (
         MOUNT,
         SENSOR,
-        Column("method", TEXT, "", "method of estimation"),
+        METHOD,
         Column("position", TEXT, "", "set position"),
         Column("quantity", TEXT, "", "tilt, or horizontal: the component of the earth's rate"),
         Column("component", INTEGER, "", "0 or 1, of the two horizontal axes of the position"),
@@ -260,7 +265,7 @@ NOT_STUDIED = Table(
 
 DIFFERENCES = Table(
     "differences",
-    2,
+    3,
     (
         Column("id", TEXT, "", "stable identifier: comparison/kind/parameter, and which turns"),
         MOUNT,
@@ -282,6 +287,13 @@ DIFFERENCES = Table(
         Column("sigma", DOUBLE, "as unit", "its sigma; none where not known", nullable=True),
         Column("in_sigmas", DOUBLE, "1", "difference in units of its sigma", nullable=True),
         Column("p_value", DOUBLE, "1", "chance of one so large, either way", nullable=True),
+        Column(
+            "significant",
+            TRUTH,
+            "",
+            "more than chance among all comparisons; none where there is no p_value",
+            nullable=True,
+        ),
         Column("sentence", TEXT, "", "the difference and the verdict in words"),
     ),
 )

@@ -26,13 +26,14 @@ CAMPAIGN = Table(
 )
 KNOWN = Table(
     "known",
-    1,
+    2,
     (
         Column("quantity", TEXT, "", "name of what is taken as known"),
         Column("value", DOUBLE, "as unit", "its value; none where it is not known", nullable=True),
         Column("sigma", DOUBLE, "as unit", "standard deviation of the value", nullable=True),
         Column("unit", TEXT, "", "unit of value and sigma"),
         Column("origin", TEXT, "", "stated in the campaign, computed, or assumed, and from what"),
+        Column("assumed", TRUTH, "", "the campaign states nothing that it could be computed from"),
     ),
 )
 SENSORS = Table(

@@ -105,10 +105,11 @@ CHANNEL_STATISTICS = Table(
 
 FINDINGS = Table(
     "findings",
-    1,
+    2,
     (
-        Column("id", TEXT, "", "stable identifier: stage/cause/place"),
+        Column("id", TEXT, "", "stable identifier; no code reads anything from it"),
         Column("cause", TEXT, "", "what it is"),
+        Column("mount", TEXT, "", "where there are several and one is concerned; else empty"),
         Column("sensor", TEXT, "", "accel or gyro, where one is concerned", nullable=True),
         Column("axis", TEXT, "", "x, y or z, where one is concerned", nullable=True),
         Column("log", TEXT, "", "as in logs", nullable=True),

@@ -7,10 +7,12 @@ AXES = ("x", "y", "z")
 ACCEL, GYRO = ([f"{sensor}_{axis}" for axis in AXES] for sensor in ("accel", "gyro"))
 CHANNELS = (*ACCEL, *GYRO)
 UNITS = {"accel": "m/s²", "gyro": "rad/s"}
+STATIC_PHASES = ["rest", "rest-before", "rest-after"]  # in which the table is at rest
 PHASES = (
     "rest; for a turn rest-before, spin-up, steady, spin-down, rest-after; by hand: turning;"
     " from one rest of unknown attitude to the next: between"
 )
+CHANNEL_PARTS = {f"{sensor}_{axis}": (sensor, axis) for sensor in UNITS for axis in AXES}
 BODY = "body"  # axes x, y, z of the IMU's case, right-handed
 
 

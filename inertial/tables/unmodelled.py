@@ -41,10 +41,9 @@ FINDING = Column("finding", TEXT, "", "id of the finding that names it", nullabl
 
 CAUSES = Table(
     "causes",
-    2,
+    3,
     (
         *FINDINGS.columns,
-        MOUNT,
         Column("verdict", TEXT, "", "found, one_of_class, unknown_structure", nullable=True),
         Column(
             "statistic",
@@ -67,6 +66,20 @@ CAUSES = Table(
             DOUBLE,
             "1",
             "signal-to-noise ratio with which that manoeuvre would distinguish them",
+            nullable=True,
+        ),
+        Column(
+            "split_stated",
+            TRUTH,
+            "",
+            "whether the action states that manoeuvre, with the ratio if there is one",
+            nullable=True,
+        ),
+        Column(
+            "predictor",
+            TEXT,
+            "",
+            "temperature: of means at several temperatures; none: of readings over time",
             nullable=True,
         ),
     ),

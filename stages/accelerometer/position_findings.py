@@ -10,6 +10,7 @@ from inertial.campaign.estimates import NAMES
 from inertial.campaign.findings import Finding
 from inertial.campaign.records import with_mount
 from inertial.estimation.position_outlier import OffPosition
+from inertial.estimation.triad import PARTS
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
@@ -39,6 +40,7 @@ def findings(off: OffPosition, sigma: Array, mount: str) -> Iterator[Finding]:
     yield Finding(
         id="/".join(("accelerometer", with_mount(cause, mount), off.positions[0])),
         cause=cause,
+        mount=mount,
         sensor="accel",
         manoeuvre=off.positions[0],
         size=off.tilt,
@@ -72,8 +74,9 @@ def findings(off: OffPosition, sigma: Array, mount: str) -> Iterator[Finding]:
 
 
 def _moved(name: str, by: float) -> str:
-    kind, _unused, axes = name.partition("_")
-    words = WORDS[kind].format(row=axes[0], column=axes[-1])
+    parts = PARTS[name]
+    kind = parts.kind
+    words = WORDS[kind].format(row=parts.sensor_axis, column=parts.input_axis)
     unit = quantity(name, "m/s²" if kind == "bias" else "1").laboratory
     return _(
         "the {words} moves by {significant} {name}",

@@ -18,7 +18,7 @@ from inertial.campaign.static_positions import Blocks, by_manoeuvre, stretch_of
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.sensitivities import Sensitivities
 from inertial.physics.motion import mean_turned
-from inertial.tables import ACCEL, AXES
+from inertial.tables import ACCEL, AXES, STATIC_PHASES
 
 Array = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ def turning_rests(data: CampaignData) -> list[tuple[Part, StaticForce]]:
     The `sensitivities` of each are those of LEVER_ARM.
     """
     blocks, performed = data.blocks, data.performed
-    moving = by_manoeuvre(blocks[~blocks["phase"].str.startswith("rest")])
+    moving = by_manoeuvre(blocks[~blocks["phase"].isin(STATIC_PHASES)])
     quiet = by_manoeuvre(blocks[blocks["phase"].isin(["rest-before", "rest-after"])])
     found: list[tuple[Part, StaticForce]] = []
     for m in data.plan:

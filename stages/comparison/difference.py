@@ -11,6 +11,7 @@ from inertial import tables
 from inertial.campaign.estimates import SENSOR_OF
 from inertial.campaign.records import Row, rows_of, with_mount
 from inertial.estimation.consistency import holm_rejections, normal_p_value
+from inertial.estimation.triad import PARTS
 from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, fixed, p_is, with_sigma
 from inertial.text.units import quantity
@@ -120,7 +121,7 @@ def named(stage: str, name: str) -> str:
     """A parameter in words: bias_y of the gyroscope is the bias of the y gyro."""
     if name in FORMS:
         return FORMS[name]
-    kind, _unused, axes = name.partition("_")
+    kind, axes = PARTS[name]
     sensor, input_ = SENSORS[stage]
     if kind == "cross":
         return _(
@@ -142,7 +143,7 @@ def table_of(differences: Sequence[Difference], level: float) -> pd.DataFrame:
     beyond = np.zeros(len(differences), dtype=np.bool_)
     beyond[compared] = holm_rejections(np.array(chances)[compared].tolist(), level)
     rows = [_row(d, bool(beyond[i]), among) for i, d in enumerate(differences)]
-    return pd.DataFrame(rows) if rows else tables.DIFFERENCES.empty()
+    return tables.DIFFERENCES.frame(rows)
 
 
 def _row(d: Difference, beyond: bool, among: int) -> Row:
@@ -161,6 +162,7 @@ def _row(d: Difference, beyond: bool, among: int) -> Row:
         "sigma": d.sigma,
         "in_sigmas": d.in_sigmas,
         "p_value": d.p_value,
+        "significant": None if d.p_value is None else beyond,
         "sentence": d.sentence(beyond, among),
     }
 
@@ -173,21 +175,22 @@ class Results:
     parameters: pd.DataFrame
     mount: str
 
-    def named(self, name: str) -> str:
-        """A method or a kind of difference, with the mount where there are several."""
-        return with_mount(name, self.mount)
-
-    def id(self, method: str, name: str) -> str:
-        """The identifier of a parameter."""
-        return f"{self.stage}/{self.named(method)}/{name}"
+    def id(self, method: str, name: str = "") -> str:
+        """The identifier of a parameter, or of all that a method determined."""
+        group = f"{self.stage}/{with_mount(method, self.mount)}"
+        return f"{group}/{name}" if name else group
 
     @cached_property
     def _rows(self) -> dict[tuple[str, str], Row]:
-        return {(row["method"], row["parameter"]): row for row in rows_of(self.parameters)}
+        return {
+            (row["method"], row["parameter"]): row
+            for row in rows_of(self.parameters)
+            if row["mount"] == self.mount
+        }
 
     def of(self, method: str, name: str) -> Row | None:
         """The row of a parameter; none where the method does not have it."""
-        return self._rows.get((self.named(method), name))
+        return self._rows.get((method, name))
 
     def determined(self, method: str, name: str) -> Row | None:
         """The same; none where it is not determined either."""
@@ -197,5 +200,5 @@ class Results:
     def names(self, method: str) -> Iterator[str]:
         """Names of the parameters that a method determined."""
         for wanted, name in self._rows:
-            if wanted == self.named(method) and self.determined(method, name):
+            if wanted == method and self.determined(method, name):
                 yield name

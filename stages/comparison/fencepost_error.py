@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.angle_windows import Fencepost, fencepost
 from inertial.estimation.consistency import common_cause
+from inertial.estimation.triad import PARTS, SCALE
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, whole
 from inertial.text.units import PPM
@@ -40,9 +41,7 @@ def off_by_a_sample(
     """
     windows = [row for row in rows_of(growing) if row["by"] == "set rate"]
     scales = [
-        row
-        for row in rows_of(published)
-        if row["sensor"] == "gyro" and row["quantity"].startswith("scale_")
+        row for row in rows_of(published) if row["sensor"] == "gyro" and row["quantity"] in SCALE
     ]
     cases = [one for row in scales for one in [_case(row, gyro, windows)] if one is not None]
     if len(cases) < MIN_AXES:
@@ -60,7 +59,7 @@ def off_by_a_sample(
         stage="gyroscope",
         quantity="scale",
         unit="1",
-        first=f"gyroscope/{gyro.named('joint')}",
+        first=gyro.id("joint"),
         second=scales[0]["source"],
         first_value=None,
         second_value=None,
@@ -72,7 +71,7 @@ def off_by_a_sample(
 
 def _case(row: Row, gyro: Results, windows: Sequence[Row]) -> tuple[float, ...] | None:
     """Published and our scale factor, sigma of their difference, and N; none where one lacks."""
-    axis, angle = row["quantity"][-1], row["window"] or pi
+    axis, angle = PARTS[row["quantity"]].axes, row["window"] or pi
     ours = gyro.determined("joint", f"scale_{axis}")
     like = {w["axis"]: w for w in sorted(windows, key=lambda w: -abs(w["angle"] - angle))}
     # An axis without windows of its own counts with the worst of the others.

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
-from inertial.campaign.records import rows_of
+from inertial.campaign.solution import scatter_by_mount
 from inertial.tables.stage import Stage, Tables
 from stages.comparison.declared import DECLARED
 from stages.comparison.difference import Difference, Results, table_of
@@ -30,13 +30,13 @@ def comparison(
     level: float,
 ) -> Tables:
     """Every difference in units of its sigma, with the verdict in a sentence."""
-    scatter = {row["method"]: row["scatter"] for row in rows_of(gyroscope_fit)}
+    scatter = scatter_by_mount(gyroscope_fit)
 
     def of_mount(data: CampaignData) -> Iterator[Difference]:
         gyro = Results("gyroscope", gyroscope_parameters, data.mount)
         accelerometer = Results("accelerometer", accelerometer_parameters, data.mount)
         yield from static_against_turns(data, gyro)
-        between = scatter.get(data.named("joint"), 0.0)
+        between = scatter.get(data.mount, 0.0)
         yield from forward_against_backward(data, gyro, between)
         for method in ("six_position", "pooled_positions"):
             yield from method_against_method(accelerometer, method)
@@ -49,7 +49,7 @@ def comparison(
     found += straight_line(
         [run for data in mounts for run in data.gyro_inputs.steady_rates],
         mounts[0].earth,
-        [scatter.get(data.named("joint")) or 0.0 for data in mounts],
+        [scatter.get(data.mount, 0.0) for data in mounts],
     )
     return {"differences": table_of(found, level)}
 

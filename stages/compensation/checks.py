@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 from inertial import tables
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import Recorded, position_of
-from inertial.campaign.records import Row, rows_of, with_mount
+from inertial.campaign.records import Row, with_mount
+from inertial.campaign.solution import joint_rows
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_observations import Earth, Position
+from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Triad
 from inertial.tables import GYRO
 from inertial.text.messages import _
@@ -110,11 +112,9 @@ def checks(data: CampaignData) -> Iterator[Check]:
 
 def missing(parameters: pd.DataFrame, sensor: str, mount: str) -> Row:
     """Why the three sensors of one kind are not compensated."""
-    method = with_mount("joint", mount)
     reasons: dict[str, list[str]] = {}
-    for row in rows_of(parameters):
-        linear = row["parameter"].startswith(("bias", "scale", "cross"))
-        if linear and row["method"] == method and row["value"] is None:
+    for row in joint_rows(parameters, mount):
+        if row["parameter"] in linear_names() and row["value"] is None:
             reasons.setdefault(row["reason"], []).append(row["parameter"])
     told = "; ".join(f"{', '.join(names)}: {reason}" for reason, names in reasons.items())
     nothing = ("expected", "expected_sigma", "before", "after", "after_sigma", "in_sigmas_after")

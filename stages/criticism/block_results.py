@@ -184,6 +184,7 @@ class BlockResults:
                 "snr": cause.snr,
                 "split_manoeuvre": split.manoeuvre if split else None,
                 "split_snr": split.separation if split else None,
+                "split_stated": clear if split else None,
             },
         )
         yield from member_rows(identifier, self.mount, cause.members, cause.weights, cause.captured)

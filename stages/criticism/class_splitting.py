@@ -14,7 +14,7 @@ from inertial.campaign.records import Manoeuvre, Performed
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.splitting import TELLS, split
 from inertial.physics.effect import Effect
-from inertial.tables import GYRO
+from inertial.tables import GYRO, STATIC_PHASES
 from inertial.text.messages import _
 from stages.criticism.selection import Selection, columns_of, evidence_of
 
@@ -64,7 +64,7 @@ def further(
         factor = np.array([faster for _, _, faster in pairs])[each]
         more["seconds"] /= factor
         more["count"] /= factor
-        moving = ~more["phase"].str.startswith("rest").to_numpy(bool)
+        moving = ~more["phase"].isin(STATIC_PHASES).to_numpy(bool)
         more[GYRO] *= np.where(moving, factor, 1.0)[:, None]
         manoeuvres = [*plan, *(copy for _, copy, _ in pairs)]
         return Further(manoeuvres, done, pd.concat([blocks, more], ignore_index=True))

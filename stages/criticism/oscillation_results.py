@@ -139,6 +139,7 @@ class OscillationResults:
                 "snr": sqrt(one.statistic),
                 "split_manoeuvre": sentences.SPLIT if several else None,
                 "split_snr": sqrt(one.statistic / len(oscillation.lines)) if several else None,
+                "split_stated": False if several else None,
             },
         )
         likelier = 1 / (1 + exp(-oscillation.log_odds))

@@ -163,6 +163,8 @@ def _finding(dependence: TemperatureDependence, mount: str) -> Iterator[TableRow
             "degrees": count,
             "snr": snr_of(statistic, count),
             "split_manoeuvre": split,
+            "split_stated": True,
+            "predictor": "temperature",
         },
     )
     yield from member_rows(identifier, mount, list(effects))

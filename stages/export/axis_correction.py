@@ -14,6 +14,7 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.estimation.triad import PARTS
 from inertial.tables import AXES
 from stages.export.calibration import PARAMETERS, Triad
 
@@ -90,9 +91,7 @@ def remaining_errors(triad: Triad, offset: Array, scale: Array) -> Iterator[str]
                 f" {'+' if sign > 0 else '-'}{probe} along {AXES[along]}"
             )
         else:
-            missing = [
-                n for n in PARAMETERS if n in triad.reasons and n.partition("_")[2][0] == axis
-            ]
+            missing = [n for n in PARAMETERS if n in triad.reasons and PARTS[n].sensor_axis == axis]
             verb = "was" if len(missing) == 1 else "were"
             subject = f"{', '.join(missing)} {verb}" if missing else "it was"
             yield f"- {axis} {sensor}: not known, because {subject} not determined"

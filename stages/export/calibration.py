@@ -14,8 +14,18 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.estimates import UNIT
-from inertial.campaign.records import Manoeuvre, Row, by_mount, rows_of, with_mount
+from inertial.campaign.estimates import SENSOR_OF, UNIT
+from inertial.campaign.final_result import EXTENDED, of_sensors
+from inertial.campaign.records import (
+    Manoeuvre,
+    Part,
+    Row,
+    by_mount,
+    parts_of,
+    rows_of,
+    with_mount,
+)
+from inertial.campaign.solution import JOINT
 from inertial.estimation.triad import linear_names
 from inertial.tables import CHANNELS
 from stages.export.examples import Example
@@ -32,16 +42,27 @@ COMPENSATED = (
 
 
 @dataclass(frozen=True)
+class Fitted:
+    """The tables of parameters of a stage."""
+
+    parameters: pd.DataFrame
+    covariance: pd.DataFrame
+    fit: pd.DataFrame
+    manoeuvres: pd.DataFrame
+
+
+@dataclass(frozen=True)
 class Triad:
     """The estimates of three sensors of one kind on one mount.
 
     kind : accelerometer or gyroscope
-    id_prefix : what the ids of its parameters begin with, stage/method
+    id_prefix : what the ids of its parameters begin with
     matrix, matrix_sigma : M, (3, 3), unit 1, NaN where not determined; row: the sensor
     bias, bias_sigma : (3,), `unit`, NaN where not determined
     ids, covariance : ids of the n parameters that are determined, and their covariance, (n, n)
     reasons : parameter → why it is not determined
     fit : the row of the fit table; none where nothing was fitted
+    manoeuvres : those of the fit, and those that it leaves out
     effects : rows of the parameters of effects, where the extended result is the final one
     """
 
@@ -55,6 +76,7 @@ class Triad:
     covariance: Array
     reasons: Mapping[str, str]
     fit: Row | None
+    manoeuvres: Sequence[Part] = ()
     effects: Sequence[Row] = ()
 
     @property
@@ -140,24 +162,26 @@ class Calibration:
 
 def mounts_of(
     plan: list[Manoeuvre],
-    fits: Mapping[str, tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]],
-    extended: Collection[str],
+    fits: Mapping[str, Fitted],
+    extended: Collection[tuple[str, str]],
     examples: Mapping[str, Sequence[Example]],
 ) -> list[Mount]:
     """The final result of every mount: the joint one, or the extended one.
 
     Parameters
     ----------
-    fits : accelerometer, gyroscope and extension → parameters, covariance, fit
-    extended : methods of the extension whose result is the final one
+    fits : accelerometer, gyroscope and extension → its tables
+    extended : sensor and mount of every extended result that is the final one
     examples : mount → worked examples
     """
 
     def triad(kind: str, mount: str) -> Triad:
-        method = with_mount(kind, mount)
-        if method in extended:
-            return _triad(kind, "extension", method, *fits["extension"])
-        return _triad(kind, kind, with_mount("joint", mount), *fits[kind])
+        of = SENSOR_OF[kind], mount
+        if of in extended:
+            return _triad(
+                kind, f"extension/{with_mount(kind, mount)}", EXTENDED, of, fits["extension"]
+            )
+        return _triad(kind, f"{kind}/{with_mount(JOINT, mount)}", JOINT, of, fits[kind])
 
     return [
         Mount(
@@ -170,16 +194,13 @@ def mounts_of(
     ]
 
 
-def _triad(
-    kind: str,
-    stage: str,
-    method: str,
-    parameters: pd.DataFrame,
-    covariance: pd.DataFrame,
-    fit: pd.DataFrame,
-) -> Triad:
-    id_prefix = f"{stage}/{method}"
-    rows = {row["parameter"]: row for row in rows_of(parameters) if row["method"] == method}
+def _triad(kind: str, id_prefix: str, method: str, of: tuple[str, str], fit: Fitted) -> Triad:
+    """The result of a method for `of`, a sensor and its mount."""
+
+    def own(table: pd.DataFrame) -> list[Row]:
+        return [row for row in of_sensors(rows_of(table), [of]) if row["method"] == method]
+
+    rows = {row["parameter"]: row for row in own(fit.parameters)}
     determined = [n for n in PARAMETERS if rows.get(n, {}).get("value") is not None]
     ids = [f"{id_prefix}/{name}" for name in determined]
     values, sigmas = (
@@ -188,7 +209,7 @@ def _triad(
     )
     products = {
         (first, second): value
-        for first, second, value in covariance.itertuples(index=False)
+        for first, second, value in fit.covariance.itertuples(index=False)
         if first in ids and second in ids
     }
     no_result = {"reason": f"there is no result for the {kind}"}
@@ -202,8 +223,9 @@ def _triad(
         ids=tuple(ids),
         covariance=np.array([products[a, b] for a in ids for b in ids]).reshape(len(ids), len(ids)),
         reasons={n: rows.get(n, no_result)["reason"] for n in PARAMETERS if n not in determined},
-        fit=next((row for row in rows_of(fit) if row["method"] == method), None),
-        effects=[row for name, row in rows.items() if "." in name],
+        fit=next(iter(own(fit.fit)), None),
+        manoeuvres=parts_of(own(fit.manoeuvres)),
+        effects=[row for row in rows.values() if row["effect"]],
     )
 
 

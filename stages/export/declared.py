@@ -17,7 +17,12 @@ DECLARED = Declared(
         **{
             f"{stage}_{table.name}": From(stage, table)
             for stage in ("accelerometer", "gyroscope", "extension")
-            for table in (tables.PARAMETERS, tables.COVARIANCE, tables.FIT)
+            for table in (
+                tables.PARAMETERS,
+                tables.COVARIANCE,
+                tables.FIT,
+                tables.FIT_MANOEUVRES,
+            )
         },
         "decision": From("extension", tables.DECISION),
     },

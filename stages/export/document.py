@@ -6,6 +6,7 @@ changes a key, or what it means, counts VERSION up there and here.
 
 import json
 import re
+from collections.abc import Sequence
 from io import StringIO
 from math import isfinite
 from typing import Any
@@ -17,7 +18,8 @@ from ruamel.yaml.comments import CommentedSeq
 from ruamel.yaml.representer import RoundTripRepresenter
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
-from inertial.campaign.records import Row
+from inertial.campaign.records import Part, Row, labels, omissions
+from inertial.tables import CHANNEL_PARTS
 from stages.export.calibration import PARAMETERS, Calibration, Mount, Triad
 from stages.export.examples import Example
 
@@ -117,7 +119,7 @@ def _triad(triad: Triad) -> Row:
             for name in (*PARAMETERS, "inverse")
             if (reason := reasons.get(name))
         ],
-        "fit": triad.fit and _fit(triad.fit),
+        "fit": triad.fit and _fit(triad.fit, triad.manoeuvres),
     }
 
 
@@ -125,15 +127,15 @@ def _with_sigma(unit: str, value: Array | None, sigma: Array | None) -> Row:
     return {"unit": unit, "value": _numbers(value), "sigma": _numbers(sigma)}
 
 
-def _fit(row: Row) -> Row:
+def _fit(row: Row, manoeuvres: Sequence[Part]) -> Row:
     return {
         "chi_squared": _number(row["chi_squared"]),
         "degrees": row["degrees"],
         "p_value": _number(row["p_value"]),
         "scatter": _number(row["scatter"]),
         "unit": row["unit"],
-        "used": row["used"],
-        "left_out": row["left_out"],
+        "used": labels(manoeuvres),
+        "left_out": omissions(manoeuvres),
     }
 
 
@@ -161,7 +163,7 @@ def _noise(row: Row) -> Row:
     numbers = ("density", "least", "most", "data_sheet")
     return {
         "channel": row["channel"],
-        "unit": SQRT_HZ[row["channel"].partition("_")[0]],
+        "unit": SQRT_HZ[CHANNEL_PARTS[row["channel"]][0]],
         **{key: _number(row[key]) for key in numbers},
         "stretches": row["stretches"],
     }

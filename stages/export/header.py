@@ -53,7 +53,7 @@ def effect_terms(triads: Iterable[Triad]) -> Iterator[str]:
     for triad in triads:
         if not triad.effects:
             continue
-        names = dict.fromkeys(row["parameter"].partition(".")[0] for row in triad.effects)
+        names = dict.fromkeys(row["effect"] for row in triad.effects)
         terms = ", ".join(
             f"{row['parameter']} = {row['value']:.4g} {row['unit'].removeprefix('1')}".rstrip()
             for row in triad.effects

@@ -11,12 +11,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from inertial.campaign.estimates import SENSOR_OF
+from inertial.tables import CHANNEL_PARTS
 from stages.export.axis_correction import biases, cross_terms, remaining_errors, scale_errors
 from stages.export.calibration import Calibration
 from stages.export.document import as_yaml
 from stages.export.header import commented, effect_terms, mounts, origin
 
-SENSORS = {"accelerometer": "accel", "gyroscope": "gyro"}  # kind → how its channels begin
+KINDS = ("accelerometer", "gyroscope")
 
 
 def imu_yaml(calibration: Calibration) -> str:
@@ -29,7 +31,7 @@ def imu_yaml(calibration: Calibration) -> str:
     head += ["", "Not contained in this file, because Kalibr reads no such key:"]
     head += [*_not_contained(calibration), ""]
     keys = ["rostopic", "update_rate"]
-    keys += [f"{kind}_{what}" for kind in SENSORS for what in ("noise_density", "random_walk")]
+    keys += [f"{kind}_{what}" for kind in KINDS for what in ("noise_density", "random_walk")]
     blanks = [f"# {key}:" for key in keys if key not in values]
     text = as_yaml(values) if values else ""
     return "\n".join(commented(head)) + "\n" + text + "\n".join(blanks) + "\n"
@@ -45,8 +47,8 @@ def _values(calibration: Calibration) -> tuple[dict[str, float], list[str]]:
         to_fill_in.append(
             "- update_rate: left out, because the logs have no time and no rate is stated"
         )
-    for kind, sensor in SENSORS.items():
-        levels = [row["density"] for row in calibration.noise if row["channel"].startswith(sensor)]
+    for kind in KINDS:
+        levels = list(_densities(calibration, kind).values())
         if levels:
             values[f"{kind}_noise_density"] = max(levels)
         else:
@@ -61,16 +63,22 @@ def _values(calibration: Calibration) -> tuple[dict[str, float], list[str]]:
     return values, to_fill_in
 
 
+def _densities(calibration: Calibration, kind: str) -> dict[str, float]:
+    """Axis → noise density of the sensors of a kind."""
+    parts = [(*CHANNEL_PARTS[row["channel"]], row["density"]) for row in calibration.noise]
+    return {axis: density for sensor, axis, density in parts if sensor == SENSOR_OF[kind]}
+
+
 def _not_contained(calibration: Calibration) -> Iterator[str]:
-    chosen = [calibration.best(kind) for kind in SENSORS]
+    chosen = [calibration.best(kind) for kind in KINDS]
     for _, triad in chosen:
         yield f"- bias of the {triad.kind}s: {biases(triad)}"
         yield f"- scale factor errors of the {triad.kind}s: {scale_errors(triad)}"
         yield f"- cross-axis terms of the {triad.kind}s: {cross_terms(triad)}"
-    for kind, sensor in SENSORS.items():
-        channels = [row for row in calibration.noise if row["channel"].startswith(sensor)]
-        if channels:
-            densities = ", ".join(f"{row['channel'][-1]}={row['density']:.4g}" for row in channels)
+    for kind in KINDS:
+        by_axis = _densities(calibration, kind)
+        if by_axis:
+            densities = ", ".join(f"{axis}={density:.4g}" for axis, density in by_axis.items())
             yield (
                 f"- noise densities of the single {kind}s: {densities}; the file has one for all"
                 " three, that of the noisiest, so that Kalibr does not give any too much weight"

@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from inertial.campaign.final_result import extended_methods
+from inertial.campaign.final_result import extended_sensors
 from inertial.campaign.masked_samples import Masks
 from inertial.campaign.records import Row, manoeuvres_of, rows_of
 from inertial.tables.parquet import Stream
@@ -15,6 +15,7 @@ from stages.export.autopilots import ARDUPILOT, PX4, parameter_file
 from stages.export.calibration import (
     COMPENSATED,
     Calibration,
+    Fitted,
     mounts_of,
     noise_of,
     rate_of,
@@ -38,10 +39,11 @@ def export(
     else:
         plan = manoeuvres_of(tables["manoeuvres"])
         fits = {
-            stage: (
+            stage: Fitted(
                 tables[f"{stage}_parameters"],
                 tables[f"{stage}_covariance"],
                 tables[f"{stage}_fit"],
+                tables[f"{stage}_fit_manoeuvres"],
             )
             for stage in ("accelerometer", "gyroscope", "extension")
         }
@@ -56,7 +58,7 @@ def export(
             mounts=mounts_of(
                 plan,
                 fits,
-                extended_methods(rows_of(tables["decision"])),
+                extended_sensors(rows_of(tables["decision"])),
                 examples_of(plan, tables["blocks"], samples, Masks(tables["masks"])),
             ),
         )

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.campaign.estimates import UNIT, described
+from inertial.campaign.final_result import EXTENDED, STAGES
 from inertial.campaign.records import with_mount
 from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.triad import UNKNOWNS, errors_of, linear_names
@@ -21,7 +22,6 @@ from stages.extension.models import Models
 Array = NDArray[np.float64]
 Row = Mapping[str, Any]
 
-STAGES = {"gyro": "gyroscope", "accel": "accelerometer"}
 NOT_DETERMINED = _("beside the effects the manoeuvres do not determine it")
 
 
@@ -33,7 +33,6 @@ class Solved:
     """
 
     sensor: str
-    method: str
     rows: list[Row]
     covariance: Array
     estimate: Estimate
@@ -69,19 +68,17 @@ class Solved:
             columns=[column.name for column in tables.COVARIANCE.columns],
         )
 
-    def fit_row(self, joint: Row, noise_degrees: float) -> Row:
-        """How well the extended model describes the data; `joint`: the row of the joint fit."""
+    def fit_row(self, noise_degrees: float) -> Row:
+        """How well the extended model describes the data."""
         return {
             "mount": self.mount,
             "sensor": self.sensor,
-            "method": self.method,
+            "method": EXTENDED,
             "chi_squared": self.estimate.chi_squared,
             "degrees": self.estimate.degrees,
             "p_value": self.estimate.p_value(noise_degrees),
             "scatter": 0.0,
             "unit": UNIT[self.stage],
-            "used": joint["used"],
-            "left_out": joint["left_out"],
             "random_walk": self.walk,
             "random_walk_sigma": None,
         }
@@ -91,7 +88,6 @@ def solved(models: Models, sensor: str, system: System, walk: float, mount: str)
     """The twelve parameters of a sensor and those of the effects that it shows."""
     estimate = system.solve_shared()
     stage = STAGES[sensor]
-    method = with_mount(stage, mount)
     places = list(range(UNKNOWNS))
     effects: list[str] = []
     unknowns = [(name, *described(stage, name)) for name in linear_names()]
@@ -106,15 +102,17 @@ def solved(models: Models, sensor: str, system: System, walk: float, mount: str)
     values = estimate.values.copy()
     values[:UNKNOWNS] = errors_of(values[:UNKNOWNS])
     rows: list[Row] = []
+    effect_of = dict(zip(places[UNKNOWNS:], effects, strict=True))
     for place, (name, unit, frame, meaning) in zip(places, unknowns, strict=True):
         there = bool(estimate.determined[place])
         rows.append(
             {
-                "id": f"extension/{method}/{name}",
+                "id": f"extension/{with_mount(stage, mount)}/{name}",
                 "stage": "extension",
                 "mount": mount,
                 "sensor": sensor,
-                "method": method,
+                "method": EXTENDED,
+                "effect": effect_of.get(place),
                 "parameter": name,
                 "value": float(values[place]) if there else None,
                 "sigma": float(estimate.sigma[place]) if there else None,
@@ -125,7 +123,7 @@ def solved(models: Models, sensor: str, system: System, walk: float, mount: str)
             }
         )
     covariance = estimate.covariance[np.ix_(places, places)]
-    return Solved(sensor, method, rows, covariance, estimate, walk, effects, mount)
+    return Solved(sensor, rows, covariance, estimate, walk, effects, mount)
 
 
 # ---- The change of each of the 24 parameters by the effects.

@@ -2,13 +2,16 @@
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.equations import campaign_of
+from inertial.campaign.final_result import EXTENDED
 from inertial.campaign.records import rows_of
+from inertial.campaign.solution import joint_rows
 from inertial.campaign.steady_residuals import steady_residuals, steady_turns
 from inertial.estimation.triad import linear_names
 from inertial.tables.parquet import Stream
@@ -39,6 +42,8 @@ def extension(
     gyroscope_parameters: pd.DataFrame,
     accelerometer_fit: pd.DataFrame,
     gyroscope_fit: pd.DataFrame,
+    accelerometer_fit_manoeuvres: pd.DataFrame,
+    gyroscope_fit_manoeuvres: pd.DataFrame,
 ) -> Tables:
     """Parameters and covariance of the extended model, and the final parameters.
 
@@ -49,17 +54,15 @@ def extension(
     walks: dict[tuple[str, str], float] = defaultdict(float)
     walks |= {(row["mount"], row["sensor"]): row["value"] for row in rows_of(random_walks)}
     joint = {
-        "gyro": (rows_of(gyroscope_parameters), rows_of(gyroscope_fit)),
-        "accel": (rows_of(accelerometer_parameters), rows_of(accelerometer_fit)),
+        "gyro": (gyroscope_parameters, gyroscope_fit, gyroscope_fit_manoeuvres),
+        "accel": (accelerometer_parameters, accelerometer_fit, accelerometer_fit_manoeuvres),
     }
     made: dict[str, list[Any]] = {name: [] for name in DECLARED.writes}
     for data in mounts:
-        method = data.named("joint")
         one = Extension(
             data,
             named_of(*causes, data.mount),
-            {s: [r for r in rows if r["method"] == method] for s, (rows, _) in joint.items()},
-            {s: row for s, (_, fit) in joint.items() for row in fit if row["method"] == method},
+            {s: Joint(*(joint_rows(t, data.mount) for t in of)) for s, of in joint.items()},
             (walks[data.mount, "gyro"], walks[data.mount, "accel"]),
         )
         for table, row in one.rows(simulated):
@@ -74,22 +77,30 @@ def extension(
     return written | ({"covariance": pd.concat(covariances)} if covariances else {})
 
 
+@dataclass(frozen=True)
+class Joint:
+    """Rows of the joint result of one sensor and mount; of its fit there is at most one."""
+
+    parameters: Sequence[Row]
+    fit: Sequence[Row]
+    manoeuvres: Sequence[Row]
+
+
 class Extension:
     """The extended model of one mount.
 
-    `joint`, `fits`: rows of the parameters and of the fit of the joint result, by sensor;
-    `walks`: of the biases of gyros and accelerometers beside the named effects.
+    `joint`: rows of the joint result, by sensor; `walks`: of the biases of gyros and
+    accelerometers beside the named effects.
     """
 
     def __init__(
         self,
         data: CampaignData,
         named: Named,
-        joint: Mapping[str, Sequence[Row]],
-        fits: Mapping[str, Row],
+        joint: Mapping[str, Joint],
         walks: tuple[float, float],
     ) -> None:
-        self.data, self.named, self.joint, self.fits = data, named, joint, fits
+        self.data, self.named, self.joint = data, named, joint
         self.random_walks = walks
         self.solutions: dict[str, Solved] = {}
         self.validated: Mapping[str, CrossValidation] = {}
@@ -112,7 +123,9 @@ class Extension:
                 self.solutions[sensor] = one
                 yield "covariance", one.covariance_rows()
                 yield from (("parameters", row) for row in one.rows)
-                yield "fit", one.fit_row(self.fits[sensor], data.noise.degrees)
+                yield "fit", one.fit_row(data.noise.degrees)
+                for row in self.joint[sensor].manoeuvres:
+                    yield "fit_manoeuvres", {**row, "method": EXTENDED}
         self.validated = cross_validate(models)
         yield from gain(models, self.validated, mount)
         triads = {"gyro": data.result.gyro, "accel": data.result.accelerometer}
@@ -127,14 +140,14 @@ class Extension:
 
     def _final(self, sensor: str) -> Iterator[TableRow]:
         """Which result of a sensor is final, and its parameters."""
-        own = [row for row in self.joint[sensor] if row["parameter"] in TWELVE]
+        own = [row for row in self.joint[sensor].parameters if row["parameter"] in TWELVE]
         solution, mount = self.solutions.get(sensor), self.data.mount
         validated = self.validated.get(sensor)
         candidate = Candidate(sensor, mount, self.named, own, solution, validated)
         yield from candidate.rows()
         yield from (("result", row) for row in candidate.final_rows())
         if solution is not None:
-            scatter = bool(self.fits[sensor]["scatter"])
+            scatter = any(row["scatter"] for row in self.joint[sensor].fit)
             yield from (("moved", row) for row in moved(solution, own, scatter, mount))
 
     def _of_spectrum(self, simulated: Stream) -> Iterator[TableRow]:

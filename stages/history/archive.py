@@ -15,12 +15,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from urllib.parse import quote_plus
 
+from inertial.campaign.estimates import SENSOR_OF
+from inertial.campaign.final_result import EXTENDED
 from inertial.campaign.records import Row
 from inertial.tables import CALIBRATION
 from inertial.tables.errors import Refusal
 from inertial.tables.parquet import write_once
+from inertial.tables.table import Table
 
 SIMULATED = "simulated"  # folder of simulated calibrations; no instrument's folder has this name
+VERSION_1 = replace(CALIBRATION, version=1)
 COMPARABLE_BY = ("instrument", "serial", "compensated")  # equal where calibrations are compared
 FILE_HASH_DIGITS = 12
 MAX_NAME_LENGTH = 100  # characters; a file name holds campaign, date and hash, 255 at most
@@ -97,11 +101,41 @@ class Archive:
 
     def _entry(self, path: Path) -> Entry:
         try:
-            table = CALIBRATION.read(path)
+            row = _row(CALIBRATION, path)
         except Refusal as refusal:
-            raise replace(refusal, cure="move this file out of the archive") from None
-        row = {str(name): value for name, value in table.iloc[0].items()}
+            try:
+                row = _of_version_1(_row(VERSION_1, path))
+            except Refusal:
+                raise replace(refusal, cure="move this file out of the archive") from None
         return Entry(path.relative_to(self.root).as_posix(), row)
+
+
+def _row(contract: Table, path: Path) -> Row:
+    """The one row of a file of the archive."""
+    return {str(name): value for name, value in contract.read(path).iloc[0].items()}
+
+
+def _of_version_1(row: Row) -> Row:
+    """A row of version 1, which wrote mount, sensor and parameter into the identifiers alone.
+
+    stage/method/parameter, or extension/stage/parameter; with @mount after the method or stage.
+    """
+    parameters = []
+    for old in row["parameters"]:
+        stage, _, rest = old["id"].partition("/")
+        group, _, parameter = rest.rpartition("/")
+        name, _, mount = group.partition("@")
+        is_extended = stage == "extension"
+        parameters.append(
+            {
+                **old,
+                "mount": mount,
+                "sensor": SENSOR_OF[name if is_extended else stage],
+                "method": EXTENDED if is_extended else name,
+                "parameter": parameter,
+            }
+        )
+    return row | {"parameters": parameters}
 
 
 def content_hash(calibration: Row) -> str:

@@ -7,8 +7,9 @@ from typing import Any
 
 import pandas as pd
 
-from inertial.campaign.final_result import counting, extended_methods
+from inertial.campaign.final_result import EXTENDED, extended_sensors, of_sensors, with_extended
 from inertial.campaign.records import Row, rows_of
+from inertial.campaign.solution import JOINT
 from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
 from stages.history.archive import Archive, Entry
@@ -35,9 +36,9 @@ def history(
         *rows_of(tables["accelerometer_covariance"]),
         *rows_of(tables["gyroscope_covariance"]),
     ]
-    archived_ids = {row["id"] for row in parameters if _is_joint(row)}
-    final = extended_methods(rows_of(tables["decision"]))
-    extended = [row for row in rows_of(tables["extension_parameters"]) if row["method"] in final]
+    archived_ids = {row["id"] for row in parameters if row["method"] == JOINT}
+    final = extended_sensors(rows_of(tables["decision"]))
+    extended = of_sensors(rows_of(tables["extension_parameters"]), final)
     if extended:
         parameters += extended
         extended_ids = {row["id"] for row in extended}
@@ -90,17 +91,15 @@ def _final_results(entry: Entry) -> list[Row]:
     Where the extended result is the final one, the values are its own.
     """
     parameters = list(entry.row["parameters"])
+    extended = [row for row in parameters if row["method"] == EXTENDED]
     origin = {"campaign": entry.row["campaign"], "date": entry.row["date"], "file": entry.file}
     return [
-        origin | {key: row[key] for key in ("id", "value", "sigma", "unit")}
-        for row in counting([row for row in parameters if _is_joint(row)], parameters)
+        origin
+        | {key: row[key] for key in ("id", "mount", "sensor", "value", "sigma", "unit")}
+        | {"quantity": row["parameter"]}
+        for row in with_extended([row for row in parameters if row["method"] == JOINT], extended)
         if row["value"] is not None
     ]
-
-
-def _is_joint(row: Row) -> bool:
-    """Whether a parameter is of a joint method: `joint`, or `joint@<mount>` for each mount."""
-    return str(row["method"]).partition("@")[0] == "joint"
 
 
 STAGE = Stage(history, DECLARED)

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
+from inertial.estimation.triad import PARTS, SCALE
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.campaign_units import ARC_SECOND, DEGREE
 from inertial.text.units import STANDARD_GRAVITY
@@ -45,13 +46,13 @@ def published_values(file: YamlFile) -> Iterator[Row]:
     for key, sensor in SENSORS.items():
         for name, entry in file.content.get(key, {}).items():
             size = SIZES[entry["unit"]] if "unit" in entry else 1.0
-            by_time = window if sensor == "gyro" and name.startswith("scale") else None
+            by_time = window if sensor == "gyro" and name in SCALE else None
             yield {
                 "sensor": sensor,
                 "quantity": name,
                 "value": entry["value"] * size,
                 "sigma": entry["sigma"] * size if "sigma" in entry else None,
-                "unit": SI.get((key, name.partition("_")[0]), "1"),
+                "unit": SI.get((key, PARTS[name].kind), "1"),
                 "source": file.content["source"],
                 "window": by_time["degrees"] * DEGREE if by_time else None,
                 "samples": _samples(by_time) if by_time else None,

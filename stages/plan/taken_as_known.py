@@ -24,13 +24,22 @@ def known(file: YamlFile) -> Iterator[Row]:
     """Every quantity that the estimation takes as known, with its sigma and where it is from."""
     site, table = file.content["site"], file.content.get("table", {})
 
-    def row(quantity: str, value: float | None, sigma: float | None, unit: str, origin: str) -> Row:
+    def row(
+        quantity: str,
+        value: float | None,
+        sigma: float | None,
+        unit: str,
+        origin: str,
+        *,
+        assumed: bool = False,
+    ) -> Row:
         return {
             "quantity": quantity,
             "value": value,
             "sigma": sigma,
             "unit": unit,
             "origin": origin,
+            "assumed": assumed,
         }
 
     def table_row(quantity: str, key: str, unit_size: float, assumed: float, unit: str) -> Row:
@@ -38,9 +47,8 @@ def known(file: YamlFile) -> Iterator[Row]:
             return row(
                 quantity, 0.0, table[key] * unit_size, unit, _("stated: table.{key}", key=key)
             )
-        return row(
-            quantity, 0.0, assumed, unit, _("assumed, for table.{key} is not stated", key=key)
-        )
+        origin = _("assumed, for table.{key} is not stated", key=key)
+        return row(quantity, 0.0, assumed, unit, origin, assumed=True)
 
     if table.get("name") == "by hand" and "position_sigma_arcsec" not in table:
         raise file.refuse_text(
@@ -53,8 +61,9 @@ def known(file: YamlFile) -> Iterator[Row]:
     if site["latitude_deg"] is None:
         # A direction of which nothing is known: each part has a third of the squared rate.
         unknown = _("assumed, for the latitude is not known")
-        yield row("earth_rate_up", 0.0, EARTH_RATE / 3**0.5, "rad/s", unknown)
-        yield row("earth_rate_level", EARTH_RATE * (2 / 3) ** 0.5, None, "rad/s", unknown)
+        yield row("earth_rate_up", 0.0, EARTH_RATE / 3**0.5, "rad/s", unknown, assumed=True)
+        level = EARTH_RATE * (2 / 3) ** 0.5
+        yield row("earth_rate_level", level, None, "rad/s", unknown, assumed=True)
     else:
         latitude = radians(site["latitude_deg"])
         up, level = earth_rate(latitude)

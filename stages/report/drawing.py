@@ -21,8 +21,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 from numpy.typing import NDArray
 
+from inertial.tables import STATIC_PHASES
 from inertial.text.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, MILLIMETRES, Unit
-from stages.report.identifiers import at_rest
 from stages.report.light_svg import light
 from stages.report.tables import Record
 
@@ -228,7 +228,7 @@ def svg(figure: Figure, key: str) -> str:
 def shade(axes: Axes, phases: Sequence[Record], start: str = "start", end: str = "end") -> None:
     """Mark the phases of the table behind the curves; `start`, `end`: the keys of their span."""
     for row in phases:
-        phase = "rest" if at_rest(row["phase"]) else row["phase"]
+        phase = "rest" if row["phase"] in STATIC_PHASES else row["phase"]
         colour = PHASE_COLOUR.get(phase, RULE)
         axes.axvspan(row[start], row[end], color=colour, zorder=0, linewidth=0)
 

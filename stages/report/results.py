@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from inertial.campaign.final_result import EXTENDED, extended_methods
-from inertial.campaign.final_result import counting as with_extended
+from inertial.campaign.estimates import SENSOR_OF
+from inertial.campaign.final_result import (
+    EXTENDED,
+    STAGES,
+    extended_sensors,
+    of_sensors,
+    with_extended,
+)
+from inertial.campaign.records import Part, parts_of
+from inertial.campaign.solution import JOINT
+from inertial.estimation.triad import PARTS
 from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.cause_names import in_words
-from stages.report.identifiers import (
-    at_mount,
-    kind_and_axes,
-    method_and_mount,
-    method_of_sensor,
-    of_effect,
-)
 from stages.report.linked import DECISION_TABLES, decisions
 from stages.report.outline import Tone
 from stages.report.tables import Record, Tables, once
@@ -25,11 +27,14 @@ from stages.report.words import SENSOR_OF_STAGE, capital, sensor_of_stage, with_
 ESTIMATE_TABLES = (
     "accelerometer_parameters",
     "accelerometer_fit",
+    "accelerometer_fit_manoeuvres",
     "gyroscope_parameters",
     "gyroscope_fit",
+    "gyroscope_fit_manoeuvres",
 )
-RESULT_TABLES = (*ESTIMATE_TABLES, "extended_parameters", "extended_fit", *DECISION_TABLES)
-JOINT, FREE = "joint", "free_positions"
+EXTENDED_TABLES = ("extended_parameters", "extended_fit", "extended_fit_manoeuvres")
+RESULT_TABLES = (*ESTIMATE_TABLES, *EXTENDED_TABLES, *DECISION_TABLES)
+FREE = "free_positions"
 METHOD = {
     JOINT: "joint fit of all manoeuvres",
     "six_position": "six positions, S0",
@@ -60,22 +65,17 @@ MISFIT = "the model does not describe the data within the noise; the σ include 
 
 @dataclass(frozen=True)
 class Estimate:
-    """The parameters that one method estimated, with its fit."""
+    """The parameters that one method estimated on a mount, with its fit and its manoeuvres.
+
+    `stage`: the one that estimates its sensor, also of an extended result.
+    """
 
     stage: str
     method: str
+    mount: str = ""
     parameters: tuple[Record, ...] = ()
     fit: Record | None = None
-
-    @property
-    def kind(self) -> str:
-        """The method without the mount that a parameter set may be of: joint of joint@upright."""
-        return method_and_mount(self.method)[0]
-
-    @property
-    def mount(self) -> str:
-        """The mount of its parameters where there are several."""
-        return method_and_mount(self.method)[1]
+    manoeuvres: tuple[Part, ...] = ()
 
     @property
     def place(self) -> tuple[str, str]:
@@ -90,7 +90,7 @@ class Estimate:
     @property
     def name(self) -> str:
         """Sensor and method in words."""
-        return f"{self.sensor}, {METHOD.get(self.kind, self.kind)}"
+        return f"{self.sensor}, {METHOD.get(self.method, self.method)}"
 
     @property
     def determined(self) -> list[Record]:
@@ -137,39 +137,45 @@ class Estimate:
 @once
 def estimates(tables: Tables) -> list[Estimate]:
     """Every method of both sensors, in the order of the tables; a fit without parameters too."""
-    results = []
-    for stage in SENSOR_OF_STAGE:
-        fits = {row["method"]: row for row in tables.rows(f"{stage}_fit")}
-        rows = tables.rows(f"{stage}_parameters")
-        for method in dict.fromkeys([*(row["method"] for row in rows), *fits]):
-            own = by_kind(row for row in rows if row["method"] == method)
-            results.append(Estimate(stage, method, tuple(own), fits.get(method)))
-    return results
+    return [estimate for stage in SENSOR_OF_STAGE for estimate in _estimates(tables, stage)]
+
+
+def _estimates(tables: Tables, of: str) -> Iterator[Estimate]:
+    """The estimates in the tables of one stage; effects in the model left out."""
+    names = (f"{of}_parameters", f"{of}_fit", f"{of}_fit_manoeuvres")
+    rows, fits, parts = (_grouped(tables.rows(name)) for name in names)
+    for key in dict.fromkeys([*rows, *fits]):
+        sensor, mount, method = key
+        own = by_kind(row for row in rows.get(key, ()) if row["effect"] is None)
+        fit = next(iter(fits.get(key, ())), None)
+        used = parts_of(parts.get(key, ()))
+        yield Estimate(STAGES[sensor], method, mount, tuple(own), fit, tuple(used))
+
+
+def _grouped(rows: Iterable[Record]) -> dict[tuple[str, str, str], list[Record]]:
+    """The rows by sensor, mount and method."""
+    groups: dict[tuple[str, str, str], list[Record]] = {}
+    for row in rows:
+        groups.setdefault((row["sensor"], row["mount"], row["method"]), []).append(row)
+    return groups
 
 
 @once
 def extended_estimates(tables: Tables) -> list[Estimate]:
     """The results of the extension, one for each sensor and mount; its effects left out."""
-    fits = {row["method"]: row for row in tables.rows("extended_fit")}
-    rows = tables.rows("extended_parameters")
-    results = []
-    for method in dict.fromkeys(row["method"] for row in rows):
-        stage, mount = method_and_mount(method)
-        own = (r for r in rows if r["method"] == method and not of_effect(r["parameter"]))
-        results.append(Estimate(stage, at_mount(EXTENDED, mount), tuple(own), fits.get(method)))
-    return results
+    return [estimate for estimate in _estimates(tables, EXTENDED) if estimate.parameters]
 
 
 @once
-def replaced_methods(tables: Tables) -> set[str]:
-    """The sensors and mounts whose extended result is the final one, as the extension has them."""
-    return extended_methods(tables.rows("decision"))
+def replaced_sensors(tables: Tables) -> set[tuple[str, str]]:
+    """The sensors and mounts whose extended result is the final one."""
+    return extended_sensors(tables.rows("decision"))
 
 
 def is_replaced(tables: Tables, estimate: Estimate) -> bool:
     """Whether the extended result is final in place of this joint one."""
-    method = at_mount(estimate.stage, estimate.mount)
-    return estimate.kind == JOINT and method in replaced_methods(tables)
+    place = SENSOR_OF[estimate.stage], estimate.mount
+    return estimate.method == JOINT and place in replaced_sensors(tables)
 
 
 @once
@@ -181,11 +187,11 @@ def final_results(tables: Tables) -> list[Estimate]:
     """
     extended = {result.place: result for result in extended_estimates(tables)}
     each = estimates(tables)
-    free = {result.place: result for result in each if result.kind == FREE}
+    free = {result.place: result for result in each if result.method == FREE}
     final = [
         extended.get(result.place, result) if is_replaced(tables, result) else result
         for result in each
-        if result.kind in (JOINT, EXTENDED)
+        if result.method in (JOINT, EXTENDED)
     ]
     final = [result if result.determined else free.get(result.place, result) for result in final]
     missing = [stage for stage in SENSOR_OF_STAGE if all(result.stage != stage for result in final)]
@@ -197,25 +203,22 @@ def final_results(tables: Tables) -> list[Estimate]:
 def final_parameters(tables: Tables) -> list[Record]:
     """The parameters of all methods; with value and sigma of the extended fit where it is final."""
     rows = [row for stage in SENSOR_OF_STAGE for row in tables.rows(f"{stage}_parameters")]
-    replaced = replaced_methods(tables)
-    better = [row for row in tables.rows("extended_parameters") if row["method"] in replaced]
+    better = of_sensors(tables.rows("extended_parameters"), replaced_sensors(tables))
     return with_extended(rows, better)
 
 
 def effects_in(tables: Tables, estimate: Estimate) -> list[str]:
     """The effects in the model of an estimate, in words; none of a joint fit."""
-    if estimate.kind != EXTENDED:
+    if estimate.method != EXTENDED:
         return []
-    method = at_mount(estimate.stage, estimate.mount)
-    own = [row for row in decisions(tables) if method_of_sensor(row) == method]
+    own = of_sensors(decisions(tables), [(SENSOR_OF[estimate.stage], estimate.mount)])
     return [in_words(name) for row in own for name in row["effects"]]
 
 
 @dataclass(frozen=True)
 class Shift:
-    """A parameter by the extended and by the joint fit; the sensor and mount it is of."""
+    """A parameter by the extended and by the joint fit."""
 
-    method: str
     extended: Record
     joint: Record | None
 
@@ -230,31 +233,32 @@ class Shift:
     @property
     def name(self) -> str:
         """The parameter in words, a sentence beginning with it."""
-        kind, axes = kind_and_axes(self.extended["parameter"])
+        kind, axes = PARTS[self.extended["parameter"]]
         return capital(f"{KIND.get(kind, kind).lower()} {axes} of the {self.sensor.lower()}")
 
     @property
     def sensor(self) -> str:
         """The sensor in words, with the mount where there are several."""
-        stage, mount = method_and_mount(self.method)
-        return with_mount(sensor_of_stage(stage), mount)
+        stage = STAGES[self.extended["sensor"]]
+        return with_mount(sensor_of_stage(stage), self.extended["mount"])
 
 
 @once
-def shifts(tables: Tables) -> dict[str, list[Shift]]:
+def shifts(tables: Tables) -> dict[tuple[str, str], list[Shift]]:
     """Each parameter of the extended model with its like in the joint fit, by sensor and mount."""
     joint = {
-        (estimate.stage, estimate.method, row["parameter"]): row
+        (*estimate.place, row["parameter"]): row
         for estimate in estimates(tables)
+        if estimate.method == JOINT
         for row in estimate.determined
     }
-    by_method: dict[str, list[Shift]] = {}
-    rows = tables.rows("extended_parameters")
-    for row in by_kind(row for row in rows if not of_effect(row["parameter"])):
-        stage, mount = method_and_mount(row["method"])
-        like = joint.get((stage, at_mount(JOINT, mount), row["parameter"]))
-        by_method.setdefault(row["method"], []).append(Shift(row["method"], row, like))
-    return by_method
+    return {
+        (SENSOR_OF[estimate.stage], estimate.mount): [
+            Shift(row, joint.get((*estimate.place, row["parameter"])))
+            for row in estimate.parameters
+        ]
+        for estimate in extended_estimates(tables)
+    }
 
 
 # ---- how a parameter is written
@@ -262,7 +266,7 @@ def shifts(tables: Tables) -> dict[str, list[Shift]]:
 
 def kind_of(parameter: str) -> str:
     """What a parameter is one of: bias, scale, cross, mounting, symmetric."""
-    return kind_and_axes(parameter)[0]
+    return PARTS[parameter].kind if parameter in PARTS else parameter
 
 
 def by_kind(rows: Iterable[Record]) -> list[Record]:
@@ -273,8 +277,10 @@ def by_kind(rows: Iterable[Record]) -> list[Record]:
 
 def symbol(parameter: str) -> str:
     """The parameter's sign with its axes: b_x, s_x, m_xy; its name where it has none."""
-    kind, axes = kind_and_axes(parameter)
-    return f"{SYMBOL[kind]}_{axes}" if kind in SYMBOL and axes else parameter
+    if parameter not in PARTS:
+        return parameter
+    kind, axes = PARTS[parameter]
+    return f"{SYMBOL[kind]}_{axes}"
 
 
 def quantity_of(row: Record) -> units.Quantity:

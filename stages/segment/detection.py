@@ -8,6 +8,7 @@ from inertial.campaign.findings import Detection, Finding, detections_of
 from inertial.campaign.masked_samples import Batch, Masks
 from inertial.signal.detector import Detector, Event, Log
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
+from inertial.tables import STATIC_PHASES
 from stages.segment.matching import Part
 
 # ---- What disagrees with the plan, as findings.
@@ -71,9 +72,7 @@ class ExaminationOfRests:
         masks: Masks,
     ) -> None:
         rests = {
-            _name(part): part
-            for part in parts
-            if part.phase.startswith("rest") and part.log in logs
+            _name(part): part for part in parts if part.phase in STATIC_PHASES and part.log in logs
         }
         self._manoeuvre = {name: part.manoeuvre for name, part in rests.items()}
         self._logs = {name: logs[part.log] for name, part in rests.items()}

@@ -10,6 +10,7 @@ from inertial import tables
 from inertial.campaign.masked_samples import Batch, Integers, Masks, regular
 from inertial.campaign.records import Clock
 from inertial.campaign.sums import ExtremesOver, SumsOver, TimesOver
+from inertial.tables import STATIC_PHASES
 from stages.segment.matching import BETWEEN, Part
 
 Floats = NDArray[np.float64]
@@ -84,7 +85,7 @@ class Blocks(SumsOver):
         hidden = _hidden(parts, masks)
         edges: list[tuple[Integers, Integers]] = []
         for part in parts:
-            seconds = rest_block if part.phase.startswith("rest") else turn_block
+            seconds = rest_block if part.phase in STATIC_PHASES else turn_block
             length = max(1, round(seconds / clocks[part.log].step))
             # A hand turns about ever other axes.
             if part.phase == BETWEEN or part.log in of_means:
@@ -122,9 +123,9 @@ class Blocks(SumsOver):
             first=column("first"),
             last=column("last"),
         )
-        rest = table["phase"].str.startswith("rest")
+        rest = table["phase"].isin(STATIC_PHASES)
         table = table[(records > 0) | rest].reset_index(drop=True)
-        for _, turn in table[~table["phase"].str.startswith("rest")].groupby("manoeuvre"):
+        for _, turn in table[~table["phase"].isin(STATIC_PHASES)].groupby("manoeuvre"):
             log = turn["log"].iloc[0]
             after_gap = turn["from_record"].isin(self._gaps_of(log))
             table.loc[turn.index, "missing_s"] = _missing(turn, after_gap, self._clocks[log])
@@ -172,7 +173,7 @@ def _hidden(parts: Sequence[Part], masks: Masks) -> dict[str, Integers]:
     """
     turns: dict[str, list[Part]] = {}
     for part in parts:
-        if not part.phase.startswith("rest"):
+        if part.phase not in STATIC_PHASES:
             turns.setdefault(part.manoeuvre, []).append(part)
     hidden = {}
     for name, own in turns.items():

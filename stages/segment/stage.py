@@ -14,6 +14,7 @@ from inertial.campaign.masked_samples import Masks, RecordIndex, read_once
 from inertial.campaign.records import Manoeuvre, Performed, clocks_of, known_of, manoeuvres_of
 from inertial.detectors import OF_PLAN, OF_RESTS
 from inertial.signal.detector import Log
+from inertial.tables import STATIC_PHASES
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from stages.segment import completeness, reduction
@@ -76,7 +77,7 @@ def segment(
     rests, index = ExaminationOfRests(OF_RESTS, parts, by_name, masked), RecordIndex()
     read_once(samples, [block_sums, segment_times, rests, index])
     blocks, segments = block_sums.table(), segment_times.table()
-    in_motion = dict(list(blocks[~blocks["phase"].str.startswith("rest")].groupby("manoeuvre")))
+    in_motion = dict(list(blocks[~blocks["phase"].isin(STATIC_PHASES)].groupby("manoeuvre")))
     for located, place, m in turns:
         own = in_motion.get(m.name, blocks.iloc[:0])
         done = completeness.turn(
@@ -145,7 +146,7 @@ def _parts(
                 parts += turn_parts(binned, stretches, m, matched, level, margin)
                 turns.append((located, place, m))
         if any(m.do == "positions" for m in located.plan):
-            parts += between_parts([p for p in parts[first:] if p.phase.startswith("rest")])
+            parts += between_parts([p for p in parts[first:] if p.phase in STATIC_PHASES])
     return parts, performed, turns
 
 

@@ -7,7 +7,7 @@ import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.masked_samples import Masks
-from inertial.campaign.records import rows_of
+from inertial.campaign.solution import scatter_by_mount
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
@@ -39,7 +39,7 @@ def studies(
     gyroscope_fit: pd.DataFrame,
 ) -> Tables:
     """Every study of every mount; what cannot be studied, with the reason."""
-    scatter = {row["method"]: row["scatter"] or 0.0 for row in rows_of(gyroscope_fit)}
+    scatter = scatter_by_mount(gyroscope_fit)
     rests = {data.mount: rests_of(data.plan, data.performed, segments) for data in mounts}
     turns = {
         data.mount: [r for r in data.gyro_inputs.recorded if not why_not(r)] for data in mounts
@@ -53,8 +53,8 @@ def studies(
     for data in mounts:
         _add(rows, studied(data, rests[data.mount], read))
         _add(rows, _refused(data))
-        gyros = gyros_of(gyroscope_parameters, data.named("joint"))
-        between = scatter.get(data.named("joint"), 0.0)
+        gyros = gyros_of(gyroscope_parameters, data.mount)
+        between = scatter.get(data.mount, 0.0)
         motions: dict[str, WholeMotion] = {}
         for r in turns[data.mount]:
             name, times = r.plan.name, steady_times(r, segments)

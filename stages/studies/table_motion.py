@@ -13,7 +13,8 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.masked_samples import Masks, pieces
 from inertial.campaign.motions import angles_seen
 from inertial.campaign.rate_segments import Recorded, position_of
-from inertial.campaign.records import Manoeuvre, rows_of
+from inertial.campaign.records import Manoeuvre
+from inertial.campaign.solution import joint_rows
 from inertial.estimation.periodic_in_time import strongest
 from inertial.estimation.time_angle import (
     Errors,
@@ -25,7 +26,7 @@ from inertial.estimation.time_angle import (
 from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import cross
-from inertial.tables import AXES, CHANNELS, GYRO
+from inertial.tables import AXES, CHANNELS, GYRO, STATIC_PHASES
 from inertial.tables.parquet import Stream
 from inertial.text.messages import _
 
@@ -110,9 +111,9 @@ class Gyros:
         return float(np.linalg.norm(about[there] * self.sigma[there]))
 
 
-def gyros_of(parameters: pd.DataFrame, method: str) -> Gyros:
-    """The result of a method, by the table of parameters."""
-    rows = {row["parameter"]: row for row in rows_of(parameters) if row["method"] == method}
+def gyros_of(parameters: pd.DataFrame, mount: str) -> Gyros:
+    """The joint result of a mount, by the table of parameters."""
+    rows = {row["parameter"]: row for row in joint_rows(parameters, mount)}
     names = linear_names()
     told = [name in rows and rows[name]["value"] is not None for name in names]
     values = [rows[name]["value"] if has else 0.0 for name, has in zip(names, told, strict=True)]
@@ -176,7 +177,7 @@ class WholeMotion:
 def stretch_of(one: Recorded, segments: pd.DataFrame) -> Stretch:
     """The records of a turn from the first motion to the last."""
     own = segments[(segments["manoeuvre"] == one.plan.name) & (segments["log"] == one.plan.log)]
-    moving = own[~own["phase"].str.startswith("rest")]
+    moving = own[~own["phase"].isin(STATIC_PHASES)]
     return Stretch(one.plan.log, int(moving["from_record"].min()), int(moving["to_record"].max()))
 
 

@@ -67,6 +67,13 @@ def campaign(logs: Collection[str] | None = None) -> dict[str, Any]:
         "sensors": rows_as(tables.SENSORS, plan.sensors()),
         "inputs": rows_as(tables.INPUTS, plan.inputs(manoeuvres)),
         "manoeuvres": rows_as(tables.MANOEUVRES, manoeuvres),
+        "logs": rows_as(
+            tables.LOGS,
+            [
+                {"log": log, "file": log, "layout": "{}"}
+                for log in dict.fromkeys(row["log"] for row in manoeuvres)
+            ],
+        ),
         "accounts": rows_as(tables.ACCOUNTS, plan.accounts(manoeuvres)),
         "refused": rows_as(tables.REFUSED, plan.refused()),
         "clocks": rows_as(tables.CLOCKS, plan.clocks(manoeuvres)),
@@ -87,6 +94,9 @@ def campaign(logs: Collection[str] | None = None) -> dict[str, Any]:
         parameters = estimates.parameters(stage, "joint") + estimates.parameters(stage, other)
         made[f"{stage}_parameters"] = rows_as(tables.PARAMETERS, parameters)
         made[f"{stage}_fit"] = rows_as(tables.FIT, estimates.fit(stage, other))
+        made[f"{stage}_fit_manoeuvres"] = rows_as(
+            tables.FIT_MANOEUVRES, estimates.fit_manoeuvres(stage, other)
+        )
         made[f"{stage}_averaging"] = rows_as(
             tables.AVERAGING, estimates.averaging(parameters, generator)
         )

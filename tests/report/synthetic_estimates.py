@@ -67,17 +67,27 @@ def parameters(stage: str, method: str) -> Rows:
 
 
 def fit(stage: str, other: str) -> Rows:
-    left_out = "z-backward: 119.8° of 360° are missing" if stage == "gyroscope" else ""
     p_value = 2.4e-9 if stage == "gyroscope" else 0.41
     chi_squared = 812.4 if stage == "gyroscope" else 603.1
-    used = "x-up, x-down, y-up, y-down, z-up, z-down, x-forward, x-backward, y-forward"
     noise = {"scatter": 0.0, "random_walk": 0.0, "random_walk_sigma": 0.0}
     noise |= {"unit": tables.UNITS["accel" if stage == "accelerometer" else "gyro"]}
-    row = {"chi_squared": chi_squared, "degrees": 594, "p_value": p_value, "used": used}
-    plain = {"chi_squared": 5.1, "degrees": 6, "p_value": 0.53, "used": "x-up, x-down, y-up"}
+    row = {"chi_squared": chi_squared, "degrees": 594, "p_value": p_value}
+    plain = {"chi_squared": 5.1, "degrees": 6, "p_value": 0.53}
     return [
-        {"sensor": SENSOR[stage], "method": "joint", "left_out": left_out, **row, **noise},
-        {"sensor": SENSOR[stage], "method": other, "left_out": left_out, **plain, **noise},
+        {"sensor": SENSOR[stage], "method": "joint", **row, **noise},
+        {"sensor": SENSOR[stage], "method": other, **plain, **noise},
+    ]
+
+
+def fit_manoeuvres(stage: str, other: str) -> Rows:
+    rests = ["x-up", "x-down", "y-up", "y-down", "z-up", "z-down"]
+    used = {"joint": [*rests, "x-forward", "x-backward", "y-forward"], other: rests[:3]}
+    left_out = {"z-backward": "119.8° of 360° are missing"} if stage == "gyroscope" else {}
+    return [
+        {"sensor": SENSOR[stage], "method": method, "manoeuvre": name}
+        | {"used": name not in left_out, "reason": left_out.get(name)}
+        for method, names in used.items()
+        for name in (*names, *left_out)
     ]
 
 
@@ -131,7 +141,11 @@ def differences() -> Rows:
         sigma = abs(1e-6 / sigmas)
         p_value = 1e-9 if abs(sigmas) > 5 else 0.4
         difference = {"difference": np.sign(sigmas) * 1e-6, "sigma": sigma}
-        return one | difference | {"in_sigmas": sigmas, "p_value": p_value}
+        return (
+            one
+            | difference
+            | {"in_sigmas": sigmas, "p_value": p_value, "significant": p_value < 0.01}
+        )
 
     return [
         row("method_against_method", "bias_y", "rad/s", 0.9, "bias: they agree."),
@@ -204,6 +218,8 @@ def earlier(made: dict[str, Any], generator: np.random.Generator) -> Rows:
                         "date": date,
                         "file": f"simulated/NovAtel+SPAN-CPT/SIM-001/{date}.parquet",
                         "id": row.id,
+                        "sensor": row.sensor,
+                        "quantity": row.parameter,
                         "value": row.value + row.sigma * generator.standard_normal(),
                         "sigma": row.sigma,
                         "unit": row.unit,

@@ -45,6 +45,7 @@ def of_the_model(
         "alarms": tables.ALARMS.empty(),
         "extended_parameters": rows_as(tables.PARAMETERS, _extended(parameters)),
         "extended_fit": rows_as(tables.FIT, _extended_fit()),
+        "extended_fit_manoeuvres": rows_as(tables.FIT_MANOEUVRES, _extended_manoeuvres()),
         "accelerometer_findings": tables.FINDINGS.empty(),
         "compensation_findings": tables.FINDINGS.empty(),
     }
@@ -272,7 +273,12 @@ def criticised() -> dict[str, Any]:
 
 def _extended_fit() -> Rows:
     row = estimates.fit("gyroscope", "turns")[0]
-    return [row | {"method": "gyroscope", "chi_squared": 590.0, "p_value": 0.54}]
+    return [row | {"method": "extended", "chi_squared": 590.0, "p_value": 0.54}]
+
+
+def _extended_manoeuvres() -> Rows:
+    rows = estimates.fit_manoeuvres("gyroscope", "turns")
+    return [row | {"method": "extended"} for row in rows if row["method"] == "joint"]
 
 
 def _extended(parameters: pd.DataFrame) -> Rows:
@@ -282,6 +288,6 @@ def _extended(parameters: pd.DataFrame) -> Rows:
         if row["parameter"].partition("_")[0] in ("bias", "scale", "cross"):
             moved = 4 * row["sigma"] * (row["parameter"] == "bias_x")
             identifier = f"extension/gyroscope/{row['parameter']}"
-            own = {"id": identifier, "stage": "extension", "method": "gyroscope"}
+            own = {"id": identifier, "stage": "extension", "method": "extended"}
             rows.append({str(k): v for k, v in row.items()} | own | {"value": row["value"] + moved})
     return rows

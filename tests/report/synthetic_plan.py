@@ -32,6 +32,7 @@ def known() -> Rows:
     arc_second = DEGREE / 3600
     return [
         {"quantity": q, "value": value, "sigma": sigma, "unit": unit, "origin": origin}
+        | {"assumed": origin.startswith("assumed")}
         for q, value, sigma, unit, origin in (
             ("gravity", GRAVITY, 5e-5, "m/s²", "stated: site.gravity_m_s2"),
             (

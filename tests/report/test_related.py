@@ -14,7 +14,8 @@ SEGMENTS = [
 
 def finding(identifier: str, **more: Any) -> dict[str, Any]:
     nothing = dict.fromkeys(("sensor", "log", "manoeuvre", "from_s", "to_s"))
-    return {"id": identifier, "cause": identifier.split("/")[1], **nothing, **more}
+    stage, cause, *_ = identifier.split("/")
+    return {"id": identifier, "stage": stage, "cause": cause, **nothing, **more}
 
 
 def names(*rows: dict[str, Any]) -> dict[str, list[str]]:
@@ -51,7 +52,8 @@ def test_a_drift_with_the_temperature_and_what_it_does_to_the_model() -> None:
     drift = finding("quality/temperature_drift/0", sensor="gyro", log="a.asc", from_s=0.0, to_s=9.0)
     bias = finding("criticism/gyro_bias_temperature", sensor="gyro")
     sweep = finding("criticism/temperature/warm/gyro", sensor="gyro") | {
-        "cause": "unknown_structure"
+        "cause": "unknown_structure",
+        "predictor": "temperature",
     }
     other = finding("criticism/accel_bias_temperature", sensor="accel")
     found = names(drift, bias, sweep, other)

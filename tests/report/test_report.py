@@ -164,9 +164,9 @@ def test_a_scatter_that_the_sigmas_include_is_stated() -> None:
 
 def test_mounts_stand_apart() -> None:
     tables = synthetic.brief()
-    for name in ("parameters", "fit"):
+    for name in ("parameters", "fit", "fit_manoeuvres"):
         upright = tables[f"accelerometer_{name}"].query("method == 'joint'")
-        lying = upright.assign(method="joint@lying")
+        lying = upright.assign(mount="lying")
         if name == "parameters":
             lying = lying.assign(id=lying["id"].str.replace("joint", "joint@lying"), value=np.nan)
         tables[f"accelerometer_{name}"] = pd.concat([upright, lying], ignore_index=True)

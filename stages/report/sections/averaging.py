@@ -8,11 +8,11 @@ from math import sqrt
 import numpy as np
 from matplotlib.axes import Axes
 
+from inertial.estimation.triad import PARTS
 from inertial.text.numbers import counted, fixed, significant, whole
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import drawing, outline
 from stages.report.drawing import Array
-from stages.report.identifiers import at_mount
 from stages.report.results import Estimate, by_kind, kind_of
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSOR_OF_STAGE, plain, sensor_of_stage
@@ -68,7 +68,7 @@ def _group(row: Record) -> Group:
 
 def _estimate(group: Group) -> Estimate:
     sensor, mount, method = group
-    return Estimate(STAGE[sensor], at_mount(method, mount))
+    return Estimate(STAGE[sensor], method, mount)
 
 
 def _unit(stage: str, parameter: str) -> str:
@@ -110,7 +110,8 @@ def _arrays(rows: Sequence[Record], *keys: str) -> Iterator[Array]:
 
 
 def _colour(parameter: str) -> str:
-    return drawing.AXIS_COLOUR.get(parameter.rpartition("_")[2][:1], drawing.INK)
+    axis = PARTS[parameter].sensor_axis if parameter in PARTS else ""
+    return drawing.AXIS_COLOUR.get(axis, drawing.INK)
 
 
 def _wanted(rows: Sequence[Record]) -> outline.Table:

@@ -10,7 +10,6 @@ from typing import Any
 from inertial.tables import AXES
 from inertial.text import numbers, units
 from stages.report.declared import DECLARED
-from stages.report.identifiers import assumed, file_of
 from stages.report.outline import (
     Column,
     Heading,
@@ -125,7 +124,8 @@ def _direction(plan: Record, stem: str) -> str:
 def account_parts(tables: Tables) -> Iterator[Part]:
     """Lines by kind per log, bytes against the size of the file, and the refused lines."""
     rows, refused = tables.rows("accounts"), tables.rows("refused")
-    size = {row["file"]: row["size"] for row in tables.rows("inputs")}
+    by_file = {row["file"]: row["size"] for row in tables.rows("inputs")}
+    size = {row["log"]: by_file.get(row["file"]) for row in tables.rows("logs")}
     yield Table(
         "Lines of each log by kind.",
         (
@@ -150,18 +150,18 @@ ACCOUNT = Section(
     "Data accounting",
     "What became of every line of the logs, so that no byte is lost without notice.",
     "✓ the bytes of all kinds add up to the size of the file.",
-    ("accounts", "refused", "inputs"),
+    ("accounts", "refused", "inputs", "logs"),
     account_parts,
 )
 
 
-def _log(log: str, rows: Sequence[Record], size: dict[str, int]) -> Row:
+def _log(log: str, rows: Sequence[Record], size: dict[str, int | None]) -> Row:
     own = [row for row in rows if row["log"] == log]
     lines: Counter[str] = Counter()
     for row in own:
         lines[row["kind"]] += row["lines"]
     accounted = sum(row["bytes"] for row in own)
-    expected = size.get(log, size.get(file_of(log)))
+    expected = size.get(log)
     difference = "" if expected is None else f" {numbers.whole(accounted - expected)}"
     balanced = accounted == expected
     return table_row(
@@ -284,7 +284,7 @@ def _quantities(known: list[Record]) -> Iterator[Row]:
             _unit(row).name,
             numbers.shortened(row["origin"], 300),
             anchor=f"known/{row['quantity']}",
-            tone="fair" if assumed(row) else "",
+            tone="fair" if row["assumed"] else "",
         )
 
 

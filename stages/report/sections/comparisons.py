@@ -7,15 +7,13 @@ from math import hypot
 
 from matplotlib.axes import Axes
 
+from inertial.campaign.estimates import SENSOR_OF
+from inertial.campaign.solution import JOINT
 from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.units import quantity
 from stages.report import outline
 from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks
-from stages.report.identifiers import (
-    beyond_chance,
-    joint_parameter,
-)
 from stages.report.results import KIND, RESULT_TABLES, final_parameters
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSOR_OF_STAGE, capital, with_mount
@@ -74,7 +72,7 @@ def _fencepost(row: Record) -> bool:
 
 
 def _beyond(row: Record) -> bool:
-    return beyond_chance(row) or _fencepost(row)
+    return bool(row["significant"]) or _fencepost(row)
 
 
 def _differences(rows: Sequence[Record]) -> outline.Table:
@@ -118,12 +116,17 @@ MOST_DRAWN = 12
 MOST_CALIBRATIONS = 40
 THIS = "this one"
 BIAS_UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
-Calibration = Mapping[str, Record]  # the parameters by identifier
+Key = tuple[str, str, str]  # mount, sensor and parameter
+Calibration = Mapping[Key, Record]  # the parameters by the joint method
 
 
 def history_parts(tables: Tables) -> Iterator[outline.Part]:
     """The earlier ones as a table, bias and scale over the dates, and this one's archive file."""
-    now = {row["id"]: row for row in final_parameters(tables) if row["value"] is not None}
+    now = {
+        (row["mount"], row["sensor"], row["parameter"]): row
+        for row in final_parameters(tables)
+        if row["method"] == JOINT and row["value"] is not None
+    }
     by_file: dict[str, list[Record]] = {}
     for row in tables.rows("earlier"):
         by_file.setdefault(row["file"], []).append(row)
@@ -158,6 +161,10 @@ HISTORY = outline.Section(
 )
 
 
+def _key(row: Record) -> Key:
+    return row["mount"], row["sensor"], row["quantity"]
+
+
 def _date(rows: Sequence[Record]) -> tuple[bool, str, str]:
     """Unknown dates first, then by date."""
     date = rows[0]["date"]
@@ -182,9 +189,9 @@ def _calibrations(calibrations: Sequence[Sequence[Record]], now: Calibration) ->
 
 def _calibration(rows: Sequence[Record], now: Calibration) -> outline.Row:
     changes = [
-        (abs(now[row["id"]]["value"] - row["value"]) / both, row["id"])
+        (abs(like["value"] - row["value"]) / both, row["id"])
         for row in rows
-        if row["id"] in now and (both := hypot(row["sigma"], now[row["id"]]["sigma"] or 0.0)) > 0
+        if (like := now.get(_key(row))) and (both := hypot(row["sigma"], like["sigma"] or 0.0)) > 0
     ]
     largest, identifier = max(changes, default=(None, ""))
     return outline.table_row(
@@ -201,7 +208,7 @@ def _figure(
     calibrations: Sequence[Sequence[Record]], now: Calibration, date: str
 ) -> outline.Figure:
     """Bias and scale of each sensor, one panel each, x, y and z beside each other."""
-    each = [{row["id"]: row for row in rows} for rows in calibrations] + [now]
+    each = [{_key(row): row for row in rows} for rows in calibrations] + [now]
     labels = [numbers.shortened(rows[0]["date"], 12) for rows in calibrations]
     labels.append(f"{numbers.shortened(date, 12)}\n{THIS}")
     with style():
@@ -223,11 +230,9 @@ def _figure(
 def _panel(panel: Axes, stage: str, kind: str, each: Sequence[Calibration]) -> None:
     unit = quantity(f"{kind}_x", "1" if kind == "scale" else BIAS_UNIT[stage]).laboratory
     for place, axis in enumerate(AXES):
-        name = joint_parameter(stage, f"{kind}_{axis}")
+        key = ("", SENSOR_OF[stage], f"{kind}_{axis}")
         points = [
-            (number + (place - 1) * 0.12, own[name])
-            for number, own in enumerate(each)
-            if name in own
+            (number + (place - 1) * 0.12, own[key]) for number, own in enumerate(each) if key in own
         ]
         # A change is small beside the value itself, so it is drawn from the last value.
         last = points[-1][1]["value"] if points else 0.0

@@ -9,9 +9,6 @@ from typing import Literal
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.numbers import decimals_of, fixed, shortened, significant, whole, with_sigma
-from stages.report.identifiers import (
-    random_walk,
-)
 from stages.report.results import Shift, quantity_of
 from stages.report.tables import Record, Tables, once
 from stages.report.words import SENSORS, listed, with_mount
@@ -27,6 +24,7 @@ GRADES: dict[Kind, str] = {
     "unexplained": "not explained",
 }
 MOST_MEMBERS = 8
+RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")
 
 
 @dataclass(frozen=True)
@@ -83,7 +81,7 @@ def kind_of(row: Record) -> Kind:
     """Of what kind a finding of criticism is."""
     if row["cause"] == "unexplained":
         return "unexplained"
-    if random_walk(row["cause"]):
+    if row["cause"] in RANDOM_WALKS:
         return "walk"
     if row["cause"] == "unknown_structure":
         return "structure"

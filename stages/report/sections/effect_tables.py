@@ -82,10 +82,10 @@ def _parameter(row: Record, cells: Sequence[str]) -> outline.Row:
 
 def extended(tables: Tables) -> Iterator[outline.Part]:
     """The joint fit beside the extended one, a table for each sensor that shows an effect."""
-    by_method = shifts(tables)
-    if by_method:
+    by_sensor = shifts(tables)
+    if by_sensor:
         yield outline.Heading("Parameters with the effects in the model")
-    for own in by_method.values():
+    for own in by_sensor.values():
         yield outline.Table(
             f"{own[0].sensor}: the joint fit, and the fit with the effects in the model.",
             (

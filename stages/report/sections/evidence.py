@@ -23,7 +23,6 @@ from stages.report.drawing import (
     style,
     svg,
 )
-from stages.report.identifiers import about_model
 from stages.report.outline import Column, Figure, Table, table_row
 from stages.report.sections import finding_figures
 from stages.report.sections.finding_figures import CloseUp, Span, close_ups, gaps_in
@@ -58,7 +57,7 @@ def _shown(
     tables: Tables, row: Record, key: str, by_name: Mapping[str, Log], seen: set[Samples]
 ) -> Iterator[Figure | Table]:
     """The picture of a finding, unless a worse one has shown the same samples: it leads there."""
-    if about_model(row):
+    if row["stage"] == "criticism":
         return  # its own section shows it
     close_up = close_ups(tables).get(row["id"])
     log = by_name.get(close_up.log if close_up else row["log"])

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from inertial.tables import AXES, CHANNELS
+from inertial.tables import AXES, CHANNEL_PARTS, CHANNELS
 from inertial.text.numbers import shortened, whole
 from inertial.text.units import Unit
 from stages.report.drawing import (
@@ -30,7 +30,6 @@ from stages.report.drawing import (
     svg,
     ticks,
 )
-from stages.report.identifiers import sensor_and_axis
 from stages.report.outline import Figure
 from stages.report.sections.raw_data import Log, draw_channel, draw_phases
 from stages.report.tables import Record, Tables, once
@@ -229,7 +228,7 @@ class Place:
     @property
     def name(self) -> str:
         """The concerned channels in words."""
-        sensor, of_axis = sensor_and_axis(self.channels[0])
+        sensor, of_axis = CHANNEL_PARTS[self.channels[0]]
         return f"{of_axis} {SENSOR[sensor]}" if len(self.channels) == 1 else SENSORS[sensor]
 
     @property
@@ -432,4 +431,4 @@ def _unit(place: Place) -> Unit:
         both = np.concatenate([place.log.least[channel], place.log.most[channel]])
         if np.isfinite(both).any():
             largest = max(largest, float(np.nanmax(np.abs(both - place.middles[channel]))))
-    return readable(sensor_and_axis(place.channels[0])[0], largest)
+    return readable(CHANNEL_PARTS[place.channels[0]][0], largest)

@@ -8,7 +8,7 @@ from itertools import combinations
 
 from inertial.text.cause_names import how_grave, in_words, tally
 from inertial.text.numbers import counted, fixed, probability, shortened, significant, whole
-from stages.report.identifiers import about_model, stage_of, with_temperature
+from stages.report.declared import DECLARED
 from stages.report.linked import CAUSE_TABLES, effect_causes
 from stages.report.outline import (
     Column,
@@ -37,6 +37,10 @@ MOST_IN_FULL = 40
 MOST_RELATED = 4  # others that a finding refers to
 DRIFT = "temperature_drift"  # as the quality of the logs calls what goes with the temperature
 POSITION = "table_position_error"  # what an effect of the accelerometers may have been taken for
+MODEL = "criticism"  # the stage whose findings are about the model, not about the recording
+WITH_TEMPERATURE = {
+    f"{sensor}_{what}_temperature" for sensor in ("accel", "gyro") for what in ("bias", "scale")
+}
 NAMED = ("found", "one_of_class")
 LINES = {"oscillation", "table_ripple", "table_eccentricity"}  # periodic in turns, all of them
 Span = tuple[float, float]
@@ -46,7 +50,11 @@ Span = tuple[float, float]
 def ranked(tables: Tables) -> list[Record]:
     """All findings, worst first: by severity, then the least likely by chance, then by count."""
     return sorted(
-        (row for name in FINDING_TABLES for row in _rows(tables, name)),
+        (
+            row | {"stage": DECLARED.reads[name].stage}
+            for name in FINDING_TABLES
+            for row in _rows(tables, name)
+        ),
         key=lambda row: (
             -row["severity"],
             1.0 if row["p_value"] is None else row["p_value"],
@@ -63,7 +71,7 @@ def _rows(tables: Tables, name: str) -> list[Record]:
 @once
 def model_findings(tables: Tables) -> list[Record]:
     """Those about the model, worst first."""
-    return [row for row in ranked(tables) if about_model(row)]
+    return [row for row in ranked(tables) if row["stage"] == MODEL]
 
 
 @once
@@ -85,7 +93,7 @@ def related(rows: Sequence[Record], segments: Sequence[Record]) -> dict[str, lis
         same_log = entry["log"] is not None and entry["log"] == other["log"]
         same_place = same_log and _lies_in(spans[entry["id"]], spans[other["id"]], entry, other)
         same_cause = _same_sensor(entry, other) and not _causes(entry).isdisjoint(_causes(other))
-        if stage_of(entry["id"]) != stage_of(other["id"]) and (same_cause or same_place):
+        if entry["stage"] != other["stage"] and (same_cause or same_place):
             others_of.setdefault(entry["id"], []).append(other)
             others_of.setdefault(other["id"], []).append(entry)
     return {identifier: others[:MOST_RELATED] for identifier, others in others_of.items()}
@@ -100,7 +108,7 @@ def _same_sensor(row: Record, other: Record) -> bool:
 def _causes(row: Record) -> set[str]:
     """What a finding is about: its cause, those that it may be, and what both look like."""
     causes = {row["cause"], *(row.get("members") or ())}
-    if with_temperature(causes, row):
+    if causes & WITH_TEMPERATURE or row.get("predictor") == "temperature":
         causes.add(DRIFT)
     if row["sensor"] == "accel" and (row.get("verdict") or "") in NAMED:
         causes.add(POSITION)
@@ -184,7 +192,7 @@ SECTION = Section(
 def title_of(row: Record) -> str:
     """What a finding is and where."""
     where = row["manoeuvre"] or row["log"]
-    if not where and about_model(row):
+    if not where and row["stage"] == MODEL:
         where = "residuals of the model"
     sensor = SENSOR.get(row["sensor"] or "", row["sensor"])
     concerned = f"{row['axis']} {sensor}" if row["axis"] and sensor else ""
@@ -194,7 +202,7 @@ def title_of(row: Record) -> str:
 
 def _links(tables: Tables, row: Record) -> Iterator[Link]:
     """To the findings that concern the same fault, those of the model in their own section."""
-    if about_model(row):
+    if row["stage"] == MODEL:
         yield Link(f"Unmodelled effects: {in_words(row['cause'])}", f"effect/{row['id']}")
     for other in related_findings(tables).get(row["id"], ()):
         yield Link(title_of(other), f"finding/{other['id']}")

@@ -7,11 +7,10 @@ from statistics import median
 
 from matplotlib.axes import Axes
 
-from inertial.tables import AXES, CHANNELS
+from inertial.tables import AXES, CHANNEL_PARTS, CHANNELS
 from inertial.text.numbers import aligned, common_decimals, shortened, significant, with_sigma
 from inertial.text.units import RANDOM_WALK
 from stages.report import drawing, outline
-from stages.report.identifiers import sensor_and_axis
 from stages.report.tables import Record, Tables
 
 NAME = {"gyro": "Angle random walk", "accel": "Velocity random walk"}
@@ -138,7 +137,7 @@ def _summary(rows: Sequence[Record], sheet: Sheet, sources: Sequence[str]) -> ou
 
 
 def _line(channel: str, own: Sequence[Record], sheet: Sheet) -> tuple[str, ...]:
-    unit = RANDOM_WALK[sensor_and_axis(channel)[0]]
+    unit = RANDOM_WALK[CHANNEL_PARTS[channel][0]]
     values = [row["white_noise"] / unit.size for row in own]
     stated = unit.of(sheet.get(channel))
     return (
@@ -149,7 +148,7 @@ def _line(channel: str, own: Sequence[Record], sheet: Sheet) -> tuple[str, ...]:
 
 
 def _channel(channel: str) -> str:
-    sensor, axis = sensor_and_axis(channel)
+    sensor, axis = CHANNEL_PARTS[channel]
     return f"{SENSOR[sensor]} {axis}"
 
 
@@ -157,7 +156,7 @@ def _by_manoeuvre(rows: Sequence[Record], sensor: str) -> outline.Table:
     unit = RANDOM_WALK[sensor]
     by_place = {(row["manoeuvre"], row["phase"], row["channel"]): row for row in rows}
     places = _places(rows)
-    own = [row for row in rows if sensor_and_axis(row["channel"])[0] == sensor]
+    own = [row for row in rows if CHANNEL_PARTS[row["channel"]][0] == sensor]
     decimals = common_decimals(row["sigma"] / unit.size for row in own)
     gap = {"white_noise": None, "sigma": None}
 

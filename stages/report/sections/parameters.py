@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.campaign.records import labels, omissions
 from inertial.tables import AXES
 from inertial.text import units
 from inertial.text.numbers import aligned, counted, fixed, shortened, significant
@@ -200,12 +201,12 @@ def undetermined_parts(tables: Tables) -> Iterator[Part]:
         [
             table_row(
                 estimate.name,
-                shortened(fit["used"] or "none", 1500),
-                shortened(fit["left_out"] or "none", 1500),
-                tone="fair" if fit["left_out"] else "",
+                shortened(labels(estimate.manoeuvres) or "none", 1500),
+                shortened(omissions(estimate.manoeuvres) or "none", 1500),
+                tone="fair" if omissions(estimate.manoeuvres) else "",
             )
             for estimate in estimates(tables)
-            if (fit := estimate.fit)
+            if estimate.fit
         ],
         "No fit was made.",
     )

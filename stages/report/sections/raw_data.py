@@ -10,12 +10,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from inertial.tables import AXES, CHANNELS
+from inertial.tables import AXES, CHANNELS, STATIC_PHASES
 from inertial.text.numbers import counted, fixed, shortened
 from inertial.text.units import DEGREES_PER_SECOND, METRES, Unit
 from stages.report import drawing
 from stages.report.drawing import Array
-from stages.report.identifiers import at_rest
 from stages.report.outline import Figure, Paragraph, Part, Section
 from stages.report.tables import Record, Tables, once
 
@@ -42,7 +41,7 @@ class Log:
     @property
     def static(self) -> bool:
         """Whether the plan has the table at rest all through."""
-        return bool(self.phases) and all(at_rest(row["phase"]) for row in self.phases)
+        return bool(self.phases) and all(row["phase"] in STATIC_PHASES for row in self.phases)
 
     @property
     def extent(self) -> Stretch:

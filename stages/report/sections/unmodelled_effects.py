@@ -8,11 +8,6 @@ from inertial.campaign.final_result import EXTENDED
 from inertial.text.cause_names import in_words
 from inertial.text.numbers import p_is, shortened, significant
 from stages.report import outline
-from stages.report.identifiers import (
-    method_of_sensor,
-    mount_of,
-    states_sigmas,
-)
 from stages.report.linked import CAUSE_TABLES, GAIN_TABLES, decisions, effect_causes, gains
 from stages.report.results import RESULT_TABLES, shifts
 from stages.report.sections import effect_tables, periodic_figures, residual_figures
@@ -241,7 +236,7 @@ def _positions(tables: Tables, row: Record, mount: str) -> Iterator[str]:
     if tested is None or tested.score["named"] or POSITION in (row["cause"], *alternatives(row)):
         return
     for off in tables.rows("accelerometer_findings"):
-        if off["cause"] == POSITION and mount_of(off["id"]) == mount:
+        if off["cause"] == POSITION and off["mount"] == mount:
             yield (
                 f"The joint fit attributes it to a position error in "
                 f"{shortened(off['manoeuvre'] or 'a manoeuvre', 60)}; with the effect in the model "
@@ -251,12 +246,11 @@ def _positions(tables: Tables, row: Record, mount: str) -> Iterator[str]:
 
 def _split(row: Record) -> str:
     """The manoeuvre that would split the class, unless the action states it with its sigmas."""
-    manoeuvre, action = shortened(row["split_manoeuvre"], 400), row["action"] or ""
-    stated = row["split_manoeuvre"] in action
-    if row["split_snr"] is None:
-        return "" if stated else f"{capital(manoeuvre)}."
-    if stated and states_sigmas(action):
+    if row["split_stated"]:
         return ""
+    manoeuvre = shortened(row["split_manoeuvre"], 400)
+    if row["split_snr"] is None:
+        return f"{capital(manoeuvre)}."
     clear = f"{significant(row['split_snr'], 2)} σ"
     if row["split_snr"] < MIN_SPLIT_SIGMA:
         return f"No manoeuvre considered would; the best, {manoeuvre}, reaches {clear}."
@@ -272,7 +266,7 @@ def _gain(tables: Tables, row: Record, mount: str) -> Iterator[str]:
     if kind_of(row) in IDENTIFIED:
         yield from _reductions(tables, row)
         for decision in about_effect(decisions(tables), row["cause"], mount):
-            yield largest_shift(shifts(tables).get(method_of_sensor(decision), ()))
+            yield largest_shift(shifts(tables).get((decision["sensor"], decision["mount"]), ()))
 
 
 def _worth(tables: Tables, row: Record, mount: str) -> str:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from math import degrees
 
 from inertial.campaign.final_result import EXTENDED
+from inertial.campaign.records import omissions
 from inertial.text.cause_names import in_words
 from inertial.text.numbers import counted, fixed, probability, shortened, significant, whole
 from stages.report import outline
@@ -84,8 +85,8 @@ def _reasons(tables: Tables, results: Sequence[Estimate]) -> Iterator[str]:
     if lacking := list(summary(model_findings(tables))):
         yield f"{' '.join(lacking)} “Unmodelled effects” states their size and the action."
     for result in results:
-        if result.fit and result.fit["left_out"]:
-            text = shortened(result.fit["left_out"], 400).rstrip(".")
+        if result.fit and (excluded := omissions(result.manoeuvres)):
+            text = shortened(excluded, 400).rstrip(".")
             yield f"{result.sensor}, excluded: {text}."
     yield _performed(tables)
     yield _findings(ranked(tables))
@@ -98,7 +99,7 @@ def _determined(result: Estimate, effects: Sequence[str]) -> str:
         return f"{result.sensor}: nothing is determined."
     every = "all 12 parameters are determined"
     amount = every if count == len(CALIBRATION) else f"{count} of 12 parameters are determined"
-    amount += ", by static positions of unknown attitude" * (result.kind == FREE)
+    amount += ", by static positions of unknown attitude" * (result.method == FREE)
     amount += f", with {listed(effects)} in the model" if effects else ""
     worst = "; ".join(f"{KINDS[kind]} {text}" for kind, text in _largest_sigmas(result).items())
     return f"{result.sensor}: {amount}." + (f" Largest σ: {worst}." if worst else "")
@@ -225,7 +226,7 @@ def _in_short(result: Estimate) -> outline.Row:
     largest = _largest_sigmas(result)
     return outline.table_row(
         result.sensor,
-        FITS.get(result.kind, "joint"),
+        FITS.get(result.method, "joint"),
         f"{len(result.calibration)} of 12",
         *(largest.get(kind, "—") for kind in KINDS),
         probability(result.fit["p_value"]) if result.fit else "—",
