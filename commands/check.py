@@ -19,12 +19,13 @@ from inertial import tables
 from inertial.campaign.records import Performed, Row, performed_of, rows_of
 from inertial.tables.errors import Refusal
 from inertial.text.cause_names import how_grave, in_words, tally
+from inertial.text.messages import _
 from inertial.text.numbers import counted, shortened, visible
 
 LINE_WIDTH = 100
 MAX_FULL_FINDINGS = 20  # of further ones only the causes are listed
 SPOILS_A_RESULT = 3  # severity
-LABELS = {"consequence": "Consequence", "action": "What to do"}
+LABELS = {"consequence": "Consequence", "action": _("What to do")}
 INDENT = " " * 4
 
 
@@ -92,7 +93,9 @@ def as_text(recording: Recording, campaign: str) -> str:
     if others := recording.findings[MAX_FULL_FINDINGS:]:
         causes = Counter(in_words(row["cause"]) for row in others)
         listed = ", ".join(f"{cause} ({count})" for cause, count in causes.most_common())
-        paragraphs.append(_wrapped(f"And {len(others)} more: {listed}."))
+        paragraphs.append(
+            _wrapped(_("And {others} more: {listed}.", others=len(others), listed=listed))
+        )
     paragraphs.append(_wrapped(_summary(recording)))
     return "\n\n".join(paragraphs) + "\n"
 
@@ -101,10 +104,22 @@ def _recorded(recording: Recording, campaign: str) -> str:
     planned = counted(len(recording.performed), "manoeuvre")
     found = sum(manoeuvre.found for manoeuvre in recording.performed)
     complete = sum(manoeuvre.found and manoeuvre.complete for manoeuvre in recording.performed)
-    sentences = [f"{campaign}: {found} of {planned} found, {complete} complete."]
+    sentences = [
+        _(
+            "{campaign}: {found} of {planned} found, {complete} complete.",
+            campaign=campaign,
+            found=found,
+            planned=planned,
+            complete=complete,
+        )
+    ]
     sentences += [
-        f"{counted(lines, 'line')} of {log} cannot be read and"
-        f" {'is' if lines == 1 else 'are'} left out."
+        _(
+            "{lines} of {log} cannot be read and {value} left out.",
+            lines=counted(lines, "line"),
+            log=log,
+            value="is" if lines == 1 else "are",
+        )
         for log, lines in recording.refused.items()
     ]
     return "\n".join(_wrapped(shortened(sentence, 300)) for sentence in sentences)
@@ -129,8 +144,8 @@ def _summary(recording: Recording) -> str:
     if recording.findings:
         return tally([row["severity"] for row in recording.findings])
     if refused := sum(recording.refused.values()):
-        return f"No finding, but {counted(refused, 'line')} cannot be read."
-    return "Nothing is wrong with this recording."
+        return _("No finding, but {refused} cannot be read.", refused=counted(refused, "line"))
+    return _("Nothing is wrong with this recording.")
 
 
 def _wrapped(text: str, indent: str = "") -> str:

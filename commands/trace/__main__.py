@@ -17,6 +17,7 @@ from commands.trace.steps import Trace, trace
 from inertial.tables.code import ROOT
 from inertial.tables.errors import Refusal
 from inertial.tables.yaml_file import YamlFile
+from inertial.text.messages import _
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -44,14 +45,17 @@ def as_text(traced: Trace, campaign: str) -> str:
     ]
     if traced.broken:
         paragraphs.append(
-            "THE CHAIN IS BROKEN\n"
+            _("THE CHAIN IS BROKEN\n")
             + textwrap.indent("\n".join(dict.fromkeys(traced.broken)), "    ")
-            + f"\nDelete the tables that have changed; then make report CAMPAIGN={campaign} makes"
-            " everything that depends on them again."
+            + _(
+                "\nDelete the tables that have changed; then make report CAMPAIGN={campaign} "
+                "makes everything that depends on them again.",
+                campaign=campaign,
+            )
         )
     else:
         paragraphs.append(
-            "Every link is intact: files, tables, settings and code are those it was made from."
+            _("Every link is intact: files, tables, settings and code are those it was made from.")
         )
     return "\n\n".join(paragraphs) + "\n"
 

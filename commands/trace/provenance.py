@@ -12,6 +12,7 @@ from typing import Any
 from inertial.tables.code import ROOT, code_of, hash_of, hash_of_file
 from inertial.tables.errors import Refusal
 from inertial.tables.parquet import provenance
+from inertial.text.messages import _
 
 INSTRUMENTS = "data/instruments.yaml"  # the one input that lies beside the code, not the data
 
@@ -102,7 +103,7 @@ class Provenance:
         except Refusal:
             if path.is_file():  # a missing one is reported with the stage that read it
                 self._without_provenance.append(
-                    f"{path} has no provenance: it was not written by a stage."
+                    _("{path} has no provenance: it was not written by a stage.", path=path)
                 )
             return
         settings, code, inputs = (made_by[key] for key in ("settings", "code", "inputs"))
@@ -111,8 +112,14 @@ class Provenance:
             known.tables.append(table)
             if (known.settings, known.code, known.inputs) != (settings, code, inputs):
                 known.broken.append(
-                    f"{path} and {self._campaign.path(known.tables[0])} are of different runs of"
-                    f" {stage}: settings, code or inputs differ."
+                    _(
+                        "{path} and {tables} are of different runs of {stage}: settings, "
+                        "code or inputs "
+                        "differ.",
+                        path=path,
+                        tables=self._campaign.path(known.tables[0]),
+                        stage=stage,
+                    )
                 )
             return
         run = StageRun(stage, [table], settings, code, inputs)
@@ -127,16 +134,30 @@ class Provenance:
     def _changed_file(self, stage: str, file: str, recorded: str) -> list[str]:
         path, current = self._campaign.path(file), self._current_hash(file)
         if current is None:
-            return [f"{path} is missing, which {stage} read."]
+            return [_("{path} is missing, which {stage} read.", path=path, stage=stage)]
         if current == recorded:
             return []
-        return [f"{path} has changed since {stage} read it: SHA-256 was {recorded}, is {current}."]
+        return [
+            _(
+                "{path} has changed since {stage} read it: SHA-256 was {recorded}, is {current}.",
+                path=path,
+                stage=stage,
+                recorded=recorded,
+                current=current,
+            )
+        ]
 
     def _changed_settings(self, run: StageRun) -> list[str]:
         current = self._current_settings.get(run.stage) or {}
         return [
-            f"The setting {name} of {run.stage} has changed since its tables were made: was"
-            f" {run.settings.get(name, 'not there')}, is {current.get(name, 'not there')}."
+            _(
+                "The setting {name} of {stage} has changed since its tables were made: was "
+                "{name_2}, is {name_3}.",
+                name=name,
+                stage=run.stage,
+                name_2=run.settings.get(name, "not there"),
+                name_3=current.get(name, "not there"),
+            )
             for name in sorted({*run.settings, *current})
             if run.settings.get(name) != current.get(name)
         ]
@@ -148,10 +169,18 @@ class Provenance:
             return []
         written = table.stat().st_mtime
         newer = [str(file.relative_to(ROOT)) for file in files if file.stat().st_mtime > written]
-        listed = f" Newer than {table}: {', '.join(newer)}." if newer else ""
+        listed = (
+            _(" Newer than {table}: {newer}.", table=table, newer=", ".join(newer)) if newer else ""
+        )
         return [
-            f"The code of {run.stage} has changed since its tables were made: SHA-256 was"
-            f" {run.code}, is {current}.{listed}"
+            _(
+                "The code of {stage} has changed since its tables were made: SHA-256 was "
+                "{code}, is {current}.{listed}",
+                stage=run.stage,
+                code=run.code,
+                current=current,
+                listed=listed,
+            )
         ]
 
     def _later_tables_of_another(self, table: str) -> list[str]:
@@ -165,8 +194,15 @@ class Provenance:
                 continue
             if recorded not in (None, current):
                 broken.append(
-                    f"{self._campaign.path(table)} has changed since {path} was made from it:"
-                    f" SHA-256 was {recorded}, is {current}."
+                    _(
+                        "{table} has changed since {path} was made from it: SHA-256 was "
+                        "{recorded}, is "
+                        "{current}.",
+                        table=self._campaign.path(table),
+                        path=path,
+                        recorded=recorded,
+                        current=current,
+                    )
                 )
         return broken
 

@@ -22,6 +22,7 @@ from inertial.campaign.records import Part, Row, labels, parts_of, rows_of
 from inertial.campaign.solution import JOINT
 from inertial.tables.errors import Refusal
 from inertial.tables.table import Table
+from inertial.text.messages import _
 from inertial.text.numbers import visible
 
 GPS_WEEK = 604_800  # s
@@ -111,17 +112,17 @@ def number_of(campaign: Campaign, identifier: str) -> Number:
         raise Refusal(
             str(campaign.derived),
             "",
-            "no results",
-            "tables of parameters",
-            f"run the campaign: make report CAMPAIGN={campaign.name}",
+            _("no results"),
+            _("tables of parameters"),
+            _("run the campaign: make report CAMPAIGN={name}", name=campaign.name),
         )
     if identifier not in numbers:
         similar = difflib.get_close_matches(identifier, numbers, n=MAX_SUGGESTIONS, cutoff=0.5)
         raise Refusal(
             str(campaign.derived),
             "",
-            f"no number {identifier!r}",
-            f"one of {', '.join(similar or numbers)}",
+            _("no number {identifier!r}", identifier=identifier),
+            _("one of {join}", join=", ".join(similar or numbers)),
             "give one of these: ID=<number>",
         )
     return numbers[identifier]
@@ -156,7 +157,9 @@ class _Tables:
             return {}
 
     def _note(self, refusal: Refusal) -> None:
-        self.unreadable.append(f"{refusal.file} cannot be read: {refusal.found}.")
+        self.unreadable.append(
+            _("{file} cannot be read: {found}.", file=refusal.file, found=refusal.found)
+        )
 
 
 # ---- the number and its method
@@ -166,7 +169,9 @@ def _value(number: Number) -> Step:
     row = number.row
     frame = f", frame: {row['frame']}" if row["frame"] else ""
     if row["value"] is None:
-        return Step(f"{row['id']} is not determined", [row["meaning"] + frame, row["reason"]])
+        return Step(
+            _("{id} is not determined", id=row["id"]), [row["meaning"] + frame, row["reason"]]
+        )
     value = f"{row['value']:.10g} ± {row['sigma']:.2g}" + _unit(row["unit"])
     return Step(f"{row['id']} = {value}", [row["meaning"] + frame])
 
@@ -176,7 +181,14 @@ def _method(number: Number, provenance: Provenance) -> Step:
     made_by = [
         line for run in provenance.runs if run.stage == row["stage"] for line in _made_by(run)
     ]
-    return Step(f"estimated by the stage {row['stage']}, method {row['method']}", made_by)
+    return Step(
+        _(
+            "estimated by the stage {stage}, method {method}",
+            stage=row["stage"],
+            method=row["method"],
+        ),
+        made_by,
+    )
 
 
 def _fits(number: Number, content: _Tables, provenance: Provenance) -> list[Fit]:
@@ -196,7 +208,9 @@ def _fits(number: Number, content: _Tables, provenance: Provenance) -> list[Fit]
         if content.campaign.path(f"{run.stage}/fit.parquet").is_file()
     }
     if not by_stage:
-        content.unreadable.append(f"No table says what {number.row['id']} was estimated from.")
+        content.unreadable.append(
+            _("No table says what {id} was estimated from.", id=number.row["id"])
+        )
     stages = (number.stage, STAGES[number.row["sensor"]])
     nearest = [name for name in stages if name in by_stage][:1]
     fits = []
@@ -214,16 +228,33 @@ def _fits(number: Number, content: _Tables, provenance: Provenance) -> list[Fit]
 def _fit(fit: Fit, number: Number) -> Step:
     row = fit.row
     lines = [
-        f"chi-squared {row['chi_squared']:.1f} with {row['degrees']} degrees of freedom, "
-        f"p = {row['p_value']:.2g}",
-        f"scatter between manoeuvres beyond the noise: {row['scatter']:.3g}{_unit(row['unit'])}",
+        _(
+            "chi-squared {chi_squared:.1f} with {degrees} degrees of freedom, p = {p_value:.2g}",
+            chi_squared=row["chi_squared"],
+            degrees=row["degrees"],
+            p_value=row["p_value"],
+        ),
+        _(
+            "scatter between manoeuvres beyond the noise: {scatter:.3g}{unit}",
+            scatter=row["scatter"],
+            unit=_unit(row["unit"]),
+        ),
         f"used: {labels(fit.manoeuvres) or 'nothing'}",
-        *(f"left out: {part.omission}" for part in fit.manoeuvres if part.reason),
+        *(
+            _("left out: {omission}", omission=part.omission)
+            for part in fit.manoeuvres
+            if part.reason
+        ),
     ]
     if (fit.stage, row["method"]) != (number.row["stage"], number.row["method"]):
         method = f"{number.row['stage']}, method {number.row['method']}"
-        lines.insert(0, f"{method}, keeps no record of what it used; it rests on this fit")
-    return Step(f"the fit of the stage {fit.stage}, method {row['method']}", lines)
+        lines.insert(
+            0, _("{method}, keeps no record of what it used; it rests on this fit", method=method)
+        )
+    return Step(
+        _("the fit of the stage {stage}, method {method}", stage=fit.stage, method=row["method"]),
+        lines,
+    )
 
 
 def _unit(unit: str) -> str:
@@ -234,7 +265,10 @@ def _unit(unit: str) -> str:
 
 
 def _stage(run: StageRun) -> Step:
-    return Step(f"from the stage {run.stage}: {', '.join(sorted(run.tables))}", _made_by(run))
+    return Step(
+        _("from the stage {stage}: {join}", stage=run.stage, join=", ".join(sorted(run.tables))),
+        _made_by(run),
+    )
 
 
 def _made_by(run: StageRun) -> list[str]:
@@ -242,8 +276,11 @@ def _made_by(run: StageRun) -> list[str]:
     tables_read = [file for file in run.inputs if file.endswith(".parquet")]
     return [
         f"settings: {settings or 'none'}",
-        f"code: SHA-256 {run.code}",
-        *(f"read {file}, SHA-256 {run.inputs[file]}" for file in tables_read),
+        _("code: SHA-256 {code}", code=run.code),
+        *(
+            _("read {file}, SHA-256 {inputs}", file=file, inputs=run.inputs[file])
+            for file in tables_read
+        ),
     ]
 
 
@@ -279,34 +316,63 @@ def _manoeuvres(fits: Sequence[Fit], content: _Tables, provenance: Provenance) -
 
 
 def _blocks(phase: UsedPhase) -> str:
-    masked = f", some masked by {', '.join(phase.findings)}" if phase.findings else ""
-    return (
-        f"{phase.phase}: {phase.blocks} blocks, {phase.samples:g} samples, "
-        f"records {phase.records.first} to {phase.records.after - 1}{masked}"
+    masked = (
+        _(", some masked by {findings}", findings=", ".join(phase.findings))
+        if phase.findings
+        else ""
+    )
+    return _(
+        "{phase}: {blocks} blocks, {samples:g} samples, records {first} to {after}{masked}",
+        phase=phase.phase,
+        blocks=phase.blocks,
+        samples=phase.samples,
+        first=phase.records.first,
+        after=phase.records.after - 1,
+        masked=masked,
     )
 
 
 def _place(log: Path, where: LogLines) -> str:
     if not where.of_text:
-        return (
-            f"  {log}, rows {where.from_line} to {where.to_line}, {where.decoded} of them decoded"
+        return _(
+            "  {log}, rows {from_line} to {to_line}, {decoded} of them decoded",
+            log=log,
+            from_line=where.from_line,
+            to_line=where.to_line,
+            decoded=where.decoded,
         )
-    return (
-        f"  {log}, line {where.from_line} (from byte {where.from_byte}) "
-        f"to line {where.to_line} (from byte {where.to_byte}), {where.decoded} of them decoded"
+    return _(
+        "  {log}, line {from_line} (from byte {from_byte}) to line {to_line} (from byte "
+        "{to_byte}), {decoded} of them decoded",
+        log=log,
+        from_line=where.from_line,
+        from_byte=where.from_byte,
+        to_line=where.to_line,
+        to_byte=where.to_byte,
+        decoded=where.decoded,
     )
 
 
 def _time_span(where: LogLines, clock: Row) -> str:
     """The time span; for GPS also as week and seconds, as the lines state it."""
     if isnan(where.from_s):
-        return "  without time"
+        return _("  without time")
     epoch = clock.get("epoch_gps")
-    origin = "the log's first sample" if epoch is None else "the campaign's first sample"
-    span = f"  {where.from_s:.3f} s to {where.to_s:.3f} s since {origin}"
+    origin = _("the log's first sample") if epoch is None else _("the campaign's first sample")
+    span = _(
+        "  {from_s:.3f} s to {to_s:.3f} s since {origin}",
+        from_s=where.from_s,
+        to_s=where.to_s,
+        origin=origin,
+    )
     if epoch is not None:
         week, start = divmod(epoch + where.from_s, GPS_WEEK)
-        span += f"; GPS week {week:.0f}, {start:.3f} s to {start + where.to_s - where.from_s:.3f} s"
+        span += _(
+            "; GPS week {week:.0f}, {start:.3f} s to {start_2:.3f} s",
+            week=week,
+            start=start,
+            start_2=start + where.to_s - where.from_s,
+        )
     return span
 
 
@@ -332,15 +398,20 @@ def _files(campaign: Campaign, provenance: Provenance) -> Step:
     for file, (was, now) in provenance.files().items():
         state = "unchanged" if was == now else "MISSING" if now is None else "CHANGED"
         lines.append(f"{campaign.path(file)}, SHA-256 {was}, {state}")
-    return Step("read from the laboratory", lines)
+    return Step(_("read from the laboratory"), lines)
 
 
 def _listed_otherwise(inputs: Sequence[Row], provenance: Provenance) -> list[str]:
     """Files that the report lists with another SHA-256 than they were read with."""
     listed = {row["file"]: row["sha256"] for row in inputs}
     return [
-        f"{file} is listed in plan/inputs.parquet with another SHA-256 than it was read with:"
-        f" {listed[name]} instead of {was}."
-        for file, (was, _) in provenance.files().items()
+        _(
+            "{file} is listed in plan/inputs.parquet with another SHA-256 than it was read "
+            "with: {listed} instead of {was}.",
+            file=file,
+            listed=listed[name],
+            was=was,
+        )
+        for file, (was, _unused) in provenance.files().items()
         if (name := Path(file).name) in listed and listed[name] != was
     ]

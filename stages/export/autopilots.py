@@ -17,6 +17,7 @@ after the rotation of the sensor that its driver states. A line of its file: NAM
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from inertial.text.messages import _
 from stages.export.axis_correction import (
     AxisCorrection,
     axis_correction,
@@ -51,33 +52,46 @@ PX4 = Autopilot(
         "gyroscope": {"offset": "CAL_GYRO0_{}OFF"},
     },
     (
-        "To be loaded by QGroundControl. PX4 corrects the accelerometers as (reading - offset) *"
-        " scale and the gyros as reading - offset, each axis by itself, m/s^2 and rad/s.",
+        _(
+            "To be loaded by QGroundControl. PX4 corrects the accelerometers as (reading - "
+            "offset) * scale and the gyros as reading - offset, each axis by itself, m/s^2 "
+            "and rad/s."
+        ),
         "",
-        "To be filled in and checked before you load it:",
-        "- CAL_ACC0_ID and CAL_GYRO0_ID: the device ids of the IMU, which a turntable does not"
-        " know. PX4 applies a calibration only to the sensor with its id. Take them from your"
-        " vehicle; where the IMU has another number than 0 there, rename CAL_ACC0_ and CAL_GYRO0_.",
-        "- Vehicle and component are 1; QGroundControl refuses the file for a vehicle with another"
-        " id.",
-        "- Axes: x, y, z are those of the IMU's data sheet; no axis was exchanged or reversed"
-        " for PX4's forward, right, down. PX4 applies the numbers to sensor_accel and sensor_gyro,"
-        " before CAL_ACC0_ROT and the rotation of the board. With +x up, x of sensor_accel must"
-        " read +9.8; turned about +x by the right hand, x of sensor_gyro must read positive;"
-        " likewise y and z. Where the driver exchanges axes, exchange the numbers; where it"
-        " reverses one, change the sign of its offset, not of its scale factor.",
-        "- The driver must use the count size of the campaign, or the scale factors are wrong.",
-        "- Set SENS_IMU_AUTOCAL to 0, or PX4 replaces the offsets by its own estimates.",
-        "- Restart after loading: while it runs, PX4 ignores changes of the offsets below 0.01"
-        " m/s^2 or 0.01 rad/s, and of the scale factors below 0.01; older versions ignore them"
-        " even at their start.",
+        _("To be filled in and checked before you load it:"),
+        _(
+            "- CAL_ACC0_ID and CAL_GYRO0_ID: the device ids of the IMU, which a turntable "
+            "does not know. PX4 applies a calibration only to the sensor with its id. Take "
+            "them from your vehicle; where the IMU has another number than 0 there, rename "
+            "CAL_ACC0_ and CAL_GYRO0_."
+        ),
+        _(
+            "- Vehicle and component are 1; QGroundControl refuses the file for a vehicle "
+            "with another id."
+        ),
+        _(
+            "- Axes: x, y, z are those of the IMU's data sheet; no axis was exchanged or "
+            "reversed for PX4's forward, right, down. PX4 applies the numbers to "
+            "sensor_accel and sensor_gyro, before CAL_ACC0_ROT and the rotation of the "
+            "board. With +x up, x of sensor_accel must read +9.8; turned about +x by the "
+            "right hand, x of sensor_gyro must read positive; likewise y and z. Where the "
+            "driver exchanges axes, exchange the numbers; where it reverses one, change the "
+            "sign of its offset, not of its scale factor."
+        ),
+        _("- The driver must use the count size of the campaign, or the scale factors are wrong."),
+        _("- Set SENS_IMU_AUTOCAL to 0, or PX4 replaces the offsets by its own estimates."),
+        _(
+            "- Restart after loading: while it runs, PX4 ignores changes of the offsets "
+            "below 0.01 m/s^2 or 0.01 rad/s, and of the scale factors below 0.01; older "
+            "versions ignore them even at their start."
+        ),
     ),
     line="1\t1\t{name}\t{value}\t9",
     to_fill_in=(
         "#",
-        "# Vehicle-Id Component-Id Name Value Type",
-        "# 1\t1\tCAL_ACC0_ID\t\t6",
-        "# 1\t1\tCAL_GYRO0_ID\t\t6",
+        _("# Vehicle-Id Component-Id Name Value Type"),
+        _("# 1	1	CAL_ACC0_ID		6"),
+        _("# 1	1	CAL_GYRO0_ID		6"),
     ),
 )
 ARDUPILOT = Autopilot(
@@ -87,27 +101,34 @@ ARDUPILOT = Autopilot(
         "gyroscope": {"offset": "INS_GYROFFS_{}"},
     },
     (
-        "To be loaded by Mission Planner or MAVProxy. ArduPilot corrects the accelerometers as"
-        " (reading - INS_ACCOFFS) * INS_ACCSCAL and the gyros as reading - INS_GYROFFS, each axis"
-        " by itself, m/s^2 and rad/s.",
+        _(
+            "To be loaded by Mission Planner or MAVProxy. ArduPilot corrects the "
+            "accelerometers as (reading - INS_ACCOFFS) * INS_ACCSCAL and the gyros as "
+            "reading - INS_GYROFFS, each axis by itself, m/s^2 and rad/s."
+        ),
         "",
-        "To be filled in and checked before you load it:",
-        "- INS_ACC_ID and INS_GYR_ID: the device ids of the IMU, which a turntable does not know."
-        " ArduPilot does not arm where they are not those of its sensors. Take them from your"
-        " vehicle; where the IMU is not the first one there, rename the parameters: INS_ACC2OFFS_X,"
-        " INS_ACC2SCAL_X, INS_GYR2OFFS_X and so on.",
-        "- INS_GYR_CAL must be 0, or ArduPilot measures the gyro offsets anew at every start.",
-        "- Axes: x, y, z are those of the IMU's data sheet; no axis was exchanged or reversed"
-        " for ArduPilot's forward, right, down. ArduPilot applies the numbers after the rotation"
-        " that its driver states for the sensor and before AHRS_ORIENTATION. With +x up, the x"
-        " accelerometer must read +9.8 there; turned about +x by the right hand, the x gyro must"
-        " read positive; likewise y and z. Where the driver exchanges axes, exchange the numbers;"
-        " where it reverses one, change the sign of its offset, not of its scale factor.",
-        "- The driver must use the count size of the campaign, or the scale factors are wrong.",
-        "- Where INS_TCAL1_ENABLE is set, ArduPilot adds a temperature correction of its own.",
+        _("To be filled in and checked before you load it:"),
+        _(
+            "- INS_ACC_ID and INS_GYR_ID: the device ids of the IMU, which a turntable does "
+            "not know. ArduPilot does not arm where they are not those of its sensors. Take "
+            "them from your vehicle; where the IMU is not the first one there, rename the "
+            "parameters: INS_ACC2OFFS_X, INS_ACC2SCAL_X, INS_GYR2OFFS_X and so on."
+        ),
+        _("- INS_GYR_CAL must be 0, or ArduPilot measures the gyro offsets anew at every start."),
+        _(
+            "- Axes: x, y, z are those of the IMU's data sheet; no axis was exchanged or "
+            "reversed for ArduPilot's forward, right, down. ArduPilot applies the numbers "
+            "after the rotation that its driver states for the sensor and before "
+            "AHRS_ORIENTATION. With +x up, the x accelerometer must read +9.8 there; turned "
+            "about +x by the right hand, the x gyro must read positive; likewise y and z. "
+            "Where the driver exchanges axes, exchange the numbers; where it reverses one, "
+            "change the sign of its offset, not of its scale factor."
+        ),
+        _("- The driver must use the count size of the campaign, or the scale factors are wrong."),
+        _("- Where INS_TCAL1_ENABLE is set, ArduPilot adds a temperature correction of its own."),
     ),
     line="{name},{value}",
-    to_fill_in=("#", "# INS_ACC_ID,", "# INS_GYR_ID,"),
+    to_fill_in=("#", _("# INS_ACC_ID,"), _("# INS_GYR_ID,")),
 )
 
 
@@ -120,23 +141,26 @@ def parameter_file(calibration: Calibration, autopilot: Autopilot) -> str:
     if calibration.not_exported:
         return "\n".join(commented(head)) + "\n"
     chosen = [calibration.best(kind) for kind in autopilot.parameters]
-    accelerometer, gyroscope = (triad for _, triad in chosen)
+    accelerometer, gyroscope = (triad for _unused, triad in chosen)
     head += [
         *autopilot.notes,
         *mounts(calibration, chosen),
         "",
-        f"Not contained in this file, because {autopilot.name} has no such parameter:",
-        f"- cross-axis terms of the accelerometers: {cross_terms(accelerometer)}",
-        f"- scale factor errors of the gyros: {scale_errors(gyroscope)}",
-        f"- cross-axis terms of the gyros: {cross_terms(gyroscope)}",
-        *effect_terms(triad for _, triad in chosen),
-        "- the sigma of every number, their covariance, the noise densities, the temperature",
+        _("Not contained in this file, because {name} has no such parameter:", name=autopilot.name),
+        _(
+            "- cross-axis terms of the accelerometers: {accelerometer}",
+            accelerometer=cross_terms(accelerometer),
+        ),
+        _("- scale factor errors of the gyros: {gyroscope}", gyroscope=scale_errors(gyroscope)),
+        _("- cross-axis terms of the gyros: {gyroscope}", gyroscope=cross_terms(gyroscope)),
+        *effect_terms(triad for _unused, triad in chosen),
+        _("- the sigma of every number, their covariance, the noise densities, the temperature"),
         "",
-        "Errors that remain because of this:",
+        _("Errors that remain because of this:"),
     ]
     lines: list[str] = []
     left_out: dict[str, list[str]] = {}
-    for _, triad in chosen:
+    for _unused, triad in chosen:
         names = autopilot.parameters[triad.kind]
         correction = axis_correction(triad, scaled="scale" in names)
         head += remaining_errors(triad, correction.offset, correction.scale)
@@ -145,7 +169,7 @@ def parameter_file(calibration: Calibration, autopilot: Autopilot) -> str:
         for (quantity, axis), reason in correction.left_out.items():
             left_out.setdefault(reason, []).append(names[quantity].format(axis.upper()))
     if left_out:
-        head += ["", "Left out:"]
+        head += ["", _("Left out:")]
         head += [f"- {', '.join(names)}: {reason}" for reason, names in left_out.items()]
     return "\n".join([*commented(head), *autopilot.to_fill_in, *lines]) + "\n"
 

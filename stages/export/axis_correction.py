@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from inertial.estimation.triad import PARTS
 from inertial.tables import AXES
+from inertial.text.messages import _
 from stages.export.calibration import PARAMETERS, Triad
 
 Array = NDArray[np.float64]
@@ -59,9 +60,11 @@ def axis_correction(triad: Triad, *, scaled: bool) -> AxisCorrection:
         if not np.isfinite(element):
             left_out["scale", axis] = triad.reasons[f"scale_{axis}"]
         elif element <= 0:
-            left_out["scale", axis] = (
-                f"M_{axis}{axis} is {element:.3g}: the sensor reads the other way round than the"
-                " campaign names its axis, and a negative scale factor is not accepted"
+            left_out["scale", axis] = _(
+                "M_{axis}{axis} is {element:.3g}: the sensor reads the other way round than the "
+                "campaign names its axis, and a negative scale factor is not accepted",
+                axis=axis,
+                element=element,
             )
         scale[i] = 1 / element if element > 0 else np.nan
     return AxisCorrection(_single_precision(triad.bias), _single_precision(scale), left_out)
@@ -87,14 +90,28 @@ def remaining_errors(triad: Triad, offset: Array, scale: Array) -> Iterator[str]
             largest = int(np.argmax(errors[:, i]))
             along, sign = probes[largest]
             yield (
-                f"- {axis} {sensor}: up to {errors[largest, i]:.3g} {unit}, with"
-                f" {'+' if sign > 0 else '-'}{probe} along {AXES[along]}"
+                _(
+                    "- {axis} {sensor}: up to {errors:.3g} {unit}, with {value}{probe} "
+                    "along {axes}",
+                    axis=axis,
+                    sensor=sensor,
+                    errors=errors[largest, i],
+                    unit=unit,
+                    value="+" if sign > 0 else "-",
+                    probe=probe,
+                    axes=AXES[along],
+                )
             )
         else:
             missing = [n for n in PARAMETERS if n in triad.reasons and PARTS[n].sensor_axis == axis]
             verb = "was" if len(missing) == 1 else "were"
-            subject = f"{', '.join(missing)} {verb}" if missing else "it was"
-            yield f"- {axis} {sensor}: not known, because {subject} not determined"
+            subject = f"{', '.join(missing)} {verb}" if missing else _("it was")
+            yield _(
+                "- {axis} {sensor}: not known, because {subject} not determined",
+                axis=axis,
+                sensor=sensor,
+                subject=subject,
+            )
 
 
 def cross_terms(triad: Triad) -> str:

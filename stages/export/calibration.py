@@ -28,16 +28,18 @@ from inertial.campaign.records import (
 from inertial.campaign.solution import JOINT
 from inertial.estimation.triad import linear_names
 from inertial.tables import CHANNELS
+from inertial.text.messages import _
 from stages.export.examples import Example
 
 Array = NDArray[np.float64]
 
 PARAMETERS = linear_names()  # M − I by rows, then the bias
 MAX_CONDITION = 1e6  # condition number of M; that of three good sensors is 1.01
-COMPENSATED = (
-    "The campaign says that the errors were taken out of its logs already. Its parameters are what"
-    " that first compensation has left over, not those of the IMU, and would be wrong for its raw"
-    " readings. To export a calibration, give the raw logs."
+COMPENSATED = _(
+    "The campaign says that the errors were taken out of its logs already. Its "
+    "parameters are what that first compensation has left over, not those of the "
+    "IMU, and would be wrong for its raw readings. To export a calibration, give "
+    "the raw logs."
 )
 
 
@@ -88,9 +90,9 @@ class Triad:
     def no_inverse(self) -> str | None:
         """Why M has no usable inverse, if it has none."""
         if not np.isfinite(self.matrix).all():
-            return "it needs all nine elements of M"
+            return _("it needs all nine elements of M")
         if np.linalg.cond(self.matrix) > MAX_CONDITION:
-            return "M cannot be inverted: some sensor does not feel its axis"
+            return _("M cannot be inverted: some sensor does not feel its axis")
         return None
 
     @property
@@ -212,7 +214,7 @@ def _triad(kind: str, id_prefix: str, method: str, of: tuple[str, str], fit: Fit
         for first, second, value in fit.covariance.itertuples(index=False)
         if first in ids and second in ids
     }
-    no_result = {"reason": f"there is no result for the {kind}"}
+    no_result = {"reason": _("there is no result for the {kind}", kind=kind)}
     return Triad(
         kind,
         id_prefix,

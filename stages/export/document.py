@@ -20,6 +20,7 @@ from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
 from inertial.campaign.records import Part, Row, labels, omissions
 from inertial.tables import CHANNEL_PARTS
+from inertial.text.messages import _
 from stages.export.calibration import PARAMETERS, Calibration, Mount, Triad
 from stages.export.examples import Example
 
@@ -29,18 +30,27 @@ FORMAT = "turntable calibration"
 VERSION = 2
 SQRT_HZ = {"accel": "(m/s²)/√Hz", "gyro": "(rad/s)/√Hz"}
 EQUATION = {
-    "reading": "reading = M · truth + bias",
-    "correction": "truth = inverse · (reading − bias), with inverse = M⁻¹",
-    "in_words": "Take the bias off the three readings, then multiply by the inverse: row i of it"
-    " times the three differences gives the truth along axis i. All nine elements are meant, not"
-    " the diagonal alone. Readings are those of the log in m/s² and rad/s, with the count size that"
-    " the campaign states.",
-    "matrix": "Row: the sensor that reads, x y z. Column: the axis that it feels, x y z."
-    " scale_x is M_xx − 1, cross_xy is M_xy.",
-    "signs": "Specific force: the axis that points up reads +g at rest. Angular rate: right-hand"
-    " rule; it contains the earth's rate, so a corrected gyro at rest reads that and not zero.",
-    "frame": "Body axes x, y, z of the IMU, right-handed, as its data sheet names them and as the"
-    " campaign set them on the table. No axis is exchanged or turned over.",
+    "reading": _("reading = M · truth + bias"),
+    "correction": _("truth = inverse · (reading − bias), with inverse = M⁻¹"),
+    "in_words": _(
+        "Take the bias off the three readings, then multiply by the inverse: row i of "
+        "it times the three differences gives the truth along axis i. All nine elements "
+        "are meant, not the diagonal alone. Readings are those of the log in m/s² and "
+        "rad/s, with the count size that the campaign states."
+    ),
+    "matrix": _(
+        "Row: the sensor that reads, x y z. Column: the axis that it feels, x y z. "
+        "scale_x is M_xx − 1, cross_xy is M_xy."
+    ),
+    "signs": _(
+        "Specific force: the axis that points up reads +g at rest. Angular rate: "
+        "right-hand rule; it contains the earth's rate, so a corrected gyro at rest "
+        "reads that and not zero."
+    ),
+    "frame": _(
+        "Body axes x, y, z of the IMU, right-handed, as its data sheet names them and "
+        "as the campaign set them on the table. No axis is exchanged or turned over."
+    ),
 }
 
 

@@ -15,6 +15,7 @@ from inertial.campaign.masked_samples import Masks, pieces
 from inertial.campaign.records import Manoeuvre
 from inertial.tables import CHANNELS
 from inertial.tables.parquet import Stream
+from inertial.text.messages import _
 
 Array = NDArray[np.float64]
 
@@ -84,7 +85,7 @@ def _mean(blocks: pd.DataFrame) -> Example:
     values = blocks[list(CHANNELS)].to_numpy(np.float64)
     mean = np.average(values, axis=0, weights=blocks["count"].to_numpy(np.float64))
     return Example(
-        what=f"mean over {first['phase']}",
+        what=_("mean over {phase}", phase=first["phase"]),
         manoeuvre=str(first["manoeuvre"]),
         log=str(first["log"]),
         first=int(first["from_record"]),
@@ -112,7 +113,7 @@ def _samples(samples: Stream, masks: Masks, blocks: Mapping[str, pd.Series]) -> 
             i = int(np.argmax(weights))
             number, line = int(record[i]), int(piece["line"][i])
             examples[mount] = Example(
-                "one sample of a turn",
+                _("one sample of a turn"),
                 str(block["manoeuvre"]),
                 log,
                 number,

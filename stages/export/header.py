@@ -8,6 +8,7 @@ import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 
 from inertial.text.cause_names import in_words
+from inertial.text.messages import _
 from stages.export.calibration import Calibration, Triad
 
 LINE_WIDTH = 96
@@ -23,18 +24,29 @@ ASCII_SPELLING = str.maketrans(
 def origin(calibration: Calibration, target: str) -> Iterator[str]:
     """Of which IMU and campaign these parameters for `target` are."""
     campaign = calibration.campaign
-    yield f"Calibration of an IMU on a turntable, for {target}."
+    yield _("Calibration of an IMU on a turntable, for {target}.", target=target)
     if campaign["simulated"]:
-        yield "SIMULATED: no real instrument has these errors."
-    yield f"IMU: {_quoted(campaign['instrument'])}, serial number {_quoted(campaign['serial'])}"
-    yield f"Campaign: {_quoted(campaign['campaign'])}, date {_quoted(campaign['date'])}"
+        yield _("SIMULATED: no real instrument has these errors.")
+    yield _(
+        "IMU: {instrument}, serial number {serial}",
+        instrument=_quoted(campaign["instrument"]),
+        serial=_quoted(campaign["serial"]),
+    )
+    yield _(
+        "Campaign: {campaign}, date {date}",
+        campaign=_quoted(campaign["campaign"]),
+        date=_quoted(campaign["date"]),
+    )
     if calibration.not_exported:
         yield ""
-        yield f"Nothing is exported. {calibration.not_exported}"
+        yield _("Nothing is exported. {not_exported}", not_exported=calibration.not_exported)
         return
     yield (
-        f"The whole calibration, with every sigma, is in {campaign['campaign']}.calibration.json,"
-        " which also contains readings before and after the correction."
+        _(
+            "The whole calibration, with every sigma, is in {campaign}.calibration.json, "
+            "which also contains readings before and after the correction.",
+            campaign=campaign["campaign"],
+        )
     )
 
 
@@ -43,8 +55,12 @@ def mounts(calibration: Calibration, chosen: Sequence[tuple[str, Triad]]) -> Ite
     if len(calibration.mounts) > 1:
         names = ", ".join(f"{triad.kind} {_quoted(name)}" for name, triad in chosen)
         yield (
-            f"The IMU was fixed on {len(calibration.mounts)} mounts; each has an M of its own,"
-            f" because M contains the mounting rotation. These numbers are from: {names}."
+            _(
+                "The IMU was fixed on {mounts} mounts; each has an M of its own, because M "
+                "contains the mounting rotation. These numbers are from: {names}.",
+                mounts=len(calibration.mounts),
+                names=names,
+            )
         )
 
 
@@ -59,9 +75,13 @@ def effect_terms(triads: Iterable[Triad]) -> Iterator[str]:
             for row in triad.effects
         )
         yield (
-            f"- terms of effects of the {triad.kind}s: its numbers are those of the model with"
-            f" {' and '.join(in_words(name) for name in names)}; readings corrected without these"
-            f" terms still contain them: {terms}"
+            _(
+                "- terms of effects of the {kind}s: its numbers are those of the model with "
+                "{join}; readings corrected without these terms still contain them: {terms}",
+                kind=triad.kind,
+                join=" and ".join(in_words(name) for name in names),
+                terms=terms,
+            )
         )
 
 

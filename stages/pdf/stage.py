@@ -15,10 +15,11 @@ from types import ModuleType
 
 from inertial.tables.errors import Refusal
 from inertial.tables.stage import Stage
+from inertial.text.messages import _
 from stages.pdf.declared import DECLARED
 
 FIGURE = re.compile(r'<div role="img" aria-label=("[^"]*")>(<svg .*?</svg>)</div>', re.DOTALL)
-PACKAGES = "libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
+PACKAGES = _("libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0")
 
 
 def pdf(html: Sequence[Path]) -> dict[str, bytes]:
@@ -57,10 +58,10 @@ def _weasyprint() -> ModuleType:
     except OSError as error:
         raise Refusal(
             "WeasyPrint",
-            "its libraries",
+            _("its libraries"),
             str(error).partition("\n")[0],
-            "Pango and HarfBuzz",
-            f"apt-get install {PACKAGES}; the report is there as a page",
+            _("Pango and HarfBuzz"),
+            _("apt-get install {packages}; the report is there as a page", packages=PACKAGES),
         ) from error
 
 

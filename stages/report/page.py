@@ -21,6 +21,7 @@ from fontTools.ttLib import TTFont  # type: ignore[import-untyped]
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
+from inertial.text.messages import _
 from stages.report.outline import Report
 
 FOLDER = Path(__file__).parent
@@ -30,7 +31,7 @@ FONTS = (
     ("Report", 400, "normal", "DejaVuSans.ttf"),
     ("Report", 700, "normal", "DejaVuSans-Bold.ttf"),
     ("Report", 400, "italic", "DejaVuSans-Oblique.ttf"),
-    ("Report Mono", 400, "normal", "DejaVuSansMono.ttf"),
+    (_("Report Mono"), 400, "normal", "DejaVuSansMono.ttf"),
 )
 # In every report, whether its words happen to need them or not.
 ALWAYS = frozenset(

@@ -19,6 +19,7 @@ from inertial.estimation.triad import PARTS
 from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.cause_names import in_words
+from inertial.text.messages import _
 from stages.report.linked import DECISION_TABLES, decisions
 from stages.report.outline import Tone
 from stages.report.tables import Record, Tables, once
@@ -36,23 +37,23 @@ EXTENDED_TABLES = ("extended_parameters", "extended_fit", "extended_fit_manoeuvr
 RESULT_TABLES = (*ESTIMATE_TABLES, *EXTENDED_TABLES, *DECISION_TABLES)
 FREE = "free_positions"
 METHOD = {
-    JOINT: "joint fit of all manoeuvres",
-    "six_position": "six positions, S0",
-    FREE: "static positions of unknown attitude, by |f| = g",
-    "up_and_down": "two positions with tilt, S1",
-    "pooled_positions": "static positions at one attitude pooled, S3",
-    "static": "static positions up and down, S0",
-    "turns": "turns forward and backward, S0",
-    "turn_and_stop": "turn and stop, S3: M, and the bias by turns",
-    "stops": "turn and stop, S3: the bias by static positions",
-    "rate_table": "rate table, S4",
+    JOINT: _("joint fit of all manoeuvres"),
+    "six_position": _("six positions, S0"),
+    FREE: _("static positions of unknown attitude, by |f| = g"),
+    "up_and_down": _("two positions with tilt, S1"),
+    "pooled_positions": _("static positions at one attitude pooled, S3"),
+    "static": _("static positions up and down, S0"),
+    "turns": _("turns forward and backward, S0"),
+    "turn_and_stop": _("turn and stop, S3: M, and the bias by turns"),
+    "stops": _("turn and stop, S3: the bias by static positions"),
+    "rate_table": _("rate table, S4"),
 }
 KIND = {
     "bias": "Bias",
-    "scale": "Scale error",
-    "cross": "Cross-axis terms",
-    "mounting": "Mounting rotation of the sensor triad against the case",
-    "symmetric": "Non-orthogonality: the symmetric part P of M = P R",
+    "scale": _("Scale error"),
+    "cross": _("Cross-axis terms"),
+    "mounting": _("Mounting rotation of the sensor triad against the case"),
+    "symmetric": _("Non-orthogonality: the symmetric part P of M = P R"),
 }
 SYMBOL = {"bias": "b", "scale": "s", "cross": "m", "mounting": "ρ", "symmetric": "p"}
 CALIBRATION = frozenset(
@@ -60,7 +61,7 @@ CALIBRATION = frozenset(
     + [f"cross_{row}{column}" for row in AXES for column in AXES if row != column]
 )
 MIN_P = 0.01  # of a fit that describes its data
-MISFIT = "the model does not describe the data within the noise; the σ include noise only"
+MISFIT = _("the model does not describe the data within the noise; the σ include noise only")
 
 
 @dataclass(frozen=True)
@@ -117,20 +118,27 @@ class Estimate:
         p_is = numbers.p_is(fit["p_value"])
         if not self.misfit:
             if not fit["degrees"]:
-                return "no degree of freedom is left to test the model", "fair"
-            return f"the model describes the data within the noise ({p_is})", "good"
+                return _("no degree of freedom is left to test the model"), "fair"
+            return _("the model describes the data within the noise ({p_is})", p_is=p_is), "good"
         if not (fit["scatter"] or fit["random_walk"]):
             return f"{MISFIT} ({p_is})", "poor"
         if not fit["scatter"]:
             return (
-                f"noise alone does not describe the data ({p_is}), noise and a random walk of the "
-                "bias do"
+                _(
+                    "noise alone does not describe the data ({p_is}), noise and a random walk of "
+                    "the bias do",
+                    p_is=p_is,
+                )
             ), "fair"
         unit = units.quantity("bias", fit["unit"]).laboratory
         scatter = f"{numbers.significant(unit.of(fit['scatter']), 2)} {unit.name}"
         return (
-            f"the model does not describe the data within the noise ({p_is}); manoeuvres scatter "
-            f"by {scatter} beyond it, which the σ include"
+            _(
+                "the model does not describe the data within the noise ({p_is}); manoeuvres "
+                "scatter by {scatter} beyond it, which the σ include",
+                p_is=p_is,
+                scatter=scatter,
+            )
         ), "poor"
 
 
@@ -234,7 +242,14 @@ class Shift:
     def name(self) -> str:
         """The parameter in words, a sentence beginning with it."""
         kind, axes = PARTS[self.extended["parameter"]]
-        return capital(f"{KIND.get(kind, kind).lower()} {axes} of the {self.sensor.lower()}")
+        return capital(
+            _(
+                "{lower} {axes} of the {lower_2}",
+                lower=KIND.get(kind, kind).lower(),
+                axes=axes,
+                lower_2=self.sensor.lower(),
+            )
+        )
 
     @property
     def sensor(self) -> str:

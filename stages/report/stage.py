@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from inertial.tables.stage import Stage
+from inertial.text.messages import _
 from inertial.text.numbers import shortened
 from stages.report.declared import DECLARED
 from stages.report.outline import Report
@@ -54,7 +55,7 @@ def report(provenance: Mapping[str, Mapping[str, Any]], **read: Any) -> dict[str
     name, serial = (shortened(about[key], 80) for key in ("campaign", "serial"))
     instrument = f"{shortened(about['instrument'], 80)} · serial {serial}"
     outline = Report(
-        title=f"Calibration report: {name} · {instrument}",
+        title=_("Calibration report: {name} · {instrument}", name=name, instrument=instrument),
         campaign=name,
         instrument=instrument,
         running=f"{name} · {instrument}" + (" · simulated" if about["simulated"] else ""),

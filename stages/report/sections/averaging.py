@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from inertial.estimation.triad import PARTS
+from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant, whole
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import drawing, outline
@@ -23,7 +24,7 @@ BIAS_UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 SENSOR = {"accelerometer": "accel", "gyroscope": "gyro"}
 STAGE = {sensor: stage for stage, sensor in SENSOR.items()}
 Group = tuple[str, str, str]  # sensor, mount, method
-KINDS = {"bias": "bias", "scale": "scale", "cross": "cross-axis terms"}
+KINDS = {"bias": "bias", "scale": "scale", "cross": _("cross-axis terms")}
 SHOWN_SIGMAS = 4  # of a single epoch
 
 
@@ -37,18 +38,23 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
             yield _figure(group, f"averaging-{stage}-{number}", curves, units)
         if not groups:
             yield outline.Paragraph(
-                "None: the parameters were not followed over the averaging time."
+                _("None: the parameters were not followed over the averaging time.")
             )
     yield _wanted([row for stage in SENSOR for row in tables.rows(f"{stage}_wanted")])
 
 
 SECTION = outline.Section(
     "averaging",
-    "Parameters against averaging time",
-    "Each parameter as estimated from the first seconds of each static position only, relative to "
-    "its final value.",
-    "The band is value ± σ. Where it narrows about zero, longer static positions would still help; "
-    "where the line leaves the band and stays outside, something drifts.",
+    _("Parameters against averaging time"),
+    _(
+        "Each parameter as estimated from the first seconds of each static position "
+        "only, relative to its final value."
+    ),
+    _(
+        "The band is value ± σ. Where it narrows about zero, longer static positions "
+        "would still help; where the line leaves the band and stays outside, something "
+        "drifts."
+    ),
     tuple(f"{stage}_{table}" for stage in SENSOR for table in ("averaging", "wanted")),
     parts,
 )
@@ -95,11 +101,19 @@ def _figure(
     title = _estimate(group).name
     shown = list(curves)[:MOST_PANELS]
     margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
-    rest = outline.more(len(curves) - len(shown), " in the averaging table")
+    rest = outline.more(len(curves) - len(shown), _(" in the averaging table"))
     return outline.Figure(
-        f"{title}: value ± σ against averaging time, relative to the final value. {rest}".rstrip(),
-        drawing.grid(shown, panel_of, 0.95, margins, "Time per static position, s", key),
-        f"{counted(len(shown), 'curve')} of {title}, each within its band of sigma.",
+        _(
+            "{title}: value ± σ against averaging time, relative to the final value. {rest}",
+            title=title,
+            rest=rest,
+        ).rstrip(),
+        drawing.grid(shown, panel_of, 0.95, margins, _("Time per static position, s"), key),
+        _(
+            "{counted} of {title}, each within its band of sigma.",
+            counted=counted(len(shown), "curve"),
+            title=title,
+        ),
     )
 
 
@@ -148,7 +162,7 @@ def _wanted_row(row: Record) -> outline.Row:
         *(significant(walk.of(row["random_walk"]), 2), walk.name),
         *(sigma, f"{significant(row['seconds'], 3)} s"),
         *(floor, wanted, unit.name),
-        "not attainable" if seconds is None else f"{significant(seconds, 2)} s",
+        _("not attainable") if seconds is None else f"{significant(seconds, 2)} s",
     )
 
 
@@ -190,11 +204,18 @@ def _epochs(group: Group, key: str, curves: Mapping[str, Sequence[Record]]) -> o
     first = next(iter(curves.values()))[0]["seconds"]
     margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
     return outline.Figure(
-        f"{_estimate(group).sensor}: by single epochs of {significant(first, 3)} "
-        "s (grey) and by running means (colour, with ± σ of white noise), relative to the final "
-        "value. The panels show ± 4 σ of a single epoch.",
-        drawing.grid(shown, panel_of, 0.78, margins, "Time per static position, s", key),
-        f"{counted(len(shown), 'parameter')} against the time per static position.",
+        _(
+            "{sensor}: by single epochs of {first} s (grey) and by running means (colour, "
+            "with ± σ of white noise), relative to the final value. The panels show ± 4 σ "
+            "of a single epoch.",
+            sensor=_estimate(group).sensor,
+            first=significant(first, 3),
+        ),
+        drawing.grid(shown, panel_of, 0.78, margins, _("Time per static position, s"), key),
+        _(
+            "{counted} against the time per static position.",
+            counted=counted(len(shown), "parameter"),
+        ),
     )
 
 
@@ -218,14 +239,14 @@ def _scatter(rows: Sequence[Record]) -> outline.Figure:
             _scatter_panel(panel, panels_of[stage, kind])
             panel.set_title(f"{sensor_of_stage(stage)}, {KINDS[kind]}", pad=3, fontsize=6.8)
             panel.set_xlabel("Epoch, s")
-        axes[0].set_ylabel("σ / σ of white noise")
+        axes[0].set_ylabel(_("σ / σ of white noise"))
         drawn = drawing.svg(figure, "spreads")
     return outline.Figure(
         "Standard deviation of the values by single epochs over what white noise gives, against "
         "the length of an epoch; band: ± 2 σ of chance alone. A rise with the length is drift; a "
         "fall to 1 is an oscillation that averages out.",
         drawn,
-        "Scatter of single epochs in units of that of white noise.",
+        _("Scatter of single epochs in units of that of white noise."),
     )
 
 
@@ -253,12 +274,18 @@ def _scatter_at(rows: Sequence[Record], seconds: float) -> str:
     ratios = sorted((_ratio(row), row["quantity"], STAGE[row["sensor"]]) for row in own)
     epochs = own[0]["epochs"]
     chance = 1 / sqrt(2 * max(epochs - 1, 1))
-    (smallest, *_), (largest, name, stage) = ratios[0], ratios[-1]
-    return (
-        f"Epochs of {significant(seconds, 3)} s ({whole(epochs)} of them) scatter "
-        f"{fixed(smallest, 2)} to {fixed(largest, 2)} times as much as white "
-        f"noise, most the {plain(name)} of the {stage}; chance alone gives 1 ± "
-        f"{fixed(chance, 3 if chance < 0.01 else 2)}."
+    (smallest, *_unused), (largest, name, stage) = ratios[0], ratios[-1]
+    return _(
+        "Epochs of {seconds} s ({epochs} of them) scatter {smallest} to {largest} times "
+        "as much as white noise, most the {name} of the {stage}; chance alone gives 1 ± "
+        "{chance}.",
+        seconds=significant(seconds, 3),
+        epochs=whole(epochs),
+        smallest=fixed(smallest, 2),
+        largest=fixed(largest, 2),
+        name=plain(name),
+        stage=stage,
+        chance=fixed(chance, 3 if chance < 0.01 else 2),
     )
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from inertial.tables import AXES
 from inertial.text import numbers, units
+from inertial.text.messages import _
 from stages.report.declared import DECLARED
 from stages.report.outline import (
     Column,
@@ -59,10 +60,13 @@ def recorded_parts(tables: Tables) -> Iterator[Part]:
 
 RECORDED = Section(
     "recorded",
-    "Recorded manoeuvres",
-    "Every manoeuvre of the plan, and what its log contains of it.",
-    "✓ recorded from rest to rest as planned; ◐ incomplete; ✗ not found. Angle and rate are about "
-    "the axis of the turn, right-hand rule. The angle is a sum of increments.",
+    _("Recorded manoeuvres"),
+    _("Every manoeuvre of the plan, and what its log contains of it."),
+    _(
+        "✓ recorded from rest to rest as planned; ◐ incomplete; ✗ not found. Angle and "
+        "rate are about the axis of the turn, right-hand rule. The angle is a sum of "
+        "increments."
+    ),
     ("manoeuvres", "performed"),
     recorded_parts,
 )
@@ -83,7 +87,7 @@ def _manoeuvre(plan: Record, done: Record | None) -> Row:
         _number(units.DEGREES_PER_SECOND.of(turn["rate"]), 4),
         _number(plan["seconds"], 1),
         _number(done["seconds"], 1),
-        numbers.shortened(done["sentence"] or "not found", 300),
+        numbers.shortened(done["sentence"] or _("not found"), 300),
         tone=tone,
     )
 
@@ -101,9 +105,9 @@ def _number(value: float | None, decimals: int) -> str:
 def attitude(plan: Record) -> str:
     """A manoeuvre in a few words: rest, +x up; turn about +x."""
     if plan["do"] == "turn":
-        return f"turn about {_direction(plan, 'about')}"
+        return _("turn about {plan}", plan=_direction(plan, "about"))
     if plan["do"] == "positions":
-        return "positions, attitudes unknown"
+        return _("positions, attitudes unknown")
     return f"{plan['do']}, {_direction(plan, 'up')} up"
 
 
@@ -138,18 +142,18 @@ def account_parts(tables: Tables) -> Iterator[Part]:
     )
     if others := [row for row in rows if row["kind"] == "other message"]:
         yield _other_messages(others)
-    yield Heading("Refused lines")
+    yield Heading(_("Refused lines"))
     if refused:
         yield from _refused(refused)
     else:
-        yield Paragraph("Refused lines: none.", "good")
+        yield Paragraph(_("Refused lines: none."), "good")
 
 
 ACCOUNT = Section(
     "account",
-    "Data accounting",
-    "What became of every line of the logs, so that no byte is lost without notice.",
-    "✓ the bytes of all kinds add up to the size of the file.",
+    _("Data accounting"),
+    _("What became of every line of the logs, so that no byte is lost without notice."),
+    _("✓ the bytes of all kinds add up to the size of the file."),
     ("accounts", "refused", "inputs", "logs"),
     account_parts,
 )
@@ -169,7 +173,7 @@ def _log(log: str, rows: Sequence[Record], size: dict[str, int | None]) -> Row:
         *(numbers.whole(lines[kind]) if lines[kind] else "" for kind in KINDS),
         numbers.whole(accounted),
         numbers.whole(expected),
-        "✓" if balanced else f"✗ does not add up{difference}",
+        "✓" if balanced else _("✗ does not add up{difference}", difference=difference),
         tone="" if balanced else "poor",
     )
 
@@ -178,7 +182,7 @@ def _other_messages(rows: Sequence[Record]) -> Table:
     lines: Counter[str] = Counter()
     size: Counter[str] = Counter()
     for row in rows:
-        name = row["name"] or "without a name"
+        name = row["name"] or _("without a name")
         lines[name] += row["lines"]
         size[name] += row["bytes"]
     return Table(
@@ -194,7 +198,7 @@ def _other_messages(rows: Sequence[Record]) -> Table:
 
 
 def _refused(lines: Sequence[Record]) -> Iterator[Table]:
-    where = " in the table of refused lines"
+    where = _(" in the table of refused lines")
     reasons = Counter((row["log"], row["reason"]) for row in lines)
     yield Table(
         f"{numbers.counted(len(lines), 'refused line')}, by log and reason.",
@@ -227,12 +231,12 @@ def _refused(lines: Sequence[Record]) -> Iterator[Table]:
 
 NAME = {
     "gravity": "gravity",
-    "earth_rate_up": "earth rate, vertical component",
-    "earth_rate_level": "earth rate, horizontal component",
-    "heading": "azimuth of the table's zero mark",
-    "position": "attitude of a set position",
-    "turn_angle": "angle of a turn",
-    "turn_rate": "rate of the table, relative",
+    "earth_rate_up": _("earth rate, vertical component"),
+    "earth_rate_level": _("earth rate, horizontal component"),
+    "heading": _("azimuth of the table's zero mark"),
+    "position": _("attitude of a set position"),
+    "turn_angle": _("angle of a turn"),
+    "turn_rate": _("rate of the table, relative"),
 }
 UNIT = {
     "earth_rate_up": units.DEGREES_PER_HOUR,
@@ -263,8 +267,8 @@ def known_parts(tables: Tables) -> Iterator[Part]:
 
 KNOWN = Section(
     "known",
-    "Known quantities",
-    "The quantities that were given to the estimation.",
+    _("Known quantities"),
+    _("The quantities that were given to the estimation."),
     "The σ of the parameters include those of these quantities; one without σ is taken as exact. "
     "Stated: by the campaign file; computed: from what is stated; assumed: by the pipeline, "
     "in the absence of a statement.",
@@ -297,9 +301,9 @@ def _cells(row: Record) -> tuple[str, str]:
     value, sigma = unit.of(row["value"]), unit.of(row["sigma"])
     decimals = numbers.decimals_of(sigma)
     if value is None:
-        return "not known", "—"
+        return _("not known"), "—"
     if row["quantity"] in ERRORS:
-        return "as set", numbers.significant(sigma, 2) if sigma else "—"
+        return _("as set"), numbers.significant(sigma, 2) if sigma else "—"
     if decimals is None:
         return numbers.significant(value, 7), "—"
     return numbers.fixed(value, decimals), numbers.fixed(sigma, decimals)
@@ -341,9 +345,12 @@ def provenance_parts(tables: Tables) -> Iterator[Part]:
 PROVENANCE = Section(
     "provenance",
     "Provenance",
-    "The inputs, and per stage its settings and the hash of its code.",
-    "The same inputs, settings and code give this report again, byte for byte. A hash is "
-    "SHA-256; that of a stage covers every module it uses and the lock file of the libraries.",
+    _("The inputs, and per stage its settings and the hash of its code."),
+    _(
+        "The same inputs, settings and code give this report again, byte for byte. A "
+        "hash is SHA-256; that of a stage covers every module it uses and the lock file "
+        "of the libraries."
+    ),
     ("inputs",),
     provenance_parts,
 )

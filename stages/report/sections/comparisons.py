@@ -11,6 +11,7 @@ from inertial.campaign.estimates import SENSOR_OF
 from inertial.campaign.solution import JOINT
 from inertial.tables import AXES
 from inertial.text import numbers, units
+from inertial.text.messages import _
 from inertial.text.units import quantity
 from stages.report import outline
 from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks
@@ -19,12 +20,12 @@ from stages.report.tables import Record, Tables
 from stages.report.words import SENSOR_OF_STAGE, capital, with_mount
 
 KINDS = {
-    "static_against_turns": "Static, rotation",
-    "forward_against_backward": "Forward, backward",
-    "method_against_method": "Two methods",
-    "straight_line": "Rates, straight line",
-    "published": "Published, this one",
-    "fencepost": "Published, this one",
+    "static_against_turns": _("Static, rotation"),
+    "forward_against_backward": _("Forward, backward"),
+    "method_against_method": _("Two methods"),
+    "straight_line": _("Rates, straight line"),
+    "published": _("Published, this one"),
+    "fencepost": _("Published, this one"),
 }
 MOST_DIFFERENCES = 120
 
@@ -39,23 +40,34 @@ def comparison_parts(tables: Tables) -> Iterator[outline.Part]:
         values = capital(numbers.counted(beyond, "value"))
         pairs = numbers.counted(len(compared), "comparison")
         yield outline.Paragraph(
-            f"{values} of {pairs} {verb} by more than chance.", "fair" if beyond else "good"
+            _(
+                "{values} of {pairs} {verb} by more than chance.",
+                values=values,
+                pairs=pairs,
+                verb=verb,
+            ),
+            "fair" if beyond else "good",
         )
     for row in filter(_fencepost, rows):
         yield outline.Paragraph(capital(str(row["sentence"])), "fair")
     yield _differences(rows)
     if rows and not any(row["kind"] == "published" for row in rows):
-        yield outline.Paragraph("Published values: none is known for this instrument.")
+        yield outline.Paragraph(_("Published values: none is known for this instrument."))
 
 
 COMPARISONS = outline.Section(
     "comparisons",
     "Comparisons",
-    "Static against rotation, forward against backward, method against method, published values "
-    "against these: the same parameter by two ways that should agree.",
-    "Worst first, the difference in units of its σ. p is the probability of a difference this "
-    "large if the two are equal; among many comparisons some are large by chance, which the "
-    "verdict takes into account.",
+    _(
+        "Static against rotation, forward against backward, method against method, "
+        "published values against these: the same parameter by two ways that should "
+        "agree."
+    ),
+    _(
+        "Worst first, the difference in units of its σ. p is the probability of a "
+        "difference this large if the two are equal; among many comparisons some are "
+        "large by chance, which the verdict takes into account."
+    ),
     ("differences",),
     comparison_parts,
 )
@@ -114,7 +126,7 @@ def _difference(row: Record, sigma: str) -> outline.Row:
 FOLDER = "data/history"
 MOST_DRAWN = 12
 MOST_CALIBRATIONS = 40
-THIS = "this one"
+THIS = _("this one")
 BIAS_UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 Key = tuple[str, str, str]  # mount, sensor and parameter
 Calibration = Mapping[Key, Record]  # the parameters by the joint method
@@ -137,25 +149,37 @@ def history_parts(tables: Tables) -> Iterator[outline.Part]:
         yield _figure(calibrations[-MOST_DRAWN + 1 :], now, date)
     else:
         yield outline.Paragraph(
-            "None: the archive holds no earlier calibration of this instrument."
+            _("None: the archive holds no earlier calibration of this instrument.")
         )
     for row in tables.rows("archived"):
-        text = f"This calibration is kept in the archive as {FOLDER}/{row['file']}"
-        text += f"; it supersedes {row['supersedes']}" if row["supersedes"] else ""
+        text = _(
+            "This calibration is kept in the archive as {folder}/{file}",
+            folder=FOLDER,
+            file=row["file"],
+        )
+        text += (
+            _("; it supersedes {supersedes}", supersedes=row["supersedes"])
+            if row["supersedes"]
+            else ""
+        )
         yield outline.Paragraph(
-            numbers.shortened(f"{text}. SHA-256 of the file: {row['sha256']}.", 900)
+            numbers.shortened(
+                _("{text}. SHA-256 of the file: {sha256}.", text=text, sha256=row["sha256"]), 900
+            )
         )
     if not tables.rows("archived"):
-        yield outline.Paragraph("This calibration is not in the archive.", "fair")
+        yield outline.Paragraph(_("This calibration is not in the archive."), "fair")
 
 
 HISTORY = outline.Section(
     "history",
-    "Earlier calibrations",
-    "Earlier results of the same instrument, by its serial number, and the file of this one.",
-    "Each point is value ± σ of the final result, of the joint fit or of the fit with effects in "
-    "the model, relative to the last value. A bias may change from one switch-on to the next; a "
-    "scale error should not.",
+    _("Earlier calibrations"),
+    _("Earlier results of the same instrument, by its serial number, and the file of this one."),
+    _(
+        "Each point is value ± σ of the final result, of the joint fit or of the fit "
+        "with effects in the model, relative to the last value. A bias may change from "
+        "one switch-on to the next; a scale error should not."
+    ),
     (*RESULT_TABLES, "campaign", "earlier", "archived"),
     history_parts,
 )
@@ -172,7 +196,7 @@ def _date(rows: Sequence[Record]) -> tuple[bool, str, str]:
 
 
 def _calibrations(calibrations: Sequence[Sequence[Record]], now: Calibration) -> outline.Table:
-    count = numbers.counted(len(calibrations), "earlier calibration").capitalize()
+    count = numbers.counted(len(calibrations), _("earlier calibration")).capitalize()
     return outline.Table(
         f"{count}, the latest last.",
         (
@@ -220,10 +244,12 @@ def _figure(
                 panel.tick_params(axis="x", labelrotation=0 if len(labels) < 5 else 60)
         drawn = svg(figure, "history")
     return outline.Figure(
-        "Bias and scale error over the calibrations, each with its σ, relative to the last value: "
-        "x orange circles, y green squares, z blue triangles.",
+        _(
+            "Bias and scale error over the calibrations, each with its σ, relative to the "
+            "last value: x orange circles, y green squares, z blue triangles."
+        ),
         drawn,
-        "Bias and scale error of both sensors against the dates of the calibrations.",
+        _("Bias and scale error of both sensors against the dates of the calibrations."),
     )
 
 
@@ -237,9 +263,9 @@ def _panel(panel: Axes, stage: str, kind: str, each: Sequence[Calibration]) -> N
         # A change is small beside the value itself, so it is drawn from the last value.
         last = points[-1][1]["value"] if points else 0.0
         panel.errorbar(
-            [x for x, _ in points],
-            [(row["value"] - last) / unit.size for _, row in points],
-            [(row["sigma"] or 0.0) / unit.size for _, row in points],
+            [x for x, _unused in points],
+            [(row["value"] - last) / unit.size for _unused, row in points],
+            [(row["sigma"] or 0.0) / unit.size for _unused, row in points],
             color=AXIS_COLOUR[axis],
             marker=AXIS_MARK[axis],
             markersize=3,
@@ -247,7 +273,11 @@ def _panel(panel: Axes, stage: str, kind: str, each: Sequence[Calibration]) -> N
             elinewidth=0.8,
             capsize=2,
         )
-    name = f"{SENSOR_OF_STAGE[stage]}, {KIND[kind].lower()} relative to its last value"
+    name = _(
+        "{sensor_of_stage}, {lower} relative to its last value",
+        sensor_of_stage=SENSOR_OF_STAGE[stage],
+        lower=KIND[kind].lower(),
+    )
     panel.set_title(f"{name}, {unit.name}", loc="left", pad=2)
     panel.axhline(0, color=INK, linewidth=0.4)
     panel.set_xlim(-0.5, len(each) - 0.5)

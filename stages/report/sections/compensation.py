@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from inertial.campaign.final_result import EXTENDED
 from inertial.tables import AXES, CHANNELS
 from inertial.text import numbers, units
+from inertial.text.messages import _
 from stages.report import drawing, outline
 from stages.report.drawing import Array
 from stages.report.tables import Record, Tables
@@ -34,11 +35,11 @@ class Checked:
 
 
 CHECKED = {
-    "gravity": Checked("Gravity in every position", units.METRES, units.MICRO_G),
+    "gravity": Checked(_("Gravity in every position"), units.METRES, units.MICRO_G),
     # It is |f| but for the tilt; in full it would say the same again.
-    "force_up": Checked("Specific force along up", units.METRES, units.MICRO_G, in_full=False),
-    "rate_up": Checked("Earth's rate along up", units.DEGREES_PER_HOUR, units.DEGREES_PER_HOUR),
-    "angle": Checked("Angle of every whole turn", units.DEGREES, units.SECONDS_OF_ARC),
+    "force_up": Checked(_("Specific force along up"), units.METRES, units.MICRO_G, in_full=False),
+    "rate_up": Checked(_("Earth's rate along up"), units.DEGREES_PER_HOUR, units.DEGREES_PER_HOUR),
+    "angle": Checked(_("Angle of every whole turn"), units.DEGREES, units.SECONDS_OF_ARC),
 }
 
 
@@ -55,11 +56,11 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
     for row in rows:
         if row["quantity"] not in CHECKED:
             yield outline.Paragraph(numbers.shortened(row["sentence"], 900), "fair")
-    yield outline.Heading("Before, after and difference")
+    yield outline.Heading(_("Before, after and difference"))
     figures = list(_figures(tables))
     yield from figures
     if not figures:
-        yield outline.Paragraph("None: no compensated log could be drawn.")
+        yield outline.Paragraph(_("None: no compensated log could be drawn."))
     for checked, own in by_quantity.items():
         if checked.in_full:
             yield outline.Heading(checked.name)
@@ -69,11 +70,17 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
 SECTION = outline.Section(
     "compensation",
     "Compensation",
-    "The readings corrected with the joint parameters, and whether they then agree with what is "
-    "known: gravity in every position, the earth's rate, the angle of every turn.",
-    "Before and after are differences from the known value. In σ is the remaining difference over "
-    "its own σ; beyond 3 the parameters do not describe all errors, and “Unmodelled effects” may "
-    "state the cause. In the figures grey is before, colour after.",
+    _(
+        "The readings corrected with the joint parameters, and whether they then agree "
+        "with what is known: gravity in every position, the earth's rate, the angle of "
+        "every turn."
+    ),
+    _(
+        "Before and after are differences from the known value. In σ is the remaining "
+        "difference over its own σ; beyond 3 the parameters do not describe all errors, "
+        "and “Unmodelled effects” may state the cause. In the figures grey is before, "
+        "colour after."
+    ),
     ("checks", "traces", "compensated_traces", "segments", "manoeuvres", "decision"),
     parts,
 )
@@ -86,9 +93,11 @@ def _joint(tables: Tables) -> Iterator[outline.Paragraph]:
     ]
     if better:
         yield outline.Paragraph(
-            f"The readings are corrected with the joint result, although the extended result of "
-            f"the {listed(list(dict.fromkeys(better)))} is final: they still contain the "
-            "identified effects.",
+            _(
+                "The readings are corrected with the joint result, although the extended result "
+                "of the {listed} is final: they still contain the identified effects.",
+                listed=listed(list(dict.fromkeys(better))),
+            ),
             "fair",
         )
 
@@ -216,12 +225,20 @@ def _figures(tables: Tables) -> Iterator[outline.Figure]:
             continue
         number += 1
         name = numbers.shortened(plan["manoeuvre"], 80)
-        about = "" if compensated.turning else "; both relative to the median after"
+        about = "" if compensated.turning else _("; both relative to the median after")
         yield outline.Figure(
-            f"{name}, {view}: before (grey) and after (colour) compensation, and the "
-            f"correction{about}.",
+            _(
+                "{name}, {view}: before (grey) and after (colour) compensation, and the "
+                "correction{about}.",
+                name=name,
+                view=view,
+                about=about,
+            ),
             _draw(compensated, f"compensated-{number}"),
-            f"Six channels of {name} before and after compensation, and their difference.",
+            _(
+                "Six channels of {name} before and after compensation, and their difference.",
+                name=name,
+            ),
         )
 
 
@@ -234,7 +251,9 @@ def _chosen(tables: Tables) -> dict[str, Record]:
         for plan in tables.rows("manoeuvres"):
             if plan["manoeuvre"] in there and (view := _view(plan, axis)):
                 views.setdefault(view, plan)
-        turns = (f"turn {way} about {axis}" for way in ("forward", "backward"))
+        turns = (
+            _("turn {way} about {axis}", way=way, axis=axis) for way in ("forward", "backward")
+        )
         order = (f"{axis} down", f"{axis} up", *turns)
         if len(views) > len(best):
             best = {view: views[view] for view in order if view in views}
@@ -246,7 +265,7 @@ def _view(plan: Record, axis: str) -> str:
     up, about = plan[f"up_{axis}"], plan[f"about_{axis}"]
     if plan["do"] == "turn" and about is not None and abs(about) > MIN_COSINE:
         forward = (plan["angle"] or plan["rate"] or 0.0) * about > 0
-        return f"turn {'forward' if forward else 'backward'} about {axis}"
+        return _("turn {value} about {axis}", value="forward" if forward else "backward", axis=axis)
     if plan["do"] == "rest" and up is not None and abs(up) > MIN_COSINE:
         return f"{axis} {'up' if up > 0 else 'down'}"
     return ""
@@ -353,7 +372,7 @@ def _draw_correction(
     _background(panel, compensated, axis)
     correction = compensated.curves[f"{sensor}_{axis}"].correction / unit.size
     if not np.isfinite(correction).any():
-        drawing.write_inside(panel, "not compensated")
+        drawing.write_inside(panel, _("not compensated"))
         return
     panel.plot(compensated.x, correction, color=drawing.AXIS_COLOUR[axis], linewidth=0.8)
     low, high = float(np.nanmin(correction)), float(np.nanmax(correction))

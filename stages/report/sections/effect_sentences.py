@@ -8,6 +8,7 @@ from typing import Literal
 
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
+from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, fixed, shortened, significant, whole, with_sigma
 from stages.report.results import Shift, quantity_of
 from stages.report.tables import Record, Tables, once
@@ -17,11 +18,11 @@ Kind = Literal["found", "class", "structure", "consistent", "walk", "unexplained
 # The clearest first, each with its words in a line.
 GRADES: dict[Kind, str] = {
     "found": "identified",
-    "class": "one of a class",
-    "structure": "not identified",
-    "consistent": "consistent, not identified",
-    "walk": "consistent, not identified",
-    "unexplained": "not explained",
+    "class": _("one of a class"),
+    "structure": _("not identified"),
+    "consistent": _("consistent, not identified"),
+    "walk": _("consistent, not identified"),
+    "unexplained": _("not explained"),
 }
 MOST_MEMBERS = 8
 RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")
@@ -108,9 +109,9 @@ def name_of(row: Record) -> str:
     kind, sensors = kind_of(row), SENSORS.get(row["sensor"] or "", "")
     name = in_words(row["cause"])
     if sensors and kind == "structure":
-        name = f"unidentified structure in the residuals of the {sensors}"
+        name = _("unidentified structure in the residuals of the {sensors}", sensors=sensors)
     if sensors and kind == "unexplained":
-        name = f"unexplained residuals of the {sensors}"
+        name = _("unexplained residuals of the {sensors}", sensors=sensors)
     return with_mount(name, row["mount"])
 
 
@@ -123,19 +124,26 @@ def certainty(row: Record) -> str:
     """The degree of certainty in a sentence, and the significance."""
     names = [in_words(name) for name in (row["cause"], *alternatives(row))]
     sentence = {
-        "found": "Identified: no other effect of the catalogue has the same signature in these "
-        "data.",
-        "class": f"One of a class: this campaign cannot distinguish {listed(names)}.",
-        "structure": "Not identified: no effect of the catalogue explains this structure.",
-        "consistent": "Consistent with the data, but not identified: the name is not certain.",
-        "walk": "Consistent with the data, but not identified: other slow changes have much the "
-        "same signature.",
-        "unexplained": "Not explained by any effect of the catalogue.",
+        "found": _(
+            "Identified: no other effect of the catalogue has the same signature in these data."
+        ),
+        "class": _(
+            "One of a class: this campaign cannot distinguish {names}.", names=listed(names)
+        ),
+        "structure": _("Not identified: no effect of the catalogue explains this structure."),
+        "consistent": _("Consistent with the data, but not identified: the name is not certain."),
+        "walk": _(
+            "Consistent with the data, but not identified: other slow changes have much the "
+            "same signature."
+        ),
+        "unexplained": _("Not explained by any effect of the catalogue."),
     }[grade_of(row)]
     if row.get("snr"):
-        sentence += f" Signal-to-noise ratio: {numbers.significant(row['snr'], 2)}."
+        sentence += _(" Signal-to-noise ratio: {snr}.", snr=numbers.significant(row["snr"], 2))
     if row["p_value"] is not None:
-        sentence += f" Probability under noise alone: {numbers.p_is(row['p_value'])}."
+        sentence += _(
+            " Probability under noise alone: {p_value}.", p_value=numbers.p_is(row["p_value"])
+        )
     return sentence
 
 
@@ -146,20 +154,27 @@ def summary(rows: Sequence[Record]) -> Iterator[str]:
         yield f"Detected: {_names(own)}."
     for row in groups["class"]:
         either = _or(name_of(row), row)
-        yield f"Detected: {either}, which this campaign cannot distinguish."
+        yield _("Detected: {either}, which this campaign cannot distinguish.", either=either)
     if own := groups["structure"]:
-        yield f"The residuals of the {_sensors(own)} have a structure that is not identified."
+        yield _(
+            "The residuals of the {own} have a structure that is not identified.", own=_sensors(own)
+        )
     if own := groups["consistent"]:
         each = _distinct(_or(name_of(row), row) for row in own)
-        yield f"Consistent with the data, but not identified: {each}."
+        yield _("Consistent with the data, but not identified: {each}.", each=each)
     for row in groups["walk"]:
-        sentence = f"The biases of the {_sensors([row])} follow a random walk"
+        sentence = _("The biases of the {sensors} follow a random walk", sensors=_sensors([row]))
         if alternatives(row):
-            sentence = f"{_or(sentence, row)}, which this campaign cannot distinguish"
+            sentence = _(
+                "{sentence}, which this campaign cannot distinguish", sentence=_or(sentence, row)
+            )
         yield f"{sentence}."
     if own := groups["unexplained"]:
         sensors = _sensors(own)
-        yield f"The residuals of the {sensors} exceed the noise, which no known effect explains."
+        yield _(
+            "The residuals of the {sensors} exceed the noise, which no known effect explains.",
+            sensors=sensors,
+        )
 
 
 def _distinct(names: Iterable[str]) -> str:
@@ -182,7 +197,7 @@ def _sensors(rows: Sequence[Record]) -> str:
 
 MIN_SNR_SQUARED = 9.0  # below which held-out data do not test an effect: three sigma
 FITTED, HELD_OUT = "fitted", "held-out"
-MOTIONS = {"rest": "at rest", "turn": "while it turns"}
+MOTIONS = {"rest": _("at rest"), "turn": _("while it turns")}
 ERRORS = (("attitude", "mrad"), ("velocity", "mm/s"))
 PER_THOUSAND = 1e-3  # rad and m/s in mrad and mm/s
 
@@ -200,46 +215,64 @@ def reductions(effect: str, mount: str, gain: Sequence[Record]) -> Iterator[str]
         if HELD_OUT in by_scope:
             yield _on_held_out(by_scope[HELD_OUT])
         if FITTED in by_scope:
-            yield f"In the fit, χ² {_change(by_scope[FITTED])}."
+            yield _("In the fit, χ² {by_scope}.", by_scope=_change(by_scope[FITTED]))
     for row in own:
         if row["unit"] != "sigma" and row["scope"] == HELD_OUT:
             gyro = f"{row['axis']} gyro" if row["axis"] else "gyros"
             before, after = (significant(row[f"rms_{at}"], 3) for at in ("before", "after"))
             unit = shortened(row["unit"], 20)
             yield (
-                f"The residuals of the {gyro} fall from {before} {unit} to {after} {unit} rms "
-                "in held-out turns."
+                _(
+                    "The residuals of the {gyro} fall from {before} {unit} to {after} "
+                    "{unit} rms in "
+                    "held-out turns.",
+                    gyro=gyro,
+                    before=before,
+                    unit=unit,
+                    after=after,
+                )
             )
 
 
 def _on_held_out(row: Record) -> str:
     effects = row["effects"]
     if not row["counted"] and row["folds"]:
-        return (
-            "No manoeuvre can be predicted from the others, so the improvement on held-out data is "
-            "not known."
+        return _(
+            "No manoeuvre can be predicted from the others, so the improvement on held-out "
+            "data is not known."
         )
-    together = f", with {listed([in_words(name) for name in effects])} in the model"
-    sentence = (
-        f"On held-out data{together if len(effects) > 1 else ''}, χ² of the "
-        f"{SENSORS[row['sensor']]} {_change(row)}"
+    together = _(
+        ", with {listed} in the model", listed=listed([in_words(name) for name in effects])
+    )
+    sentence = _(
+        "On held-out data{value}, χ² of the {sensors} {row}",
+        value=together if len(effects) > 1 else "",
+        sensors=SENSORS[row["sensor"]],
+        row=_change(row),
     )
     attainable = row["snr_squared"]
     if attainable is not None and attainable >= MIN_SNR_SQUARED:
         share = fixed(100 * row["drop"] / attainable, 1)
-        sentence += f", which captures {share} % of the attainable reduction"
+        sentence += _(", which captures {share} % of the attainable reduction", share=share)
     elif attainable is not None:
-        sentence += "; the attainable reduction is too small to judge it by"
+        sentence += _("; the attainable reduction is too small to judge it by")
     if row["not_counted"]:
         names = shortened(", ".join(row["not_counted"]), 200)
-        sentence += f"; not predicted, since the others hardly observe the effect: {names}"
+        sentence += _(
+            "; not predicted, since the others hardly observe the effect: {names}", names=names
+        )
     return f"{sentence}."
 
 
 def _change(row: Record) -> str:
     size = abs(row["drop"])
     way = "falls" if row["drop"] >= 0 else "grows"
-    return f"{way} by {whole(size) if size >= 100 else fixed(size, 1)} of {whole(row['before'])}"
+    return _(
+        "{way} by {value} of {before}",
+        way=way,
+        value=whole(size) if size >= 100 else fixed(size, 1),
+        before=whole(row["before"]),
+    )
 
 
 def worth(effects: Sequence[str], rows: Sequence[Record]) -> str:
@@ -251,16 +284,20 @@ def worth(effects: Sequence[str], rows: Sequence[Record]) -> str:
         shown = [pair for pair in ERRORS if any(row[f"{pair[0]}_joint"] for row in own)]
         if shown:
             pairs = [_largest(own, *pair) for pair in shown]
-            joint.append(" and ".join(before for before, _ in pairs) + f" {where}")
-            remaining.append(" and ".join(after for _, after in pairs) + f" {where}")
+            joint.append(" and ".join(before for before, _unused in pairs) + f" {where}")
+            remaining.append(" and ".join(after for _unused, after in pairs) + f" {where}")
     if not joint:
         return ""
     names = listed([in_words(name) for name in effects])
-    due = f", due to {names}" if len(effects) > 1 else ""
-    return (
-        f"After {whole(rows[0]['seconds'])} s of free inertial navigation from a known attitude, "
-        f"the error with the joint result is up to {', '.join(joint)}{due}. With the extended "
-        f"result, an uncertainty of at most {', '.join(remaining)} remains."
+    due = _(", due to {names}", names=names) if len(effects) > 1 else ""
+    return _(
+        "After {seconds} s of free inertial navigation from a known attitude, the error "
+        "with the joint result is up to {joint}{due}. With the extended result, an "
+        "uncertainty of at most {remaining} remains.",
+        seconds=whole(rows[0]["seconds"]),
+        joint=", ".join(joint),
+        due=due,
+        remaining=", ".join(remaining),
     )
 
 
@@ -286,7 +323,12 @@ def largest_shift(shifts: Sequence[Shift]) -> str:
         for row in (most.joint, most.extended)
         for sigma in [unit.of(row["sigma"])]
     )
-    return (
-        f"{most.name} changes most of the parameters: from {before} to {after} {unit.name}, by "
-        f"{fixed(sigmas, 1)} σ of the joint fit."
+    return _(
+        "{name} changes most of the parameters: from {before} to {after} {name_2}, by "
+        "{sigmas} σ of the joint fit.",
+        name=most.name,
+        before=before,
+        after=after,
+        name_2=unit.name,
+        sigmas=fixed(sigmas, 1),
     )

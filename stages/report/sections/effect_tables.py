@@ -7,6 +7,7 @@ from itertools import groupby
 
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
+from inertial.text.messages import _
 from stages.report import outline
 from stages.report.results import (
     KIND,
@@ -27,11 +28,11 @@ VISIBLE = "visible"
 Effect = tuple[str, str]  # its name in the catalogue, and the mount
 TESTS = {
     "time": "time",
-    "angle": "the angle of the table",
-    "rate": "the rate of the turns",
-    "attitude": "the attitude",
-    "temperature": "the temperature",
-    "change": "a change in time",
+    "angle": _("the angle of the table"),
+    "rate": _("the rate of the turns"),
+    "attitude": _("the attitude"),
+    "temperature": _("the temperature"),
+    "change": _("a change in time"),
 }
 
 # ---- parameters of an effect
@@ -42,8 +43,10 @@ def parameters(title: str, rows: Sequence[Record]) -> outline.Table:
     clear = [row for row in rows if _clear(row)]
     others = sum(row["value"] is not None and bool(row["sigma"]) for row in rows) - len(clear)
     gaps = sum(row["value"] is None for row in rows)
-    notes = [f"{numbers.counted(others, 'parameter')} within 3 σ of zero not listed"] * bool(others)
-    notes += [f"{numbers.counted(gaps, 'parameter')} not determined"] * bool(gaps)
+    notes = [
+        _("{others} within 3 σ of zero not listed", others=numbers.counted(others, "parameter"))
+    ] * bool(others)
+    notes += [_("{gaps} not determined", gaps=numbers.counted(gaps, "parameter"))] * bool(gaps)
     return outline.Table(
         f"{capital(title)}: the parameters beyond 3 σ.",
         (
@@ -84,7 +87,7 @@ def extended(tables: Tables) -> Iterator[outline.Part]:
     """The joint fit beside the extended one, a table for each sensor that shows an effect."""
     by_sensor = shifts(tables)
     if by_sensor:
-        yield outline.Heading("Parameters with the effects in the model")
+        yield outline.Heading(_("Parameters with the effects in the model"))
     for own in by_sensor.values():
         yield outline.Table(
             f"{own[0].sensor}: the joint fit, and the fit with the effects in the model.",
@@ -238,18 +241,28 @@ def structure_tests(rows: Sequence[Record]) -> Iterator[outline.Part]:
         elif any(row["degrees"] for row in own):
             yield outline.Paragraph(_insignificant(own, where), "good")
         else:
-            yield outline.Paragraph(f"No test for structure in the residuals was possible{where}.")
+            yield outline.Paragraph(
+                _("No test for structure in the residuals was possible{where}.", where=where)
+            )
 
 
 def _insignificant(rows: Sequence[Record], where: str) -> str:
     least = min((row for row in rows if row["degrees"]), key=lambda row: float(row["p_value"]))
-    sentence = (
-        f"{_count(rows)} tests for structure in the residuals of the model with the identified "
-        f"effects{where}, against {listed([test_name(row) for row in rows])}: none is significant, "
-        f"smallest {numbers.p_is(least['p_value'])} ({test_name(least)}, {channel(least)})."
+    sentence = _(
+        "{rows} tests for structure in the residuals of the model with the identified "
+        "effects{where}, against {listed}: none is significant, smallest {p_value} "
+        "({least}, {least_2}).",
+        rows=_count(rows),
+        where=where,
+        listed=listed([test_name(row) for row in rows]),
+        p_value=numbers.p_is(least["p_value"]),
+        least=test_name(least),
+        least_2=channel(least),
     )
     if idle := [test_name(row) for row in rows if not row["degrees"]]:
-        sentence += f" Not tested against {listed(idle)}, which the recording does not contain."
+        sentence += _(
+            " Not tested against {idle}, which the recording does not contain.", idle=listed(idle)
+        )
     return sentence
 
 
@@ -286,8 +299,8 @@ def _significant_first(row: Record) -> tuple[bool, float]:
 
 def _outcome(row: Record) -> tuple[str, str, str]:
     if not row["degrees"]:
-        return "—", "—", "not recorded"
-    outcome = "significant" if row["detected"] else "not significant"
+        return "—", "—", _("not recorded")
+    outcome = "significant" if row["detected"] else _("not significant")
     return numbers.significant(row["statistic"]), numbers.probability(row["p_value"]), outcome
 
 
@@ -307,9 +320,9 @@ def place(row: Record) -> str:
     if at is None or not row["degrees"]:
         return "—"
     if row["kind"] == "change":
-        return f"at {numbers.fixed(at / 60, 1)} min"
+        return _("at {fixed} min", fixed=numbers.fixed(at / 60, 1))
     if row["kind"] == "angle":
-        return f"{numbers.significant(at, 3)} times in a turn" if at > 0 else "smooth"
+        return _("{at} times in a turn", at=numbers.significant(at, 3)) if at > 0 else "smooth"
     if row["kind"] == "time":
         return f"every {numbers.significant(1 / at, 3)} s" if at > 0 else "smooth"
     return "—"

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from inertial.tables import AXES
+from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant, whole
 from inertial.text.units import DEGREES, DEGREES_PER_SECOND, METRES
 from stages.report.drawing import (
@@ -175,9 +176,9 @@ def _by_size(tables: Tables, entry: Record, size: float) -> Compared | None:
     if entry["cause"] == "unexplained":
         return Compared("residuals", SIGMA, NOISE_ALONE, size)
     if entry["cause"] == "rate_off" and rate:
-        return Compared("samples per second", "Hz", rate, rate * size)
+        return Compared(_("samples per second"), "Hz", rate, rate * size)
     if entry["cause"] == "wrong_scale_factor" and entry["sensor"] == "accel" and gravity:
-        return Compared("specific force at rest", "m/s²", gravity, gravity * size)
+        return Compared(_("specific force at rest"), "m/s²", gravity, gravity * size)
     if entry["cause"] == "gravity_error" and gravity:
         return Compared("gravity", "m/s²", gravity - size, gravity, origin="stated")
     return None
@@ -193,7 +194,7 @@ def _comparison(shown: Compared, key: str) -> Figure:
     expected, value = shown.written(shown.expected), shown.written(shown.value)
     caption = f"{shown.quantity.capitalize()}: {value} {shown.origin}, {expected} expected."
     if shown.missing:
-        caption += f" Hatched: {shown.written(shown.missing)} not recorded."
+        caption += _(" Hatched: {missing} not recorded.", missing=shown.written(shown.missing))
     with style():
         drawn, (panel,) = side_by_side((1.0,), 0.36, Margins(left=0.75, right=1.2, top=0.06))
         if shown.near:
@@ -206,7 +207,7 @@ def _comparison(shown: Compared, key: str) -> Figure:
             panel.annotate(
                 text,
                 (1.0, side),
-                xycoords=("axes fraction", "data"),
+                xycoords=(_("axes fraction"), "data"),
                 xytext=(4, 0),
                 textcoords="offset points",
                 va="center",

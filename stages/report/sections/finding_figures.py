@@ -12,6 +12,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from inertial.tables import AXES, CHANNEL_PARTS, CHANNELS
+from inertial.text.messages import _
 from inertial.text.numbers import shortened, whole
 from inertial.text.units import Unit
 from stages.report.drawing import (
@@ -256,16 +257,28 @@ def figure(place: Place, key: str) -> Figure | None:
     if not any(np.isfinite(place.log.least[channel]).any() for channel in place.channels):
         return None
     name = shortened(place.log.name, 80)
-    marked = ", the wedge marks the place" if place.marked else ""
-    caption, close_up = f"{name}, {place.name}: the whole log{marked}.", None
+    marked = _(", the wedge marks the place") if place.marked else ""
+    caption, close_up = (
+        _("{name}, {name_2}: the whole log{marked}.", name=name, name_2=place.name, marked=marked),
+        None,
+    )
     if place.close_up is not None and len(place.close_up.line):
         close_up = _shown(place, place.close_up)
         first, last = (whole(int(close_up.line[end])) for end in (0, -1))
-        caption = (
-            f"{name}, {place.name}: the whole log{marked}; and lines {first} to {last} of it "
-            f"close up.{_signs(place, close_up)}"
+        caption = _(
+            "{name}, {name_2}: the whole log{marked}; and lines {first} to {last} of it "
+            "close up.{place}",
+            name=name,
+            name_2=place.name,
+            marked=marked,
+            first=first,
+            last=last,
+            place=_signs(place, close_up),
         )
-    words = f"The log {name} over time with the place of the finding, and the samples around it."
+    words = _(
+        "The log {name} over time with the place of the finding, and the samples around it.",
+        name=name,
+    )
     return Figure(caption, _draw(place, close_up, key), words)
 
 
@@ -308,18 +321,20 @@ def _signs(place: Place, close_up: CloseUp) -> str:
     cause, inside = place.row["cause"], int(close_up.concerned.sum())
     affected = ""
     if 0 < inside < len(close_up.concerned) and cause != "oscillation":
-        affected = " Ringed: affected." if inside <= MAX_RINGED else " Shaded: affected."
+        affected = _(" Ringed: affected.") if inside <= MAX_RINGED else _(" Shaded: affected.")
     if cause in OF_TIME:
-        return f" Close up: the time between successive records, by line.{affected}"
+        return _(
+            " Close up: the time between successive records, by line.{affected}", affected=affected
+        )
     signs = ""
     if len(place.channels) > 1:
-        signs = " x orange, y green, z blue"
-        signs += ", each relative to its median." if any(place.middles.values()) else "."
+        signs = _(" x orange, y green, z blue")
+        signs += _(", each relative to its median.") if any(place.middles.values()) else "."
     signs += affected
     if gaps_in(close_up, place.gaps):
-        signs += " Hatched: not recorded."
+        signs += _(" Hatched: not recorded.")
     if masked_in(close_up, place.masks, place.channels):
-        signs += " Ruled: masked, not used."
+        signs += _(" Ruled: masked, not used.")
     return signs
 
 
@@ -397,8 +412,13 @@ def _title(close_up: CloseUp, after_gaps: Sequence[int]) -> str:
     if len(close_up.line) > 1 and len(after_gaps) == 1:
         i = after_gaps[0]
         lost = float(close_up.time[i] - close_up.time[i - 1])
-        return f"lines {close_up.line[i - 1]} and {close_up.line[i]}, {lost:.3f} s apart"
-    return f"lines {close_up.line[0]} to {close_up.line[-1]}"
+        return _(
+            "lines {line} and {line_2}, {lost:.3f} s apart",
+            line=close_up.line[i - 1],
+            line_2=close_up.line[i],
+            lost=lost,
+        )
+    return _("lines {line} to {line_2}", line=close_up.line[0], line_2=close_up.line[-1])
 
 
 def _between(places: Array, first: int, last: int) -> Span:
@@ -421,7 +441,7 @@ def _steps_of_time(panel: Axes, close_up: CloseUp) -> None:
         panel.plot(line[inside], steps[inside], "o", markersize=5, color=MISSING, fillstyle="none")
     _plain_ticks(panel)
     panel.set_xlabel("Line")
-    panel.set_title("time since the previous record, ms", loc="left", pad=PAD)
+    panel.set_title(_("time since the previous record, ms"), loc="left", pad=PAD)
 
 
 def _unit(place: Place) -> Unit:

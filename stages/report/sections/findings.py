@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 
 from inertial.text.cause_names import how_grave, in_words, tally
+from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, probability, shortened, significant, whole
 from stages.report.declared import DECLARED
 from stages.report.linked import CAUSE_TABLES, effect_causes
@@ -155,7 +156,7 @@ def parts(tables: Tables) -> Iterator[Part]:
     rows = ranked(tables)
     if not rows:
         yield Paragraph(
-            "None: neither in the recording, nor in its segments, nor in the model.", "good"
+            _("None: neither in the recording, nor in its segments, nor in the model."), "good"
         )
         return
     severities = [row["severity"] for row in rows]
@@ -174,11 +175,16 @@ def parts(tables: Tables) -> Iterator[Part]:
 SECTION = Section(
     "findings",
     "Findings",
-    "Faults of the recording and misfits of the model, each with its consequence for the result "
-    "and with the action that was taken or is recommended.",
-    "Worst first: findings that spoil a result, then those that weaken one, then those that are "
-    "good to know. p is the probability of such a size if nothing is wrong. Left, the whole log, "
-    "where a wedge marks the place; right, the samples there.",
+    _(
+        "Faults of the recording and misfits of the model, each with its consequence "
+        "for the result and with the action that was taken or is recommended."
+    ),
+    _(
+        "Worst first: findings that spoil a result, then those that weaken one, then "
+        "those that are good to know. p is the probability of such a size if nothing is "
+        "wrong. Left, the whole log, where a wedge marks the place; right, the samples "
+        "there."
+    ),
     (
         *FINDING_TABLES,
         *CAUSE_TABLES[1:],
@@ -193,7 +199,7 @@ def title_of(row: Record) -> str:
     """What a finding is and where."""
     where = row["manoeuvre"] or row["log"]
     if not where and row["stage"] == MODEL:
-        where = "residuals of the model"
+        where = _("residuals of the model")
     sensor = SENSOR.get(row["sensor"] or "", row["sensor"])
     concerned = f"{row['axis']} {sensor}" if row["axis"] and sensor else ""
     places = [shortened(text, 60) for text in (where, concerned) if text]
@@ -203,7 +209,9 @@ def title_of(row: Record) -> str:
 def _links(tables: Tables, row: Record) -> Iterator[Link]:
     """To the findings that concern the same fault, those of the model in their own section."""
     if row["stage"] == MODEL:
-        yield Link(f"Unmodelled effects: {in_words(row['cause'])}", f"effect/{row['id']}")
+        yield Link(
+            _("Unmodelled effects: {cause}", cause=in_words(row["cause"])), f"effect/{row['id']}"
+        )
     for other in related_findings(tables).get(row["id"], ()):
         yield Link(title_of(other), f"finding/{other['id']}")
 

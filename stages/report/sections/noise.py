@@ -8,14 +8,15 @@ from statistics import median
 from matplotlib.axes import Axes
 
 from inertial.tables import AXES, CHANNEL_PARTS, CHANNELS
+from inertial.text.messages import _
 from inertial.text.numbers import aligned, common_decimals, shortened, significant, with_sigma
 from inertial.text.units import RANDOM_WALK
 from stages.report import drawing, outline
 from stages.report.tables import Record, Tables
 
-NAME = {"gyro": "Angle random walk", "accel": "Velocity random walk"}
+NAME = {"gyro": _("Angle random walk"), "accel": _("Velocity random walk")}
 SENSOR = {"gyro": "gyroscope", "accel": "accelerometer"}
-DATA_SHEET = "data sheet"
+DATA_SHEET = _("data sheet")
 MOST_ROWS = 48
 MOST_NAMES = 30
 MOST_LEVEL_NAMES = 6  # that have room beside each other
@@ -37,11 +38,16 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
 SECTION = outline.Section(
     "noise",
     "Noise",
-    "The white noise of each channel, estimated from the data of each manoeuvre. Every σ of "
-    "this report rests on it.",
-    "As random walk: multiplied by the square root of time it is the standard deviation of the "
-    "integral. The data sheet is shown for comparison only and is used nowhere. A channel "
-    "that is noisier in one attitude than in another responds to vibration of table or building.",
+    _(
+        "The white noise of each channel, estimated from the data of each manoeuvre. "
+        "Every σ of this report rests on it."
+    ),
+    _(
+        "As random walk: multiplied by the square root of time it is the standard "
+        "deviation of the integral. The data sheet is shown for comparison only and is "
+        "used nowhere. A channel that is noisier in one attitude than in another "
+        "responds to vibration of table or building."
+    ),
     ("noise", "sensors"),
     parts,
 )
@@ -67,8 +73,8 @@ def _figure(rows: Sequence[Record], sheet: Sheet) -> outline.Figure:
         named = list(places.items())[:: max(1, -(-len(places) // MOST_NAMES))]
         many = len(places) > MOST_LEVEL_NAMES
         axes[1][0].set_xticks(
-            [number for _, number in named],
-            [_named(place, 24) for place, _ in named],
+            [number for _unused, number in named],
+            [_named(place, 24) for place, _unused in named],
             rotation=60 if many else 0,
             ha="right" if many else "center",
             rotation_mode="anchor",
@@ -77,7 +83,7 @@ def _figure(rows: Sequence[Record], sheet: Sheet) -> outline.Figure:
     return outline.Figure(
         "White noise by manoeuvre, with its σ; dashed: the data sheet.",
         drawn,
-        "White noise of the six channels by manoeuvre; gyroscope above, accelerometer below.",
+        _("White noise of the six channels by manoeuvre; gyroscope above, accelerometer below."),
     )
 
 

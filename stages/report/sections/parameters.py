@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from inertial.campaign.records import labels, omissions
 from inertial.tables import AXES
 from inertial.text import units
+from inertial.text.messages import _
 from inertial.text.numbers import aligned, counted, fixed, shortened, significant
 from stages.report.outline import (
     Column,
@@ -42,9 +43,9 @@ from stages.report.results import (
 )
 from stages.report.tables import Record, Tables
 
-REPLACED = (
-    "These are not the final parameters: those of the fit with effects in the model replace them, "
-    "in “Unmodelled effects”, in the archive and in the export."
+REPLACED = _(
+    "These are not the final parameters: those of the fit with effects in the model "
+    "replace them, in “Unmodelled effects”, in the archive and in the export."
 )
 MAX_LETTERS = 40  # of an identifier that stays in one line
 MAX_SYMBOLS = 18
@@ -53,27 +54,36 @@ MAX_SYMBOLS = 18
 def parts(tables: Tables) -> Iterator[Part]:
     """The model, and every method with its fit, its parameters and its matrices."""
     yield Equation(
-        "reading = M · truth + bias",
-        "M = I + S + N: scale errors sₓ… on the diagonal; off the diagonal, the cross-axis "
-        "term m with indices i, j is the response of sensor i to an input along axis j.",
+        _("reading = M · truth + bias"),
+        _(
+            "M = I + S + N: scale errors sₓ… on the diagonal; off the diagonal, the "
+            "cross-axis term m with indices i, j is the response of sensor i to an input "
+            "along axis j."
+        ),
     )
-    yield Equation("truth = M⁻¹ · (reading − bias)", "the compensation of a reading.")
+    yield Equation(_("truth = M⁻¹ · (reading − bias)"), _("the compensation of a reading."))
     for estimate in estimates(tables):
         yield from _estimate(estimate)
         if is_replaced(tables, estimate):
             yield Paragraph(REPLACED, "fair")
     if not any(estimate.parameters for estimate in estimates(tables)):
-        yield Paragraph("None: no method estimated a parameter.", "poor")
+        yield Paragraph(_("None: no method estimated a parameter."), "poor")
 
 
 PARAMETERS = Section(
     "parameters",
     "Parameters",
-    "Bias, scale error and cross-axis terms of both sensors, by each method that the plan allows.",
-    "Each value stands with its standard deviation σ, first in the unit of the laboratory, "
-    "then in the SI. Specific force: the axis that points up reads +g. Rotations follow the "
-    "right-hand rule. The joint fit is the final result, unless a note beside it says that the "
-    "fit with effects in the model replaces it; the other methods are given for comparison.",
+    _(
+        "Bias, scale error and cross-axis terms of both sensors, by each method that "
+        "the plan allows."
+    ),
+    _(
+        "Each value stands with its standard deviation σ, first in the unit of the "
+        "laboratory, then in the SI. Specific force: the axis that points up reads +g. "
+        "Rotations follow the right-hand rule. The joint fit is the final result, "
+        "unless a note beside it says that the fit with effects in the model replaces "
+        "it; the other methods are given for comparison."
+    ),
     (*ESTIMATE_TABLES, "decision"),
     parts,
 )
@@ -102,12 +112,21 @@ def _estimate(estimate: Estimate) -> Iterator[Part]:
 
 def _fit(estimate: Estimate, fit: Record) -> Paragraph:
     words, tone = estimate.fit_in_words()
-    terms = {"scatter": "scatter between manoeuvres", "random_walk": "random walk of the bias"}
+    terms = {
+        "scatter": _("scatter between manoeuvres"),
+        "random_walk": _("random walk of the bias"),
+    }
     there = [name for size, name in terms.items() if fit[size]]
     included = f", including {' and '.join(there)}" if there else ""
     return Paragraph(
-        f"χ² = {significant(fit['chi_squared'])} with {counted(fit['degrees'], 'degree')} of "
-        f"freedom{included}: {words}.{_random_walk(fit)}",
+        _(
+            "χ² = {chi_squared} with {degrees} of freedom{included}: {words}.{fit}",
+            chi_squared=significant(fit["chi_squared"]),
+            degrees=counted(fit["degrees"], "degree"),
+            included=included,
+            words=words,
+            fit=_random_walk(fit),
+        ),
         tone,
     )
 
@@ -121,9 +140,12 @@ def _random_walk(fit: Record) -> str:
         significant(unit.of(units.HOUR**0.5 * (fit[key] or 0.0)), 2)
         for key in ("random_walk", "random_walk_sigma")
     )
-    return (
-        f" The random walk of the bias is {size} ± {sigma} {unit.name}/√h; the bias is stated for "
-        "the middle of the campaign, and the σ include the random walk."
+    return _(
+        " The random walk of the bias is {size} ± {sigma} {name}/√h; the bias is stated "
+        "for the middle of the campaign, and the σ include the random walk.",
+        size=size,
+        sigma=sigma,
+        name=unit.name,
     )
 
 
@@ -164,7 +186,7 @@ def _matrices(estimate: Estimate) -> Matrices | None:
         return None
     unit = known["bias_x"]["unit"]
     return Matrices(
-        f"{estimate.name}: ready for use.",
+        _("{name}: ready for use.", name=estimate.name),
         (
             Matrix("M", _entries(matrix, 7)),
             Matrix("M⁻¹", _entries(inverse, 7)),
@@ -183,7 +205,9 @@ def _entries(matrix: NDArray[np.floating[Any]], decimals: int) -> tuple[tuple[st
 def undetermined_parts(tables: Tables) -> Iterator[Part]:
     """Parameters without a value with the reason; manoeuvres without a part in the fit."""
     if not estimates(tables):
-        yield Paragraph("Nothing was determined: no method found the manoeuvres it needs.", "poor")
+        yield Paragraph(
+            _("Nothing was determined: no method found the manoeuvres it needs."), "poor"
+        )
         return
     yield Table(
         "Parameters that are not determined.",
@@ -214,11 +238,15 @@ def undetermined_parts(tables: Tables) -> Iterator[Part]:
 
 UNDETERMINED = Section(
     "undetermined",
-    "Undetermined parameters",
-    "Parameters that the plan or the recording cannot determine, and manoeuvres that a fit "
-    "excludes.",
-    "A parameter that is not determined has no value anywhere in this report; it is not zero. "
-    "Each reason names the manoeuvre that would help.",
+    _("Undetermined parameters"),
+    _(
+        "Parameters that the plan or the recording cannot determine, and manoeuvres "
+        "that a fit excludes."
+    ),
+    _(
+        "A parameter that is not determined has no value anywhere in this report; it is "
+        "not zero. Each reason names the manoeuvre that would help."
+    ),
     ESTIMATE_TABLES,
     undetermined_parts,
 )
@@ -229,10 +257,12 @@ def _undetermined(estimate: Estimate) -> Iterator[Row]:
     gaps = [row for row in estimate.parameters if row["value"] is None]
     for reason, group in groupby(gaps, lambda row: row["reason"]):
         each = [symbol(row["parameter"]) for row in group]
-        rest = f" and {len(each) - MAX_SYMBOLS} more" if len(each) > MAX_SYMBOLS else ""
+        rest = (
+            _(" and {each} more", each=len(each) - MAX_SYMBOLS) if len(each) > MAX_SYMBOLS else ""
+        )
         yield table_row(
             estimate.name,
             ", ".join(each[:MAX_SYMBOLS]) + rest,
-            shortened(reason or "no reason is stated", 600),
+            shortened(reason or _("no reason is stated"), 600),
             tone="fair",
         )

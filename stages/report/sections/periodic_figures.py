@@ -12,6 +12,7 @@ import pyarrow as pa
 from matplotlib.axes import Axes
 
 from inertial.tables import AXES, GYRO
+from inertial.text.messages import _
 from inertial.text.numbers import fixed, shortened, significant
 from inertial.text.units import DEGREE, DEGREES_PER_HOUR, PPM, SECONDS_OF_ARC
 from stages.report import drawing
@@ -76,7 +77,7 @@ class View:
     @property
     def title(self) -> str:
         """Which gyro in which turn."""
-        return f"{self.gyro} gyro in {shortened(self.turn, 24)}"
+        return _("{gyro} gyro in {turn}", gyro=self.gyro, turn=shortened(self.turn, 24))
 
 
 def _views(tables: Tables, effect: str) -> list[View]:
@@ -128,12 +129,14 @@ def over_time(tables: Tables, effect: str, key: str) -> Figure | None:
         panels[0].set_ylabel("10⁻³ rad/s", labelpad=2)
         picture = drawing.svg(drawn, key)
     return Figure(
-        "One second of the steady part as measured by the gyros, the mean removed: "
+        _("One second of the steady part as measured by the gyros, the mean removed: ")
         + "; ".join(f"{view.title}, a turn about {view.about}" for view in shown)
-        + ". Dashed: the amplitude of the line, where it is significant; single samples miss its "
-        "peaks.",
+        + _(
+            ". Dashed: the amplitude of the line, where it is significant; single samples "
+            "miss its peaks."
+        ),
         picture,
-        "The readings of gyros over one second of a turn.",
+        _("The readings of gyros over one second of a turn."),
     )
 
 
@@ -163,12 +166,16 @@ def _curve(panel: Axes, view: View, samples: Mapping[str, Array]) -> None:
     values = (samples[view.gyro] - np.nanmean(samples[view.gyro])) / MILLIRADIANS
     colour = drawing.AXIS_COLOUR[view.gyro]
     panel.plot(time - time[0], values, color=colour, linewidth=0.7, marker=".", markersize=2.5)
-    label = "no significant line"
+    label = _("no significant line")
     if line["p_value"] < MAX_P:
         amplitude = line["amplitude"] / MILLIRADIANS
         for side in (-amplitude, amplitude):
             panel.axhline(side, color=drawing.QUIET, linewidth=0.6, dashes=(4, 2))
-        label = f"{fixed(line['frequency'], 3)} Hz, {significant(line['amplitude'], 3)} rad/s"
+        label = _(
+            "{frequency} Hz, {amplitude} rad/s",
+            frequency=fixed(line["frequency"], 3),
+            amplitude=significant(line["amplitude"], 3),
+        )
     panel.set_title(f"{view.title}\n{label}", loc="left", pad=3, fontsize=6.8)
     panel.set_xlabel("Time, s")
     drawing.ticks(panel, 4, 4)
@@ -183,14 +190,17 @@ def angle(tables: Tables, effect: str) -> Iterator[str]:
     amplitude = line["amplitude"] / (2 * pi * line["frequency"])
     plan = {row["manoeuvre"]: row for row in tables.rows("manoeuvres")}
     whole = abs(plan[line["manoeuvre"]]["angle"] or 0.0)
-    sentence = (
-        f"As an angle, A/(2πf), it is {significant(amplitude, 3)} rad, "
-        f"{significant(SECONDS_OF_ARC.of(amplitude), 3)} arcsec"
+    sentence = _(
+        "As an angle, A/(2πf), it is {amplitude} rad, {significant} arcsec",
+        amplitude=significant(amplitude, 3),
+        significant=significant(SECONDS_OF_ARC.of(amplitude), 3),
     )
     if whole:
         share = significant(PPM.of(amplitude / whole), 2)
-        sentence += (
-            f": {share} ppm of {fixed(degrees(whole), 0)}°, if the turn were cut off in mid-swing"
+        sentence += _(
+            ": {share} ppm of {fixed}°, if the turn were cut off in mid-swing",
+            share=share,
+            fixed=fixed(degrees(whole), 0),
         )
         results = [
             result.calibration for result in final_results(tables) if result.stage == "gyroscope"
@@ -198,9 +208,10 @@ def angle(tables: Tables, effect: str) -> Iterator[str]:
         name = f"scale_{axis}"
         sigma = next((row[name]["sigma"] for row in results if name in row), None)
         if sigma:
-            sentence += (
-                f"; the σ of the scale factor of the {axis} gyro is "
-                f"{significant(PPM.of(sigma), 2)} ppm"
+            sentence += _(
+                "; the σ of the scale factor of the {axis} gyro is {significant} ppm",
+                axis=axis,
+                significant=significant(PPM.of(sigma), 2),
             )
     yield sentence + "."
 
@@ -214,26 +225,32 @@ def over_angle(tables: Tables, order: float, key: str) -> Figure | None:
     shown = list(_binned(tables, span))
     if not shown:
         return None
-    names = [f"{axis} gyro in {shortened(turn, 24)}" for turn, axis, *_ in shown]
+    names = [
+        _("{axis} gyro in {turn}", axis=axis, turn=shortened(turn, 24))
+        for turn, axis, *_unused in shown
+    ]
     with drawing.style():
         margins = drawing.Margins(left=0.55, across=0.45)
         drawn, panels = drawing.side_by_side([1.0] * len(shown), 1.1, margins)
-        for panel, name, (_, axis, x, y) in zip(panels, names, shown, strict=True):
+        for panel, name, (_unused, axis, x, y) in zip(panels, names, shown, strict=True):
             colour = drawing.AXIS_COLOUR[axis]
             panel.plot(x, y, color=colour, linewidth=0.8, marker=".", markersize=2.5)
             panel.axhline(0, color=drawing.QUIET, linewidth=0.5)
             panel.set_title(name, pad=3)
-            panel.set_xlabel("Angle turned, °")
+            panel.set_xlabel(_("Angle turned, °"))
             panel.set_xlim(0, span)
             drawing.ticks(panel, 4, 5)
         panels[0].set_ylabel("Residual, °/h", labelpad=2)
         picture = drawing.svg(drawn, key)
     return Figure(
-        f"Residual of the gyro along the axis of rotation, over the steady part, against the angle "
-        f"turned since its start, means of {significant(span / BINS, 2)}°: "
-        f"{'; '.join(names)}.",
+        _(
+            "Residual of the gyro along the axis of rotation, over the steady part, against "
+            "the angle turned since its start, means of {significant}°: {names}.",
+            significant=significant(span / BINS, 2),
+            names="; ".join(names),
+        ),
         picture,
-        "Residuals of gyros against the angle of the table.",
+        _("Residuals of gyros against the angle of the table."),
     )
 
 

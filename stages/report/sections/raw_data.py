@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from inertial.tables import AXES, CHANNELS, STATIC_PHASES
+from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, shortened
 from inertial.text.units import DEGREES_PER_SECOND, METRES, Unit
 from stages.report import drawing
@@ -154,7 +155,7 @@ MANY_LOGS = 24  # from here on the figures are small, x, y and z in one panel
 MOST_LOGS = 110
 MOST_MANOEUVRES = 6  # named below a figure
 ABSOLUTE = {"gyro": DEGREES_PER_SECOND, "accel": METRES}
-NAMES = {"gyro": "Angular rate", "accel": "Specific force"}
+NAMES = {"gyro": _("Angular rate"), "accel": _("Specific force")}
 
 
 def parts(tables: Tables) -> Iterator[Part]:
@@ -164,18 +165,18 @@ def parts(tables: Tables) -> Iterator[Part]:
     for number, log in enumerate(each[:MOST_LOGS], 1):
         yield _figure(log, f"log-{number}", points, small=len(each) > MANY_LOGS)
     if len(each) > MOST_LOGS:
-        more = counted(len(each) - MOST_LOGS, "further log")
-        yield Paragraph(f"{more} not drawn, to keep the page light.")
+        more = counted(len(each) - MOST_LOGS, _("further log"))
+        yield Paragraph(_("{more} not drawn, to keep the page light.", more=more))
     if not each:
-        yield Paragraph("None: no log gave samples that could be drawn.", "poor")
+        yield Paragraph(_("None: no log gave samples that could be drawn."), "poor")
     elif not any(log.missing for log in each):
-        yield Paragraph("Missing stretches: none.", "good")
+        yield Paragraph(_("Missing stretches: none."), "good")
 
 
 SECTION = Section(
     "raw-data",
-    "Raw data",
-    "Gyroscope and accelerometer of every log, as recorded.",
+    _("Raw data"),
+    _("Gyroscope and accelerometer of every log, as recorded."),
     "Each band runs from the smallest to the largest sample of a short stretch, so no spike is "
     "lost. Logs at rest are drawn relative to the median, so that deviations show. Behind the "
     "curves, x orange, y green, z blue: rest grey, spin-up and spin-down yellow, steady turn "
@@ -189,17 +190,20 @@ def _figure(log: Log, key: str, points: int, *, small: bool) -> Figure:
     manoeuvres = list(dict.fromkeys(row["manoeuvre"] for row in log.phases))
     named = ", ".join(manoeuvres[:MOST_MANOEUVRES])
     if len(manoeuvres) > MOST_MANOEUVRES:
-        named += f" and {len(manoeuvres) - MOST_MANOEUVRES} more"
+        named += _(" and {manoeuvres} more", manoeuvres=len(manoeuvres) - MOST_MANOEUVRES)
     length = log.extent[1] - log.extent[0]
-    lasting = f", {fixed(length, 1)} s" if log.timed else ", without time stamps"
-    view = "each channel relative to its median" if log.static else "as recorded"
+    lasting = f", {fixed(length, 1)} s" if log.timed else _(", without time stamps")
+    view = _("each channel relative to its median") if log.static else _("as recorded")
     caption = (
         f"{shortened(log.name, 80)}: {shortened(named, 160) or 'no manoeuvre found'}; "
         f"{counted(log.records, 'sample')}{lasting}; {view}."
     )
     if log.missing:
-        caption += f" Gaps of {fixed(log.lost, 2)} s in all, from record to record."
-    words = f"Six curves over time: rates and specific forces of x, y and z of the log {log.name}."
+        caption += _(" Gaps of {lost} s in all, from record to record.", lost=fixed(log.lost, 2))
+    words = _(
+        "Six curves over time: rates and specific forces of x, y and z of the log {name}.",
+        name=log.name,
+    )
     drawn = _draw(log, key, points, small=small)
     return Figure(caption, drawn, words, "fair" if log.missing else "")
 
@@ -220,7 +224,7 @@ def _draw(log: Log, key: str, points: int, *, small: bool) -> str:
             for panel, axis in zip(own * 3 if small else own, AXES, strict=True):
                 channel = f"{sensor}_{axis}"
                 if not len(log.start) or not np.isfinite(log.least[channel]).any():
-                    drawing.write_inside(panel, "not recorded")
+                    drawing.write_inside(panel, _("not recorded"))
                 else:
                     draw_channel(panel, log, channel, points, unit, middles[axis])
                 if not small:

@@ -11,6 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from inertial.tables import AXES
+from inertial.text.messages import _
 from inertial.text.numbers import p_is, shortened
 from inertial.text.units import DEGREE, DEGREES_PER_HOUR, MICRO_G, Unit
 from stages.report import drawing
@@ -32,9 +33,9 @@ ICE_POINT = 273.15  # K
 # What a picture of each test goes along, its unit, and where that begins in SI.
 ALONG = {
     "time": ("Time", Unit("min", 60.0), 0.0),
-    "angle": ("Angle of the table", Unit("°", DEGREE), 0.0),
+    "angle": (_("Angle of the table"), Unit("°", DEGREE), 0.0),
     "rate": ("Rate", Unit("°/s", DEGREE), 0.0),
-    "attitude": ("Angle of the axis from the vertical", Unit("°", DEGREE), 0.0),
+    "attitude": (_("Angle of the axis from the vertical"), Unit("°", DEGREE), 0.0),
     "temperature": ("Temperature", Unit("°C", 1.0), ICE_POINT),
     "change": ("Time", Unit("min", 60.0), 0.0),
 }
@@ -103,12 +104,15 @@ def by_manoeuvre(tables: Tables, finding: Record, mount: str, key: str) -> Figur
     if not shown:
         return None
     changes = _changes(about_effect(gains(tables), finding["cause"], mount), sensor)
-    caption = (
-        f"Residuals of the {SENSORS[sensor]} with the joint model: means over turns and over "
-        "fifths of static positions, ± σ of the noise alone."
+    caption = _(
+        "Residuals of the {sensors} with the joint model: means over turns and over "
+        "fifths of static positions, ± σ of the noise alone.",
+        sensors=SENSORS[sensor],
     )
     if changes:
-        scope = "held out" if any(row["scope"] == HELD_OUT for row in changes.values()) else FITTED
+        scope = (
+            _("held out") if any(row["scope"] == HELD_OUT for row in changes.values()) else FITTED
+        )
         caption += (
             " Right: the residuals of each axis without (hollow) and with effects in the model "
             f"(filled), root mean square over static positions and whole turns that were {scope}; "
@@ -122,7 +126,7 @@ def by_manoeuvre(tables: Tables, finding: Record, mount: str, key: str) -> Figur
         if changes:
             _axes(panels[1], changes)
         picture = drawing.svg(drawn, key)
-    words = "Mean residuals of each manoeuvre, and residuals of each axis before and after."
+    words = _("Mean residuals of each manoeuvre, and residuals of each axis before and after.")
     return Figure(caption, picture, words)
 
 
@@ -165,7 +169,7 @@ def _manoeuvres(panel: Axes, sensor: str, shown: Sequence[Residual], named: bool
         names = [shortened(residual.manoeuvre, 12) for residual in shown]
         panel.set_xticks(range(len(shown)), names, rotation=90)
     else:
-        panel.set_xlabel("Manoeuvre, in the order of the plan")
+        panel.set_xlabel(_("Manoeuvre, in the order of the plan"))
 
 
 def _axes(panel: Axes, changes: dict[str, Record]) -> None:
@@ -180,7 +184,7 @@ def _axes(panel: Axes, changes: dict[str, Record]) -> None:
     panel.set_ylim(len(AXES) - 0.5, -0.5)
     panel.set_xlim(left=0.0)
     panel.xaxis.set_major_locator(MaxNLocator(5))
-    panel.set_title("Without → with, σ", pad=4)
+    panel.set_title(_("Without → with, σ"), pad=4)
 
 
 # ---- structure
@@ -213,7 +217,11 @@ def _structure(row: Record, points: Sequence[Record], key: str) -> Figure:
         "readings, all other terms as fitted; line: the structure that the test detects "
         f"({p_is(row['p_value'])}).",
         _draw_structure(row, points, key),
-        f"Residuals of the {channel(row)} against {along}, and the structure in them.",
+        _(
+            "Residuals of the {row} against {along}, and the structure in them.",
+            row=channel(row),
+            along=along,
+        ),
     )
 
 

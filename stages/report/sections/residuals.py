@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from inertial.tables import AXES, CHANNELS, GYRO
 from inertial.tables.parquet import Stream
+from inertial.text.messages import _
 from inertial.text.numbers import aligned, counted, fixed, shortened
 from inertial.text.units import DEGREES_PER_SECOND, Unit
 from stages.report.drawing import (
@@ -46,7 +47,7 @@ from stages.report.sections.periodic_figures import turns_about
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSORS, capital
 
-AT_REST = "at rest"
+AT_REST = _("at rest")
 MOST_TURNS = 6
 POINTS = 150  # per curve
 MAX_RATIO = 1.2  # residual over noise from which it is marked
@@ -64,23 +65,31 @@ def parts(tables: Tables) -> Iterator[Part]:
     for number, envelope in enumerate(drawn, 1):
         yield _figure(envelope, f"simulated-{number}")
     if not drawn:
-        yield Paragraph("No whole turn was simulated.", "fair")
+        yield Paragraph(_("No whole turn was simulated."), "fair")
     every = {row["manoeuvre"] for row in fidelity if row["profile"] != AT_REST}
     if drawn and len(every) > len(drawn):
-        others = counted(len(every) - len(drawn), "further turn")
-        yield Paragraph(f"{others} simulated but not drawn.")
-    yield Heading("Ratio of residual to noise")
+        others = counted(len(every) - len(drawn), _("further turn"))
+        yield Paragraph(_("{others} simulated but not drawn.", others=others))
+    yield Heading(_("Ratio of residual to noise"))
     yield _table(fidelity)
 
 
 SECTION = Section(
     "residuals",
     "Residuals",
-    "Measured readings less those simulated from the joint parameters and the motion of the table.",
-    "Left: the gyro along the axis of rotation, measured (band) and simulated (line). Right: the "
-    "residuals, x orange, y green, z blue, from the smallest to the largest sample. In the table "
-    f"noise alone gives a ratio of 1.0; {MARK} marks ratios above {MAX_RATIO}. Turns are evaluated "
-    "by samples, static positions by the means of blocks.",
+    _(
+        "Measured readings less those simulated from the joint parameters and the "
+        "motion of the table."
+    ),
+    _(
+        "Left: the gyro along the axis of rotation, measured (band) and simulated "
+        "(line). Right: the residuals, x orange, y green, z blue, from the smallest to "
+        "the largest sample. In the table noise alone gives a ratio of 1.0; {mark} "
+        "marks ratios above {max_ratio}. Turns are evaluated by samples, static "
+        "positions by the means of blocks.",
+        mark=MARK,
+        max_ratio=MAX_RATIO,
+    ),
     ("simulated", "fidelity", "manoeuvres", "segments"),
     parts,
 )
@@ -197,10 +206,18 @@ def _figure(envelope: Envelope, key: str) -> Figure:
     turn = envelope.turn
     name = shortened(turn.name, 80)
     return Figure(
-        f"{name}: the {turn.axis} gyro measured (band) and simulated (line); residuals of all "
-        f"gyros and accelerometers. Profile of the turn: {shortened(turn.profile, 60)}.",
+        _(
+            "{name}: the {axis} gyro measured (band) and simulated (line); residuals of all "
+            "gyros and accelerometers. Profile of the turn: {profile}.",
+            name=name,
+            axis=turn.axis,
+            profile=shortened(turn.profile, 60),
+        ),
         _draw(envelope, key),
-        f"Measured and simulated rate of {name}, and the residuals of six channels over time.",
+        _(
+            "Measured and simulated rate of {name}, and the residuals of six channels over time.",
+            name=name,
+        ),
     )
 
 
@@ -299,7 +316,7 @@ def _rows(keys: Sequence[tuple[str, str]], ratios: Ratios) -> Iterator[Row]:
         if profile != headed:
             headed = profile
             turns = f"Turns, by samples; profile: {shortened(profile, 60)}"
-            yield head("Static positions, by means of blocks" if profile == AT_REST else turns)
+            yield head(_("Static positions, by means of blocks") if profile == AT_REST else turns)
         yield table_row(shortened(manoeuvre, 60), *own)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from inertial.text import numbers
+from inertial.text.messages import _
 from inertial.text.units import DEGREE, DEGREES_PER_HOUR, PPM, SECONDS_OF_ARC, Unit
 from stages.report import drawing
 from stages.report.drawing import Array
@@ -38,14 +39,14 @@ CLOSE_SECONDS = 1.0  # of the start of a window that are drawn close up
 MOST_PAIRS = 6
 MAX_OFF = 5.0  # °, of a window that stands for one of a round angle
 SHOWN_SIGMAS = 5.0  # of a half turn that a panel of growing windows shows
-ALIAS = "Not every sample is drawn: a fast oscillation shows its size here, not its frequency."
+ALIAS = _("Not every sample is drawn: a fast oscillation shows its size here, not its frequency.")
 WHOLE_TURN = "whole turn"
-STUDIED = {"rests": "static positions", "turns": "turns"}
+STUDIED = {"rests": _("static positions"), "turns": "turns"}
 BY = {
-    WHOLE_TURN: "the whole turn",
-    "set rate": "180° by time, at the set rate",
-    "own angle": "180° by the time and angle of these turns",
-    "other turns": "180° by the speed of turns about other axes",
+    WHOLE_TURN: _("the whole turn"),
+    "set rate": _("180° by time, at the set rate"),
+    "own angle": _("180° by the time and angle of these turns"),
+    "other turns": _("180° by the speed of turns about other axes"),
 }
 SIGMA = {"scale": "cut_sigma", "bias": "bias_sigma"}
 UNIT = {"scale": PPM, "bias": DEGREES_PER_HOUR}
@@ -54,16 +55,16 @@ MARGINS = drawing.Margins(left=0.5, across=0.52, down=0.42, top=0.26)
 
 def parts(tables: Tables) -> Iterator[Part]:
     """Rests by epochs, turns by windows, and the table's time and angle."""
-    yield Heading("Static positions, epoch by epoch")
+    yield Heading(_("Static positions, epoch by epoch"))
     yield from list(epoch_parts(tables)) or [_none(tables, "rests")]
-    yield Heading("Turns, window by window")
+    yield Heading(_("Turns, window by window"))
     yield from list(_windows(tables)) or [_none(tables, "turns")]
-    yield Heading("Angle of the table against time")
+    yield Heading(_("Angle of the table against time"))
     yield from list(_time_and_angle(tables)) or [_none(tables, "turns")]
     yield _middles(tables)
     yield from map(Paragraph, LIMITS)
     if left_out := tables.rows("not_studied"):
-        yield Heading("Not in these studies")
+        yield Heading(_("Not in these studies"))
         yield Sentences(
             tuple(numbers.shortened(f"{row['subject']}: {row['reason']}", 400) for row in left_out)
         )
@@ -72,11 +73,16 @@ def parts(tables: Tables) -> Iterator[Part]:
 SECTION = Section(
     "studies",
     "Studies",
-    "The parameters by single epochs and running means of static positions, by a window that "
-    "slides through the turns and by one that grows, and the angle of the table against time.",
-    "A window of N samples lies between N + 1 edges and lasts N sample intervals: its angle by "
-    "time is N · interval · set rate. These studies change no result; they show how static "
-    "positions, windows and the table limit it.",
+    _(
+        "The parameters by single epochs and running means of static positions, by a "
+        "window that slides through the turns and by one that grows, and the angle of "
+        "the table against time."
+    ),
+    _(
+        "A window of N samples lies between N + 1 edges and lasts N sample intervals: "
+        "its angle by time is N · interval · set rate. These studies change no result; "
+        "they show how static positions, windows and the table limit it."
+    ),
     (
         *("epochs", "spreads", "windows", "growing", "middles"),
         *("time_angle", "motions", "not_studied"),
@@ -87,8 +93,14 @@ SECTION = Section(
 
 def _none(tables: Tables, study: str) -> Paragraph:
     reasons = any(row["study"] == study for row in tables.rows("not_studied"))
-    why = "; the reasons are below" if reasons else ""
-    return Paragraph(f"None: there are no {STUDIED[study]} that could be studied{why}.")
+    why = _("; the reasons are below") if reasons else ""
+    return Paragraph(
+        _(
+            "None: there are no {studied} that could be studied{why}.",
+            studied=STUDIED[study],
+            why=why,
+        )
+    )
 
 
 # ---- windows
@@ -135,7 +147,7 @@ def _sliding(slides: By, wholes: Wholes) -> Figure:
                 _panel(panel, [row["from_s"] for row in own], own, wholes[pair], key)
             line[1].set_ylim(line[0].get_ylim())
         for panel in axes[-1]:
-            panel.set_xlabel("Start in the steady part, s")
+            panel.set_xlabel(_("Start in the steady part, s"))
         drawn = drawing.svg(figure, "windows")
     count = numbers.whole(next(iter(slides.values()))[0]["samples"])
     return Figure(
@@ -143,7 +155,7 @@ def _sliding(slides: By, wholes: Wholes) -> Figure:
         "the steady part, its first second close up, and the bias. Coloured band: ± σ of noise and "
         f"oscillation, without the table's speed; grey: the whole turn ± σ. {ALIAS}",
         drawn,
-        "Scale factor and bias by a window of 180° against its start.",
+        _("Scale factor and bias by a window of 180° against its start."),
     )
 
 
@@ -158,14 +170,14 @@ def _growing(grows: By, wholes: Wholes) -> Figure:
                 middle = wholes[pair][key] / unit.size
                 panel.set_ylim(middle - reach, middle + reach)
         for panel in axes[-1]:
-            panel.set_xlabel("Angle from the start of the steady part, °")
+            panel.set_xlabel(_("Angle from the start of the steady part, °"))
         drawn = drawing.svg(figure, "growing")
     return Figure(
         "Windows by time from the start of the steady part to an angle that grows. Coloured band: "
         "± σ of noise and of an oscillation cut at any phase, without the table's speed; grey: the "
         f"whole turn ± σ. {ALIAS}",
         drawn,
-        "Scale factor and bias against the angle of the window.",
+        _("Scale factor and bias against the angle of the window."),
     )
 
 
@@ -199,11 +211,20 @@ def _on_place(rows: Sequence[Record], whole_turn: Record) -> str:
             PPM.of(whole_turn["scale_sigma"]),
         )
     )
-    return (
-        f"{whole_turn['axis']} gyro, {_names(whole_turn)}: with the start of the 180° the scale "
-        f"factor varies between {least} and {most} ppm, {rms} ppm rms about its mean, where noise "
-        f"and the remainder of an oscillation over a window of this length allow {allowed} ppm. "
-        f"Its mean differs by {off} ppm from that of the whole turn, whose σ is {sigma} ppm."
+    return _(
+        "{axis} gyro, {whole_turn}: with the start of the 180° the scale factor varies "
+        "between {least} and {most} ppm, {rms} ppm rms about its mean, where noise and "
+        "the remainder of an oscillation over a window of this length allow {allowed} "
+        "ppm. Its mean differs by {off} ppm from that of the whole turn, whose σ is "
+        "{sigma} ppm.",
+        axis=whole_turn["axis"],
+        whole_turn=_names(whole_turn),
+        least=least,
+        most=most,
+        rms=rms,
+        allowed=allowed,
+        off=off,
+        sigma=sigma,
     )
 
 
@@ -215,11 +236,21 @@ def _on_angle(rows: Sequence[Record], whole_turn: Record) -> str:
         if abs(degrees(row["angle"]) - angle) < MAX_OFF:
             off = numbers.fixed(PPM.of(row["scale"] - whole_turn["scale"]), 1)
             sigma = numbers.fixed(PPM.of(row["cut_sigma"]), 1)
-            differences.append(f"{off} ± {sigma} ppm at {numbers.fixed(angle, 0)}°")
-    return (
-        f"{whole_turn['axis']} gyro, {_names(whole_turn)}: the difference from the whole turn is "
-        f"{'; '.join(differences)}. The larger the angle, the smaller the effect of noise and of "
-        "an oscillation that is cut."
+            differences.append(
+                _(
+                    "{off} ± {sigma} ppm at {angle}°",
+                    off=off,
+                    sigma=sigma,
+                    angle=numbers.fixed(angle, 0),
+                )
+            )
+    return _(
+        "{axis} gyro, {whole_turn}: the difference from the whole turn is "
+        "{differences}. The larger the angle, the smaller the effect of noise and of an "
+        "oscillation that is cut.",
+        axis=whole_turn["axis"],
+        whole_turn=_names(whole_turn),
+        differences="; ".join(differences),
     )
 
 
@@ -271,16 +302,21 @@ SET = (
     ("spin-up seconds", 1.0, "s a ramp"),
 )
 LIMITS = (
-    "Use: the function gives the motion of the table between its ends, so its real speed and its "
-    "ramps, for other gyros, for other turns and for marks at fixed angles. With the speed from "
-    "turns about other axes the middle 180° become as good as their noise, whatever the set rate, "
-    "if the table keeps the same speed in all turns.",
-    "Limits: with the angle of its own turn a window gives the scale factor of the whole turn "
-    "again, since the gyro is compared with itself; the agreement shows only that nothing changed "
-    "within the turn. If all gyros had the same scale error, the same logs would be those of a "
-    "table that turned faster and further by that share: without the known whole angle a common "
-    "scale factor and the table's speed are one unknown. An angle recorded by the table resolves "
-    "this.",
+    _(
+        "Use: the function gives the motion of the table between its ends, so its real "
+        "speed and its ramps, for other gyros, for other turns and for marks at fixed "
+        "angles. With the speed from turns about other axes the middle 180° become as "
+        "good as their noise, whatever the set rate, if the table keeps the same speed "
+        "in all turns."
+    ),
+    _(
+        "Limits: with the angle of its own turn a window gives the scale factor of the "
+        "whole turn again, since the gyro is compared with itself; the agreement shows "
+        "only that nothing changed within the turn. If all gyros had the same scale "
+        "error, the same logs would be those of a table that turned faster and further "
+        "by that share: without the known whole angle a common scale factor and the "
+        "table's speed are one unknown. An angle recorded by the table resolves this."
+    ),
 )
 
 
@@ -300,15 +336,18 @@ def _time_and_angle(tables: Tables) -> Iterator[Part]:
         _angle(panel, name, turns[name])
 
     names = list(turns)[:MOST_TURNS]
-    rest = more(len(turns) - len(names), " in the table time_angle")
+    rest = more(len(turns) - len(names), _(" in the table time_angle"))
     margins = drawing.Margins(left=0.45, across=0.4, down=0.3)
     yield Figure(
-        "Angle of the table less that of the set trapezoid, which is laid through the steady "
-        "part, arcsec, and ± σ of the angle. σ is "
-        "zero at the start and that of the known whole angle at the end. Light blue: the "
-        f"amplitude of motion that is faster than the line resolves. {rest}".rstrip(),
+        _(
+            "Angle of the table less that of the set trapezoid, which is laid through the "
+            "steady part, arcsec, and ± σ of the angle. σ is zero at the start and that of "
+            "the known whole angle at the end. Light blue: the amplitude of motion that is "
+            "faster than the line resolves. {rest}",
+            rest=rest,
+        ).rstrip(),
         drawing.grid(names, draw, 0.95, margins, "Time, s", "time-angle"),
-        "The table's angle against time, less the trapezoid that was set.",
+        _("The table's angle against time, less the trapezoid that was set."),
     )
     yield from map(Paragraph, _sentences(turns, tables.rows("motions")))
     yield _motions(tables.rows("motions"))
@@ -340,15 +379,26 @@ def _sentences(turns: dict[str, list[Record]], rows: Sequence[Record]) -> Iterat
             numbers.fixed(size, 1) for size in (min(off), max(off), min(sigmas), max(sigmas))
         )
         yield (
-            f"In the steady part of {numbers.counted(len(speeds), 'turn')} the table deviated from "
-            f"its set rate by {least} to {most} ppm, with a σ of {best} to {worst} ppm in each. "
-            "The scale factor of a window by time is in error by the same share."
+            _(
+                "In the steady part of {counted} the table deviated from its set rate by "
+                "{least} to {most} ppm, with a σ of {best} to {worst} ppm in each. The scale "
+                "factor of a window by time is in error by the same share.",
+                counted=numbers.counted(len(speeds), "turn"),
+                least=least,
+                most=most,
+                best=best,
+                worst=worst,
+            )
         )
     sigma, name = max((row["sigma"], name) for name, own in turns.items() for row in own)
     angle, turn = numbers.significant(SECONDS_OF_ARC.of(sigma), 2), numbers.shortened(name, 30)
     yield (
-        f"Between the ends of a turn the σ of the angle is at most {angle} arcsec ({turn}); an "
-        "oscillation of the case counts as motion."
+        _(
+            "Between the ends of a turn the σ of the angle is at most {angle} arcsec "
+            "({turn}); an oscillation of the case counts as motion.",
+            angle=angle,
+            turn=turn,
+        )
     )
 
 

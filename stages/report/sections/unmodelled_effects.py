@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from inertial.campaign.final_result import EXTENDED
 from inertial.text.cause_names import in_words
+from inertial.text.messages import _
 from inertial.text.numbers import p_is, shortened, significant
 from stages.report import outline
 from stages.report.linked import CAUSE_TABLES, GAIN_TABLES, decisions, effect_causes, gains
@@ -61,21 +62,27 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
     yield from tests if firing else ()
     yield from effect_tables.extended(tables)
     if missed := list(_not_detected(tables)):
-        yield outline.Heading("Detection limits")
+        yield outline.Heading(_("Detection limits"))
         yield from effect_tables.detection_limits(tables.rows("detection_limits"), missed)
 
 
 SECTION = outline.Section(
     "unmodelled-effects",
-    "Unmodelled effects",
-    "Physical effects beyond bias, scale and cross-axis terms that the data reveal: how certain "
-    "each is, what it does and what to do; and the detection limits of those not detected.",
-    "The clearest comes first. Identified: significant, and no other effect of the catalogue has "
-    "the same signature. One of a class: others have the same signature in these data. "
-    "Consistent: the name is not certain. The reduction of χ² is stated for the data that were "
-    "fitted and for held-out data, where each manoeuvre is predicted from the others with and "
-    "without the effects; an effect that only fits noise reduces nothing there. The attainable "
-    "reduction is that of exactly known effects.",
+    _("Unmodelled effects"),
+    _(
+        "Physical effects beyond bias, scale and cross-axis terms that the data reveal: "
+        "how certain each is, what it does and what to do; and the detection limits of "
+        "those not detected."
+    ),
+    _(
+        "The clearest comes first. Identified: significant, and no other effect of the "
+        "catalogue has the same signature. One of a class: others have the same "
+        "signature in these data. Consistent: the name is not certain. The reduction of "
+        "χ² is stated for the data that were fitted and for held-out data, where each "
+        "manoeuvre is predicted from the others with and without the effects; an effect "
+        "that only fits noise reduces nothing there. The attainable reduction is that "
+        "of exactly known effects."
+    ),
     (
         *RESULT_TABLES,
         *FINDING_TABLES,
@@ -91,18 +98,29 @@ def _summary(tables: Tables) -> outline.Paragraph:
         return outline.Paragraph(" ".join(sentences), "fair")
     tested = tested_effects(tables)
     if not tested:
-        return outline.Paragraph("No effect was tested: the joint fits determine no model.", "fair")
+        return outline.Paragraph(
+            _("No effect was tested: the joint fits determine no model."), "fair"
+        )
     every = len({effect.effect for effect in tested})
     observable = len({effect.effect for effect in tested if effect.score["degrees"]})
     if not observable:
         return outline.Paragraph(
-            f"This plan makes none of the {count_in_words(every)} effects observable.", "fair"
+            _(
+                "This plan makes none of the {every} effects observable.",
+                every=count_in_words(every),
+            ),
+            "fair",
         )
-    sentence = f"None detected: none of the {count_in_words(observable)} effects is significant."
+    sentence = _(
+        "None detected: none of the {observable} effects is significant.",
+        observable=count_in_words(observable),
+    )
     if observable < every:
-        sentence = (
-            f"None detected: none of the {count_in_words(observable)} effects that this plan makes "
-            f"observable is significant; {count_in_words(every - observable)} are not observable."
+        sentence = _(
+            "None detected: none of the {observable} effects that this plan makes "
+            "observable is significant; {count_in_words} are not observable.",
+            observable=count_in_words(observable),
+            count_in_words=count_in_words(every - observable),
         )
     return outline.Paragraph(sentence, "good")
 
@@ -209,8 +227,8 @@ def _answers(tables: Tables, row: Record) -> outline.Pairs:
         label = "Candidates" if kind == "structure" else "Alternatives"
         answers.append((label, f"{capital('; '.join(each))}."))
     answers += [
-        ("Ruled out", " ".join(_positions(tables, row, mount))),
-        ("To distinguish", _split(row) if row["split_manoeuvre"] else ""),
+        (_("Ruled out"), " ".join(_positions(tables, row, mount))),
+        (_("To distinguish"), _split(row) if row["split_manoeuvre"] else ""),
         ("Improvement", " ".join(_gain(tables, row, mount))),
         ("Consequence", shortened(row["consequence"] or "", 900)),
     ]
@@ -238,9 +256,12 @@ def _positions(tables: Tables, row: Record, mount: str) -> Iterator[str]:
     for off in tables.rows("accelerometer_findings"):
         if off["cause"] == POSITION and off["mount"] == mount:
             yield (
-                f"The joint fit attributes it to a position error in "
-                f"{shortened(off['manoeuvre'] or 'a manoeuvre', 60)}; with the effect in the model "
-                f"no position error is significant ({p_is(tested.score['p_value'])})."
+                _(
+                    "The joint fit attributes it to a position error in {shortened}; with the "
+                    "effect in the model no position error is significant ({p_value}).",
+                    shortened=shortened(off["manoeuvre"] or "a manoeuvre", 60),
+                    p_value=p_is(tested.score["p_value"]),
+                )
             )
 
 
@@ -253,8 +274,16 @@ def _split(row: Record) -> str:
         return f"{capital(manoeuvre)}."
     clear = f"{significant(row['split_snr'], 2)} σ"
     if row["split_snr"] < MIN_SPLIT_SIGMA:
-        return f"No manoeuvre considered would; the best, {manoeuvre}, reaches {clear}."
-    return f"{capital(manoeuvre)}: expected to distinguish them at {clear}."
+        return _(
+            "No manoeuvre considered would; the best, {manoeuvre}, reaches {clear}.",
+            manoeuvre=manoeuvre,
+            clear=clear,
+        )
+    return _(
+        "{manoeuvre}: expected to distinguish them at {clear}.",
+        manoeuvre=capital(manoeuvre),
+        clear=clear,
+    )
 
 
 def _reductions(tables: Tables, row: Record) -> Iterator[str]:

@@ -11,6 +11,7 @@ from math import degrees
 from inertial.campaign.final_result import EXTENDED
 from inertial.campaign.records import omissions
 from inertial.text.cause_names import in_words
+from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, probability, shortened, significant, whole
 from stages.report import outline
 from stages.report.linked import CAUSE_TABLES
@@ -29,20 +30,20 @@ from stages.report.sections.findings import FINDING_TABLES, model_findings, rank
 from stages.report.tables import Record, Tables, once
 from stages.report.words import listed
 
-SIMULATED = (
+SIMULATED = _(
     "SIMULATED: recorded by the simulated laboratory. No instrument of this serial was calibrated."
 )
-FITS = {FREE: "unknown attitudes", EXTENDED: "with effects"}
-KINDS = {"bias": "bias", "scale": "scale error", "cross": "cross-axis term"}
+FITS = {FREE: _("unknown attitudes"), EXTENDED: _("with effects")}
+KINDS = {"bias": "bias", "scale": _("scale error"), "cross": _("cross-axis term")}
 TONE: dict[str, outline.Tone] = {
     "calibrated": "good",
     "calibrated in part": "fair",
     "not calibrated": "poor",
 }
 MEANING = {
-    "calibrated": "All 24 parameters are determined and both models describe their data.",
-    "calibrated in part": "Some results can be used; the reasons below say which.",
-    "not calibrated": "This campaign gives no result that could be used.",
+    "calibrated": _("All 24 parameters are determined and both models describe their data."),
+    "calibrated in part": _("Some results can be used; the reasons below say which."),
+    "not calibrated": _("This campaign gives no result that could be used."),
 }
 MOST_NAMES = 8
 
@@ -67,11 +68,11 @@ def verdict(tables: Tables) -> Verdict:
     whole = all(len(result.calibration) == len(CALIBRATION) for result in results)
     spoiled = any(finding["severity"] == 3 for finding in ranked(tables))
     if not any(result.calibration for result in results):
-        level = "not calibrated"
+        level = _("not calibrated")
     elif whole and not spoiled and not any(result.misfit for result in results):
         level = "calibrated"
     else:
-        level = "calibrated in part"
+        level = _("calibrated in part")
     return Verdict(level, tuple(_reasons(tables, results)))
 
 
@@ -79,11 +80,14 @@ def _reasons(tables: Tables, results: Sequence[Estimate]) -> Iterator[str]:
     for result in results:
         yield _determined(result, effects_in(tables, result))
     for result in results:
-        words, _ = result.fit_in_words()
+        words, _unused = result.fit_in_words()
         if words:
             yield f"{result.sensor}: {words}."
     if lacking := list(summary(model_findings(tables))):
-        yield f"{' '.join(lacking)} “Unmodelled effects” states their size and the action."
+        yield _(
+            "{lacking} “Unmodelled effects” states their size and the action.",
+            lacking=" ".join(lacking),
+        )
     for result in results:
         if result.fit and (excluded := omissions(result.manoeuvres)):
             text = shortened(excluded, 400).rstrip(".")
@@ -96,11 +100,15 @@ def _determined(result: Estimate, effects: Sequence[str]) -> str:
     """What is determined of a sensor, with effects in the model, and its worst sigma by kind."""
     count = len(result.calibration)
     if not count:
-        return f"{result.sensor}: nothing is determined."
-    every = "all 12 parameters are determined"
-    amount = every if count == len(CALIBRATION) else f"{count} of 12 parameters are determined"
-    amount += ", by static positions of unknown attitude" * (result.method == FREE)
-    amount += f", with {listed(effects)} in the model" if effects else ""
+        return _("{sensor}: nothing is determined.", sensor=result.sensor)
+    every = _("all 12 parameters are determined")
+    amount = (
+        every
+        if count == len(CALIBRATION)
+        else _("{count} of 12 parameters are determined", count=count)
+    )
+    amount += _(", by static positions of unknown attitude") * (result.method == FREE)
+    amount += _(", with {effects} in the model", effects=listed(effects)) if effects else ""
     worst = "; ".join(f"{KINDS[kind]} {text}" for kind, text in _largest_sigmas(result).items())
     return f"{result.sensor}: {amount}." + (f" Largest σ: {worst}." if worst else "")
 
@@ -119,32 +127,40 @@ def _largest_sigmas(result: Estimate) -> dict[str, str]:
 def _performed(tables: Tables) -> str:
     planned, rows = len(tables.frame("manoeuvres")), tables.rows("performed")
     if planned == 0:
-        return "No manoeuvre was planned."
+        return _("No manoeuvre was planned.")
     complete = sum(bool(row["found"] and row["complete"]) for row in rows)
     missing = [row["manoeuvre"] for row in rows if not row["found"]]
     partly = [
-        row["manoeuvre"] + (" (gap interpolated)" if row["bridged"] else "")
+        row["manoeuvre"] + (_(" (gap interpolated)") if row["bridged"] else "")
         for row in rows
         if row["found"] and not row["complete"]
     ]
-    text = f"{complete} of {counted(planned, 'manoeuvre')} recorded as planned"
-    text += f"; not complete: {_first(partly)}" if partly else ""
-    text += f"; not found: {_first(missing)}" if missing else ""
+    text = _(
+        "{complete} of {planned} recorded as planned",
+        complete=complete,
+        planned=counted(planned, "manoeuvre"),
+    )
+    text += _("; not complete: {partly}", partly=_first(partly)) if partly else ""
+    text += _("; not found: {missing}", missing=_first(missing)) if missing else ""
     return f"{text}."
 
 
 def _first(names: Sequence[str]) -> str:
     shown = ", ".join(shortened(name, 60) for name in names[:MOST_NAMES])
-    return f"{shown} and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else shown
+    return (
+        _("{shown} and {names} more", shown=shown, names=len(names) - MOST_NAMES)
+        if len(names) > MOST_NAMES
+        else shown
+    )
 
 
 def _findings(findings: Sequence[Record]) -> str:
     if not findings:
-        return "Findings: none."
+        return _("Findings: none.")
     causes = Counter(row["cause"] for row in findings)
     names = ", ".join(f"{in_words(cause)} ({n})" for cause, n in causes.most_common(MOST_NAMES))
     rest = len(causes) - MOST_NAMES
-    others = f" and {rest} further causes" if rest > 0 else ""
+    others = _(" and {rest} further causes", rest=rest) if rest > 0 else ""
     return f"Findings: {whole(len(findings))}; {names}{others}."
 
 
@@ -159,17 +175,22 @@ def facts(tables: Tables) -> outline.Pairs:
         _with_unit(campaign["height"], 0, " m"),
         _with_unit(known.get("gravity"), 7, " m/s²"),
     )
-    recorded = "not known: the logs have no absolute clock"
+    recorded = _("not known: the logs have no absolute clock")
     if dates:
         recorded = " … ".join(dict.fromkeys((dates[0], dates[-1])))
-        recorded += " (UTC, by the clock of the logs)"
+        recorded += _(" (UTC, by the clock of the logs)")
     pairs = {
         "Campaign": campaign["campaign"],
         "Instrument": campaign["instrument"],
         "Serial": campaign["serial"],
         "Date stated": campaign["date"],
         "Date recorded": recorded,
-        "Site": f"latitude {latitude}, height {height}, gravity {gravity}",
+        "Site": _(
+            "latitude {latitude}, height {height}, gravity {gravity}",
+            latitude=latitude,
+            height=height,
+            gravity=gravity,
+        ),
         "Table": campaign["table"],
         "Laboratory": campaign["laboratory"],
         "Operator": campaign["operator"],
@@ -191,7 +212,7 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
         yield outline.Paragraph(SIMULATED, "poor")
     yield outline.Level(given.level, TONE[given.level], MEANING[given.level])
     yield outline.Sentences(given.reasons)
-    sigmas = ("Bias σ", "Scale σ", "Cross-axis σ")
+    sigmas = ("Bias σ", "Scale σ", _("Cross-axis σ"))
     yield outline.Table(
         "Final results: parameters determined, and the largest σ of each kind.",
         outline.columns("text", "Sensor", "Fit")
@@ -204,10 +225,13 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
 SECTION = outline.Section(
     "verdict",
     "Verdict",
-    "Whether this calibration can be used, and why.",
-    "Calibrated: the final fits, joint or with effects in the model, determine all 24 "
-    "parameters and describe their data (p ≥ 0.01). In part: some are not determined, or a "
-    "model does not describe its data. Not calibrated: none is determined.",
+    _("Whether this calibration can be used, and why."),
+    _(
+        "Calibrated: the final fits, joint or with effects in the model, determine all "
+        "24 parameters and describe their data (p ≥ 0.01). In part: some are not "
+        "determined, or a model does not describe its data. Not calibrated: none is "
+        "determined."
+    ),
     (
         *RESULT_TABLES,
         *FINDING_TABLES,
