@@ -162,7 +162,7 @@ def test_a_changed_setting_reruns_its_stage_and_what_follows(
 @pytest.mark.parametrize(
     ("file", "rerun"),
     [
-        ("inertial/formats/columns/text_chunks.py", {"decode", *AFTER_DECODE}),
+        ("inertial/formats/columns/text_reader.py", {"decode", *AFTER_DECODE}),
         ("inertial/estimation/spectrum.py", {"noise", *ESTIMATION}),
         ("inertial/estimation/least_squares.py", ESTIMATION),
         ("inertial/text/numbers.py", AFTER_DECODE),

@@ -78,7 +78,10 @@ def test_a_fencepost_stands_on_top_of_the_comparisons():
     other = named | {"id": "comparison/published/gyroscope/scale_x", "kind": "published"}
     other |= {"quantity": "scale_x", "first_value": 1e-3, "second_value": 1.5e-3}
     other |= {"difference": -5e-4, "sigma": 1e-5, "in_sigmas": -50.0, "p_value": 0.0}
-    other |= {"sentence": "scale factor of the x gyro: they differ: more than chance."}
+    other |= {
+        "significant": True,
+        "sentence": "scale factor of the x gyro: they differ: more than chance.",
+    }
     section = built(
         comparisons.COMPARISONS, {"differences": rows_as(tables.DIFFERENCES, [other, named])}
     )
