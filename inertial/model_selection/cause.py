@@ -1,4 +1,4 @@
-"""What is said of causes: those that were found, and every effect that was asked about."""
+"""Named causes, and the test of every effect of the catalogue."""
 
 from dataclasses import dataclass
 
@@ -14,15 +14,15 @@ UNKNOWN_STRUCTURE = "unknown_structure"
 
 @dataclass(frozen=True)
 class Cause:
-    """A cause that was found, or a class of which it is one.
+    """A named cause, or a class of indistinguishable causes.
 
-    `effect`: the most probable; `value`: which candidate of its scan; `members`: all that
-    cannot be told apart, the most probable first; `member_values`: the best candidate of the
-    scan of each; `weights`: their posterior probabilities;
-    `captured`: which share of the signal each can mimic; `statistic`: drop of chi-squared beside
-    the other causes, on `degrees`; `p_value`: that noise brings any effect of the catalogue so
-    far; `snr`: root of the drop less what noise adds; `columns`, `values`, `covariance`: of the
-    parameters, estimated with those of the other causes.
+    `effect`: the most probable; `value`: which candidate of its scan; `members`: all
+    indistinguishable effects, the most probable first; `member_values`: the best candidate of
+    the scan of each; `weights`: their posterior probabilities; `captured`: which share of the
+    signal each can mimic; `statistic`: reduction of chi-squared given the other causes, on
+    `degrees`; `p_value`: probability that noise yields as large a statistic for any effect of
+    the catalogue; `snr`: root of the reduction less what noise adds; `columns`, `values`,
+    `covariance`: of the parameters, estimated with those of the other causes.
     """
 
     effect: str
@@ -43,10 +43,10 @@ class Cause:
 
 @dataclass(frozen=True)
 class EffectTest:
-    """What the data say of an effect beside the causes that were found.
+    """Test of an effect given the named causes.
 
-    `p_value`: its own search paid for; `after_search`: that of the whole catalogue too;
-    `value`: the best candidate of its scan.
+    `p_value`: accounts for the search over its own scan; `after_search`: for that over the
+    whole catalogue too; `value`: the best candidate of its scan.
     """
 
     effect: str
@@ -59,7 +59,7 @@ class EffectTest:
 
 @dataclass(frozen=True)
 class Named:
-    """The causes, and what the data say of every effect of the catalogue."""
+    """The named causes, and the test of every effect of the catalogue."""
 
     causes: tuple[Cause, ...]
     tests: tuple[EffectTest, ...]

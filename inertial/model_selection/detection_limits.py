@@ -1,4 +1,4 @@
-"""What a campaign could have seen of every effect, or why it cannot see it."""
+"""Detection limits of every effect in a campaign, or why it is not observable."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,18 +15,18 @@ DETECTION_SIGMAS = 5.0  # size that a campaign detects
 
 VISIBLE = "visible"
 NOT_EXCITED = "not_excited"  # no reading changes
-ABSORBED = "absorbed"  # the parameters and errors that are fitted do the very same
+ABSORBED = "absorbed"  # by the parameters and errors that are fitted
 ONLY_TOGETHER = "only_together"  # with other parameters of the effect, not alone
 
 
 @dataclass(frozen=True)
 class Visible:
-    """What the campaign could have seen of one parameter of an effect.
+    """The detection limit of a parameter of an effect.
 
     `size`: five sigma in the parameter's unit with the effect's other parameters free, NaN
-    where `reason` is not `visible`; `best`, `worst`: the same for the values of a scan at which
-    it is seen best and worst; `share`: information that is left of its column when all else is
-    fitted, NaN where the raw information is not known.
+    where `reason` is not `visible`; `best`, `worst`: the smallest and largest over the values of
+    a scan; `share`: of the information of its column that remains when all else is fitted, NaN
+    where the raw information is not known.
     """
 
     effect: str
@@ -39,11 +39,11 @@ class Visible:
 
 
 def visible(evidence: Evidence, effects: Sequence[SearchedEffect]) -> list[Visible]:
-    """For every parameter of every effect what would have been five sigma; the median of a scan."""
+    """For every parameter of every effect five sigma; the median over a scan."""
     return [
-        _of_parameter(evidence, one, parameter)
-        for one in effects
-        for parameter in range(max((len(c) for c in one.candidates), default=0))
+        _of_parameter(evidence, effect, parameter)
+        for effect in effects
+        for parameter in range(max((len(c) for c in effect.candidates), default=0))
     ]
 
 
@@ -54,19 +54,19 @@ def _of_parameter(evidence: Evidence, effect: SearchedEffect, parameter: int) ->
         sizes.append(size)
         reasons.append(reason)
         shares.append(share)
-    seen = np.array([size for size in sizes if np.isfinite(size)])
-    if not len(seen):
+    finite = np.array([size for size in sizes if np.isfinite(size)])
+    if not len(finite):
         order = (ONLY_TOGETHER, ABSORBED, NOT_EXCITED)
         reason = next((r for r in order if r in reasons), NOT_EXCITED)
         share = max(shares, default=np.nan)
         return Visible(effect.name, parameter, np.nan, np.nan, np.nan, reason, share)
-    middle = sizes.index(float(np.sort(seen)[len(seen) // 2]))
+    middle = sizes.index(float(np.sort(finite)[len(finite) // 2]))
     return Visible(
         effect.name,
         parameter,
         sizes[middle],
-        float(seen.min()),
-        float(seen.max()),
+        float(finite.min()),
+        float(finite.max()),
         VISIBLE,
         shares[middle],
     )

@@ -1,4 +1,4 @@
-"""Which effects explain the data as well as the one that was found."""
+"""Classes of effects that explain the data equally well."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,13 +13,13 @@ from inertial.model_selection.search import Set
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-CREDIBLE = 0.95  # posterior probability that the members of a class share
-CAPTURED = 0.90  # share of the signal of one effect that another can mimic, from which it is alike
-EXCLUDED = 13.8  # by which its chi-squared may be worse: a likelihood of one in a thousand
-RIVAL = 6.0  # by which the chi-squared of a rival set may be worse: odds of 20
-SMALLEST = 2.0  # signal-to-noise ratio of an effect before the data: uniform in its logarithm
-LARGEST = 40.0
-STEPS = 77
+MIN_CLASS_PROBABILITY = 0.95  # posterior, of all members together
+MIN_CAPTURED = 0.90  # share of the signal of an effect that a member can mimic
+MAX_CHI_SQUARED_EXCESS = 13.8  # of such a member: a likelihood of one in a thousand
+MAX_RIVAL_EXCESS = 6.0  # of the chi-squared of a rival set: odds of 20
+MIN_PRIOR_SNR = 2.0  # of an effect: its prior is uniform in the logarithm
+MAX_PRIOR_SNR = 40.0
+PRIOR_STEPS = 77
 
 
 def log_evidence(drop: Array, degrees: Integers) -> Array:
@@ -27,32 +27,32 @@ def log_evidence(drop: Array, degrees: Integers) -> Array:
 
     Its direction among its columns is taken as uniform and the logarithm of its
     signal-to-noise ratio s too: ∫ e^(−s²/2) ₀F₁(r/2; s² drop/4) ds/s. So an effect with many
-    columns pays for what it could have explained.
+    columns is penalised for what it could have explained.
 
     Parameters
     ----------
-    drop, degrees : (c,); an effect that is not seen has no odds
+    drop, degrees : (c,); an effect that is not observable has no odds
     """
     half = degrees / 2
     root = np.sqrt(np.maximum(drop, 1e-6))
     safe = np.maximum(half, 0.5)
     # Laplace's approximation where the drop is large.
     sharp = drop / 2 + gammaln(safe) + (safe - 1) * np.log(2) - 2 * safe * np.log(root)
-    ratio = np.linspace(SMALLEST, LARGEST, STEPS)
+    ratio = np.linspace(MIN_PRIOR_SNR, MAX_PRIOR_SNR, PRIOR_STEPS)
     z = root[:, None] * ratio
     order = (safe - 1)[:, None]
     bessel = gammaln(order + 1) - order * np.log(z / 2) + np.log(ive(order, z)) + z
     step = np.log(ratio[1] - ratio[0])
     exact = logsumexp(bessel - ratio**2 / 2 - np.log(ratio), axis=1) + step
-    return np.where(degrees > 0, np.where(root > 0.7 * LARGEST, sharp, exact), -np.inf)
+    return np.where(degrees > 0, np.where(root > 0.7 * MAX_PRIOR_SNR, sharp, exact), -np.inf)
 
 
 @dataclass(frozen=True)
-class Alike:
-    """The effects that may stand in the place of one, beside the others that were named.
+class EffectClass:
+    """The effects that may replace a named one, given the other named ones.
 
-    `place`: the candidate of most probable effect; `members`: effects, the most probable
-    first; `weights`: posterior probability of every effect, (m,); `captured`: which share of
+    `place`: the candidate of the most probable effect; `members`: effects, the most probable
+    first; `weights`: posterior probability of joint effect, (m,); `captured`: which share of
     the signal each can mimic, (m,); `best`: the best candidate of each, (m,); `drop`,
     `degrees`: of the candidate.
     """
@@ -66,50 +66,52 @@ class Alike:
     degrees: int
 
 
-def alike(
+def effect_class(
     candidates: Candidates,
-    prices: Array,
+    thresholds: Array,
     information: Array,
     right: Array,
     place: int,
     others: Sequence[int],
-) -> Alike:
-    """The class of a candidate, beside the other candidates that were named.
+) -> EffectClass:
+    """The class of a candidate, given the other named candidates.
 
-    Members share 0.95 of the posterior probability (every effect is as probable beforehand, and
-    every value of its scan), or mimic 0.90 of the signal and are not excluded by the data. So an
+    Members share 0.95 of the posterior probability (uniform prior over effects, and over the
+    values of each scan), or mimic 0.90 of the signal and are not excluded by the data. So an
     effect that contains another (lever arms of each accelerometer, a common one) is a
-    member though the one with fewer parameters is more probable.
+    member though that with fewer parameters is more probable.
     """
-    beside = candidates.around(others)
-    drops, degrees = candidates.drops(information, right, beside)
+    given = candidates.around(others)
+    drops, degrees = candidates.drops(information, right, given)
     possible = (degrees > 0) & ~np.isin(candidates.effect, candidates.effect[list(others)])
     odds = np.where(possible, log_evidence(drops, degrees), -np.inf)
     count = len(candidates.effects)
     owners = [candidates.effect == number for number in range(count)]
-    each = np.array([_mean(odds[own & possible]) for own in owners])
-    anything = np.array([one.free for one in candidates.effects])
-    if not anything[candidates.effect[place]]:  # it contains every effect and is none's rival
-        each[anything] = -np.inf
-    weights = np.exp(each - logsumexp(each))
-    # An effect that would not be named on its own does not replace the one that is.
+    log_odds = np.array([_mean(odds[own & possible]) for own in owners])
+    free = np.array([effect.free for effect in candidates.effects])
+    if not free[candidates.effect[place]]:  # a free function contains joint effect and rivals none
+        log_odds[free] = -np.inf
+    weights = np.exp(log_odds - logsumexp(log_odds))
+    # An effect below its own threshold does not replace a named one.
     own = candidates.effect[place]
-    able = np.flatnonzero(possible & (drops >= np.asarray(prices)[candidates.effect]))
-    if len(able):
-        effect = max({own, *candidates.effect[able]}, key=lambda number: weights[number])
-        of_it = np.flatnonzero(possible & (candidates.effect == effect))
-        place = int(of_it[np.argmax(odds[of_it])])
+    significant = np.flatnonzero(possible & (drops >= np.asarray(thresholds)[candidates.effect]))
+    if len(significant):
+        effect = max({own, *candidates.effect[significant]}, key=lambda number: weights[number])
+        values = np.flatnonzero(possible & (candidates.effect == effect))
+        place = int(values[np.argmax(odds[values])])
         own = effect
-    captured = _captured(candidates, information, right, place, beside, possible)
+    captured = _captured(candidates, information, right, place, given, possible)
     ranked = np.argsort(-weights, kind="stable")
-    needed = int(np.searchsorted(np.cumsum(weights[ranked]), CREDIBLE)) + 1
+    needed = int(np.searchsorted(np.cumsum(weights[ranked]), MIN_CLASS_PROBABILITY)) + 1
     near = set(ranked[:needed]) | {own}
     drop = float(drops[place])
     largest = np.array([np.max(drops[o & possible], initial=0.0) for o in owners])
-    near |= set(np.flatnonzero((captured >= CAPTURED) & (largest >= drop - EXCLUDED)))
-    near = {e for e in near if e == own or not anything[e]}
+    near |= set(
+        np.flatnonzero((captured >= MIN_CAPTURED) & (largest >= drop - MAX_CHI_SQUARED_EXCESS))
+    )
+    near = {e for e in near if e == own or not free[e]}
     members = (own, *(e for e in ranked if e in near and e != own))
-    return Alike(
+    return EffectClass(
         place,
         tuple(int(e) for e in members),
         weights,
@@ -121,24 +123,24 @@ def alike(
 
 
 def with_rivals(
-    candidates: Candidates, classes: Sequence[Alike], best: Set, peers: Sequence[Set]
-) -> list[Alike]:
-    """The classes with the effects of sets as good as the best, of which several are others.
+    candidates: Candidates, classes: Sequence[EffectClass], best: Set, peers: Sequence[Set]
+) -> list[EffectClass]:
+    """The classes, with the effects of rival sets added.
 
-    A set of the same size that explains the data as well in another way: each of its other
-    effects belongs to the class whose signal it mimics best.
+    A rival set has the same size, several other effects, and explains the data as well: each of
+    its other effects joins the class whose signal it mimics best.
     """
     joined = list(classes)
-    named = {int(candidates.effect[one.place]): i for i, one in enumerate(joined)}
+    named = {int(candidates.effect[group.place]): i for i, group in enumerate(joined)}
     for peer in peers:
         effects = {int(e) for e in candidates.effect[list(peer.places)]}
         new, old = effects - set(named), set(named) - effects
-        if peer.gain < best.gain - RIVAL or len(new) < 2 or len(new) != len(old):
+        if peer.gain < best.gain - MAX_RIVAL_EXCESS or len(new) < 2 or len(new) != len(old):
             continue
         for effect in new:
             if candidates.effects[effect].free:
                 continue
-            i = named[max(old, key=lambda one: float(joined[named[one]].captured[effect]))]
+            i = named[max(old, key=lambda e: float(joined[named[e]].captured[effect]))]
             if effect not in joined[i].members:
                 joined[i] = replace(joined[i], members=(*joined[i].members, effect))
     return joined
@@ -153,12 +155,12 @@ def _captured(
     information: Array,
     right: Array,
     place: int,
-    beside: Sequence[int],
+    given: Sequence[int],
     possible: NDArray[np.bool_],
 ) -> Array:
-    """Share of the estimated signal of a candidate that every effect can mimic, (m,)."""
-    signal = fitted(information, right, candidates.columns[place], beside)
-    shares, _ = candidates.drops(information, signal, beside)
+    """Share of the estimated signal of a candidate that joint effect can mimic, (m,)."""
+    signal = fitted(information, right, candidates.columns[place], given)
+    shares, _ = candidates.drops(information, signal, given)
     shares = np.where(possible, shares, 0.0) / max(float(shares[place]), np.finfo(float).tiny)
     return np.array(
         [
@@ -169,14 +171,14 @@ def _captured(
 
 
 def fitted(
-    information: Array, right: Array, columns: Sequence[int], beside: Sequence[int] = ()
+    information: Array, right: Array, columns: Sequence[int], given: Sequence[int] = ()
 ) -> Array:
-    """What the equations would say of all columns if the estimate of some were the truth, (k,)."""
-    every = list(dict.fromkeys([*columns, *beside]))
-    block = information[np.ix_(every, every)]
+    """Right-hand side of all columns if the estimate of some were the truth, (k,)."""
+    joint = list(dict.fromkeys([*columns, *given]))
+    block = information[np.ix_(joint, joint)]
     size = np.sqrt(np.maximum(np.diag(block), np.finfo(float).tiny))
     beta = np.linalg.pinv(block / np.outer(size, size), rcond=1e-6, hermitian=True) @ (
-        right[every] / size
+        right[joint] / size
     )
     beta[len(columns) :] = 0.0
-    return information[:, every] @ (beta / size)
+    return information[:, joint] @ (beta / size)

@@ -1,4 +1,4 @@
-"""The causes that the data ask for, each with everything that cannot be told from it."""
+"""Naming of the causes, each with the effects that are indistinguishable from it."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,14 +14,14 @@ from inertial.model_selection.cause import (
     EffectTest,
     Named,
 )
-from inertial.model_selection.effect_classes import Alike, alike, with_rivals
+from inertial.model_selection.effect_classes import EffectClass, effect_class, with_rivals
 from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.model_selection.null_simulation import Chance
 from inertial.model_selection.scan import Candidates
 from inertial.model_selection.search import Search
 
-LAWLESS = 12.0  # by which a course without a law must explain more than laws would
-ROUNDS = 3  # of how large the residuals are with what is found, and what is found then
+MIN_FREE_ADVANTAGE = 12.0  # of chi-squared, of a drift without a law over the catalogue
+MAX_ROUNDS = 3  # of the excess of the residuals and the selection in turn
 
 
 def name_causes(
@@ -34,51 +34,53 @@ def name_causes(
 def law_of(
     evidence: Evidence, effects: Sequence[SearchedEffect], level: float, seed: int = 0
 ) -> Chance | None:
-    """What chance would bring in this campaign; None where nothing is said of any effect."""
+    """The null distributions of this campaign; None where it has no equations."""
     if not evidence.sensors:
         return None
-    return null_simulation.chance(evidence.seen().total.information, effects, level, seed=seed)
+    return null_simulation.chance(
+        evidence.observable().total.information, effects, level, seed=seed
+    )
 
 
 def causes(evidence: Evidence, effects: Sequence[SearchedEffect], law: Chance | None) -> Named:
     """Name the causes.
 
-    Where the residuals of a sensor exceed the noise also with what is found, something else is
-    wrong: there an effect must stand out of the residuals, not of the noise, else any effect
-    would be named that happens to lie along what is not understood.
+    Where the residuals of a sensor exceed the noise also with the named effects, something else
+    is wrong: there an effect must be significant against the residuals, not the noise, else any
+    effect would be named that happens to resemble the unexplained part.
 
     Parameters
     ----------
-    law : the laws of the campaign without effects; also where scans have finer values since
+    law : the null distributions; those of the coarse scans serve for refined ones too
     """
     if law is None:
         return Named((), tuple(EffectTest(e.name, 0, 0.0, 0, 1.0, 1.0) for e in effects), ())
-    evidence = evidence.seen()
+    evidence = evidence.observable()
     candidates = Candidates(effects)
     excesses: tuple[tuple[float, float], ...] = tuple(
-        (1.0, evidence.known_from(i)) for i in range(len(evidence.sensors))
+        (1.0, evidence.noise_degrees_of(i)) for i in range(len(evidence.sensors))
     )
-    weakened = evidence
-    for _ in range(ROUNDS):
-        found = _found(weakened, candidates, law)
-        again = evidence.excesses(candidates.around([one.place for one in found]))
-        if all(new[0] <= old[0] * 1.01 for new, old in zip(again, excesses, strict=True)):
+    scaled = evidence
+    for _ in range(MAX_ROUNDS):
+        classes = _classes(scaled, candidates, law)
+        updated = evidence.excesses(candidates.around([group.place for group in classes]))
+        if all(new[0] <= old[0] * 1.01 for new, old in zip(updated, excesses, strict=True)):
             break
-        excesses = tuple(max(pair) for pair in zip(again, excesses, strict=True))
-        weakened = evidence.weakened(excesses)
+        excesses = tuple(max(pair) for pair in zip(updated, excesses, strict=True))
+        scaled = evidence.scaled(excesses)
     else:
-        found = _found(weakened, candidates, law)
-    known = _known_from(weakened, candidates)
-    named = [_cause(weakened, candidates, law, known, one, found) for one in found]
+        classes = _classes(scaled, candidates, law)
+    noise_degrees = _noise_degrees(scaled, candidates)
+    named = [_cause(scaled, candidates, law, noise_degrees, group, classes) for group in classes]
     return Named(
-        _beside_unknown(weakened, named),
-        _tests(weakened, candidates, law, known, found),
+        _uncertain_given_drift(scaled, named),
+        _tests(scaled, candidates, law, noise_degrees, classes),
         excesses,
     )
 
 
-def _beside_unknown(evidence: Evidence, named: Sequence[Cause]) -> tuple[Cause, ...]:
-    """The causes; where a course without a law is one, no other of that sensor is certain."""
+def _uncertain_given_drift(evidence: Evidence, named: Sequence[Cause]) -> tuple[Cause, ...]:
+    """The causes; where a drift without a law is among them, no other of that sensor is certain."""
     unknown = {evidence.sensor_of(c.columns) for c in named if c.verdict == UNKNOWN_STRUCTURE}
     return tuple(
         replace(cause, verdict=UNKNOWN_STRUCTURE)
@@ -88,87 +90,94 @@ def _beside_unknown(evidence: Evidence, named: Sequence[Cause]) -> tuple[Cause, 
     )
 
 
-def _known_from(evidence: Evidence, candidates: Candidates) -> list[float]:
-    """Degrees of freedom of the noise of the sensor that sees each effect best."""
+def _noise_degrees(evidence: Evidence, candidates: Candidates) -> list[float]:
+    """Degrees of freedom of the noise of the sensor with most information on each effect."""
     return [
-        evidence.known_from(evidence.sensor_of([i for columns in one.candidates for i in columns]))
-        for one in candidates.effects
+        evidence.noise_degrees_of(
+            evidence.sensor_of([i for columns in effect.candidates for i in columns])
+        )
+        for effect in candidates.effects
     ]
 
 
-def _found(evidence: Evidence, candidates: Candidates, law: Chance) -> list[Alike]:
+def _classes(evidence: Evidence, candidates: Candidates, law: Chance) -> list[EffectClass]:
     """The best set of candidates, and the class of each."""
     total = evidence.total
-    known = _known_from(evidence, candidates)
-    prices = np.array(
-        [law.price(i, known[i]) + LAWLESS * one.free for i, one in enumerate(candidates.effects)]
+    noise_degrees = _noise_degrees(evidence, candidates)
+    thresholds = np.array(
+        [
+            law.threshold(i, noise_degrees[i]) + MIN_FREE_ADVANTAGE * effect.free
+            for i, effect in enumerate(candidates.effects)
+        ]
     )
-    best, peers = Search(candidates, prices, total.information, total.right).best()
+    best, peers = Search(candidates, thresholds, total.information, total.right).best()
     places = list(best.places)
-    classes: list[Alike] = []
-    for _ in range(2):  # the most probable of a class replaces the one that was found
+    classes: list[EffectClass] = []
+    for _ in range(2):  # the most probable of a class replaces its candidate
         classes = []
         for i in range(len(places)):
             others = places[:i] + places[i + 1 :]
-            one = alike(candidates, prices, total.information, total.right, places[i], others)
-            places[i] = one.place
-            classes.append(one)
+            group = effect_class(
+                candidates, thresholds, total.information, total.right, places[i], others
+            )
+            places[i] = group.place
+            classes.append(group)
     classes = with_rivals(candidates, classes, best, peers)
-    return sorted(classes, key=lambda one: -one.drop)
+    return sorted(classes, key=lambda group: -group.drop)
 
 
 def _cause(
     evidence: Evidence,
     candidates: Candidates,
     law: Chance,
-    known: Sequence[float],
-    one: Alike,
-    found: Sequence[Alike],
+    noise_degrees: Sequence[float],
+    group: EffectClass,
+    classes: Sequence[EffectClass],
 ) -> Cause:
-    effect = int(candidates.effect[one.place])
-    columns = candidates.columns[one.place]
-    every = candidates.together([one.place, *(other.place for other in found)])
+    effect = int(candidates.effect[group.place])
+    columns = candidates.columns[group.place]
+    every = candidates.together([group.place, *(other.place for other in classes)])
     values, covariance = evidence.total.estimate(every)
     own = slice(0, len(columns))
-    alone = law.p_value(effect, one.drop, one.degrees, known[effect])
+    alone = law.p_value(effect, group.drop, group.degrees, noise_degrees[effect])
     return Cause(
         effect=candidates.effects[effect].name,
-        value=int(candidates.value[one.place]),
-        verdict=_verdict(candidates.effects[effect], one),
-        members=tuple(candidates.effects[i].name for i in one.members),
-        member_values=tuple(int(candidates.value[one.best[i]]) for i in one.members),
-        weights=tuple(float(one.weights[i]) for i in one.members),
-        captured=tuple(float(one.captured[i]) for i in one.members),
-        statistic=one.drop,
-        degrees=one.degrees,
+        value=int(candidates.value[group.place]),
+        verdict=_verdict(candidates.effects[effect], group),
+        members=tuple(candidates.effects[i].name for i in group.members),
+        member_values=tuple(int(candidates.value[group.best[i]]) for i in group.members),
+        weights=tuple(float(group.weights[i]) for i in group.members),
+        captured=tuple(float(group.captured[i]) for i in group.members),
+        statistic=group.drop,
+        degrees=group.degrees,
         p_value=law.after_search(alone),
-        snr=float(np.sqrt(max(one.drop - one.degrees, 0.0))),
+        snr=float(np.sqrt(max(group.drop - group.degrees, 0.0))),
         columns=columns,
         values=values[own],
         covariance=covariance[own, own],
     )
 
 
-def _verdict(effect: SearchedEffect, one: Alike) -> str:
+def _verdict(effect: SearchedEffect, group: EffectClass) -> str:
     if effect.free:
         return UNKNOWN_STRUCTURE
-    return FOUND if len(one.members) == 1 else ONE_OF_CLASS
+    return FOUND if len(group.members) == 1 else ONE_OF_CLASS
 
 
 def _tests(
     evidence: Evidence,
     candidates: Candidates,
     law: Chance,
-    known: Sequence[float],
-    found: Sequence[Alike],
+    noise_degrees: Sequence[float],
+    classes: Sequence[EffectClass],
 ) -> tuple[EffectTest, ...]:
-    """Every effect beside what was found; what was found beside the others."""
+    """Every effect given the named ones; these given each other."""
     total = evidence.total
-    beside = candidates.around([one.place for one in found])
-    drops, degrees = candidates.drops(total.information, total.right, beside)
-    for one in found:
-        drops[candidates.effect == candidates.effect[one.place]] = -1.0
-        drops[one.place], degrees[one.place] = one.drop, one.degrees
+    given = candidates.around([group.place for group in classes])
+    drops, degrees = candidates.drops(total.information, total.right, given)
+    for group in classes:
+        drops[candidates.effect == candidates.effect[group.place]] = -1.0
+        drops[group.place], degrees[group.place] = group.drop, group.degrees
     rows = []
     for number, effect in enumerate(candidates.effects):
         own = np.flatnonzero(candidates.effect == number)
@@ -177,7 +186,7 @@ def _tests(
             continue
         best = own[np.argmax(np.where(degrees[own] > 0, drops[own], -np.inf))]
         drop, own_degrees = float(drops[best]), int(degrees[best])
-        p_value = law.p_value(number, drop, own_degrees, known[number])
+        p_value = law.p_value(number, drop, own_degrees, noise_degrees[number])
         rows.append(
             EffectTest(
                 effect.name,

@@ -1,4 +1,4 @@
-"""By how much chi-squared drops with every candidate, beside what is already in the model."""
+"""Reduction of chi-squared by every candidate, given what is already in the model."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,8 +11,8 @@ from inertial.model_selection.evidence import SearchedEffect
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-AT_ONCE = 20_000  # groups times data sets in one array
-SEEN = 1e-6  # of the information of a column on its own: what is less is taken as none
+MAX_BATCH = 20_000  # groups times data sets in one array
+MIN_EIGENVALUE = 1e-6  # of the information scaled to unit diagonal; below: not observable
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Width:
 
 
 class Candidates:
-    """All candidates of all effects in one row, and what the data say of each.
+    """All candidates of all effects in one sequence, and the reduction of chi-squared by each.
 
     `effect`: (c,) which effect each belongs to; `value`: (c,) which value of its scan.
     """
@@ -33,8 +33,8 @@ class Candidates:
         self.effects = tuple(effects)
         listed = [
             (number, value, columns)
-            for number, one in enumerate(effects)
-            for value, columns in enumerate(one.candidates)
+            for number, effect in enumerate(effects)
+            for value, columns in enumerate(effect.candidates)
         ]
         self.columns = [columns for _, _, columns in listed]
         self.effect = np.array([number for number, _, _ in listed], dtype=np.int64)
@@ -58,50 +58,50 @@ class Candidates:
     def around(self, places: Sequence[int]) -> list[int]:
         """The same with the neighbours in each scan, between which the true value may lie."""
         near = [
-            other
+            neighbour
             for place in places
-            for other in self._beside(place)
-            if 0 <= other < len(self) and self.effect[other] == self.effect[place]
+            for neighbour in self._neighbours(place)
+            if 0 <= neighbour < len(self) and self.effect[neighbour] == self.effect[place]
         ]
         return self.together(near)
 
-    def _beside(self, place: int) -> tuple[int, ...]:
+    def _neighbours(self, place: int) -> tuple[int, ...]:
         between = self.effects[self.effect[place]].between
         return (place, place - 1, place + 1) if between else (place,)
 
     def drops(
-        self, information: Array, right: Array, beside: Sequence[int] = ()
+        self, information: Array, right: Array, given: Sequence[int] = ()
     ) -> tuple[Array, Integers]:
-        """The drop of chi-squared of each candidate beside some columns, and its degrees, (c,).
+        """Drop of chi-squared by each candidate given some columns, and its degrees, (c,).
 
         `right`: (k,), or (k, n) for n data sets at once: then the drops are (c, n).
         """
         size = np.sqrt(np.maximum(np.diag(information), np.finfo(float).tiny))
         many = right.reshape(len(right), -1)
-        shadow = np.zeros((0, len(right)))
-        if len(beside):
-            white = _white(information, beside)
-            shadow = white @ information[list(beside)]
-            many = many - shadow.T @ (white @ many[list(beside)])
+        projection = np.zeros((0, len(right)))
+        if len(given):
+            white = _white(information, given)
+            projection = white @ information[list(given)]
+            many = many - projection.T @ (white @ many[list(given)])
         drop = np.zeros((len(self), many.shape[1]))
         degrees = np.zeros(len(self), dtype=np.int64)
         for width in self.widths:
             c = width.columns
-            shaded = shadow[:, c]
+            projected = projection[:, c]
             block = information[c[:, :, None], c[:, None, :]]
-            block = block - np.einsum("qgi,qgj->gij", shaded, shaded)
+            block = block - np.einsum("qgi,qgj->gij", projected, projected)
             values, vectors = _modes(block, size[c])
             white = (vectors * _inverse(values)[:, None, :]).transpose(0, 2, 1)
-            for some in _portions(len(c), many.shape[1]):
-                along = white[some] @ many[c[some]]
-                drop[width.places[some]] = np.einsum("gij,gij->gj", along, along)
+            for batch in _batches(len(c), many.shape[1]):
+                along = white[batch] @ many[c[batch]]
+                drop[width.places[batch]] = np.einsum("gij,gij->gj", along, along)
             degrees[width.places] = np.sum(values > 0, axis=1)
         return drop.reshape(len(self), *right.shape[1:]), degrees
 
 
-def _portions(groups: int, draws: int) -> list[slice]:
-    """So many groups at once that their arrays stay small."""
-    step = max(AT_ONCE // max(draws, 1), 1)
+def _batches(groups: int, draws: int) -> list[slice]:
+    """Slices of the groups of which the arrays stay small."""
+    step = max(MAX_BATCH // max(draws, 1), 1)
     return [slice(start, start + step) for start in range(0, groups, step)]
 
 
@@ -124,7 +124,7 @@ def _white(information: Array, columns: Sequence[int]) -> Array:
 def _modes(block: Array, size: Array) -> tuple[Array, Array]:
     """Information (g, w), 0 where there is none, and combinations (g, w, w), of blocks."""
     values, vectors = np.linalg.eigh(block / (size[:, :, None] * size[:, None, :]))
-    return np.where(values > SEEN, values, 0.0), vectors / size[:, :, None]
+    return np.where(values > MIN_EIGENVALUE, values, 0.0), vectors / size[:, :, None]
 
 
 def _inverse(values: Array) -> Array:

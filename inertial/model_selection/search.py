@@ -1,4 +1,4 @@
-"""The set of effects that explains the data best, each at its price."""
+"""The set of effects that best explains the data, each above its detection threshold."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,65 +10,66 @@ from inertial.model_selection.cause import Named
 from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.model_selection.scan import Candidates, joint_drop
 
-# ---- Finer values of a scan where an effect was found: a second look, at the right value.
+# ---- Refined scans of the named effects.
 #
-# A scan whose steps suffice to find an effect leaves a trace of a strong one, whose true value
-# lies between two steps; that trace may be given a name of its own. So the evidence is built again
-# with finer values about those that were found, and the causes are named from it.
+# A scan whose steps suffice to detect an effect leaves a residual of a strong effect whose true
+# value lies between two steps, and that residual may be named as another effect. So the evidence
+# is built again with finer values about the detected ones, and the causes are named from it.
 
 Array = NDArray[np.float64]
 
 
 def to_refine(
-    evidence: Evidence, named: Named, effects: Sequence[SearchedEffect], sharp: float = 0.0
+    evidence: Evidence, named: Named, effects: Sequence[SearchedEffect], min_snr: float = 0.0
 ) -> dict[str, tuple[int, ...]]:
-    """Which values of which scans: those of every member of a cause, beside the others and alone.
+    """The values to refine of each scan: the best of each member, jointly fitted and alone.
 
-    Alone, because what a coarse scan leaves may have been given to others. `sharp`: the
-    signal-to-noise ratio from which on a cause is worth it.
+    Alone, because other effects may have absorbed the residual of a coarse scan. `min_snr`:
+    signal-to-noise ratio from which a cause is refined.
     """
-    seen = evidence.seen()
-    if not seen.sensors:
+    observable = evidence.observable()
+    if not observable.sensors:
         return {}
     candidates = Candidates(effects)
-    total = seen.total
+    total = observable.total
     drops, _ = candidates.drops(total.information, total.right)
-    found: dict[str, set[int]] = {}
+    best: dict[str, set[int]] = {}
     for cause in named.causes:
-        if cause.snr < sharp:
+        if cause.snr < min_snr:
             continue
         for member, value in zip(cause.members, cause.member_values, strict=True):
-            found.setdefault(member, set()).add(value)
+            best.setdefault(member, set()).add(value)
     refined = {}
-    for number, one in enumerate(effects):
-        if one.name in found and len(one.candidates) > 1 and one.between and not one.free:
+    for number, effect in enumerate(effects):
+        scanned = len(effect.candidates) > 1 and effect.between and not effect.free
+        if effect.name in best and scanned:
             alone = int(np.argmax(drops[candidates.effect == number]))
-            refined[one.name] = tuple(sorted(found[one.name] | {alone}))
+            refined[effect.name] = tuple(sorted(best[effect.name] | {alone}))
     return refined
 
 
 def finer(values: Array, chosen: Sequence[int], steps: int) -> Array:
-    """The values of a scan with so many steps in each interval beside those chosen, sorted."""
-    beside = {i for place in chosen for i in (place - 1, place) if 0 <= i < len(values) - 1}
-    near = [np.linspace(values[i], values[i + 1], steps + 1)[1:-1] for i in sorted(beside)]
-    return np.sort(np.concatenate([values, *near]))
+    """The values of a scan with `steps` steps in each interval next to those chosen, sorted."""
+    intervals = {i for place in chosen for i in (place - 1, place) if 0 <= i < len(values) - 1}
+    added = [np.linspace(values[i], values[i + 1], steps + 1)[1:-1] for i in sorted(intervals)]
+    return np.sort(np.concatenate([values, *added]))
 
 
-# ---- The set of effects that explains the data best, each at its price.
+# ---- The set of effects that best explains the data: beam search with exchanges.
 #
-# An effect's price is the drop of chi-squared from which on it is named on its own, so a larger
-# set is chosen only where each of its effects earns what chance would not. Several sets are
-# followed at once and their effects exchanged, for the effect that explains most alone need not
-# be in the best pair (design study: forward selection alone loses one campaign of ten with three
-# effects).
+# The threshold of an effect is the drop of chi-squared from which it is named on its own, so a
+# larger set is chosen only where each of its effects explains more than chance would. Several
+# sets are kept at once and their effects exchanged, for the effect that explains most alone need
+# not be in the best pair (design study: forward selection alone misses an effect in one campaign
+# of ten with three effects).
 
-FOLLOWED = 6  # sets of each size
-LARGEST = 6  # effects in a set
+BEAM_WIDTH = 6  # sets of each size
+MAX_EFFECTS = 6  # in a set
 
 
 @dataclass(frozen=True, order=True)
 class Set:
-    """Some candidates, by place, and by how much their drop exceeds their price."""
+    """Some candidates, by place, and by how much their drop exceeds their thresholds."""
 
     gain: float
     places: tuple[int, ...]
@@ -77,22 +78,22 @@ class Set:
 class Search:
     """The search for the best set in one campaign.
 
-    `prices`: of each effect, (m,).
+    `thresholds`: of each effect, (m,).
     """
 
     def __init__(
-        self, candidates: Candidates, prices: Array, information: Array, right: Array
+        self, candidates: Candidates, thresholds: Array, information: Array, right: Array
     ) -> None:
         self.candidates = candidates
         self.information = information
         self.right = right
-        self.prices = np.asarray(prices)[candidates.effect]
+        self.thresholds = np.asarray(thresholds)[candidates.effect]
 
     def best(self) -> tuple[Set, list[Set]]:
         """The best set of all, and the best ones of its size."""
         best = Set(0.0, ())
         level = peers = [best]
-        for _ in range(LARGEST):
+        for _ in range(MAX_EFFECTS):
             level = self._larger(level)
             if not level:
                 break
@@ -103,28 +104,28 @@ class Search:
         return best, peers
 
     def _larger(self, sets: Sequence[Set]) -> list[Set]:
-        found: dict[frozenset[int], Set] = {}
-        for one in sets:
-            self._keep(found, self._with_one_more(one.places, FOLLOWED))
-        grown = sorted(found.values(), reverse=True)[:FOLLOWED]
-        for one in grown:
-            self._keep(found, self._exchanged(one))
-        return sorted(found.values(), reverse=True)[:FOLLOWED]
+        kept: dict[frozenset[int], Set] = {}
+        for smaller in sets:
+            self._keep(kept, self._extended(smaller.places, BEAM_WIDTH))
+        extended = sorted(kept.values(), reverse=True)[:BEAM_WIDTH]
+        for candidate in extended:
+            self._keep(kept, self._exchanged(candidate))
+        return sorted(kept.values(), reverse=True)[:BEAM_WIDTH]
 
-    def _keep(self, found: dict[frozenset[int], Set], sets: Sequence[Set]) -> None:
-        """Of sets of the same effects the best is kept."""
-        for one in sets:
-            key = frozenset(int(e) for e in self.candidates.effect[list(one.places)])
-            if key not in found or found[key].gain < one.gain:
-                found[key] = one
+    def _keep(self, kept: dict[frozenset[int], Set], sets: Sequence[Set]) -> None:
+        """Keep the best of the sets of the same effects."""
+        for candidate in sets:
+            key = frozenset(int(e) for e in self.candidates.effect[list(candidate.places)])
+            if key not in kept or kept[key].gain < candidate.gain:
+                kept[key] = candidate
 
-    def _with_one_more(self, places: tuple[int, ...], number: int) -> list[Set]:
-        """The best sets with one effect more."""
+    def _extended(self, places: tuple[int, ...], number: int) -> list[Set]:
+        """The best sets with an additional effect."""
         gain = self.gain(places)
         more, degrees = self.candidates.drops(
             self.information, self.right, self.candidates.around(places)
         )
-        more = np.where(degrees > 0, more - self.prices, -np.inf)
+        more = np.where(degrees > 0, more - self.thresholds, -np.inf)
         more[np.isin(self.candidates.effect, self.candidates.effect[list(places)])] = -np.inf
         sets = []
         for _ in range(number):
@@ -135,18 +136,18 @@ class Search:
             more[self.candidates.effect == self.candidates.effect[place]] = -np.inf
         return sets
 
-    def _exchanged(self, one: Set) -> list[Set]:
-        """Each effect in turn for the best in its place, or for another value of its scan."""
-        if len(one.places) == 1:
+    def _exchanged(self, original: Set) -> list[Set]:
+        """Each effect in turn replaced by the best other, or by another value of its scan."""
+        if len(original.places) == 1:
             return []
         return [
-            better
-            for place in one.places
-            for better in self._with_one_more(tuple(p for p in one.places if p != place), 2)
+            exchanged
+            for place in original.places
+            for exchanged in self._extended(tuple(p for p in original.places if p != place), 2)
         ]
 
     def gain(self, places: Sequence[int]) -> float:
-        """By how much the drop of a set exceeds the price of its effects."""
+        """By how much the drop of a set exceeds the thresholds of its effects."""
         columns = self.candidates.together(places)
-        price = float(np.sum(self.prices[list(places)]))
-        return joint_drop(self.information, self.right, columns) - price
+        threshold = float(np.sum(self.thresholds[list(places)]))
+        return joint_drop(self.information, self.right, columns) - threshold

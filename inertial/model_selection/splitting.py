@@ -1,4 +1,4 @@
-"""Which further manoeuvre would tell the members of a class apart."""
+"""Which additional manoeuvre would distinguish the members of a class."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,33 +14,33 @@ from inertial.model_selection.scan import Candidates
 
 Array = NDArray[np.float64]
 
-TELLS = 3.3  # separation at which the likelier of two members is right in 95 of 100 campaigns
+MIN_SEPARATION = 3.3  # at which the likelier of two members is right in 95 of 100 campaigns
 
 
 @dataclass(frozen=True)
 class Pair:
-    """Two members of a class, and how well they are told apart: now, and with a manoeuvre.
+    """Two members of a class, and their separation without and with an additional manoeuvre.
 
-    Root of the expected difference of chi-squared between the best fit of the wrong one and of
-    the right one, whichever of the two is right.
+    Separation: root of the expected difference of chi-squared between the best fit of the wrong
+    member and of the right one, whichever of the two is right.
     """
 
-    one: str
-    other: str
-    now: float
-    then: float
+    first: str
+    second: str
+    present: float
+    extended: float
 
     @property
-    def told(self) -> bool:
+    def distinct(self) -> bool:
         """Whether the likelier of the two would be right in 95 of 100 campaigns."""
-        return self.then >= TELLS
+        return self.extended >= MIN_SEPARATION
 
 
 @dataclass(frozen=True)
 class Split:
-    """How well the members of a class would be told apart with a further manoeuvre.
+    """How well an additional manoeuvre would distinguish the members of a class.
 
-    `pairs`: the best told first.
+    `pairs`: in order of decreasing separation.
     """
 
     manoeuvre: str
@@ -48,39 +48,37 @@ class Split:
 
     @property
     def separation(self) -> float:
-        """The signal-to-noise ratio of the split: of the weakest pair that is told apart.
-
-        Where none is, that of the best pair.
-        """
-        told = [pair.then for pair in self.pairs if pair.told]
-        return min(told) if told else self.pairs[0].then
+        """The smallest separation of the distinct pairs; if there is none, the largest of all."""
+        distinct = [pair.extended for pair in self.pairs if pair.distinct]
+        return min(distinct) if distinct else self.pairs[0].extended
 
     @property
     def rank(self) -> tuple[int, float]:
-        """The more pairs are told apart, then the more clearly, the better."""
-        return sum(pair.told for pair in self.pairs), float(sum(p.then**2 for p in self.pairs))
+        """The number of distinct pairs, then the sum of the squared separations."""
+        squares = sum(pair.extended**2 for pair in self.pairs)
+        return sum(pair.distinct for pair in self.pairs), float(squares)
 
 
 def split(
-    now: EffectInformation,
-    further: Mapping[str, EffectInformation],
+    present: EffectInformation,
+    extended: Mapping[str, EffectInformation],
     effects: Sequence[SearchedEffect],
     causes: Sequence[Cause],
     number: int,
 ) -> list[Split]:
-    """All manoeuvres, the one that splits the class of a cause best first.
+    """The additional manoeuvres, that which best splits the class of a cause first.
 
-    Each member in turn is taken for the truth, as large as this campaign has it, and fitted by
-    every other member; the other causes stay in the model.
+    Each member in turn is taken for the truth, with its estimate from this campaign, and fitted
+    by every other member; the other causes stay in the model.
 
     Parameters
     ----------
-    now : what the campaign says of the effects, all sensors
-    further : the information of the campaign with each manoeuvre added; its `right` is not used
+    present : the information of the campaign on the effects, all sensors
+    extended : the same with each manoeuvre added; its `right` is not used
     number : which of the causes has the class
     """
     candidates = Candidates(effects)
-    index = {one.name: i for i, one in enumerate(effects)}
+    index = {effect.name: i for i, effect in enumerate(effects)}
     members = [index[member] for member in causes[number].members]
     others = [
         int(
@@ -91,29 +89,29 @@ def split(
         for i, c in enumerate(causes)
         if i != number
     ]
-    beside = candidates.together(others)
-    drops, degrees = candidates.drops(now.information, now.right, beside)
+    given = candidates.together(others)
+    drops, degrees = candidates.drops(present.information, present.right, given)
     truths = {}
     for member in members:
         own = np.flatnonzero((candidates.effect == member) & (degrees > 0))
         place = int(own[np.argmax(drops[own])])
-        truths[member] = (place, _values(now, candidates.columns[place], beside))
-    now_told = _separations(now.information, candidates, truths, beside)
-    found = []
-    for manoeuvre, extended in further.items():
-        then_told = _separations(extended.information, candidates, truths, beside)
+        truths[member] = (place, _values(present, candidates.columns[place], given))
+    separations = _separations(present.information, candidates, truths, given)
+    splits = []
+    for manoeuvre, with_manoeuvre in extended.items():
         pairs = [
-            Pair(effects[one].name, effects[other].name, now_told[one, other], separation)
-            for (one, other), separation in then_told.items()
+            Pair(effects[i].name, effects[j].name, separations[i, j], separation)
+            for (i, j), separation in _separations(
+                with_manoeuvre.information, candidates, truths, given
+            ).items()
         ]
-        found.append(Split(manoeuvre, tuple(sorted(pairs, key=lambda pair: -pair.then))))
-    return sorted(found, key=lambda one: one.rank, reverse=True)
+        splits.append(Split(manoeuvre, tuple(sorted(pairs, key=lambda pair: -pair.extended))))
+    return sorted(splits, key=lambda split: split.rank, reverse=True)
 
 
-def _values(now: EffectInformation, columns: Sequence[int], beside: Sequence[int]) -> Array:
-    """The estimate of some columns beside others, 0 where the data do not show one, (w,)."""
-    every = list(dict.fromkeys([*columns, *beside]))
-    values, _ = now.estimate(every)
+def _values(present: EffectInformation, columns: Sequence[int], given: Sequence[int]) -> Array:
+    """The joint estimate of some columns and those given, 0 where not observable, (w,)."""
+    values, _ = present.estimate(list(dict.fromkeys([*columns, *given])))
     return np.nan_to_num(values[: len(columns)])
 
 
@@ -121,18 +119,17 @@ def _separations(
     information: Array,
     candidates: Candidates,
     truths: Mapping[int, tuple[int, Array]],
-    beside: Sequence[int],
+    given: Sequence[int],
 ) -> dict[tuple[int, int], float]:
     """For each pair of members the smaller of the two separations."""
-    lost: dict[tuple[int, int], float] = {}
-    for right_one, (place, values) in truths.items():
+    excess: dict[tuple[int, int], float] = {}
+    for right, (place, values) in truths.items():
         signal = information[:, list(candidates.columns[place])] @ values
-        left, _ = candidates.drops(information, signal, beside)
-        for wrong_one in truths:
-            if wrong_one != right_one:
-                own = candidates.effect == wrong_one
-                lost[right_one, wrong_one] = max(float(left[place]) - float(left[own].max()), 0.0)
+        drops, _ = candidates.drops(information, signal, given)
+        for wrong in truths:
+            if wrong != right:
+                own = candidates.effect == wrong
+                excess[right, wrong] = max(float(drops[place]) - float(drops[own].max()), 0.0)
     return {
-        (one, other): float(np.sqrt(min(lost[one, other], lost[other, one])))
-        for one, other in combinations(truths, 2)
+        (i, j): float(np.sqrt(min(excess[i, j], excess[j, i]))) for i, j in combinations(truths, 2)
     }

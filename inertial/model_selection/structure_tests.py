@@ -9,29 +9,29 @@ from numpy.typing import NDArray
 from inertial.estimation.probability import chi2_isf, chi2_sf, f_sf
 from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.null_simulation import chance
-from inertial.model_selection.scan import SEEN, Candidates
+from inertial.model_selection.scan import MIN_EIGENVALUE, Candidates
 
 # ---- The functions of the tests.
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-SMOOTH = 6  # half waves of a smooth course over the whole campaign
-FREQUENCIES = 60  # of an oscillation in time, in steps of half a cycle per campaign
+HALF_WAVES = 6  # of a smooth function over the whole campaign
+MAX_FREQUENCIES = 60  # of an oscillation in time, in steps of half a cycle per campaign
 ORDERS = np.arange(0.5, 15.01, 0.5)  # of a ripple, cycles per turn: faster is in the spectrum
 HARMONICS = (1, 2, 3)
-RATES = 8  # bins between the fastest rates backward and forward
-CHANGES = 60  # times of a change
-FEWEST = 4  # readings, or rates, that a function needs
+RATE_BINS = 8  # between the fastest rates backward and forward
+MAX_CHANGES = 60  # times of a change
+MIN_DISTINCT = 4  # values that a function needs
 
 
 @dataclass(frozen=True)
-class Where:
-    """Where readings were taken: NaN where it is not known.
+class Conditions:
+    """The conditions of readings, NaN where not known.
 
     `time`: (n,), s; `angle` of the table: (n,), rad; `up`: (n, 3), body axes; `temperature`:
-    (n,), °C; `rate`: (n,), rad/s, what the channel is exposed to: of a gyro that about its own
-    axis, of an accelerometer that of the table.
+    (n,), °C; `rate`: (n,), rad/s, of a gyro that about its own axis, of an accelerometer
+    that of the table.
     """
 
     time: Array
@@ -42,34 +42,36 @@ class Where:
 
 
 @dataclass(frozen=True)
-class Question:
-    """Functions (n, k) in groups (g, w) of their columns, one of which may have a trace.
+class FunctionGroups:
+    """Functions (n, k) in groups (g, w) of their columns, one of which may fit the residuals.
 
-    `where`: (g,), the value of what is scanned; `independent`: the columns stand group after
-    group, and groups are so many and so different that each is its own trial.
+    `scan_values`: (g,), of the scanned variable; `independent`: columns are in the order of the
+    groups, and groups are so many and so different that each counts as an independent trial.
     """
 
     functions: Array
     groups: Integers
-    where: Array
+    scan_values: Array
     independent: bool = False
 
 
-Asking = Callable[[Where], Iterator[Question]]
+FunctionFamily = Callable[[Conditions], Iterator[FunctionGroups]]
 
 
-def _one(functions: Array) -> Question:
-    return Question(functions, np.arange(functions.shape[1])[None], np.array([np.nan]))
+def _single_group(functions: Array) -> FunctionGroups:
+    return FunctionGroups(functions, np.arange(functions.shape[1])[None], np.array([np.nan]))
 
 
-def _waves(phase: Array, where: Array) -> Question:
+def _waves(phase: Array, scan_values: Array) -> FunctionGroups:
     """Cosine and sine of each column of `phase` (n, g), none where the phase is not known."""
     known = np.isfinite(phase)
     phase = np.where(known, phase, 0.0)
     functions = np.stack([known * np.cos(phase), known * np.sin(phase)], axis=2)
     count = phase.shape[1]
     groups = np.arange(2 * count).reshape(count, 2)
-    return Question(functions.reshape(len(phase), 2 * count), groups, where, independent=True)
+    return FunctionGroups(
+        functions.reshape(len(phase), 2 * count), groups, scan_values, independent=True
+    )
 
 
 def _unit(x: Array) -> tuple[Array, float]:
@@ -79,78 +81,80 @@ def _unit(x: Array) -> tuple[Array, float]:
 
 
 def _varies(x: Array) -> bool:
-    return len(np.unique(x[np.isfinite(x)])) >= FEWEST
+    return len(np.unique(x[np.isfinite(x)])) >= MIN_DISTINCT
 
 
-def of_time(read: Where) -> Iterator[Question]:
-    """A smooth course, and oscillations."""
-    if not _varies(read.time):
+def of_time(readings: Conditions) -> Iterator[FunctionGroups]:
+    """A smooth function, and oscillations."""
+    if not _varies(readings.time):
         return
-    phase, span = _unit(read.time)
-    half_waves = np.arange(1, SMOOTH + 1)
-    yield _one(np.nan_to_num(np.cos(np.pi * phase[:, None] * half_waves)))
-    # Faster than every second reading cannot be told from slower.
-    count = min(FREQUENCIES, len(np.unique(read.time[np.isfinite(read.time)])) // 2)
-    cycles = SMOOTH / 2 + np.arange(1, count + 1) / 2
+    phase, span = _unit(readings.time)
+    half_waves = np.arange(1, HALF_WAVES + 1)
+    yield _single_group(np.nan_to_num(np.cos(np.pi * phase[:, None] * half_waves)))
+    # Above half the number of readings frequencies are aliased.
+    count = min(MAX_FREQUENCIES, len(np.unique(readings.time[np.isfinite(readings.time)])) // 2)
+    cycles = HALF_WAVES / 2 + np.arange(1, count + 1) / 2
     yield _waves(2 * np.pi * phase[:, None] * cycles, cycles / span)
 
 
-def of_angle(read: Where) -> Iterator[Question]:
-    """Harmonics of a turn, and ripples of any order."""
-    if not _varies(read.angle):
+def of_angle(readings: Conditions) -> Iterator[FunctionGroups]:
+    """Harmonics of a revolution, and ripples of any order."""
+    if not _varies(readings.angle):
         return
-    harmonics = _waves(read.angle[:, None] * np.array(HARMONICS), np.array(HARMONICS, dtype=float))
-    ripples = _waves(read.angle[:, None] * ORDERS, ORDERS)
-    # What an angle of the table does to a rate goes with the rate as well.
-    for weight in (np.ones(len(read.angle)), np.nan_to_num(read.rate)):
-        yield _one(harmonics.functions * weight[:, None])
+    harmonics = _waves(
+        readings.angle[:, None] * np.array(HARMONICS), np.array(HARMONICS, dtype=float)
+    )
+    ripples = _waves(readings.angle[:, None] * ORDERS, ORDERS)
+    # Errors of the angle of the table scale with the rate as well.
+    for weight in (np.ones(len(readings.angle)), np.nan_to_num(readings.rate)):
+        yield _single_group(harmonics.functions * weight[:, None])
         yield replace(ripples, functions=ripples.functions * weight[:, None])
 
 
-def of_rate(read: Where) -> Iterator[Question]:
+def of_rate(readings: Conditions) -> Iterator[FunctionGroups]:
     """Means of bins of the rate."""
-    rate = read.rate
+    rate = readings.rate
     if not np.any(np.nan_to_num(rate)):
         return
     fastest = float(np.nanmax(np.abs(rate)))
-    bins = np.floor((rate / fastest + 1) / 2 * RATES * 0.999999)
+    bins = np.floor((rate / fastest + 1) / 2 * RATE_BINS * 0.999999)
     bins = np.where(np.isfinite(rate), bins, -1)
-    bins = np.where(rate == 0, RATES, bins)
-    yield _one((bins[:, None] == np.arange(RATES + 1)).astype(np.float64))
+    bins = np.where(rate == 0, RATE_BINS, bins)
+    yield _single_group((bins[:, None] == np.arange(RATE_BINS + 1)).astype(np.float64))
 
 
-def of_attitude(read: Where) -> Iterator[Question]:
+def of_attitude(readings: Conditions) -> Iterator[FunctionGroups]:
     """Linear and quadratic functions of the direction of up."""
-    known = np.isfinite(read.up.sum(axis=1))
-    if known.sum() < FEWEST:
+    known = np.isfinite(readings.up.sum(axis=1))
+    if known.sum() < MIN_DISTINCT:
         return
-    x, y, z = np.where(known[:, None], read.up, 0.0).T
-    ones = known.astype(np.float64)
-    yield _one(np.column_stack([x, y, z, ones, x * x, y * y, x * y, x * z, y * z]))
+    x, y, z = np.where(known[:, None], readings.up, 0.0).T
+    constant = known.astype(np.float64)
+    yield _single_group(np.column_stack([x, y, z, constant, x * x, y * y, x * y, x * z, y * z]))
 
 
-def of_temperature(read: Where) -> Iterator[Question]:
+def of_temperature(readings: Conditions) -> Iterator[FunctionGroups]:
     """A polynomial of the third degree."""
-    if not _varies(read.temperature):
+    if not _varies(readings.temperature):
         return
-    phase, _ = _unit(read.temperature)
-    yield _one(np.nan_to_num(np.cos(np.pi * phase[:, None] * np.arange(1, 4))))
+    phase, _ = _unit(readings.temperature)
+    yield _single_group(np.nan_to_num(np.cos(np.pi * phase[:, None] * np.arange(1, 4))))
 
 
-def of_change(read: Where) -> Iterator[Question]:
+def of_change(readings: Conditions) -> Iterator[FunctionGroups]:
     """A step at any time: the generalised likelihood ratio."""
-    times = np.unique(read.time[np.isfinite(read.time)])
-    if len(times) < FEWEST:
+    times = np.unique(readings.time[np.isfinite(readings.time)])
+    if len(times) < MIN_DISTINCT:
         return
     between = (times[1:] + times[:-1]) / 2
-    evenly = np.linspace(between[0], between[-1], CHANGES)
+    evenly = np.linspace(between[0], between[-1], MAX_CHANGES)
     chosen = between[np.unique(np.searchsorted(between, evenly))]
-    known: Array = np.where(np.isfinite(read.time), read.time, -np.inf)
+    known: Array = np.where(np.isfinite(readings.time), readings.time, -np.inf)
     steps: Array = np.where(known[:, np.newaxis] > chosen, 1.0, 0.0)
-    yield Question(steps, np.arange(len(chosen))[:, None], chosen)
+    yield FunctionGroups(steps, np.arange(len(chosen))[:, None], chosen)
 
 
-TESTS: dict[str, Asking] = {
+TESTS: dict[str, FunctionFamily] = {
     "time": of_time,
     "angle": of_angle,
     "rate": of_rate,
@@ -162,18 +166,18 @@ TESTS: dict[str, Asking] = {
 
 # ---- Score tests of the residuals of a refit for structure of any cause.
 #
-# Each test asks whether functions of something (time, angle, rate, attitude, temperature) would
-# explain the residuals. Residuals of a fit are not independent: if the model is right their
-# covariance is I − H, H the projection of the fit, and so the functions T are judged by
-# T'e ~ N(0, T'(I − H)T), Rao's score test. What the fit has absorbed already counts nothing.
+# Each tests whether functions of a variable (time, angle, rate, attitude, temperature) explain the
+# residuals. Residuals of a fit are not independent: if the model is right their covariance is
+# I − H, H the projection of the fit, and so the functions T are tested by T'e ~ N(0, T'(I − H)T),
+# Rao's score test. What the fit has already absorbed does not count.
 
-LEVEL = 0.01  # accepted chance that any test fires where the model is right
+LEVEL = 0.01  # accepted probability that any test detects a structure where the model is right
 DRAWS = 2000
 
 
 @dataclass(frozen=True)
-class Answer:
-    """What the residuals of one sensor say of the functions of a question, on one of its axes.
+class ScoreEquations:
+    """Normal equations of functions in the residuals of one axis of a sensor.
 
     `kind`: of the test; `sensor`: gyro or accel; `information`: T'(I − H)T, (k, k), zero of
     what was fitted; `right`: T'e, (k,); `chi_squared` of `degrees`: the residuals themselves;
@@ -183,7 +187,7 @@ class Answer:
     kind: str
     sensor: str
     axis: str
-    question: Question
+    tested: FunctionGroups
     information: Array
     right: Array
     chi_squared: float
@@ -196,90 +200,97 @@ class Structure:
     """One test of structure.
 
     `kind`: time, angle, rate, attitude, temperature, or change; `sensor`, `axis`: where it is
-    clearest; `where`: the time of a change, the frequency of an oscillation, the order of a
-    ripple, else NaN; `p_value`: its own search over channels and scan accounted for; `fires`: at
-    the level that all tests share; `answer`, `group`: the functions that explain most.
+    most significant; `scan_value`: the time of a change, the frequency of an oscillation, the
+    order of a ripple, else NaN; `p_value`: the search over channels and scan accounted for;
+    `detected`: at the level that all tests share; `equations`, `group`: the functions that
+    explain most.
     """
 
     kind: str
     sensor: str
     axis: str
-    where: float
+    scan_value: float
     statistic: float
     degrees: int
     p_value: float
     possible: bool
-    fires: bool
-    answer: Answer | None = None
+    detected: bool
+    equations: ScoreEquations | None = None
     group: int = 0
 
     @property
     def values(self) -> tuple[list[int], Array]:
-        """The functions that explain the residuals best, and how much of each."""
-        if self.answer is None:
+        """The functions that best explain the residuals, and their coefficients."""
+        if self.equations is None:
             return [], np.zeros(0)
-        chosen = self.answer.question.groups[self.group].tolist()
-        block = self.answer.information[np.ix_(chosen, chosen)]
-        return chosen, np.linalg.pinv(block, rcond=SEEN, hermitian=True) @ self.answer.right[chosen]
+        chosen = self.equations.tested.groups[self.group].tolist()
+        block = self.equations.information[np.ix_(chosen, chosen)]
+        return chosen, np.linalg.pinv(
+            block, rcond=MIN_EIGENVALUE, hermitian=True
+        ) @ self.equations.right[chosen]
 
 
-def structures(answers: Sequence[Answer], level: float = LEVEL, seed: int = 0) -> list[Structure]:
-    """The six tests; together they fire in a share `level` of campaigns whose model is right."""
-    found: dict[str, list[Structure]] = {kind: [] for kind in TESTS}
-    for answer in answers:
-        told = _tested(answer, seed)
-        if told is not None:
-            found[answer.kind].append(told)
-    possible = sum(bool(some) for some in found.values())
-    return [_together(kind, some, level / max(possible, 1)) for kind, some in found.items()]
+def structures(
+    equations: Sequence[ScoreEquations], level: float = LEVEL, seed: int = 0
+) -> list[Structure]:
+    """The six tests; any detects in a share `level` of the campaigns whose model is right."""
+    tests: dict[str, list[Structure]] = {kind: [] for kind in TESTS}
+    for of_axis in equations:
+        test = _test(of_axis, seed)
+        if test is not None:
+            tests[of_axis.kind].append(test)
+    possible = sum(map(bool, tests.values()))
+    return [_combined(kind, each, level / max(possible, 1)) for kind, each in tests.items()]
 
 
-def _together(kind: str, some: list[Structure], level: float) -> Structure:
-    """The clearest of some answers, at a price for each of them."""
-    if not some:
+def _combined(kind: str, tests: Sequence[Structure], level: float) -> Structure:
+    """The most significant of the tests of the axes, with Bonferroni's correction."""
+    if not tests:
         return Structure(kind, "", "", np.nan, 0.0, 0, 1.0, False, False)
-    best = min(some, key=lambda one: one.p_value)
-    p_value = min(best.p_value * len(some), 1.0)
-    return replace(best, p_value=p_value, fires=p_value < level)
+    best = min(tests, key=lambda test: test.p_value)
+    p_value = min(best.p_value * len(tests), 1.0)
+    return replace(best, p_value=p_value, detected=p_value < level)
 
 
-def _tested(answer: Answer, seed: int) -> Structure | None:
+def _test(equations: ScoreEquations, seed: int) -> Structure | None:
     """The group of functions that explains most; none where all of them were fitted."""
-    question = answer.question
-    one = searched_effect(answer.kind, *question.groups)
-    drops, degrees = Candidates([one]).drops(answer.information, answer.right)
+    tested = equations.tested
+    effect = searched_effect(equations.kind, *tested.groups)
+    drops, degrees = Candidates([effect]).drops(equations.information, equations.right)
     if not degrees.any():
         return None
     best = int(np.argmax(drops))
     drop, count = float(drops[best]), int(degrees[best])
-    alone = _alone(drop, count, answer)
+    alone = _alone(drop, count, equations)
     searched = min(alone * int(np.sum(degrees > 0)), 1.0)
-    if len(question.groups) > 1 and not question.independent:
-        law = chance(answer.information, [one], LEVEL, DRAWS, seed).tails[0]
+    if len(tested.groups) > 1 and not tested.independent:
+        law = chance(equations.information, [effect], LEVEL, DRAWS, seed).tails[0]
         searched = float(law(chi2_isf(alone, law.degrees)))
-    where = float(question.where[best])
+    scan_value = float(tested.scan_values[best])
     return Structure(
-        answer.kind,
-        answer.sensor,
-        answer.axis,
-        where,
+        equations.kind,
+        equations.sensor,
+        equations.axis,
+        scan_value,
         drop,
         count,
         searched,
         True,
         False,
-        answer,
+        equations,
         best,
     )
 
 
-def _alone(drop: float, count: int, answer: Answer) -> float:
-    """Chance of such a drop, the sigma known beforehand and from what is left over."""
-    if np.isinf(answer.noise_degrees):
+def _alone(drop: float, count: int, equations: ScoreEquations) -> float:
+    """p-value of a drop, with sigma from prior knowledge and from the remaining residuals."""
+    if np.isinf(equations.noise_degrees):
         return float(chi2_sf(drop, count))
-    left = max(answer.degrees - count, 0)
-    degrees = left + answer.noise_degrees
-    rest = max(answer.chi_squared - drop, 0.0)
-    # Residuals that are larger than the noise all over are no structure.
-    variance = max((rest + answer.noise_degrees) / degrees, rest / left if left else 0.0)
+    remaining = max(equations.degrees - count, 0)
+    degrees = remaining + equations.noise_degrees
+    rest = max(equations.chi_squared - drop, 0.0)
+    # Residuals that uniformly exceed the noise are no structure.
+    variance = max(
+        (rest + equations.noise_degrees) / degrees, rest / remaining if remaining else 0.0
+    )
     return float(f_sf(drop / count / variance, count, degrees))

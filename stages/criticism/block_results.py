@@ -332,7 +332,7 @@ def unexplained_rows(selection: Selection, mount: str) -> Iterator[TableRow]:
     """A finding for each sensor whose residuals the named effects do not explain."""
     chosen = list(dict.fromkeys(i for cause in selection.named.causes for i in cause.columns))
     for sensor, reduced in zip(selection.evidence.labels, selection.evidence.sensors, strict=True):
-        rest, degrees, p_value = selection.evidence.left_over(reduced, chosen)
+        rest, degrees, p_value = selection.evidence.residual(reduced, chosen)
         if p_value >= MIN_CONSISTENT_P_VALUE or rest <= MIN_EXCESS * degrees:
             continue
         ratio = float(np.sqrt(rest / degrees))

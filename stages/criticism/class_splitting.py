@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inertial.campaign.equations import Campaign, evidence
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.estimation.least_squares import EffectInformation
-from inertial.model_selection.splitting import TELLS, split
+from inertial.model_selection.splitting import MIN_SEPARATION, split
 from inertial.physics.effect import Effect
 from inertial.tables import GYRO, STATIC_PHASES
 from inertial.text.messages import _
@@ -117,7 +117,7 @@ class Splitting:
     @property
     def tells(self) -> bool:
         """Whether the likelier member would be right in 95 of 100 campaigns."""
-        return self.separation >= TELLS
+        return self.separation >= MIN_SEPARATION
 
 
 class Foreseen:

@@ -1,7 +1,7 @@
-"""Whether the residuals beside the named effects have a structure.
+"""Whether the residuals, given the named effects, have a structure.
 
-Functions of the motion are treated like an effect: how much of them do the equations determine,
-all else fitted? So tilts, gravity and random walks enter as they do there.
+Functions of the motion are fitted like an effect, with all else: so tilts, gravity and random
+walks enter as they do there.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,7 +13,13 @@ from numpy.typing import NDArray
 
 from inertial.campaign.equations import Campaign
 from inertial.model_selection.cause import UNKNOWN_STRUCTURE
-from inertial.model_selection.structure_tests import TESTS, Answer, Structure, Where, structures
+from inertial.model_selection.structure_tests import (
+    TESTS,
+    Conditions,
+    ScoreEquations,
+    Structure,
+    structures,
+)
 from inertial.physics.effect import Array, Effect, Parameter, Reading
 from inertial.physics.motion import Motion
 from inertial.text.cause_names import in_words
@@ -53,28 +59,28 @@ class Functions(Effect):
 
 @dataclass(frozen=True)
 class Tested:
-    """The six tests of the residuals of one mount beside the named effects."""
+    """The six tests of the residuals of one mount given the named effects."""
 
     campaign: Campaign
     named: Sequence[Effect]
     tests: Sequence[Structure]
 
     @property
-    def firing(self) -> list[Structure]:
-        """The tests that detect a structure, the clearest first."""
-        return sorted((test for test in self.tests if test.fires), key=lambda test: test.p_value)
+    def detected(self) -> list[Structure]:
+        """The tests that detect a structure, the most significant first."""
+        return sorted((test for test in self.tests if test.detected), key=lambda test: test.p_value)
 
     def of(self, sensor: str) -> list[Structure]:
         """Those in the readings of a sensor, `gyro` or `accel`."""
-        return [test for test in self.firing if test.sensor == sensor]
+        return [test for test in self.detected if test.sensor == sensor]
 
 
 @dataclass(frozen=True)
 class Point:
-    """The residual of an axis in a bin of what it may be a function of.
+    """The residual of an axis in a bin of the variable of a test.
 
-    `x`: s, rad, rad/s, K, or rad from upright; `residual`, `sigma`, and `structure`, what the
-    functions of the test are there: rad/s or m/s².
+    `x`: s, rad, rad/s, K, or rad from upright; `residual`, `sigma`, and `structure`, the
+    fitted functions of the test: rad/s or m/s².
     """
 
     x: float
@@ -84,85 +90,85 @@ class Point:
 
 
 def structure_tests(campaign: Campaign, named: Sequence[Effect], noise_degrees: float) -> Tested:
-    """The tests of the residuals beside the named effects."""
-    answers = [
-        answer
+    """The tests of the residuals given the named effects."""
+    equations = [
+        equation
         for sensor in SOLVED
         for axis in range(3)
-        for answer in _answers(campaign, named, sensor, axis, noise_degrees)
+        for equation in _equations(campaign, named, sensor, axis, noise_degrees)
     ]
-    return Tested(campaign, named, structures(answers))
+    return Tested(campaign, named, structures(equations))
 
 
 def points(tested: Tested, test: Structure) -> Iterator[Point]:
     """The residuals in bins along which a structure is detected, all else as fitted."""
     sensor, axis = test.sensor, test.axis
     own = tested.campaign.stretches(sensor)
-    where = where_of(tested.campaign.motion, own, sensor, AXES.index(axis))
-    across = _across(where, test.kind, AXES.index(axis))
-    bins = [group for group in _bins(across) if len(group)]
+    conditions = conditions_of(tested.campaign.motion, own, sensor, AXES.index(axis))
+    abscissa = _abscissa(conditions, test.kind, AXES.index(axis))
+    bins = [group for group in _bins(abscissa) if len(group)]
     chosen, values = test.values
-    assert test.answer is not None  # it fires
-    shown = np.zeros((len(across), 1 + len(bins)))
-    shown[:, 0] = test.answer.question.functions[:, chosen] @ values
+    assert test.equations is not None  # it is detected
+    shown = np.zeros((len(abscissa), 1 + len(bins)))
+    shown[:, 0] = test.equations.tested.functions[:, chosen] @ values
     for column, group in enumerate(bins, 1):
         shown[group, column] = 1.0
     rest, columns, _ = _residuals(tested.campaign, tested.named, sensor, AXES.index(axis), [shown])
     for column, group in enumerate(bins, 1):
-        mine = columns[:, column]
-        known = float(mine @ mine)
-        if known > 0:
+        own_column = columns[:, column]
+        information = float(own_column @ own_column)
+        if information > 0:
             yield Point(
-                float(across[group].mean()),
-                float(mine @ rest) / known,
-                float(known**-0.5),
-                float(mine @ columns[:, 0]) / known,
+                float(abscissa[group].mean()),
+                float(own_column @ rest) / information,
+                float(information**-0.5),
+                float(own_column @ columns[:, 0]) / information,
             )
 
 
-def _across(where: Where, kind: str, axis: int) -> Array:
+def _abscissa(conditions: Conditions, kind: str, axis: int) -> Array:
     """The abscissa of a figure of the structure, (n,)."""
     if kind in ("time", "change"):
-        return where.time
+        return conditions.time
     if kind == "attitude":
-        return np.asarray(np.arccos(np.clip(where.up[:, axis], -1.0, 1.0)))
-    return np.asarray(getattr(where, kind))
+        return np.asarray(np.arccos(np.clip(conditions.up[:, axis], -1.0, 1.0)))
+    return np.asarray(getattr(conditions, kind))
 
 
-def _bins(across: Array) -> list[Integers]:
-    """The readings in bins of equal width, those of unknown place in none."""
-    known = np.isfinite(across)
-    low, high = float(np.min(across[known])), float(np.max(across[known]))
+def _bins(abscissa: Array) -> list[Integers]:
+    """The readings in bins of equal width, those of unknown abscissa in none."""
+    known = np.isfinite(abscissa)
+    low, high = float(np.min(abscissa[known])), float(np.max(abscissa[known]))
     width = (high - low) / BINS or 1.0
-    place = np.where(known, np.minimum((across - low) / width, BINS - 1), -1).astype(np.int64)
+    place = np.where(known, np.minimum((abscissa - low) / width, BINS - 1), -1).astype(np.int64)
     return [np.flatnonzero(place == number) for number in range(BINS)]
 
 
-def _answers(
+def _equations(
     campaign: Campaign, named: Sequence[Effect], sensor: str, axis: int, noise_degrees: float
-) -> Iterator[Answer]:
+) -> Iterator[ScoreEquations]:
     if getattr(campaign.solution, SOLVED[sensor]) is None:
         return
-    where = where_of(campaign.motion, campaign.stretches(sensor), sensor, axis)
-    questions = [(kind, one) for kind, test in TESTS.items() for one in test(where)]
-    functions = [question.functions for _, question in questions]
+    conditions = conditions_of(campaign.motion, campaign.stretches(sensor), sensor, axis)
+    tested = [(kind, groups) for kind, test in TESTS.items() for groups in test(conditions)]
+    functions = [groups.functions for _, groups in tested]
     rest, columns, degrees = _residuals(campaign, named, sensor, axis, functions)
     first = 0
-    for kind, question in questions:
-        some = slice(first, first + question.functions.shape[1])
-        left = columns[:, some]
-        yield Answer(
+    for kind, groups in tested:
+        own = slice(first, first + groups.functions.shape[1])
+        reduced = columns[:, own]
+        yield ScoreEquations(
             kind,
             sensor,
             AXES[axis],
-            question,
-            left.T @ left,
-            left.T @ rest,
+            groups,
+            reduced.T @ reduced,
+            reduced.T @ rest,
             float(rest @ rest),
             degrees,
             noise_degrees,
         )
-        first = some.stop
+        first = own.stop
 
 
 def _residuals(
@@ -187,12 +193,12 @@ def _residuals(
     return rest, np.where(fitted, 0.0, columns), system.rows - system.parameters
 
 
-def where_of(motion: Motion, some: slice, sensor: str, axis: int) -> Where:
-    """What the readings of one axis may be functions of, in some stretches of the motion."""
+def conditions_of(motion: Motion, part: slice, sensor: str, axis: int) -> Conditions:
+    """The conditions of the readings of one axis, in a part of the motion."""
     angle = np.where(motion.rate != 0, motion.angle, np.nan)
     rate = motion.omega[:, axis] if sensor == "gyro" else motion.rate
     each = (motion.time, angle, rate, motion.up, motion.temperature)
-    return Where(*(values[some] for values in each))
+    return Conditions(*(values[part] for values in each))
 
 
 # ---- Rows: the tests, the residuals in bins, and findings.
@@ -233,12 +239,12 @@ DESCRIPTIONS = {  # by the kind of the test, and whether a value of a scan is kn
 def structure_rows(
     tested: Tested, consistent: Mapping[str, Sequence[str]], mount: str
 ) -> Iterator[TableRow]:
-    """The six tests, the residuals in bins where one detects something, and findings.
+    """The six tests, the residuals in bins where a test detects a structure, and findings.
 
     `consistent`: of each sensor the effects with which the data are no more than consistent.
     """
     for test in tested.tests:
-        scanned = bool(np.isfinite(test.where))
+        scanned = bool(np.isfinite(test.scan_value))
         yield (
             "structures",
             {
@@ -246,15 +252,15 @@ def structure_rows(
                 "kind": test.kind,
                 "sensor": test.sensor or None,
                 "axis": test.axis or None,
-                "scan_value": test.where if scanned else None,
+                "scan_value": test.scan_value if scanned else None,
                 "scan_unit": SCAN_UNITS[test.kind] if scanned else None,
                 "statistic": test.statistic if test.possible else None,
                 "degrees": test.degrees if test.possible else None,
                 "p_value": test.p_value if test.possible else None,
-                "detected": test.fires,
+                "detected": test.detected,
             },
         )
-    for test in tested.firing:
+    for test in tested.detected:
         shared = {"mount": mount, "kind": test.kind, "sensor": test.sensor, "axis": test.axis}
         shared |= {"x_unit": X_UNITS[test.kind], "unit": UNITS[test.sensor]}
         for point in points(tested, test):
@@ -302,11 +308,11 @@ def _finding(
 
 
 def _description(test: Structure) -> str:
-    """The clearest structure, for a person."""
-    scanned = test.where > 0
-    period = significant(1 / test.where) if scanned else ""
+    """The most significant structure, in words."""
+    scanned = test.scan_value > 0
+    period = significant(1 / test.scan_value) if scanned else ""
     template = DESCRIPTIONS[test.kind, bool(scanned) or test.kind == "change"]
-    return template.format(axis=test.axis, value=test.where, period=period)
+    return template.format(axis=test.axis, value=test.scan_value, period=period)
 
 
 def _name(test: Structure) -> str:

@@ -1,4 +1,4 @@
-"""What each plan says of every effect, by a clean campaign: sizes, and the price of a name."""
+"""What each plan says of every effect, by a clean campaign: sizes, and the threshold of a name."""
 
 import pickle
 import shutil
@@ -81,12 +81,12 @@ class Reference:
         degrees = self.law.tails[number].degrees
         if not degrees:
             return {"degrees": 0, "limit": 0.0, "textbook": 0.0}
-        price = self.law.price(number, self.noise_degrees)
+        threshold = self.law.threshold(number, self.noise_degrees)
         seen = sum(tail.degrees > 0 for tail in self.law.tails)
-        values = self.law.tails[number].trials(price)
+        values = self.law.tails[number].trials(threshold)
         return {
             "degrees": degrees,
-            "limit": float(power(ratio, degrees, price)),
+            "limit": float(power(ratio, degrees, threshold)),
             "textbook": float(power_limit(ratio, degrees, seen, LEVEL, values)),
         }
 
@@ -149,4 +149,4 @@ def _made(plan: str) -> Reference:
     said, asked = evidence_of(campaign, families, degrees)
     law = law_of(said, asked, LEVEL)
     assert law is not None  # the plans show effects
-    return Reference(campaign, said.seen(), asked, families, law, degrees)
+    return Reference(campaign, said.observable(), asked, families, law, degrees)

@@ -18,7 +18,7 @@ from hidden_ways import POSITIVE, WAYS, Array
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.model_selection.naming import causes
-from inertial.model_selection.scan import SEEN
+from inertial.model_selection.scan import MIN_EIGENVALUE
 
 TRIALS = {0.0: 2000, 5.0: 300, 6.0: 200, 8.0: 60}  # how often at each ratio; 0: clean
 PARTS = 4  # of the clean draws, so that both cores have work to the end
@@ -118,7 +118,7 @@ def _roots(plan: str) -> list[tuple[Array, Array]]:
         size = np.sqrt(np.maximum(np.diag(sensor.information), np.finfo(float).tiny))
         size = np.where(np.diag(sensor.information) > 0, size, np.inf)
         values, vectors = np.linalg.eigh(sensor.information / np.outer(size, size))
-        seen = values > SEEN * 1e-3
+        seen = values > MIN_EIGENVALUE * 1e-3
         scale = np.where(np.isfinite(size), size, 0.0)
         root = scale[:, None] * vectors[:, seen] * np.sqrt(values[seen])
         roots.append((root, (vectors[:, seen] / np.sqrt(values[seen])).T / size))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.evidence import Evidence, SearchedEffect, searched_effect
 from inertial.model_selection.scan import Candidates
-from inertial.model_selection.structure_tests import TESTS, Answer, Where
+from inertial.model_selection.structure_tests import TESTS, Conditions, ScoreEquations
 from tests.inference.naming_plans import (
     GRAVITY,
     Rows,
@@ -186,10 +186,10 @@ class Residuals:
     channel: NDArray[np.int64]
     design: Array
     prior_sigma: Array
-    read: Where
+    read: Conditions
     noise_degrees: float = np.inf
 
-    def answers(self) -> Iterator[Answer]:
+    def answers(self) -> Iterator[ScoreEquations]:
         """What they say of every question of the six tests."""
         stacked = np.vstack([self.design, np.diag(1 / self.prior_sigma)])
         size = np.sqrt(np.sum(stacked**2, axis=0))
@@ -200,7 +200,9 @@ class Residuals:
         for channel in np.unique(self.channel):
             own = self.channel == channel
             r = self.read
-            where = Where(r.time[own], r.angle[own], r.rate[own], r.up[own], r.temperature[own])
+            where = Conditions(
+                r.time[own], r.angle[own], r.rate[own], r.up[own], r.temperature[own]
+            )
             for kind, test in TESTS.items():
                 for question in test(where):
                     functions = question.functions / self.sigma[own, None]
@@ -208,7 +210,7 @@ class Residuals:
                     information = functions.T @ functions - shadow.T @ shadow
                     fitted = np.diag(information) < 1e-6 * np.sum(functions**2, axis=0)
                     left = np.where(fitted, 0.0, 1.0)
-                    yield Answer(
+                    yield ScoreEquations(
                         kind,
                         ("gyro", "accel")[channel // 3],
                         "xyz"[channel % 3],
@@ -240,7 +242,7 @@ def fits(plan: str, signal: Array, rng: np.random.Generator) -> list[Residuals]:
         turning = np.repeat(np.isfinite(r.angle), 3)
         table = np.repeat(np.einsum("ij,ij->i", r.rate, r.up), 3)
         felt = r.rate.ravel() if number == 0 else table
-        read = Where(
+        read = Conditions(
             np.repeat(r.time, 3),
             np.where(turning, np.repeat(r.angle, 3), np.nan),
             felt,

@@ -25,9 +25,9 @@ def law_of(plan: str) -> Chance:
     return chance(p.information, p.effects, LEVEL, draws=4000)
 
 
-def prices(plan: str) -> np.ndarray:
+def thresholds(plan: str) -> np.ndarray:
     law = law_of(plan)
-    return np.array([law.price(i) for i in range(len(law.tails))])
+    return np.array([law.threshold(i) for i in range(len(law.tails))])
 
 
 def visible(plan: str) -> list[int]:
@@ -48,7 +48,7 @@ def test_noise_is_named_at_the_level(plan: str):
     p, rng = plan_of(plan), np.random.default_rng(1)
     candidates = Candidates(p.effects)
     drops, _ = candidates.drops(p.information, p.noise(5000, rng))
-    share = np.mean((drops > prices(plan)[candidates.effect][:, None]).any(axis=0))
+    share = np.mean((drops > thresholds(plan)[candidates.effect][:, None]).any(axis=0))
     # The level is that of 4000 draws: 16 % of it, and 14 % from the 5000 here.
     assert share == pytest.approx(LEVEL, abs=0.0065)
 
@@ -64,7 +64,7 @@ def test_what_is_named_is_what_stands_above_its_price():
 def test_no_power_is_lost_to_the_limit():
     plan = "c"
     p, rng = plan_of(plan), np.random.default_rng(3)
-    candidates, price, law = Candidates(p.effects), prices(plan), law_of(plan)
+    candidates, threshold, law = Candidates(p.effects), thresholds(plan), law_of(plan)
     draws, directions = 200, 10
     for effect in visible(plan):
         degrees = law.tails[effect].degrees
@@ -73,9 +73,13 @@ def test_no_power_is_lost_to_the_limit():
             beta = np.repeat(np.stack(signals, axis=1), draws // directions, axis=1)
             right = p.information @ beta + p.noise(draws, rng)
             drops, _ = candidates.drops(p.information, right)
-            power = np.mean(drops[candidates.effect == effect].max(axis=0) > price[effect])
+            power = np.mean(drops[candidates.effect == effect].max(axis=0) > threshold[effect])
             limit = power_limit(
-                snr, degrees, len(visible(plan)) + 4, LEVEL, law.tails[effect].trials(price[effect])
+                snr,
+                degrees,
+                len(visible(plan)) + 4,
+                LEVEL,
+                law.tails[effect].trials(threshold[effect]),
             )
             scatter = np.sqrt(limit * (1 - limit) / draws)
             assert power > limit - 0.05 - 3 * scatter, p.effects[effect].name
@@ -214,9 +218,7 @@ def test_an_effect_must_stand_out_of_residuals_that_are_too_large():
     for _ in range(3):
         loud = p.draw(quiet, rng)
         excesses = [(1 / 3, np.inf)] * 2
-        found = causes(
-            Evidence(loud.weakened(excesses).sensors, loud.labels), p.effects, law_of("b")
-        )
+        found = causes(Evidence(loud.scaled(excesses).sensors, loud.labels), p.effects, law_of("b"))
         names += bool(found.causes)
         assert found.excesses[0][0] == pytest.approx(3, rel=0.3)
     assert names <= 1
@@ -230,13 +232,13 @@ def test_the_chance_of_a_scan_is_that_of_its_largest_drop():
         assert law(drop) == pytest.approx(1 - chi2.cdf(drop, 1) ** 20, rel=0.15)
     same = chance(np.ones((20, 20)), [scan], LEVEL, draws=2000)
     assert same.tails[0](12.0) == pytest.approx(chi2.sf(12.0, 1), rel=0.3)
-    assert same.price(0) == pytest.approx(chi2.isf(0.01, 1), abs=0.5)
+    assert same.threshold(0) == pytest.approx(chi2.isf(0.01, 1), abs=0.5)
 
 
 def test_noise_known_from_few_readings_asks_for_more():
     law = chance(np.eye(3), [searched_effect("one", [0, 1, 2])], LEVEL, draws=20000)
-    assert law.price(0, 10.0) > law.price(0) == pytest.approx(chi2.isf(LEVEL, 3), abs=0.5)
-    assert law.p_value(0, law.price(0, 10.0), 3, 10.0) == pytest.approx(law.share, rel=1e-3)
+    assert law.threshold(0, 10.0) > law.threshold(0) == pytest.approx(chi2.isf(LEVEL, 3), abs=0.5)
+    assert law.p_value(0, law.threshold(0, 10.0), 3, 10.0) == pytest.approx(law.share, rel=1e-3)
 
 
 def test_no_equations_name_nothing():

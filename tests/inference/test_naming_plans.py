@@ -66,12 +66,12 @@ def test_the_manoeuvre_that_splits_a_class_is_found():
     further = {name: quiet(name).total for name in names}
     best, other = split(said.total, further, p.effects, found, 0)
     assert best.manoeuvre == names[0]
-    now = {frozenset((pair.one, pair.other)): pair for pair in best.pairs}
+    now = {frozenset((pair.first, pair.second)): pair for pair in best.pairs}
     for nonlinearity in ("gyro_quadratic", "gyro_cubic"):
         pair = now[frozenset(("gyro_scale_g", nonlinearity))]
-        assert pair.now < 3.3 < best.separation <= pair.then
+        assert pair.present < 3.3 < best.separation <= pair.extended
     # Both are of the rate alone: two rates in each direction do not tell them apart.
-    assert not now[frozenset(("gyro_quadratic", "gyro_cubic"))].told
+    assert not now[frozenset(("gyro_quadratic", "gyro_cubic"))].distinct
     assert other.rank < best.rank
 
 
@@ -86,15 +86,15 @@ def test_a_separation_is_what_simulation_gives():
     after = plan_of(name)
     (one,) = split(said.total, {name: quiet(name).total}, p.effects, found, 0)
     pair = one.pairs[0]
-    columns = [list(p.effects[p.index(e)].candidates[0]) for e in (pair.one, pair.other)]
+    columns = [list(p.effects[p.index(e)].candidates[0]) for e in (pair.first, pair.second)]
     lost = []
     for right, wrong in (columns, columns[::-1]):
         truth = np.zeros(len(beta))
         truth[right] = said.total.estimate(right)[0]
         draws = [after.draw(truth, rng).total for _ in range(100)]
         lost.append(np.mean([d.drop(right)[0] - d.drop(wrong)[0] for d in draws]))
-    scatter = 2 * pair.then / np.sqrt(100)
-    assert min(lost) == pytest.approx(pair.then**2, abs=4 * scatter)
+    scatter = 2 * pair.extended / np.sqrt(100)
+    assert min(lost) == pytest.approx(pair.extended**2, abs=4 * scatter)
 
 
 def quiet(plan: str) -> Evidence:

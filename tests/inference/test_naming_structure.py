@@ -51,7 +51,7 @@ def test_residuals_of_the_right_model_are_silent():
     """Six tests at 1 % together; their p-values are as uniform as many questions leave them."""
     rng = np.random.default_rng(1)
     found = [heard_of(fits("c", np.zeros((2, N, 3)), rng)) for _ in range(5)]
-    assert sum(any(one.fires for one in each) for each in found) <= 1
+    assert sum(any(one.detected for one in each) for each in found) <= 1
     chances = np.array([[one.p_value for one in each] for each in found])
     assert np.mean(chances < 0.05) < 0.05 + 3 * np.sqrt(0.05 * 0.95 / chances.size)
 
@@ -85,15 +85,17 @@ RIPPLE = ROWS.rate * np.cos(7.3 * np.nan_to_num(ROWS.angle) + 1)[:, None]
 )
 def test_a_structure_is_heard_whatever_its_cause(signal: Array, kinds: set[str]):
     found = heard(signal, 3)
-    assert any(found[kind].fires for kind in kinds), found
+    assert any(found[kind].detected for kind in kinds), found
 
 
 def test_where_it_is():
     found = heard(on(TIME > 0.37), 5)
     change = found["change"]
     assert (change.sensor, change.axis) == ("gyro", "y")
-    assert (change.where - ROWS.time[0]) / np.ptp(ROWS.time) == pytest.approx(0.37, abs=0.05)
-    assert heard(np.stack([RIPPLE, 0 * RIPPLE]), 6)["angle"].where == pytest.approx(7.3, abs=0.3)
+    assert (change.scan_value - ROWS.time[0]) / np.ptp(ROWS.time) == pytest.approx(0.37, abs=0.05)
+    assert heard(np.stack([RIPPLE, 0 * RIPPLE]), 6)["angle"].scan_value == pytest.approx(
+        7.3, abs=0.3
+    )
 
 
 def test_what_was_fitted_is_no_structure():
@@ -105,8 +107,8 @@ def test_what_was_fitted_is_no_structure():
     size = np.sqrt(np.sum(space**2, axis=0))
     left = gyro.values - space / size @ np.linalg.lstsq(space / size, gyro.values)[0]
     refit = replace(gyro, values=left, design=space, prior_sigma=np.r_[gyro.prior_sigma, np.inf])
-    assert {one.kind for one in heard_of([gyro, accel]) if one.fires} >= {"time", "change"}
-    assert not any(one.fires for one in heard_of([refit, accel]))
+    assert {one.kind for one in heard_of([gyro, accel]) if one.detected} >= {"time", "change"}
+    assert not any(one.detected for one in heard_of([refit, accel]))
 
 
 def test_what_is_not_known_is_not_tested():
