@@ -64,7 +64,7 @@ class SteadyTurn:
         """The frequency of so many periods in a turn of the table."""
         return order * abs(self.rate) / (2 * np.pi)
 
-    def tells(self, direction: Array) -> bool:
+    def observes(self, direction: Array) -> bool:
         """Whether its residuals about an axis of the case, a unit vector, hold what rings there.
 
         About the table's own they do not where the gyros themselves tell its angle.

@@ -1,4 +1,4 @@
-"""Drift of the biases of a sensor beside the named effects: random walk and half waves."""
+"""Drift of the biases of a sensor given the named effects: random walk and half waves."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -22,31 +22,31 @@ from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
-# ---- Random walk of the biases of a sensor beside the named effects.
+# ---- Random walk of the biases of a sensor given the named effects.
 
 SENSORS = ("gyro", "accel")
 
 
-def walks_beside(campaign: Campaign, effects: Sequence[Effect]) -> tuple[float, float]:
+def likely_random_walks(campaign: Campaign, effects: Sequence[Effect]) -> tuple[float, float]:
     """The most likely random walks of gyros and accelerometers; 0 where none is significant."""
-    found = [_walk(campaign, sensor, effects) for sensor in SENSORS]
-    return found[0], found[1]
+    gyro, accel = (_random_walk(campaign, sensor, effects) for sensor in SENSORS)
+    return gyro, accel
 
 
-def slight(campaign: Campaign) -> tuple[float, float]:
-    """Random walks over the campaign of three times the noise of a stretch: hardly detectable."""
-    times = [_times(campaign, sensor) for sensor in SENSORS]
-    found = [0.0 if one is None else 3 * one.noise / float(np.sqrt(one.span)) for one in times]
-    return found[0], found[1]
+def barely_detectable_walks(campaign: Campaign) -> tuple[float, float]:
+    """Random walks over the campaign of three times the noise of a stretch: barely detectable."""
+    searches = (_walk_search(campaign, sensor) for sensor in SENSORS)
+    gyro, accel = (3 * s.noise / float(np.sqrt(s.span)) if s else 0.0 for s in searches)
+    return gyro, accel
 
 
-def _walk(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> float:
-    times = _times(campaign, sensor)
-    if times is None:
+def _random_walk(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> float:
+    search = _walk_search(campaign, sensor)
+    if search is None:
         return 0.0
     deviance = _deviance(campaign, sensor, effects)
     alone = deviance(0.0)
-    size, smallest = most_likely(deviance, times.bounds, alone)
+    size, smallest = most_likely(deviance, search.bounds, alone)
     return size if alone - smallest >= MIN_DEVIANCE_DROP else 0.0
 
 
@@ -58,8 +58,8 @@ class Walk:
     sigma: float
 
 
-def walks_with_sigmas(campaign: Campaign, effects: Sequence[Effect]) -> dict[str, Walk]:
-    """The random walks that the equations of a campaign have, by sensor."""
+def random_walks_with_sigmas(campaign: Campaign, effects: Sequence[Effect]) -> dict[str, Walk]:
+    """The random walks in the equations of a campaign, by sensor."""
     return {
         sensor: Walk(size, sigma_of(_deviance(campaign, sensor, effects), size))
         for sensor, size in zip(SENSORS, campaign.solution.random_walks, strict=True)
@@ -80,7 +80,7 @@ def _deviance(
     return deviance
 
 
-def _times(campaign: Campaign, sensor: str) -> WalkSearch | None:
+def _walk_search(campaign: Campaign, sensor: str) -> WalkSearch | None:
     """The range of random walks that the times of a sensor's stretches allow; None: none."""
     parts: Sequence[StaticRate | RateSegment | StaticForce]
     if sensor == "gyro":
@@ -99,23 +99,23 @@ def _times(campaign: Campaign, sensor: str) -> WalkSearch | None:
 # ---- Drift without a law: half waves over the campaign, of one sensor.
 
 MAX_HALF_WAVES = 8  # in the campaign: the fastest that is distinguishable from a jump
-STRENGTH = {"gyro": ("rad/s", 5e-6), "accel": ("m/s²", 1e-4)}  # a degree per hour, 10 µg
+TYPICAL_SIZE = {"gyro": ("rad/s", 5e-6), "accel": ("m/s²", 1e-4)}  # a degree per hour, 10 µg
 
 
-class Course(Effect):
+class HalfWave(Effect):
     """Reading += c cos(k π t/T): no physical effect, but a component of a drift without a law.
 
-    It takes the place of several effects that together would only imitate it.
+    It replaces several effects that together would only imitate it.
     """
 
     cause = _("the bias drifts, by no law of the catalogue")
     source = "Fourier, by cosines over the time of the campaign"
     thinkable = 1e4
 
-    def __init__(self, sensor: str, half_waves: int) -> None:
-        unit, size = STRENGTH[sensor]
-        self.sensor, self.at = sensor, float(half_waves)
-        self.name = course_of(sensor)  # type: ignore[misc]
+    def __init__(self, sensor: str, count: int) -> None:
+        unit, size = TYPICAL_SIZE[sensor]
+        self.sensor, self.at = sensor, float(count)
+        self.name = drift_name(sensor)  # type: ignore[misc]
         self.parameters = tuple(  # type: ignore[misc]
             Parameter(f"c_{axis}", unit, size, _("of the {axis} reading", axis=axis))
             for axis in "xyz"
@@ -136,11 +136,11 @@ class Course(Effect):
         return replace(reading, accel=reading.accel + wave)
 
 
-def course_of(sensor: str) -> str:
-    """The name of the free course of a sensor."""
+def drift_name(sensor: str) -> str:
+    """The name of a drift without a law of a sensor."""
     return f"{sensor}_drift"
 
 
-def courses(sensor: str) -> Iterator[Course]:
+def half_waves(sensor: str) -> Iterator[HalfWave]:
     """The half waves of a sensor."""
-    return (Course(sensor, k) for k in range(1, MAX_HALF_WAVES + 1))
+    return (HalfWave(sensor, k) for k in range(1, MAX_HALF_WAVES + 1))

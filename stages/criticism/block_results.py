@@ -16,7 +16,7 @@ from inertial.text.numbers import decimals_of, with_sigma
 from inertial.text.units import DEGREE_PER_HOUR, MICRO_G
 from stages.criticism import block_sentences as sentences
 from stages.criticism.bias_drift import Walk
-from stages.criticism.class_splitting import TURNED_OVER, Foreseen
+from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
 from stages.criticism.finding_rows import (
     SENSORS,
     Estimated,
@@ -42,7 +42,7 @@ OF_NOISE = {
         "One campaign does not distinguish it from a random walk, which is estimated."
     ),
 }
-OF_QUALITY = _("SearchedEffect in the quality of the samples: findings “{finding}”.")
+OF_QUALITY = _("Sought in the quality of the samples: findings “{finding}”.")
 WALK_SCORE = _(
     "The biases of the gyros follow a random walk of {size}, which the sigmas allow for."
 )
@@ -71,10 +71,10 @@ class BlockResults:
     """The rows of one mount."""
 
     def __init__(
-        self, campaign: Campaign, selection: Selection, foreseen: Foreseen, mount: str
+        self, campaign: Campaign, selection: Selection, extended: ExtendedCampaigns, mount: str
     ) -> None:
         self.campaign, self.selection, self.mount = campaign, selection, mount
-        self.foreseen = foreseen
+        self.extended = extended
         self.causes = {cause.effect: cause for cause in selection.named.causes}
 
     def rows(self) -> Iterator[TableRow]:
@@ -93,7 +93,9 @@ class BlockResults:
         identifier = finding_id(effect.name, self.mount)
         parameters = self._parameters(effect, value)
         if cause is None:
-            reasons = [one.reason for one in self.selection.limits if one.effect == test.effect]
+            reasons = [
+                limit.reason for limit in self.selection.limits if limit.effect == test.effect
+            ]
             sentence = sentences.not_named_sentence(
                 effect, test, next(iter(reasons), NOT_EXCITED), self.campaign.blind(effect)
             )
@@ -120,12 +122,12 @@ class BlockResults:
                 "sentence": sentence,
             },
         )
-        for one in parameters:
+        for parameter in parameters:
             finding = identifier if cause else None
-            yield parameter_row(self.mount, effect.name, one, finding, identifier)
+            yield parameter_row(self.mount, effect.name, parameter, finding, identifier)
 
     def _limits(self) -> Iterator[TableRow]:
-        """What this campaign could have detected of each parameter, or why nothing."""
+        """The detection limit of each parameter, or why there is none."""
         for limit in self.selection.limits:
             effect = CATALOGUE[limit.effect]
             parameter = effect.parameters[limit.parameter]
@@ -151,7 +153,7 @@ class BlockResults:
             )
 
     def _finding(self, number: int, cause: Cause) -> Iterator[TableRow]:
-        split = self.foreseen.splitting(number)
+        split = self.extended.splitting(number)
         free = cause.effect not in self.selection.families
         effect = None if free else self.selection.effect(cause.effect, cause.value)
         parameters = [] if effect is None else self._parameters(effect, cause.value)
@@ -198,45 +200,47 @@ class BlockResults:
             return []
         total, family = self.selection.evidence.total, self.selection.families[effect.name]
         others = [i for n, c in self.causes.items() if n != effect.name for i in c.columns]
-        searched = next(one for one in self.selection.searched if one.name == effect.name)
+        searched = next(s for s in self.selection.searched if s.name == effect.name)
         drops = [total.drop([*columns, *others])[0] for columns in searched.candidates]
         near = [i for i in np.argsort(drops)[::-1] if drops[i] > max(drops) - MAX_RIVAL_DROP]
         return [(self.campaign.positions[int(family[i].at or 0)], float(drops[i])) for i in near]
 
     def _same_rate(self, effect: Effect, parameter: str) -> str | None:
-        """S3 turns up at one rate and down at another: what the same rate would bring."""
+        """What turns up and down at the same rate, unlike those of source S3, would bring."""
         if effect.name != "gyro_scale_g_dependence" or parameter != effect.parameters[0].name:
             return None
-        shares = self.foreseen.mimicry(effect.name, "gyro_scale_quadratic", TURNED_OVER)
+        shares = self.extended.mimicry(effect.name, "gyro_scale_quadratic", TURNED_OVER)
         return None if shares is None else sentences.same_rate_sentence(*shares)
 
     def _parameters(self, effect: Effect, value: int) -> list[Estimated]:
         """An effect's parameters, estimated with those of the causes."""
         evidence = self.selection.evidence
         if not evidence.sensors:
-            return [Estimated(one.name, one.unit, one.meaning) for one in effect.parameters]
+            return [Estimated(p.name, p.unit, p.meaning) for p in effect.parameters]
         place = {name: i for i, name in enumerate(evidence.names)}
         own = [place[f"{effect.label}.{parameter.name}"] for parameter in effect.parameters]
         others = [c.columns for c in self.selection.named.causes if c.effect != effect.name]
         chosen = list(dict.fromkeys([*own, *(i for columns in others for i in columns)]))
         values, covariance = evidence.total.estimate(chosen)
         limits = {
-            effect.parameters[one.parameter].name: one.size
-            for one in self.selection.limits
-            if one.effect == effect.name and one.reason == VISIBLE
+            effect.parameters[limit.parameter].name: limit.size
+            for limit in self.selection.limits
+            if limit.effect == effect.name and limit.reason == VISIBLE
         }
         parameters = []
-        for i, one in enumerate(effect.parameters):
+        for i, parameter in enumerate(effect.parameters):
             variance = float(covariance[i, i])
             known = np.isfinite(variance) and variance > 0
             estimate = float(values[i]) if known else None
             sigma = float(np.sqrt(variance)) if known else None
-            limit = limits.get(one.name)
-            parameters.append(Estimated(one.name, one.unit, one.meaning, estimate, sigma, limit))
+            described = (parameter.name, parameter.unit, parameter.meaning)
+            limit = limits.get(parameter.name)
+            parameters.append(Estimated(*described, estimate, sigma, limit))
         if effect.scan is not None and effect.name in self.causes:
             scan, at = effect.scan, effect.at or 0.0
-            apart = [abs((one.at or 0.0) - at) for one in self.selection.families[effect.name]]
-            step = min((one for one in apart if one), default=0.0)
+            family = self.selection.families[effect.name]
+            distances = [abs((candidate.at or 0.0) - at) for candidate in family]
+            step = min(filter(None, distances), default=0.0)
             sigma = step / 12**0.5 if scan.between else None  # uniform within a step
             parameters.append(Estimated(scan.name, scan.unit, scan.meaning, at, sigma))
         return parameters
@@ -250,7 +254,7 @@ def _tested(test: EffectTest, number: float) -> float | None:
 def other_scores(walk: Walk | None, mount: str) -> Iterator[TableRow]:
     """Effects sought in the noise, then in the quality of samples; `walk`: of the gyros, if any."""
     others = [effect for effect in CATALOGUE.values() if effect.sought_in in ("noise", "quality")]
-    for effect in sorted(others, key=lambda one: one.sought_in):  # noise comes before quality
+    for effect in sorted(others, key=lambda effect: effect.sought_in):  # noise comes before quality
         named = effect.name == WALK and walk is not None
         if effect.name == WALK and walk is not None:
             sentence = WALK_SCORE.format(size=_walk_size("gyro", walk))
@@ -284,8 +288,9 @@ def random_walk_rows(
 ) -> Iterator[TableRow]:
     """The random walk of a sensor, `gyro` or `accel`, and the effects that may be it as well.
 
-    With these it is one of a class. Without them it is never certain: what changes by no law, such
-    as telegraph noise, looks much the same; nor where the residuals of the sensor are `structured`.
+    With these it is one of a class. Without them it is never certain: other changes without a law,
+    such as telegraph noise, look much the same; nor where the residuals of the sensor
+    are `structured`.
     """
     cause = f"{sensor}_random_walk"
     identifier = finding_id(cause, mount)
@@ -322,7 +327,7 @@ def random_walk_rows(
 
 
 def _walk_size(sensor: str, walk: Walk) -> str:
-    # By K per √s a bias walks by 60 K in the root of an hour.
+    # K per √s is 60 K per √h.
     size, unit = (DEGREE_PER_HOUR, "°/h") if sensor == "gyro" else (MICRO_G.size, "µg")
     value, sigma = (np.array([walk.size, walk.sigma]) / size * 60).tolist()
     return f"{' ± '.join(with_sigma(value, sigma, decimals_of(sigma)))} {unit}/√h"

@@ -33,7 +33,7 @@ ACTION_WITHOUT_LAW = _(
 )
 CONSEQUENCE = _(
     "Without it bias, scale factors and cross terms absorb a part of it and do not "
-    "hold in other motions; the extension tells how much that is."
+    "hold in other motions; the extension estimates how much that is."
 )
 CONSEQUENCE_WITHOUT_LAW = _(
     "The joint estimate allows for it as a random walk or as a scatter of the manoeuvres."
@@ -52,7 +52,7 @@ DRIFT = _("The biases drift in a way that no effect of the catalogue explains{ne
 NO_NUMBER = _("no parameter by itself")
 
 NOT_SIGNIFICANT = _("{effect}: not significant ({p_value}).")
-NOTHING_BESIDE = _("{effect}: no signal of its own beside what is named.")
+NO_OWN_SIGNAL = _("{effect}: no signal of its own beside the named effects.")
 NOT_OBSERVABLE = _("{effect}: not observable in this campaign, for {reason}.")
 ABSORBED_BY = _("it is absorbed by {parameters}")
 
@@ -104,7 +104,7 @@ def not_named_sentence(effect: Effect, test: EffectTest, reason: str, blind: str
     if test.degrees:
         return NOT_SIGNIFICANT.format(effect=title, p_value=p_is(test.after_search))
     if reason == VISIBLE:
-        return NOTHING_BESIDE.format(effect=title)
+        return NO_OWN_SIGNAL.format(effect=title)
     return NOT_OBSERVABLE.format(effect=title, reason=_reason(effect, reason, blind))
 
 
@@ -133,7 +133,7 @@ def split_sentence(split: Splitting | None) -> str:
     """The manoeuvre that would distinguish the members of a class."""
     if split is None:
         return ""
-    template = SPLIT if split.tells else SPLIT_TOO_WEAK
+    template = SPLIT if split.distinguishes else SPLIT_TOO_WEAK
     return template.format(manoeuvre=split.manoeuvre, sigmas=significant(split.separation, 2))
 
 
@@ -150,8 +150,8 @@ def _reason(effect: Effect, reason: str, blind: str) -> str:
 
 
 def _significant(parameters: Sequence[Estimated]) -> list[Estimated]:
-    known = [one for one in parameters if one.value is not None and one.sigma]
-    clear = [one for one in known if abs(one.value or 0.0) > MIN_SIGMAS * (one.sigma or 0.0)]
+    known = [p for p in parameters if p.value is not None and p.sigma]
+    clear = [p for p in known if abs(p.value or 0.0) > MIN_SIGMAS * (p.sigma or 0.0)]
     return clear or known
 
 

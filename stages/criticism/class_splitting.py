@@ -1,4 +1,4 @@
-"""Which further manoeuvre would distinguish the members of a class."""
+"""Which additional manoeuvre would distinguish the members of a class."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -20,8 +20,8 @@ from stages.criticism.selection import Selection, columns_of, evidence_of
 
 # ---- Manoeuvres that a laboratory might add: copies of those performed, to predict their value.
 #
-# Only their information counts, which depends on attitude, rate and noise; the readings are those
-# of the originals and mean nothing.
+# Only their information is used, which depends on attitude, rate and noise; the readings are
+# those of the originals and have no meaning.
 
 PAUSE = 60.0  # s, before an added manoeuvre
 TURNED_OVER = _("turn also at the same rate with the axis down")
@@ -31,63 +31,63 @@ ONCE_MORE = _("do the rests once more, in the reverse order")
 
 
 @dataclass(frozen=True)
-class Further:
-    """A campaign with some manoeuvres more: its plan, what was performed, and its blocks."""
+class ExtendedPlan:
+    """A campaign with additional manoeuvres: its plan, what was performed, and its blocks."""
 
     plan: list[Manoeuvre]
     performed: dict[str, Performed]
     blocks: pd.DataFrame
 
 
-def further(
+def extended_plans(
     plan: Sequence[Manoeuvre], performed: Mapping[str, Performed], blocks: pd.DataFrame
-) -> dict[str, Callable[[], Further]]:
-    """Manoeuvres that might be added to a campaign, by name; each is made when it is used."""
+) -> dict[str, Callable[[], ExtendedPlan]]:
+    """The campaign with each manoeuvre that might be added, by name, computed on demand."""
     rows = blocks.groupby("manoeuvre").indices
     complete = [m for m in plan if performed[m.name].complete]
     whole = [m for m in complete if m.up is not None and m.name in rows]
     turns = [m for m in whole if m.do == "turn" and m.recorded == "whole" and m.rate is not None]
     rests = [m for m in whole if m.do == "rest"]
 
-    def added(pairs: Sequence[tuple[Manoeuvre, Manoeuvre, float]]) -> Further:
+    def added(pairs: Sequence[tuple[Manoeuvre, Manoeuvre, float]]) -> ExtendedPlan:
         done, times, start = dict(performed), [], float(blocks["time"].max())
-        for original, copy, faster in pairs:
+        for original, copy, speed in pairs:
             own = blocks["time"].to_numpy()[rows[original.name]]
-            times.append(start + PAUSE + (own - np.fmin.reduce(own)) / faster)
+            times.append(start + PAUSE + (own - np.fmin.reduce(own)) / speed)
             start = float(np.fmax.reduce(times[-1]))
             done[copy.name] = replace(performed[original.name], manoeuvre=copy.name)
         parts = [rows[original.name] for original, _, _ in pairs]
         each = np.repeat(np.arange(len(pairs)), [len(part) for part in parts])
-        more = blocks.iloc[np.concatenate(parts)].copy()
-        more["manoeuvre"] = np.array([copy.name for _, copy, _ in pairs])[each]
-        more["time"] = np.concatenate(times)
-        factor = np.array([faster for _, _, faster in pairs])[each]
-        more["seconds"] /= factor
-        more["count"] /= factor
-        moving = ~more["phase"].isin(STATIC_PHASES).to_numpy(bool)
-        more[GYRO] *= np.where(moving, factor, 1.0)[:, None]
+        copies = blocks.iloc[np.concatenate(parts)].copy()
+        copies["manoeuvre"] = np.array([copy.name for _, copy, _ in pairs])[each]
+        copies["time"] = np.concatenate(times)
+        factor = np.array([speed for _, _, speed in pairs])[each]
+        copies["seconds"] /= factor
+        copies["count"] /= factor
+        moving = ~copies["phase"].isin(STATIC_PHASES).to_numpy(bool)
+        copies[GYRO] *= np.where(moving, factor, 1.0)[:, None]
         manoeuvres = [*plan, *(copy for _, copy, _ in pairs)]
-        return Further(manoeuvres, done, pd.concat([blocks, more], ignore_index=True))
+        return ExtendedPlan(manoeuvres, done, pd.concat([blocks, copies], ignore_index=True))
 
-    found: dict[str, Callable[[], Further]] = {}
+    plans: dict[str, Callable[[], ExtendedPlan]] = {}
     if turns:
-        found[TURNED_OVER] = partial(added, [(m, _turned_over(m), 1.0) for m in turns])
-        found[FASTER] = partial(added, [(m, _named(m, "faster"), 2.0) for m in turns])
+        plans[TURNED_OVER] = partial(added, [(m, _turned_over(m), 1.0) for m in turns])
+        plans[FASTER] = partial(added, [(m, _named(m, "faster"), 2.0) for m in turns])
     if rests:
-        like = rests[0]
+        first = rests[0]
         ups = [
             (np.eye(3)[i] + sign * np.eye(3)[j]) / np.sqrt(2)
             for i, j in combinations(range(3), 2)
             for sign in (1, -1)
         ]
         diagonal = [
-            replace(_named(like, f"at 45° {number}"), up=up, mark=None)
+            replace(_named(first, f"at 45° {number}"), up=up, mark=None)
             for number, up in enumerate(ups, 1)
         ]
-        found[BETWEEN_AXES] = partial(added, [(like, copy, 1.0) for copy in diagonal])
+        plans[BETWEEN_AXES] = partial(added, [(first, copy, 1.0) for copy in diagonal])
         again = [(m, _named(m, "once more"), 1.0) for m in reversed(rests)]
-        found[ONCE_MORE] = partial(added, again)
-    return found
+        plans[ONCE_MORE] = partial(added, again)
+    return plans
 
 
 def _named(m: Manoeuvre, what: str) -> Manoeuvre:
@@ -115,63 +115,63 @@ class Splitting:
     separation: float
 
     @property
-    def tells(self) -> bool:
+    def distinguishes(self) -> bool:
         """Whether the likelier member would be right in 95 of 100 campaigns."""
         return self.separation >= MIN_SEPARATION
 
 
-class Foreseen:
-    """The campaign with each further manoeuvre, computed at its first use."""
+class ExtendedCampaigns:
+    """The campaign with each additional manoeuvre, computed at its first use."""
 
-    def __init__(self, selection: Selection, further: Mapping[str, Callable[[], Campaign]]) -> None:
-        self._selection, self._further = selection, further
-        self._made: dict[str, Campaign] = {}
+    def __init__(self, selection: Selection, make: Mapping[str, Callable[[], Campaign]]) -> None:
+        self._selection, self._make = selection, make
+        self._campaigns: dict[str, Campaign] = {}
 
     def with_(self, manoeuvre: str) -> Campaign:
-        """The campaign with a further manoeuvre."""
-        if manoeuvre not in self._made:
-            self._made[manoeuvre] = self._further[manoeuvre]()
-        return self._made[manoeuvre]
+        """The campaign with an additional manoeuvre."""
+        if manoeuvre not in self._campaigns:
+            self._campaigns[manoeuvre] = self._make[manoeuvre]()
+        return self._campaigns[manoeuvre]
 
     def splitting(self, number: int) -> Splitting | None:
         """For one of the causes; None where it is alone in its class, or nothing distinguishes."""
         causes = self._selection.named.causes
-        if len(causes[number].members) < 2 or not self._further:
+        if len(causes[number].members) < 2 or not self._make:
             return None
         concerned = {*causes[number].members, *(cause.effect for cause in causes)}
-        families = {n: one for n, one in self._selection.families.items() if n in concerned}
-        every = {}
-        for manoeuvre in self._further:
-            said, asked = evidence_of(self.with_(manoeuvre), families, np.inf)
-            every[manoeuvre] = said.total
-            now = self._selection.evidence.total.of(said.names)
-        found = split(now, every, asked, causes, number)
-        return Splitting(found[0].manoeuvre, found[0].separation) if found else None
+        families = {n: f for n, f in self._selection.families.items() if n in concerned}
+        extended = {}
+        for manoeuvre in self._make:
+            equations, searched = evidence_of(self.with_(manoeuvre), families, np.inf)
+            extended[manoeuvre] = equations.total
+            present = self._selection.evidence.total.of(equations.names)
+        best = next(iter(split(present, extended, searched, causes, number)), None)
+        return Splitting(best.manoeuvre, best.separation) if best else None
 
     def mimicry(self, effect: str, other: str, manoeuvre: str) -> tuple[float, float] | None:
-        """Which share of an effect another can mimic, now and with a manoeuvre.
+        """Which share of an effect another can mimic, without and with a manoeuvre.
 
-        None: unseen, or less than nearly all of it now.
+        None where either is not observable, or the present share is below MIN_MIMICRY.
         """
-        if manoeuvre not in self._further or not self._selection.evidence.sensors:
+        if manoeuvre not in self._make or not self._selection.evidence.sensors:
             return None
-        two = [self._selection.effect(name, 0) for name in (effect, other)]
-        now = _mimicked(self._selection.evidence.total, *two)
-        if now is None or now < MIN_MIMICRY:
+        effects = [self._selection.effect(name, 0) for name in (effect, other)]
+        present = _mimicked(self._selection.evidence.total, *effects)
+        if present is None or present < MIN_MIMICRY:
             return None
-        then = _mimicked(evidence(self.with_(manoeuvre), two).total, *two)
-        return None if then is None else (now, then)
+        extended = _mimicked(evidence(self.with_(manoeuvre), effects).total, *effects)
+        return None if extended is None else (present, extended)
 
 
 def _mimicked(reduced: EffectInformation, effect: Effect, other: Effect) -> float | None:
-    """Which share of an effect another can mimic; None where either is not seen."""
-    own, theirs = (
-        [i for i, name in enumerate(reduced.names) if name in columns_of(one)]
-        for one in (effect, other)
+    """Which share of an effect another can mimic; None where either is not observable."""
+    own, others = (
+        [i for i, name in enumerate(reduced.names) if name in columns_of(candidate)]
+        for candidate in (effect, other)
     )
     total = float(np.trace(reduced.information[np.ix_(own, own)]))
-    if total <= 0 or not np.any(reduced.information[np.ix_(theirs, theirs)]):
+    if total <= 0 or not np.any(reduced.information[np.ix_(others, others)]):
         return None
-    across = reduced.information[np.ix_(theirs, own)]
-    inverse = np.linalg.pinv(reduced.information[np.ix_(theirs, theirs)], rcond=1e-10)
+    across = reduced.information[np.ix_(others, own)]
+    inverse = np.linalg.pinv(reduced.information[np.ix_(others, others)], rcond=1e-10)
     return float(np.trace(across.T @ inverse @ across)) / total

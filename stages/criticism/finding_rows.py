@@ -1,4 +1,4 @@
-"""What the rows of all findings share: identifiers, the members of a class, and parameters."""
+"""Common rows of all findings: identifiers, the members of a class, and parameters."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ SENSORS = {"gyro": "gyros", "accel": "accelerometers"}
 
 
 def finding_id(cause: str, mount: str, *places: str) -> str:
-    """A stable identifier; it is compared and shown, and nothing is read from it."""
+    """A stable identifier; it is compared and shown, never parsed."""
     return "/".join(["criticism", with_mount(cause, mount), *places])
 
 

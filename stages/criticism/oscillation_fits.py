@@ -22,7 +22,7 @@ class Detection:
     """An order against the table's angle, or else a frequency in time."""
 
     drop: float  # of chi-squared
-    p_value: float  # the search paid for
+    p_value: float  # the search accounted for
     order: float | None
     frequency: float  # Hz, in the turn
     turn: SteadyTurn
@@ -47,21 +47,21 @@ class TurnLine:
 
 
 def strongest_lines(turn: SteadyTurn, lowest: float, taken: Sequence[Taken] = ()) -> list[TurnLine]:
-    """The strongest line about each axis of the case; nothing below `lowest`, Hz."""
-    found = []
+    """The strongest line about each axis of the case; none below `lowest`, Hz."""
+    lines = []
     for i, axis in enumerate(AXES):
-        if not turn.tells(np.eye(3)[i]):
+        if not turn.observes(np.eye(3)[i]):
             continue
         line = strongest(turn.truth[:, i], 1 / turn.step, lowest, taken)
         if line is not None:
             drop = (line.amplitude / line.sigma_amplitude) ** 2
-            found.append(TurnLine(turn.name, axis, turn.whole(line), drop))
-    return found
+            lines.append(TurnLine(turn.name, axis, turn.whole(line), drop))
+    return lines
 
 
 @dataclass(frozen=True)
 class MeanLine:
-    """One oscillation over all turns that show it: axis, frequency, amplitude, with sigmas."""
+    """An oscillation over all turns that show it: axis, frequency, amplitude, with sigmas."""
 
     axis: str
     manoeuvres: tuple[str, ...]
@@ -71,11 +71,11 @@ class MeanLine:
     amplitude_sigma: float
 
 
-def together(same: Sequence[TurnLine]) -> MeanLine:
-    """Lines of several turns about one axis at one frequency are one oscillation."""
+def combined(same: Sequence[TurnLine]) -> MeanLine:
+    """The mean of lines of several turns about the same axis at the same frequency."""
     frequency = _weighted([(o.line.frequency, o.line.sigma_frequency) for o in same])
     amplitude = _weighted([(o.line.amplitude, o.line.sigma_amplitude) for o in same])
-    names = tuple(one.manoeuvre for one in same)
+    names = tuple(line.manoeuvre for line in same)
     return MeanLine(same[0].axis, names, *frequency, *amplitude)
 
 
@@ -89,18 +89,18 @@ def _weighted(values: Sequence[tuple[float, float]]) -> tuple[float, float]:
 # ---- Detection in time: in one axis of one turn, and in one axis of all turns.
 
 
-def in_turns(rings: Sequence[TurnLine], turns: Sequence[SteadyTurn]) -> list[Detection]:
-    """The strongest line of each axis in each turn, the search over all of them paid for."""
-    place = {turn.name: turn for turn in turns}
+def in_turns(lines: Sequence[TurnLine], turns: Sequence[SteadyTurn]) -> list[Detection]:
+    """The strongest line of each axis in each turn, the search over all accounted for."""
+    by_name = {turn.name: turn for turn in turns}
     return [
         Detection(
-            ring.drop,
-            min(ring.line.p_value * len(rings), 1.0),
+            line.drop,
+            min(line.line.p_value * len(lines), 1.0),
             None,
-            ring.line.frequency,
-            place[ring.manoeuvre],
+            line.line.frequency,
+            by_name[line.manoeuvre],
         )
-        for ring in rings
+        for line in lines
     ]
 
 
@@ -111,28 +111,28 @@ def in_all(
 
     What may remain of a line that was removed from any turn is not counted.
     """
-    found = []
+    detections = []
     for i in range(len(AXES)):
-        visible = [turn for turn in turns if turn.tells(np.eye(3)[i])]
+        visible = [turn for turn in turns if turn.observes(np.eye(3)[i])]
         if len(visible) < 2:
             continue
-        frequency, drop, chance = pooled(
+        frequency, drop, log_p = pooled(
             [turn.truth[:, i] for turn in visible], [1 / turn.step for turn in visible], lowest
         )
         if not len(frequency):
             continue
         for turn in visible:
             noise = turn.sigma(np.eye(3)[i]) * np.sqrt(2 / len(turn.truth))
-            for one in taken[turn.name]:
-                leaks = one.leaks(frequency, turn.seconds) / noise
-                chance = np.where(drop > len(visible) * leaks**2, chance, 0.0)
-        best = int(np.argmin(chance))
+            for removed in taken[turn.name]:
+                leakage = removed.leaks(frequency, turn.seconds) / noise
+                log_p = np.where(drop > len(visible) * leakage**2, log_p, 0.0)
+        best = int(np.argmin(log_p))
         trials = len(AXES) * len(frequency)
-        p_value = float(np.exp(min(chance[best] + np.log(trials), 0.0)))
-        found.append(
+        p_value = float(np.exp(min(log_p[best] + np.log(trials), 0.0)))
+        detections.append(
             Detection(float(drop[best]), p_value, None, float(frequency[best]), visible[0])
         )
-    return found
+    return detections
 
 
 # ---- Detection against the table's angle.
@@ -141,35 +141,35 @@ ECCENTRICITY_ORDER = 1.0  # of an encoder off its axis
 
 
 def best_orders(
-    turns: Sequence[SteadyTurn], said: Orders, taken: Mapping[str, Sequence[Taken]]
+    turns: Sequence[SteadyTurn], orders: Orders, taken: Mapping[str, Sequence[Taken]]
 ) -> list[Detection]:
     """The order 1, and the best of all others: two searches."""
-    chance = log_chance(said, shortest(turns))
+    log_p = log_chance(orders, shortest(turns))
     # What may remain of a line that was removed from any turn is no ripple.
-    amplitude = np.sqrt(said.drop) * np.where(said.turns > 0, said.sigma, 0.0)
+    amplitude = np.sqrt(orders.drop) * np.where(orders.turns > 0, orders.sigma, 0.0)
     for turn in turns:
-        for one in taken[turn.name]:
-            leaks = one.leaks(turn.hertz(1.0) * said.order, turn.seconds)
-            stands = amplitude * said.order * abs(turn.rate) > leaks
-            chance = np.where(stands, chance, 0.0)
-    found = []
-    others = np.where(said.order > ECCENTRICITY_ORDER, chance, 0.0)
+        for removed in taken[turn.name]:
+            leakage = removed.leaks(turn.hertz(1.0) * orders.order, turn.seconds)
+            exceeds = amplitude * orders.order * abs(turn.rate) > leakage
+            log_p = np.where(exceeds, log_p, 0.0)
+    detections = []
+    others = np.where(orders.order > ECCENTRICITY_ORDER, log_p, 0.0)
     for i, trials in ((0, 1.0), (int(np.argmin(others)), float(len(others)))):
-        p_value = float(np.exp(min(chance[i] + np.log(trials), 0.0)))
-        order, turn = float(said.order[i]), turns[0]
-        found.append(Detection(float(said.drop[i]), p_value, order, turn.hertz(order), turn))
-    return found
+        p_value = float(np.exp(min(log_p[i] + np.log(trials), 0.0)))
+        order, turn = float(orders.order[i]), turns[0]
+        detections.append(Detection(float(orders.drop[i]), p_value, order, turn.hertz(order), turn))
+    return detections
 
 
 def shortest(turns: Sequence[SteadyTurn]) -> float:
-    """How many whole turns the shortest of the steady parts is long."""
+    """Length of the shortest steady part, in revolutions."""
     return min(turn.seconds * turn.hertz(1.0) for turn in turns)
 
 
 # ---- Coupling of an oscillation about one axis of the case into the others.
 
 TABLE = "table"  # the axis that the table turns about
-MIN_EXCESS_SIGMA = 5.0  # from which an axis has more than coupling
+MIN_EXCESS_SIGMA = 5.0  # from which an axis has more than its cross term explains
 MAX_CROSS_TERM_ERROR = 1e-4  # rad, 20″
 
 
@@ -177,19 +177,18 @@ MAX_CROSS_TERM_ERROR = 1e-4  # rad, 20″
 class Coupled:
     """An oscillation in the gyro of another axis; rad/s, rms over the turns of the amplitudes.
 
-    read : as the gyro reads it; expected : by its cross term; left : with M undone, and what noise
-    would leave of it;
-    tipping : what the rate of the table brings, into which the case tips as it oscillates; more :
-    whether there is more than the cross term brings
+    read : as the gyro reads it; expected : by its cross term; residual : after correction by M,
+    with its sigma by noise; tipping : the component of the table's rate about this axis as the
+    oscillating case tips; exceeds : whether the residual exceeds the cross term's error
     """
 
     axis: str
     read: float
     expected: float
-    left: float
-    left_sigma: float
+    residual: float
+    residual_sigma: float
     tipping: float
-    more: bool
+    exceeds: bool
 
 
 def direction(turn: SteadyTurn, axis: str) -> Array:
@@ -200,7 +199,7 @@ def direction(turn: SteadyTurn, axis: str) -> Array:
 def coupled(
     turns: Sequence[SteadyTurn], axis: str, frequencies: Mapping[str, float]
 ) -> list[Coupled]:
-    """The other axes; of an oscillation about the table's axis none, for it differs by turn."""
+    """The other axes; none for an oscillation about the table's axis, which differs by turn."""
     known = [turn for turn in turns if turn.name in frequencies]
     if axis == TABLE or not known:
         return []
@@ -212,7 +211,7 @@ def coupled(
     noise = np.array([[_sigma(turn, i) for i in range(len(AXES))] for turn in known])
     # What noise leaves of the mean square of k amplitudes scatters by 2 σ²/√k.
     sigma = np.sqrt(2 * np.mean(noise**2, axis=0) / np.sqrt(len(known)))
-    found = []
+    axes = []
     for i, name in enumerate(AXES):
         if i == source:
             continue
@@ -220,22 +219,22 @@ def coupled(
             _tipping(turn, truth[k, source], frequencies[turn.name], source, i)
             for k, turn in enumerate(known)
         ]
-        left = float(np.sqrt(max(size[i] ** 2 - 2 * np.mean(noise[:, i] ** 2), 0.0)))
-        found.append(
+        residual = float(np.sqrt(max(size[i] ** 2 - 2 * np.mean(noise[:, i] ** 2), 0.0)))
+        axes.append(
             Coupled(
                 name,
                 float(read[i]),
                 float(abs(matrix[i, source]) * size[source]),
-                left,
+                residual,
                 float(sigma[i]),
                 float(_rms(np.array(tips))),
                 bool(
-                    left
+                    residual
                     > max(np.sqrt(MIN_EXCESS_SIGMA) * sigma[i], MAX_CROSS_TERM_ERROR * size[source])
                 ),
             )
         )
-    return found
+    return axes
 
 
 def _phasors(turn: SteadyTurn, frequency: float) -> NDArray[np.complex128]:
@@ -250,7 +249,7 @@ def _sigma(turn: SteadyTurn, i: int) -> float:
 
 
 def _tipping(turn: SteadyTurn, size: complex, frequency: float, source: int, i: int) -> float:
-    """The case tips by size/(2πf), and so has a share of the table's rate about a third axis."""
+    """The case tips by size/(2πf), so a third axis has a component of the table's rate."""
     across = cross(np.eye(3)[source], turn.about)[i]
     rate = 0.0 if np.isnan(turn.rate) else turn.rate
     return float(abs(size) / (2 * np.pi * frequency) * abs(rate * across))

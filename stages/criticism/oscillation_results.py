@@ -49,10 +49,10 @@ class Named:
     @property
     def statistic(self) -> float:
         """Reduction of chi-squared by it."""
-        one = self.oscillation
-        if self.effect == IN_TIME or one.ripple is None:
-            return max(line.drop for line in one.lines)
-        return one.ripple.drop
+        ripple = self.oscillation.ripple
+        if self.effect == IN_TIME or ripple is None:
+            return max(line.drop for line in self.oscillation.lines)
+        return ripple.drop
 
     @property
     def verdict(self) -> str:
@@ -66,11 +66,11 @@ class OscillationResults:
     def __init__(self, result: SearchResult, mount: str) -> None:
         self.result, self.mount = result, mount
         self.named: list[Named] = []
-        for one in result.oscillations:
-            members = members_of(one)
+        for oscillation in result.oscillations:
+            members = members_of(oscillation)
             before = sum(other.effect == members[0] for other in self.named)
             number = [str(before + 1)] if before else []
-            self.named.append(Named(one, members, finding_id(members[0], mount, *number)))
+            self.named.append(Named(oscillation, members, finding_id(members[0], mount, *number)))
 
     def rows(self) -> Iterator[TableRow]:
         """Scores, parameters, detection limits, spectral lines, and findings."""
@@ -78,16 +78,16 @@ class OscillationResults:
             yield self._score(name)
             yield from self._parameters(name)
             yield from self._limits(name)
-        for one in self.named:
-            yield from self._finding(one)
+        for named in self.named:
+            yield from self._finding(named)
         yield from self._lines()
 
     def _first(self, name: str) -> Named | None:
         """The first oscillation that is an effect."""
-        return next((one for one in self.named if one.effect == name), None)
+        return next((named for named in self.named if named.effect == name), None)
 
     def _score(self, name: str) -> TableRow:
-        """How each of the three effects was judged; what no turn can show was not tested."""
+        """The test of each of the three effects; none where no turn can show it."""
         first, row = self._first(name), dict[str, object]()
         if first:
             order = first.oscillation.ripple.order if first.oscillation.ripple else None
@@ -96,8 +96,8 @@ class OscillationResults:
             row |= {"snr": sqrt(first.statistic), "scan_value": order if name == RIPPLE else None}
             row["scan_unit"] = scan.unit if scan and name == RIPPLE else None
         else:
-            remaining = [one for one in self.result.remaining if _kind(one.order) == name]
-            best = min(remaining, key=lambda one: one.p_value, default=None)
+            remaining = [d for d in self.result.remaining if _kind(d.order) == name]
+            best = min(remaining, key=lambda detection: detection.p_value, default=None)
             row |= {"statistic": best.drop if best else None, "snr": None}
             row |= {"p_value": best.p_value if best else None, "scan_value": None}
             row["scan_unit"] = None
@@ -114,16 +114,16 @@ class OscillationResults:
             "sentence": self._sentence(first.oscillation) if first else self._not_named(name),
         }
 
-    def _finding(self, one: Named) -> Iterator[TableRow]:
-        oscillation = one.oscillation
-        ripple = oscillation.ripple if one.effect != IN_TIME else None
-        several = len(one.members) > 1
+    def _finding(self, named: Named) -> Iterator[TableRow]:
+        oscillation = named.oscillation
+        ripple = oscillation.ripple if named.effect != IN_TIME else None
+        several = len(named.members) > 1
         yield (
             "findings",
             {
-                "id": one.finding,
+                "id": named.finding,
                 "mount": self.mount,
-                "cause": one.effect,
+                "cause": named.effect,
                 "sensor": "gyro",
                 "count": 1,
                 "size": ripple.amplitude if ripple else oscillation.mean.amplitude,
@@ -133,30 +133,30 @@ class OscillationResults:
                 "sentence": self._sentence(oscillation),
                 "consequence": sentences.consequence(oscillation),
                 "action": sentences.action(oscillation),
-                "verdict": one.verdict,
-                "statistic": one.statistic,
-                "degrees": DEGREES[one.effect],
-                "snr": sqrt(one.statistic),
+                "verdict": named.verdict,
+                "statistic": named.statistic,
+                "degrees": DEGREES[named.effect],
+                "snr": sqrt(named.statistic),
                 "split_manoeuvre": sentences.SPLIT if several else None,
-                "split_snr": sqrt(one.statistic / len(oscillation.lines)) if several else None,
+                "split_snr": sqrt(named.statistic / len(oscillation.lines)) if several else None,
                 "split_stated": False if several else None,
             },
         )
         likelier = 1 / (1 + exp(-oscillation.log_odds))
         probability = (likelier, 1 - likelier) if several else (1.0,)
-        yield from member_rows(one.finding, self.mount, one.members, probability)
+        yield from member_rows(named.finding, self.mount, named.members, probability)
 
     def _parameters(self, name: str) -> Iterator[TableRow]:
-        """The parameters of each oscillation that is this effect; or what is detectable of it."""
+        """The parameters of each oscillation that is this effect; or their detection limits."""
         effect, limit = CATALOGUE[name], limit_of(self.result, name)
         scan = effect.scan
-        of_it: list[Named | None] = [one for one in self.named if one.effect == name]
-        for one in of_it or [None]:
-            values = _estimates(name, one.oscillation) if one else {}
+        own: list[Named | None] = [named for named in self.named if named.effect == name]
+        for named in own or [None]:
+            values = _estimates(name, named.oscillation) if named else {}
             described = [(p.name, p.unit, p.meaning) for p in effect.parameters]
-            if scan and one:
+            if scan and named:
                 described.append((scan.name, scan.unit, scan.meaning))
-            finding = one.finding if one else None
+            finding = named.finding if named else None
             for parameter, unit, meaning in described:
                 value, sigma = values.get(parameter, (None, None))
                 size = limit.size if limit and parameter in SIZES[name] else None
@@ -199,16 +199,16 @@ class OscillationResults:
         listed = set()
         for line in self.result.strongest:
             turn = turns[line.manoeuvre]
-            one = next((one for one in self.named if _is(line, one.oscillation, turn)), None)
-            listed.add((line.manoeuvre, line.axis, one.effect if one else None))
-            yield self._line(line, turn, one)
-        for one in self.named:
-            for line in one.oscillation.lines:
+            named = next((n for n in self.named if _is(line, n.oscillation, turn)), None)
+            listed.add((line.manoeuvre, line.axis, named.effect if named else None))
+            yield self._line(line, turn, named)
+        for named in self.named:
+            for line in named.oscillation.lines:
                 turn = turns[line.manoeuvre]
-                if (line.manoeuvre, _axis(line, turn), one.effect) not in listed:
-                    yield self._line(line, turn, one)
+                if (line.manoeuvre, _axis(line, turn), named.effect) not in listed:
+                    yield self._line(line, turn, named)
 
-    def _line(self, line: TurnLine, turn: SteadyTurn, one: Named | None) -> TableRow:
+    def _line(self, line: TurnLine, turn: SteadyTurn, named: Named | None) -> TableRow:
         frequency = line.line.frequency
         return "lines", {
             "manoeuvre": line.manoeuvre,
@@ -220,32 +220,36 @@ class OscillationResults:
             "amplitude_sigma": line.line.sigma_amplitude,
             "p_value": line.line.p_value,
             "order": frequency / turn.hertz(1.0) if np.isfinite(turn.rate) else None,
-            "finding": one.finding if one else None,
-            "effect": one.effect if one else None,
+            "finding": named.finding if named else None,
+            "effect": named.effect if named else None,
         }
 
-    def _sentence(self, one: Oscillation) -> str:
-        if one.periodic_in == ANGLE and one.axis == TABLE and one.ripple is not None:
-            return sentences.of_ripple(one, one.ripple, self.result.turns)
-        return sentences.of_oscillation(one, self.result.turns)
+    def _sentence(self, oscillation: Oscillation) -> str:
+        if (
+            oscillation.periodic_in == ANGLE
+            and oscillation.axis == TABLE
+            and oscillation.ripple is not None
+        ):
+            return sentences.of_ripple(oscillation, oscillation.ripple, self.result.turns)
+        return sentences.of_oscillation(oscillation, self.result.turns)
 
     def _not_named(self, name: str) -> str:
-        for one in self.named:
-            if name in one.members:
-                return sentences.may_be(one.effect, name)
+        for named in self.named:
+            if name in named.members:
+                return sentences.may_be(named.effect, name)
         return not_named(self.result, name)
 
 
-def members_of(one: Oscillation) -> Sequence[str]:
+def members_of(oscillation: Oscillation) -> Sequence[str]:
     """The effects that an oscillation may be, the likeliest first."""
     of_table = RIPPLE
-    if one.ripple is not None and sentences.eccentric(one.ripple):
+    if oscillation.ripple is not None and sentences.eccentric(oscillation.ripple):
         of_table = ECCENTRICITY
-    if one.periodic_in == ANGLE:
-        first, second = (of_table if one.axis == TABLE else IN_TIME), IN_TIME
+    if oscillation.periodic_in == ANGLE:
+        first, second = (of_table if oscillation.axis == TABLE else IN_TIME), IN_TIME
     else:
         first, second = IN_TIME, of_table
-    return [first] if one.decided or first == second else [first, second]
+    return [first] if oscillation.decided or first == second else [first, second]
 
 
 def _kind(order: float | None) -> str:
@@ -255,9 +259,9 @@ def _kind(order: float | None) -> str:
     return ECCENTRICITY if order == ECCENTRICITY_ORDER else RIPPLE
 
 
-def _is(line: TurnLine, one: Oscillation, turn: SteadyTurn) -> bool:
+def _is(line: TurnLine, oscillation: Oscillation, turn: SteadyTurn) -> bool:
     """Whether a line is that of an oscillation: within a bin."""
-    frequency = one.frequencies.get(turn.name, np.inf)
+    frequency = oscillation.frequencies.get(turn.name, np.inf)
     return abs(line.line.frequency - frequency) < 1 / turn.seconds
 
 
@@ -266,14 +270,14 @@ def _axis(line: TurnLine, turn: SteadyTurn) -> str:
     return line.axis if line.axis != TABLE else AXES[int(np.argmax(np.abs(turn.about)))]
 
 
-def _estimates(name: str, one: Oscillation) -> dict[str, tuple[float, float]]:
+def _estimates(name: str, oscillation: Oscillation) -> dict[str, tuple[float, float]]:
     """Value and sigma of each parameter: Hz and rad/s, or rad and periods per revolution."""
     if name == IN_TIME:
         return {
-            "frequency": (one.mean.frequency, one.mean.frequency_sigma),
-            "amplitude": (one.mean.amplitude, one.mean.amplitude_sigma),
+            "frequency": (oscillation.mean.frequency, oscillation.mean.frequency_sigma),
+            "amplitude": (oscillation.mean.amplitude, oscillation.mean.amplitude_sigma),
         }
-    ripple = one.ripple
+    ripple = oscillation.ripple
     assert ripple is not None  # for it is named
     sigmas = np.sqrt(np.diag(ripple.covariance))
     estimates = {
@@ -326,13 +330,13 @@ def orders_of(result: SearchResult) -> Array:
 
 
 def not_named(result: SearchResult, name: str) -> str:
-    """Why an effect that is not named is not, in a sentence."""
-    if result.more:
+    """Why an effect is not named, in a sentence."""
+    if result.truncated:
         return sentences.not_searched(name, len(result.oscillations))
     if name == IN_TIME:
         if not result.strongest:
             return sentences.not_observable(name, sentences.NO_TURN)
-        return sentences.not_significant(name, beside=bool(result.oscillations))
+        return sentences.not_significant(name, after_others=bool(result.oscillations))
     if result.orders is None:
         return sentences.not_observable(
             name, sentences.NO_ANGLE if result.turns else sentences.NO_TURN

@@ -36,13 +36,13 @@ from stages.criticism.oscillation_fits import (
     MeanLine,
     TurnLine,
     best_orders,
+    combined,
     coupled,
     direction,
     in_all,
     in_turns,
     shortest,
     strongest_lines,
-    together,
 )
 
 Array = NDArray[np.float64]
@@ -87,21 +87,21 @@ class Oscillation:
 def explanation_of(
     detection: Detection, turns: Sequence[SteadyTurn], lowest: float, level: float
 ) -> Oscillation:
-    """Both explanations of a detection, and the better one."""
+    """The more likely explanation of a detection, and its odds against the other."""
     angle_score, axis_of_ripple, ripple = _in_angle(detection, turns)
     time_score, axis, lines = _in_time(detection, turns, lowest)
     rates = [turn for turn in turns if np.isfinite(turn.rate)]
-    periodic_in, frequencies = TIME, {one.manoeuvre: one.line.frequency for one in lines}
+    periodic_in, frequencies = TIME, {line.manoeuvre: line.line.frequency for line in lines}
     if ripple is not None and angle_score > time_score:
         periodic_in, axis = ANGLE, axis_of_ripple
         frequencies = {turn.name: turn.hertz(ripple.order) for turn in rates}
         lines = _lines(turns, axis, frequencies, lowest, fixed=True)
     clear = _clear(lines, turns, level)
-    mean = together(clear)
+    mean = combined(clear)
     if periodic_in == TIME:
-        own = {one.manoeuvre: one.line.frequency for one in clear}
+        own = {line.manoeuvre: line.line.frequency for line in clear}
         frequencies = {turn.name: own.get(turn.name, mean.frequency) for turn in turns}
-    names = [one.manoeuvre for one in clear]
+    names = [line.manoeuvre for line in clear]
     return Oscillation(
         periodic_in,
         axis,
@@ -118,7 +118,7 @@ def explanation_of(
 def _in_angle(
     detection: Detection, turns: Sequence[SteadyTurn]
 ) -> tuple[float, str, Ripple | None]:
-    """The best score of one order about any axis, the axis, and the ripple."""
+    """The best score of an order about any axis, the axis, and the ripple."""
     known = [turn for turn in turns if np.isfinite(turn.rate)]
     order = detection.order
     if order is None and np.isfinite(detection.turn.rate):
@@ -128,7 +128,7 @@ def _in_angle(
         return best
     for axis in (TABLE, *AXES):
         courses = [turn.course(direction(turn, axis)) for turn in known]
-        width = MAX_ORDER_SHIFT / max(one.turned for one in courses)
+        width = MAX_ORDER_SHIFT / max(course.turned for course in courses)
         ripple = fitted(courses, order, width)
         trials = float(len(grid(courses)) * (1 + len(AXES)))
         if axis == TABLE and abs(ripple.order - ECCENTRICITY_ORDER) < 2 * width:
@@ -145,25 +145,25 @@ def _in_angle(
 def _in_time(
     detection: Detection, turns: Sequence[SteadyTurn], lowest: float
 ) -> tuple[float, str, list[TurnLine]]:
-    """The best score of one frequency about any axis, the axis, and its line in each turn."""
+    """The best score of a frequency about any axis, the axis, and its line in each turn."""
     tried = {detection.frequency}
     if detection.order is not None:
         tried = {round(turn.hertz(detection.order), 6) for turn in turns if np.isfinite(turn.rate)}
     best: tuple[float, str, list[TurnLine]] = (-np.inf, TABLE, [])
     bins = max(turn.seconds / turn.step for turn in turns)
     for frequency in sorted(tried):
-        everywhere = {turn.name: frequency for turn in turns}
+        frequencies = {turn.name: frequency for turn in turns}
         for axis in (*AXES, TABLE):
-            lines = _lines(turns, axis, everywhere, lowest)
+            lines = _lines(turns, axis, frequencies, lowest)
             if not lines:
                 continue
-            known = [one for one in lines if one.drop > MIN_REFINED_DROP]
-            one = together(known).frequency if known else frequency
-            same = _lines(turns, axis, dict.fromkeys(everywhere, one), lowest, fixed=True)
+            known = [line for line in lines if line.drop > MIN_REFINED_DROP]
+            mean = combined(known).frequency if known else frequency
+            same = _lines(turns, axis, dict.fromkeys(frequencies, mean), lowest, fixed=True)
             score = in_time(
-                np.array([ring.drop for ring in lines]),
-                np.array([ring.line.amplitude for ring in same]),
-                np.array([ring.drop for ring in same]),
+                np.array([line.drop for line in lines]),
+                np.array([line.line.amplitude for line in same]),
+                np.array([line.drop for line in same]),
                 bins * (1 + len(AXES)),
             )
             if score > best[0]:
@@ -178,12 +178,12 @@ def _lines(
     lowest: float,
     fixed: bool = False,
 ) -> list[TurnLine]:
-    """The line of each turn at its frequency, or near it; nothing from half the sample rate on."""
-    found = []
+    """The line of each turn at or near its frequency; none from half the sample rate on."""
+    lines = []
     for turn in turns:
         frequency, rate = frequencies.get(turn.name, np.inf), 1 / turn.step
         along = direction(turn, axis)
-        if frequency >= rate / 2 or not turn.tells(along):
+        if frequency >= rate / 2 or not turn.observes(along):
             continue
         record, sigma = turn.along(along), turn.sigma(along)
         drop = energy(record, rate, frequency) / sigma**2
@@ -192,8 +192,8 @@ def _lines(
             line = near(record, rate, lowest, frequency, 1.0)
             drop = energy(record, rate, line.frequency) / sigma**2
         searched = min(len(record) * float(np.exp(-min(drop / 2, 700.0))), 1.0)
-        found.append(TurnLine(turn.name, axis, turn.whole(replace(line, p_value=searched)), drop))
-    return found
+        lines.append(TurnLine(turn.name, axis, turn.whole(replace(line, p_value=searched)), drop))
+    return lines
 
 
 def _clear(
@@ -201,13 +201,13 @@ def _clear(
 ) -> Sequence[TurnLine]:
     """The turns that show a line by themselves; all where none does."""
     trials = len(turns) * len(AXES)
-    return [one for one in lines if one.line.p_value * trials < level] or lines
+    return [line for line in lines if line.line.p_value * trials < level] or lines
 
 
 # ---- The oscillations of all turns of one mount, one after another.
 
 MAX_OSCILLATIONS = 6  # that are searched for one after another
-SEARCHES = 4  # in one turn, in all turns, orders, the order 1: each has its share of the chance
+SEARCHES = 4  # in each turn, in all turns, of orders, of the order 1: equal shares of the level
 
 
 @dataclass(frozen=True)
@@ -216,10 +216,10 @@ class SearchResult:
 
     oscillations : in the order of their detection
     strongest : the strongest line in time of each axis and turn before any was removed
-    orders : of the last search, what each says; None without a turn whose angle is known
+    orders : those of the last search; None without a turn whose angle is known
     remaining : of the last search, the most significant in time, the order 1, and the best other
-    sigmas : (m,), from how many on an order is detected
-    more : whether the last search would have found another one, but enough were found
+    sigmas : (m,), multiples of sigma from which an order is detected
+    truncated : whether the last search detected another beyond the largest number
     """
 
     turns: Sequence[SteadyTurn]
@@ -228,64 +228,65 @@ class SearchResult:
     orders: Orders | None
     remaining: Sequence[Detection]
     sigmas: Array
-    more: bool
+    truncated: bool
 
 
 def find_oscillations(turns: Sequence[SteadyTurn], level: float, lowest: float) -> SearchResult:
     """Find the most significant oscillation, remove it, and search again.
 
-    level : accepted chance of finding any where there is none; lowest : Hz, from which on lines in
-    time are sought
+    level : accepted probability of a false detection; lowest : Hz, of lines in time
     """
     share = level / SEARCHES
-    left, taken = list(turns), {turn.name: list[Taken]() for turn in turns}
-    lines: list[Oscillation] = []
+    remaining, taken = list(turns), {turn.name: list[Taken]() for turn in turns}
+    oscillations: list[Oscillation] = []
     first: list[TurnLine] = []
     while True:
-        rings = [ring for turn in left for ring in strongest_lines(turn, lowest, taken[turn.name])]
-        first = first if lines else rings
-        turning = [turn for turn in left if np.isfinite(turn.rate)]
+        lines = [
+            line for turn in remaining for line in strongest_lines(turn, lowest, taken[turn.name])
+        ]
+        first = first if oscillations else lines
+        turning = [turn for turn in remaining if np.isfinite(turn.rate)]
         orders = search([turn.course(turn.about) for turn in turning]) if turning else None
         against = [] if orders is None else best_orders(turning, orders, taken)
-        every = [*in_turns(rings, left), *in_all(left, taken, lowest), *against]
-        clear = [one for one in every if one.p_value < share]
-        if not clear or len(lines) == MAX_OSCILLATIONS:
+        every = [*in_turns(lines, remaining), *in_all(remaining, taken, lowest), *against]
+        significant = [detection for detection in every if detection.p_value < share]
+        if not significant or len(oscillations) == MAX_OSCILLATIONS:
             break
-        found = explanation_of(max(clear, key=lambda one: one.drop), left, lowest, share)
-        lines.append(found)
-        left = [_without(turn, found, taken[turn.name]) for turn in left]
-    seen = np.zeros(0) if orders is None else detection_limit(orders, shortest(turning), share)
-    return SearchResult(turns, lines, first, orders, every, seen, bool(clear))
+        largest = max(significant, key=lambda detection: detection.drop)
+        oscillations.append(explanation_of(largest, remaining, lowest, share))
+        remaining = [_without(turn, oscillations[-1], taken[turn.name]) for turn in remaining]
+    sigmas = np.zeros(0) if orders is None else detection_limit(orders, shortest(turning), share)
+    return SearchResult(turns, oscillations, first, orders, every, sigmas, bool(significant))
 
 
-def _without(turn: SteadyTurn, found: Oscillation, taken: list[Taken]) -> SteadyTurn:
-    """A turn without an oscillation: about each axis as large, and in such phase, as it is."""
-    frequency = found.frequencies.get(turn.name)
+def _without(turn: SteadyTurn, oscillation: Oscillation, taken: list[Taken]) -> SteadyTurn:
+    """A turn without an oscillation, of which amplitude and phase are fitted about each axis."""
+    frequency = oscillation.frequencies.get(turn.name)
     if frequency is None:
         return turn
     parts = [without_line(record, 1 / turn.step, frequency) for record in turn.truth.T]
     taken.append(Taken(frequency, max(part.amplitude for part in parts)))
-    less = [
+    residuals = [
         record - part.amplitude * part.shape
         for record, part in zip(turn.truth.T, parts, strict=True)
     ]
-    return replace(turn, truth=np.column_stack(less))
+    return replace(turn, truth=np.column_stack(residuals))
 
 
 # ---- Removal of the oscillations from the blocks of turns.
 #
 # Where a block holds no whole number of periods the mean of an oscillation over it is not zero,
-# and over many blocks that beats: it would be taken for whatever goes with time or angle.
+# and beats over many blocks: it would be taken for effects that depend on time or angle.
 
 
 def without_lines(
     blocks: pd.DataFrame, turns: Sequence[SteadyTurn], lines: Sequence[Oscillation]
 ) -> pd.DataFrame:
-    """The same blocks, each line taken out of the steady ones with its own phase in each turn.
+    """The same blocks, each line removed from the steady ones with its own phase in each turn.
 
-    The angle of a turn stays as it was: from rest to rest what rings comes back, and so does a
-    ripple of a whole order. What it adds while the turn is steady it takes away while the table
-    speeds up and slows down.
+    The angle of a turn is unchanged: from rest to rest an oscillation adds none, nor does a ripple
+    of integer order. What it adds in the steady part is removed while the table accelerates and
+    decelerates.
     """
     if not lines:
         return blocks
@@ -301,8 +302,8 @@ def without_lines(
 
 def _mean_rates(turn: SteadyTurn, lines: Sequence[Oscillation], blocks: pd.DataFrame) -> Array:
     """The mean rates of all lines in blocks of a turn, (k, 3), rad/s, about the case's axes."""
-    left = turn.truth.copy()
-    time = turn.step * np.arange(len(left))
+    rates = turn.truth.copy()
+    time = turn.step * np.arange(len(rates))
     since = blocks["time"].to_numpy(np.float64) - turn.start
     count = blocks["count"].to_numpy(np.float64)
     means = np.zeros((len(blocks), 3))
@@ -311,9 +312,9 @@ def _mean_rates(turn: SteadyTurn, lines: Sequence[Oscillation], blocks: pd.DataF
         if frequency is None:
             continue
         half = np.pi * frequency * turn.step
-        share = np.sin(count * half) / (count * np.sin(half))  # of a sum of so many samples
+        share = np.sin(count * half) / (count * np.sin(half))  # of a sum of `count` samples
         for axis in range(3):
-            amplitude = phasor(left[:, axis], 1 / turn.step, frequency)
-            left[:, axis] -= np.real(amplitude * np.exp(2j * np.pi * frequency * time))
+            amplitude = phasor(rates[:, axis], 1 / turn.step, frequency)
+            rates[:, axis] -= np.real(amplitude * np.exp(2j * np.pi * frequency * time))
             means[:, axis] += share * np.real(amplitude * np.exp(2j * np.pi * frequency * since))
     return means

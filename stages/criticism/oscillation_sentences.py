@@ -81,10 +81,10 @@ ACTION_TIME = _(
     "Turn by whole turns; look for what vibrates: the drive, a loose screw, the mounting."
 )
 
-NOT_SEARCHED = _("{effect}: not searched for beside {count} oscillations that are named.")
+NOT_SEARCHED = _("{effect}: not searched for after {count} named oscillations.")
 NOT_OBSERVABLE = _("{effect}: not observable in this campaign: {reason}.")
 NOT_SIGNIFICANT = _("{effect}: not significant against the noise of the turns.")
-NOTHING_BESIDE = _("{effect}: none beside what is named.")
+NO_FURTHER = _("{effect}: none besides the named ones.")
 MAY_BE = _("What is named {named} may be {effect}.")
 WOULD_BE = _("It would be {detected}")
 
@@ -101,22 +101,27 @@ SHORT_TURN = _(
 )
 
 
-def of_oscillation(one: Oscillation, turns: Sequence[SteadyTurn]) -> str:
+def of_oscillation(oscillation: Oscillation, turns: Sequence[SteadyTurn]) -> str:
     """An oscillation in time, or of an axis of the case against the table's angle."""
-    mean = one.mean
+    mean = oscillation.mean
     sentence = IN_TIME.format(
-        axis="the table's axis" if one.axis == TABLE else one.axis,
+        axis="the table's axis" if oscillation.axis == TABLE else oscillation.axis,
         frequency=_with_sigma(mean.frequency, mean.frequency_sigma),
         amplitude=_with_sigma(mean.amplitude, mean.amplitude_sigma),
         arc=degrees(mean.amplitude / (2 * pi * mean.frequency)) * 3600,
         manoeuvres=", ".join(mean.manoeuvres),
     )
-    if one.periodic_in == ANGLE and one.ripple is not None:
-        sentence += IN_ANGLE.format(order=_order(one.ripple))
-    return sentence + _coupling(one.coupled) + _other_explanation(one, turns) + NO_NET_ANGLE
+    if oscillation.periodic_in == ANGLE and oscillation.ripple is not None:
+        sentence += IN_ANGLE.format(order=_order(oscillation.ripple))
+    return (
+        sentence
+        + _coupling(oscillation.coupled)
+        + _other_explanation(oscillation, turns)
+        + NO_NET_ANGLE
+    )
 
 
-def of_ripple(one: Oscillation, ripple: Ripple, turns: Sequence[SteadyTurn]) -> str:
+def of_ripple(oscillation: Oscillation, ripple: Ripple, turns: Sequence[SteadyTurn]) -> str:
     """A ripple of the table, or its eccentricity."""
     count = int(np.isfinite(ripple.own).all(axis=1).sum())
     sentence = (ECCENTRIC if eccentric(ripple) else RIPPLE).format(
@@ -124,32 +129,32 @@ def of_ripple(one: Oscillation, ripple: Ripple, turns: Sequence[SteadyTurn]) -> 
         size=_with_sigma(ripple.amplitude / ARC_SECOND, ripple.amplitude_sigma / ARC_SECOND) + "″",
         turns=SAME_IN_TURNS.format(count=count) if count > 1 else IN_ONE_TURN,
     )
-    return sentence + _at_rates(ripple, turns) + _other_explanation(one, turns)
+    return sentence + _at_rates(ripple, turns) + _other_explanation(oscillation, turns)
 
 
 def eccentric(ripple: Ripple) -> bool:
-    """Whether it is of the order 1, which was not free then."""
+    """Whether the order is fixed at 1."""
     return ripple.order_sigma == 0
 
 
-def consequence(one: Oscillation) -> str:
-    """What it does to the model and to angles."""
-    ripple = one.ripple
-    if one.periodic_in == ANGLE and ripple is not None:
+def consequence(oscillation: Oscillation) -> str:
+    """The effect on the model and on angles."""
+    ripple = oscillation.ripple
+    if oscillation.periodic_in == ANGLE and ripple is not None:
         swing = 2 * ripple.amplitude
         off = abs(ripple.order - round(ripple.order))
         turn = CLOSED if off < MAX_INTEGER_SIGMAS * ripple.order_sigma + 1e-9 else NOT_CLOSED
     else:
-        swing = 2 * one.mean.amplitude / (2 * pi * one.mean.frequency)
+        swing = 2 * oscillation.mean.amplitude / (2 * pi * oscillation.mean.frequency)
         turn = CLOSED_IN_TIME
     return CONSEQUENCE.format(turn=turn, swing=significant(swing / ARC_SECOND, 2))
 
 
-def action(one: Oscillation) -> str:
+def action(oscillation: Oscillation) -> str:
     """What to do about it."""
-    if not one.decided:
+    if not oscillation.decided:
         return ACTION_UNDECIDED.format(split=SPLIT)
-    return ACTION_ANGLE if one.periodic_in == ANGLE else ACTION_TIME
+    return ACTION_ANGLE if oscillation.periodic_in == ANGLE else ACTION_TIME
 
 
 def not_searched(effect: str, count: int) -> str:
@@ -162,9 +167,9 @@ def not_observable(effect: str, reason: str) -> str:
     return NOT_OBSERVABLE.format(effect=_title(effect), reason=reason)
 
 
-def not_significant(effect: str, *, beside: bool = False) -> str:
-    """Searched for and not detected; `beside`: other oscillations that are named."""
-    return (NOTHING_BESIDE if beside else NOT_SIGNIFICANT).format(effect=_title(effect))
+def not_significant(effect: str, *, after_others: bool = False) -> str:
+    """Searched for and not detected; `after_others`: after named oscillations were removed."""
+    return (NO_FURTHER if after_others else NOT_SIGNIFICANT).format(effect=_title(effect))
 
 
 def may_be(named: str, effect: str) -> str:
@@ -173,12 +178,12 @@ def may_be(named: str, effect: str) -> str:
 
 
 def would_be(detected: str) -> str:
-    """From which size on it would have been detected."""
+    """The size from which it would have been detected."""
     return WOULD_BE.format(detected=detected)
 
 
 def limit(effect: str, parameter: str, detected: str, why: str | None) -> str:
-    """From which size on a parameter is detected, or `why` it is not."""
+    """The size from which a parameter is detected, or `why` it is not."""
     return f"{in_words(effect)}, {parameter}: {detected if why is None else f'not detected. {why}'}"
 
 
@@ -237,36 +242,36 @@ def _at_rates(ripple: Ripple, turns: Sequence[SteadyTurn]) -> str:
     return AT_RATES.format(each=", ".join(each))
 
 
-def _other_explanation(one: Oscillation, turns: Sequence[SteadyTurn]) -> str:
+def _other_explanation(oscillation: Oscillation, turns: Sequence[SteadyTurn]) -> str:
     """The other explanation, and its odds."""
-    if one.ripple is None:
+    if oscillation.ripple is None:
         return ""
     odds = VERY_LARGE_ODDS
-    if one.log_odds <= MAX_LOG_ODDS:
-        odds = f"{significant(exp(one.log_odds), 1)} times"
-    if not one.decided:
+    if oscillation.log_odds <= MAX_LOG_ODDS:
+        odds = f"{significant(exp(oscillation.log_odds), 1)} times"
+    if not oscillation.decided:
         return UNDECIDED.format(odds=odds)
-    if one.periodic_in == ANGLE:
+    if oscillation.periodic_in == ANGLE:
         return NOT_IN_TIME.format(odds=odds)
     rates = sorted({round(turn.hertz(1.0), 6) for turn in turns if np.isfinite(turn.rate)})
-    orders = [significant(one.mean.frequency / rate, 4) for rate in rates[:MAX_RATES]]
+    orders = [significant(oscillation.mean.frequency / rate, 4) for rate in rates[:MAX_RATES]]
     return NOT_IN_ANGLE.format(orders=" or ".join(orders), odds=odds)
 
 
 def _coupling(coupled: Sequence[Coupled]) -> str:
-    """What the other axes contain of it."""
+    """The oscillation in the other axes by coupling."""
     if not coupled:
         return COUPLED_UNKNOWN
-    sentence = COUPLED.format(each=" and ".join(_coupled(one) for one in coupled))
-    for one in coupled:
-        if one.more:
-            excess, tipping = significant(one.left, 2), significant(one.tipping, 2)
-            sentence += COUPLED_MORE.format(axis=one.axis, excess=excess, tipping=tipping)
+    sentence = COUPLED.format(each=" and ".join(_coupled(axis) for axis in coupled))
+    for axis in coupled:
+        if axis.exceeds:
+            excess, tipping = significant(axis.residual, 2), significant(axis.tipping, 2)
+            sentence += COUPLED_MORE.format(axis=axis.axis, excess=excess, tipping=tipping)
     return sentence
 
 
-def _coupled(one: Coupled) -> str:
-    hidden = one.read < MIN_EXCESS_SIGMA * one.left_sigma
+def _coupled(axis: Coupled) -> str:
+    hidden = axis.read < MIN_EXCESS_SIGMA * axis.residual_sigma
     return (COUPLED_HIDDEN if hidden else COUPLED_READ).format(
-        axis=one.axis, expected=significant(one.expected, 2), read=significant(one.read, 2)
+        axis=axis.axis, expected=significant(axis.expected, 2), read=significant(axis.read, 2)
     )

@@ -1,11 +1,11 @@
 """Selection of the unmodelled effects of one mount from its block means.
 
-Where something is scanned the selection is repeated with ever finer values about the first one.
+Where a variable is scanned the selection is repeated with finer values about its first estimate.
 
 A random walk of a bias may be mistaken for effects, or they for it: a jump, a ramp, any drift. So
-the two explanations are compared by their likelihoods, and the random walk is estimated anew beside
-the named effects. With an effect that a random walk describes as well the data are said to be
-consistent, no more, for a random walk follows no law that could be tested.
+the two explanations are compared by their likelihoods, and the random walk is re-estimated given
+the named effects. With an effect that a random walk describes as well the data are no more than
+consistent, for a random walk follows no law that could be tested.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,12 +21,17 @@ from inertial.model_selection.evidence import Evidence, SearchedEffect, searched
 from inertial.model_selection.naming import causes, law_of
 from inertial.model_selection.search import finer, to_refine
 from inertial.physics.effect import Effect
-from stages.criticism.bias_drift import course_of, courses, slight, walks_beside
+from stages.criticism.bias_drift import (
+    barely_detectable_walks,
+    drift_name,
+    half_waves,
+    likely_random_walks,
+)
 
-MAX_OCCAM_DEVIANCE = 20.0  # what the range of sizes possible beforehand counts at most
+MAX_OCCAM_DEVIANCE = 20.0  # largest penalty of the prior range of sizes
 FINER_STEPS = 4  # of the second search in each interval of the first
 MIN_THIRD_SEARCH_SNR = 20.0  # from which a third search is finer still
-MAX_WALK_SHARE = 0.2  # of its information that a random walk leaves an effect that is like one
+MAX_WALK_SHARE = 0.2  # of the information of an effect that remains with a random walk
 SENSORS = ("gyro", "accel")
 
 
@@ -35,7 +40,7 @@ class Selection:
     """The named effects of one mount, and the evidence on every effect.
 
     `campaign`: with the random walks of its equations; `alternatives`: causes that would explain
-    about as well what a random walk explains; `searched`: the columns of each effect in
+    about as well what the random walk explains; `searched`: the columns of each effect in
     `evidence`; `families`: its candidates by its name, in the order of
     `SearchedEffect.candidates`; `limits`: the detection limits.
     """
@@ -55,8 +60,8 @@ class Selection:
     @property
     def effects(self) -> list[Effect]:
         """The named effects; a drift without a law is none."""
-        found = [cause for cause in self.named.causes if cause.effect in self.families]
-        return [self.effect(cause.effect, cause.value) for cause in found]
+        causes = self.named.causes
+        return [self.effect(c.effect, c.value) for c in causes if c.effect in self.families]
 
     @property
     def random_walks(self) -> tuple[float, float]:
@@ -79,11 +84,11 @@ class Selection:
 
     def consistent(self) -> dict[str, list[str]]:
         """Of each sensor the causes with which the data are no more than consistent."""
-        found: dict[str, list[str]] = {sensor: [] for sensor in SENSORS}
+        members: dict[str, list[str]] = {sensor: [] for sensor in SENSORS}
         for cause in self.named.causes:
             if cause.verdict == UNKNOWN_STRUCTURE and cause.effect in self.families:
-                found[self.sensor(cause)] += cause.members
-        return found
+                members[self.sensor(cause)] += cause.members
+        return members
 
     def deviance(self) -> float:
         """−2 log of the likelihood with the named effects, and the cost of each size.
@@ -114,12 +119,12 @@ def select_effects(
     without = with_walks((0.0, 0.0))
     walks = campaign.solution.random_walks
     if not any(walks):
-        walks = _walks_instead(without)
+        walks = _replacing_walks(without)
     if not any(walks):
         return without
     selection = _likelier(without, with_walks(walks))
     if selection.effects:
-        walks = walks_beside(selection.campaign, selection.effects)
+        walks = likely_random_walks(selection.campaign, selection.effects)
         if walks != selection.random_walks:
             selection = (
                 replace(with_walks(walks), alternatives=selection.alternatives)
@@ -133,26 +138,28 @@ def select_effects(
     return _consistent(replace(selection, alternatives=others))
 
 
-def _likelier(without: Selection, walking: Selection) -> Selection:
+def _likelier(without: Selection, with_walk: Selection) -> Selection:
     """Effects without random walks, or with them, or random walks that may be these effects."""
     if not without.effects:
-        return walking
-    more = without.deviance() - walking.deviance()
-    if more < -MIN_DEVIANCE_DROP:
+        return with_walk
+    reduction = without.deviance() - with_walk.deviance()
+    if reduction < -MIN_DEVIANCE_DROP:
         return without
-    if more >= MAX_OCCAM_DEVIANCE:
-        return walking
-    return replace(walking, alternatives=_members(without))
+    if reduction >= MAX_OCCAM_DEVIANCE:
+        return with_walk
+    return replace(with_walk, alternatives=_members(without))
 
 
-def _walks_instead(selection: Selection) -> tuple[float, float]:
-    """The most likely random walks in place of effects like them; 0 where there is none."""
+def _replacing_walks(selection: Selection) -> tuple[float, float]:
+    """The most likely random walks in place of effects that resemble them; 0 where none is."""
     campaign, effects = selection.campaign, selection.effects
-    like = _like_a_walk(campaign.with_random_walks(slight(campaign)), selection)
-    if not any(like):
+    resembling = _resembling_walks(
+        campaign.with_random_walks(barely_detectable_walks(campaign)), selection
+    )
+    if not any(resembling):
         return (0.0, 0.0)
-    return walks_beside(
-        campaign, [one for one, walks in zip(effects, like, strict=True) if not walks]
+    return likely_random_walks(
+        campaign, [effect for effect, like in zip(effects, resembling, strict=True) if not like]
     )
 
 
@@ -163,9 +170,11 @@ def _members(selection: Selection) -> tuple[str, ...]:
 
 def _consistent(selection: Selection) -> Selection:
     """The same; a cause that a random walk describes as well is consistent with the data only."""
-    like = dict(zip(_effects(selection), _like_a_walk(selection.campaign, selection), strict=True))
+    resembling = dict(
+        zip(_effects(selection), _resembling_walks(selection.campaign, selection), strict=True)
+    )
     causes = tuple(
-        replace(cause, verdict=UNKNOWN_STRUCTURE) if like.get(place) else cause
+        replace(cause, verdict=UNKNOWN_STRUCTURE) if resembling.get(place) else cause
         for place, cause in enumerate(selection.named.causes)
     )
     return replace(selection, named=replace(selection.named, causes=causes))
@@ -177,21 +186,24 @@ def _effects(selection: Selection) -> list[int]:
     return [place for place, cause in enumerate(causes) if cause.effect in selection.families]
 
 
-def _like_a_walk(walking: Campaign, selection: Selection) -> list[bool]:
-    """Of each named effect whether random walks leave little of its information."""
+def _resembling_walks(with_walk: Campaign, selection: Selection) -> list[bool]:
+    """Whether random walks leave little of the information of each named effect."""
     named = selection.effects
     if not named:
         return []
     totals = [
-        evidence(campaign, named).total for campaign in (walking, walking.without_random_walks())
+        evidence(campaign, named).total
+        for campaign in (with_walk, with_walk.without_random_walks())
     ]
     column = {name: i for i, name in enumerate(totals[0].names)}
     result = []
     for place, effect in zip(_effects(selection), named, strict=True):
         own = [column[name] for name in columns_of(effect) if name in column]
         values = np.nan_to_num(selection.named.causes[place].values)
-        left, whole = (values @ one.information[np.ix_(own, own)] @ values for one in totals)
-        result.append(bool(left < MAX_WALK_SHARE * whole))
+        remaining, whole = (
+            values @ total.information[np.ix_(own, own)] @ values for total in totals
+        )
+        result.append(bool(remaining < MAX_WALK_SHARE * whole))
     return result
 
 
@@ -199,23 +211,23 @@ def _select(
     campaign: Campaign, effects: Sequence[Effect], level: float, noise_degrees: float
 ) -> Selection:
     families = {name: tuple(family) for name, family in campaign.candidates(effects).items()}
-    found, searched = evidence_of(campaign, families, noise_degrees)
-    law = law_of(found, searched, level)
-    named = causes(found, searched, law)
-    limits = visible(found, [one for one in searched if not one.free])
+    equations, searched = evidence_of(campaign, families, noise_degrees)
+    law = law_of(equations, searched, level)
+    named = causes(equations, searched, law)
+    limits = visible(equations, [effect for effect in searched if not effect.free])
     min_snr = 0.0
-    while refined := to_refine(found, named, searched, min_snr):
+    while refined := to_refine(equations, named, searched, min_snr):
         families |= {name: _finer(families[name], places) for name, places in refined.items()}
-        found, searched = evidence_of(campaign, families, noise_degrees)
-        named = causes(found, searched, law)
+        equations, searched = evidence_of(campaign, families, noise_degrees)
+        named = causes(equations, searched, law)
         if min_snr:
             break
         min_snr = MIN_THIRD_SEARCH_SNR
-    return Selection(campaign, (), found, searched, families, named, limits)
+    return Selection(campaign, (), equations, searched, families, named, limits)
 
 
 def _finer(family: Sequence[Effect], places: Sequence[int]) -> tuple[Effect, ...]:
-    values = np.array([one.at for one in family], np.float64)
+    values = np.array([effect.at for effect in family], np.float64)
     return tuple(family[0].fixed(float(at)) for at in finer(values, places, FINER_STEPS))
 
 
@@ -228,21 +240,21 @@ def evidence_of(
     campaign: Campaign, families: Mapping[str, Sequence[Effect]], noise_degrees: float
 ) -> tuple[Evidence, list[SearchedEffect]]:
     """The evidence on all candidates and on drifts without a law, and the columns of each."""
-    drifts = {course_of(sensor): tuple(courses(sensor)) for sensor in SENSORS}
-    every = [one for family in [*families.values(), *drifts.values()] for one in family]
-    found = evidence(campaign, every, noise_degrees)
-    if not found.sensors:
-        return found, [searched_effect(name) for name in families]
-    column = {name: i for i, name in enumerate(found.names)}
+    drifts = {drift_name(sensor): tuple(half_waves(sensor)) for sensor in SENSORS}
+    every = [effect for family in [*families.values(), *drifts.values()] for effect in family]
+    equations = evidence(campaign, every, noise_degrees)
+    if not equations.sensors:
+        return equations, [searched_effect(name) for name in families]
+    column = {name: i for i, name in enumerate(equations.names)}
 
-    def columns(one: Effect) -> list[int]:
-        return [column[name] for name in columns_of(one)]
+    def columns(effect: Effect) -> list[int]:
+        return [column[name] for name in columns_of(effect)]
 
     searched = []
     for name, family in families.items():
         between = family[0].scan is None or family[0].scan.between
         searched.append(searched_effect(name, *map(columns, family), between=between))
     for name, waves in drifts.items():
-        axes = np.array([columns(one) for one in waves]).T  # (3, waves)
+        axes = np.array([columns(wave) for wave in waves]).T  # (3, waves)
         searched.append(searched_effect(name, *axes.tolist(), axes.ravel().tolist(), free=True))
-    return found, searched
+    return equations, searched

@@ -12,14 +12,14 @@ from inertial.campaign.steady_residuals import steady_turns
 from inertial.effects import CATALOGUE
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
-from stages.criticism.bias_drift import walks_with_sigmas
+from stages.criticism.bias_drift import random_walks_with_sigmas
 from stages.criticism.block_results import (
     BlockResults,
     other_scores,
     random_walk_rows,
     unexplained_rows,
 )
-from stages.criticism.class_splitting import Foreseen, Further, further
+from stages.criticism.class_splitting import ExtendedCampaigns, ExtendedPlan, extended_plans
 from stages.criticism.declared import DECLARED
 from stages.criticism.finding_rows import Row, TableRow
 from stages.criticism.oscillation_results import OscillationResults
@@ -28,7 +28,7 @@ from stages.criticism.residual_structure import structure_rows, structure_tests
 from stages.criticism.selection import SENSORS, select_effects
 from stages.criticism.temperature_findings import temperature_rows
 
-BLOCKS_SHARE = 0.9  # of the accepted chance of a false name; the rest is that of the spectrum
+BLOCKS_SHARE = 0.9  # of the accepted probability of a false name; the rest is that of the spectrum
 
 
 def criticism(
@@ -42,13 +42,13 @@ def criticism(
 
     `level` is the accepted probability of naming any effect where the model is complete.
     """
-    made: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
+    rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     for data in mounts:
         for table, row in _of_mount(data, simulated, level, lowest_hz):
-            made[table].append(row)
+            rows[table].append(row)
     return {
-        name: pd.DataFrame(made[name], columns=[column.name for column in table.columns])
-        if made[name]
+        name: pd.DataFrame(rows[name], columns=[column.name for column in table.columns])
+        if rows[name]
         else table.empty()
         for name, table in DECLARED.writes.items()
     }
@@ -67,28 +67,32 @@ def _of_mount(
     selection = select_effects(campaign, in_blocks, level * BLOCKS_SHARE, degrees)
     tested = structure_tests(selection.campaign, selection.effects, degrees)
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
-    walks = walks_with_sigmas(selection.campaign, selection.effects)
-    more = {
-        name: partial(_with, make, data)
-        for name, make in further(data.plan, data.performed, quiet).items()
+    random_walks = random_walks_with_sigmas(selection.campaign, selection.effects)
+    extended = {
+        name: partial(_with, plan, data)
+        for name, plan in extended_plans(data.plan, data.performed, quiet).items()
     }
-    for sensor, walk in walks.items():
+    for sensor, walk in random_walks.items():
         structured = bool(tested.of(sensor))
         yield from random_walk_rows(
             sensor, walk, selection.alternatives, mount, structured=structured
         )
-    yield from BlockResults(campaign, selection, Foreseen(selection, more), mount).rows()
+    yield from BlockResults(
+        campaign, selection, ExtendedCampaigns(selection, extended), mount
+    ).rows()
     yield from OscillationResults(spectrum, mount).rows()
-    yield from other_scores(walks.get("gyro"), mount)
+    yield from other_scores(random_walks.get("gyro"), mount)
     yield from structure_rows(tested, selection.consistent(), mount)
     yield from unexplained_rows(selection, mount)
     yield from temperature_rows(data.blocks, data.plan, level, mount)
 
 
-def _with(make: Callable[[], Further], data: CampaignData) -> Campaign:
-    """The campaign with a further manoeuvre, all else equal."""
-    one = make()
-    return campaign_of(replace(data, blocks=one.blocks, plan=one.plan, performed=one.performed))
+def _with(plan: Callable[[], ExtendedPlan], data: CampaignData) -> Campaign:
+    """The campaign with an additional manoeuvre, all else equal."""
+    extended = plan()
+    return campaign_of(
+        replace(data, blocks=extended.blocks, plan=extended.plan, performed=extended.performed)
+    )
 
 
 STAGE = Stage(criticism, DECLARED, gathers={"mounts": campaigns_of})

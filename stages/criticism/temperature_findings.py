@@ -93,7 +93,7 @@ OTHER_ATTITUDES = _(
 
 @dataclass(frozen=True)
 class Kind:
-    """What changes with the temperature, its SI unit, and the unit and size for people."""
+    """The quantity that changes with the temperature, its SI unit, and its unit in sentences."""
 
     readings: str
     si: str
@@ -101,7 +101,7 @@ class Kind:
     size: float
 
     def of(self, value: float, digits: int = 2) -> str:
-        """A size in the unit for people."""
+        """A size in the unit of sentences."""
         return f"{significant(value / self.size, digits)} {self.unit}"
 
     def per_kelvin(self, slope: float, sigma: float) -> str:
@@ -121,7 +121,7 @@ KINDS = {
 def temperature_rows(
     blocks: pd.DataFrame, plan: Sequence[Manoeuvre], level: float, mount: str
 ) -> Iterator[TableRow]:
-    """The findings of one mount; none where times were recorded, for equations hold them then.
+    """The findings of one mount; none where times were recorded, for the equations include them.
 
     `level`: accepted probability of a law where there is none, and of a structure.
     """
@@ -176,9 +176,9 @@ def members(dependence: TemperatureDependence) -> dict[str, list[str]]:
     """The effects that may be it, the likeliest first, each with the axes that it can change.
 
     A tilt changes an accelerometer across the vertical by g · angle, one along it by half the
-    square of the angle; it is considered up to the largest one of the catalogue.
+    square of the angle; it is considered up to the largest of the catalogue.
     """
-    sweep, axes = dependence.sweep, [one.axis for one in dependence.axes]
+    sweep, axes = dependence.sweep, [model.axis for model in dependence.axes]
     if sweep.kind == SCALE:
         effects = {"gyro_scale_temperature": axes, "table_speed_error": axes}
         return effects if sweep.unbiased else effects | {"gyro_bias_temperature": axes}
@@ -199,8 +199,8 @@ def _parameters(dependence: TemperatureDependence) -> Iterator[Estimated]:
         "T0", "K", _("temperature about which polynomials are given"), dependence.middle
     )
     unit = f"{KINDS[dependence.sweep.kind].si}/K"
-    for one in dependence.axes:
-        axis, knee = one.axis, one.knee
+    for model in dependence.axes:
+        axis, knee = model.axis, model.knee
         if knee is not None:
             at = _("temperature of the knee of {axis}", axis=axis)
             below, above = (
@@ -211,7 +211,7 @@ def _parameters(dependence: TemperatureDependence) -> Iterator[Estimated]:
             yield Estimated(f"below_{axis}", unit, below, knee.slopes[0], knee.sigmas[0])
             yield Estimated(f"above_{axis}", unit, above, knee.slopes[1], knee.sigmas[1])
             continue
-        values, sigmas = one.curve.coefficients(one.described_degree, dependence.middle)
+        values, sigmas = model.curve.coefficients(model.described_degree, dependence.middle)
         for power, (value, sigma) in enumerate(zip(values, sigmas, strict=True), 1):
             powers = unit if power == 1 else f"{unit}{'²³'[power - 2]}"
             meaning = _(
@@ -281,7 +281,7 @@ def _law(best: AxisModel, kind: Kind, middle: float) -> Iterator[str]:
 
 
 def _causes(dependence: TemperatureDependence, effects: Mapping[str, Sequence[str]]) -> str:
-    """The effects that may be it; of each that changes some of the axes alone, which."""
+    """The effects that may be it; with the axes where it changes only some."""
     names = []
     for effect, axes in effects.items():
         where = f" ({', '.join(axes)})" if len(axes) < len(dependence.axes) else ""
@@ -300,14 +300,15 @@ def _no_tilt(dependence: TemperatureDependence) -> Iterator[str]:
     if dependence.sweep.kind != ACCELEROMETERS:
         return
     kind, tilts = KINDS[ACCELEROMETERS], dependence.tilts
-    change = max((one.change for one in dependence.axes if one.axis in tilts), default=0.0)
-    for one in dependence.axes:
-        if dependence.sweep.along(one.axis) >= MIN_UPRIGHT and one.change < STANDARD_GRAVITY:
-            angle = acos(1 - one.change / STANDARD_GRAVITY)
+    change = max((model.change for model in dependence.axes if model.axis in tilts), default=0.0)
+    for model in dependence.axes:
+        upright = dependence.sweep.along(model.axis) >= MIN_UPRIGHT
+        if upright and model.change < STANDARD_GRAVITY:
+            angle = acos(1 - model.change / STANDARD_GRAVITY)
             expected = STANDARD_GRAVITY * sin(angle)
             if expected > change:
                 yield NO_TILT.format(
-                    axis=one.axis,
+                    axis=model.axis,
                     angle=degrees(angle),
                     expected=kind.of(expected),
                     change=kind.of(change),
@@ -315,12 +316,12 @@ def _no_tilt(dependence: TemperatureDependence) -> Iterator[str]:
 
 
 def _consequence(dependence: TemperatureDependence) -> str:
-    """What it does to the model."""
+    """The effect on the model."""
     kind = KINDS[dependence.sweep.kind]
     return CONSEQUENCE.format(
-        changes=", ".join(f"{one.axis} {kind.of(one.change)}" for one in dependence.axes),
+        changes=", ".join(f"{model.axis} {kind.of(model.change)}" for model in dependence.axes),
         residuals=", ".join(
-            f"{one.axis} {kind.of(one.curve.residual_rms(1))}" for one in dependence.axes
+            f"{model.axis} {kind.of(model.curve.residual_rms(1))}" for model in dependence.axes
         ),
     )
 

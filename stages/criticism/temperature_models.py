@@ -18,11 +18,11 @@ Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
 ACCELEROMETERS, GYROS, SCALE = "accel", "gyro", "scale"
-MIN_SPAN = 5.0  # K, from which a sweep of temperatures is one
-MIN_TEMPERATURES = 6  # temperatures, of which a parabola leaves enough to see the noise
-MIN_SAMPLE_SHARE = 0.01  # of the median number of samples: what holds fewer is left out
-MIN_ALONG = 0.5  # cosine from which a gyro sees enough of a turn
-MIN_PARALLEL = 0.999  # cosine from which two attitudes are one
+MIN_SPAN = 5.0  # K, of a sweep of temperatures
+MIN_TEMPERATURES = 6  # so that the residuals of a parabola show the noise
+MIN_SAMPLE_SHARE = 0.01  # of the median number of samples; means of fewer are omitted
+MIN_ALONG = 0.5  # cosine of the angle between the axis of a gyro and that of a turn
+MIN_PARALLEL = 0.999  # cosine of the angle between two attitudes taken as the same
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,8 @@ class Sweep:
 
     `kind`: ACCELEROMETERS, m/s², or GYROS, rad/s, at rest; SCALE, scale factor errors of gyros, 1;
     `temperature`: (n,), K; `readings`: (n, 3), NaN where there are none; `poor`: how many means
-    were left out for they hold fewer than `least` samples; `unbiased`: whether of a turn the
-    readings at rest were taken off.
+    were omitted for fewer than `least` samples; `unbiased`: whether the readings at rest were
+    subtracted from those of a turn.
     """
 
     manoeuvre: Manoeuvre
@@ -45,7 +45,7 @@ class Sweep:
 
     @property
     def sensor(self) -> str:
-        """As findings call it."""
+        """The sensor of its findings."""
         return ACCELEROMETERS if self.kind == ACCELEROMETERS else GYROS
 
     def along(self, axis: str) -> float:
@@ -57,17 +57,17 @@ class Sweep:
         """Axis, temperatures and readings of what was recorded over a span, and is not constant."""
         for axis, values in zip(tables.AXES, self.readings.T, strict=True):
             there = np.isfinite(values)
-            at, seen = self.temperature[there], values[there]
+            at, readings = self.temperature[there], values[there]
             if (
                 len(np.unique(at)) >= MIN_TEMPERATURES
                 and np.ptp(at) > MIN_SPAN
-                and np.ptp(seen) > 0
+                and np.ptp(readings) > 0
             ):
-                yield axis, at, seen
+                yield axis, at, readings
 
 
 def sweeps(blocks: pd.DataFrame, plan: Sequence[Manoeuvre]) -> list[Sweep]:
-    """Those of one mount, in the order of the plan; none where times or samples were recorded."""
+    """The sweeps of a mount in the order of the plan; none where times or samples were recorded."""
     means = _means(blocks)
     of = {name: own for name, own in means.groupby("manoeuvre", sort=False)}
     rests = [
@@ -109,12 +109,12 @@ def _sweep(m: Manoeuvre, kind: str, own: pd.DataFrame) -> Sweep:
 
 
 def _of_turn(turn: Sweep, rests: Sequence[Sweep]) -> Sweep:
-    """Scale factor errors: what the gyros read above their rest at that temperature, by the rate.
+    """Scale factor errors: readings of the gyros less those at rest at that temperature, by rate.
 
-    A turn without a rest in its attitude keeps the bias in it.
+    Without a rest in the attitude of the turn they include the bias.
     """
     m = turn.manoeuvre
-    rest = next((one for one in rests if one.kind == GYROS and _alike(one.manoeuvre, m)), None)
+    rest = next((r for r in rests if r.kind == GYROS and _same_attitude(r.manoeuvre, m)), None)
     level = np.zeros_like(turn.readings)
     if rest is not None:
         level = np.column_stack([_at(turn, rest, i) for i in range(3)])
@@ -130,7 +130,7 @@ def _of_turn(turn: Sweep, rests: Sequence[Sweep]) -> Sweep:
     )
 
 
-def _alike(rest: Manoeuvre, turn: Manoeuvre) -> bool:
+def _same_attitude(rest: Manoeuvre, turn: Manoeuvre) -> bool:
     if rest.up is None or turn.up is None:
         return False
     return float(rest.up @ turn.up) > MIN_PARALLEL
@@ -149,17 +149,17 @@ def _at(turn: Sweep, rest: Sweep, i: int) -> Array:
 # ---- The polynomial that each axis follows, and its residuals.
 
 ICE_POINT = 273.15  # K
-MIN_LOG_ODDS = float(np.log(20))  # from which a knee is told
-MIN_SENSITIVITY = 0.5  # cosine or sine from which an accelerometer sees its scale factor, or a tilt
+MIN_LOG_ODDS = float(np.log(20))  # of a knee
+MIN_SENSITIVITY = 0.5  # cosine or sine: of an accelerometer to its scale factor, or to a tilt
 
 
 @dataclass(frozen=True)
 class AxisModel:
-    """One axis of a sweep, judged.
+    """The model of an axis of a sweep.
 
     `degree`: of its law, 0 where it has none; `p_value`: of that by noise alone, after the search;
-    `p_beyond`: of what the highest degree leaves, after the search; `knee`: where it
-    fits clearly better than that.
+    `p_beyond`: of the residuals of the highest degree, after the search; `knee`: if it fits
+    significantly better than that.
     """
 
     axis: str
@@ -171,8 +171,8 @@ class AxisModel:
     knee: Knee | None
 
     @property
-    def moves(self) -> bool:
-        """Whether it goes with the temperature."""
+    def varies(self) -> bool:
+        """Whether it depends on the temperature."""
         return self.degree > 0 or self.structure
 
     @property
@@ -182,86 +182,86 @@ class AxisModel:
 
     @property
     def described_degree(self) -> int:
-        """The degree of the polynomial that stands for it."""
+        """The degree of the polynomial that represents it."""
         return self.curve.highest if self.structure else self.degree
 
 
 @dataclass(frozen=True)
 class TemperatureDependence:
-    """The channels of a sweep that go with the temperature, at least one."""
+    """The channels of a sweep that depend on the temperature, at least one."""
 
     sweep: Sweep
     axes: Sequence[AxisModel]
 
     @property
     def structured(self) -> bool:
-        """Whether a polynomial does not hold all of them."""
+        """Whether a polynomial does not describe all of them."""
         return any(channel.structure for channel in self.axes)
 
     @property
     def best(self) -> AxisModel:
-        """The channel in which it is clearest."""
+        """The most significant channel."""
         if self.structured:
             own = [channel for channel in self.axes if channel.structure]
-            return min(own, key=lambda one: one.p_beyond)
-        return min(self.axes, key=lambda one: one.p_value)
+            return min(own, key=lambda axis: axis.p_beyond)
+        return min(self.axes, key=lambda axis: axis.p_value)
 
     @property
     def tilts(self) -> dict[str, float]:
-        """The tilt, rad, that would move each accelerometer across the vertical so much."""
+        """The tilt, rad, that would change each accelerometer across the vertical as much."""
         across = {
-            one.axis: float(np.nan_to_num(np.sqrt(1 - self.sweep.along(one.axis) ** 2), nan=1.0))
-            for one in self.axes
+            a.axis: float(np.nan_to_num(np.sqrt(1 - self.sweep.along(a.axis) ** 2), nan=1.0))
+            for a in self.axes
         }
         return {
-            one.axis: one.change / (STANDARD_GRAVITY * across[one.axis])
-            for one in self.axes
-            if across[one.axis] >= MIN_SENSITIVITY
+            a.axis: a.change / (STANDARD_GRAVITY * across[a.axis])
+            for a in self.axes
+            if across[a.axis] >= MIN_SENSITIVITY
         }
 
     @property
     def middle(self) -> float:
-        """The mean temperature, whole in °C, about which polynomials are told, K."""
+        """The mean temperature, whole in °C, about which polynomials are given, K."""
         mean = np.mean([channel.curve.at.mean() for channel in self.axes])
         return float(np.round(mean - ICE_POINT)) + ICE_POINT
 
 
 def temperature_dependences(swept: Sequence[Sweep], level: float) -> list[TemperatureDependence]:
-    """Of all sweeps those that go with the temperature.
+    """The sweeps that depend on the temperature.
 
-    `level`: accepted chance of a law in any channel where there is none, and of a structure.
+    `level`: accepted probability of a law in any channel where there is none, and of a structure.
     """
     every = [
-        (sweep, {axis: curve_of(at, seen) for axis, at, seen in sweep.channels()})
+        (sweep, {axis: curve_of(at, readings) for axis, at, readings in sweep.channels()})
         for sweep in swept
     ]
     curves = [curve for _, own in every for curve in own.values()]
     searched = (sum(len(c.degrees) for c in curves), len(curves))
-    judged = [
+    dependences = [
         TemperatureDependence(
-            sweep, [one for a, c in own.items() if (one := _judged(a, c, level, searched)).moves]
+            sweep, [m for a, c in own.items() if (m := _axis_model(a, c, level, searched)).varies]
         )
         for sweep, own in every
     ]
-    return [one for one in judged if one.axes]
+    return [dependence for dependence in dependences if dependence.axes]
 
 
-def _judged(axis: str, curve: Curve, level: float, searched: tuple[int, int]) -> AxisModel:
-    """`searched`: how many degrees of laws, and how many channels, are looked at in all."""
+def _axis_model(axis: str, curve: Curve, level: float, searched: tuple[int, int]) -> AxisModel:
+    """`searched`: the total numbers of degrees of laws and of channels that are tested."""
     laws, structures = searched
-    clear = [d for d in curve.degrees if curve.p_value(range(d, d + 1)) * laws < level]
-    degree = max(clear, default=0)
+    significant = [d for d in curve.degrees if curve.p_value(range(d, d + 1)) * laws < level]
+    degree = max(significant, default=0)
     beyond = min(1.0, curve.misfit_p_value() * structures)
     knee = knee_of(curve.at, curve.readings) if beyond < level else None
     if knee is not None and _odds(curve, knee) < MIN_LOG_ODDS:
         knee = None
-    chance = min(1.0, curve.p_value(range(1, degree + 1)) * laws)
-    return AxisModel(axis, curve, degree, chance, beyond, beyond < level, knee)
+    p_value = min(1.0, curve.p_value(range(1, degree + 1)) * laws)
+    return AxisModel(axis, curve, degree, p_value, beyond, beyond < level, knee)
 
 
 def _odds(curve: Curve, knee: Knee) -> float:
     """How much likelier, as a logarithm, two lines are than the polynomial of highest degree."""
-    rounded = np.finfo(np.float64).tiny  # two lines may hold made-up readings wholly
+    tiny = np.finfo(np.float64).tiny  # two lines may fit synthetic readings exactly
     return len(curve.at) * float(
-        np.log(curve.residual_rms(curve.highest) / max(knee.residual_rms, rounded))
+        np.log(curve.residual_rms(curve.highest) / max(knee.residual_rms, tiny))
     )

@@ -192,10 +192,10 @@ def test_the_axis_that_only_sees_it_by_coupling_is_named_so():
     for one in found.coupled:
         expected = RINGING[1] * abs(MATRIX["xyz".index(one.axis), 0])
         assert one.expected == pytest.approx(expected, rel=1e-3)
-        assert one.read == pytest.approx(expected, abs=3e-6) and not one.more
+        assert one.read == pytest.approx(expected, abs=3e-6) and not one.exceeds
     also = [RINGING, (RINGING[0], 3e-4, "z")]
     (found,) = find_oscillations(turns(3, ringing=also), LEVEL, LOWEST).oscillations
-    more = {one.axis: one.more for one in found.coupled}
+    more = {one.axis: one.exceeds for one in found.coupled}
     assert found.axis == "x" and more == {"y": False, "z": True}
 
 
