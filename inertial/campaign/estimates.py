@@ -53,7 +53,7 @@ Booleans = NDArray[np.bool_]
 
 NAMES = triad.linear_names()
 SENSED = {"accelerometer": "specific force", "gyroscope": "angular rate"}
-# What is estimated of a position, by the names of unknowns: quantity, component, unit.
+# The estimated parameters of a position, by the names of unknowns: quantity, component, unit.
 OF_POSITIONS = {
     f"{kind} {component}": ((quantity, component, unit),)
     for kind, quantity, unit in (("tilt", "tilt", "rad"), ("level", "horizontal", "rad/s"))
@@ -72,7 +72,7 @@ TABLES = {
 
 
 class Estimates:
-    """What the methods of one stage found for one mount, collected as rows of the common tables."""
+    """The results of the methods of one stage for one mount, as rows of the common tables."""
 
     def __init__(self, stage: str, mount: str = "") -> None:
         self.stage, self.mount = stage, mount
@@ -114,14 +114,14 @@ class Estimates:
                     "reason": reasons.get(name, ""),
                 }
             )
-        there = [i for i, name in enumerate(names) if name not in reasons]
-        kept = [ids[i] for i in there]
+        determined = [i for i, name in enumerate(names) if name not in reasons]
+        kept_ids = [ids[i] for i in determined]
         self.covariances.append(
             pd.DataFrame(
                 {
-                    "first": np.repeat(kept, len(kept)),
-                    "second": np.tile(kept, len(kept)),
-                    "covariance": covariance[np.ix_(there, there)].ravel(),
+                    "first": np.repeat(kept_ids, len(kept_ids)),
+                    "second": np.tile(kept_ids, len(kept_ids)),
+                    "covariance": covariance[np.ix_(determined, determined)].ravel(),
                 }
             )
         )
@@ -135,7 +135,7 @@ class Estimates:
         return f"{self.stage}/{with_mount(method, self.mount)}/{name}"
 
     def add_triad(self, method: str, estimate: Estimate, reasons: dict[str, str]) -> None:
-        """The twelve unknowns of three sensors, and what M falls into by polar decomposition."""
+        """The twelve unknowns of three sensors, and the polar decomposition of M."""
         unknowns, covariance = estimate.values[:12], estimate.covariance[:12, :12]
         matrix = unknowns[:9].reshape(3, 3)
         jacobian = np.zeros((21, 12))
@@ -145,7 +145,7 @@ class Estimates:
         if np.linalg.det(matrix) > 0:
             jacobian[12:, :9] = triad.jacobian_of_mounting(matrix)
             values[12:] = triad.mounting_and_symmetric(matrix)
-        else:  # two axes are taken for each other, or a sign is wrong: the findings say so
+        else:  # two axes are exchanged, or a sign is wrong: a finding reports it
             reasons = reasons | {name: _("M is left-handed: it is no mounting") for name in derived}
         if any(name in triad.SCALE + triad.CROSS for name in reasons):
             reasons = reasons | {name: _("it needs all nine elements of M") for name in derived}
@@ -217,16 +217,16 @@ class Estimates:
 
     def tables(self) -> dict[str, pd.DataFrame]:
         """The tables, with their columns even where there are no rows."""
-        made = {
+        frames = {
             name: pd.DataFrame(rows) if rows else TABLES[name].empty()
             for name, rows in self.rows.items()
         }
         empty = tables.COVARIANCE.empty()
-        return made | {"covariance": pd.concat(self.covariances) if self.covariances else empty}
+        return frames | {"covariance": pd.concat(self.covariances) if self.covariances else empty}
 
 
 def stops_between_turns(plan: Sequence[Manoeuvre]) -> bool:
-    """Whether several manoeuvres stand at one set position, as S3 turns and stops."""
+    """Whether several manoeuvres share a set position, as in S3's turns and stops."""
     return len({m.position for m in plan}) < len(plan)
 
 
@@ -238,7 +238,7 @@ def reasons(
     Parameters
     ----------
     determined : (12,); recorded : (3,), which sensors are in the logs
-    cures : what to do for `bias` and for `matrix`, where {axis} is the axis of the input
+    cures : the remedies for `bias` and for `matrix`, where {axis} is the axis of the input
     """
     result = {}
     for i, name in enumerate(NAMES):

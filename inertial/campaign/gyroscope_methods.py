@@ -1,9 +1,9 @@
-"""The gyros by the sources' own formulas, beside the joint estimate: rows, and why there are none.
+"""The gyros by the formulas of the sources, for comparison with the joint estimate.
 
 `static`: S0 (3-13), (3-14), rests with the axis up and down. `turns`: S0 (3-9), (3-10), turns of a
 known angle. `turn_and_stop` and `stops`: S3 (13) to (15), M from turns both ways, the bias by turns
-and by rests. `rate_table`: S4's least squares of steady runs. All have the sigmas that the sources
-leave out.
+and by rests. `rate_table`: S4's least squares of steady runs. All have sigmas, which the
+sources do not state.
 """
 
 from collections.abc import Iterator
@@ -27,29 +27,29 @@ from inertial.text.messages import _
 Array = NDArray[np.float64]
 
 NO_TURNS = _("no axis {axis} was turned about both ways over the same known angle: add such turns")
-MIN_SIGMA = 1e-15  # rad/s, a sigma as good as none
+MIN_SIGMA = 1e-15  # rad/s, in place of zero
 NOT_RECORDED = "the {axis} gyro is not recorded"
 
 
 def add_formulas(
     estimates: Estimates, data: CampaignData, joint: ScatterFit, wanted: float
 ) -> None:
-    """The rows of every formula that the plan feeds, with the scatter of the joint estimate.
+    """The rows of every formula that the plan allows, with the scatter of the joint estimate.
 
-    `wanted`: rad/s, sigma of a bias for which the length of the rests is reckoned.
+    `wanted`: rad/s, required sigma of a bias, from which the length of the rests follows.
     """
     inputs = data.gyro_inputs
-    scatter, told = joint.scatter, joint.estimate.determined[:9]
-    cross = np.where(told, joint.estimate.values[:9], CROSS_SIGMA).reshape(3, 3)
+    scatter, determined = joint.scatter, joint.estimate.determined[:9]
+    cross = np.where(determined, joint.estimate.values[:9], CROSS_SIGMA).reshape(3, 3)
     _add_static(estimates, inputs, cross, (scatter, wanted))
     _add_known_angle(estimates, data, scatter)
-    found = rate_table(inputs.steady_rates, inputs.earth, inputs.position_sigma, scatter)
-    if found is not None:
-        _add(estimates, "rate_table", found.solution, found.refusals())
+    runs = rate_table(inputs.steady_rates, inputs.earth, inputs.position_sigma, scatter)
+    if runs is not None:
+        _add_solution(estimates, "rate_table", runs.solution, runs.refusals())
 
 
-def uprights(inputs: GyroInputs, i: int) -> Iterator[tuple[str, Upright]]:
-    """The rests of the plan with body axis i up or down, each with its name."""
+def upright_positions(inputs: GyroInputs, i: int) -> Iterator[tuple[str, Upright]]:
+    """The static positions of the plan with body axis i up or down, each with its name."""
     for position in inputs.static_positions:
         up = float(position.up_now[i])
         mean, sigma = position.over()
@@ -69,74 +69,80 @@ def _add_static(
     estimates: Estimates,
     inputs: GyroInputs,
     cross: Array,
-    sigmas_of: tuple[float, float],  # between manoeuvres, and wanted of a bias, rad/s
+    sigma_limits: tuple[float, float],  # between manoeuvres, and wanted of a bias, rad/s
 ) -> None:
-    scatter, wanted = sigmas_of
+    scatter, wanted = sigma_limits
     seconds = [s.seconds.sum() for s in inputs.static_positions if s.manoeuvre.do == "rest"]
     for i, axis in enumerate(AXES):
-        read = [rest for _unused, rest in uprights(inputs, i)]
-        rests = [replace(rest, sigma=float(np.hypot(rest.sigma, scatter))) for rest in read]
+        upright = [rest for _unused, rest in upright_positions(inputs, i)]
+        rests = [replace(rest, sigma=float(np.hypot(rest.sigma, scatter))) for rest in upright]
         about = (cross[i] * (np.arange(3) != i), inputs.earth, inputs.position_sigma)
-        found = two_positions(rests, *about)
-        if found is None:
+        result = two_positions(rests, *about)
+        if result is None:
             continue
-        names, values = (f"bias_{axis}", f"scale_{axis}"), [found.bias, found.scale or 0.0]
-        sigmas = np.array([found.bias_sigma, found.scale_sigma or 0.0])
+        names, values = (f"bias_{axis}", f"scale_{axis}"), [result.bias, result.scale or 0.0]
+        sigmas = np.array([result.bias_sigma, result.scale_sigma or 0.0])
         reason = _("the upward earth rate is not known well enough to be an input")
-        why = {names[1]: reason} if found.scale is None else {}
-        estimates.add("static", names, np.array(values), np.diag(sigmas**2), why)
+        reasons = {names[1]: reason} if result.scale is None else {}
+        estimates.add("static", names, np.array(values), np.diag(sigmas**2), reasons)
         ideal = two_positions(
             [replace(rest, sigma=max(scatter, MIN_SIGMA)) for rest in rests], *about
         )
         if ideal is not None:
-            told = Wanted(found.bias_sigma, ideal.bias_sigma, float(np.mean(seconds)))
-            estimates.add_wanted("static", axis, told, wanted)
+            required = Wanted(result.bias_sigma, ideal.bias_sigma, float(np.mean(seconds)))
+            estimates.add_wanted("static", axis, required, wanted)
 
 
 def _add_known_angle(estimates: Estimates, data: CampaignData, scatter: float) -> None:
-    """Axis by axis: it needs whole turns both ways about the axis that is up."""
+    """Axis by axis; whole rotations in both directions about the vertical axis are needed."""
     method, inputs = "turns", data.gyro_inputs
     for i, axis in enumerate(AXES):
         whole = [r for r in inputs.recorded if r.plan.recorded == "whole"]
-        own = [r for r in whole if abs(r.plan.axis[i]) > 1 - 1e-9]
+        about_axis = [r for r in whole if abs(r.plan.axis[i]) > 1 - 1e-9]
         turns = [angle for _unused, angle in angles_about(data, i)]
         names = (f"bias_{axis}", f"scale_{axis}")
         if len({np.sign(turn.angle) for turn in turns}) == 2:
             estimate = gyroscopes.bias_and_scale(turns, inputs.earth, scatter)
             estimates.add(method, names, estimate.values[:2], estimate.covariance[:2, :2], {})
-        elif own:
+        elif about_axis:
             reason = _("the formula needs whole turns about {axis} forward and backward", axis=axis)
-            refused = [r.plan.name for r in own if r.refusal or not r.done.complete]
+            refused = [r.plan.name for r in about_axis if r.refusal or not r.done.complete]
             reason += _("; not whole: {refused}", refused=", ".join(refused)) if refused else ""
             nothing = (np.zeros(2), np.zeros((2, 2)))
             estimates.add(method, names, *nothing, dict.fromkeys(names, reason))
 
 
 def add_turn_and_stop(estimates: Estimates, inputs: GyroInputs, scatter: float) -> None:
-    """S3's formulas, for plans that turn both ways and stop at positions in common."""
-    found = turn_and_stop(
+    """S3's formulas, for plans with rotations both ways and stops at common positions."""
+    result = turn_and_stop(
         inputs.turns, inputs.static_rates, inputs.earth, inputs.position_sigma, scatter
     )
-    if not found.pairs or found.by_turns is None:
+    if not result.pairs or result.by_turns is None:
         return
-    _add(estimates, "turn_and_stop", found.by_turns, _untold(found.by_turns))
-    if found.by_rests is not None:
+    _add_solution(estimates, "turn_and_stop", result.by_turns, _reasons(result.by_turns))
+    if result.by_rests is not None:
         bias = slice(NAMES.index(BIAS[0]), None)
-        values, covariance = found.by_rests.values[bias], found.by_rests.covariance[bias, bias]
-        missing = zip(BIAS, found.by_rests.determined[bias], strict=True)
-        why = {name: NOT_RECORDED.format(axis=name[-1]) for name, there in missing if not there}
-        estimates.add("stops", BIAS, values, covariance, why)
+        values, covariance = result.by_rests.values[bias], result.by_rests.covariance[bias, bias]
+        missing = zip(BIAS, result.by_rests.determined[bias], strict=True)
+        reasons = {
+            name: NOT_RECORDED.format(axis=name[-1])
+            for name, is_determined in missing
+            if not is_determined
+        }
+        estimates.add("stops", BIAS, values, covariance, reasons)
 
 
-def _untold(solution: Solution) -> dict[str, str]:
-    """Why S3's formulas leave a parameter open, by its name."""
-    why = {}
-    for name, there in zip(NAMES, solution.determined, strict=True):
-        if not there:
+def _reasons(solution: Solution) -> dict[str, str]:
+    """Why S3's formulas do not determine a parameter, by its name."""
+    reasons = {}
+    for name, is_determined in zip(NAMES, solution.determined, strict=True):
+        if not is_determined:
             words = NOT_RECORDED if name in BIAS else NO_TURNS
-            why[name] = words.format(axis=name[-1])
-    return why
+            reasons[name] = words.format(axis=name[-1])
+    return reasons
 
 
-def _add(estimates: Estimates, method: str, solution: Solution, why: dict[str, str]) -> None:
-    estimates.add(method, NAMES, errors_of(solution.values), solution.covariance, why)
+def _add_solution(
+    estimates: Estimates, method: str, solution: Solution, reasons: dict[str, str]
+) -> None:
+    estimates.add(method, NAMES, errors_of(solution.values), solution.covariance, reasons)

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 
 def at_rest(data: CampaignData, position: StaticPosition, time: float) -> Motion:
-    """A rest as one stretch of time, about its middle `time`, s."""
+    """A static position as one stretch of time, about its middle `time`, s."""
     m = position.manoeuvre
     set_position = position_of(m, data.heading)
     up, north = data.result.upright(m), data.result.north(set_position)
@@ -42,21 +42,21 @@ def at_rest(data: CampaignData, position: StaticPosition, time: float) -> Motion
 
 
 def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) -> Motion:
-    """A turn in the k blocks of its sums; the angle of each is what the gyros saw of it."""
+    """A rotation in the k blocks of its sums, with the angles that the gyros measured."""
     solution, set_position = data.result, position_of(m, data.heading)
     up, north = solution.upright(m), solution.north(set_position)
     gyro, site = solution.gyro, solution.site
     assert gyro is not None  # else nothing is simulated
-    angle = angles_seen(turn.sums, turn.seconds, m.axis, up, north, gyro, site, turn.turned)
+    angle = measured_angles(turn.sums, turn.seconds, m.axis, up, north, gyro, site, turn.turned)
     rate = angle / turn.seconds
-    # It rests before and after, so that the acceleration adds up to nothing.
+    # The table is at rest before and after, so that the acceleration integrates to zero.
     edges = np.concatenate([[0.0], (rate[1:] + rate[:-1]) / 2, [0.0]])
     acceleration = np.diff(edges) / turn.seconds
     blocks = turning(m.axis, up, north, turn.turned(angle), rate, acceleration, time, turn.seconds)
     return replace(blocks, surveyed=np.full(len(time), set_position.north is not None))
 
 
-def angles_seen(
+def measured_angles(
     sums: Array,
     seconds: Array,
     about: Array,
@@ -66,10 +66,10 @@ def angles_seen(
     site: Site,
     at_middle: Callable[[Array], Array],
 ) -> Array:
-    """The angle that the table turned in each stretch, by the gyros, (k,), rad.
+    """The angle of the table in each stretch as measured by the gyros, (k,), rad.
 
-    The earth's rate is taken out in the direction that the angle so far gives it; `at_middle`
-    makes of the angles of the stretches that of the table at the middle of each.
+    The earth's rate is subtracted in the direction that follows from the angle so far; `at_middle`
+    converts the angles of the stretches to that of the table at the middle of each.
     """
     inverse = np.linalg.inv(gyro.matrix)
     truth = (sums - np.outer(seconds, gyro.bias)) @ inverse.T
@@ -90,11 +90,11 @@ def in_samples(
     steady: NDArray[np.bool_],
     time: Array,
 ) -> tuple[Motion, str]:
-    """A turn from rest to rest, sample by sample, and how its profile was had.
+    """A rotation from rest to rest, sample by sample, and the origin of its profile.
 
-    A table with a stated rate and acceleration turns by a trapezoid of the rate, whose
-    middle in time is taken from the steady part of the gyros' angle. Else the angle is that
-    of the gyros, made the stated one as a whole.
+    With a stated rate and acceleration the rate is a trapezoid, whose middle in time is
+    estimated from the steady part of the gyros' angle. Otherwise the angle is that of the gyros,
+    scaled to the stated one.
 
     Parameters
     ----------
@@ -111,11 +111,11 @@ def in_samples(
     ends = step * np.cumsum(passed)
 
     def so_far(angle: Array) -> Array:
-        """The angle of the table at the end of each sample, what was lost at the mean rate."""
+        """The angle of the table at the end of each sample; lost samples at the mean rate."""
         rate = float(angle[steady].mean()) if steady.any() else 0.0
         return np.asarray(np.cumsum(angle + lost * rate))
 
-    seen = angles_seen(
+    measured = measured_angles(
         increments,
         step * counts,
         m.axis,
@@ -126,7 +126,7 @@ def in_samples(
         lambda angle: so_far(angle) - angle / 2,
     )
     if m.rate is not None and m.acceleration is not None and steady.any():
-        after = so_far(seen)
+        after = so_far(measured)
         middle = float(np.mean(ends[steady] - (after[steady] - m.angle / 2) / m.rate))
         profile = Profile(abs(m.angle), abs(m.rate), m.acceleration)
         sign, start = np.sign(m.angle), middle - profile.seconds / 2
@@ -134,7 +134,7 @@ def in_samples(
         (first, after), (rate, rate_after) = zip(*edges, strict=True)
         how = "trapezoid"
     else:
-        angles = np.append(0.0, np.cumsum(seen)) * (m.angle / float(seen.sum()))
+        angles = np.append(0.0, np.cumsum(measured)) * (m.angle / float(measured.sum()))
         rates = np.gradient(angles, step)
         first, after, rate, rate_after = angles[:-1], angles[1:], rates[:-1], rates[1:]
         how = _("as the gyros have it")
@@ -152,20 +152,20 @@ def in_samples(
 
 
 def _filled(values: Array) -> Array:
-    """Values (n, 3) with those that are NaN taken from a straight line between their neighbours."""
+    """Values (n, 3) with NaN interpolated linearly between their neighbours."""
     place = np.arange(len(values))
     known = np.isfinite(values)
     return np.column_stack(
         [
-            np.interp(place, place[there], column[there]) if there.any() else column
-            for column, there in zip(values.T, known.T, strict=True)
+            np.interp(place, place[finite], column[finite]) if finite.any() else column
+            for column, finite in zip(values.T, known.T, strict=True)
         ]
     )
 
 
 # --- The stretches of a campaign, with time, temperature and vibration ---
 
-MOVING, AFTER = 1 / 3, 2 / 3  # of a visit: the turn, and the rest behind it
+MOVING, AFTER = 1 / 3, 2 / 3  # of a visit: the rotation, and the static position after it
 MIN_UPRIGHT_COSINE = 1 - 1e-6  # cosine of an axis to the vertical
 
 
@@ -180,11 +180,11 @@ class CampaignMotions:
         self._at_rest: dict[tuple[str, float], Motion] = {}
 
     def at_rest(self, position: StaticPosition) -> Motion:
-        """A rest as one stretch."""
+        """A static position as one stretch."""
         name, time = position.manoeuvre.name, position.mean_of(position.time)
         time = time if self._data.shared_clock else np.nan
         later = AFTER if position.part.phase == "rest-after" else 0.0
-        place = (name, position.angle)  # all pieces of a rest stand alike
+        place = (name, position.angle)  # all pieces of a position have one attitude
         if place not in self._at_rest:
             self._at_rest[place] = at_rest(self._data, position, time)
         return replace(
@@ -197,14 +197,14 @@ class CampaignMotions:
             vibration=self._data.noise.of_samples(name, "rest", ACCEL)[None],
         )
 
-    def turning(self, one: Recorded, turn: RateSegment) -> Motion:
-        """A turn in its blocks; about an axis that is not upright gravity hides how it shakes."""
-        name = one.plan.name
-        blocks = one.blocks
+    def turning(self, rotation: Recorded, turn: RateSegment) -> Motion:
+        """A rotation in its blocks; its vibration is known only where the axis is vertical."""
+        name = rotation.plan.name
+        blocks = rotation.blocks
         time = blocks.time if self._data.shared_clock else np.full(len(blocks), np.nan)
-        motion = in_blocks(self._data, one.plan, turn, time)
+        motion = in_blocks(self._data, rotation.plan, turn, time)
         upright = abs(float(turn.position.up @ turn.about)) > MIN_UPRIGHT_COSINE
-        shaken = (
+        vibration = (
             self._data.noise.of_samples(name, "steady", ACCEL) if upright else np.full(3, np.nan)
         )
         return replace(
@@ -212,7 +212,7 @@ class CampaignMotions:
             visit=np.full(len(time), self._visits[name] + MOVING),
             position=np.full(len(time), self._places[name]),
             temperature=blocks.temperature,
-            vibration=np.tile(shaken, (len(time), 1)),
+            vibration=np.tile(vibration, (len(time), 1)),
         )
 
 
@@ -222,14 +222,14 @@ def positions_of(plan: Sequence[Manoeuvre]) -> list[str]:
 
 
 def mean_motion(motion: Motion, some: slice, share: Array) -> Motion:
-    """Some stretches as one; `share`: what each of them counts for."""
+    """The mean of some stretches; `share`: their weights."""
 
     def mean(values: Array) -> Array:
         return np.asarray([share @ values[some]])
 
     names = [field.name for field in fields(Motion) if field.name != "about"]
     means: dict[str, Any] = {name: mean(getattr(motion, name)) for name in names}
-    # The pull of a lever arm goes with the square of the rate, so its mean is the root of that.
+    # The acceleration at a lever arm is quadratic in the rate, so the rate is the rms.
     means["rate"] = np.sign(means["rate"]) * np.sqrt(mean(motion.rate**2))
     means["seconds"] = np.array([motion.seconds[some].sum()])
     means["surveyed"], means["position"] = motion.surveyed[some][:1], motion.position[some][:1]

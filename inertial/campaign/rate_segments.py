@@ -1,4 +1,4 @@
-"""The rate segments of a campaign as the equations of the gyros take them."""
+"""The rate segments of a campaign as inputs of the equations of the gyros."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 # the other errors of the angle are:
 #
 # - the mean rate while samples are missing differs from the recorded one: by the stated sigma of
-#   the table's rate, or by the variation that the data show, whichever is larger. It is the same
+#   the table's rate, or by the variation in the data, whichever is larger. It is the same
 #   for all gaps of a rotation, and does not average out;
 # - an oscillation of the case faster than a block appears in the scatter of samples only: the
 #   recorded part may end at any phase of it;
@@ -53,19 +53,19 @@ Array = NDArray[np.float64]
 
 
 def gaps_of(part: Blocks) -> list[Gap]:
-    """The gaps between the k blocks of a turn, interpolated from the blocks beside them."""
+    """The gaps between the k blocks of a turn, interpolated from the neighbouring blocks."""
     seconds, steady = part.seconds, part.steady
     gaps = []
     for i in np.flatnonzero(part.missing).tolist():
-        gone = float(part.missing[i])
+        lost = float(part.missing[i])
         shares = np.zeros(len(part))
         if steady[i - 1] and steady[i]:
-            shares[steady] = gone / seconds[steady].sum()
+            shares[steady] = lost / seconds[steady].sum()
         else:
-            # The straight line through the means of both blocks, at the middle of what is missing.
-            nearer = (seconds[i - 1] + gone) / (seconds[i - 1] + 2 * gone + seconds[i])
-            shares[i - 1 : i + 1] = gone * np.array([1 - nearer, nearer]) / seconds[i - 1 : i + 1]
-        gaps.append(Gap(i, gone, shares))
+            # The straight line through the means of both blocks, at the middle of the gap.
+            weight = (seconds[i - 1] + lost) / (seconds[i - 1] + 2 * lost + seconds[i])
+            shares[i - 1 : i + 1] = lost * np.array([1 - weight, weight]) / seconds[i - 1 : i + 1]
+        gaps.append(Gap(i, lost, shares))
     return gaps
 
 
@@ -91,37 +91,37 @@ def sigma_of(
     elapsed = np.cumsum(seconds + part.missing) - seconds / 2
     density = np.nan_to_num(noise.of(name, "steady", GYRO))
     oscillation = _oscillation(name, noise, about, float(seconds.sum() / part.counts.sum()))
-    # An oscillation slower than one period in a block shows in the blocks.
+    # An oscillation slower than one period in a block is visible in the blocks.
     longest = float(np.median(seconds)) / (2 * np.pi)
     variance = sum(2 * (oscillation * min(gap.seconds, longest)) ** 2 for gap in gaps)
 
-    level = [gap for gap in gaps if steady[gap.before - 1] and steady[gap.before]]
-    if level:
-        longer = max(level, key=lambda gap: gap.seconds)
-        strayed = rate_deviation(
+    steady_gaps = [gap for gap in gaps if steady[gap.before - 1] and steady[gap.before]]
+    if steady_gaps:
+        longest_gap = max(steady_gaps, key=lambda gap: gap.seconds)
+        deviation = rate_deviation(
             rate[steady],
             seconds[steady],
             elapsed[steady],
-            np.flatnonzero(steady) < longer.before,
-            longer.seconds,
+            np.flatnonzero(steady) < longest_gap.before,
+            longest_gap.seconds,
             float(np.linalg.norm(about * density)),
         )
         stated = rate_sigma * abs(float(np.average(rate[steady], weights=seconds[steady])))
-        variance += (max(strayed, stated) * sum(gap.seconds for gap in level)) ** 2
+        variance += (max(deviation, stated) * sum(gap.seconds for gap in steady_gaps)) ** 2
     change = np.abs(np.diff(rate)) / np.diff(elapsed)  # rad/s², from block to block
     for gap in gaps:
-        if not any(gap is other for other in level):
-            near = change[max(gap.before - 2, 0) : gap.before + 1].max()
-            apart = elapsed[gap.before] - elapsed[gap.before - 1]
-            variance += (near * apart / 4 * gap.seconds) ** 2
+        if not any(gap is other for other in steady_gaps):
+            largest = change[max(gap.before - 2, 0) : gap.before + 1].max()
+            interval = elapsed[gap.before] - elapsed[gap.before - 1]
+            variance += (largest * interval / 4 * gap.seconds) ** 2
     return float(np.sqrt(variance))
 
 
 def _oscillation(name: str, noise: NoiseLevels, about: Array, step: float) -> float:
     """Scatter of the samples of the steady part about the axis beyond white noise, rad/s."""
     white = noise.of(name, "steady", GYRO) ** 2 / step
-    beyond = np.maximum(np.nan_to_num(noise.of_samples(name, "steady", GYRO) ** 2 - white), 0.0)
-    return float(np.sqrt(about**2 @ beyond))
+    excess = np.maximum(np.nan_to_num(noise.of_samples(name, "steady", GYRO) ** 2 - white), 0.0)
+    return float(np.sqrt(about**2 @ excess))
 
 
 # --- The inputs of the equations of the gyros; rotations that cannot be used ---
@@ -131,7 +131,7 @@ TURNING = ("spin-up", "steady", "spin-down", "turning")
 
 @dataclass(frozen=True)
 class Recorded:
-    """A turn of the plan, what was recorded of it, its blocks in motion, and why it is refused."""
+    """A rotation of the plan, its record, its blocks in motion, and why it is refused."""
 
     plan: Manoeuvre
     done: Performed
@@ -140,13 +140,13 @@ class Recorded:
 
     @property
     def steady(self) -> Blocks:
-        """Its blocks at the steady rate."""
+        """The blocks at the steady rate."""
         return self.blocks.those(self.blocks.steady)
 
 
 @dataclass(frozen=True)
 class GyroInputs:
-    """All that a campaign gives the equations of the gyros, of one mount."""
+    """The inputs of the equations of the gyros, of one mount."""
 
     static_positions: list[StaticPosition]
     recorded: list[Recorded]
@@ -160,27 +160,27 @@ class GyroInputs:
     @property
     def usable(self) -> list[Recorded]:
         """The turns that are not refused."""
-        return [one for one in self.recorded if not one.refusal]
+        return [rotation for rotation in self.recorded if not rotation.refusal]
 
     @property
     def used(self) -> list[Part]:
         """The manoeuvres of the equations."""
         return [s.part for s in self.static_positions] + [
-            Part(one.plan.name) for one in self.usable
+            Part(rotation.plan.name) for rotation in self.usable
         ]
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is neither a rest nor a turn."""
+        """Whether there is neither a static position nor a rotation."""
         return not (self.static_positions or self.turns or self.steady_rates)
 
     @cached_property
     def static_rates(self) -> list[StaticRate]:
-        """The rests as the equations have them."""
+        """The static positions as observations of the equations."""
         return self.first_static_rates(np.inf)
 
     def first_static_rates(self, seconds: float) -> list[StaticRate]:
-        """The same of the first seconds of each."""
+        """The same from the first `seconds` of each."""
         return [
             static_rate_of(position, self.heading, seconds) for position in self.static_positions
         ]
@@ -190,7 +190,7 @@ def gyro_inputs(data: "CampaignData") -> GyroInputs:
     """Gather the static positions and rate segments of one mount."""
     positions, left_out = data.gyro_positions
     recorded = list(_recorded_turns(data))
-    usable = [one for one in recorded if not one.refusal]
+    usable = [rotation for rotation in recorded if not rotation.refusal]
     given = (data.noise, data.heading, data.rate_sigma)
     shared = data.shared_clock
     return GyroInputs(
@@ -246,7 +246,7 @@ def refusal_of(m: Manoeuvre, done: Performed, part: Blocks) -> str:
 def position_of(m: Manoeuvre, heading: float | None) -> Position:
     """The set position of a manoeuvre; north is known where mark and heading are."""
     up = m.up
-    assert up is not None  # else it is refused
+    assert up is not None  # otherwise refused
     if m.mark is None:
         return Position(m.position, up)
     mark = m.mark - up * (up @ m.mark)
@@ -258,7 +258,7 @@ def position_of(m: Manoeuvre, heading: float | None) -> Position:
 
 
 def static_rate_of(position: StaticPosition, heading: float | None, seconds: float) -> StaticRate:
-    """A rest, or its first seconds."""
+    """The observation of a static position, or of its first `seconds`."""
     set_position = position_of(position.manoeuvre, heading)
     mean, sigma = position.over(seconds)
     stretch = position.during(seconds)
@@ -266,15 +266,15 @@ def static_rate_of(position: StaticPosition, heading: float | None, seconds: flo
 
 
 def rate_segment_of(
-    one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float
+    rotation: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float
 ) -> RateSegment:
     """A turn from rest to rest with its blocks in motion; gaps are interpolated.
 
     `rate_sigma`: relative, of the table's rate.
     """
-    m, part = one.plan, one.blocks
+    m, part = rotation.plan, rotation.blocks
     missing = gaps_of(part)
-    assert m.angle is not None and m.angle_sigma is not None  # else it is refused
+    assert m.angle is not None and m.angle_sigma is not None  # otherwise refused
     return RateSegment(
         position=position_of(m, heading),
         about=m.axis,
@@ -292,10 +292,10 @@ def rate_segment_of(
 
 
 def steady_rate_of(
-    one: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float
+    rotation: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float
 ) -> SteadyRate:
-    m, part = one.plan, one.steady
-    assert m.rate is not None  # the plan wants a rate of such a turn
+    m, part = rotation.plan, rotation.steady
+    assert m.rate is not None  # the plan requires a rate of such a turn
     ends = np.cumsum(part.seconds + part.missing) - part.missing[0]
     return SteadyRate(
         position=position_of(m, heading),
@@ -310,7 +310,7 @@ def steady_rate_of(
 
 
 def angles_about(data: "CampaignData", i: int) -> list[tuple[str, WholeTurn]]:
-    """The complete turns about body axis i while it is vertical, by their own gyro, with names."""
+    """The complete rotations about body axis i while it is vertical, by its gyro, with names."""
     usable = data.gyro_inputs.usable
     recorded = [r for r in usable if r.plan.recorded == "whole" and r.done.complete]
     whole = [r for r in recorded if _upright(r.plan, i)]
@@ -324,8 +324,8 @@ def _upright(m: Manoeuvre, i: int) -> bool:
     return up and abs(float(m.axis[i])) > 1 - 1e-9
 
 
-def _angle(one: Recorded, i: int, noise: NoiseLevels) -> WholeTurn:
-    m, part = one.plan, one.blocks
+def _angle(rotation: Recorded, i: int, noise: NoiseLevels) -> WholeTurn:
+    m, part = rotation.plan, rotation.blocks
     assert m.up is not None and m.angle is not None and m.angle_sigma is not None  # else refused
     return WholeTurn(
         summed=float((part.gyro[:, i] * part.seconds).sum()),

@@ -47,11 +47,11 @@ class Blocks:
 
     @property
     def steady(self) -> Truths:
-        """Which of them are at the steady rate, (k,)."""
+        """The blocks at the steady rate, (k,)."""
         return np.asarray(self.phase == "steady", bool)
 
     def those(self, which: NDArray[Any]) -> "Blocks":
-        """Some of them, by number or truth value; the readings of a channel stay side by side."""
+        """Some of the blocks, by number or mask; the readings of a channel stay contiguous."""
         return Blocks(*(getattr(self, field.name).T[..., which].T for field in fields(self)))
 
 
@@ -60,9 +60,9 @@ NO_BLOCKS = Blocks(*(np.empty(0) for _ in range(7)), *(np.empty((0, 3)) for _ in
 
 def by_manoeuvre(table: pd.DataFrame) -> dict[str, Blocks]:
     """The blocks of each manoeuvre, by its name."""
-    every = _blocks(table)
+    all_blocks = _blocks(table)
     rows = table.groupby("manoeuvre").indices
-    return {str(name): every.those(np.asarray(some)) for name, some in rows.items()}
+    return {str(name): all_blocks.those(np.asarray(indices)) for name, indices in rows.items()}
 
 
 def _blocks(table: pd.DataFrame) -> Blocks:
@@ -87,7 +87,7 @@ BLOCK_COLUMNS = ("count", "seconds", "time", "temperature")
 
 @dataclass(frozen=True)
 class StaticPosition:
-    """One stretch at rest in k blocks.
+    """A static position in k blocks.
 
     `part`: of the plan; `up`, `about`: (3,), body axes at the start of its manoeuvre; `angle`: rad,
     by which it has turned about `about` since; `means`: (k, 3), rad/s or m/s², NaN where not
@@ -119,18 +119,18 @@ class StaticPosition:
         return turned(self.up, self.about, self.angle)
 
     def over(self, seconds: float = np.inf) -> tuple[Array, Array]:
-        """Mean reading over the first so many seconds, and the sigma that white noise leaves."""
+        """Mean reading over the first `seconds`, and its sigma from white noise."""
         count = int(np.searchsorted(self._starts, seconds))
         with np.errstate(invalid="ignore", divide="ignore"):  # a channel that is not recorded
-            summed, samples, lasted = self._so_far[:, count - 1]
-            return summed / samples, self.density / np.sqrt(lasted)
+            summed, samples, duration = self._so_far[:, count - 1]
+            return summed / samples, self.density / np.sqrt(duration)
 
     def mean_of(self, values: Array) -> float:
-        """The mean of something over all samples, from its means in the blocks, (k,)."""
+        """The mean of a quantity over all samples, from its means in the blocks, (k,)."""
         return float(np.average(values, weights=self.counts))
 
     def pieces(self, seconds: float) -> list["StaticPosition"]:
-        """The same in pieces of about so many seconds, each a stretch of its own."""
+        """The position divided into pieces of about this duration, each with its own stretch."""
         count = max(round(float(self.seconds.sum()) / seconds), 1)
         edges = np.linspace(0, len(self.seconds), min(count, len(self.seconds)) + 1).round()
         return [
@@ -138,42 +138,42 @@ class StaticPosition:
             for number, (first, after) in enumerate(pairwise(edges))
         ]
 
-    def _piece(self, some: slice, number: int) -> "StaticPosition":
-        start, end = _ends(self.time[some], self.seconds[some])
+    def _piece(self, indices: slice, number: int) -> "StaticPosition":
+        start, end = _ends(self.time[indices], self.seconds[indices])
         stretch = Stretch(f"{self.label} {number}", self.stretch.clock, start, end - start)
-        each = {name: getattr(self, name)[some] for name in PER_BLOCK}
-        return replace(self, stretch=stretch, **each)
+        columns = {name: getattr(self, name)[indices] for name in PER_BLOCK}
+        return replace(self, stretch=stretch, **columns)
 
     def during(self, seconds: float = np.inf) -> Stretch:
-        """The stretch of time of the first so many seconds."""
+        """The stretch of time of the first `seconds`."""
         return replace(self.stretch, seconds=min(self.stretch.seconds, seconds))
 
     @cached_property
     def _starts(self) -> Array:
-        """When each block starts, were there no pauses, (k,), s."""
+        """Start of each block without the pauses, (k,), s."""
         return np.cumsum(self.seconds) - self.seconds
 
     @cached_property
     def _so_far(self) -> Array:
         """Sums of readings, samples and seconds to the end of each block, (3, k, 3)."""
-        there = np.isfinite(self.means)
-        samples, lasted = there * self.counts[:, None], there * self.seconds[:, None]
-        return np.cumsum([samples * np.nan_to_num(self.means), samples, lasted], axis=1)
+        recorded = np.isfinite(self.means)
+        samples, duration = recorded * self.counts[:, None], recorded * self.seconds[:, None]
+        return np.cumsum([samples * np.nan_to_num(self.means), samples, duration], axis=1)
 
 
 def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosition], list[Part]]:
     """The static positions of known attitude, and those left out with the reason.
 
-    After a turn the IMU stands where the turn has brought it, so that stretch counts
-    where the turn was recorded from rest to rest. `sensor` is accel or gyro.
+    The attitude after a rotation is known where the rotation was recorded from rest to rest.
+    `sensor` is accel or gyro.
     """
     blocks, performed = data.blocks, data.performed
     positions: list[StaticPosition] = []
     left_out: list[Part] = []
     channels = [f"{sensor}_{axis}" for axis in AXES]
     at_rest = blocks[blocks["phase"].isin(STATIC_PHASES) & (blocks["count"] > 0)]
-    read = at_rest[channels].to_numpy(np.float64)
-    each = {name: at_rest[name].to_numpy(np.float64) for name in BLOCK_COLUMNS}
+    readings = at_rest[channels].to_numpy(np.float64)
+    columns = {name: at_rest[name].to_numpy(np.float64) for name in BLOCK_COLUMNS}
     logs = at_rest["log"].to_numpy()
     rows = at_rest.groupby(["manoeuvre", "phase"]).indices
     for m in data.plan:
@@ -182,10 +182,10 @@ def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosi
         if m.do == "rest" and not performed[m.name].found:
             left_out.append(Part(m.name, None, _("not found in its log")))
         for phase in ("rest", "rest-before", "rest-after"):
-            own = rows.get((m.name, phase))
-            if own is None or np.isnan(read[own]).all():
+            indices = rows.get((m.name, phase))
+            if indices is None or np.isnan(readings[indices]).all():
                 continue
-            count, seconds, time, temperature = (each[name][own] for name in BLOCK_COLUMNS)
+            count, seconds, time, temperature = (columns[name][indices] for name in BLOCK_COLUMNS)
             density = data.noise.of(m.name, "rest", channels)
             after, whole = phase == "rest-after", performed[m.name].complete
             part = Part(m.name, phase)
@@ -203,13 +203,15 @@ def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosi
                         m.up,
                         m.up if m.about is None else m.about,
                         (m.angle or 0.0) if after else 0.0,
-                        read[own],
+                        readings[indices],
                         count,
                         seconds,
                         time,
                         temperature,
                         density,
-                        _stretch(part.label, str(logs[own[0]]), time, seconds, data.shared_clock),
+                        _stretch(
+                            part.label, str(logs[indices[0]]), time, seconds, data.shared_clock
+                        ),
                     )
                 )
     return positions, left_out
@@ -226,13 +228,13 @@ def _stretch(name: str, log: str, time: Array, seconds: Array, shared_clock: boo
 
 
 def _ends(time: Array, seconds: Array) -> tuple[float, float]:
-    """When some blocks begin and end, from their middles, s."""
+    """Start and end of consecutive blocks, from their middles, s."""
     return float(time[0] - seconds[0] / 2), float(time[-1] + seconds[-1] / 2)
 
 
-def averaging_times(found: list[StaticPosition], steps: int) -> list[float]:
-    """Lengths of rest from one block to the longest, in equal ratios, s."""
-    lengths = [position.seconds for position in found if position.manoeuvre.do == "rest"]
+def averaging_times(positions: list[StaticPosition], steps: int) -> list[float]:
+    """Averaging times from a block to the longest static position, in equal ratios, s."""
+    lengths = [position.seconds for position in positions if position.manoeuvre.do == "rest"]
     if not lengths:
         return []
     shortest = max(float(seconds.max()) for seconds in lengths)

@@ -1,4 +1,4 @@
-"""The steady parts of turns at full rate: what the gyros have left, and the angle of the table."""
+"""The steady parts of rotations, sample by sample: gyro residuals, and the angle of the table."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -35,9 +35,9 @@ class SteadyTurn:
     matrix : (3, 3), M of the gyros
     truth : (n, 3), rad/s, residuals of the rates about the axes of the case
     angle : (n,), rad, signed, that the table has turned since its start; NaN where the table has
-        no stated rate, for then the gyros themselves tell it, and their residuals hold no ripple
+        no stated rate, for then it follows from the gyros, and their residuals have no ripple
     averaged : whether a sample is the mean of the rate over its interval, an increment
-    tilted : whether gravity goes round in the case
+    tilted : whether gravity rotates in the case
     """
 
     name: str
@@ -57,17 +57,17 @@ class SteadyTurn:
 
     @property
     def seconds(self) -> float:
-        """How long it is, s."""
+        """Duration, s."""
         return self.step * len(self.truth)
 
     def hertz(self, order: float) -> float:
-        """The frequency of so many periods in a turn of the table."""
+        """The frequency of `order` periods per revolution of the table."""
         return order * abs(self.rate) / (2 * np.pi)
 
     def observes(self, direction: Array) -> bool:
-        """Whether its residuals about an axis of the case, a unit vector, hold what rings there.
+        """Whether its residuals about an axis of the case, a unit vector, contain an oscillation.
 
-        About the table's own they do not where the gyros themselves tell its angle.
+        About the axis of the table they do not where its angle follows from the gyros.
         """
         return bool(np.isfinite(self.rate) or abs(direction @ self.about) < MAX_ACROSS_COSINE)
 
@@ -94,7 +94,7 @@ class SteadyTurn:
         )
 
     def whole(self, line: Line) -> Line:
-        """A line of the rate, the averaging over a sample undone: that lessens it by sinc(fT)."""
+        """A line of the rate, corrected for the averaging over a sample, sinc(fT)."""
         share = float(np.sinc(line.frequency * self.step)) if self.averaged else 1.0
         return Line(
             line.frequency,
@@ -112,7 +112,7 @@ def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
         return []
     planned = {m.name: m for m in data.plan if m.do == "turn"}
     inverse = np.linalg.inv(gyro.matrix)
-    found = []
+    steady_parts = []
     for name, rows in by_turn(simulated, ["time", *GYRO, *RESIDUALS]):
         steady = (rows["phase"] == "steady").to_numpy()
         if name not in planned or not steady.any():
@@ -129,7 +129,7 @@ def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
         if len(truth) < MIN_SAMPLES or not np.isfinite(truth).all():
             continue
         tilted = m.up is None or abs(float(m.up @ m.axis)) < MIN_UPRIGHT_COSINE
-        found.append(
+        steady_parts.append(
             SteadyTurn(
                 name,
                 m.axis,
@@ -142,14 +142,14 @@ def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
                 float(further[0, 1]),
             )
         )
-    return found
+    return steady_parts
 
 
 def _angle(rows: pd.DataFrame, rate: Array, step: float) -> Array:
     """The table's angle at the middle of each sample since the turn began, (n,), rad.
 
-    `rate`: (n,), rad/s, about the axis, as it was simulated: with the earth's, which is what is
-    there at rest. Where samples were lost the table went on at the rate of those after.
+    `rate`: (n,), rad/s, about the axis, as simulated: with the earth's, which remains at
+    rest. Over lost samples the table moves at the rate of those after.
     """
     quiet = rows["phase"].isin(RESTS).to_numpy()
     turning = rate - (np.median(rate[quiet]) if quiet.any() else 0.0)
@@ -188,8 +188,8 @@ def by_turn(simulated: Stream, columns: list[str]) -> Iterator[tuple[str, pd.Dat
 def unbroken(rows: Array) -> tuple[Array, Array]:
     """The longest stretch without a gap; rows (n, 4 + c) of time, residuals, further columns.
 
-    Returns the residuals, (m, 3), and the further columns, (m, c). A few samples that are missing
-    or masked break none: they hold nothing but noise, so nothing; the further columns go on.
+    Returns the residuals, (m, 3), and the further columns, (m, c). A few missing or masked
+    samples do not end it: their residuals are zero, the further columns interpolated.
     """
     rows = rows[~np.isnan(rows[:, 1:4]).all(axis=1)]
     if len(rows) < 2 or np.isnan(rows[:, 0]).any():

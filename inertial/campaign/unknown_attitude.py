@@ -1,7 +1,7 @@
-"""The accelerometers from rests of unknown attitude: blocks as inference takes them, and rows.
+"""The accelerometers from static positions of unknown attitude, as rows of the tables.
 
-The method is `free_positions`, beside the others of the stage. Rests whose attitude is known are
-used as well, but not their attitude, so the table has no part in the result.
+The method `free_positions` also uses positions of known attitude, but not their attitude, so its
+result does not depend on the table.
 """
 
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ from inertial.text.messages import _
 Array = NDArray[np.float64]
 
 METHOD = "free_positions"
-SCATTER_RANGE = (1e-7, 1.0)  # m/s²: how much rests may differ beyond the noise
+SCATTER_RANGE = (1e-7, 1.0)  # m/s², scatter between static positions beyond the noise
 UNKNOWN = np.full(3, np.nan)  # an attitude
 MOUNTING_UNDETERMINED = _(
     "a rotation of the triad against the case changes no length, so |f| = g cannot "
@@ -47,7 +47,7 @@ MOUNTING_UNDETERMINED = _(
 
 @dataclass(frozen=True)
 class FreeStaticPosition:
-    """A stretch at rest, whatever its attitude: both sensors, and its records [first, after)."""
+    """A static position of any attitude: both sensors, and its records [first, after)."""
 
     force: StaticPosition
     rate: StaticPosition
@@ -62,118 +62,120 @@ class FreeStaticPosition:
 
     @property
     def rest(self) -> FreeRest:
-        """As `free_positions` takes it."""
+        """The input of `free_positions`."""
         return FreeRest(self.label, *self.force.over())
 
 
 def free_static_positions(data: CampaignData) -> tuple[list[FreeStaticPosition], list[Part]]:
-    """All stretches at rest of one mount in the order of the logs; those left out, with reasons.
+    """All static positions of one mount in the order of the logs; those left out, with reasons.
 
-    None at all where the plan knows every attitude: there the other methods serve.
+    None where the plan states every attitude: there the other methods apply.
     """
     blocks, plan = data.blocks, data.plan
     if all(m.up is not None for m in plan if m.do != "turn"):
         return [], []
-    found: list[FreeStaticPosition] = []
+    positions: list[FreeStaticPosition] = []
     left_out: list[Part] = []
-    named = {m.name: m for m in plan}
+    by_name = {m.name: m for m in plan}
     at_rest = blocks[blocks["phase"].isin(STATIC_PHASES) & (blocks["count"] > 0)]
     at_rest = at_rest.sort_values(["log", "from_record"])
-    for (key, phase), part in at_rest.groupby(["manoeuvre", "phase"], sort=False):
+    for (key, phase), rows in at_rest.groupby(["manoeuvre", "phase"], sort=False):
         name = str(key)
-        m = named.get(name) or named.get(name.rpartition("-")[0])  # rests that are found have -01
+        m = by_name.get(name) or by_name.get(name.rpartition("-")[0])  # detected rests have -01
         if m is None:
             continue
-        own = Part(name, str(phase))
-        force, rate = (_still(own, m, part, data.noise, each) for each in (ACCEL, GYRO))
+        part = Part(name, str(phase))
+        force, rate = (_static_position(part, m, rows, data.noise, each) for each in (ACCEL, GYRO))
         recorded = np.isfinite(force.means).any(axis=0)
-        first, after = int(part["from_record"].min()), int(part["to_record"].max())
+        first, after = int(rows["from_record"].min()), int(rows["to_record"].max())
         if not recorded.all():
-            lacking = " and ".join(np.array(AXES)[~recorded])
-            left_out.append(replace(own, reason=f"|f| = g needs {lacking} too"))
+            missing = " and ".join(np.array(AXES)[~recorded])
+            left_out.append(replace(part, reason=f"|f| = g needs {missing} too"))
         elif not np.isfinite(force.over()).all():
-            left_out.append(replace(own, reason=NO_NOISE))
+            left_out.append(replace(part, reason=NO_NOISE))
         else:
-            found.append(FreeStaticPosition(force, rate, str(part["log"].iloc[0]), first, after))
-    return found, left_out
+            positions.append(
+                FreeStaticPosition(force, rate, str(rows["log"].iloc[0]), first, after)
+            )
+    return positions, left_out
 
 
-def _still(
-    own: Part,
+def _static_position(
+    part: Part,
     m: Manoeuvre,
-    part: pd.DataFrame,
+    rows: pd.DataFrame,
     noise: NoiseLevels,
     channels: list[str],
 ) -> StaticPosition:
     return StaticPosition(
-        own,
+        part,
         m,
         UNKNOWN,
         UNKNOWN,
         0.0,
-        part[channels].to_numpy(np.float64),
-        part["count"].to_numpy(np.float64),
-        part["seconds"].to_numpy(np.float64),
-        part["time"].to_numpy(np.float64),
-        part["temperature"].to_numpy(np.float64),
-        noise.of(own.manoeuvre, "rest", channels),
+        rows[channels].to_numpy(np.float64),
+        rows["count"].to_numpy(np.float64),
+        rows["seconds"].to_numpy(np.float64),
+        rows["time"].to_numpy(np.float64),
+        rows["temperature"].to_numpy(np.float64),
+        noise.of(part.manoeuvre, "rest", channels),
     )
 
 
-def fitted_to(data: CampaignData, found: Sequence[FreeStaticPosition]) -> ScatterFit:
-    """P and bias of the accelerometers, with a scatter between rests where noise cannot explain."""
-    gravity, rests = data.gravity, [one.rest for one in found]
+def fitted_to(data: CampaignData, positions: Sequence[FreeStaticPosition]) -> ScatterFit:
+    """P and bias of the accelerometers, with a scatter between positions beyond the noise."""
+    gravity, rests = data.gravity, [position.rest for position in positions]
     fit = partial(free_positions, rests, gravity.number, gravity.scatter)
     return with_scatter(fit, between=SCATTER_RANGE, noise_degrees=data.noise.degrees)
 
 
 def add_free_accelerometers(estimates: Estimates, data: CampaignData) -> None:
-    """The method's rows; none where the plan knows every attitude."""
-    found, left_out = free_static_positions(data)
-    if found:
-        fitted = fitted_to(data, found)
+    """The rows of the method; none where the plan states every attitude."""
+    positions, left_out = free_static_positions(data)
+    if positions:
+        fitted = fitted_to(data, positions)
         add_symmetric(estimates, METHOD, fitted.estimate)
-        estimates.add_fit(METHOD, fitted, [one.force.part for one in found], left_out)
+        estimates.add_fit(METHOD, fitted, [position.force.part for position in positions], left_out)
     elif left_out:
         estimates.add_nothing(METHOD, omissions(left_out))
 
 
 def add_symmetric(estimates: Estimates, method: str, estimate: Estimate) -> None:
-    """P and bias, also as the twelve unknowns with M = P, and why what is not told is not."""
-    told = {name: name for name in NAMES}
-    told |= {f"scale_{axis}": f"symmetric_{axis}{axis}" for axis in AXES}
-    told |= {name: "symmetric_" + "".join(sorted(name[-2:])) for name in CROSS}
+    """P and bias, also as the twelve unknowns with M = P, and why some are not determined."""
+    parameters = {name: name for name in NAMES}
+    parameters |= {f"scale_{axis}": f"symmetric_{axis}{axis}" for axis in AXES}
+    parameters |= {name: "symmetric_" + "".join(sorted(name[-2:])) for name in CROSS}
     names = (*LINEAR, *MOUNTING, *SYMMETRIC)
     unit = dict(zip(NAMES, np.eye(FREE), strict=True))
-    jacobian = np.array([unit[told[n]] if n in told else np.zeros(FREE) for n in names])
+    jacobian = np.array([unit[parameters[n]] if n in parameters else np.zeros(FREE) for n in names])
     values = jacobian @ (estimate.values[:FREE] - PRIOR)  # P − I
-    why = dict.fromkeys(MOUNTING, MOUNTING_UNDETERMINED)
-    lacks = unobservable(estimate)
-    for name, own in told.items():
-        i = NAMES.index(own)
+    reasons = dict.fromkeys(MOUNTING, MOUNTING_UNDETERMINED)
+    unobservable_directions = unobservable(estimate)
+    for name, parameter in parameters.items():
+        i = NAMES.index(parameter)
         if not estimate.determined[i]:
-            why[name] = in_words(max(lacks, key=partial(_share, i)))
+            reasons[name] = in_words(max(unobservable_directions, key=partial(_share, i)))
     estimates.add(
-        method, names, values, jacobian @ estimate.covariance[:FREE, :FREE] @ jacobian.T, why
+        method, names, values, jacobian @ estimate.covariance[:FREE, :FREE] @ jacobian.T, reasons
     )
 
 
-def _share(i: int, one: Unobservable) -> float:
-    return abs(float(one.along[i]))
+def _share(i: int, direction: Unobservable) -> float:
+    return abs(float(direction.along[i]))
 
 
-def in_words(one: Unobservable) -> str:
-    """What the rests do not tell, and the rest that would."""
-    cure = _("add one with {up}", up=_attitude(one.up))
-    if len(one.names) > 1:
-        *most, last = map(_called, one.names)
+def in_words(direction: Unobservable) -> str:
+    """The parameters that the rests do not determine, and the rest that would."""
+    cure = _("add one with {up}", up=_attitude_name(direction.up))
+    if len(direction.names) > 1:
+        *most, last = map(_parameter_name, direction.names)
         return _(
             "the rests do not tell {most} from {last}: {cure}",
             most=", ".join(most),
             last=last,
             cure=cure,
         )
-    axes = PARTS[one.names[0]].axes
+    axes = PARTS[direction.names[0]].axes
     if len(set(axes)) == 2:
         both = _("both {axes} and {axes_2}", axes=axes[0], axes_2=axes[1])
         return _(
@@ -185,7 +187,7 @@ def in_words(one: Unobservable) -> str:
     return _("too few rests have {axes} up or down: add {both}", axes=axes[0], both=both)
 
 
-def _called(name: str) -> str:
+def _parameter_name(name: str) -> str:
     kind, axes = PARTS[name]
     if kind == "bias":
         return _("the bias of {axes}", axes=axes)
@@ -194,7 +196,7 @@ def _called(name: str) -> str:
     return _("the angle between {axes} and {axes_2}", axes=axes[0], axes_2=axes[1])
 
 
-def _attitude(up: Array) -> str:
+def _attitude_name(up: Array) -> str:
     """An attitude by the axes that point up: +1, or −1 for the one that points down."""
     signs = dict(zip(AXES, up.tolist(), strict=True))
     axes = [f"{'+' if sign > 0 else '-'}{axis}" for axis, sign in signs.items() if sign]

@@ -1,4 +1,4 @@
-"""A position that does not fit the others, as a finding that names the terms it spoils."""
+"""A static position inconsistent with the others, as a finding with the affected parameters."""
 
 from collections.abc import Iterator
 from math import degrees
@@ -31,8 +31,8 @@ def findings(off: OffPosition, sigma: Array, mount: str) -> Iterator[Finding]:
     cause, several = "table_position_error", len(off.positions) > 1
     names = " or ".join(off.positions)
     axis = int(np.argmax(np.abs(off.about)))
-    spoilt = [
-        _moved(name, float(off.moved[i]))
+    affected = [
+        _change(name, float(off.moved[i]))
         for i, name in enumerate(NAMES)
         if abs(off.moved[i]) > MIN_NOTABLE_SIGMA * sigma[i]
     ]
@@ -48,32 +48,32 @@ def findings(off: OffPosition, sigma: Array, mount: str) -> Iterator[Finding]:
         p_value=off.p_value,
         severity=2,
         sentence=_(
-            "The position {names} stands off by {size} ± {fixed}°, mostly about {axes}, "
-            "against all others.",
+            "The position {names} deviates by {size} ± {fixed}°, mostly about {axes}, "
+            "from all others.",
             names=names,
             size=size,
             fixed=fixed(degrees(off.sigma), 4),
             axes=AXES[axis],
         )
-        + (_(" The readings do not tell which of these it is.") if several else "")
+        + (_(" The readings do not distinguish which of these it is.") if several else "")
         + _(
-            " Or the accelerometers have an error that the twelve parameters lack: "
-            "criticism weighs the two."
+            " Or the accelerometers have an error outside the twelve parameters: "
+            "criticism compares the two."
         ),
         consequence=(
             _(
-                "With it left free, {spoilt}. The joint estimate holds it as a scatter between "
-                "positions.",
-                spoilt="; ".join(spoilt),
+                "With its attitude estimated, {affected}. The joint estimate models it as "
+                "scatter between positions.",
+                affected="; ".join(affected),
             )
-            if spoilt
+            if affected
             else _("No parameter moves by more than its sigma.")
         ),
         action=_("Set this position again and record it; or state position_sigma_arcsec as it is."),
     )
 
 
-def _moved(name: str, by: float) -> str:
+def _change(name: str, by: float) -> str:
     parts = PARTS[name]
     kind = parts.kind
     words = WORDS[kind].format(row=parts.sensor_axis, column=parts.input_axis)

@@ -22,7 +22,7 @@ from inertial.tables import ACCEL, AXES, STATIC_PHASES
 
 Array = NDArray[np.float64]
 
-LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU stands farther off
+LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU is mounted farther off
 MAX_TURN_IN_MEAN = np.radians(5)  # by how much the vertical may turn in the case within one mean
 
 
@@ -34,7 +34,7 @@ def turning_rests(data: CampaignData) -> list[tuple[Part, StaticForce]]:
     blocks, performed = data.blocks, data.performed
     moving = by_manoeuvre(blocks[~blocks["phase"].isin(STATIC_PHASES)])
     quiet = by_manoeuvre(blocks[blocks["phase"].isin(["rest-before", "rest-after"])])
-    found: list[tuple[Part, StaticForce]] = []
+    forces: list[tuple[Part, StaticForce]] = []
     for m in data.plan:
         if m.do != "turn" or m.recorded != "whole" or m.name not in moving:
             continue
@@ -43,17 +43,17 @@ def turning_rests(data: CampaignData) -> list[tuple[Part, StaticForce]]:
         if usable and m.name in quiet and bool(part.steady.any()):
             density = data.noise.of(m.name, "steady", ACCEL)
             stretch = stretch_of(m.name, part.those(part.steady), data.shared_clock)
-            found += [
+            forces += [
                 (Part(m.name, "steady"), replace(rest, stretch=stretch))
                 for rest in _steady(m, part, quiet[m.name], density)
             ]
-    return found
+    return forces
 
 
 def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[StaticForce]:
-    """The blocks of the steady part, as many in one mean as see the same attitude."""
+    """Means of blocks of the steady part, over which the attitude is nearly constant."""
     assert m.up is not None and m.angle is not None  # else the turn is refused
-    read, seconds = part.accel, part.seconds
+    readings, seconds = part.accel, part.seconds
     angle = _angles(m, part, quiet)
     steady = np.flatnonzero(part.steady)
     middle = np.cumsum(angle) - angle / 2
@@ -63,16 +63,16 @@ def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[S
     turns = abs(float(angle[steady].sum())) * float(level)
     pieces = np.array_split(steady, max(1, int(np.ceil(turns / MAX_TURN_IN_MEAN))))
     rests = []
-    for some in (piece for piece in pieces if len(piece)):
-        share = seconds[some] / seconds[some].sum()
-        square = float(share @ rate[some] ** 2)
+    for indices in (piece for piece in pieces if len(piece)):
+        share = seconds[indices] / seconds[indices].sum()
+        square = float(share @ rate[indices] ** 2)
         pull = square * (np.outer(m.axis, m.axis) - np.eye(3))  # ω × (ω × r) of r
         rests.append(
             StaticForce(
                 m.position,
-                share @ ups[some],
-                share @ read[some],
-                density / np.sqrt(seconds[some].sum()),
+                share @ ups[indices],
+                share @ readings[indices],
+                density / np.sqrt(seconds[indices].sum()),
                 sensitivities=Sensitivities(tuple(LEVER_ARM), pull),
             )
         )
@@ -80,7 +80,7 @@ def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[S
 
 
 def _angles(m: Manoeuvre, part: Blocks, quiet: Blocks) -> Array:
-    """The angle of each block, (k,), rad: as the gyros along the axis share out the known whole."""
+    """The angle of each block, (k,), rad: the known whole in proportion to the gyro readings."""
     assert m.angle is not None  # else the turn is refused
     along = np.nan_to_num(part.gyro) @ m.axis
     offset = float(np.nan_to_num(quiet.gyro @ m.axis).mean())

@@ -30,8 +30,8 @@ def add_six_positions(
 ) -> None:
     """S0's formula from the rests of the plan; where they do not span it, S1's from pairs.
 
-    `scatter`: m/s², between rests; `wanted`: m/s², sigma of a bias for which the length of the
-    rests is reckoned.
+    `scatter`: m/s², between rests; `wanted`: m/s², required sigma of a bias, from which the
+    length of the rests follows.
     """
     rests = [rest for _, rest in planned]
     solved = six_position_formula(rests, *about, scatter) if rests else None
@@ -55,15 +55,15 @@ def _add_up_and_down(
     scatter: float,
 ) -> None:
     for i, axis in enumerate(AXES):
-        own = [
+        readings = [
             Upright(float(rest.up[i]), float(rest.mean[i]), float(np.hypot(rest.sigma[i], scatter)))
             for rest in rests
             if abs(rest.up[i]) > 1 - 1e-9 and np.isfinite(rest.mean[i] * rest.sigma[i])
         ]
-        found = up_and_down(own, *about)
-        if found is not None:
-            values = np.array([found.bias, found.scale])
-            sigmas = np.array([found.bias_sigma, found.scale_sigma])
+        result = up_and_down(readings, *about)
+        if result is not None:
+            values = np.array([result.bias, result.scale])
+            sigmas = np.array([result.bias_sigma, result.scale_sigma])
             names = (f"bias_{axis}", f"scale_{axis}")
             estimates.add("up_and_down", names, values, np.diag(sigmas**2), {})
 
@@ -74,7 +74,7 @@ def add_pooled_positions(
     about: tuple[float, float, float],
     scatter: float,
 ) -> None:
-    """S3's formula, for plans that turn both ways and stop at positions in common."""
+    """S3's formula, for plans with rotations both ways and stops at common positions."""
     pooled = pooled_positions(rests, *about, scatter)
     if pooled is not None:
         values = errors_of(pooled.values)

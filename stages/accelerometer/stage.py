@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 CURES = {
     "bias": _(
-        "the rests do not part it from the scale factors: turn the IMU over, so that an "
+        "the rests do not separate it from the scale factors: turn the IMU over, so that an "
         "axis points up once and down once"
     ),
     "matrix": _(
@@ -46,59 +46,61 @@ def accelerometer(
     Each mount has parameters of its own, for its mounting rotation is one of them.
     """
     collected = Estimates("accelerometer")
-    told: list[Finding] = []
+    raised: list[Finding] = []
     for data in mounts:
         estimates, gravity = collected.on(data.mount), data.gravity
         about = (gravity.number, gravity.scatter, data.position_sigma)
         add_free_accelerometers(estimates, data)
-        found, left_out = data.accelerometer_positions
-        if not found:
+        positions, left_out = data.accelerometer_positions
+        if not positions:
             estimates.add_nothing("joint", omissions(left_out))
             continue
         turns = turning_rests(data)
-        wide = LEVER_ARM if turns else None
+        effect_sigma = LEVER_ARM if turns else None
         moving = [rest for _, rest in turns]
-        rests = [*(_rest(position) for position in found), *moving]
-        fitted = accelerometers.fit(rests, *about, data.noise.degrees, wide)
+        rests = [*(_static_force(position) for position in positions), *moving]
+        fitted = accelerometers.fit(rests, *about, data.noise.degrees, effect_sigma)
         recorded = np.isfinite(np.array([rest.mean for rest in rests])).any(axis=0)
         why = reasons(fitted.estimate.determined, recorded, "accelerometer", CURES)
         estimates.add_triad("joint", fitted.estimate, why)
-        used = [position.part for position in found] + list(
+        used = [position.part for position in positions] + list(
             dict.fromkeys(part for part, _ in turns)
         )
         estimates.add_fit("joint", fitted, used, left_out)
         matrix = fitted.estimate.values[:9].reshape(3, 3)
         if fitted.p_value < MIN_CONSISTENT_P_VALUE:
-            told += _off(rests, about, matrix, wide, data.mount)
-        for seconds in averaging_times(found, averaging_steps):
-            part = [*(_rest(position, seconds) for position in found), *moving]
-            shorter = equations(part, *about, fitted.scatter, matrix, wide, fitted.random_walk)
+            raised += _position_findings(rests, about, matrix, effect_sigma, data.mount)
+        for seconds in averaging_times(positions, averaging_steps):
+            part = [*(_static_force(position, seconds) for position in positions), *moving]
+            shorter = equations(
+                part, *about, fitted.scatter, matrix, effect_sigma, fitted.random_walk
+            )
             estimates.add_averaging("joint", seconds, shorter.solve_shared())
-        stops = [_rest(position) for position in found]
+        stops = [_static_force(position) for position in positions]
         planned = [
-            pair for pair in zip(found, stops, strict=True) if pair[0].manoeuvre.do == "rest"
+            pair for pair in zip(positions, stops, strict=True) if pair[0].manoeuvre.do == "rest"
         ]
         add_six_positions(estimates, planned, about, fitted.scatter, wanted_bias)
         if stops_between_turns(data.plan):
             add_pooled_positions(estimates, stops, about, fitted.scatter)
-    return {**collected.tables(), "findings": table_of(told)}
+    return {**collected.tables(), "findings": table_of(raised)}
 
 
-def _off(
+def _position_findings(
     rests: list[StaticForce],
     about: tuple[float, float, float],
     matrix: Array,
-    wide: Mapping[str, float] | None,
+    effect_sigma: Mapping[str, float] | None,
     mount: str,
 ) -> Iterator[Finding]:
-    """The position that does not fit, where one alone explains why the model does not."""
-    off = off_position(rests, *about, matrix, wide)
+    """The position in error, where a single one explains the misfit of the model."""
+    off = off_position(rests, *about, matrix, effect_sigma)
     if off is not None:
-        sigma = weighted(rests, *about, effect_sigma=wide).sigma[: triad.UNKNOWNS]
+        sigma = weighted(rests, *about, effect_sigma=effect_sigma).sigma[: triad.UNKNOWNS]
         yield from findings(off, sigma, mount)
 
 
-def _rest(position: StaticPosition, seconds: float = np.inf) -> StaticForce:
+def _static_force(position: StaticPosition, seconds: float = np.inf) -> StaticForce:
     stretch = position.during(seconds)
     return StaticForce(
         position.manoeuvre.position, position.up_now, *position.over(seconds), stretch=stretch

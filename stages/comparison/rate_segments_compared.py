@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.gyroscope_methods import uprights
+from inertial.campaign.gyroscope_methods import upright_positions
 from inertial.campaign.rate_segments import angles_about
 from inertial.estimation.consistency import outliers
 from inertial.estimation.gyroscope_formulas import both_ways, two_positions
@@ -79,7 +79,7 @@ def static_against_turns(data: CampaignData, gyro: Results) -> Iterator[Differen
     lacks, and that is what differs here.
     """
     for i, axis in enumerate(AXES):
-        rests = list(uprights(data.gyro_inputs, i))
+        rests = list(upright_positions(data.gyro_inputs, i))
         static = two_positions(
             [rest for _unused, rest in rests], _cross(gyro, axis), data.earth, data.position_sigma
         )

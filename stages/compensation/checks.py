@@ -105,9 +105,9 @@ def checks(data: CampaignData) -> Iterator[Check]:
     if (triad := data.result.gyro) is not None:
         for position in data.gyro_positions[0]:
             yield from _rate(position, triad, data)
-        for one in data.gyro_inputs.usable:
-            if one.plan.recorded == "whole" and one.done.complete:
-                yield from _angle(one, triad, data)
+        for rotation in data.gyro_inputs.usable:
+            if rotation.plan.recorded == "whole" and rotation.done.complete:
+                yield from _angle(rotation, triad, data)
 
 
 def missing(parameters: pd.DataFrame, sensor: str, mount: str) -> Row:
@@ -202,16 +202,16 @@ def _noise_along(direction: Array, triad: Triad, sigma: Array) -> float:
 # --- Rotations ---
 
 
-def _angle(one: Recorded, triad: Triad, data: CampaignData) -> Iterator[Check]:
+def _angle(rotation: Recorded, triad: Triad, data: CampaignData) -> Iterator[Check]:
     """The angle of a whole turn about its axis, with the earth's rate taken out.
 
     The axis stands still in body and laboratory, so the earth's rate along it is the same all the
     time: ω_e sinφ for an upright axis.
     """
-    m, seconds = one.plan, one.blocks.seconds
+    m, seconds = rotation.plan, rotation.blocks.seconds
     assert m.angle is not None and m.angle_sigma is not None  # else it is refused
     time = float(seconds.sum())
-    summed = (one.blocks.gyro * seconds[:, None]).sum(axis=0)
+    summed = (rotation.blocks.gyro * seconds[:, None]).sum(axis=0)
     earth, sigma = _earth_along(m.axis, position_of(m, data.heading), data.earth)
     after = float(truth_of(summed, triad, time) @ m.axis) - earth * time
     if not np.isfinite(after):

@@ -35,23 +35,23 @@ SCATTER_RANGE = (1e-11, 0.1)  # rad/s: how much rests and motions may differ bey
 CURES = {
     "bias": _("no rest shows it: add a rest"),
     "matrix": _(
-        "between the rests the IMU hardly turned about {axis} while {axis} lay level: "
+        "between the rests the IMU hardly turned about {axis} while {axis} was horizontal: "
         "add turns of 90° or more about {axis}, there and back"
     ),
 }
 
 
 def add_free_gyros(estimates: Estimates, data: CampaignData) -> None:
-    """The method's rows; none where the plan knows every attitude."""
-    found, left_out = free_static_positions(data)
-    stops = [_stop(one) for one in found]
+    """The rows of the method; none where the plan states every attitude."""
+    positions, left_out = free_static_positions(data)
+    stops = [_stop(position) for position in positions]
     recorded = np.isfinite(np.array([stop.mean for stop in stops]).reshape(-1, 3)).any(axis=0)
     if not recorded.any():
-        if left_out or found:
+        if left_out or positions:
             estimates.add_nothing(METHOD, omissions(left_out) or _("no gyro is recorded"))
         return
-    passages, moving, broken = passages_of(found, data.blocks, data.noise)
-    between = fitted_to(data, found).scatter
+    passages, moving, broken = passages_of(positions, data.blocks, data.noise)
+    between = fitted_to(data, positions).scatter
     prior = Prior(data.gravity.number, data.gravity.scatter, between, data.earth)
     fits = [
         with_scatter(
@@ -64,23 +64,23 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> None:
     fitted = min(fits, key=lambda fit: fit.estimate.deviance)
     why = reasons(fitted.estimate.determined, recorded, "gyro", CURES)
     estimates.add_triad(METHOD, fitted.estimate, why)
-    used = [one.force.part for one in found] + moving
+    used = [position.force.part for position in positions] + moving
     estimates.add_fit(METHOD, fitted, used, left_out + broken)
 
 
-def _stop(one: FreeStaticPosition) -> Stop:
-    return Stop(one.rest, *one.rate.over(), float(one.rate.seconds.sum()))
+def _stop(position: FreeStaticPosition) -> Stop:
+    return Stop(position.rest, *position.rate.over(), float(position.rate.seconds.sum()))
 
 
 def passages_of(
-    found: Sequence[FreeStaticPosition], blocks: pd.DataFrame, noise: NoiseLevels
+    positions: Sequence[FreeStaticPosition], blocks: pd.DataFrame, noise: NoiseLevels
 ) -> tuple[list[Passage], list[Part], list[Part]]:
     """The motions from each rest to the next, their blocks, and those left out with the reason."""
     moving = blocks[blocks["phase"] == BETWEEN].sort_values(["log", "from_record"])
     passages: list[Passage] = []
     used: list[Part] = []
     left_out: list[Part] = []
-    for i, (before, behind) in enumerate(pairwise(found)):
+    for i, (before, behind) in enumerate(pairwise(positions)):
         if before.log != behind.log:
             continue
         name = f"{before.label} to {behind.label}"
@@ -101,7 +101,7 @@ def refusal_of(
 ) -> str:
     """Why no attitude can be carried from one rest to the next; empty where it can."""
     if part.empty:
-        return _("nothing of the motion between them is kept")
+        return _("the motion between them is not recorded")
     ends = np.append(before.after, part["to_record"].to_numpy(np.int64))
     starts = np.append(part["from_record"].to_numpy(np.int64), behind.first)
     masked = int((starts - ends).sum())

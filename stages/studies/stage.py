@@ -17,13 +17,13 @@ from stages.studies.epochs import rests_of, studied
 from stages.studies.table_motion import (
     Gyros,
     WholeMotion,
+    exclusion_reason,
     gyros_of,
     motion_of,
     pairs_of,
     samples_in,
     steady_times,
     stretch_of,
-    why_not,
 )
 from stages.studies.window_rows import growing, middle, pair_of, sliding
 
@@ -42,7 +42,8 @@ def studies(
     scatter = scatter_by_mount(gyroscope_fit)
     rests = {data.mount: rests_of(data.plan, data.performed, segments) for data in mounts}
     turns = {
-        data.mount: [r for r in data.gyro_inputs.recorded if not why_not(r)] for data in mounts
+        data.mount: [r for r in data.gyro_inputs.recorded if not exclusion_reason(r)]
+        for data in mounts
     }
 
     wanted = {name: stretch for found in rests.values() for name, (_, stretch) in found.items()}
@@ -77,7 +78,9 @@ def _add(rows: dict[str, list[Row]], found: Mapping[str, list[Row]]) -> None:
 
 def _refused(data: CampaignData) -> dict[str, list[Row]]:
     turns = data.gyro_inputs.recorded
-    refused = [_not_studied(data, r.plan.name, why_not(r)) for r in turns if why_not(r)]
+    refused = [
+        _not_studied(data, r.plan.name, exclusion_reason(r)) for r in turns if exclusion_reason(r)
+    ]
     return {"not_studied": refused}
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.masked_samples import Masks, pieces
-from inertial.campaign.motions import angles_seen
+from inertial.campaign.motions import measured_angles
 from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Manoeuvre
 from inertial.campaign.solution import joint_rows
@@ -30,7 +30,7 @@ from inertial.tables import AXES, CHANNELS, GYRO, STATIC_PHASES
 from inertial.tables.parquet import Stream
 from inertial.text.messages import _
 
-# ---- The samples of some stretches of the logs, in one pass, what is masked left out.
+# ---- The samples of some stretches of the logs, in one pass, without those masked.
 
 Array = NDArray[np.float64]
 
@@ -56,36 +56,36 @@ def samples_in(
     samples: Stream, stretches: Mapping[str, Stretch], masks: Masks
 ) -> dict[str, Samples]:
     """The samples of each stretch by its name; repeated records are left out."""
-    found: dict[str, list[tuple[Array, Array]]] = {name: [] for name in stretches}
+    extracted: dict[str, list[tuple[Array, Array]]] = {name: [] for name in stretches}
     for log, piece in pieces(samples, ["record", "time", *CHANNELS]):
         record = piece["record"]
         for name, stretch in stretches.items():
             if stretch.log != log or record[-1] < stretch.first or record[0] >= stretch.after:
                 continue
-            here = (record >= stretch.first) & (record < stretch.after)
-            masked = masks.of(log, record[here])
-            values = np.column_stack([piece[channel][here] for channel in CHANNELS])
+            inside = (record >= stretch.first) & (record < stretch.after)
+            masked = masks.of(log, record[inside])
+            values = np.column_stack([piece[channel][inside] for channel in CHANNELS])
             values[masked.channels | masked.lost[:, None]] = np.nan
             kept = ~masked.repeated
-            found[name].append((piece["time"][here][kept], values[kept]))
+            extracted[name].append((piece["time"][inside][kept], values[kept]))
     return {
         name: Samples(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
-        for name, parts in found.items()
+        for name, parts in extracted.items()
         if parts
     }
 
 
-# ---- Turns recorded whole, sample by sample: what the gyros summed, and the angle of the table.
+# ---- Rotations recorded whole, sample by sample: gyro increments, and the angle of the table.
 
-UNKNOWN_CROSS = 0.01  # rad, a mounting askew by half a degree: a cross term that no one determined
-MIN_LINE_HZ = 2.0  # Hz, above which a turn rings; what is slower is the table's own motion
-MAX_LINE_P = 1e-4  # chance below which it does
+UNKNOWN_CROSS = 0.01  # rad, half a degree: assumed for a cross term that is not determined
+MIN_LINE_HZ = 2.0  # Hz, above which a line is an oscillation; slower is the motion of the table
+MAX_LINE_P = 1e-4  # chance below which it is significant
 MAX_DELAY_STEPS = 0.5  # of a step by which a sample may be late; more, and one is missing
 
 
 @dataclass(frozen=True)
 class Gyros:
-    """The joint result of one mount: M and bias, with what is not determined put in as unknown.
+    """The joint result of one mount: M and bias, with the terms that are not determined.
 
     `sigma`: (3,), rad/s, of the biases, infinite where there is none; `unknown`: (3, 3), which
     cross terms are not determined.
@@ -96,8 +96,8 @@ class Gyros:
     unknown: NDArray[np.bool_]
 
     @property
-    def left(self) -> Array:
-        """Size of what is left of the cross terms of each gyro when M is undone, (3,)."""
+    def remaining_cross(self) -> Array:
+        """Size of the cross terms of each gyro that remain after correction by M, (3,)."""
         return np.asarray(UNKNOWN_CROSS * np.sqrt(self.unknown.sum(axis=1)))
 
     def cross(self, i: int) -> float:
@@ -107,18 +107,19 @@ class Gyros:
 
     def along(self, about: Array) -> float:
         """Sigma of the bias along an axis, rad/s."""
-        there = about != 0
-        return float(np.linalg.norm(about[there] * self.sigma[there]))
+        finite = about != 0
+        return float(np.linalg.norm(about[finite] * self.sigma[finite]))
 
 
 def gyros_of(parameters: pd.DataFrame, mount: str) -> Gyros:
     """The joint result of a mount, by the table of parameters."""
     rows = {row["parameter"]: row for row in joint_rows(parameters, mount)}
     names = linear_names()
-    told = [name in rows and rows[name]["value"] is not None for name in names]
-    values = [rows[name]["value"] if has else 0.0 for name, has in zip(names, told, strict=True)]
-    sigma = [rows[n]["sigma"] if has else np.inf for n, has in zip(names, told, strict=True)]
-    unknown = ~np.array(told[:9]).reshape(3, 3) & ~np.eye(3, dtype=bool)
+    determined = {n: rows[n] for n in names if n in rows and rows[n]["value"] is not None}
+    values = [determined[n]["value"] if n in determined else 0.0 for n in names]
+    sigma = [determined[n]["sigma"] if n in determined else np.inf for n in names]
+    unknown = np.array([n not in determined for n in names[:9]]).reshape(3, 3)
+    unknown &= ~np.eye(3, dtype=bool)
     matrix = np.eye(3) + np.array(values[:9], dtype=np.float64).reshape(3, 3)
     return Gyros(
         Triad(matrix, np.array(values[9:], dtype=np.float64)),
@@ -128,7 +129,7 @@ def gyros_of(parameters: pd.DataFrame, mount: str) -> Gyros:
 
 
 class Ringing(NamedTuple):
-    """An oscillation of what a gyro reads: rad/s, the averaging of a sample undone, and Hz."""
+    """An oscillation of a gyro reading: rad/s, corrected for the averaging of a sample, and Hz."""
 
     amplitude: float
     frequency: float
@@ -139,7 +140,7 @@ class WholeMotion:
     """One turn from the first motion to the last.
 
     `increments`: (n, 3), rad, of the gyros; `first`, `after`: edges of the steady part; `angle`:
-    the table's angle at the edges; `lines`: (3,) of what rings in each gyro, None where nothing.
+    the table's angle at the edges; `lines`: (3,) oscillations of the gyros, None where none.
     """
 
     recorded: Recorded
@@ -174,33 +175,37 @@ class WholeMotion:
         return ripple_window(line.amplitude, line.frequency, seconds)
 
 
-def stretch_of(one: Recorded, segments: pd.DataFrame) -> Stretch:
+def stretch_of(rotation: Recorded, segments: pd.DataFrame) -> Stretch:
     """The records of a turn from the first motion to the last."""
-    own = segments[(segments["manoeuvre"] == one.plan.name) & (segments["log"] == one.plan.log)]
-    moving = own[~own["phase"].isin(STATIC_PHASES)]
-    return Stretch(one.plan.log, int(moving["from_record"].min()), int(moving["to_record"].max()))
+    rows = segments[
+        (segments["manoeuvre"] == rotation.plan.name) & (segments["log"] == rotation.plan.log)
+    ]
+    moving = rows[~rows["phase"].isin(STATIC_PHASES)]
+    return Stretch(
+        rotation.plan.log, int(moving["from_record"].min()), int(moving["to_record"].max())
+    )
 
 
-def steady_times(one: Recorded, segments: pd.DataFrame) -> tuple[float, float]:
-    """When the first and the last sample of its steady part were taken, s."""
-    own = segments[(segments["manoeuvre"] == one.plan.name) & (segments["phase"] == "steady")]
-    return float(own["from_s"].min()), float(own["to_s"].max())
+def steady_times(rotation: Recorded, segments: pd.DataFrame) -> tuple[float, float]:
+    """Times of the first and the last sample of the steady part, s."""
+    rows = segments[(segments["manoeuvre"] == rotation.plan.name) & (segments["phase"] == "steady")]
+    return float(rows["from_s"].min()), float(rows["to_s"].max())
 
 
-def why_not(one: Recorded) -> str:
+def exclusion_reason(rotation: Recorded) -> str:
     """Why a turn is not studied; empty where it is."""
-    if one.refusal:
-        return one.refusal
-    if one.plan.recorded != "whole":
+    if rotation.refusal:
+        return rotation.refusal
+    if rotation.plan.recorded != "whole":
         return _("only its steady part was planned, so no whole angle ties it")
-    if not one.done.complete:
-        return one.done.sentence
-    return "" if one.blocks.steady.any() else _("it has no steady part")
+    if not rotation.done.complete:
+        return rotation.done.sentence
+    return "" if rotation.blocks.steady.any() else _("it has no steady part")
 
 
 def motion_of(
     data: CampaignData,
-    one: Recorded,
+    rotation: Recorded,
     samples: Samples,
     steady: tuple[float, float],
     gyros: Gyros,
@@ -213,11 +218,11 @@ def motion_of(
     steady : s, time of the first and of the last sample of the steady part
     scatter : rad/s, between manoeuvres, that the joint estimate allows for
     """
-    m, step = one.plan, data.clocks[one.plan.log].step
+    m, step = rotation.plan, data.clocks[rotation.plan.log].step
     assert m.up is not None and m.angle is not None and m.angle_sigma is not None  # else refused
     rates, time = samples.values[:, 3:], samples.time
-    there = np.isfinite(rates) | ~np.isfinite(rates).any(axis=0)
-    rates, time = rates[there.all(axis=1)], time[there.all(axis=1)]
+    finite = np.isfinite(rates) | ~np.isfinite(rates).any(axis=0)
+    rates, time = rates[finite.all(axis=1)], time[finite.all(axis=1)]
     even = np.abs(np.diff(time) / step - 1) < MAX_DELAY_STEPS
     about = m.axis
     if not even.all() or len(time) < 2:
@@ -230,9 +235,9 @@ def motion_of(
 
     earth = data.earth
     north = position_of(m, data.heading).north
-    lying = float(np.linalg.norm(cross(m.up, about)))  # 0 where the axis is upright
+    horizontal = float(np.linalg.norm(cross(m.up, about)))  # 0 where the axis is upright
     sensed = np.where(np.isfinite(increments), increments, gyros.triad.bias * step)
-    seen = angles_seen(
+    measured = measured_angles(
         sensed,
         np.full(len(time), step),
         about,
@@ -243,7 +248,7 @@ def motion_of(
         lambda angle: np.asarray(np.cumsum(angle) - angle / 2),
     )
     lines = [_line(increments[first:after, i], step) for i in range(3)]
-    unknown_level = 0.0 if north is not None else earth.level * lying / np.sqrt(2)
+    unknown_level = 0.0 if north is not None else earth.level * horizontal / np.sqrt(2)
     density = (about * data.noise.of(m.name, "steady", GYRO))[about != 0]
     ringing = lines[int(np.argmax(np.abs(about)))]
     offset = [gyros.along(about), scatter, earth.up_sigma * float(about @ m.up), unknown_level]
@@ -253,17 +258,23 @@ def motion_of(
         density=float(np.linalg.norm(density)),
         offset=float(np.linalg.norm(np.array(offset))),
         whole=m.angle_sigma,
-        level=float(np.abs(about) @ gyros.left) * earth.level / np.sqrt(2),
+        level=float(np.abs(about) @ gyros.remaining_cross) * earth.level / np.sqrt(2),
         ripple=0.0 if ringing is None else ripple_angle(*ringing) / np.sqrt(2),
     )
-    turned = np.sign(m.angle) * seen
+    angle = np.sign(m.angle) * measured
     return WholeMotion(
-        one, step, increments, first, after, time_angle(turned, step, abs(m.angle), errors), lines
+        rotation,
+        step,
+        increments,
+        first,
+        after,
+        time_angle(angle, step, abs(m.angle), errors),
+        lines,
     )
 
 
 def _line(increments: Array, step: float) -> Ringing | None:
-    """What rings in the steady part of a gyro; none that chance explains.
+    """The significant oscillation in the steady part of a gyro.
 
     A sample is the mean over its interval, which lessens a line by sin(πfT)/(πfT); with that
     undone, its angle is A/(2πf), for an alias as well.
@@ -299,20 +310,21 @@ def pairs_of(motions: Mapping[str, WholeMotion]) -> list[tuple[int, WholeMotion,
             forward.append((i, motion))
         else:
             backward[name] = (i, motion)
-    found = []
+    pairs = []
     for i, motion in forward:
         alike = [name for name, (j, b) in backward.items() if i == j and _same(motion, b, i)]
         if alike:
-            found.append((i, motion, backward.pop(alike[0])[1]))
-    return found
+            pairs.append((i, motion, backward.pop(alike[0])[1]))
+    return pairs
 
 
-def _same(one: WholeMotion, other: WholeMotion, i: int) -> bool:
+def _same(first: WholeMotion, second: WholeMotion, i: int) -> bool:
     """Whether two turns about body axis i are alike but for their direction."""
-    ups = [motion.plan.up for motion in (one, other)]
+    ups = [motion.plan.up for motion in (first, second)]
     if ups[0] is None or ups[1] is None or ups[0][i] * ups[1][i] < 0:
         return False
     sizes, others = (
-        np.array([abs(m.plan.angle or 0.0), abs(m.plan.rate or 0.0), m.step]) for m in (one, other)
+        np.array([abs(m.plan.angle or 0.0), abs(m.plan.rate or 0.0), m.step])
+        for m in (first, second)
     )
     return bool(np.allclose(sizes, others, rtol=1e-6))
