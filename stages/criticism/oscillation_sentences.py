@@ -198,9 +198,9 @@ def from_angle(size: float) -> str:
 
 
 def from_angle_by_order(sizes: tuple[float, float, float], orders: NDArray[np.float64]) -> str:
-    """A usual size, that of the lowest order and that of the highest one, in rad."""
-    size, largest, smallest = (significant(one / ARC_SECOND, 2) for one in sizes)
-    lowest, highest = (significant(one, 3) for one in orders[[0, -1]])
+    """A usual size, that of the lowest order and that of the highest, in rad."""
+    size, largest, smallest = (significant(each / ARC_SECOND, 2) for each in sizes)
+    lowest, highest = (significant(order, 3) for order in orders[[0, -1]])
     return FROM_ANGLE_BY_ORDER.format(
         size=size, largest=largest, smallest=smallest, lowest=lowest, highest=highest
     )

@@ -1,1 +1,1 @@
-"""The model with the effects that were named, refitted: what it gains, and whether it counts."""
+"""The refitted model with the named effects: its gain, and whether it becomes final."""

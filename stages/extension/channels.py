@@ -19,7 +19,7 @@ from inertial.physics.motion import Motion, cross, level_axes, turned_all
 
 # ---- The means of each channel over static positions and over turns.
 #
-# The blocks of a turn mix the channels, for the angle of each is known from them alone. So a
+# The blocks of a turn mix the channels, for their angle is known from themselves alone. So a
 # channel is judged by its mean reading of every stretch, less what the joint result predicts,
 #
 #     gyro at rest:           reading − (M ω + b)
@@ -28,8 +28,8 @@ from inertial.physics.motion import Motion, cross, level_axes, turned_all
 #
 # in proportion to changes of its row of M and of its bias, to the effects, and to the errors of
 # the tilt, of the azimuth, of the angle of the turn, of gravity and of the earth's rate, each
-# with its known sigma; where the bias walks, that too. What happens within a turn of a gyro is
-# not in it.
+# with its known sigma; where the bias has a random walk, that too. Changes within a
+# turn of a gyro are not included.
 
 Array = NDArray[np.float64]
 Errors = dict[tuple[str, str], tuple[Array, float]]  # what the readings change by (3,), and sigma
@@ -39,8 +39,9 @@ Errors = dict[tuple[str, str], tuple[Array, float]]  # what the readings change 
 class Mean:
     """The mean readings of three channels over a stretch.
 
-    `residual`, `sigma`: (3,), less the prediction; `truth`: (3,), what was felt; `traces`: (3, k),
-    per unit of each parameter of the effects; `time`: s, of its middle.
+    `residual`, `sigma`: (3,), less the prediction; `truth`: (3,), the known rate or
+    specific force; `traces`: (3, k), per unit of each parameter of the effects; `time`: s, of its
+    middle.
     """
 
     manoeuvre: str
@@ -71,19 +72,19 @@ class Channels:
         motions = [*campaign.static_motions, *campaign.turn_motions]
         motions += [motion for _, _, motion in campaign.static_forces]
         triads = [campaign.solution.gyro, campaign.solution.accelerometer]
-        gyro, accel = (one or Triad(np.eye(3), np.zeros(3)) for one in triads)
+        gyro, accel = (triad or Triad(np.eye(3), np.zeros(3)) for triad in triads)
         responses = signatures(campaign.motion, campaign.solution.site, gyro, accel, self.effects)
         traces = [
-            np.concatenate([getattr(one, s) for one in responses], axis=2)
+            np.concatenate([getattr(response, s) for response in responses], axis=2)
             for s in ("gyro", "accel")
         ]
-        found, start = [], 0
+        stretches, start = [], 0
         for motion in motions:
             part = slice(start, start + len(motion.rate))
             truth = truth_of(motion, campaign.solution.site)
-            found.append((motion, truth, traces[0][part], traces[1][part]))
+            stretches.append((motion, truth, traces[0][part], traces[1][part]))
             start = part.stop
-        return found
+        return stretches
 
     def means(self, sensor: str) -> list[Mean]:
         """The means of the three channels of a sensor."""
@@ -94,7 +95,7 @@ class Channels:
     def _of_gyros(self) -> list[Mean]:
         campaign, inputs = self.campaign, self.campaign.inputs
         static, turns = len(campaign.static_motions), len(campaign.turn_motions)
-        found = []
+        means = []
         rests = zip(
             inputs.static_positions, inputs.static_rates, self._traces[:static], strict=True
         )
@@ -103,46 +104,46 @@ class Channels:
             errors = self._earth(rest.position, motion, np.ones(1))
             residual = rest.mean - self._gyro.matrix @ known - self._gyro.bias
             name, time = position.manoeuvre.name, float(motion.time[0])
-            found.append(Mean(name, residual, rest.sigma, known, traces[0], errors, time))
-        whole = [one for one in inputs.usable if one.plan.recorded == "whole"]
+            means.append(Mean(name, residual, rest.sigma, known, traces[0], errors, time))
+        whole = [usable for usable in inputs.usable if usable.plan.recorded == "whole"]
         responses = self._traces[static : static + turns]
-        for one, turn, (motion, truth, traces, _) in zip(
+        for recorded, turn, (motion, truth, traces, _) in zip(
             whole, inputs.turns, responses, strict=True
         ):
-            found.append(self._of_turn(one, turn, motion, truth, traces))
-        return found
+            means.append(self._of_turn(recorded, turn, motion, truth, traces))
+        return means
 
     @property
     def _gyro(self) -> Triad:
-        assert self.campaign.solution.gyro is not None  # else nothing is said of it
+        assert self.campaign.solution.gyro is not None  # else it has no means
         return self.campaign.solution.gyro
 
     def _of_turn(
-        self, one: Recorded, turn: RateSegment, motion: Motion, truth: Truth, traces: Array
+        self, recorded: Recorded, turn: RateSegment, motion: Motion, truth: Truth, traces: Array
     ) -> Mean:
-        """A turn as a whole; what is missing of it counts as the blocks about it."""
+        """A turn as a whole; gaps are weighted as the blocks next to them."""
         weight = turn.weights * turn.seconds
         total = float(weight.sum())
         share = weight / total
         earth = _known_rate(motion, truth, turn.position) - motion.omega
-        felt = turn.about * (turn.angle / total) + share @ earth
-        residual = turn.weights @ turn.sums / total - self._gyro.matrix @ felt - self._gyro.bias
+        known = turn.about * (turn.angle / total) + share @ earth
+        residual = turn.weights @ turn.sums / total - self._gyro.matrix @ known - self._gyro.bias
         sigma = turn.quiet_density * np.sqrt(turn.weights**2 @ turn.seconds) / total
         errors = self._earth(turn.position, motion, share)
         along = self._gyro.matrix @ turn.about / total
-        errors["angle", one.plan.name] = (
+        errors["angle", recorded.plan.name] = (
             along,
             float(np.hypot(turn.angle_sigma, turn.gap_sigma)),
         )
         for i, axis in enumerate(level_axes(turn.about)):
-            leant = self._gyro.matrix @ cross(axis, turn.about) * (turn.angle / total)
-            errors[f"tilt {i}", turn.position.name] = (leant, self.campaign.position_sigma)
+            tilted = self._gyro.matrix @ cross(axis, turn.about) * (turn.angle / total)
+            errors[f"tilt {i}", turn.position.name] = (tilted, self.campaign.position_sigma)
         of_effects = np.einsum("n,nck->ck", share, traces)
         time = float(share @ motion.time)
-        return Mean(one.plan.name, residual, sigma, felt, of_effects, errors, time)
+        return Mean(recorded.plan.name, residual, sigma, known, of_effects, errors, time)
 
     def _earth(self, position: Position, motion: Motion, share: Array) -> Errors:
-        """The errors of what is known of the earth's rate."""
+        """The errors of the known earth's rate."""
         earth, matrix = self.campaign.inputs.earth, self._gyro.matrix
         errors: Errors = {("earth", "up"): (matrix @ (share @ motion.up), earth.up_sigma)}
         for key, axis in zip(horizontal_names(position), horizontal_axes(position), strict=False):
@@ -153,8 +154,8 @@ class Channels:
 
     def _of_accelerometers(self) -> list[Mean]:
         campaign, triad = self.campaign, self.campaign.solution.accelerometer
-        assert triad is not None  # else nothing is said of it
-        gravity, found = campaign.gravity, []
+        assert triad is not None  # else it has no means
+        gravity, means = campaign.gravity, []
         responses = self._traces[len(self._traces) - len(campaign.static_forces) :]
         for (name, rest, _), (motion, _, _, traces) in zip(
             campaign.static_forces, responses, strict=True
@@ -162,13 +163,13 @@ class Channels:
             force = gravity.number * rest.up
             errors: Errors = {("gravity", ""): (triad.matrix @ rest.up, gravity.scatter)}
             for i, axis in enumerate(level_axes(rest.up / np.linalg.norm(rest.up))):
-                leant = triad.matrix @ cross(axis, force)
-                errors[f"tilt {i}", rest.position] = (leant, campaign.position_sigma)
+                tilted = triad.matrix @ cross(axis, force)
+                errors[f"tilt {i}", rest.position] = (tilted, campaign.position_sigma)
             residual = rest.mean - triad.matrix @ force - triad.bias
-            found.append(
+            means.append(
                 Mean(name, residual, rest.sigma, force, traces[0], errors, float(motion.time[0]))
             )
-        return found
+        return means
 
 
 def _known_rate(motion: Motion, truth: Truth, position: Position) -> Array:
@@ -183,15 +184,20 @@ def _known_rate(motion: Motion, truth: Truth, position: Position) -> Array:
 # ---- The equations of one channel: its row of M, its bias, the effects, and the errors.
 
 UNKNOWNS = 4  # of a channel: three of M and the bias
-VAGUE = (0.1, 0.1, 0.1, 1.0)  # their sigmas beforehand, about the joint result
+PRIOR_SIGMAS = (0.1, 0.1, 0.1, 1.0)  # of these, about the joint result
 
 
 def system_of(
-    means: Sequence[Mean], names: Sequence[str], channel: int, shown: Sequence[str], walk: float
+    means: Sequence[Mean],
+    names: Sequence[str],
+    channel: int,
+    shown: Sequence[str],
+    random_walk: float,
 ) -> System | None:
     """The equations of one channel; None where it has no reading.
 
-    `names`: of all traces, of which the effects `shown` are unknowns; `walk`: of the bias, per √s.
+    `names`: of all traces, of which the effects `shown` are unknowns; `random_walk`: of the bias,
+    per √s.
     """
     some = [m for m in means if np.isfinite(m.residual[channel]) and np.isfinite(m.sigma[channel])]
     if not some:
@@ -210,23 +216,23 @@ def system_of(
     unknowns += [*(("effect", name) for name in shown), *columns]
     observed = np.array([mean.residual[channel] for mean in some])
     rows = np.column_stack([design, observed]) / sigma[:, None]
-    if walk:  # from one stretch to the next, in units of the noise
-        walked = walk**2 * _walked(some) / np.outer(sigma, sigma)
-        lower = np.linalg.cholesky(np.eye(len(some)) + walked)
+    if random_walk:  # from one stretch to the next, in units of the noise
+        covariance = random_walk**2 * _common_time(some) / np.outer(sigma, sigma)
+        lower = np.linalg.cholesky(np.eye(len(some)) + covariance)
         rows = solve_triangular(lower, rows, lower=True)
     return System(
         rows[:, :-1],
         rows[:, -1],
         np.ones(len(some)),
         np.zeros(len(unknowns)),
-        np.array([*VAGUE, *np.ones(len(shown)), *errors.values()]),
+        np.array([*PRIOR_SIGMAS, *np.ones(len(shown)), *errors.values()]),
         UNKNOWNS,
         tuple(unknowns),
     )
 
 
-def _walked(means: Sequence[Mean]) -> Array:
-    """How long two stretches have walked together since the first one, s, (n, n)."""
+def _common_time(means: Sequence[Mean]) -> Array:
+    """Time from the first stretch to the earlier of two, s, (n, n)."""
     time = np.array([mean.time for mean in means])
     since = np.nan_to_num(time - np.nanmin([*time, np.inf]))
     return np.asarray(np.minimum.outer(since, since))

@@ -14,8 +14,8 @@ tr(F_t⁻¹ F − I), the cost of estimating β_t.
 A fold is counted where its training keeps half of the information, or more, along the estimated
 effect (design study); else its manoeuvres alone show the effect. Of a fold that is counted the
 training may still know a combination of several parameters poorly. Where it keeps less than half of
-that one's information, it predicts with it only if the training by itself shows it, at 3 sigma;
-else the combination stays zero in both models.
+its information, it predicts with it only if the training by itself shows it, at 3 sigma; else the
+combination stays zero in both models.
 """
 
 from collections.abc import Sequence
@@ -38,8 +38,8 @@ MIN_COMBINATION_SHARE = 0.05  # of the information; with less a fold would cost 
 class Fold:
     """Some manoeuvres, predicted from the others.
 
-    `kept`: of the information along the effect, by the training; `beta`: (k,), what it predicts
-    with; `drop` of chi-squared; `expected_drop`: the drop if the parameters were known exactly.
+    `kept`: of the information along the effect, by the training; `beta`: (k,), its estimate;
+    `drop` of chi-squared; `expected_drop`: the drop if the parameters were known exactly.
     """
 
     manoeuvres: tuple[str, ...]
@@ -58,12 +58,12 @@ def basis_of(information: Array) -> Array:
     """Combinations of the parameters, (k, m), of which each is known with variance 1."""
     size = np.sqrt(np.maximum(np.diag(information), np.finfo(float).tiny))
     values, vectors = np.linalg.eigh(information / np.outer(size, size))
-    seen = values > MIN_INFORMATION_SHARE
-    return np.asarray(vectors[:, seen] / np.sqrt(values[seen]) / size[:, None])
+    determined = values > MIN_INFORMATION_SHARE
+    return np.asarray(vectors[:, determined] / np.sqrt(values[determined]) / size[:, None])
 
 
 def snr_squared(whole: EffectInformation) -> float:
-    """The signal-to-noise ratio squared of the effects, what noise adds taken off; at least 0."""
+    """The squared signal-to-noise ratio of the effects, less what noise adds; at least 0."""
     basis = basis_of(whole.information)
     along = basis.T @ whole.right
     return max(float(along @ along) - len(along), 0.0)
@@ -76,31 +76,31 @@ def fold_of(
     basis = basis_of(whole.information)
     information = np.zeros_like(whole.information) if training is None else training.information
     right = np.zeros_like(whole.right) if training is None else training.right
-    left, turn = np.linalg.eigh(basis.T @ information @ basis)
-    basis = basis @ turn
+    shares, rotation = np.linalg.eigh(basis.T @ information @ basis)
+    basis = basis @ rotation
     along = basis.T @ whole.right
     trained = basis.T @ right
-    there = (left >= MIN_TRAINING_SHARE) | (
-        (left >= MIN_COMBINATION_SHARE) & (trained**2 >= MIN_TRAINED_CHI_SQUARED * left)
+    used = (shares >= MIN_TRAINING_SHARE) | (
+        (shares >= MIN_COMBINATION_SHARE) & (trained**2 >= MIN_TRAINED_CHI_SQUARED * shares)
     )
-    beta = basis[:, there] @ (trained[there] / left[there])
-    taken = np.maximum(1 - left[there], 0.0)
+    beta = basis[:, used] @ (trained[used] / shares[used])
+    held_out = np.maximum(1 - shares[used], 0.0)
     return Fold(
         tuple(manoeuvres),
-        float(left @ along**2 / max(along @ along, np.finfo(float).tiny)),
+        float(shares @ along**2 / max(along @ along, np.finfo(float).tiny)),
         beta,
         drop_of(beta, whole) - (0.0 if training is None else drop_of(beta, training)),
-        float(taken @ (along[there] ** 2 - 1)),
+        float(held_out @ (along[used] ** 2 - 1)),
     )
 
 
-def drop_of(beta: Array, told: EffectInformation) -> float:
+def drop_of(beta: Array, effects: EffectInformation) -> float:
     """By how much chi-squared drops where the parameters are `beta`."""
-    return float(2 * told.right @ beta - beta @ told.information @ beta)
+    return float(2 * effects.right @ beta - beta @ effects.information @ beta)
 
 
 def groups(manoeuvres: Sequence[str], most: int) -> list[tuple[str, ...]]:
-    """The manoeuvres each by itself; where they are many, in `most` groups through the plan."""
+    """Each manoeuvre by itself; where they are many, `most` interleaved groups."""
     return [tuple(manoeuvres[start::most]) for start in range(min(most, len(manoeuvres)))]
 
 
@@ -126,27 +126,27 @@ class CrossValidation:
     @property
     def counted(self) -> list[tuple[Fold, SensorEvidence]]:
         """The folds that count, and their training."""
-        return [(one, told) for one, told in self.folds if one.counts and told is not None]
+        return [(fold, rest) for fold, rest in self.folds if fold.counts and rest is not None]
 
     @property
     def not_counted(self) -> tuple[str, ...]:
         """The manoeuvres that alone show the effects."""
-        return tuple(name for one, _ in self.folds if not one.counts for name in one.manoeuvres)
+        return tuple(name for fold, _ in self.folds if not fold.counts for name in fold.manoeuvres)
 
     @property
     def drop(self) -> float:
         """Of chi-squared over the folds that count, both models with the noise of the extended."""
-        return sum(one.drop for one, _ in self.counted)
+        return sum(fold.drop for fold, _ in self.counted)
 
     @property
     def walk_drop(self) -> float:
         """What a random walk of the joint model predicts better than a constant bias."""
-        return sum(self.whole.walk_drop - told.walk_drop for _, told in self.counted)
+        return sum(self.whole.walk_drop - training.walk_drop for _, training in self.counted)
 
     @property
     def expected_drop(self) -> float:
-        """The part of SNR² that these folds hold; one manoeuvre may hold what others need."""
-        return sum(one.expected_drop for one, _ in self.counted)
+        """The part of SNR² in these folds; a manoeuvre may hold what the others need."""
+        return sum(fold.expected_drop for fold, _ in self.counted)
 
     @property
     def possible(self) -> bool:
@@ -157,20 +157,22 @@ class CrossValidation:
 def cross_validate(models: Models) -> dict[str, CrossValidation]:
     """For each sensor that shows the effects, every manoeuvre predicted from the others."""
     every = models.evidence()
-    found: dict[str, list[tuple[Fold, SensorEvidence | None]]] = {sensor: [] for sensor in SENSORS}
+    folds: dict[str, list[tuple[Fold, SensorEvidence | None]]] = {sensor: [] for sensor in SENSORS}
     names = models.joint.manoeuvres
     if not any(every):
         return {}
-    for some in groups(names, MAX_FOLDS):
+    for held_out in groups(names, MAX_FOLDS):
         training = (
-            models.evidence(set(names) - set(some)) if len(names) > len(some) else [None, None]
+            models.evidence(set(names) - set(held_out))
+            if len(names) > len(held_out)
+            else [None, None]
         )
         for sensor, whole, rest in zip(SENSORS, every, training, strict=True):
             if whole is not None:
                 effects = rest.effects if rest else None
-                found[sensor].append((fold_of(some, whole.effects, effects), rest))
+                folds[sensor].append((fold_of(held_out, whole.effects, effects), rest))
     return {
-        sensor: CrossValidation(sensor, whole, found[sensor], snr_squared(whole.effects))
+        sensor: CrossValidation(sensor, whole, folds[sensor], snr_squared(whole.effects))
         for sensor, whole in zip(SENSORS, every, strict=True)
         if whole is not None
     }

@@ -1,7 +1,7 @@
 """Whether the extended result of a sensor replaces the joint one, and the final parameters.
 
-It does where the model with the effects predicts the manoeuvres that its fit has not seen better
-than the one without, and no finding says that the model is still not complete.
+It does where the model with the effects predicts the manoeuvres not used in its fit better
+than that without, and no finding shows that the model is still incomplete.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -84,7 +84,7 @@ class Candidate:
     @property
     def reason(self) -> str:
         """Why the joint result stays final, in a sentence; empty where it does not."""
-        sensors, causes = SENSORS[self.sensor], _listed([one.cause for one in self.alarms])
+        sensors, causes = SENSORS[self.sensor], _listed([alarm.cause for alarm in self.alarms])
         if not any(row["value"] is not None for row in self.joint):
             return NO_JOINT.format(sensors=sensors)
         if self.alarms and not self.effects:
@@ -118,16 +118,16 @@ class Candidate:
     def rows(self) -> Iterator[TableRow]:
         """The decision, with the effects of the extended model and the unexplained findings."""
         shared = {"mount": self.mount, "sensor": self.sensor}
-        one = self.validated
+        validated = self.validated
         yield (
             "decision",
             {
                 **shared,
                 "result": self.final,
-                "drop": one.drop - one.walk_drop if one else None,
-                "snr_squared": one.expected_drop if one else None,
-                "folds": len(one.folds) if one else None,
-                "counted": len(one.counted) if one else None,
+                "drop": validated.drop - validated.walk_drop if validated else None,
+                "snr_squared": validated.expected_drop if validated else None,
+                "folds": len(validated.folds) if validated else None,
+                "counted": len(validated.counted) if validated else None,
                 "sentence": (self.reason or self._replaced())
                 + self._classes()
                 + self._not_counted(),
@@ -146,17 +146,17 @@ class Candidate:
         return [own[name] for name in linear_names() if name in own]
 
     def _replaced(self) -> str:
-        one = self.validated
-        assert one is not None  # else the joint result stays
+        validated = self.validated
+        assert validated is not None  # else the joint result stays
         sentence = REPLACED.format(
             sensors=SENSORS[self.sensor],
             effects=_listed(self.effects),
-            drop=one.drop,
-            expected=one.expected_drop,
+            drop=validated.drop,
+            expected=validated.expected_drop,
         )
-        if one.walk_drop <= 0:
+        if validated.walk_drop <= 0:
             return sentence
-        return sentence + AGAINST_WALK.format(drop=one.drop - one.walk_drop)
+        return sentence + AGAINST_WALK.format(drop=validated.drop - validated.walk_drop)
 
     def _classes(self) -> str:
         return "".join(

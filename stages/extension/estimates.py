@@ -22,7 +22,7 @@ from stages.extension.models import Models
 Array = NDArray[np.float64]
 Row = Mapping[str, Any]
 
-NOT_DETERMINED = _("beside the effects the manoeuvres do not determine it")
+NOT_DETERMINED = _("with the effects in the model the manoeuvres do not determine it")
 
 
 @dataclass(frozen=True)
@@ -36,13 +36,13 @@ class Solved:
     rows: list[Row]
     covariance: Array
     estimate: Estimate
-    walk: float
+    random_walk: float
     effects: Sequence[str] = ()
     mount: str = ""
 
     @property
     def stage(self) -> str:
-        """The stage that made the joint result of this sensor."""
+        """The stage of the joint result of this sensor."""
         return STAGES[self.sensor]
 
     @property
@@ -79,12 +79,12 @@ class Solved:
             "p_value": self.estimate.p_value(noise_degrees),
             "scatter": 0.0,
             "unit": UNIT[self.stage],
-            "random_walk": self.walk,
+            "random_walk": self.random_walk,
             "random_walk_sigma": None,
         }
 
 
-def solved(models: Models, sensor: str, system: System, walk: float, mount: str) -> Solved:
+def solved(models: Models, sensor: str, system: System, random_walk: float, mount: str) -> Solved:
     """The twelve parameters of a sensor and those of the effects that it shows."""
     estimate = system.solve_shared()
     stage = STAGES[sensor]
@@ -123,7 +123,7 @@ def solved(models: Models, sensor: str, system: System, walk: float, mount: str)
             }
         )
     covariance = estimate.covariance[np.ix_(places, places)]
-    return Solved(sensor, rows, covariance, estimate, walk, effects, mount)
+    return Solved(sensor, rows, covariance, estimate, random_walk, effects, mount)
 
 
 # ---- The change of each of the 24 parameters by the effects.
@@ -133,7 +133,7 @@ def moved(solution: Solved, joint: Sequence[Row], scatter: bool, mount: str) -> 
     """Each parameter by the joint and by the extended fit.
 
     Nested fits of the same data differ by a variance σ²(extended) − σ²(joint) (Hausman 1978), if
-    both allow for the same noise; `scatter`: the joint one has held the effect as a scatter of the
+    both allow for the same noise; `scatter`: the joint fit treated the effect as a scatter of the
     manoeuvres, and then they do not.
     """
     before = {row["parameter"]: row for row in joint}

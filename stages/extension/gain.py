@@ -37,17 +37,17 @@ def gain(models: Models, validated: dict[str, CrossValidation], mount: str) -> I
     for number, sensor in enumerate(SENSORS):
         if sensor not in validated:
             continue
-        one = validated[sensor]
+        validation = validated[sensor]
         shared = {"mount": mount, "sensor": sensor, "model": BLOCKS}
-        for effect in dict.fromkeys(effect_of[name] for name in one.whole.effects.names):
+        for effect in dict.fromkeys(effect_of[name] for name in validation.whole.effects.names):
             yield "gain_effects", shared | {"effect": effect}
-        yield from (("gain", {**shared, "axis": None, **row}) for row in _of_sensor(one))
-        counted = [fold for fold, _ in one.counted]
-        yield from _fold_rows(shared, [(fold, fold in counted) for fold, _ in one.folds])
-        walk = models.extended.solution.random_walks[number]
+        yield from (("gain", {**shared, "axis": None, **row}) for row in _of_sensor(validation))
+        counted = [fold for fold, _ in validation.counted]
+        yield from _fold_rows(shared, [(fold, fold in counted) for fold, _ in validation.folds])
+        random_walk = models.extended.solution.random_walks[number]
         means = channels.means(sensor)
         for channel, axis in enumerate(AXES):
-            for row in _of_channel(one, means, channels.names, channel, walk):
+            for row in _of_channel(validation, means, channels.names, channel, random_walk):
                 yield "gain", {**shared, "axis": axis, **row}
 
 
@@ -60,42 +60,46 @@ def _fold_rows(shared: Row, folds: Sequence[tuple[Fold, bool]]) -> Iterator[Tabl
             )
 
 
-def _of_sensor(one: CrossValidation) -> Iterator[Row]:
-    whole = one.whole
+def _of_sensor(validation: CrossValidation) -> Iterator[Row]:
+    whole = validation.whole
     fitted = drop_of(best_of(whole.effects), whole.effects)
     yield row_of(FITTED, whole.plain.chi_squared, fitted, whole.plain.degrees) | {
-        "snr_squared": one.snr_squared,
+        "snr_squared": validation.snr_squared,
         "random_walk_drop": whole.walk_drop,
     }
-    trained = [training.plain for _, training in one.counted]
+    trained = [training.plain for _, training in validation.counted]
     chi_squared = sum(whole.plain.chi_squared - plain.chi_squared for plain in trained)
     degrees = sum(whole.plain.degrees - plain.degrees for plain in trained)
-    yield row_of(HELD_OUT, chi_squared, one.drop, degrees) | {
-        "snr_squared": one.expected_drop,
-        "random_walk_drop": one.walk_drop,
-        "folds": len(one.folds),
-        "counted": len(one.counted),
+    yield row_of(HELD_OUT, chi_squared, validation.drop, degrees) | {
+        "snr_squared": validation.expected_drop,
+        "random_walk_drop": validation.walk_drop,
+        "folds": len(validation.folds),
+        "counted": len(validation.counted),
     }
 
 
 def _of_channel(
-    one: CrossValidation, means: Sequence[Mean], names: Sequence[str], channel: int, walk: float
+    validation: CrossValidation,
+    means: Sequence[Mean],
+    names: Sequence[str],
+    channel: int,
+    random_walk: float,
 ) -> Iterator[Row]:
-    """The effects are as all channels have them; held-out: as those of the other manoeuvres."""
-    shown = one.whole.effects.names
+    """With the estimate from all channels; held-out: with that from the other manoeuvres."""
+    shown = validation.whole.effects.names
 
     def fitted(without: Sequence[str]) -> tuple[float, int, EffectInformation] | None:
         some = [mean for mean in means if mean.manoeuvre not in without]
-        system = system_of(some, names, channel, shown, walk)
+        system = system_of(some, names, channel, shown, random_walk)
         return None if system is None else _fitted(system)
 
     whole = fitted(())
     if whole is None:
         return
     chi_squared, degrees, reduced = whole
-    yield row_of(FITTED, chi_squared, drop_of(best_of(one.whole.effects), reduced), degrees)
+    yield row_of(FITTED, chi_squared, drop_of(best_of(validation.whole.effects), reduced), degrees)
     before, drop, rows = 0.0, 0.0, 0
-    for fold, _ in one.counted:
+    for fold, _ in validation.counted:
         part = fitted(fold.manoeuvres)
         if part is not None:
             before += chi_squared - part[0]
@@ -127,7 +131,7 @@ def best_of(effects: EffectInformation) -> Array:
 
 
 def row_of(scope: str, before: float, drop: float, degrees: int) -> dict[str, Any]:
-    """What every row has: chi-squared without and with the effects, and the rms of either."""
+    """Common columns: chi-squared without and with the effects, and the rms of either."""
 
     def rms(squares: float) -> float | None:
         return float(np.sqrt(max(squares, 0.0) / degrees)) if degrees > 0 else None
@@ -158,7 +162,7 @@ def gain_of_line(
     gyro: Triad,
     mount: str,
 ) -> Iterator[TableRow]:
-    """What an oscillation explains about its axis, that of the largest standard deviation.
+    """The reduction by an oscillation about its axis, that of the largest standard deviation.
 
     Held-out: the frequency is that of all turns and the amplitude that of the other turns; only
     the phase is the turn's own, for nothing could predict it.
@@ -214,7 +218,7 @@ ORDERS = {"table_eccentricity": 1.0}  # the order of an effect that has none to 
 def gain_of_ripple(
     turns: Sequence[SteadyTurn], effect: str, values: Mapping[str, float], mount: str
 ) -> Iterator[TableRow]:
-    """What one sine and one cosine of the table's angle explain about its axis, in all turns.
+    """The reduction by a sine and a cosine of the table's angle about its axis, in all turns.
 
     Bias and slope are each turn's own, and the noise is white. Held-out: each turn with the ripple
     of the others; only the order is that of all. `values`: of the effect's parameters, with n.
@@ -240,16 +244,16 @@ def gain_of_ripple(
     folds = [
         fold_of([n], whole, summed([other for other in courses if other != n])) for n in courses
     ]
-    counted = [one for one in folds if one.counts]
+    counted = [fold for fold in folds if fold.counts]
     shared = {"mount": mount, "sensor": "gyro", "model": effect}
     yield "gain_effects", shared | {"effect": effect}
     fitted = float(best_of(whole) @ whole.right)
     row = row_of(FITTED, whole.chi_squared, fitted, whole.degrees)
     yield "gain", {**shared, "axis": None, **row, "snr_squared": snr_squared(whole)}
-    predicted = summed([name for one in counted for name in one.manoeuvres])
-    drop = sum(one.drop for one in counted)
+    predicted = summed([name for fold in counted for name in fold.manoeuvres])
+    drop = sum(fold.drop for fold in counted)
     row = row_of(HELD_OUT, predicted.chi_squared, drop, predicted.degrees)
-    row |= {"snr_squared": sum(one.expected_drop for one in counted)}
+    row |= {"snr_squared": sum(fold.expected_drop for fold in counted)}
     row |= {"folds": len(folds), "counted": len(counted)}
     yield "gain", {**shared, "axis": None, **row}
-    yield from _fold_rows(shared, [(one, one.counts) for one in folds])
+    yield from _fold_rows(shared, [(fold, fold.counts) for fold in folds])

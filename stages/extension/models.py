@@ -21,12 +21,12 @@ SENSORS = ("gyro", "accel")
 
 @dataclass(frozen=True)
 class SensorEvidence:
-    """What the equations of one sensor tell, those of all manoeuvres or of some.
+    """The information of the equations of a sensor, of all manoeuvres or of some.
 
-    `plain`: the fit without the effects, with the noise of the extended model; `effects`: what is
-    said of the effects, all else fitted and nothing taken to be known of them beforehand;
-    `walk_drop`: where the biases of the joint model walk and those of the extended one do not, or
-    less, by how much that lowers −2 log of the likelihood.
+    `plain`: the fit without the effects, with the noise of the extended model; `effects`: the
+    information on the effects, all else fitted, without a prior;
+    `walk_drop`: where the joint model has another random walk than the extended one, by how much
+    that lowers −2 log of the likelihood.
     """
 
     plain: Estimate
@@ -36,7 +36,7 @@ class SensorEvidence:
 
 @dataclass(frozen=True)
 class Models:
-    """Both models, the extended one with the walks of the biases that its effects leave."""
+    """Both models, the extended one with the random walks that remain given its effects."""
 
     joint: Campaign
     extended: Campaign
@@ -46,8 +46,8 @@ class Models:
     def shown(self) -> tuple[frozenset[str], frozenset[str]]:
         """The columns of the effects that gyros, and accelerometers, show by themselves.
 
-        What fitting all else leaves no more of than rounding is not shown, nor what would not be
-        seen at the largest size that is thought of.
+        A column is not shown where its information, all else fitted, is no more than rounding, or
+        where the largest plausible size would not be observable.
         """
         largest = np.array([e.largest for e in self.effects for _ in e.parameters])
         gyro, accel = (
@@ -64,35 +64,38 @@ class Models:
         ]
 
     def evidence(self, only: set[str] | None = None) -> list[SensorEvidence | None]:
-        """What gyros and accelerometers tell in some manoeuvres, or in all."""
+        """The evidence of gyros and accelerometers in some manoeuvres, or in all."""
         systems = self.systems(only)
-        walking: list[System | None] = [None, None]
-        walks, others = self.joint.solution.random_walks, self.extended.solution.random_walks
-        if any(walk and walk != other for walk, other in zip(walks, others, strict=True)):
-            walking = [
+        with_walk: list[System | None] = [None, None]
+        joint, extended = self.joint.solution.random_walks, self.extended.solution.random_walks
+        if any(walk and walk != other for walk, other in zip(joint, extended, strict=True)):
+            with_walk = [
                 system if walk and walk != other else None
                 for system, walk, other in zip(
-                    self.joint.systems([], PRIOR_SIGMA, only), walks, others, strict=True
+                    self.joint.systems([], PRIOR_SIGMA, only), joint, extended, strict=True
                 )
             ]
         return [
-            None if system is None else _evidence(system, walks)
-            for system, walks in zip(systems, walking, strict=True)
+            None if system is None else _evidence(system, joint)
+            for system, joint in zip(systems, with_walk, strict=True)
         ]
 
 
-def models_of(campaign: Campaign, effects: Sequence[Effect], walks: tuple[float, float]) -> Models:
-    """Both models of a mount for the effects that were named.
+def models_of(
+    campaign: Campaign, effects: Sequence[Effect], random_walks: tuple[float, float]
+) -> Models:
+    """Both models of a mount for the named effects.
 
-    `walks`: of the biases of gyros and accelerometers beside the effects, rad/s/√s and m/s²/√s.
+    `random_walks`: of the biases of gyros and accelerometers given the effects, rad/s/√s and
+    m/s²/√s.
     """
-    return Models(campaign, campaign.with_random_walks(walks), tuple(effects))
+    return Models(campaign, campaign.with_random_walks(random_walks), tuple(effects))
 
 
-def _evidence(system: System, walking: System | None) -> SensorEvidence:
-    """`walking`: the equations of the joint model where that has another walk."""
+def _evidence(system: System, joint: System | None) -> SensorEvidence:
+    """`joint`: the equations of the joint model where that has another random walk."""
     plain = _with(system, frozenset()).solve_shared()
-    drop = 0.0 if walking is None else plain.deviance - walking.solve_shared().deviance
+    drop = 0.0 if joint is None else plain.deviance - joint.solve_shared().deviance
     return SensorEvidence(plain, system.effect_information(), drop)
 
 
@@ -101,9 +104,9 @@ def _shown(system: System | None, largest: np.ndarray) -> frozenset[str]:
         return frozenset()
     reduced = system.effect_information()
     information = np.diag(reduced.information)
-    seen = information > MIN_INFORMATION_SHARE * system.raw_information()
-    clear = largest * np.sqrt(np.maximum(information, 0.0)) > MIN_OBSERVABLE_SIGMAS
-    return frozenset(np.array(reduced.names)[seen & clear].tolist())
+    determined = information > MIN_INFORMATION_SHARE * system.raw_information()
+    observable = largest * np.sqrt(np.maximum(information, 0.0)) > MIN_OBSERVABLE_SIGMAS
+    return frozenset(np.array(reduced.names)[determined & observable].tolist())
 
 
 def _with(system: System, shown: frozenset[str]) -> System:
@@ -115,6 +118,6 @@ def _with(system: System, shown: frozenset[str]) -> System:
         prior=system.prior[kept],
         prior_sigma=system.prior_sigma[kept],
         names=tuple(system.names[i] for i in kept),
-        # The errors that were eliminated are not asked for here, and hold the other columns.
+        # The eliminated errors are not used here, and refer to the other columns.
         eliminated=system.eliminated and replace(system.eliminated, steps=()),
     )

@@ -1,4 +1,4 @@
-"""The effects that criticism has named for one mount, and the findings that speak against them."""
+"""The named effects of one mount, and the findings that contradict the model with them."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -24,12 +24,12 @@ class Alarm(NamedTuple):
 
 @dataclass(frozen=True)
 class Named:
-    """What criticism says of one mount.
+    """The named effects of one mount.
 
     `in_blocks`: the effects that equations can hold, each with the value of the scanned variable;
     `in_spectrum`: the parameters of the others by effect and name; `classes`: by the name of an
     effect those that do the same to the data; `alarms`: by sensor, gyro or accel, the findings
-    that say that the model with the effects is not complete.
+    by which the model with the effects is not complete.
     """
 
     in_blocks: tuple[Effect, ...]

@@ -39,8 +39,8 @@ def grown(rate: Array, force: Array, lift: Array, seconds: float = SECONDS) -> t
 
     Parameters
     ----------
-    rate, force : (…, 3), rad/s and m/s², errors of what the sensors say, corrected
-    lift : (…, 3), m/s², the specific force that holds the case up: g, upward
+    rate, force : (…, 3), rad/s and m/s², errors of the corrected readings
+    lift : (…, 3), m/s², the specific force that supports the case: g, upward
     """
     attitude = rate * seconds
     # The attitude as computed has turned too far by ψ, so the specific force is turned by ψ.
@@ -48,28 +48,27 @@ def grown(rate: Array, force: Array, lift: Array, seconds: float = SECONDS) -> t
     return attitude, velocity
 
 
-# ---- What the extended model is worth to a user: errors of free inertial navigation after a
-# minute.
+# ---- The benefit of the extended model: errors of free inertial navigation after a minute.
 #
 # A user who corrects with M and b of the joint result, and knows nothing of the effects, is off by
 #
 #     δ = M⁻¹ ((M_e − M) truth + b_e − b + what the effects add to the reading)
 #
 # where M_e, b_e and the effects are those of the extended fit, taken as the truth. A user of the
-# extended result, effects and all, is off by what that fit leaves uncertain. Both are told for
-# every manoeuvre of the campaign, as if it went on for a minute: the mean error over it, in the
-# axes that the case had at its start, grown as `growth` has it. Effects of the table and of the
-# site are none of the IMU's: of them only what they did to the parameters counts. Nothing but the
-# named effects is in it, and no motion but the campaign's.
+# extended result, with the effects, has the errors by which that fit is uncertain. Both are given
+# for every manoeuvre of the campaign, as if it lasted a minute: the mean error over it, in the
+# axes of the case at its start, propagated by `grown`. Effects of the table and of the site are not
+# of the IMU: only their influence on the parameters is included. Only the named effects and the
+# motions of the campaign are considered.
 
 Row = dict[str, Any]
 
-TURNING = 1e-3  # rad/s
+MIN_TURN_RATE = 1e-3  # rad/s
 
 
 @dataclass(frozen=True)
 class Change:
-    """What a user of the joint result of one sensor lacks, with covariance: (p,) and (p, p)."""
+    """Extended less joint result of one sensor, with covariance: (p,) and (p, p)."""
 
     triad: Triad
     values: Array
@@ -110,46 +109,46 @@ def worth(
         )
         for i, parameter in enumerate(effect.parameters)
     }
-    felt = {"gyro": truth.rate, "accel": truth.force}
+    known = {"gyro": truth.rate, "accel": truth.force}
     slopes = {
-        sensor: _slopes(motion, felt[sensor], change, traces, number)
+        sensor: _slopes(motion, known[sensor], change, traces, number)
         for number, sensor in enumerate(("gyro", "accel"))
         if (change := changes.get(sensor)) is not None
     }
-    moves = np.abs(motion.rate) > TURNING
+    rotating = np.abs(motion.rate) > MIN_TURN_RATE
     for name, parts in _parts(campaign).items():
-        turning = any(moves[place] for places in parts.values() for place in places)
-        own = {s: [place for place in p if moves[place] == turning] for s, p in parts.items()}
+        turning = any(rotating[place] for places in parts.values() for place in places)
+        own = {s: [place for place in p if rotating[place] == turning] for s, p in parts.items()}
         if all(own.get(sensor) for sensor in slopes):
-            told = _row(own, slopes, changes, motion, site.gravity)
-            yield {"manoeuvre": name, "mount": mount} | told
+            row = _row(own, slopes, changes, motion, site.gravity)
+            yield {"manoeuvre": name, "mount": mount} | row
 
 
 def _parts(campaign: Campaign) -> dict[str, dict[str, list[int]]]:
     """Manoeuvre → sensor → the places of its stretches among all stretches of the campaign."""
-    whole = [one.plan.name for one in campaign.inputs.usable if one.plan.recorded == "whole"]
+    whole = [r.plan.name for r in campaign.inputs.usable if r.plan.recorded == "whole"]
     names = [("gyro", position.manoeuvre.name) for position in campaign.inputs.static_positions]
     names += [("gyro", name) for name in whole[: len(campaign.turn_motions)]]
     names += [("accel", name) for name, _, _ in campaign.static_forces]
     motions = [*campaign.static_motions, *campaign.turn_motions]
     motions += [motion for _, _, motion in campaign.static_forces]
-    found: dict[str, dict[str, list[int]]] = {}
+    parts: dict[str, dict[str, list[int]]] = {}
     start = 0
     for (sensor, name), motion in zip(names, motions, strict=True):
         after = start + len(motion.rate)
-        found.setdefault(name, {}).setdefault(sensor, []).extend(range(start, after))
+        parts.setdefault(name, {}).setdefault(sensor, []).extend(range(start, after))
         start = after
-    return found
+    return parts
 
 
 def _slopes(
     motion: Motion,
     truth: Array,
     change: Change,
-    told: dict[str, tuple[Array, Array]],
+    traces: dict[str, tuple[Array, Array]],
     number: int,
 ) -> Array:
-    """How the corrected error goes with each parameter, in the axes at the start, (n, p, 3)."""
+    """The corrected error per unit of each parameter, in the axes at the start, (n, p, 3)."""
     n = len(truth)
     slopes = np.zeros((n, len(change.values), 3))
     for i in range(3):
@@ -157,7 +156,7 @@ def _slopes(
         slopes[:, 9 + i, i] = 1.0
     for column, (effect, name) in enumerate(change.effects, UNKNOWNS):
         if of_the_imu(effect):
-            slopes[:, column] = told[name][number]
+            slopes[:, column] = traces[name][number]
     slopes = slopes @ np.linalg.inv(change.triad.matrix).T
     about = np.broadcast_to(motion.about, motion.up.shape)
     back = [turned_all(slopes[:, i], about, -motion.angle) for i in range(slopes.shape[1])]
@@ -165,7 +164,7 @@ def _slopes(
 
 
 def of_the_imu(effect: str) -> bool:
-    """Whether an effect goes with the IMU, and not with the table or the site."""
+    """Whether an effect is of the IMU, and not of the table or the site."""
     return not set(CATALOGUE[effect].sizes) <= {GOOD, POOR, USUAL}
 
 
@@ -182,8 +181,8 @@ def _row(
     lift = gravity * np.average(motion.up_at_start[every], axis=0, weights=seconds[every])
     errors, spreads = np.zeros((2, 3)), np.zeros((2, 3, 3))
     for sensor, slope in slopes.items():
-        some = own[sensor]
-        mean = np.average(slope[some], axis=0, weights=seconds[some])  # (p, 3)
+        places = own[sensor]
+        mean = np.average(slope[places], axis=0, weights=seconds[places])  # (p, 3)
         pair = (mean, 0 * mean) if sensor == "gyro" else (0 * mean, mean)
         change = changes[sensor]
         for i, grows in enumerate(grown(*pair, lift)):
@@ -191,7 +190,7 @@ def _row(
             spreads[i] += grows.T @ change.covariance @ grows
     rate = float(np.average(np.abs(motion.rate[every]), weights=seconds[every]))
     return {
-        "motion": "turn" if rate > TURNING else "rest",
+        "motion": "turn" if rate > MIN_TURN_RATE else "rest",
         "rate": rate,
         "seconds": SECONDS,
     } | {
@@ -202,7 +201,7 @@ def _row(
 
 
 def _sizes(error: Array, spread: Array) -> Row:
-    """An error of the joint result with its sigma, and what the extended one leaves, rms."""
+    """An error of the joint result with its sigma, and that of the extended one, rms."""
     size = float(np.linalg.norm(error))
     along = error / size if size else np.ones(3) / np.sqrt(3)
     return {

@@ -1,4 +1,4 @@
-"""The model with the named effects, refitted; what it gains, and which result is final."""
+"""The model with the named effects, refitted; its gain, and which result is final."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
@@ -51,26 +51,26 @@ def extension(
     but `decision` and `result` are empty.
     """
     causes = rows_of(criticism_findings), rows_of(effects), rows_of(members)
-    walks: dict[tuple[str, str], float] = defaultdict(float)
-    walks |= {(row["mount"], row["sensor"]): row["value"] for row in rows_of(random_walks)}
+    walk_of: dict[tuple[str, str], float] = defaultdict(float)
+    walk_of |= {(row["mount"], row["sensor"]): row["value"] for row in rows_of(random_walks)}
     joint = {
         "gyro": (gyroscope_parameters, gyroscope_fit, gyroscope_fit_manoeuvres),
         "accel": (accelerometer_parameters, accelerometer_fit, accelerometer_fit_manoeuvres),
     }
-    made: dict[str, list[Any]] = {name: [] for name in DECLARED.writes}
+    rows: dict[str, list[Any]] = {name: [] for name in DECLARED.writes}
     for data in mounts:
-        one = Extension(
+        extended = Extension(
             data,
             named_of(*causes, data.mount),
             {s: Joint(*(joint_rows(t, data.mount) for t in of)) for s, of in joint.items()},
-            (walks[data.mount, "gyro"], walks[data.mount, "accel"]),
+            (walk_of[data.mount, "gyro"], walk_of[data.mount, "accel"]),
         )
-        for table, row in one.rows(simulated):
-            made[table].append(row)
-    covariances = made.pop("covariance")
+        for table, row in extended.rows(simulated):
+            rows[table].append(row)
+    covariances = rows.pop("covariance")
     written = {
-        name: pd.DataFrame(made[name], columns=[column.name for column in table.columns])
-        if made.get(name)
+        name: pd.DataFrame(rows[name], columns=[column.name for column in table.columns])
+        if rows.get(name)
         else table.empty()
         for name, table in DECLARED.writes.items()
     }
@@ -89,8 +89,8 @@ class Joint:
 class Extension:
     """The extended model of one mount.
 
-    `joint`: rows of the joint result, by sensor; `walks`: of the biases of gyros and
-    accelerometers beside the named effects.
+    `joint`: rows of the joint result, by sensor; `random_walks`: of the biases of gyros and
+    accelerometers given the named effects.
     """
 
     def __init__(
@@ -98,10 +98,10 @@ class Extension:
         data: CampaignData,
         named: Named,
         joint: Mapping[str, Joint],
-        walks: tuple[float, float],
+        random_walks: tuple[float, float],
     ) -> None:
         self.data, self.named, self.joint = data, named, joint
-        self.random_walks = walks
+        self.random_walks = random_walks
         self.solutions: dict[str, Solved] = {}
         self.validated: Mapping[str, CrossValidation] = {}
 
@@ -119,11 +119,11 @@ class Extension:
         models = models_of(campaign_of(data), self.named.in_blocks, self.random_walks)
         for sensor, system, walk in zip(SENSORS, models.systems(), self.random_walks, strict=True):
             if system is not None:
-                one = solved(models, sensor, system, walk, mount)
-                self.solutions[sensor] = one
-                yield "covariance", one.covariance_rows()
-                yield from (("parameters", row) for row in one.rows)
-                yield "fit", one.fit_row(data.noise.degrees)
+                solution = solved(models, sensor, system, walk, mount)
+                self.solutions[sensor] = solution
+                yield "covariance", solution.covariance_rows()
+                yield from (("parameters", row) for row in solution.rows)
+                yield "fit", solution.fit_row(data.noise.degrees)
                 for row in self.joint[sensor].manoeuvres:
                     yield "fit_manoeuvres", {**row, "method": EXTENDED}
         self.validated = cross_validate(models)
@@ -131,9 +131,9 @@ class Extension:
         triads = {"gyro": data.result.gyro, "accel": data.result.accelerometer}
         changes = {
             sensor: change
-            for sensor, one in self.solutions.items()
+            for sensor, solution in self.solutions.items()
             if (triad := triads[sensor]) is not None
-            and (change := change_of(one, triad)) is not None
+            and (change := change_of(solution, triad)) is not None
         }
         for row in worth(models.extended, models.effects, changes, mount):
             yield "worth", row
