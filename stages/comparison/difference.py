@@ -79,7 +79,7 @@ class Difference:
     def sentence(self, beyond: bool, among: int) -> str:
         """The difference in the laboratory's unit, and whether it is more than chance."""
         subject = named(self.stage, self.quantity)
-        one, other = self.between
+        first, second = self.between
         if self.value is None or self.in_sigmas is None or self.p_value is None:
             return f"{subject}: {self.remark}."
         unit = quantity(self.quantity, self.unit).laboratory
@@ -89,32 +89,32 @@ class Difference:
         chance = f"({p_is(self.p_value)})"
         remark = f" {self.remark}." if self.remark else ""
         if beyond:
-            told = _(
+            verdict = _(
                 "{value} and {other} differ by {far}: more than chance {chance}.",
-                value=one,
-                other=other,
+                value=first,
+                other=second,
                 far=far,
                 chance=chance,
             )
         elif abs(self.in_sigmas) <= MAX_AGREEING_SIGMAS:
-            told = _(
+            verdict = _(
                 "{value} and {other} agree within their sigmas: they differ by {far} {chance}.",
-                value=one,
-                other=other,
+                value=first,
+                other=second,
                 far=far,
                 chance=chance,
             )
         else:
-            told = _(
+            verdict = _(
                 "{value} and {other} differ by {far}: no more than chance among {among} "
                 "comparisons {chance}.",
-                value=one,
-                other=other,
+                value=first,
+                other=second,
                 far=far,
                 among=among,
                 chance=chance,
             )
-        return f"{subject}: {told}{remark}"
+        return f"{subject}: {verdict}{remark}"
 
 
 def named(stage: str, name: str) -> str:
@@ -199,6 +199,6 @@ class Results:
 
     def names(self, method: str) -> Iterator[str]:
         """Names of the parameters that a method determined."""
-        for wanted, name in self._rows:
-            if wanted == method and self.determined(method, name):
+        for of_method, name in self._rows:
+            if of_method == method and self.determined(method, name):
                 yield name

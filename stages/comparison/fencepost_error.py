@@ -33,9 +33,9 @@ def off_by_a_sample(
     motions: pd.DataFrame,
     level: float,
 ) -> Iterator[Difference]:
-    """The one row that names it; none where it is not so.
+    """A single row, or none where the error is not detected.
 
-    Where the source does not tell its window, it is taken as S0's: 180° at the rate and sample
+    Where the source does not state its window, S0's is assumed: 180° at the rate and sample
     interval of the turns of this campaign, and just one sample may be too many or too few. What
     an oscillation leaves of a window that cuts it at any phase is in the sigma.
     """
@@ -43,15 +43,15 @@ def off_by_a_sample(
     scales = [
         row for row in rows_of(published) if row["sensor"] == "gyro" and row["quantity"] in SCALE
     ]
-    cases = [one for row in scales for one in [_case(row, gyro, windows)] if one is not None]
+    cases = [case for row in scales if (case := _case(row, gyro, windows)) is not None]
     if len(cases) < MIN_AXES:
         return
-    told = all(row["samples"] is not None for row in scales)
+    is_stated = all(row["samples"] is not None for row in scales)
     theirs, ours, sigma, samples = np.array(cases).T
-    found, speed = fencepost(theirs, ours, sigma, samples), _speed(motions)
-    if not found.is_detected(level) or not (told or abs(found.whole) == 1):
+    result, speed = fencepost(theirs, ours, sigma, samples), _speed(motions)
+    if not result.is_detected(level) or not (is_stated or abs(result.whole) == 1):
         return
-    if speed is not None and _explains(speed, found, samples):
+    if speed is not None and _explains(speed, result, samples):
         return
     yield Difference(
         kind=KIND,
@@ -65,23 +65,23 @@ def off_by_a_sample(
         second_value=None,
         sigma=None,
         between=("this calibration", "the published values"),
-        remark=_words(found, samples, told, speed),
+        remark=_words(result, samples, is_stated, speed),
     )
 
 
 def _case(row: Row, gyro: Results, windows: Sequence[Row]) -> tuple[float, ...] | None:
-    """Published and our scale factor, sigma of their difference, and N; none where one lacks."""
+    """Published and our scale factor, sigma of their difference, and N, if all are known."""
     axis, angle = PARTS[row["quantity"]].axes, row["window"] or pi
     ours = gyro.determined("joint", f"scale_{axis}")
     like = {w["axis"]: w for w in sorted(windows, key=lambda w: -abs(w["angle"] - angle))}
     # An axis without windows of its own counts with the worst of the others.
-    own = like.get(axis) or max(like.values(), key=lambda w: w["cut_sigma"], default=None)
+    window = like.get(axis) or max(like.values(), key=lambda w: w["cut_sigma"], default=None)
     samples = row["samples"]
-    if samples is None and own is not None:
-        samples = round(angle / own["angle"] * own["samples"])
+    if samples is None and window is not None:
+        samples = round(angle / window["angle"] * window["samples"])
     if ours is None or not samples:
         return None
-    cut = own["cut_sigma"] if own is not None else 0.0
+    cut = window["cut_sigma"] if window is not None else 0.0
     sigma = float(np.linalg.norm([ours["sigma"], row["sigma"] or 0.0, cut]))
     return row["value"], ours["value"], sigma, float(samples)
 
@@ -97,19 +97,21 @@ def _speed(motions: pd.DataFrame) -> tuple[float, float] | None:
     return common.amount, common.sigma
 
 
-def _explains(speed: tuple[float, float], found: Fencepost, samples: Array) -> bool:
+def _explains(speed: tuple[float, float], result: Fencepost, samples: Array) -> bool:
     """Whether a window by time is off by the same amount for the speed of the table alone."""
-    common = float(found.cause.amount / samples.mean())
-    sigma = float(np.hypot(speed[1], found.cause.sigma / samples.mean()))
+    common = float(result.cause.amount / samples.mean())
+    sigma = float(np.hypot(speed[1], result.cause.sigma / samples.mean()))
     return abs(speed[0] - common) < MAX_EXPLAINED_SIGMAS * sigma
 
 
-def _words(found: Fencepost, samples: Array, told: bool, speed: tuple[float, float] | None) -> str:
-    ratios = ", ".join(fixed(PPM.of(ratio), 0) for ratio in found.ratios)
+def _words(
+    result: Fencepost, samples: Array, is_stated: bool, speed: tuple[float, float] | None
+) -> str:
+    ratios = ", ".join(fixed(PPM.of(ratio), 0) for ratio in result.ratios)
     counts = sorted({round(n) for n in samples})
-    each = ", ".join(f"{whole(n + found.whole)} samples for {whole(n)}" for n in counts)
-    factor = f"{fixed(found.cause.amount, 2)} ± {fixed(found.cause.sigma, 2)}"
-    said = _(
+    each = ", ".join(f"{whole(n + result.whole)} samples for {whole(n)}" for n in counts)
+    factor = f"{fixed(result.cause.amount, 2)} ± {fixed(result.cause.sigma, 2)}"
+    sentence = _(
         "fencepost: the published ones differ from ours by {ratios} ppm, {factor} "
         "samples of their windows, as if {each} had been summed; a window of N samples "
         "has N + 1 edges",
@@ -117,9 +119,11 @@ def _words(found: Fencepost, samples: Array, told: bool, speed: tuple[float, flo
         factor=factor,
         each=each,
     )
-    if not told:
-        said += _(" (their window is not told; it is taken as 180° by time)")
+    if not is_stated:
+        sentence += _(" (their window is not stated; 180° by time is assumed)")
     if speed is not None:
         real = f"{fixed(PPM.of(speed[0]), 1)} ± {fixed(PPM.of(speed[1]), 1)} ppm"
-        said += _(". The speed of the table is not the cause: here it is off by {real}", real=real)
-    return said
+        sentence += _(
+            ". The speed of the table is not the cause: here it is off by {real}", real=real
+        )
+    return sentence

@@ -76,28 +76,28 @@ def against_published(
     """
     for row in rows_of(published):
         stage, name = STAGES[row["sensor"]], row["quantity"]
-        own = results[stage]
-        ours = own.of("joint", name)
-        missing = ours is None or ours["value"] is None
-        reason = ours["reason"] if ours else _("nothing was recorded that shows it")
-        table = own.of("rate_table", name)
+        of_mount = results[stage]
+        joint_row = of_mount.of("joint", name)
+        missing = joint_row is None or joint_row["value"] is None
+        reason = joint_row["reason"] if joint_row else _("nothing was recorded that shows it")
+        table = of_mount.of("rate_table", name)
         if table is not None and table["reason"]:  # with the rank of what was put in
             reason = table["reason"]
         alone = row["sigma"] is None
         yield Difference(
             kind=PUBLISHED,
-            mount=own.mount,
+            mount=of_mount.mount,
             stage=stage,
             quantity=name,
             unit=row["unit"],
-            first=own.id("joint", name),
+            first=of_mount.id("joint", name),
             second=row["source"],
-            first_value=None if ours is None else ours["value"],
+            first_value=None if joint_row is None else joint_row["value"],
             second_value=row["value"],
             sigma=(
                 None
-                if ours is None or missing
-                else float(np.hypot(ours["sigma"], 0.0 if alone else row["sigma"]))
+                if joint_row is None or missing
+                else float(np.hypot(joint_row["sigma"], 0.0 if alone else row["sigma"]))
             ),
             between=("this calibration", _("the published value ({source})", source=row["source"])),
             remark=(

@@ -34,7 +34,9 @@ def forward_against_backward(
         if bias is None:
             continue
         for (forward_name, forward), (backward_name, backward) in pairs:
-            found = both_ways(forward, backward, bias["value"], bias["sigma"], data.earth, scatter)
+            scale_factors = both_ways(
+                forward, backward, bias["value"], bias["sigma"], data.earth, scatter
+            )
             yield Difference(
                 kind=FORWARD_AGAINST_BACKWARD,
                 mount=data.mount,
@@ -43,9 +45,9 @@ def forward_against_backward(
                 unit="1",
                 first=forward_name,
                 second=backward_name,
-                first_value=found.forward,
-                second_value=found.backward,
-                sigma=found.sigma,
+                first_value=scale_factors.forward,
+                second_value=scale_factors.backward,
+                sigma=scale_factors.sigma,
                 between=(forward_name, backward_name),
                 place=f"{forward_name},{backward_name}" if len(pairs) > 1 else "",
             )
@@ -55,9 +57,9 @@ def _pairs(turns: list[tuple[str, WholeTurn]]) -> list[Pair]:
     """Forward turns, each with a backward one of the same angle, the same end of the axis up."""
     pairs: list[Pair] = []
     for up in (1, -1):
-        own = [(name, turn) for name, turn in turns if turn.up * up > 0]
-        backward = [turn for turn in own if turn[1].angle < 0]
-        for turn in own:
+        same_end = [(name, turn) for name, turn in turns if turn.up * up > 0]
+        backward = [turn for turn in same_end if turn[1].angle < 0]
+        for turn in same_end:
             alike = [b for b in backward if abs(b[1].angle + turn[1].angle) < 1e-9]
             if turn[1].angle > 0 and alike:
                 backward.remove(alike[0])
@@ -68,15 +70,15 @@ def _pairs(turns: list[tuple[str, WholeTurn]]) -> list[Pair]:
 # --- Static positions against rate segments: S0, tables 5-2 and 5-7 ---
 
 STATIC_AGAINST_TURNS = "static_against_turns"
-UNKNOWN_CROSS = 0.01  # rad, a mounting askew by half a degree: a cross term that no one determined
+UNKNOWN_CROSS = 0.01  # rad, half a degree: assumed for a cross term that is not determined
 
 
 def static_against_turns(data: CampaignData, gyro: Results) -> Iterator[Difference]:
     """Bias and scale factor of each axis from its rests up and down, and from its turns.
 
     Both sigmas are of noise and of what is known of table and site. The scatter between
-    manoeuvres that the joint estimate may allow for is left out: it stands for what the model
-    lacks, and that is what differs here.
+    manoeuvres that the joint estimate may allow for is left out: it represents unmodelled
+    effects, which are compared here.
     """
     for i, axis in enumerate(AXES):
         rests = list(upright_positions(data.gyro_inputs, i))
@@ -86,11 +88,11 @@ def static_against_turns(data: CampaignData, gyro: Results) -> Iterator[Differen
         if static is None or gyro.determined("turns", f"bias_{axis}") is None:
             continue
         turns = bias_and_scale([turn for _unused, turn in angles_about(data, i)], data.earth)
-        found = {
+        estimates = {
             "bias": (static.bias, static.bias_sigma, 0, "rad/s"),
             "scale": (static.scale, static.scale_sigma, 1, "1"),
         }
-        for name, (value, sigma, column, unit) in found.items():
+        for name, (value, sigma, column, unit) in estimates.items():
             if value is None or sigma is None:
                 continue
             yield Difference(
@@ -113,7 +115,7 @@ def static_against_turns(data: CampaignData, gyro: Results) -> Iterator[Differen
 
 
 def _cross(gyro: Results, axis: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """What a gyro senses of rates along x, y, z besides its own axis, (3,)."""
+    """Cross terms of a gyro to rates along x, y, z, 0 for its own axis, (3,)."""
     rows = [gyro.of("joint", f"cross_{axis}{other}") for other in AXES]
     values = [
         UNKNOWN_CROSS if row is None or row["value"] is None else row["value"] for row in rows
@@ -133,8 +135,8 @@ def straight_line(
 ) -> Iterator[Difference]:
     """Whether what the gyros read goes with the rate alone; the runs of all mounts at once.
 
-    The noise is that of the residuals; `scatter`, rad/s, between the runs of each mount tells only
-    how runs weigh. Runs that do not belong to the others are left out. One form
+    The noise is that of the residuals; `scatter`, rad/s, between the runs of each mount, serves
+    for their weights only. Runs that do not belong to the others are left out. One form
     for all gyros may be the table's as well as the gyros'. Where no mount recorded another gyro
     than the one that turned, it is also all that "installation errors" can be made of: S4's least
     squares, its inputs in another order, turns the bend into cross terms.
@@ -143,18 +145,18 @@ def straight_line(
     if not len(data.rate):
         return
     bent = np.hstack([data.straight, columns_of(data)["cubic"]])
-    apart = [one.row for one in outliers(bent, data.mean, data.sigma, MAX_OUTLIER_P)]
-    found = nonlinearities(data.less(apart))
-    left_out = ", ".join(runs[data.run[row]].position.name for row in apart)
+    outlying = [one.row for one in outliers(bent, data.mean, data.sigma, MAX_OUTLIER_P)]
+    tests = nonlinearities(data.less(outlying))
+    left_out = ", ".join(runs[data.run[row]].position.name for row in outlying)
     for form, unit in FORMS.items():
-        if form in found:
-            test = found[form]
+        if form in tests:
+            test = tests[form]
             yield Difference(
                 kind=KIND,
                 stage="gyroscope",
                 quantity=form,
                 unit=unit,
-                first=_("{rate} steady runs", rate=len(data.rate) - len(apart)),
+                first=_("{rate} steady runs", rate=len(data.rate) - len(outlying)),
                 second=_("a scale factor and a bias for each gyro"),
                 first_value=float(test.values[0]),
                 second_value=0.0,
@@ -164,6 +166,6 @@ def straight_line(
                 remark=_(
                     "Left out, for they do not belong to the others: {left_out}", left_out=left_out
                 )
-                if apart
+                if outlying
                 else "",
             )

@@ -45,13 +45,13 @@ def comparison(
         yield from against_published(published, {r.stage: r for r in (accelerometer, gyro)})
         yield from off_by_a_sample(published, gyro, growing, motions, level)
 
-    found = [difference for data in mounts for difference in of_mount(data)]
-    found += straight_line(
+    differences = [difference for data in mounts for difference in of_mount(data)]
+    differences += straight_line(
         [run for data in mounts for run in data.gyro_inputs.steady_rates],
         mounts[0].earth,
         [scatter.get(data.mount, 0.0) for data in mounts],
     )
-    return {"differences": table_of(found, level)}
+    return {"differences": table_of(differences, level)}
 
 
 STAGE = Stage(comparison, DECLARED, gathers={"mounts": campaigns_of})

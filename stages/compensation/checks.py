@@ -36,7 +36,7 @@ UNITS = {
     "angle": ("the angle", DEGREES, SECONDS_OF_ARC),
 }
 SI = {"gravity": "m/s²", "force_up": "m/s²", "rate_up": "rad/s", "angle": "rad"}
-MAX_EXPECTED_SIGMAS = 3.0  # sigmas, from which a sentence says that the parameters do not tell all
+MAX_EXPECTED_SIGMAS = 3.0  # sigmas, above which the parameters do not explain the check
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Check:
         """The row of the table; `mount` is empty where there is a single one."""
         name, unit, fine = UNITS[self.quantity]
         off, sigma = fine.of(self.after - self.expected), fine.of(self.sigma)
-        left, spread = with_sigma(off, sigma, decimals_of(sigma))
+        remaining, spread = with_sigma(off, sigma, decimals_of(sigma))
         before = fixed(fine.of(self.before - self.expected), decimals_of(sigma) or 0)
         far = (self.after - self.expected) / self.sigma
         verdict = (
@@ -84,13 +84,13 @@ class Check:
             "in_sigmas_after": far,
             "sentence": _(
                 "{manoeuvre}: {name} differs from {value} by {before} {name_2} before and by "
-                "{left} ± {spread} {name_2} after compensation: {verdict}.",
+                "{after} ± {spread} {name_2} after compensation: {verdict}.",
                 manoeuvre=self.manoeuvre,
                 name=name,
                 value=value,
                 before=before,
                 name_2=fine.name,
-                left=left,
+                after=remaining,
                 spread=spread,
                 verdict=verdict,
             ),
@@ -98,7 +98,7 @@ class Check:
 
 
 def checks(data: CampaignData) -> Iterator[Check]:
-    """Every rest and every whole turn of one mount."""
+    """Every static position and every whole rotation of one mount."""
     if (triad := data.result.accelerometer) is not None:
         for position in data.accelerometer_positions[0]:
             yield from _forces(position, triad, data)
@@ -116,7 +116,7 @@ def missing(parameters: pd.DataFrame, sensor: str, mount: str) -> Row:
     for row in joint_rows(parameters, mount):
         if row["parameter"] in linear_names() and row["value"] is None:
             reasons.setdefault(row["reason"], []).append(row["parameter"])
-    told = "; ".join(f"{', '.join(names)}: {reason}" for reason, names in reasons.items())
+    undetermined = "; ".join(f"{', '.join(names)}: {reason}" for reason, names in reasons.items())
     nothing = ("expected", "expected_sigma", "before", "after", "after_sigma", "in_sigmas_after")
     return dict.fromkeys(nothing) | {
         "id": f"{with_mount('compensation', mount)}/{sensor}",
@@ -127,7 +127,7 @@ def missing(parameters: pd.DataFrame, sensor: str, mount: str) -> Row:
         "sentence": _(
             "The {sensor}s are not compensated, for not all of M and bias is determined. {value}.",
             sensor=sensor,
-            value=told or "Nothing was recorded that shows them",
+            value=undetermined or "Nothing was recorded that shows them",
         ),
     }
 
@@ -205,7 +205,7 @@ def _noise_along(direction: Array, triad: Triad, sigma: Array) -> float:
 def _angle(rotation: Recorded, triad: Triad, data: CampaignData) -> Iterator[Check]:
     """The angle of a whole turn about its axis, with the earth's rate taken out.
 
-    The axis stands still in body and laboratory, so the earth's rate along it is the same all the
+    The axis is fixed in body and laboratory, so the earth's rate along it is the same all the
     time: ω_e sinφ for an upright axis.
     """
     m, seconds = rotation.plan, rotation.blocks.seconds

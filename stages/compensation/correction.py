@@ -1,4 +1,4 @@
-"""The errors taken out of the samples, and the envelope of what is left."""
+"""Samples corrected for the errors, and their envelope."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ ALL = np.iinfo(np.int64).max  # a record number that no log reaches
 
 
 def truth_of(readings: Array, triad: Triad | None, weight: float = 1.0) -> Array:
-    """What three sensors felt by what they read, (n, 3); NaN where their M is not determined.
+    """The input of three sensors from their readings, (n, 3); NaN where M is not determined.
 
     For sums over time `weight` is the time that the bias has added to, s.
     """
@@ -64,9 +64,9 @@ def mounted(mounts: Sequence[CampaignData], segments: pd.DataFrame) -> dict[str,
     mount = {m.name: place for place, data in enumerate(mounts) for m in data.plan}
     result: dict[str, list[Mounted]] = {}
     for log in dict.fromkeys(m.log for data in mounts for m in data.plan):
-        own = [data for data in mounts if any(m.log == log for m in data.plan)]
-        if len(own) == 1:
-            result[log] = [Mounted(0, ALL, own[0].result)]
+        selected = [data for data in mounts if any(m.log == log for m in data.plan)]
+        if len(selected) == 1:
+            result[log] = [Mounted(0, ALL, selected[0].result)]
             continue
         runs: list[tuple[int, int, int]] = []
         for row in sorted(rows_of(segments[segments["log"] == log]), key=_start):
@@ -120,12 +120,12 @@ class CompensatedStream(Stream):
         truth = np.full(readings.shape, np.nan)
         for number, log in enumerate(names):
             for part in self.mounted.get(log, ()):
-                own = (index == number) & (record >= part.first) & (record < part.after)
-                if own.any():
-                    masked = self.masks.of(log, record[own])
-                    kept = np.where(masked.channels, np.nan, readings[own])
+                selected = (index == number) & (record >= part.first) & (record < part.after)
+                if selected.any():
+                    masked = self.masks.of(log, record[selected])
+                    kept = np.where(masked.channels, np.nan, readings[selected])
                     kept[masked.whole] = np.nan
-                    truth[own] = part.truth(kept)
+                    truth[selected] = part.truth(kept)
         return truth
 
 
@@ -138,9 +138,9 @@ def envelope(samples: CompensatedStream, traces: pd.DataFrame) -> pd.DataFrame:
         str(log): (rows["from_record"].to_numpy(np.int64), rows["to_record"].to_numpy(np.int64))
         for log, rows in traces.groupby("log", sort=False)
     }
-    own = dict(list(traces.groupby("log", sort=False)))
+    selected = dict(list(traces.groupby("log", sort=False)))
     frames = [
-        own[log][["log", "from_record", "to_record", "from_s", "to_s"]].assign(
+        selected[log][["log", "from_record", "to_record", "from_s", "to_s"]].assign(
             **{f"least_{c}": total.least[:, i] for i, c in enumerate(tables.CHANNELS)},
             **{f"most_{c}": total.most[:, i] for i, c in enumerate(tables.CHANNELS)},
         )

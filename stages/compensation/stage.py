@@ -6,7 +6,7 @@ from typing import Any
 import pandas as pd
 
 from inertial import tables
-from inertial.campaign import findings as found
+from inertial.campaign import findings as findings
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.findings import Finding
 from inertial.campaign.masked_samples import Masks
@@ -65,7 +65,7 @@ def compensation(
         )
     (facts,) = rows_of(campaign)
     if facts["compensated"]:
-        yield "findings", found.table_of([ALREADY])
+        yield "findings", findings.table_of([ALREADY])
         return
     rows: list[Row] = []
     for data in mounts:

@@ -1,4 +1,4 @@
-"""White noise of every channel in every manoeuvre, from the data, beside the data sheet's."""
+"""White noise of every channel in every manoeuvre, with the value of the data sheet."""
 
 from collections.abc import Iterator
 from itertools import pairwise

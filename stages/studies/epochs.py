@@ -143,8 +143,8 @@ def _add(
     step: float,
     mount: str,
 ) -> None:
-    told = np.isfinite(readings).any(axis=0) & np.isfinite(density)
-    needed = (named.formula.weights != 0) @ ~told == 0
+    usable = np.isfinite(readings).any(axis=0) & np.isfinite(density)
+    needed = (named.formula.weights != 0) @ ~usable == 0
     for name in np.array(named.names)[~needed]:
         what = f"{with_mount(named.stage, mount)}: {name}"
         reason = _("not all of its rests were recorded, with their noise")
@@ -153,7 +153,7 @@ def _add(
     if not names:
         return
     formula = Formula(named.formula.weights[needed], named.formula.constant[needed])
-    readings, density = np.where(told, readings, 0.0), np.where(told, density, 0.0)
+    readings, density = np.where(usable, readings, 0.0), np.where(usable, density, 0.0)
     sensor = SENSOR_OF[named.stage]
     keys = [
         {"mount": mount, "sensor": sensor, "method": "rests", "quantity": name} for name in names

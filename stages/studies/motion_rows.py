@@ -28,13 +28,13 @@ def angles(motion: WholeMotion) -> list[Row]:
     # What bends like a parabola within a stretch is a ramp, and no swing.
     place = np.arange(length) - (length - 1) / 2
     columns = np.column_stack([np.ones(length), place, place**2])
-    left = np.eye(length) - columns @ np.linalg.pinv(columns)
+    residual = np.eye(length) - columns @ np.linalg.pinv(columns)
     k = len(table.time) // length
     time, angle, was_set, away, sigma = (
         values[: k * length].reshape(k, length)
         for values in (table.time, table.angle, set_angle, off, table.sigma)
     )
-    swing = np.ptp(away @ left, axis=1) / 2
+    swing = np.ptp(away @ residual, axis=1) / 2
     means = [part.mean(axis=1) for part in (time, angle, was_set)]
     inside = np.column_stack([*means, sigma[:, length // 2], swing])
     ends = np.column_stack(
@@ -72,20 +72,20 @@ def numbers(motion: WholeMotion) -> list[Row]:
     if motion.first > 0 and motion.after < len(motion.increments):
         ramps["spin-up"] = spin_up(motion.table, motion.first, speed)
         ramps["spin-down"] = spin_down(motion.table, motion.after, speed)
-    found = [("speed", speed, set_rate, "rad/s")]
+    estimates = [("speed", speed, set_rate, "rad/s")]
     for name, ramp in ramps.items():
-        found.append((f"{name} start", ramp.start, None, "s"))
-        found.append((f"{name} seconds", ramp.seconds, lasts, "s"))
-        found.append((f"{name} acceleration", ramp.acceleration, acceleration, "rad/s²"))
+        estimates.append((f"{name} start", ramp.start, None, "s"))
+        estimates.append((f"{name} seconds", ramp.seconds, lasts, "s"))
+        estimates.append((f"{name} acceleration", ramp.acceleration, acceleration, "rad/s²"))
     return [
         {
             "manoeuvre": motion.plan.name,
             "quantity": quantity,
-            "value": one.value,
-            "sigma": one.sigma,
+            "value": estimate.value,
+            "sigma": estimate.sigma,
             "set_value": was_set,
             "unit": unit,
         }
-        for quantity, one, was_set, unit in found
-        if np.isfinite(one.value) and np.isfinite(one.sigma)
+        for quantity, estimate, was_set, unit in estimates
+        if np.isfinite(estimate.value) and np.isfinite(estimate.sigma)
     ]

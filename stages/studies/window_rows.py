@@ -26,11 +26,11 @@ from stages.studies.table_motion import Gyros, WholeMotion
 Array = NDArray[np.float64]
 Row = dict[str, Any]
 
-HALF = pi  # rad, of a window, as S0 has it
+WINDOW_ANGLE = pi  # rad, of a window, as S0 has it
 CLOSE_STARTS_S = 1.0  # within which every start of a window has a row
 MAX_STARTS = 200  # of windows over the whole steady part
 MAX_ENDS = 200  # of windows that grow
-SHORTEST = pi / 36  # rad, of a window that grows
+MIN_WINDOW_ANGLE = pi / 36  # rad, of a window that grows
 
 
 @dataclass(frozen=True)
@@ -71,23 +71,23 @@ class Pair:
     @property
     def half(self) -> int:
         """Samples of a window of 180° at the set rate."""
-        return round(HALF / (self.rate * self.step))
+        return round(WINDOW_ANGLE / (self.rate * self.step))
 
     def summed(self) -> tuple[Array, Array]:
         """What the gyro summed in the steady part of each turn, at the edges."""
-        one, other = (
+        first, second = (
             edges_of(motion.increments[motion.first : motion.after, self.axis])
             for motion in (self.forward, self.backward)
         )
-        return one, other
+        return first, second
 
     def turned(self) -> tuple[Array, Array]:
         """The angle of the table about the body axis, by time and angle, at the same edges."""
-        one, other = (
+        first, second = (
             motion.signed[motion.first : motion.after + 1] * float(motion.plan.axis[self.axis])
             for motion in (self.forward, self.backward)
         )
-        return one, other
+        return first, second
 
     def rows(
         self, window: Window, by: str, table_sigma: float, *, any_phase: bool = False
@@ -164,7 +164,7 @@ def sliding(pair: Pair, whole: Row) -> list[Row]:
 
 def growing(pair: Pair, whole: Row) -> list[Row]:
     """Windows from the start of the steady part to an angle that grows."""
-    shortest = max(round(SHORTEST / (pair.rate * pair.step)), 1)
+    shortest = max(round(MIN_WINDOW_ANGLE / (pair.rate * pair.step)), 1)
     if pair.samples < shortest:
         return []
     samples = np.unique(np.linspace(shortest, pair.samples, MAX_ENDS).astype(int))
@@ -203,8 +203,8 @@ def together(values: Iterable[Valued]) -> Valued | None:
     found = list(values)
     if not found:
         return None
-    weights = np.array([one.sigma for one in found]) ** -2
-    numbers = np.array([one.value for one in found])
+    weights = np.array([first.sigma for first in found]) ** -2
+    numbers = np.array([first.value for first in found])
     mean = float(np.average(numbers, weights=weights))
     chi_squared = float(np.sum(weights * (numbers - mean) ** 2))
     beyond = max(chi_squared / max(len(found) - 1, 1), 1.0)
@@ -223,11 +223,11 @@ def pair_of(
     assert up is not None  # else the turn is refused
     densities = [data.noise.of(m.plan.name, "steady", GYRO)[i] for m in (forward, backward)]
     others = [
-        one
+        first
         for motion in motions
         if abs(float(motion.plan.axis[i])) < 0.5 and _same_rate(motion, forward)
-        for one in [excess(motion)]
-        if one is not None
+        for first in [excess(motion)]
+        if first is not None
     ]
     return Pair(
         i,
@@ -242,5 +242,5 @@ def pair_of(
     )
 
 
-def _same_rate(one: WholeMotion, other: WholeMotion) -> bool:
-    return bool(np.isclose(abs(one.plan.rate or 0.0), abs(other.plan.rate or 0.0), rtol=1e-6))
+def _same_rate(first: WholeMotion, second: WholeMotion) -> bool:
+    return bool(np.isclose(abs(first.plan.rate or 0.0), abs(second.plan.rate or 0.0), rtol=1e-6))
