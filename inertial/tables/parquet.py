@@ -37,7 +37,6 @@ TYPES: dict[str, pa.DataType] = {
 }
 # Rows of a table: as a frame, as a batch of Arrow, or one mapping for each.
 Rows: TypeAlias = "pd.DataFrame | pa.RecordBatch | Sequence[Mapping[str, Any]]"
-WRITTEN = {"compression": "zstd", "write_statistics": False}
 
 
 @cache
@@ -52,6 +51,12 @@ def _field(column: Column) -> pa.Field:
     metadata = {"unit": column.unit, "frame": column.frame, "meaning": column.meaning}
     of = TYPES[kind] if isinstance(kind, str) else pa.list_(pa.struct([_field(c) for c in kind]))
     return pa.field(column.name, of, column.nullable, metadata)
+
+
+def _written(table: Table) -> dict[str, Any]:
+    """How Parquet writes a table: texts as dictionaries; of measured numbers there are too many."""
+    texts = [column.name for column in table.columns if column.type in ("string", "label")]
+    return {"compression": "zstd", "use_dictionary": texts, "write_statistics": False}
 
 
 def read(table: Table, path: Path) -> pd.DataFrame:
@@ -79,7 +84,7 @@ def write_once(table: Table, path: Path, rows: Rows) -> None:
     part = path.with_name(f"{path.name}.{secrets.token_hex(4)}.part")
     try:
         with part.open("xb") as file:
-            pq.write_table(arrow(table, rows), file, **WRITTEN)
+            pq.write_table(arrow(table, rows), file, **_written(table))
             file.flush()
             os.fsync(file.fileno())
         with suppress(FileExistsError):
@@ -194,7 +199,7 @@ class Writer:
         self._folder.mkdir(parents=True, exist_ok=True)
         try:
             for name, table in self._tables.items():
-                writer = pq.ParquetWriter(self._part(name), schema_of(table), **WRITTEN)
+                writer = pq.ParquetWriter(self._part(name), schema_of(table), **_written(table))
                 self._files[name] = self._open.enter_context(writer)
         except OSError:
             self._remove_parts()
