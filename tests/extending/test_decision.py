@@ -42,7 +42,7 @@ JOINT = [row(name, 1.0, "joint", "gyroscope") for name in linear_names()]
 def extended(lost: str = "") -> Solved:
     names = [*linear_names(), "gyro_bias_ramp.c_x"]
     rows = [row(n, None if n == lost else 2.0, "gyroscope", "extension") for n in names]
-    return Solved("gyro", "gyroscope", rows, np.eye(13), estimate(), 0.0, ["gyro_bias_ramp"])
+    return Solved("gyro", rows, np.eye(13), estimate(), 0.0, ["gyro_bias_ramp"])
 
 
 def estimate() -> Estimate:
