@@ -17,13 +17,12 @@ import pandas as pd
 from commands.trace.log_lines import LogLines, RecordRange, UsedPhase, lines_of, used_phases
 from commands.trace.provenance import Campaign, Provenance, StageRun
 from inertial import tables
-from inertial.campaign.final_result import STAGES
 from inertial.campaign.records import Part, Row, labels, parts_of, rows_of
-from inertial.campaign.solution import JOINT
 from inertial.tables.errors import Refusal
 from inertial.tables.table import Table
 from inertial.text.messages import _
 from inertial.text.numbers import visible
+from inertial.text.parameters import JOINT, STAGES
 
 GPS_WEEK = 604_800  # s
 OF_SENSOR = ("mount", "sensor")

@@ -14,6 +14,7 @@ from inertial.estimation import triad
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.variance_components import ScatterFit
 from inertial.text.messages import _
+from inertial.text.parameters import CROSS, MOUNTING, PARTS, SCALE, SENSOR_OF, SYMMETRIC
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,6 @@ OF_POSITIONS = {
     for kind, quantity, unit in (("tilt", "tilt", "rad"), ("level", "horizontal", "rad/s"))
     for component in (0, 1)
 }
-SENSOR_OF = {"accelerometer": "accel", "gyroscope": "gyro"}  # as the columns call it
 UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 TABLES = {
     "parameters": tables.PARAMETERS,
@@ -140,14 +140,14 @@ class Estimates:
         matrix = unknowns[:9].reshape(3, 3)
         jacobian = np.zeros((21, 12))
         jacobian[:12] = np.eye(12)
-        derived = triad.MOUNTING + triad.SYMMETRIC
+        derived = MOUNTING + SYMMETRIC
         values = np.append(triad.errors_of(unknowns), np.zeros(len(derived)))
         if np.linalg.det(matrix) > 0:
             jacobian[12:, :9] = triad.jacobian_of_mounting(matrix)
             values[12:] = triad.mounting_and_symmetric(matrix)
         else:  # two axes are exchanged, or a sign is wrong: a finding reports it
             reasons = reasons | {name: _("M is left-handed: it is no mounting") for name in derived}
-        if any(name in triad.SCALE + triad.CROSS for name in reasons):
+        if any(name in SCALE + CROSS for name in reasons):
             reasons = reasons | {name: _("it needs all nine elements of M") for name in derived}
         self.add(method, NAMES + derived, values, jacobian @ covariance @ jacobian.T, reasons)
 
@@ -242,7 +242,7 @@ def reasons(
     """
     result = {}
     for i, name in enumerate(NAMES):
-        parts = triad.PARTS[name]
+        parts = PARTS[name]
         row = parts.sensor_axis
         if not recorded["xyz".index(row)]:
             result[name] = _("the {row} {sensor} is not recorded", row=row, sensor=sensor)
@@ -254,7 +254,7 @@ def reasons(
 
 def described(stage: str, name: str) -> tuple[str, str, str]:
     """Unit, frame and meaning of a parameter."""
-    kind, axes = triad.PARTS[name]
+    kind, axes = PARTS[name]
     sensed, unit = SENSED[stage], UNIT[stage]
     sensor = "accelerometer" if stage == "accelerometer" else "gyro"
     if kind == "bias":

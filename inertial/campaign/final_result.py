@@ -3,10 +3,7 @@
 from collections.abc import Container, Iterable, Sequence
 
 from inertial.campaign.records import Row
-from inertial.campaign.solution import JOINT
-
-STAGES = {"gyro": "gyroscope", "accel": "accelerometer"}
-EXTENDED = "extended"
+from inertial.text.parameters import EXTENDED, JOINT
 
 
 def extended_sensors(decision: Iterable[Row]) -> set[tuple[str, str]]:

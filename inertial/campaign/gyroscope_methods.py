@@ -18,11 +18,12 @@ from inertial.campaign.rate_segments import GyroInputs, angles_about, position_o
 from inertial.estimation import gyroscopes
 from inertial.estimation.gyroscope_formulas import Solution, Upright, two_positions
 from inertial.estimation.rate_table import rate_table
-from inertial.estimation.triad import BIAS, errors_of
+from inertial.estimation.triad import errors_of
 from inertial.estimation.turn_and_stop import CROSS_SIGMA, turn_and_stop
 from inertial.estimation.variance_components import ScatterFit
 from inertial.tables import AXES
 from inertial.text.messages import _
+from inertial.text.parameters import BIAS
 
 Array = NDArray[np.float64]
 

@@ -9,14 +9,13 @@ from numpy.typing import NDArray
 
 from inertial.campaign.records import Known, Manoeuvre, Row, rows_of
 from inertial.estimation.gyroscope_observations import Position
-from inertial.estimation.triad import BIAS, linear_names
+from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import cross, level_axes
 from inertial.tables import AXES
+from inertial.text.parameters import BIAS, JOINT
 
 Array = NDArray[np.float64]
-
-JOINT = "joint"
 
 
 @dataclass(frozen=True)

@@ -28,10 +28,10 @@ from inertial.estimation.multi_position import (
     free_positions,
     unobservable,
 )
-from inertial.estimation.triad import CROSS, MOUNTING, PARTS, SYMMETRIC
 from inertial.estimation.variance_components import ScatterFit, with_scatter
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 from inertial.text.messages import _
+from inertial.text.parameters import CROSS, MOUNTING, PARTS, SYMMETRIC
 
 Array = NDArray[np.float64]
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.linalg import qr, rq
 
 from inertial.estimation.least_squares import MIN_SIGMA_REDUCTION, Estimate, System, solve_iterated
-from inertial.estimation.triad import BIAS, SYMMETRIC
 from inertial.physics.motion import level_axes
+from inertial.text.parameters import BIAS, SYMMETRIC
 
 Array = NDArray[np.float64]
 

@@ -11,8 +11,9 @@ from inertial.estimation.gyroscope_observations import Earth, SteadyRate
 from inertial.estimation.horizontal_earth_rate import summed_earth_rate
 from inertial.estimation.least_squares import pseudo_inverse
 from inertial.estimation.regression import NestedTest, nested_test
-from inertial.estimation.triad import AXES, PARTS, linear_names
+from inertial.estimation.triad import linear_names
 from inertial.physics.motion import cross, level_axes
+from inertial.text.parameters import AXES, PARTS
 
 # ---- The gyros from many steady runs of a rate table: S4's least squares, with sigma and rank.
 #

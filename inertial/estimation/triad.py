@@ -6,50 +6,14 @@ orthogonal axes nearest to the sensors', so its inverse is the rotation of the s
 the case; the symmetric P holds the scale factors and the non-orthogonality.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import polar
 from scipy.spatial.transform import Rotation
 
+from inertial.text.parameters import AXES, BIAS
+
 Array = NDArray[np.float64]
-
-AXES = ("x", "y", "z")
-
-
-class Parts(NamedTuple):
-    """What a parameter is one of, and its axes: of cross_xy that of the sensor, then of input."""
-
-    kind: str
-    axes: str
-
-    @property
-    def sensor_axis(self) -> str:
-        """The axis of the sensor whose reading it changes."""
-        return self.axes[0]
-
-    @property
-    def input_axis(self) -> str:
-        """The axis of the input; of a bias that of the sensor."""
-        return self.axes[-1]
-
-
-PARTS = {
-    f"{kind}_{axes}": Parts(kind, axes)
-    for kind, each in (
-        ("bias", AXES),
-        ("scale", AXES),
-        ("cross", tuple(row + column for row in AXES for column in AXES if row != column)),
-        ("mounting", AXES),
-        ("symmetric", ("xx", "yy", "zz", "xy", "xz", "yz")),
-    )
-    for axes in each
-}
-BIAS, SCALE, CROSS, MOUNTING, SYMMETRIC = (
-    tuple(name for name, parts in PARTS.items() if parts.kind == kind)
-    for kind in ("bias", "scale", "cross", "mounting", "symmetric")
-)
 
 # Order of the twelve unknowns: M by rows, then the bias.
 UNKNOWNS = 12

@@ -10,10 +10,10 @@ from inertial.campaign.estimates import NAMES
 from inertial.campaign.findings import Finding
 from inertial.campaign.records import with_mount
 from inertial.estimation.position_outlier import OffPosition
-from inertial.estimation.triad import PARTS
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
+from inertial.text.parameters import PARTS
 from inertial.text.units import quantity
 
 Array = NDArray[np.float64]

@@ -8,12 +8,11 @@ import numpy as np
 import pandas as pd
 
 from inertial import tables
-from inertial.campaign.estimates import SENSOR_OF
 from inertial.campaign.records import Row, rows_of, with_mount
 from inertial.estimation.consistency import holm_rejections, normal_p_value
-from inertial.estimation.triad import PARTS
 from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, fixed, p_is, with_sigma
+from inertial.text.parameters import PARTS, SENSOR_OF
 from inertial.text.units import quantity
 
 SENSORS = {"accelerometer": ("accelerometer", "force"), "gyroscope": ("gyro", "rate")}

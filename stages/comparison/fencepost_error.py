@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.angle_windows import Fencepost, fencepost
 from inertial.estimation.consistency import common_cause
-from inertial.estimation.triad import PARTS, SCALE
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, whole
+from inertial.text.parameters import PARTS, SCALE
 from inertial.text.units import PPM
 from stages.comparison.difference import Difference, Results
 

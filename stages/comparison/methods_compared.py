@@ -5,9 +5,9 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import pandas as pd
 
-from inertial.campaign.final_result import STAGES
 from inertial.campaign.records import rows_of
 from inertial.text.messages import _
+from inertial.text.parameters import STAGES
 from stages.comparison.difference import Difference, Results
 
 # --- The joint estimate against the formulas of the sources, from the same data ---

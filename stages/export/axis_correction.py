@@ -14,9 +14,9 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.triad import PARTS
 from inertial.tables import AXES
 from inertial.text.messages import _
+from inertial.text.parameters import PARTS
 from stages.export.calibration import PARAMETERS, Triad
 
 Array = NDArray[np.float64]

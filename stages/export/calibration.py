@@ -14,8 +14,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.estimates import SENSOR_OF, UNIT
-from inertial.campaign.final_result import EXTENDED, of_sensors
+from inertial.campaign.estimates import UNIT
+from inertial.campaign.final_result import of_sensors
 from inertial.campaign.records import (
     Manoeuvre,
     Part,
@@ -25,10 +25,10 @@ from inertial.campaign.records import (
     rows_of,
     with_mount,
 )
-from inertial.campaign.solution import JOINT
 from inertial.estimation.triad import linear_names
 from inertial.tables import CHANNELS
 from inertial.text.messages import _
+from inertial.text.parameters import EXTENDED, JOINT, SENSOR_OF
 from stages.export.examples import Example
 
 Array = NDArray[np.float64]

@@ -11,9 +11,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.campaign.estimates import SENSOR_OF
 from inertial.tables import CHANNEL_PARTS
 from inertial.text.messages import _
+from inertial.text.parameters import SENSOR_OF
 from stages.export.axis_correction import biases, cross_terms, remaining_errors, scale_errors
 from stages.export.calibration import Calibration
 from stages.export.document import as_yaml

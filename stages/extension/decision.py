@@ -11,6 +11,7 @@ from typing import Any
 from inertial.estimation.triad import linear_names
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
+from inertial.text.parameters import EXTENDED, JOINT
 from stages.extension.cross_validation import MIN_SNR_SQUARED, CrossValidation
 from stages.extension.estimates import Solved
 from stages.extension.named_effects import Alarm, Named
@@ -18,7 +19,6 @@ from stages.extension.named_effects import Alarm, Named
 Row = Mapping[str, Any]
 TableRow = tuple[str, Row]  # the name of a table that the stage writes, and a row of it
 
-JOINT, EXTENDED = "joint", "extended"
 SENSORS = {"gyro": "gyros", "accel": "accelerometers"}
 
 NO_JOINT = _("There is no joint result of the {sensors}.")

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.campaign.estimates import UNIT, described
-from inertial.campaign.final_result import EXTENDED, STAGES
 from inertial.campaign.records import with_mount
 from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.triad import UNKNOWNS, errors_of, linear_names
 from inertial.text.messages import _
+from inertial.text.parameters import EXTENDED, STAGES
 from stages.extension.models import Models
 
 # ---- The parameters of the extended model with their covariance, and how well it fits.

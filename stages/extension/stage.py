@@ -9,13 +9,13 @@ import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.equations import campaign_of
-from inertial.campaign.final_result import EXTENDED
 from inertial.campaign.records import rows_of
 from inertial.campaign.solution import joint_rows
 from inertial.campaign.steady_residuals import steady_residuals, steady_turns
 from inertial.estimation.triad import linear_names
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
+from inertial.text.parameters import EXTENDED
 from stages.extension.cross_validation import CrossValidation, cross_validate
 from stages.extension.decision import Candidate
 from stages.extension.declared import DECLARED

@@ -15,13 +15,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from urllib.parse import quote_plus
 
-from inertial.campaign.estimates import SENSOR_OF
-from inertial.campaign.final_result import EXTENDED
 from inertial.campaign.records import Row
 from inertial.tables import CALIBRATION
 from inertial.tables.errors import Refusal
 from inertial.tables.parquet import write_once
 from inertial.tables.table import Table
+from inertial.text.parameters import EXTENDED, SENSOR_OF
 
 SIMULATED = "simulated"  # folder of simulated calibrations; no instrument's folder has this name
 VERSION_1 = replace(CALIBRATION, version=1)

@@ -7,11 +7,11 @@ from typing import Any
 
 import pandas as pd
 
-from inertial.campaign.final_result import EXTENDED, extended_sensors, of_sensors, with_extended
+from inertial.campaign.final_result import extended_sensors, of_sensors, with_extended
 from inertial.campaign.records import Row, rows_of
-from inertial.campaign.solution import JOINT
 from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
+from inertial.text.parameters import EXTENDED, JOINT
 from stages.history.archive import Archive, Entry
 from stages.history.declared import DECLARED
 

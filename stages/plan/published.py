@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from typing import Any
 
-from inertial.estimation.triad import PARTS, SCALE
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.campaign_units import ARC_SECOND, DEGREE
+from inertial.text.parameters import PARTS, SCALE
 from inertial.text.units import STANDARD_GRAVITY
 
 Row = dict[str, Any]

@@ -5,21 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from inertial.campaign.estimates import SENSOR_OF
-from inertial.campaign.final_result import (
-    EXTENDED,
-    STAGES,
-    extended_sensors,
-    of_sensors,
-    with_extended,
-)
+from inertial.campaign.final_result import extended_sensors, of_sensors, with_extended
 from inertial.campaign.records import Part, parts_of
-from inertial.campaign.solution import JOINT
-from inertial.estimation.triad import PARTS
 from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
+from inertial.text.parameters import EXTENDED, JOINT, PARTS, SENSOR_OF, STAGES
 from stages.report.linked import DECISION_TABLES, decisions
 from stages.report.outline import Tone
 from stages.report.tables import Record, Tables, once

@@ -8,9 +8,9 @@ from math import sqrt
 import numpy as np
 from matplotlib.axes import Axes
 
-from inertial.estimation.triad import PARTS
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant, whole
+from inertial.text.parameters import PARTS
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import drawing, outline
 from stages.report.drawing import Array

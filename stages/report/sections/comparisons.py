@@ -7,11 +7,10 @@ from math import hypot
 
 from matplotlib.axes import Axes
 
-from inertial.campaign.estimates import SENSOR_OF
-from inertial.campaign.solution import JOINT
 from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.messages import _
+from inertial.text.parameters import JOINT, SENSOR_OF
 from inertial.text.units import quantity
 from stages.report import outline
 from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks

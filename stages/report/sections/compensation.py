@@ -11,10 +11,10 @@ import pandas as pd
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from inertial.campaign.final_result import EXTENDED
 from inertial.tables import AXES, CHANNELS
 from inertial.text import numbers, units
 from inertial.text.messages import _
+from inertial.text.parameters import EXTENDED
 from stages.report import drawing, outline
 from stages.report.drawing import Array
 from stages.report.tables import Record, Tables

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from inertial.campaign.final_result import EXTENDED
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, shortened, significant
+from inertial.text.parameters import EXTENDED
 from stages.report import outline
 from stages.report.linked import CAUSE_TABLES, GAIN_TABLES, decisions, effect_causes, gains
 from stages.report.results import RESULT_TABLES, shifts

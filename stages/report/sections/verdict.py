@@ -8,11 +8,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import degrees
 
-from inertial.campaign.final_result import EXTENDED
 from inertial.campaign.records import omissions
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, probability, shortened, significant, whole
+from inertial.text.parameters import EXTENDED
 from stages.report import outline
 from stages.report.linked import CAUSE_TABLES
 from stages.report.results import (

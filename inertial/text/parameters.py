@@ -1,0 +1,43 @@
+"""Names in the tables: parameters of a triad with kind and axes, results, sensors and stages."""
+
+from typing import NamedTuple
+
+AXES = ("x", "y", "z")
+
+
+class Parts(NamedTuple):
+    """What a parameter is one of, and its axes: of cross_xy that of the sensor, then of input."""
+
+    kind: str
+    axes: str
+
+    @property
+    def sensor_axis(self) -> str:
+        """The axis of the sensor whose reading it changes."""
+        return self.axes[0]
+
+    @property
+    def input_axis(self) -> str:
+        """The axis of the input; of a bias that of the sensor."""
+        return self.axes[-1]
+
+
+PARTS = {
+    f"{kind}_{axes}": Parts(kind, axes)
+    for kind, each in (
+        ("bias", AXES),
+        ("scale", AXES),
+        ("cross", tuple(row + column for row in AXES for column in AXES if row != column)),
+        ("mounting", AXES),
+        ("symmetric", ("xx", "yy", "zz", "xy", "xz", "yz")),
+    )
+    for axes in each
+}
+BIAS, SCALE, CROSS, MOUNTING, SYMMETRIC = (
+    tuple(name for name, parts in PARTS.items() if parts.kind == kind)
+    for kind in ("bias", "scale", "cross", "mounting", "symmetric")
+)
+
+JOINT, EXTENDED = "joint", "extended"  # results: of the joint fit, with the unmodelled effects
+STAGES = {"gyro": "gyroscope", "accel": "accelerometer"}  # by the sensor as columns call it
+SENSOR_OF = {"accelerometer": "accel", "gyroscope": "gyro"}
