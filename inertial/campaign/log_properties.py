@@ -1,6 +1,7 @@
 """Interval, resolution and noise of every log, known before its records are examined singly."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,42 @@ MAX_READINGS = 1 << 16  # of a batch, from which its noise and smallest step are
 WINDOW = 1.0  # s
 MIN_COMMON_LOGS = 3  # logs that can have an interval in common
 SENSORS = ("accel",) * 3 + ("gyro",) * 3
+
+
+@dataclass(frozen=True, eq=False)
+class Stated:
+    """What the campaign states of all its logs, and what is known of each before it is read.
+
+    given : of all logs
+    earth_rate_up : the upward component of the earth's rate at the site, rad/s
+    clocks, ranges, imu_types : tables; of each log the type of IMU in its messages
+    """
+
+    given: Given
+    earth_rate_up: float
+    clocks: pd.DataFrame
+    ranges: pd.DataFrame
+    imu_types: pd.DataFrame
+
+    def logs(
+        self, statistics: pd.DataFrame, windows: Mapping[str, Windows] | None = None
+    ) -> dict[str, Log]:
+        """Every log that has records, by name; `windows`: means over 1 s, by log."""
+        tables = self.clocks, self.ranges, self.imu_types
+        return logs(statistics, *tables, self.given, windows or {})
+
+
+def stated_by(
+    campaign: pd.DataFrame,
+    known: pd.DataFrame,
+    count_sizes: pd.DataFrame,
+    clocks: pd.DataFrame,
+    ranges: pd.DataFrame,
+    imu_types: pd.DataFrame,
+) -> Stated:
+    """From the tables of plan and decode."""
+    given = given_by(campaign, known, count_sizes, clocks)
+    return Stated(given, known_of(known)["earth_rate_up"].number, clocks, ranges, imu_types)
 
 
 def given_by(

@@ -34,29 +34,22 @@ TWELVE = linear_names()
 def extension(
     mounts: Sequence[CampaignData],
     simulated: Stream,
-    criticism_findings: pd.DataFrame,
-    members: pd.DataFrame,
-    effects: pd.DataFrame,
+    causes: tuple[Sequence[Row], Sequence[Row], Sequence[Row]],
     random_walks: pd.DataFrame,
-    accelerometer_parameters: pd.DataFrame,
-    gyroscope_parameters: pd.DataFrame,
-    accelerometer_fit: pd.DataFrame,
-    gyroscope_fit: pd.DataFrame,
-    accelerometer_fit_manoeuvres: pd.DataFrame,
-    gyroscope_fit_manoeuvres: pd.DataFrame,
+    joint: Mapping[str, tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]],
 ) -> Tables:
     """Parameters and covariance of the extended model, and the final parameters.
 
     Where nothing was named there is nothing to extend: the joint result is final, and the tables
     but `decision` and `result` are empty.
+
+    Parameters
+    ----------
+    causes : rows of the findings, effects and members of criticism
+    joint : by sensor, parameters, fit and manoeuvres of the joint result
     """
-    causes = rows_of(criticism_findings), rows_of(effects), rows_of(members)
     walk_of: dict[tuple[str, str], float] = defaultdict(float)
     walk_of |= {(row["mount"], row["sensor"]): row["value"] for row in rows_of(random_walks)}
-    joint = {
-        "gyro": (gyroscope_parameters, gyroscope_fit, gyroscope_fit_manoeuvres),
-        "accel": (accelerometer_parameters, accelerometer_fit, accelerometer_fit_manoeuvres),
-    }
     rows: dict[str, list[Any]] = {name: [] for name in DECLARED.writes}
     for data in mounts:
         extended = Extension(
@@ -75,6 +68,28 @@ def extension(
         for name, table in DECLARED.writes.items()
     }
     return written | ({"covariance": pd.concat(covariances)} if covariances else {})
+
+
+def causes_of(
+    criticism_findings: pd.DataFrame, effects: pd.DataFrame, members: pd.DataFrame
+) -> tuple[Sequence[Row], Sequence[Row], Sequence[Row]]:
+    """The causes that criticism found, as rows."""
+    return rows_of(criticism_findings), rows_of(effects), rows_of(members)
+
+
+def joint_of(
+    accelerometer_parameters: pd.DataFrame,
+    gyroscope_parameters: pd.DataFrame,
+    accelerometer_fit: pd.DataFrame,
+    gyroscope_fit: pd.DataFrame,
+    accelerometer_fit_manoeuvres: pd.DataFrame,
+    gyroscope_fit_manoeuvres: pd.DataFrame,
+) -> dict[str, tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]]:
+    """The tables of the joint result by sensor."""
+    return {
+        "gyro": (gyroscope_parameters, gyroscope_fit, gyroscope_fit_manoeuvres),
+        "accel": (accelerometer_parameters, accelerometer_fit, accelerometer_fit_manoeuvres),
+    }
 
 
 @dataclass(frozen=True)
@@ -166,4 +181,8 @@ class Extension:
                 yield from gain_of_line(residuals, step_of, frequency, gyro, data.mount)
 
 
-STAGE = Stage(extension, DECLARED, gathers={"mounts": campaigns_of})
+STAGE = Stage(
+    extension,
+    DECLARED,
+    gathers={"mounts": campaigns_of, "causes": causes_of, "joint": joint_of},
+)

@@ -6,7 +6,7 @@ from inertial import tables
 from inertial.campaign.close_ups import close_ups
 from inertial.campaign.detection import Examination, ExaminationOfLogs
 from inertial.campaign.findings import Detection, detections_of, masks_of, table_of
-from inertial.campaign.log_properties import ChannelStatistics, given_by, logs, windows_of
+from inertial.campaign.log_properties import ChannelStatistics, Stated, stated_by, windows_of
 from inertial.campaign.masked_samples import RecordIndex, read_once
 from inertial.detectors import OF_RECORDS
 from inertial.detectors.gap import Gap
@@ -18,29 +18,23 @@ from stages.quality.declared import DECLARED
 
 def quality(
     samples: Stream,
-    clocks: pd.DataFrame,
-    imu_types: pd.DataFrame,
-    campaign: pd.DataFrame,
-    known: pd.DataFrame,
-    ranges: pd.DataFrame,
-    count_sizes: pd.DataFrame,
+    stated: Stated,
 ) -> Tables:
     """Findings of the detectors that need no plan, the records that they mask, and the gaps.
 
     Two passes over the samples: detectors compare single readings with resolution and noise of
     the whole log, which are known only after it was read once.
     """
-    given = given_by(campaign, known, count_sizes, clocks)
-    statistics, sums = ChannelStatistics(), windows_of(clocks)
+    statistics, sums = ChannelStatistics(), windows_of(stated.clocks)
     read_once(samples, [statistics, sums])
     windows = {
         log: Windows(total.mean, total.variance, total.time, total.temperature)
         for log, total in sums.result().items()
     }
     channel_statistics = statistics.table()
-    by_name = logs(channel_statistics, clocks, ranges, imu_types, given, windows)
+    by_name = stated.logs(channel_statistics, windows)
 
-    examination = ExaminationOfLogs(Examination(OF_RECORDS, by_name, given))
+    examination = ExaminationOfLogs(Examination(OF_RECORDS, by_name, stated.given))
     index = RecordIndex()
     read_once(samples, [examination, index])
     detections = detections_of("quality", examination.events(), by_name)
@@ -70,4 +64,4 @@ def _gaps(detections: list[Detection]) -> pd.DataFrame:
     return pd.DataFrame(rows) if rows else tables.GAPS.empty()
 
 
-STAGE = Stage(quality, DECLARED)
+STAGE = Stage(quality, DECLARED, gathers={"stated": stated_by})

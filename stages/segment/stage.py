@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from inertial.campaign.close_ups import close_ups
 from inertial.campaign.findings import table_of
-from inertial.campaign.log_properties import given_by, logs, records_of
+from inertial.campaign.log_properties import Stated, records_of, stated_by
 from inertial.campaign.masked_samples import Masks, RecordIndex, read_once
-from inertial.campaign.records import Manoeuvre, Performed, clocks_of, known_of, manoeuvres_of
+from inertial.campaign.records import Manoeuvre, Performed, clocks_of, manoeuvres_of
 from inertial.detectors import OF_PLAN, OF_RESTS
 from inertial.signal.detector import Log
 from inertial.tables import STATIC_PHASES
@@ -36,13 +36,9 @@ Array = NDArray[np.float64]
 
 def segment(
     samples: Stream,
-    campaign: pd.DataFrame,
-    known: pd.DataFrame,
-    ranges: pd.DataFrame,
-    count_sizes: pd.DataFrame,
+    stated: Stated,
     manoeuvres: pd.DataFrame,
     clocks: pd.DataFrame,
-    imu_types: pd.DataFrame,
     gaps: pd.DataFrame,
     masks: pd.DataFrame,
     channel_statistics: pd.DataFrame,
@@ -59,15 +55,14 @@ def segment(
     columns before.
     """
     plan, clock, masked = manoeuvres_of(manoeuvres), clocks_of(clocks), Masks(masks)
-    given = given_by(campaign, known, count_sizes, clocks)
-    by_name = logs(channel_statistics, clocks, ranges, imu_types, given, {})
+    by_name = stated.logs(channel_statistics)
     ends = records_of(clocks)
 
     bins = Bins(_windows(samples, plan, ends), clock, masked)
     traces, of_means = reduction.Traces(ends), reduction.LogsOfMeans(clock)
     read_once(samples, [bins, traces, of_means])
     binned = list(bins.binned())
-    level, explained = _explained(binned, plan, known_of(known)["earth_rate_up"].number)
+    level, explained = _explained(binned, plan, stated.earth_rate_up)
     parts, performed, turns = _parts(explained, plan, level, margin)
 
     block_sums = reduction.Blocks(
@@ -86,7 +81,7 @@ def segment(
         as_named = located.axes.gyro == AS_NAMED
         performed[m.name] = done if as_named else completeness.by_other_axes(done)
     recorded = recorded_of(
-        plan, explained, performed, segments, gaps, _counts(by_name), given, angle_tolerance
+        plan, explained, performed, segments, gaps, _counts(by_name), stated.given, angle_tolerance
     )
     detections = [*compare("segment", OF_PLAN, recorded), *rests.detections("segment")]
     return {
@@ -175,4 +170,4 @@ def _rest_level(every: Sequence[Binned]) -> tuple[Array, float]:
     return np.zeros(3), 0.0
 
 
-STAGE = Stage(segment, DECLARED)
+STAGE = Stage(segment, DECLARED, gathers={"stated": stated_by})
