@@ -195,7 +195,7 @@ def test_the_scale_factors_of_s0_are_told_as_a_fencepost(ringing, tmp_path):
 def test_a_window_that_is_not_told_is_taken_as_180_degrees(calm, tmp_path):
     for whole in (1, -1):
         (said,) = told(calm, tmp_path, (1 + TRUTH) * (1 + whole / WINDOW) - 1)
-        assert f"{WINDOW + whole} samples for {WINDOW}" in said and "not told" in said
+        assert f"{WINDOW + whole} samples for {WINDOW}" in said and "not stated" in said
 
 
 @pytest.mark.parametrize(
