@@ -40,7 +40,7 @@ def test_the_incomplete_turn_is_named_and_bridged(demo):
     turn = performed(demo).loc["z-backward"]
     assert turn["bridged"] and not turn["complete"]
     fitted = demo["gyroscope/fit_manoeuvres"].query("method == 'joint'")
-    assert fitted.set_index("manoeuvre").loc["z-backward", "used"]
+    assert fitted.set_index("manoeuvre").loc[["z-backward"], "used"].all()
     others = performed(demo).drop("z-backward")
     assert others["complete"].all() and not others["bridged"].any()
 
