@@ -80,7 +80,7 @@ def main(draws: int, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     campaigns, statistical = folder / "campaigns.jsonl", folder / "statistics.jsonl"
     for stage in chain.ORDER:  # before the processes part, so that all run the same code
-        import_module(f"stages.{stage}")
+        import_module(f"stages.{stage}.stage")
     for plan in PLANS:
         reference(plan)
     with ProcessPoolExecutor(CORES) as pool:
