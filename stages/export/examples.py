@@ -13,13 +13,12 @@ from numpy.typing import NDArray
 
 from inertial.campaign.masked_samples import Masks, pieces
 from inertial.campaign.records import Manoeuvre
-from inertial.tables import CHANNELS
+from inertial.tables import CHANNELS, STATIC_PHASES
 from inertial.tables.parquet import Stream
 from inertial.text.messages import _
 
 Array = NDArray[np.float64]
 
-STATIC_PHASES = ("rest", "rest-before", "rest-after")
 TURN_PHASES = ("steady", "turning")
 # Where the sensors come in records of their own, a turn is shown by its gyros.
 CHANNEL_WEIGHTS = np.array([1, 1, 1, 4, 4, 4])
