@@ -290,23 +290,6 @@ rule comparison:
         command("comparison")
 
 
-rule compensation:
-    input:
-        **reads("compensation"),
-    output:
-        writes("compensation"),
-    log:
-        f"{DERIVED}/compensation/stage.log",
-    params:
-        settings=settings("compensation"),
-        files=files("compensation"),
-        code=code("compensation"),
-    message:
-        "{wildcards.campaign}: the samples with the errors taken out"
-    shell:
-        command("compensation")
-
-
 rule simulation:
     input:
         **reads("simulation"),
@@ -359,6 +342,40 @@ rule extension:
         "{wildcards.campaign}: the model with these effects, and its gain on held-out manoeuvres"
     shell:
         command("extension")
+
+
+rule diagnosis:
+    input:
+        **reads("diagnosis"),
+    output:
+        writes("diagnosis"),
+    log:
+        f"{DERIVED}/diagnosis/stage.log",
+    params:
+        settings=settings("diagnosis"),
+        files=files("diagnosis"),
+        code=code("diagnosis"),
+    message:
+        "{wildcards.campaign}: causes, the one result that counts, and the verdict"
+    shell:
+        command("diagnosis")
+
+
+rule compensation:
+    input:
+        **reads("compensation"),
+    output:
+        writes("compensation"),
+    log:
+        f"{DERIVED}/compensation/stage.log",
+    params:
+        settings=settings("compensation"),
+        files=files("compensation"),
+        code=code("compensation"),
+    message:
+        "{wildcards.campaign}: the samples with the errors taken out"
+    shell:
+        command("compensation")
 
 
 rule history:

@@ -39,8 +39,8 @@ FIDELITY = Table(
 MOUNT = Column("mount", TEXT, "", "mount of the IMU, where there are several; else empty")
 FINDING = Column("finding", TEXT, "", "id of the finding that names it", nullable=True)
 
-CAUSES = Table(
-    "causes",
+EFFECT_FINDINGS = Table(
+    "effect_findings",
     3,
     (
         *FINDINGS.columns,

@@ -27,7 +27,7 @@ DECLARED = Declared(
         "random_walks": tables.RANDOM_WALKS,
         "structures": tables.STRUCTURES,
         "structure_points": tables.STRUCTURE_POINTS,
-        "findings": tables.CAUSES,
+        "findings": tables.EFFECT_FINDINGS,
         "members": tables.MEMBERS,
         "cause_positions": tables.CAUSE_POSITIONS,
     },

@@ -6,7 +6,7 @@ from inertial.tables.declared import Declared, From
 DECLARED = Declared(
     reads={
         "simulated": From("simulation", tables.SIMULATED),
-        "criticism_findings": From("criticism", tables.CAUSES, "findings"),
+        "criticism_findings": From("criticism", tables.EFFECT_FINDINGS, "findings"),
         "members": From("criticism", tables.MEMBERS),
         "effects": From("criticism", tables.EFFECTS),
         "random_walks": From("criticism", tables.RANDOM_WALKS),

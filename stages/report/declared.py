@@ -51,7 +51,7 @@ DECLARED = Declared(
         "detection_limits": From("criticism", tables.DETECTION_LIMITS),
         "structures": From("criticism", tables.STRUCTURES),
         "structure_points": From("criticism", tables.STRUCTURE_POINTS),
-        "criticism_findings": From("criticism", tables.CAUSES, "findings"),
+        "criticism_findings": From("criticism", tables.EFFECT_FINDINGS, "findings"),
         "members": From("criticism", tables.MEMBERS),
         "cause_positions": From("criticism", tables.CAUSE_POSITIONS),
         "extended_parameters": From("extension", tables.PARAMETERS),

@@ -23,8 +23,8 @@ def said(made: pd.DataFrame, *plan) -> dict[str, dict]:
     rows = defaultdict(list)
     for table, row in temperature_rows(made, plan or [STILL], LEVEL, ""):
         rows[table].append(row)
-    names = [column.name for column in tables.CAUSES.columns]
-    tables.CAUSES.arrow(pd.DataFrame(rows["findings"], columns=names))
+    names = [column.name for column in tables.EFFECT_FINDINGS.columns]
+    tables.EFFECT_FINDINGS.arrow(pd.DataFrame(rows["findings"], columns=names))
     found = {}
     for row in rows["findings"]:
         own = {

@@ -53,7 +53,7 @@ def cause_tables(rows: Rows) -> dict[str, Any]:
     ]
     plain = [{key: row[key] for key in row if key != "members"} for row in rows]
     return {
-        "criticism_findings": rows_as(tables.CAUSES, plain),
+        "criticism_findings": rows_as(tables.EFFECT_FINDINGS, plain),
         "members": rows_as(tables.MEMBERS, members),
         "cause_positions": tables.CAUSE_POSITIONS.empty(),
     }

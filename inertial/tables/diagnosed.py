@@ -1,0 +1,206 @@
+"""Repairs of a recording, candidates for the result, and the diagnosis: causes and verdict."""
+
+from inertial.tables.shared import BODY, MOUNT
+from inertial.tables.table import DOUBLE, INTEGER, TEXT, Column, Table
+
+SENSOR = Column("sensor", TEXT, "", "accel or gyro, where one is concerned", nullable=True)
+AXIS = Column("axis", TEXT, "", BODY, nullable=True)
+
+# ---- Repairs: what was set right before the estimation, on which condition.
+
+REPAIRS = Table(
+    "repairs",
+    1,
+    (
+        Column("id", TEXT, "", "name by which `accept` of the campaign file confirms it"),
+        Column(
+            "repair",
+            TEXT,
+            "",
+            "gravity, axes, signs, count_size, sense_of_table, exchanged_manoeuvres, stated_rate",
+        ),
+        Column(
+            "state",
+            TEXT,
+            "",
+            "applied; confirmed: applied, and accepted in the campaign file; refused: by the"
+            " settings; rival: others explain as much, so none of them is applied",
+        ),
+        SENSOR,
+        AXIS,
+        Column("log", TEXT, "", "as in logs, where one is concerned", nullable=True),
+        Column("manoeuvre", TEXT, "", "as in manoeuvres, where one is concerned", nullable=True),
+        Column("value", DOUBLE, "as unit", "what is used, where it is a number", nullable=True),
+        Column("sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
+        Column("stated", DOUBLE, "as unit", "what the campaign states", nullable=True),
+        Column("unit", TEXT, "", "unit of value, sigma and stated"),
+        Column(
+            "fitting_before",
+            INTEGER,
+            "1",
+            "observations that fit the plan without it",
+            nullable=True,
+        ),
+        Column(
+            "fitting_after", INTEGER, "1", "observations that fit the plan with it", nullable=True
+        ),
+        Column("observations", INTEGER, "1", "observations that were compared", nullable=True),
+        Column("finding", TEXT, "", "id of the finding that it removes", nullable=True),
+        Column("condition", TEXT, "", "what must be true for it to be right, in words"),
+        Column("sentence", TEXT, "", "what was set right, in words"),
+    ),
+)
+CHANNEL_REPAIRS = Table(
+    "channel_repairs",
+    1,
+    (
+        Column("repair", TEXT, "", "id of an applied repair"),
+        Column("log", TEXT, "", "as in logs: whose readings it concerns"),
+        Column("sensor", TEXT, "", "accel or gyro"),
+        Column("axis", TEXT, "", "axis whose reading is set right", BODY),
+        Column("from_axis", TEXT, "", "axis under which it was recorded", BODY),
+        Column("factor", DOUBLE, "1", "by which the recorded reading is multiplied"),
+    ),
+)
+
+# ---- Candidates for the result of a sensor, from extension.
+
+CANDIDATES = Table(
+    "candidates",
+    1,
+    (
+        MOUNT,
+        Column("sensor", TEXT, "", "gyro or accel"),
+        Column("method", TEXT, "", "method of its parameters, as in parameters of extension"),
+        Column(
+            "probability",
+            DOUBLE,
+            "1",
+            "posterior probability among the members of its class, all equal beforehand",
+        ),
+        Column(
+            "drop",
+            DOUBLE,
+            "1",
+            "reduction of chi-squared of held-out manoeuvres against the joint model; none: not"
+            " cross-validated",
+            nullable=True,
+        ),
+        Column("snr_squared", DOUBLE, "1", "what exactly known effects would bring", nullable=True),
+        Column("folds", INTEGER, "1", "number of groups of manoeuvres held out", nullable=True),
+        Column("counted", INTEGER, "1", "of these, predictable from the others", nullable=True),
+        Column(
+            "carried_by",
+            TEXT,
+            "",
+            "manoeuvre without which the effect is not detected in the others",
+            nullable=True,
+        ),
+        Column(
+            "undetermined",
+            INTEGER,
+            "1",
+            "parameters of the sensor that the joint model determines and this one does not",
+        ),
+        Column("sentence", TEXT, "", "the gain in words"),
+    ),
+)
+CANDIDATE_EFFECTS = Table(
+    "candidate_effects",
+    1,
+    (
+        MOUNT,
+        Column("sensor", TEXT, "", "gyro or accel"),
+        Column("method", TEXT, "", "as in candidates"),
+        Column("effect", TEXT, "", "effect of the catalogue in the model of this candidate"),
+        Column("finding", TEXT, "", "id of the finding of criticism that names it or its class"),
+    ),
+)
+
+# ---- The diagnosis.
+
+CAUSE = Column("cause", TEXT, "", "id of the cause")
+
+CAUSES = Table(
+    "causes",
+    1,
+    (
+        Column("id", TEXT, "", "stable identifier; no code reads anything from it"),
+        Column("cause", TEXT, "", "what is wrong: an effect of the catalogue or a fault"),
+        Column("verdict", TEXT, "", "found, one_of_class, or unknown_structure"),
+        MOUNT,
+        SENSOR,
+        AXIS,
+        Column("log", TEXT, "", "as in logs, where one is concerned", nullable=True),
+        Column("manoeuvre", TEXT, "", "as in manoeuvres, where one is concerned", nullable=True),
+        Column("count", INTEGER, "1", "how many equal ones this stands for"),
+        Column("sentence", TEXT, "", "the cause in words, with how large and how sure"),
+        Column("size", DOUBLE, "as unit", "how large", nullable=True),
+        Column("sigma", DOUBLE, "as unit", "standard deviation of size", nullable=True),
+        Column("unit", TEXT, "", "unit of size and sigma"),
+        Column("snr", DOUBLE, "1", "signal-to-noise ratio of an effect", nullable=True),
+        Column("p_value", DOUBLE, "1", "chance of it if nothing is wrong", nullable=True),
+        Column(
+            "cure",
+            TEXT,
+            "",
+            "repaired, modelled, masked, interpolated, left_out; none: nothing removes it here",
+        ),
+        Column("gain", TEXT, "", "what the cure brought, in words", nullable=True),
+        Column("fitting_before", INTEGER, "1", "as in repairs", nullable=True),
+        Column("fitting_after", INTEGER, "1", "as in repairs", nullable=True),
+        Column(
+            "held_out_drop",
+            DOUBLE,
+            "1",
+            "reduction of chi-squared of manoeuvres that the fit has not seen",
+            nullable=True,
+        ),
+        Column(
+            "moves",
+            DOUBLE,
+            "1",
+            "largest shift of a parameter that it causes or caused, in sigma of that parameter;"
+            " none: not known",
+            nullable=True,
+        ),
+        Column("condition", TEXT, "", "on which the result is valid, in words", nullable=True),
+        Column("consequence", TEXT, "", "what it does to the result, in words"),
+        Column("done", TEXT, "", "what was done about it, in words"),
+        Column("action", TEXT, "", "what to do in the laboratory, in words"),
+    ),
+)
+CAUSE_MEMBERS = Table(
+    "cause_members",
+    1,
+    (
+        Column("id", TEXT, "", "stable identifier; no code reads anything from it"),
+        CAUSE,
+        MOUNT,
+        Column("rank", INTEGER, "1", "1 for the most probable"),
+        Column("member", TEXT, "", "what it may be: an effect of the catalogue or a fault"),
+        Column("probability", DOUBLE, "1", "posterior probability, where compared", nullable=True),
+    ),
+)
+CONSEQUENCES = Table(
+    "consequences",
+    1,
+    (
+        Column("finding", TEXT, "", "id of a finding"),
+        Column("stage", TEXT, "", "stage whose finding it is"),
+        CAUSE,
+    ),
+)
+VERDICTS = Table(
+    "verdicts",
+    1,
+    (
+        MOUNT,
+        Column("sensor", TEXT, "", "gyro or accel"),
+        Column("verdict", TEXT, "", "usable, usable_within_limits, on_condition, or not_usable"),
+        Column("sentence", TEXT, "", "the verdict in words, the cause first"),
+        Column("method", TEXT, "", "method of the result: joint, extended, or mixture"),
+        Column("condition", TEXT, "", "on which the result is valid, in words", nullable=True),
+        Column("reason", TEXT, "", "why this method, in words"),
+    ),
+)
