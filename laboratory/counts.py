@@ -5,7 +5,7 @@ import numpy as np
 from laboratory.arrays import Array, Counts
 
 
-def count(running: Array, size: float) -> Counts:
+def count(running: Array, size: float | Array) -> Counts:
     """counts_k = round(S_k / q) − round(S_{k−1} / q),  S₀ = 0.
 
     running: the running integral S₁ … S_n of the reading, (n, …), rad or m/s; size: one count q,

@@ -24,6 +24,7 @@ from laboratory.feasibility import impossible
 from laboratory.gps_time import NANOSECONDS, gps_nanoseconds
 from laboratory.layout import Handling, length, logs_of
 from laboratory.manoeuvre import Manoeuvre, PlanError
+from laboratory.misstatement import misstated, unknown_manoeuvres
 from laboratory.plan import expanded_plan
 from laboratory.rawimu import Samples
 from laboratory.receiver import Receiver
@@ -54,7 +55,7 @@ class Specification:
         campaign: dict[str, Any] = {**self.document["campaign"], "simulated": True}
         if self.receiver.format is not None:
             campaign["instrument"] = {**campaign["instrument"], "format": self.receiver.format}
-        return campaign
+        return misstated(campaign, self.document.get("misstated", {}))
 
     @cached_property
     def manoeuvres(self) -> list[Manoeuvre]:
@@ -183,6 +184,7 @@ def specify(document: Mapping[str, Any], source: str = "specification") -> Speci
     try:
         complaints = [
             *impossible(document, specification.manoeuvres, [*specification.effects().values()]),
+            *unknown_manoeuvres(document["campaign"], document.get("misstated", {})),
             *rehearse(specification.faults, specification.empty_logs),
         ]
     except PlanError as error:

@@ -14,6 +14,7 @@ from laboratory.faults.fault import Fault
 from laboratory.faults.flip import Flip
 from laboratory.faults.jitter import Jitter
 from laboratory.faults.kill import Kill
+from laboratory.faults.knock import Knock
 from laboratory.faults.lose import Lose
 from laboratory.faults.oscillate import Oscillate
 from laboratory.faults.repeat import Repeat
@@ -35,6 +36,7 @@ FAULTS: Final[dict[str, type[Fault]]] = {
         Kill,
         Step,
         Oscillate,
+        Knock,
         Swap,
         Flip,
         # stamps

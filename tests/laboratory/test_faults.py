@@ -527,3 +527,22 @@ def test_a_refused_fault_does_not_hide_the_next(campaign: dict[str, Any]) -> Non
         specify(campaign | {"faults": faults})
     places = [complaint.place for complaint in refusal.value.complaints]
     assert places == ["faults[0].lose", "faults[1].flip.log", "faults[2].drop"]
+
+
+def test_knock(strike: Strike, clean: dict[str, Written]) -> None:
+    """All channels ring, at 30 Hz and below the peak; at the end nothing of it remains."""
+    before = clean["turn.asc"]
+    blow = {"peak_m_s2": 80.0, "peak_rad_s": 2.0, "frequency_hz": 30.0, "decay_s": 0.05}
+    found, spans = strike("knock", line=101, **blow)
+    added = found.counts - before.counts
+    assert not added[:100].any() and added[100:103].any(axis=0).all()
+    assert (np.abs(added[:, :3]).max(axis=0) * FORCE <= 80).all()
+    assert (np.abs(added[:, 3:]).max(axis=0) * RATE <= 2).all()
+    assert (np.abs(added.sum(axis=0)) <= 1).all()
+    k = np.arange(1, 11)
+    ringing = np.exp(-k * 0.01 / 0.05) * np.sin(2 * pi * 30 * k * 0.01)
+    sums = np.cumsum(added[100:110], axis=0).astype(np.float64)
+    shares = sums[0] / ringing[0]
+    assert np.abs(sums - ringing[:, None] * shares).max() <= 0.5 + np.abs(1 / ringing[0])
+    assert np.array_equal(found.stamps, before.stamps)
+    assert spans[0][0] == 100

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from ruamel.yaml import YAML
 
-from laboratory import Recording, SpecificationError, read, specify, write
+from laboratory import Recording, SpecificationError, perform, read, specify, write
 from laboratory.__main__ import main
 
 Change = Callable[[dict[str, Any]], object]
@@ -155,3 +155,23 @@ def test_two_of_angle_rate_and_duration_make_a_turn(
     (manoeuvre,) = specify(demo | {"faults": []}).manoeuvres
     assert manoeuvre.profile.angle == pytest.approx(radians(degrees))
     assert manoeuvre.samples(0.01) == seconds * 100
+
+
+def test_what_is_misstated_is_written_and_not_done(demo: dict[str, Any]) -> None:
+    said = {"site": {"gravity_m_s2": 9.8066}, "plan": {"x-forward": {"degrees": 350}}}
+    true, false = (
+        perform(specify(demo | {"misstated": wrong} | {"faults": []})) for wrong in ({}, said)
+    )
+    assert {log: r.counts.tobytes() for log, r in true.records.items()} == {
+        log: r.counts.tobytes() for log, r in false.records.items()
+    }
+    assert false.campaign["site"] == true.campaign["site"] | {"gravity_m_s2": 9.8066}
+    stated = {one["id"]: one for one in false.campaign["plan"]}
+    for one in true.campaign["plan"]:
+        changed = {"degrees": 350} if one["id"] == "x-forward" else {}
+        assert stated[one["id"]] == one | changed
+
+
+def test_a_misstated_manoeuvre_is_one_of_the_plan(demo: dict[str, Any]) -> None:
+    with pytest.raises(SpecificationError, match=r"misstated\.plan\.w-up"):
+        specify(demo | {"misstated": {"plan": {"w-up": {"degrees": 350}}}})
