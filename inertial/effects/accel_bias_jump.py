@@ -5,7 +5,16 @@ from dataclasses import replace
 import numpy as np
 
 from inertial.physics.drift import after, evenly, without_clock
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth, by_grade
+from inertial.physics.effect import (
+    Array,
+    Effect,
+    Parameter,
+    Reading,
+    Scan,
+    Truth,
+    by_grade,
+    on_each_axis,
+)
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
@@ -34,6 +43,7 @@ class AccelBiasJump(Effect):
         )
         for axis in "xyz"
     )
+    terms = on_each_axis("accel", "b_{i}", "(t > t0)")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 20, 100, 200, 1000)
     scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
 

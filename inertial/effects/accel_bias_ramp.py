@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from inertial.physics.drift import without_clock
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import HOUR, STANDARD_GRAVITY
@@ -31,6 +31,7 @@ class AccelBiasRamp(Effect):
         )
         for axis in "xyz"
     )
+    terms = on_each_axis("accel", "c_{i}", "t")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY / HOUR, 20, 100, 100, 1000)
 
     def blind(self, motion: Motion) -> str:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Term, Truth, by_grade
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
@@ -34,6 +34,11 @@ class AccelCrossProducts(Effect):
                 pair_2=pair[1],
             ),
         )
+        for i in "xyz"
+        for pair in NAMES
+    )
+    terms = tuple(
+        Term(f"accel_{i}", f"k_{i}_{pair}", f"f_{pair[0]} * f_{pair[1]}")
         for i in "xyz"
         for pair in NAMES
     )

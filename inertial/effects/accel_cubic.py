@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
@@ -27,6 +27,7 @@ class AccelCubic(Effect):
         )
         for axis in "xyz"
     )
+    terms = on_each_axis("accel", "k3_{i}", "f_{i} * f_{i} * f_{i}")
     sizes = by_grade(1e-6 / STANDARD_GRAVITY**2, 5, 50, 200, 1000)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:

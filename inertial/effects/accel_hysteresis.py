@@ -46,6 +46,7 @@ class AccelHysteresis(Effect):
         )
         for axis in "xyz"
     )
+    stays = _("it depends on the forces before the reading, which the reading does not tell")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 5, 20, 50, 500)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
@@ -27,6 +27,7 @@ class AccelScaleAsymmetry(Effect):
         )
         for axis in "xyz"
     )
+    terms = on_each_axis("accel", "a_{i}", "abs(f_{i})")
     sizes = by_grade(1e-6, 10, 50, 100, 500)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:

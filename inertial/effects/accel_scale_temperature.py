@@ -1,9 +1,19 @@
 """A scale factor of the accelerometers that goes with the temperature."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
-from inertial.physics.drift import warmer, without_temperature
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.physics.drift import mean_temperature, warmer, without_temperature
+from inertial.physics.effect import (
+    Array,
+    Constant,
+    Effect,
+    Parameter,
+    Reading,
+    Truth,
+    by_grade,
+    on_each_axis,
+)
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
@@ -23,11 +33,15 @@ class AccelScaleTemperature(Effect):
         Parameter(f"k_{axis}", "1/K", 1e-5, _("of the {axis} accelerometer, per kelvin", axis=axis))
         for axis in "xyz"
     )
+    terms = on_each_axis("accel", "k_{i}", "(T - T0) * f_{i}")
     sizes = by_grade(1e-6, 5, 20, 50, 200)
+
+    def constants(self, motion: Motion) -> Sequence[Constant]:
+        return [mean_temperature(motion, self.reference)]
 
     def blind(self, motion: Motion) -> str:
         return without_temperature(motion)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        change = values * truth.force * warmer(motion)[:, None]
+        change = values * truth.force * warmer(motion, self.reference)[:, None]
         return replace(reading, accel=reading.accel + change)

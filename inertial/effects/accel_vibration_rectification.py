@@ -30,6 +30,7 @@ class AccelVibrationRectification(Effect):
         )
         for axis in "xyz"
     )
+    stays = _("it depends on how much the samples scatter, which one reading does not tell")
     sizes = by_grade(1e-6 / STANDARD_GRAVITY, 50, 100, 500, 1000)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:

@@ -5,7 +5,16 @@ from dataclasses import replace
 import numpy as np
 
 from inertial.physics.drift import after, evenly, without_clock
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth, by_grade
+from inertial.physics.effect import (
+    Array,
+    Effect,
+    Parameter,
+    Reading,
+    Scan,
+    Truth,
+    by_grade,
+    on_each_axis,
+)
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
@@ -29,6 +38,7 @@ class GyroBiasJump(Effect):
         Parameter(f"b_{axis}", "rad/s", DEGREE_PER_HOUR, _("of the {axis} rate", axis=axis))
         for axis in "xyz"
     )
+    terms = on_each_axis("gyro", "b_{i}", "(t > t0)")
     sizes = by_grade(DEGREE_PER_HOUR, 0.3, 10, 30, 100)
     scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from inertial.physics.drift import without_clock
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, HOUR
@@ -29,6 +29,7 @@ class GyroBiasRamp(Effect):
         )
         for axis in "xyz"
     )
+    terms = on_each_axis("gyro", "c_{i}", "t")
     sizes = by_grade(DEGREE_PER_HOUR / HOUR, 0.05, 1, 10, 100)
 
     def blind(self, motion: Motion) -> str:

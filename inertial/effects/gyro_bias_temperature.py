@@ -1,11 +1,21 @@
 """A bias of the gyros that goes with the temperature."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.drift import warmer, without_temperature
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.physics.drift import mean_temperature, warmer, without_temperature
+from inertial.physics.effect import (
+    Array,
+    Constant,
+    Effect,
+    Parameter,
+    Reading,
+    Truth,
+    by_grade,
+    on_each_axis,
+)
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
@@ -29,11 +39,15 @@ class GyroBiasTemperature(Effect):
         )
         for axis in "xyz"
     )
+    terms = on_each_axis("gyro", "k_{i}", "(T - T0)")
     sizes = by_grade(DEGREE_PER_HOUR, 0.05, 1, 5, 18)
+
+    def constants(self, motion: Motion) -> Sequence[Constant]:
+        return [mean_temperature(motion, self.reference)]
 
     def blind(self, motion: Motion) -> str:
         return without_temperature(motion)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        change = np.outer(warmer(motion), values)
+        change = np.outer(warmer(motion, self.reference), values)
         return replace(reading, gyro=reading.gyro + change)

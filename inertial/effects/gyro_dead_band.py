@@ -39,6 +39,9 @@ class GyroDeadBand(Effect):
         )
         for axis in "xyz"
     )
+    stays = _(
+        "what the gyro does not feel is not in its reading, and noise hides whether a rate is small"
+    )
     sizes = by_grade(1, 0.01, 0.01, 0.01, 1)
     thinkable = 1.0
     scan = Scan("width", "rad/s", _("largest rate that is lost"))

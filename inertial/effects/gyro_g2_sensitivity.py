@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
@@ -25,6 +25,7 @@ class GyroG2Sensitivity(Effect):
         Parameter(f"g2_{axis}", "(rad/s)/(m/s²)²", 1.0 * UNIT, _("of the {axis} gyro", axis=axis))
         for axis in "xyz"
     )
+    terms = on_each_axis("gyro", "g2_{i}", "f_{i} * f_{i}")
     sizes = by_grade(UNIT, 0.01, 0.05, 0.5, 5)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Term, Truth, by_grade
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
@@ -28,6 +28,7 @@ class GyroGSensitivity(Effect):
         for i in "xyz"
         for j in "xyz"
     )
+    terms = tuple(Term(f"gyro_{i}", f"g_{i}{j}", f"f_{j}") for i in "xyz" for j in "xyz")
     sizes = by_grade(UNIT, 0.05, 1, 11, 100)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:

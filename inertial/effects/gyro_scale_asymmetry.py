@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
@@ -28,6 +28,7 @@ class GyroScaleAsymmetry(Effect):
         )
         for axis in "xyz"
     )
+    terms = on_each_axis("gyro", "a_{i}", "abs(w_{i})")
     sizes = by_grade(1e-6, 10, 30, 100, 500)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE
@@ -23,6 +23,7 @@ class GyroScaleCubic(Effect):
         Parameter(f"k_{axis}", "s²/rad²", 1e-8 / DEGREE**2, _("of the {axis} gyro", axis=axis))
         for axis in "xyz"
     )
+    terms = on_each_axis("gyro", "k_{i}", "w_{i} * w_{i} * w_{i}")
     sizes = by_grade(1e-6 / DEGREE**2, 1e-3, 1e-4, 5e-3, 0.05)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:

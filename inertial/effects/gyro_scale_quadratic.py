@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE
@@ -24,6 +24,7 @@ class GyroScaleQuadratic(Effect):
         Parameter(f"k_{axis}", "1/(rad/s)", 1e-6 / DEGREE, _("of the {axis} gyro", axis=axis))
         for axis in "xyz"
     )
+    terms = on_each_axis("gyro", "k_{i}", "w_{i} * abs(w_{i})")
     sizes = by_grade(1e-6 / DEGREE, 0.1, 0.1, 1, 5)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:

@@ -5,7 +5,16 @@ from dataclasses import replace
 import numpy as np
 
 from inertial.physics.drift import decayed, without_clock
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth, by_grade
+from inertial.physics.effect import (
+    Array,
+    Effect,
+    Parameter,
+    Reading,
+    Scan,
+    Truth,
+    by_grade,
+    on_each_axis,
+)
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
@@ -33,6 +42,7 @@ class GyroWarmUp(Effect):
         )
         for axis in "xyz"
     )
+    terms = on_each_axis("gyro", "b_{i}", "exp(-t / tau)")
     sizes = by_grade(DEGREE_PER_HOUR, 0.3, 5, 30, 300)
     scan = Scan("tau", "s", _("time constant of the settling"))
 

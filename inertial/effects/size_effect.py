@@ -29,6 +29,7 @@ class SizeEffect(Effect):
         for i in "xyz"
         for j in "xyz"
     )
+    stays = _("it depends on where the axis of the table was, as the lever arm does")
     sizes = by_grade(1e-3, 20, 5, 5, 1)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:

@@ -8,7 +8,9 @@ a warm-up began earlier, and its amplitude differs by a factor.
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.physics.effect import MEAN_TEMPERATURE, Constant
 from inertial.physics.motion import Motion
+from inertial.text.messages import _
 
 Array = NDArray[np.float64]
 
@@ -50,7 +52,17 @@ def decayed(motion: Motion, constant: float) -> Array:
     return np.asarray(np.exp(-motion.time / constant) * np.sinh(half) / half)
 
 
-def warmer(motion: Motion) -> Array:
-    """Temperature of each stretch less the mean of the campaign, (n,), K."""
-    mean = np.average(motion.temperature, weights=motion.seconds)
-    return np.asarray(motion.temperature - mean)
+def mean_temperature(motion: Motion, reference: float | None = None) -> Constant:
+    """The temperature that others are relative to: the mean of the campaign, K."""
+    mean = reference
+    if mean is None:
+        mean = float(np.average(motion.temperature, weights=motion.seconds))
+    return Constant(MEAN_TEMPERATURE, "K", _("mean temperature of the campaign"), mean)
+
+
+def warmer(motion: Motion, reference: float | None = None) -> Array:
+    """Temperature of each stretch less `reference`, the mean of the campaign, (n,), K.
+
+    Without a reference the motion is all of the campaign.
+    """
+    return np.asarray(motion.temperature - mean_temperature(motion, reference).value)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.physics.motion import Motion
+from inertial.text.messages import _
 
 # ---- Typical sizes of effects, by the grade of a sensor or the quality of a table.
 
@@ -86,6 +87,38 @@ class Scan:
     between: bool = True
 
 
+@dataclass(frozen=True)
+class Constant:
+    """A number in the terms of an effect that is not estimated with its parameters."""
+
+    name: str
+    unit: str
+    meaning: str
+    value: float
+
+
+@dataclass(frozen=True)
+class Term:
+    """What a parameter adds to the reading of one channel: parameter × factor.
+
+    `factor`: as text that C and Python read alike; f_x, f_y, f_z the specific force, m/s², and
+    w_x, w_y, w_z the angular rate, rad/s, that are sensed; t the time, s; T the temperature, K; and
+    the constants of the effect by their names.
+    """
+
+    channel: str
+    parameter: str
+    factor: str
+
+
+def on_each_axis(sensor: str, parameter: str, factor: str) -> tuple[Term, ...]:
+    """The same term on each axis i of a sensor, accel or gyro."""
+    return tuple(Term(f"{sensor}_{i}", parameter.format(i=i), factor.format(i=i)) for i in "xyz")
+
+
+MEAN_TEMPERATURE = "T0"  # constant of the effects of temperature
+
+
 class Effect(ABC):
     """One physical effect: its name, its cause, its source, its parameters and how it acts.
 
@@ -109,6 +142,10 @@ class Effect(ABC):
     `scan`: a nonlinear parameter. The effect in the catalogue is then a family whose
     `candidates` for a campaign have one value each, `at`; each is an effect like others.
     Without a value it acts with the middle one of them.
+
+    `terms`: what it adds to the readings as a function of force, rate, time and temperature; where
+    there are none, `stays` says why it cannot be taken out of readings. `reference`: the mean
+    temperature of the campaign, K, where the motion is not all of it.
     """
 
     name: ClassVar[str]
@@ -121,7 +158,10 @@ class Effect(ABC):
     finding: ClassVar[str] = ""
     absorbed_by: ClassVar[str] = ""
     scan: ClassVar[Scan | None] = None
+    terms: ClassVar[tuple[Term, ...]] = ()
+    stays: ClassVar[str] = _("the table, the site or the mounting causes it, and the IMU feels it")
     at: float | None = None
+    reference: float | None = None
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         """The truth with this effect in it; `values` follow `parameters`."""
@@ -154,6 +194,19 @@ class Effect(ABC):
         """The effect with one value of the nonlinear parameter."""
         effect = copy(self)
         effect.at = at
+        return effect
+
+    def constants(self, motion: Motion) -> Sequence[Constant]:
+        """The constants of its terms, as this motion sets them."""
+        if self.scan is None:
+            return []
+        return [Constant(self.scan.name, self.scan.unit, self.scan.meaning, self.value(motion))]
+
+    def with_constants(self, values: Mapping[str, float]) -> Self:
+        """The effect with the constants of a campaign, by name."""
+        effect = copy(self)
+        effect.at = values.get(self.scan.name) if self.scan else None
+        effect.reference = values.get(MEAN_TEMPERATURE)
         return effect
 
     def value(self, motion: Motion) -> float:

@@ -29,7 +29,8 @@ NOT_DETERMINED = _("with the effects in the model the manoeuvres do not determin
 class Solved:
     """The extended fit of one sensor: rows of its parameters, their covariance in that order.
 
-    `effects`: the name of the effect of each row after the twelve.
+    `effects`: the name of the effect of each row after the twelve; `constants`: rows of the numbers
+    in the terms of the effects that are not estimated with them: a time, a mean temperature.
     """
 
     sensor: str
@@ -39,6 +40,7 @@ class Solved:
     random_walk: float
     effects: Sequence[str] = ()
     mount: str = ""
+    constants: Sequence[Row] = ()
 
     @property
     def stage(self) -> str:
@@ -101,29 +103,40 @@ def solved(models: Models, sensor: str, system: System, random_walk: float, moun
                 unknowns.append((name, parameter.unit, "body", parameter.meaning))
     values = estimate.values.copy()
     values[:UNKNOWNS] = errors_of(values[:UNKNOWNS])
-    rows: list[Row] = []
     effect_of = dict(zip(places[UNKNOWNS:], effects, strict=True))
-    for place, (name, unit, frame, meaning) in zip(places, unknowns, strict=True):
-        there = bool(estimate.determined[place])
-        rows.append(
-            {
-                "id": f"extension/{with_mount(stage, mount)}/{name}",
-                "stage": "extension",
-                "mount": mount,
-                "sensor": sensor,
-                "method": EXTENDED,
-                "effect": effect_of.get(place),
-                "parameter": name,
-                "value": float(values[place]) if there else None,
-                "sigma": float(estimate.sigma[place]) if there else None,
-                "unit": unit,
-                "frame": frame,
-                "meaning": meaning,
-                "reason": "" if there else NOT_DETERMINED,
-            }
-        )
+
+    def row(name: str, unit: str, frame: str, meaning: str, effect: str | None) -> dict[str, Any]:
+        return {
+            "id": f"extension/{with_mount(stage, mount)}/{name}",
+            "stage": "extension",
+            "mount": mount,
+            "sensor": sensor,
+            "method": EXTENDED,
+            "effect": effect,
+            "parameter": name,
+            "value": None,
+            "sigma": None,
+            "unit": unit,
+            "frame": frame,
+            "meaning": meaning,
+            "reason": NOT_DETERMINED,
+        }
+
+    rows: list[Row] = []
+    for place, described_as in zip(places, unknowns, strict=True):
+        rows.append(row(*described_as, effect_of.get(place)))
+        if estimate.determined[place]:
+            value, sigma = float(values[place]), float(estimate.sigma[place])
+            rows[-1] = {**rows[-1], "value": value, "sigma": sigma, "reason": ""}
+    constants = [
+        row(f"{effect.name}.{one.name}", one.unit, "", one.meaning, effect.name)
+        | {"value": one.value, "reason": ""}
+        for effect in models.effects
+        if effect.name in effects
+        for one in effect.constants(models.extended.motion)
+    ]
     covariance = estimate.covariance[np.ix_(places, places)]
-    return Solved(sensor, rows, covariance, estimate, random_walk, effects, mount)
+    return Solved(sensor, rows, covariance, estimate, random_walk, effects, mount, constants)
 
 
 # ---- The change of each of the 24 parameters by the effects.

@@ -137,7 +137,8 @@ class Extension:
                 solution = solved(models, sensor, system, walk, mount)
                 self.solutions[sensor] = solution
                 yield "covariance", solution.covariance_rows()
-                yield from (("parameters", row) for row in solution.rows)
+                rows = (*solution.rows, *solution.constants)
+                yield from (("parameters", row) for row in rows)
                 yield "fit", solution.fit_row(data.noise.degrees)
                 for row in self.joint[sensor].manoeuvres:
                     yield "fit_manoeuvres", {**row, "method": EXTENDED}

@@ -8,8 +8,10 @@ import pytest
 
 from inertial.effects import CATALOGUE
 from inertial.physics.effect import Effect
-from inertial.physics.forward import predict, signatures
+from inertial.physics.forward import predict, sensed, signatures, truth_of
 from inertial.physics.motion import Motion
+from inertial.tables import CHANNELS
+from tests.expressions import value_of
 
 SENSOR_GRADES = {"fog", "tactical", "mti", "consumer"}
 OTHER_SIZES = ({"good table", "poor table"}, {"usual"})
@@ -148,3 +150,43 @@ def test_vibration_that_is_not_known_everywhere_tells_nothing(motion):
 def test_nothing_is_blind_where_all_is_known():
     motion = plans.plan_b().campaign().motion
     assert not any(effect.blind(motion) for effect in CATALOGUE.values())
+
+
+def written_out(effect: Effect, motion: Motion, values: np.ndarray) -> np.ndarray:
+    """What the terms say as texts, accel and gyro, (n, 6)."""
+    truth = truth_of(motion, plans.SITE)
+    names = {one.name: one.value for one in effect.constants(motion)} | {
+        "t": motion.time,
+        "T": motion.temperature,
+        **{f"f_{axis}": truth.force[:, i] for i, axis in enumerate("xyz")},
+        **{f"w_{axis}": truth.rate[:, i] for i, axis in enumerate("xyz")},
+    }
+    size = dict(zip([p.name for p in effect.parameters], values, strict=True))
+    added = {channel: np.zeros(len(motion.time)) for channel in CHANNELS}
+    for term in effect.terms:
+        added[term.channel] += size[term.parameter] * value_of(term.factor, names)
+    return np.column_stack([added[channel] for channel in CHANNELS])
+
+
+@pytest.mark.parametrize("name", [name for name, effect in CATALOGUE.items() if effect.terms])
+def test_the_terms_say_in_text_what_is_read(name, motion):
+    """So that whoever has the text alone can take the effect out of readings."""
+    short = replace(motion, seconds=np.full_like(motion.seconds, 1e-6))  # an instant each
+    effect = CATALOGUE[name].with_constants(
+        {one.name: one.value for one in CATALOGUE[name].constants(motion)}
+    )
+    values = np.array([p.typical * (1 + i) for i, p in enumerate(effect.parameters)])
+    plain = sensed(truth_of(short, plans.SITE), *TRIADS[1:])
+    read = effect.reads(plain, truth_of(short, plans.SITE), short, values)
+    change = np.hstack([read.accel - plain.accel, read.gyro - plain.gyro])
+    expected = written_out(effect, short, values)
+    assert np.abs(change).max() > 0
+    np.testing.assert_allclose(change, expected, rtol=1e-6, atol=1e-13)
+    assert {term.parameter for term in effect.terms} == {p.name for p in effect.parameters}
+
+
+def test_what_has_no_terms_says_why_it_stays():
+    for effect in CATALOGUE.values():
+        assert bool(effect.terms) or effect.stays
+        moves = type(effect).moves is not Effect.moves
+        assert not (moves and effect.terms)  # what the IMU truly felt is no error of its reading
