@@ -67,7 +67,7 @@ def run(
 def mounts(results: Results, **changes: Any) -> list[CampaignData]:
     """The campaign as later stages take it, with the joint result where there is one."""
     tables: dict[str, Any] = {
-        "manoeuvres": "plan/manoeuvres",
+        "manoeuvres": "segment/manoeuvres",
         "performed": "segment/performed",
         "blocks": "segment/blocks",
         "levels": "noise/levels",

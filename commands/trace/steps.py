@@ -292,7 +292,7 @@ def _manoeuvres(fits: Sequence[Fit], content: _Tables, provenance: Provenance) -
     phases = used_phases(
         list(dict.fromkeys(used)),
         content.read("segment/blocks", tables.BLOCKS),
-        content.read("plan/manoeuvres", tables.MANOEUVRES),
+        content.read("segment/manoeuvres", tables.MANOEUVRES),
         content.read("quality/masks", tables.MASKS),
     )
     lines = content.lines([phase.records for phase in phases])

@@ -51,14 +51,19 @@ def stated_by(
     clocks: pd.DataFrame,
     ranges: pd.DataFrame,
     imu_types: pd.DataFrame,
+    gravity_repairs: pd.DataFrame,
 ) -> Stated:
     """From the tables of plan and decode."""
-    given = given_by(campaign, known, count_sizes, clocks)
+    given = given_by(campaign, known, count_sizes, clocks, gravity_repairs)
     return Stated(given, known_of(known)["earth_rate_up"].number, clocks, ranges, imu_types)
 
 
 def given_by(
-    campaign: pd.DataFrame, known: pd.DataFrame, count_sizes: pd.DataFrame, clocks: pd.DataFrame
+    campaign: pd.DataFrame,
+    known: pd.DataFrame,
+    count_sizes: pd.DataFrame,
+    clocks: pd.DataFrame,
+    gravity_repairs: pd.DataFrame,
 ) -> Given:
     """What the campaign states of all its logs, and which interval they have in common."""
     (facts,) = rows_of(campaign)
@@ -74,6 +79,9 @@ def given_by(
         normal_gravity=np.nan
         if latitude is None
         else normal_gravity(latitude, facts["height"] or 0.0),
+        refuted_gravity=float(gravity_repairs["stated"].iloc[0])
+        if len(gravity_repairs)
+        else np.nan,
         interval=1 / facts["rate"] if facts["rate"] else np.nan,
         instrument=facts["instrument"],
         date=facts["date"],

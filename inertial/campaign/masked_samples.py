@@ -1,4 +1,4 @@
-"""The stream of samples in batches of one log each, and what is masked of them."""
+"""The stream of samples in batches of one log each, what is set right, and what is masked."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -50,19 +50,68 @@ class Accumulator(Protocol):
         """Take in the next batch."""
 
 
-def read_once(samples: Stream, accumulators: Sequence[Accumulator]) -> None:
+class Repairs:
+    """What sets the readings of each log right: axes, signs and sizes of its six channels.
+
+    Whoever reads samples after segment hands it over, so that no stage takes a reading under
+    the name of another axis, or in another unit.
+    """
+
+    def __init__(self, table: pd.DataFrame) -> None:
+        # By log: for each channel the recorded one, (6,), and by what that is multiplied, (6,).
+        self._by_log: dict[str, tuple[Integers, Array]] = {}
+        for (log, _repair), rows in table.groupby(["log", "repair"], sort=False):
+            source, factor = self._of(str(log))
+            own, by = np.arange(len(CHANNELS)), np.ones(len(CHANNELS))
+            names = ("sensor", "axis", "from_axis", "factor")
+            for sensor, axis, recorded, times in rows[list(names)].itertuples(index=False):
+                channel = CHANNELS.index(f"{sensor}_{axis}")
+                own[channel], by[channel] = CHANNELS.index(f"{sensor}_{recorded}"), times
+            self._by_log[str(log)] = source[own], by * factor[own]
+
+    def _of(self, log: str) -> tuple[Integers, Array]:
+        return self._by_log.get(log, (np.arange(len(CHANNELS)), np.ones(len(CHANNELS))))
+
+    def readings(self, log: str, recorded: Array) -> Array:
+        """The six channels of records of a log, (n, 6), from those recorded."""
+        if log not in self._by_log:
+            return recorded
+        source, factor = self._by_log[log]
+        return np.asarray(recorded[:, source] * factor)
+
+    def channel_masks(self, log: str, recorded: Booleans) -> Booleans:
+        """Which readings are masked, (n, 6), where the masks name the recorded channels."""
+        return recorded if log not in self._by_log else recorded[:, self._by_log[log][0]]
+
+    def columns(self, log: str, recorded: Columns) -> Columns:
+        """Columns of the samples of a log; with one channel of a sensor goes the whole sensor."""
+        own = [channel for channel in CHANNELS if channel in recorded]
+        if log not in self._by_log or not own:
+            return recorded
+        nothing = np.full(len(recorded[own[0]]), np.nan)
+        six = np.column_stack([recorded.get(channel, nothing) for channel in CHANNELS])
+        set_right = dict(zip(CHANNELS, self.readings(log, six).T, strict=True))
+        return {**recorded, **{channel: set_right[channel] for channel in own}}
+
+
+def read_once(
+    samples: Stream, accumulators: Sequence[Accumulator], repairs: Repairs | None = None
+) -> None:
     """One pass over the samples for any number of accumulators."""
     columns = dict.fromkeys(chain(["record"], *(each.columns for each in accumulators)))
-    for log, piece in pieces(samples, list(columns)):
+    for log, piece in pieces(samples, list(columns), repairs):
         batch = Batch(log, piece)
         for accumulator in accumulators:
             accumulator.add(batch)
 
 
-def pieces(samples: Stream, columns: list[str]) -> Iterator[tuple[str, Columns]]:
+def pieces(
+    samples: Stream, columns: list[str], repairs: Repairs | None = None
+) -> Iterator[tuple[str, Columns]]:
     """Consecutive records of one log: its name, and the columns as arrays, NaN where empty."""
     for batch in samples.columns(["log", *columns]):
-        yield from _by_log(batch, columns)
+        for log, piece in _by_log(batch, columns):
+            yield log, piece if repairs is None else repairs.columns(log, piece)
 
 
 def rows_between(samples: Stream, first: int, after: int, columns: list[str]) -> Iterator[Batch]:
@@ -145,9 +194,10 @@ class Masked:
 
 
 class Masks:
-    """The masks of a campaign, by log."""
+    """The masks of a campaign, by log; with its repairs, of the channels as set right."""
 
-    def __init__(self, table: pd.DataFrame) -> None:
+    def __init__(self, table: pd.DataFrame, repairs: Repairs | None = None) -> None:
+        self._repairs = repairs
         self._by_log: dict[str, list[tuple[str, Integers, Integers]]] = {}
         kinds = (table["sensor"] + "_" + table["axis"]).where(table["sensor"].notna(), "")
         kinds = kinds.mask(table["repeated"].astype(bool), "repeated")
@@ -167,6 +217,8 @@ class Masks:
                 channels[:, CHANNELS.index(kind)] |= here
             else:
                 lost |= here
+        if self._repairs is not None:
+            channels = self._repairs.channel_masks(log, channels)
         return Masked(lost & ~repeated, repeated, channels)
 
 

@@ -31,7 +31,8 @@ class Given:
     """What the campaign states of all its logs.
 
     gravity, gravity_sigma: m/s²; normal_gravity: m/s², at its latitude and height, NaN where these
-    are not stated. interval: s, of the instrument, NaN where not stated. date: ISO, or unknown.
+    are not stated; refuted_gravity: m/s², where a stated one is not that of the place, else NaN.
+    interval: s, of the instrument, NaN where not stated. date: ISO, or unknown.
     usual_interval: s, the median of the mean intervals of its logs, and unlike: by how much these
     differ, 1; NaN where fewer than three logs have stamps.
     must_be_set, must_be_clear: bits of the status of a valid record. count_sizes: m/s and rad, of
@@ -48,6 +49,7 @@ class Given:
     must_be_set: int
     must_be_clear: int
     count_sizes: Mapping[str, tuple[float, float]]
+    refuted_gravity: float = np.nan
     usual_interval: float = np.nan
     unlike: float = np.nan
     position_sigma: float = 0.0

@@ -30,6 +30,7 @@ from inertial.tables.estimated import (
     WINDOWS,
 )
 from inertial.tables.planned import (
+    ACCEPTED,
     CAMPAIGN,
     COUNT_SIZES,
     INPUTS,
@@ -91,6 +92,7 @@ from inertial.tables.unmodelled import (
 
 __all__ = [
     "ACCEL",
+    "ACCEPTED",
     "ACCOUNTS",
     "ALARMS",
     "ARCHIVED",

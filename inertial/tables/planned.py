@@ -118,6 +118,14 @@ MANOEUVRES = Table(
         Column("label", TEXT, "", "the records with this label", nullable=True),
     ),
 )
+ACCEPTED = Table(
+    "accepted",
+    1,
+    (
+        Column("repair", TEXT, "", "id of a repair that the campaign file confirms"),
+        Column("place", TEXT, "", "line and key in the campaign file"),
+    ),
+)
 PUBLISHED = Table(
     "published",
     3,

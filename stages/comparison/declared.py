@@ -6,7 +6,7 @@ from inertial.tables.declared import Declared, From
 DECLARED = Declared(
     reads={
         "blocks": From("segment", tables.BLOCKS),
-        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "manoeuvres": From("segment", tables.MANOEUVRES),
         "performed": From("segment", tables.PERFORMED),
         "levels": From("noise", tables.LEVELS),
         "known": From("plan", tables.KNOWN),

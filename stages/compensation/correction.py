@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.masked_samples import Masks
+from inertial.campaign.masked_samples import Masks, Repairs
 from inertial.campaign.records import rows_of
 from inertial.campaign.solution import Solution
 from inertial.campaign.sums import extremes_over
@@ -95,6 +95,7 @@ class CompensatedStream(Stream):
 
     mounted: Mapping[str, Sequence[Mounted]]  # by log
     masks: Masks
+    repairs: Repairs
 
     def columns(self, names: list[str]) -> Iterator[pa.RecordBatch]:
         """Batch by batch, of some columns only."""
@@ -123,7 +124,8 @@ class CompensatedStream(Stream):
                 selected = (index == number) & (record >= part.first) & (record < part.after)
                 if selected.any():
                     masked = self.masks.of(log, record[selected])
-                    kept = np.where(masked.channels, np.nan, readings[selected])
+                    set_right = self.repairs.readings(log, readings[selected])
+                    kept = np.where(masked.channels, np.nan, set_right)
                     kept[masked.whole] = np.nan
                     truth[selected] = part.truth(kept)
         return truth

@@ -6,12 +6,13 @@ from inertial.tables.declared import Declared, From
 DECLARED = Declared(
     reads={
         "samples": From("decode", tables.SAMPLES),
+        "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
         "traces": From("segment", tables.TRACES),
         "masks": From("quality", tables.MASKS),
         "segments": From("segment", tables.SEGMENTS),
         "blocks": From("segment", tables.BLOCKS),
         "campaign": From("plan", tables.CAMPAIGN),
-        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "manoeuvres": From("segment", tables.MANOEUVRES),
         "performed": From("segment", tables.PERFORMED),
         "levels": From("noise", tables.LEVELS),
         "known": From("plan", tables.KNOWN),

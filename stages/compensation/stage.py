@@ -9,7 +9,7 @@ from inertial import tables
 from inertial.campaign import findings as findings
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.findings import Finding
-from inertial.campaign.masked_samples import Masks
+from inertial.campaign.masked_samples import Masks, Repairs
 from inertial.campaign.records import Row, rows_of
 from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Stream
@@ -41,6 +41,7 @@ def compensation(
     samples: Stream,
     traces: pd.DataFrame,
     masks: pd.DataFrame,
+    channel_repairs: pd.DataFrame,
     segments: pd.DataFrame,
     campaign: pd.DataFrame,
     accelerometer_parameters: pd.DataFrame,
@@ -75,7 +76,10 @@ def compensation(
         if data.result.gyro is None:
             rows.append(missing(gyroscope_parameters, "gyro", data.mount))
     yield "checks", table_of(rows)
-    compensated = CompensatedStream(samples.path, mounted(mounts, segments), Masks(masks))
+    repairs = Repairs(channel_repairs)
+    compensated = CompensatedStream(
+        samples.path, mounted(mounts, segments), Masks(masks, repairs), repairs
+    )
     for batch in compensated.columns([column.name for column in tables.COMPENSATED.columns]):
         yield "compensated", batch
     yield "compensated_traces", envelope(compensated, traces)

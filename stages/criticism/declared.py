@@ -7,7 +7,7 @@ DECLARED = Declared(
     reads={
         "simulated": From("simulation", tables.SIMULATED),
         "blocks": From("segment", tables.BLOCKS),
-        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "manoeuvres": From("segment", tables.MANOEUVRES),
         "performed": From("segment", tables.PERFORMED),
         "levels": From("noise", tables.LEVELS),
         "known": From("plan", tables.KNOWN),

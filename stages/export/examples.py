@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.masked_samples import Masks, pieces
+from inertial.campaign.masked_samples import Masks, Repairs, pieces
 from inertial.campaign.records import Manoeuvre
 from inertial.tables import CHANNELS, STATIC_PHASES
 from inertial.tables.parquet import Stream
@@ -42,7 +42,11 @@ class Example:
 
 
 def examples_of(
-    plan: Sequence[Manoeuvre], blocks: pd.DataFrame, samples: Stream, masks: Masks
+    plan: Sequence[Manoeuvre],
+    blocks: pd.DataFrame,
+    samples: Stream,
+    masks: pd.DataFrame,
+    repairs: Repairs,
 ) -> dict[str, list[Example]]:
     """Mount → the mean of its first rest and a sample of its first turn, as far as they exist."""
     examples: dict[str, list[Example]] = {}
@@ -55,7 +59,7 @@ def examples_of(
         examples[mount] = [] if rest is None else [_mean(rest)]
         if turn is not None:
             turn_blocks[mount] = turn.iloc[len(turn) // 2]
-    for mount, example in _samples(samples, masks, turn_blocks).items():
+    for mount, example in _samples(samples, masks, repairs, turn_blocks).items():
         examples[mount].append(example)
     return examples
 
@@ -94,15 +98,18 @@ def _mean(blocks: pd.DataFrame) -> Example:
     )
 
 
-def _samples(samples: Stream, masks: Masks, blocks: Mapping[str, pd.Series]) -> dict[str, Example]:
+def _samples(
+    samples: Stream, masks: pd.DataFrame, repairs: Repairs, blocks: Mapping[str, pd.Series]
+) -> dict[str, Example]:
     """Mount → the first most complete sample of its block; the logs are read no further."""
     examples: dict[str, Example] = {}
+    known = Masks(masks, repairs)
     if not blocks:
         return examples
-    for log, piece in pieces(samples, ["record", "line", *CHANNELS]):
+    for log, piece in pieces(samples, ["record", "line", *CHANNELS], repairs):
         record = piece["record"]
         readings = np.column_stack([piece[channel] for channel in CHANNELS])
-        masked = masks.of(log, record)
+        masked = known.of(log, record)
         readings[masked.channels | masked.whole[:, None]] = np.nan
         for mount, block in blocks.items():
             in_block = (record >= block["from_record"]) & (record < block["to_record"])

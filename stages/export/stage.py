@@ -7,7 +7,7 @@ from typing import Any
 import pandas as pd
 
 from inertial.campaign.final_result import extended_sensors
-from inertial.campaign.masked_samples import Masks
+from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.records import Row, manoeuvres_of, rows_of
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage
@@ -37,6 +37,7 @@ def export(
     if campaign["compensated"]:
         calibration = Calibration(campaign, inputs, made_by=made_by, not_exported=COMPENSATED)
     else:
+        repairs = Repairs(tables["channel_repairs"])
         plan = manoeuvres_of(tables["manoeuvres"])
         fits = {
             stage: Fitted(
@@ -59,7 +60,7 @@ def export(
                 plan,
                 fits,
                 extended_sensors(rows_of(tables["decision"])),
-                examples_of(plan, tables["blocks"], samples, Masks(tables["masks"])),
+                examples_of(plan, tables["blocks"], samples, tables["masks"], repairs),
             ),
         )
     content = document(calibration)

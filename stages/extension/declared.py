@@ -11,7 +11,7 @@ DECLARED = Declared(
         "effects": From("criticism", tables.EFFECTS),
         "random_walks": From("criticism", tables.RANDOM_WALKS),
         "blocks": From("segment", tables.BLOCKS),
-        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "manoeuvres": From("segment", tables.MANOEUVRES),
         "performed": From("segment", tables.PERFORMED),
         "levels": From("noise", tables.LEVELS),
         "known": From("plan", tables.KNOWN),

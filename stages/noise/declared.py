@@ -6,6 +6,7 @@ from inertial.tables.declared import Declared, From
 DECLARED = Declared(
     reads={
         "samples": From("decode", tables.SAMPLES),
+        "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
         "segments": From("segment", tables.SEGMENTS),
         "clocks": From("decode", tables.CLOCKS),
         "gaps": From("quality", tables.GAPS),

@@ -9,7 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.masked_samples import Masks, pieces
+from inertial.campaign.masked_samples import Masks, Repairs, pieces
 from inertial.campaign.noise_levels import effective_levels
 from inertial.campaign.records import clocks_of, rows_of
 from inertial.estimation.spectrum import band_levels, white_level
@@ -31,6 +31,7 @@ def noise(
     clocks: pd.DataFrame,
     gaps: pd.DataFrame,
     masks: pd.DataFrame,
+    channel_repairs: pd.DataFrame,
     sensors: pd.DataFrame,
     *,
     from_hz: float,
@@ -41,7 +42,7 @@ def noise(
     sheet = {f"{row['sensor']}_{row['axis']}": row["white_noise"] for row in rows_of(sensors)}
     quiet = [row for row in rows_of(segments) if row["phase"] in PHASES]
     spectra: dict[tuple[str, str], _Spectra] = {}
-    for log, record, values in _unbroken(samples, gaps, masks):
+    for log, record, values in _unbroken(samples, gaps, masks, Repairs(channel_repairs)):
         step = clock[log].duration
         for row in quiet:
             if row["log"] != log or step is None:
@@ -100,11 +101,11 @@ class _Spectra:
 
 
 def _unbroken(
-    samples: Stream, gaps: pd.DataFrame, masks: pd.DataFrame
+    samples: Stream, gaps: pd.DataFrame, masks: pd.DataFrame, repairs: Repairs
 ) -> Iterator[tuple[str, NDArray[np.int64], Array]]:
     """Records of one log without a gap or a masked record between them: log, numbers, values."""
-    known = Masks(masks)
-    for log, piece in pieces(samples, ["record", *tables.CHANNELS]):
+    known = Masks(masks, repairs)
+    for log, piece in pieces(samples, ["record", *tables.CHANNELS], repairs):
         record = piece["record"]
         values = np.column_stack([piece[channel] for channel in tables.CHANNELS])
         starts = gaps.loc[gaps["log"] == log, "record"].to_numpy(np.int64)

@@ -14,6 +14,8 @@ DECLARED = Declared(
         "inputs": tables.INPUTS,
         "published": tables.PUBLISHED,
         "manoeuvres": tables.MANOEUVRES,
+        "repairs": tables.REPAIRS,
+        "accepted": tables.ACCEPTED,
     },
     files=("campaign", "raw", "instruments", "published"),
 )

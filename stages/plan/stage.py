@@ -28,7 +28,7 @@ from stages.plan.recording import (
     recording,
     sensors,
 )
-from stages.plan.taken_as_known import known
+from stages.plan.taken_as_known import gravity_repairs, known
 
 Row = dict[str, Any]
 
@@ -38,8 +38,12 @@ def plan(
     raw: list[Path],
     instruments: list[Path],
     published: Sequence[Path] = (),
+    *,
+    repairs: str = "apply",
 ) -> Tables:
     """The campaign, its instrument, its logs and its manoeuvres, and what others published of it.
+
+    `repairs`: apply or refuse, whether a gravity that is not that of the place is set right.
 
     Raises
     ------
@@ -57,7 +61,8 @@ def plan(
         )
     file.check("campaign")
     entry = instrument(file, instruments[0])
-    taken_as_known = list(known(file))
+    set_right = list(gravity_repairs(file, repairs))
+    taken_as_known = list(known(file, set_right))
     manoeuvres, table = _manoeuvres(file, entry), encoder(file)
     present = {path.name: path for path in raw}
     named = [(row["key"], row["file"]) for row in manoeuvres]
@@ -86,6 +91,11 @@ def plan(
         ),
         "published": pd.DataFrame(others) if others else tables.PUBLISHED.empty(),
         "manoeuvres": pd.DataFrame(manoeuvres)[[c.name for c in tables.MANOEUVRES.columns]],
+        "repairs": set_right,
+        "accepted": [
+            {"repair": repair, "place": file.place(["accept", number])}
+            for number, repair in enumerate(file.content.get("accept", []))
+        ],
     }
 
 

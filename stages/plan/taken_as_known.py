@@ -1,9 +1,10 @@
 """What a campaign takes as known: every quantity with its sigma and where it is from."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import cos, radians
 from typing import Any
 
+from inertial.physics.gravity_anomalies import ANOMALY_SIGMA, is_refuted, latitude_of
 from inertial.physics.site import EARTH_RATE, earth_rate, normal_gravity
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.campaign_units import ARC_SECOND
@@ -14,14 +15,16 @@ ASSUMED_POSITION = 30 * ARC_SECOND
 ASSUMED_ANGLE = 30 * ARC_SECOND
 ASSUMED_RATE = 1e-3
 ASSUMED_GRAVITY = 5e-5  # m/s² of a stated value: 5 mGal
-ASSUMED_ANOMALY = 5e-4  # m/s² of normal gravity: what gravity differs by from place to place
 ASSUMED_LATITUDE = radians(0.01)
 
 Row = dict[str, Any]
 
 
-def known(file: YamlFile) -> Iterator[Row]:
-    """Every quantity that the estimation takes as known, with its sigma and where it is from."""
+def known(file: YamlFile, repairs: Sequence[Row] = ()) -> Iterator[Row]:
+    """Every quantity that the estimation takes as known, with its sigma and where it is from.
+
+    `repairs`: those of gravity, of which at most one is applied.
+    """
     site, table = file.content["site"], file.content.get("table", {})
 
     def row(
@@ -57,7 +60,11 @@ def known(file: YamlFile) -> Iterator[Row]:
             _("position_sigma_arcsec for positions set by hand"),
             _("state how well the faces were set, for example position_sigma_arcsec: 3600 for 1°"),
         )
-    yield row("gravity", *_gravity(file), "m/s²", _gravity_origin(site))
+    gravity, origin = _gravity(file), _gravity_origin(site)
+    for repair in repairs:
+        if repair["state"] != "refused":
+            gravity, origin = (repair["value"], repair["sigma"]), repair["sentence"]
+    yield row("gravity", *gravity, "m/s²", origin)
     if site["latitude_deg"] is None:
         # A direction of which nothing is known: each part has a third of the squared rate.
         unknown = _("assumed, for the latitude is not known")
@@ -97,7 +104,64 @@ def _gravity(file: YamlFile) -> tuple[float, float]:
             _("state gravity_m_s2, or latitude_deg and height_m for normal gravity"),
         )
     value = normal_gravity(radians(site["latitude_deg"]), site.get("height_m", 0.0))
-    return value, site.get("gravity_sigma_m_s2", ASSUMED_ANOMALY)
+    return value, site.get("gravity_sigma_m_s2", ANOMALY_SIGMA)
+
+
+def gravity_repairs(file: YamlFile, repairs: str) -> Iterator[Row]:
+    """Normal gravity in place of a stated one that is not that of the place, if it is not.
+
+    Parameters
+    ----------
+    repairs : apply or refuse
+    """
+    site = file.content["site"]
+    if "gravity_m_s2" not in site or site["latitude_deg"] is None:
+        return
+    stated, sigma = _gravity(file)
+    latitude, height = radians(site["latitude_deg"]), site.get("height_m")
+    if not is_refuted(stated, sigma, latitude, height):
+        return
+    value = normal_gravity(latitude, height or 0.0)
+    state = "confirmed" if "gravity" in file.content.get("accept", []) else "applied"
+    yield {
+        "id": "gravity",
+        "repair": "gravity",
+        "state": state if repairs == "apply" else "refused",
+        "sensor": "accel",
+        "value": value,
+        "sigma": ANOMALY_SIGMA,
+        "stated": stated,
+        "unit": "m/s²",
+        "finding": "quality/gravity_error",
+        "condition": _(
+            "gravity is that of latitude {latitude:g}° and height {height:g} m, not the stated "
+            "{stated:.5f} m/s².{rival}",
+            latitude=site["latitude_deg"],
+            height=height or 0.0,
+            stated=stated,
+            rival=_other_latitude(stated, site["latitude_deg"], height or 0.0),
+        ),
+        "sentence": _(
+            "Gravity is taken as {value:.5f} m/s², normal gravity at latitude {latitude:g}° and "
+            "height {height:g} m, in place of the stated {stated:.5f} m/s².",
+            value=value,
+            latitude=site["latitude_deg"],
+            height=height or 0.0,
+            stated=stated,
+        ),
+    }
+
+
+def _other_latitude(stated: float, latitude: float, height: float) -> str:
+    """What latitude would explain a gravity, which is degrees away where no anomaly does."""
+    other = latitude_of(stated, height)
+    if other is None:
+        return _(" No latitude explains it.")
+    return _(
+        " A latitude of {other:.1f}° would explain it as well, {away:.1f}° from the stated one.",
+        other=other,
+        away=abs(other - abs(latitude)),
+    )
 
 
 def _gravity_origin(site: dict[str, Any]) -> str:

@@ -10,6 +10,7 @@ DECLARED = Declared(
         "imu_types": From("decode", tables.IMU_TYPES),
         "campaign": From("plan", tables.CAMPAIGN),
         "known": From("plan", tables.KNOWN),
+        "gravity_repairs": From("plan", tables.REPAIRS),
         "ranges": From("plan", tables.RANGES),
         "count_sizes": From("plan", tables.COUNT_SIZES),
     },

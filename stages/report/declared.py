@@ -9,7 +9,7 @@ DECLARED = Declared(
         "known": From("plan", tables.KNOWN),
         "sensors": From("plan", tables.SENSORS),
         "inputs": From("plan", tables.INPUTS),
-        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "manoeuvres": From("segment", tables.MANOEUVRES),
         "logs": From("plan", tables.LOGS),
         "accounts": From("decode", tables.ACCOUNTS),
         "refused": From("decode", tables.REFUSED),

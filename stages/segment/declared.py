@@ -8,6 +8,8 @@ DECLARED = Declared(
         "samples": From("decode", tables.SAMPLES),
         "campaign": From("plan", tables.CAMPAIGN),
         "known": From("plan", tables.KNOWN),
+        "gravity_repairs": From("plan", tables.REPAIRS),
+        "accepted": From("plan", tables.ACCEPTED),
         "ranges": From("plan", tables.RANGES),
         "count_sizes": From("plan", tables.COUNT_SIZES),
         "manoeuvres": From("plan", tables.MANOEUVRES),
@@ -18,6 +20,9 @@ DECLARED = Declared(
         "channel_statistics": From("quality", tables.CHANNEL_STATISTICS),
     },
     writes={
+        "manoeuvres": tables.MANOEUVRES,
+        "repairs": tables.REPAIRS,
+        "channel_repairs": tables.CHANNEL_REPAIRS,
         "segments": tables.SEGMENTS,
         "performed": tables.PERFORMED,
         "blocks": tables.BLOCKS,

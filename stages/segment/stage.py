@@ -42,7 +42,10 @@ def segment(
     gaps: pd.DataFrame,
     masks: pd.DataFrame,
     channel_statistics: pd.DataFrame,
+    gravity_repairs: pd.DataFrame,
+    accepted: pd.DataFrame,
     *,
+    repairs: str = "apply",
     rest_block: float,
     turn_block: float,
     margin: float,
@@ -85,6 +88,9 @@ def segment(
     )
     detections = [*compare("segment", OF_PLAN, recorded), *rests.detections("segment")]
     return {
+        "manoeuvres": manoeuvres,
+        "repairs": [],
+        "channel_repairs": [],
         "segments": segments,
         "performed": pd.DataFrame([asdict(performed[m.name]) for m in plan]),
         "blocks": blocks,

@@ -6,9 +6,10 @@ from inertial.tables.declared import Declared, From
 DECLARED = Declared(
     reads={
         "samples": From("decode", tables.SAMPLES),
+        "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
         "blocks": From("segment", tables.BLOCKS),
         "segments": From("segment", tables.SEGMENTS),
-        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "manoeuvres": From("segment", tables.MANOEUVRES),
         "performed": From("segment", tables.PERFORMED),
         "levels": From("noise", tables.LEVELS),
         "known": From("plan", tables.KNOWN),

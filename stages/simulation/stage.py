@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
-from inertial.campaign.masked_samples import inside, pieces
+from inertial.campaign.masked_samples import Repairs, inside, pieces
 from inertial.campaign.motions import at_rest, in_samples
 from inertial.campaign.records import Manoeuvre, Performed, Row, rows_of
 from inertial.campaign.solution import Solution
@@ -32,9 +32,11 @@ NOTHING = Triad(np.full((3, 3), np.nan), np.full(3, np.nan))  # of a triad that 
 def simulation(
     mounts: Sequence[CampaignData],
     samples: Stream,
+    channel_repairs: pd.DataFrame,
     segments: pd.DataFrame,
 ) -> Pieces:
     """Rotations sample by sample, static positions block by block, with their residuals."""
+    repairs = Repairs(channel_repairs)
     for data in mounts:
         rests = list(_rests(data))
         if rests:
@@ -44,7 +46,7 @@ def simulation(
         if data.result.gyro is None:
             continue
         whole = [m for m in data.plan if _whole(m, data.performed[m.name])]
-        for m, parts in _samples_of(samples, segments, whole):
+        for m, parts in _samples_of(samples, repairs, segments, whole):
             part, how = _turn(data, m, parts, segments)
             yield "simulated", _frame([part])
             yield "fidelity", _table(_fidelity(part, data, how, data.clocks[m.log].step))
@@ -110,7 +112,7 @@ def _predicted(motion: Motion, solution: Solution) -> Reading:
 
 
 def _samples_of(
-    samples: Stream, segments: pd.DataFrame, whole: list[Manoeuvre]
+    samples: Stream, repairs: Repairs, segments: pd.DataFrame, whole: list[Manoeuvre]
 ) -> Iterator[tuple[Manoeuvre, dict[str, NDArray[Any]]]]:
     """The samples of each of these turns, from the rest before it to the rest after it."""
     spans = {
@@ -119,7 +121,7 @@ def _samples_of(
     }
     columns = ["record", "time", *tables.CHANNELS]
     waiting = {m.name: [] for m in whole}  # type: dict[str, list[dict[str, NDArray[Any]]]]
-    for log, piece in pieces(samples, columns):
+    for log, piece in pieces(samples, columns, repairs):
         for m in whole:
             if m.log != log:
                 continue

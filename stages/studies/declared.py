@@ -6,11 +6,12 @@ from inertial.tables.declared import Declared, From
 DECLARED = Declared(
     reads={
         "samples": From("decode", tables.SAMPLES),
+        "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
         "masks": From("quality", tables.MASKS),
         "clocks": From("decode", tables.CLOCKS),
         "segments": From("segment", tables.SEGMENTS),
         "blocks": From("segment", tables.BLOCKS),
-        "manoeuvres": From("plan", tables.MANOEUVRES),
+        "manoeuvres": From("segment", tables.MANOEUVRES),
         "performed": From("segment", tables.PERFORMED),
         "levels": From("noise", tables.LEVELS),
         "known": From("plan", tables.KNOWN),

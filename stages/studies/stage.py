@@ -6,7 +6,7 @@ from typing import Any
 import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
-from inertial.campaign.masked_samples import Masks
+from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.solution import scatter_by_mount
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
@@ -34,6 +34,7 @@ def studies(
     mounts: Sequence[CampaignData],
     samples: Stream,
     masks: pd.DataFrame,
+    channel_repairs: pd.DataFrame,
     segments: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
     gyroscope_fit: pd.DataFrame,
@@ -48,7 +49,7 @@ def studies(
 
     wanted = {name: stretch for found in rests.values() for name, (_, stretch) in found.items()}
     wanted |= {r.plan.name: stretch_of(r, segments) for found in turns.values() for r in found}
-    read = samples_in(samples, wanted, Masks(masks))
+    read = samples_in(samples, wanted, masks, Repairs(channel_repairs))
 
     rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     for data in mounts:

@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.masked_samples import Masks, pieces
+from inertial.campaign.masked_samples import Masks, Repairs, pieces
 from inertial.campaign.motions import measured_angles
 from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Manoeuvre
@@ -53,17 +53,18 @@ class Samples:
 
 
 def samples_in(
-    samples: Stream, stretches: Mapping[str, Stretch], masks: Masks
+    samples: Stream, stretches: Mapping[str, Stretch], masks: pd.DataFrame, repairs: Repairs
 ) -> dict[str, Samples]:
     """The samples of each stretch by its name; repeated records are left out."""
+    known = Masks(masks, repairs)
     extracted: dict[str, list[tuple[Array, Array]]] = {name: [] for name in stretches}
-    for log, piece in pieces(samples, ["record", "time", *CHANNELS]):
+    for log, piece in pieces(samples, ["record", "time", *CHANNELS], repairs):
         record = piece["record"]
         for name, stretch in stretches.items():
             if stretch.log != log or record[-1] < stretch.first or record[0] >= stretch.after:
                 continue
             inside = (record >= stretch.first) & (record < stretch.after)
-            masked = masks.of(log, record[inside])
+            masked = known.of(log, record[inside])
             values = np.column_stack([piece[channel][inside] for channel in CHANNELS])
             values[masked.channels | masked.lost[:, None]] = np.nan
             kept = ~masked.repeated

@@ -1,5 +1,7 @@
 """What a count is worth, gravity, temperature: named where wrong, silent where right."""
 
+from math import radians
+
 import numpy as np
 import pytest
 from recorded_by_hand import COUNTS, GRAVITY, assert_told, given, log, piece, rest, seen, stamps
@@ -7,6 +9,7 @@ from recorded_by_hand import COUNTS, GRAVITY, assert_told, given, log, piece, re
 from inertial.detectors.gravity_error import GravityError
 from inertial.detectors.temperature_drift import TemperatureDrift
 from inertial.detectors.wrong_scale_factor import WrongScaleFactor
+from inertial.physics.gravity_anomalies import is_refuted, latitude_of
 from inertial.signal.scale_factor import explanation_of
 
 
@@ -91,23 +94,44 @@ def test_a_ratio_of_no_unit_is_not_explained():
 
 
 def test_a_gravity_that_is_not_of_the_place_is_named():
-    (event,) = GravityError().detect_in_campaign(given(gravity=9.80665, gravity_sigma=5e-5))
+    told = given(gravity=9.7935882, gravity_sigma=5e-4, refuted_gravity=9.80665)
+    (event,) = GravityError().detect_in_campaign(told)
     assert_told(GravityError(), event, "")
     assert event.size == pytest.approx(9.80665 - 9.7935882)
     words = GravityError().describe(event, "")
     assert "the size of the unit g" in words.sentence
     assert "off by −1332 ppm" in words.consequence
+    assert "Normal gravity is used" in words.action
+    (event,) = GravityError().detect_in_campaign(given(gravity=9.80665, refuted_gravity=9.80665))
+    assert "The stated value is used" in GravityError().describe(event, "").action
+    assert not list(GravityError().detect_in_campaign(given()))
+
+
+# Normal gravity at 30.53° and 24 m is 9.79359 m/s².
+WUHAN = radians(30.5278)
+
+
+def test_the_unit_g_is_no_gravity_of_wuhan():
+    assert is_refuted(9.80665, 5e-5, WUHAN, 24.0)
+    assert is_refuted(9.80665, 5e-5, WUHAN, None)  # it stands at no height
 
 
 @pytest.mark.parametrize("off", [-150, -60, 0, 60, 150])
 def test_what_geology_makes_is_no_error(off):
     """Free-air anomalies: 42 mGal rms over the earth."""
-    assert not list(GravityError().detect_in_campaign(given(gravity=9.7935882 + off * 1e-5)))
+    assert not is_refuted(9.79359 + off * 1e-5, 5e-5, WUHAN, 24.0)
 
 
-def test_without_a_place_or_with_a_large_sigma_nothing_is_said():
-    assert not list(GravityError().detect_in_campaign(given(normal_gravity=np.nan, gravity=9.9)))
-    assert not list(GravityError().detect_in_campaign(given(gravity=9.80, gravity_sigma=0.02)))
+def test_with_a_large_sigma_or_on_a_mountain_of_unknown_height_nothing_is_said():
+    assert not is_refuted(9.80, 0.02, WUHAN, 24.0)
+    assert not is_refuted(9.79359 - 3000 * 3.086e-6, 5e-5, WUHAN, None)  # 0.3086 mGal/m
+    assert is_refuted(9.79359 - 3000 * 3.086e-6, 5e-5, WUHAN, 24.0)
+
+
+def test_the_latitude_of_a_gravity():
+    # Helmert's 9.80665 is normal gravity at 45.5° on the ellipsoid of WGS 84.
+    assert latitude_of(9.80665, 0.0) == pytest.approx(45.5, abs=0.1)
+    assert latitude_of(9.70, 0.0) is None
 
 
 # ---- temperature
