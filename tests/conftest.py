@@ -63,11 +63,11 @@ def recorded(recordings, tmp_path_factory) -> dict[str, chain.Results]:
 
 @pytest.fixture(scope="session")
 def demo_criticised(tmp_path_factory) -> chain.Results:
-    """The demo campaign with all that it hides, through the chain up to the extension."""
+    """The demo campaign with all that it hides, through the chain up to the compensation."""
     folder = tmp_path_factory.mktemp("demo")
     document = chain.laboratory.read(chain.ROOT / "data/simulated/demo.yaml").document
     campaign = chain.simulate(document, folder / "demo")
-    return chain.run(campaign, folder / "derived", "extension")
+    return chain.run(campaign, folder / "derived", "compensation")
 
 
 @pytest.fixture(scope="session")

@@ -7,11 +7,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from inertial.campaign.measurement import measurement_of
+from inertial.effects import CATALOGUE
 from inertial.physics.forward import Triad
+from inertial.physics.inverse import force_of, rate_of
+from inertial.physics.motion import Motion, stretches
 from inertial.tables import CHANNELS, parquet
 from inertial.tables.errors import Refusal
-from stages.compensation.correction import ALL, mounted, truth_of
+from stages.compensation.correction import ALL, held, mounted
 
+DEGREE_PER_HOUR = np.radians(1 / 3600)  # rad/s
 QUANTITIES = ["gravity", "force_up", "rate_up", "angle"]
 ACCEL, GYRO = list(CHANNELS[:3]), list(CHANNELS[3:])
 
@@ -21,12 +26,51 @@ def checks_of(results: chain.Results, quantity: str) -> pd.DataFrame:
     return table[table["quantity"] == quantity].set_index("manoeuvre")
 
 
+def still(n: int) -> Motion:
+    return stretches(np.linspace(0, 600, n), np.full(n, 0.01), np.linspace(290, 300, n))
+
+
 def test_the_formula_undoes_reading_of_truth():
     triad = Triad(np.array([[1.1, 0.02, 0], [-0.01, 0.9, 0.03], [0, 0, 1]]), np.array([1, 2, 3.0]))
     truth = np.random.default_rng(1).normal(size=(5, 3))
-    np.testing.assert_allclose(truth_of(truth @ triad.matrix.T + triad.bias, triad), truth)
-    sums = 7 * (truth @ triad.matrix.T + triad.bias)
-    np.testing.assert_allclose(truth_of(sums, triad, 7.0), 7 * truth)
+    readings = truth @ triad.matrix.T + triad.bias
+    np.testing.assert_allclose(force_of(readings, triad, [], still(5)), truth)
+    assert np.isnan(force_of(readings, None, [], still(5))).all()
+
+
+G = 1.4 * DEGREE_PER_HOUR / 9.8  # rad/s per m/s²
+
+
+def test_effects_are_taken_out_with_the_force_that_the_accelerometers_tell():
+    """By hand: the x gyro reads g f_z and a drift, the x accelerometer f_x and a share of f_x²."""
+    force = np.array([[3.0, -2.0, 9.0], [-9.7, 0.1, 0.2]])
+    rate = np.array([[1e-5, 2e-5, 3e-5], [0.2, -0.1, 1.0]])
+    motion = stretches(np.array([100.0, 700.0]), np.full(2, 0.01), np.full(2, np.nan))
+    accel = force + np.array([[2e-5 * 9.0, 0, 0], [2e-5 * 9.7**2, 0, 0]])
+    gyro = rate + np.array([[G * 9.0 + 1e-9 * 100, 0, 0], [G * 0.2 + 1e-9 * 700, 0, 0]])
+    exact = Triad(np.eye(3), np.zeros(3))
+    quadratic = (CATALOGUE["accel_quadratic"], np.array([2e-5, 0, 0]))
+    coupled, drift = np.zeros(9), np.array([1e-9, 0, 0])
+    coupled[2] = G
+    effects = [(CATALOGUE["gyro_g_sensitivity"], coupled), (CATALOGUE["gyro_bias_ramp"], drift)]
+    found = force_of(accel, exact, [quadratic], motion)
+    np.testing.assert_allclose(found, force, rtol=1e-12)
+    np.testing.assert_allclose(rate_of(gyro, exact, effects, motion, found), rate, rtol=1e-9)
+
+
+def test_an_effect_that_swallows_the_reading_leaves_nothing():
+    lost = (CATALOGUE["gyro_scale_asymmetry"], np.array([-1.0, -1.0, -1.0]))  # 0 for ω > 0
+    exact = Triad(np.eye(3), np.zeros(3))
+    unknown = rate_of(np.full((1, 3), 0.5), exact, [lost], still(1), np.zeros((1, 3)))
+    assert np.isnan(unknown).all()
+
+
+def test_between_records_of_the_accelerometers_their_last_force_holds():
+    nan = np.full(3, np.nan)
+    force = np.array([nan, [0, 0, 9.0], nan, [0, 9.0, 0], nan])
+    before = np.array([9.0, 0, 0])
+    expected = [[9.0, 0, 0], [0, 0, 9.0], [0, 0, 9.0], [0, 9.0, 0], [0, 9.0, 0]]
+    np.testing.assert_array_equal(held(force, before), expected)
 
 
 # ---- physics, on clean campaigns
@@ -68,12 +112,23 @@ def test_the_earths_rate_is_taken_out_of_the_angle(clean):
     assert (angle["in_sigmas_after"].abs() < 4).all()
 
 
-def test_what_is_hidden_in_the_demo_stays_visible(demo):
-    """Twelve parameters cannot take out a g-sensitivity: rates at rest stay off by parts of it."""
+def test_what_is_hidden_in_the_demo_is_taken_out(demo):
+    """A corrected rest reads the earth's rate, 7.64 °/h at Wuhan, for all its g-sensitivity.
+
+    Without the effects of the result the 1.4 °/h/g that the demo hides are left in it.
+    """
     assert (checks_of(demo, "gravity")["in_sigmas_after"].abs() < 4).all()
     rates = checks_of(demo, "rate_up")
-    assert rates.loc["x-up", "in_sigmas_after"] > 10
-    assert "not all there is" in rates.loc["x-up", "sentence"]
+    assert rates["expected"].iloc[0] / DEGREE_PER_HOUR == pytest.approx(7.640, abs=1e-3)
+    result = demo["diagnosis/result"]
+    twelve = result[result["effect"].isna()]
+    plain = chain.again(demo, "compensation", result=twelve)["checks"]
+    plain = plain[plain["quantity"] == "rate_up"].set_index("manoeuvre")
+    off = (plain.loc["x-up", "after"] - rates.loc["x-up", "after"]) / DEGREE_PER_HOUR
+    assert off == pytest.approx(1.4, abs=0.2)  # data/simulated/demo.yaml
+    assert abs(rates.loc["x-up", "in_sigmas_after"]) < 3
+    assert plain.loc["x-up", "in_sigmas_after"] > 10
+    assert "not all there is" in plain.loc["x-up", "sentence"]
     assert "z-backward" not in checks_of(demo, "angle").index  # it has a gap
     assert demo["compensation/findings"].empty
 
@@ -120,17 +175,45 @@ def test_traces_stand_between_the_edges_of_segment_and_hold_the_samples(clean):
 
 
 def test_a_sensor_that_is_not_wholly_determined_stays_empty_and_says_why(clean):
-    parameters = clean[0]["gyroscope/parameters"]
-    lost = parameters["id"] == "gyroscope/joint/scale_y"
-    parameters.loc[lost, "value"] = np.nan
-    parameters.loc[lost, "reason"] = "no whole turn about y was recorded"
-    made = chain.again(clean[0], "compensation", gyroscope_parameters=parameters)
+    result = clean[0]["diagnosis/result"]
+    lost = (result["sensor"] == "gyro") & (result["parameter"] == "scale_y")
+    result.loc[lost, "value"] = np.nan
+    result.loc[lost, "reason"] = "no whole turn about y was recorded"
+    made = chain.again(clean[0], "compensation", result=result)
     assert made["compensated"][GYRO].isna().all(axis=None)
     assert made["compensated"][ACCEL].notna().all(axis=None)
     checks = made["checks"].set_index("quantity")
     assert checks.loc["gyro", "sentence"].startswith("The gyros are not compensated")
     assert "scale_y: no whole turn about y was recorded" in checks.loc["gyro", "sentence"]
     assert not {"rate_up", "angle"} & set(checks.index)
+
+
+def test_of_a_sensor_that_is_not_usable_nothing_is_compensated(clean):
+    result = clean[0]["diagnosis/result"]
+    unusable = result["sensor"] == "accel"
+    result.loc[unusable, ["value", "sigma"]] = np.nan
+    result.loc[unusable, "reason"] = "gravity is not what is stated"
+    made = chain.again(clean[0], "compensation", result=result)
+    assert made["compensated"][ACCEL].isna().all(axis=None)
+    assert made["compensated"][GYRO].notna().all(axis=None)
+    checks = made["checks"].set_index("quantity")
+    assert checks.loc["accelerometer", "sentence"] == (
+        "The accelerometers are not compensated: gravity is not what is stated."
+    )
+    assert not {"gravity", "force_up"} & set(checks.index)
+
+
+def test_an_effect_of_the_table_stays_in_the_readings(clean):
+    """The table wobbles, the IMU feels it: M and bias were estimated beside it."""
+    result = clean[0]["diagnosis/result"]
+    wobble = result.iloc[:1].assign(
+        id="wobble", effect="table_wobble", parameter="table_wobble.north", value=1e-3
+    )
+    made = chain.again(clean[0], "compensation", result=pd.concat([result, wobble]))
+    same = chain.again(clean[0], "compensation")
+    pd.testing.assert_frame_equal(made["compensated"], same["compensated"])
+    (sentence,) = made["checks"].query("quantity == 'effect'")["sentence"]
+    assert "table wobble, which stays" in sentence
 
 
 def test_each_mount_has_its_own_parameters_and_between_them_nothing_is_known(clean):
@@ -144,13 +227,14 @@ def test_each_mount_has_its_own_parameters_and_between_them_nothing_is_known(cle
             "to_record": [100, 300, 600, 800],
         }
     )
-    mounts = chain.mounts(clean[0], manoeuvres=plan)
-    parts = mounted(mounts, segments)["one.asc"]
+    clocks = clean[0]["decode/clocks"].iloc[:1].assign(log="one.asc")
+    mounts = chain.mounts(clean[0], manoeuvres=plan, clocks=clocks)
+    own = {mount.mount: measurement_of([]) for mount in mounts}
+    parts = mounted(mounts, own, segments)["one.asc"]
     assert [(part.first, part.after) for part in parts] == [(10, 300), (500, 800)]
-    assert mounts[1].mount == "on edge" and parts[1].result is mounts[1].result
-    alone = mounted(chain.mounts(clean[0], manoeuvres=plan.assign(mount="flat")), segments)[
-        "one.asc"
-    ]
+    assert mounts[1].mount == "on edge" and parts[1].measurement is own["on edge"]
+    single = chain.mounts(clean[0], manoeuvres=plan.assign(mount="flat"), clocks=clocks)
+    alone = mounted(single, {}, segments)["one.asc"]
     assert [(part.first, part.after) for part in alone] == [(0, ALL)]
 
 

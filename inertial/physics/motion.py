@@ -191,6 +191,23 @@ def turning(
     )
 
 
+def stretches(time: Array, seconds: Array, temperature: Array) -> Motion:
+    """Stretches of which nothing but time, duration and temperature is known, (n,) each."""
+    n = len(time)
+    zero, unknown = np.zeros(n), np.full((n, 3), np.nan)
+    return Motion(
+        time,
+        np.zeros(3),
+        *(zero, zero, zero),
+        *(unknown, unknown),
+        seconds,
+        *(zero, zero),
+        np.zeros(n, bool),
+        temperature,
+        unknown,
+    )
+
+
 def joined(motions: Sequence[Motion]) -> Motion:
     """Several motions one after another."""
 

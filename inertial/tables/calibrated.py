@@ -17,7 +17,7 @@ COMPENSATED = Table(
 )
 CHECKS = Table(
     "checks",
-    2,
+    3,
     (
         Column("id", TEXT, "", "stable identifier: compensation/quantity/manoeuvre"),
         MOUNT,
@@ -33,7 +33,8 @@ CHECKS = Table(
             TEXT,
             "",
             "gravity: |f|; force_up: f along up; rate_up: rate along up; angle: of a turn about its"
-            " axis, the earth's rate taken out; accelerometer, gyro: why one is not compensated",
+            " axis, the earth's rate taken out; accelerometer, gyro: why one is not compensated;"
+            " effect: one of the result that stays in the readings, and why",
         ),
         Column("unit", TEXT, "", "unit of the values, SI"),
         Column("expected", DOUBLE, "as unit", "what is known of it", nullable=True),

@@ -1,7 +1,8 @@
 """The compensated readings against what is known: gravity, the earth's rate, the angle of turns.
 
-Compensation is linear, so the mean of compensated samples is the compensated mean: the blocks of
-`segment` are enough, and what is masked stays out.
+M and bias are linear, and what effects add is so small that noise does not bend it: the mean of
+compensated samples is the compensated mean. So the blocks of `segment` are enough, and what is
+masked stays out.
 """
 
 from collections.abc import Iterator
@@ -13,18 +14,19 @@ from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.measurement import Measurement, SensorResult
 from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Row, with_mount
-from inertial.campaign.solution import joint_rows
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_observations import Earth, Position
-from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Triad
+from inertial.physics.motion import Motion, stretches
 from inertial.tables import GYRO
+from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, fixed, with_sigma
 from inertial.text.units import DEGREES, DEGREES_PER_HOUR, MICRO_G, SECONDS_OF_ARC, Unit
-from stages.compensation.correction import truth_of
+from stages.compensation.correction import UNKNOWN
 
 Array = NDArray[np.float64]
 
@@ -36,6 +38,7 @@ UNITS = {
     "angle": ("the angle", DEGREES, SECONDS_OF_ARC),
 }
 SI = {"gravity": "m/s²", "force_up": "m/s²", "rate_up": "rad/s", "angle": "rad"}
+SENSORS = {"accel": "accelerometer", "gyro": "gyro"}
 MAX_EXPECTED_SIGMAS = 3.0  # sigmas, above which the parameters do not explain the check
 
 
@@ -97,38 +100,65 @@ class Check:
         }
 
 
-def checks(data: CampaignData) -> Iterator[Check]:
+def checks(data: CampaignData, measurement: Measurement) -> Iterator[Check]:
     """Every static position and every whole rotation of one mount."""
-    if (triad := data.result.accelerometer) is not None:
-        for position in data.accelerometer_positions[0]:
-            yield from _forces(position, triad, data)
-    if (triad := data.result.gyro) is not None:
+    positions = data.accelerometer_positions[0]
+    forces = {position.label: _force(position, measurement) for position in positions}
+    if (triad := measurement.accelerometer.triad) is not None:
+        for position in positions:
+            yield from _forces(position, forces[position.label], triad, data)
+    if (triad := measurement.gyro.triad) is not None:
         for position in data.gyro_positions[0]:
-            yield from _rate(position, triad, data)
+            force = forces.get(position.label, UNKNOWN)
+            yield from _rate(position, measurement, triad, force, data)
         for rotation in data.gyro_inputs.usable:
             if rotation.plan.recorded == "whole" and rotation.done.complete:
-                yield from _angle(rotation, triad, data)
+                yield from _angle(rotation, measurement, triad, data)
 
 
-def missing(parameters: pd.DataFrame, sensor: str, mount: str) -> Row:
-    """Why the three sensors of one kind are not compensated."""
-    reasons: dict[str, list[str]] = {}
-    for row in joint_rows(parameters, mount):
-        if row["parameter"] in linear_names() and row["value"] is None:
-            reasons.setdefault(row["reason"], []).append(row["parameter"])
-    undetermined = "; ".join(f"{', '.join(names)}: {reason}" for reason, names in reasons.items())
+def not_compensated(result: SensorResult, mount: str) -> Iterator[Row]:
+    """Why the three sensors of one kind are not compensated, or which effects stay in them."""
+    sensor = SENSORS[result.sensor]
+    if result.triad is None:
+        yield _row(sensor, sensor, mount, _not_determined(result, sensor))
+        return
+    for one in result.staying:
+        yield _row(
+            "effect",
+            f"{sensor}/{one.effect.name}",
+            mount,
+            _(
+                "The parameters of the {sensor}s are those of a model with {effect}, which stays "
+                "in the compensated readings: {stays}.",
+                sensor=sensor,
+                effect=in_words(one.effect.name),
+                stays=one.effect.stays,
+            ),
+        )
+
+
+def _not_determined(result: SensorResult, sensor: str) -> str:
+    if len(result.missing) == 1 and not any(row["value"] for row in result.rows.values()):
+        (reason,) = result.missing  # one for all twelve
+        return _("The {sensor}s are not compensated: {reason}.", sensor=sensor, reason=reason)
+    reasons = "; ".join(f"{', '.join(names)}: {why}" for why, names in result.missing.items())
+    return _(
+        "The {sensor}s are not compensated, for not all of M and bias is determined. {value}.",
+        sensor=sensor,
+        value=reasons or _("Nothing was recorded that shows them"),
+    )
+
+
+def _row(quantity: str, place: str, mount: str, sentence: str) -> Row:
+    """A row that says something and checks nothing."""
     nothing = ("expected", "expected_sigma", "before", "after", "after_sigma", "in_sigmas_after")
     return dict.fromkeys(nothing) | {
-        "id": f"{with_mount('compensation', mount)}/{sensor}",
+        "id": f"{with_mount('compensation', mount)}/{place}",
         "mount": mount,
         "manoeuvre": None,
-        "quantity": sensor,
+        "quantity": quantity,
         "unit": "",
-        "sentence": _(
-            "The {sensor}s are not compensated, for not all of M and bias is determined. {value}.",
-            sensor=sensor,
-            value=undetermined or "Nothing was recorded that shows them",
-        ),
+        "sentence": sentence,
     }
 
 
@@ -144,10 +174,25 @@ def table_of(rows: list[Row]) -> pd.DataFrame:
 # --- Static positions ---
 
 
-def _forces(position: StaticPosition, triad: Triad, data: CampaignData) -> Iterator[Check]:
+def _motion(position: StaticPosition) -> Motion:
+    """When a static position was recorded and how warm it was, as one stretch."""
+    middle, temperature = (
+        np.array([position.mean_of(values)]) for values in (position.time, position.temperature)
+    )
+    return stretches(middle, np.array([position.seconds.sum()]), temperature)
+
+
+def _force(position: StaticPosition, measurement: Measurement) -> Array:
+    """The specific force in a static position by its readings, (3,)."""
+    (force,) = measurement.force(position.over()[0][None], _motion(position))
+    return np.asarray(force)
+
+
+def _forces(
+    position: StaticPosition, force: Array, triad: Triad, data: CampaignData
+) -> Iterator[Check]:
     """|f|, which no tilt changes, and the force along up, which tilt lessens by its square."""
     reading, noise = position.over()
-    force = truth_of(reading, triad)
     gravity = data.gravity
     size = float(np.linalg.norm(force))
     if not np.isfinite(size):
@@ -174,11 +219,17 @@ def _forces(position: StaticPosition, triad: Triad, data: CampaignData) -> Itera
     )
 
 
-def _rate(position: StaticPosition, triad: Triad, data: CampaignData) -> Iterator[Check]:
+def _rate(
+    position: StaticPosition,
+    measurement: Measurement,
+    triad: Triad,
+    force: Array,
+    data: CampaignData,
+) -> Iterator[Check]:
     """The rate along up; a tilt turns part of the level earth rate into it."""
     reading, noise = position.over()
     up, earth = position.up_now, data.earth
-    after = float(truth_of(reading, triad) @ up)
+    after = float(measurement.rate(reading[None], _motion(position), force[None])[0] @ up)
     if np.isfinite(after):
         tilted = earth.level * data.position_sigma
         spread = (_noise_along(up, triad, noise), tilted, earth.up_sigma)
@@ -202,18 +253,24 @@ def _noise_along(direction: Array, triad: Triad, sigma: Array) -> float:
 # --- Rotations ---
 
 
-def _angle(rotation: Recorded, triad: Triad, data: CampaignData) -> Iterator[Check]:
+def _angle(
+    rotation: Recorded, measurement: Measurement, triad: Triad, data: CampaignData
+) -> Iterator[Check]:
     """The angle of a whole turn about its axis, with the earth's rate taken out.
 
     The axis is fixed in body and laboratory, so the earth's rate along it is the same all the
     time: ω_e sinφ for an upright axis.
     """
-    m, seconds = rotation.plan, rotation.blocks.seconds
+    m, blocks = rotation.plan, rotation.blocks
+    seconds = blocks.seconds
     assert m.angle is not None and m.angle_sigma is not None  # else it is refused
     time = float(seconds.sum())
-    summed = (rotation.blocks.gyro * seconds[:, None]).sum(axis=0)
+    motion = stretches(blocks.time, seconds, blocks.temperature)
+    force = measurement.force(blocks.accel, motion)
+    rates = measurement.rate(blocks.gyro, motion, force)
+    before, turned = (float(seconds @ values @ m.axis) for values in (blocks.gyro, rates))
     earth, sigma = _earth_along(m.axis, position_of(m, data.heading), data.earth)
-    after = float(truth_of(summed, triad, time) @ m.axis) - earth * time
+    after = turned - earth * time
     if not np.isfinite(after):
         return
     noise = _noise_along(m.axis, triad, data.noise.of(m.name, "rest", GYRO) * np.sqrt(time))
@@ -222,7 +279,7 @@ def _angle(rotation: Recorded, triad: Triad, data: CampaignData) -> Iterator[Che
         "angle",
         m.angle,
         m.angle_sigma,
-        float(summed @ m.axis) - earth * time,
+        before - earth * time,
         after,
         float(np.linalg.norm([noise, m.angle_sigma, sigma * time])),
     )

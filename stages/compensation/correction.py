@@ -11,62 +11,55 @@ from numpy.typing import NDArray
 from inertial import tables
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.masked_samples import Masks, Repairs
+from inertial.campaign.measurement import Measurement, measurement_of
 from inertial.campaign.records import rows_of
-from inertial.campaign.solution import Solution
 from inertial.campaign.sums import extremes_over
-from inertial.physics.forward import Triad
+from inertial.physics.motion import Motion, stretches
 from inertial.tables import CHANNELS
 from inertial.tables.parquet import Stream
 
-# ---- Which M and bias apply to which records, and how the errors are taken out of a reading.
-#
-# m = M⁻¹ (m̃ − b)                                                       (S0, compensation)
+# ---- Which result applies to which records, and how the errors are taken out of a reading.
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 ALL = np.iinfo(np.int64).max  # a record number that no log reaches
-
-
-def truth_of(readings: Array, triad: Triad | None, weight: float = 1.0) -> Array:
-    """The input of three sensors from their readings, (n, 3); NaN where M is not determined.
-
-    For sums over time `weight` is the time that the bias has added to, s.
-    """
-    if triad is None:
-        return np.full(readings.shape, np.nan)
-    # The inverse is applied to rows; a channel that is not recorded leaves none of the three.
-    return np.asarray((readings - weight * triad.bias) @ np.linalg.inv(triad.matrix).T)
+UNKNOWN = np.full(3, np.nan)
+NOTHING = measurement_of([])
 
 
 @dataclass(frozen=True)
 class Mounted:
-    """Records [first, after) of a log in which the IMU sat on one mount."""
+    """Records [first, after) of a log in which the IMU sat on one mount; `step`: of a sample, s."""
 
     first: int
     after: int
-    result: Solution
+    measurement: Measurement
+    step: float
 
-    def truth(self, readings: Array) -> Array:
-        """Specific force and angular rate by the six readings, (n, 6)."""
-        triads = self.result.accelerometer, self.result.gyro
-        return np.hstack(
-            [truth_of(readings[:, :3], triads[0]), truth_of(readings[:, 3:], triads[1])]
-        )
+    def motion(self, time: Array, temperature: Array) -> Motion:
+        """What is known of n samples; the effects of the result need no more."""
+        return stretches(time, np.full(len(time), self.step), temperature)
 
 
-def mounted(mounts: Sequence[CampaignData], segments: pd.DataFrame) -> dict[str, list[Mounted]]:
+def mounted(
+    mounts: Sequence[CampaignData],
+    measurements: Mapping[str, Measurement],
+    segments: pd.DataFrame,
+) -> dict[str, list[Mounted]]:
     """For each log the stretches of one mount, with its result.
 
     A log of a single mount is one stretch. In another one, what lies between manoeuvres of
     different mounts belongs to neither: there the IMU is taken off.
     """
     mount = {m.name: place for place, data in enumerate(mounts) for m in data.plan}
+    own = [measurements.get(data.mount, NOTHING) for data in mounts]
     result: dict[str, list[Mounted]] = {}
     for log in dict.fromkeys(m.log for data in mounts for m in data.plan):
-        selected = [data for data in mounts if any(m.log == log for m in data.plan)]
+        step = mounts[0].clocks[log].step
+        selected = [i for i, data in enumerate(mounts) if any(m.log == log for m in data.plan)]
         if len(selected) == 1:
-            result[log] = [Mounted(0, ALL, selected[0].result)]
+            result[log] = [Mounted(0, ALL, own[selected[0]], step)]
             continue
         runs: list[tuple[int, int, int]] = []
         for row in sorted(rows_of(segments[segments["log"] == log]), key=_start):
@@ -75,12 +68,24 @@ def mounted(mounts: Sequence[CampaignData], segments: pd.DataFrame) -> dict[str,
                 runs[-1] = (on, runs[-1][1], max(runs[-1][2], row["to_record"]))
             else:
                 runs.append((on, row["from_record"], row["to_record"]))
-        result[log] = [Mounted(first, after, mounts[on].result) for on, first, after in runs]
+        result[log] = [Mounted(first, after, own[on], step) for on, first, after in runs]
     return result
 
 
 def _start(row: Mapping[str, int]) -> int:
     return row["from_record"]
+
+
+def held(force: Array, before: Array) -> Array:
+    """The specific force at each of n records: where there is none, the last one, (n, 3).
+
+    `before`: the last one before these, (3,). A g-sensitivity turns an error of the force into one
+    of the rate that is smaller by far than the noise of a sample, so a force that is a little
+    older will do where the two sensors are in records of their own.
+    """
+    place = np.where(np.isfinite(force).all(axis=1), np.arange(len(force)), -1)
+    last = np.maximum.accumulate(place)
+    return np.where(last[:, None] >= 0, force[last], before)
 
 
 # ---- The samples with the errors taken out, batch by batch, however long the log.
@@ -99,9 +104,10 @@ class CompensatedStream(Stream):
 
     def columns(self, names: list[str]) -> Iterator[pa.RecordBatch]:
         """Batch by batch, of some columns only."""
-        needed = dict.fromkeys([*names, "log", "record", *CHANNELS])
+        needed = dict.fromkeys([*names, "log", "record", "time", "temperature", *CHANNELS])
+        forces: dict[tuple[str, int], Array] = {}  # the last one of each log and mount
         for batch in super().columns(list(needed)):
-            truth = self._truth(batch)
+            truth = self._truth(batch, forces)
             arrays = [
                 pa.array(truth[:, CHANNELS.index(name)], from_pandas=True)
                 if name in CHANNELS
@@ -110,24 +116,33 @@ class CompensatedStream(Stream):
             ]
             yield pa.RecordBatch.from_arrays(arrays, names)
 
-    def _truth(self, batch: pa.RecordBatch) -> Array:
+    def _truth(self, batch: pa.RecordBatch, forces: dict[tuple[str, int], Array]) -> Array:
         """The six channels of a batch with the errors taken out, (n, 6)."""
         readings = np.column_stack(
             [batch.column(channel).to_numpy(zero_copy_only=False) for channel in CHANNELS]
         )
         record = batch.column("record").to_numpy()
+        time, temperature = (
+            batch.column(name).to_numpy(zero_copy_only=False) for name in ("time", "temperature")
+        )
         logs = batch.column("log").dictionary_encode()
         names, index = logs.dictionary.to_pylist(), logs.indices.to_numpy()
         truth = np.full(readings.shape, np.nan)
         for number, log in enumerate(names):
             for part in self.mounted.get(log, ()):
                 selected = (index == number) & (record >= part.first) & (record < part.after)
-                if selected.any():
-                    masked = self.masks.of(log, record[selected])
-                    set_right = self.repairs.readings(log, readings[selected])
-                    kept = np.where(masked.channels, np.nan, set_right)
-                    kept[masked.whole] = np.nan
-                    truth[selected] = part.truth(kept)
+                if not selected.any():
+                    continue
+                masked = self.masks.of(log, record[selected])
+                set_right = self.repairs.readings(log, readings[selected])
+                kept = np.where(masked.channels, np.nan, set_right)
+                kept[masked.whole] = np.nan
+                motion = part.motion(time[selected], temperature[selected])
+                force = part.measurement.force(kept[:, :3], motion)
+                felt = held(force, forces.get((log, part.first), UNKNOWN))
+                forces[log, part.first] = felt[-1]
+                truth[selected, :3] = force
+                truth[selected, 3:] = part.measurement.rate(kept[:, 3:], motion, felt)
         return truth
 
 

@@ -16,8 +16,8 @@ DECLARED = Declared(
         "performed": From("segment", tables.PERFORMED),
         "levels": From("noise", tables.LEVELS),
         "known": From("plan", tables.KNOWN),
-        "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
-        "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
+        "clocks": From("decode", tables.CLOCKS),
+        "result": From("diagnosis", tables.PARAMETERS, "result"),
     },
     writes={
         "compensated": tables.COMPENSATED,

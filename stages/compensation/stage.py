@@ -1,4 +1,4 @@
-"""The samples with the errors taken out, and the check against what is known."""
+"""The samples with the errors of the result taken out, and the check against what is known."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,13 +10,14 @@ from inertial.campaign import findings as findings
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.findings import Finding
 from inertial.campaign.masked_samples import Masks, Repairs
+from inertial.campaign.measurement import measurements_of
 from inertial.campaign.records import Row, rows_of
 from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Pieces, Stage
 from inertial.text.messages import _
-from stages.compensation.checks import checks, missing, table_of
-from stages.compensation.correction import CompensatedStream, envelope, mounted
+from stages.compensation.checks import checks, not_compensated, table_of
+from stages.compensation.correction import NOTHING, CompensatedStream, envelope, mounted
 from stages.compensation.declared import DECLARED
 
 ALREADY = Finding(
@@ -44,11 +45,13 @@ def compensation(
     channel_repairs: pd.DataFrame,
     segments: pd.DataFrame,
     campaign: pd.DataFrame,
-    accelerometer_parameters: pd.DataFrame,
-    gyroscope_parameters: pd.DataFrame,
+    result: pd.DataFrame,
     provenance: Mapping[str, Mapping[str, Any]],
 ) -> Pieces:
     """The tables compensated, checks, compensated_traces and findings, in pieces.
+
+    By the result that counts: M and bias, and those effects that a reading, its time and its
+    temperature tell. A sensor that is not usable has no compensated reading.
 
     Raises
     ------
@@ -69,17 +72,16 @@ def compensation(
         yield "findings", findings.table_of([ALREADY])
         return
     rows: list[Row] = []
+    measurements = measurements_of(result)
     for data in mounts:
-        rows += [check.row(data.mount) for check in checks(data)]
-        if data.result.accelerometer is None:
-            rows.append(missing(accelerometer_parameters, "accelerometer", data.mount))
-        if data.result.gyro is None:
-            rows.append(missing(gyroscope_parameters, "gyro", data.mount))
+        measurement = measurements.get(data.mount, NOTHING)
+        rows += [check.row(data.mount) for check in checks(data, measurement)]
+        for sensor in (measurement.accelerometer, measurement.gyro):
+            rows += not_compensated(sensor, data.mount)
     yield "checks", table_of(rows)
     repairs = Repairs(channel_repairs)
-    compensated = CompensatedStream(
-        samples.path, mounted(mounts, segments), Masks(masks, repairs), repairs
-    )
+    parts = mounted(mounts, measurements, segments)
+    compensated = CompensatedStream(samples.path, parts, Masks(masks, repairs), repairs)
     for batch in compensated.columns([column.name for column in tables.COMPENSATED.columns]):
         yield "compensated", batch
     yield "compensated_traces", envelope(compensated, traces)

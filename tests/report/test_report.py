@@ -146,14 +146,6 @@ def test_where_the_extended_result_is_final_its_sigmas_and_its_fit_are_stated() 
     assert "Gyroscope: the model describes the data within the noise (p = 0.54)" in text
 
 
-def test_compensation_says_that_it_has_the_joint_result() -> None:
-    said = "The readings are corrected with the joint result, although the extended result of the"
-    assert said in Page(synthetic.documents()["html"]).text
-    assert (
-        said not in Page(synthetic.report_on(synthetic_unmodelled.without_effects())["html"]).text
-    )
-
-
 def test_a_scatter_that_the_sigmas_include_is_stated() -> None:
     tables = synthetic.brief()
     tables["decision"] = tables["decision"].iloc[:0]

@@ -14,11 +14,10 @@ from numpy.typing import NDArray
 from inertial.tables import AXES, CHANNELS
 from inertial.text import numbers, units
 from inertial.text.messages import _
-from inertial.text.parameters import EXTENDED
 from stages.report import drawing, outline
 from stages.report.drawing import Array
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, SENSORS, capital, listed
+from stages.report.words import SENSOR, capital
 
 MAX_SIGMAS = 3.0  # from which a check is marked
 MOST_ROWS = 60
@@ -51,7 +50,6 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
         for quantity, checked in CHECKED.items()
         if (own := [row for row in rows if row["quantity"] == quantity])
     }
-    yield from _joint(tables)
     yield _summary(by_quantity)
     for row in rows:
         if row["quantity"] not in CHECKED:
@@ -71,35 +69,19 @@ SECTION = outline.Section(
     "compensation",
     "Compensation",
     _(
-        "The readings corrected with the joint parameters, and whether they then agree "
-        "with what is known: gravity in every position, the earth's rate, the angle of "
-        "every turn."
+        "The readings corrected with the result that counts, its effects included, and whether "
+        "they then agree with what is known: gravity in every position, the earth's rate, the "
+        "angle of every turn."
     ),
     _(
         "Before and after are differences from the known value. In σ is the remaining "
-        "difference over its own σ; beyond 3 the parameters do not describe all errors, "
-        "and “Unmodelled effects” may state the cause. In the figures grey is before, "
+        "difference over its own σ; beyond 3 the result does not describe all errors, "
+        "and the causes on page one may say why. In the figures grey is before, "
         "colour after."
     ),
-    ("checks", "traces", "compensated_traces", "segments", "manoeuvres", "decision"),
+    ("checks", "traces", "compensated_traces", "segments", "manoeuvres"),
     parts,
 )
-
-
-def _joint(tables: Tables) -> Iterator[outline.Paragraph]:
-    """That these are not the final parameters, where they are not."""
-    better = [
-        SENSORS[row["sensor"]] for row in tables.rows("decision") if row["result"] == EXTENDED
-    ]
-    if better:
-        yield outline.Paragraph(
-            _(
-                "The readings are corrected with the joint result, although the extended result "
-                "of the {listed} is final: they still contain the identified effects.",
-                listed=listed(list(dict.fromkeys(better))),
-            ),
-            "fair",
-        )
 
 
 def _summary(by_quantity: Mapping[Checked, Sequence[Record]]) -> outline.Table:
