@@ -1,0 +1,545 @@
+"""What is wrong with a campaign, and what a diagnosis must say of it, case by case.
+
+Each case is a campaign of the simulated laboratory: the plan, what is hidden in it and how large,
+the causes that are right, and the verdict on each sensor. Nothing else may be said. Sizes of
+effects are told by their signal-to-noise ratio, from `tests/hidden/hidden_sizes.py`.
+"""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import chain
+import numpy as np
+from hidden import hidden_plans
+
+Document = dict[str, Any]
+
+USABLE, LIMITS, CONDITION, NOT = "usable", "usable_within_limits", "on_condition", "not_usable"
+GOOD = frozenset({USABLE})
+LIMITED = frozenset({LIMITS})
+HARMLESS = frozenset({USABLE, LIMITS})
+CONDITIONAL = frozenset({CONDITION})
+LOST = frozenset({NOT})
+ANY = frozenset({USABLE, LIMITS, CONDITION, NOT})
+
+# One cause may be told by the name of the repair, of the detector, or of the effect.
+GRAVITY = {"gravity", "gravity_error"}
+SIGNS = {"signs", "sign_flip", "sign_flip_against_plan"}
+AXES = {"axes", "axis_swap", "axis_swap_against_plan"}
+COUNTS = {"count_size", "wrong_scale_factor", "wrong_scale_of_turns"}
+SENSE = {"sense_of_table", "wrong_direction"}
+EXCHANGED = {"exchanged_manoeuvres", "manoeuvre_swapped"}
+STATED_RATE = {"stated_rate", "rate_off"}
+CLOCK = {"clock_scale", "stated_rate", "rate_off"}
+POSITION = {"table_position_error", "position_outlier", "position_off"}
+ANGLE = {"turn_angle", "incomplete_turn", "wrong_angle", "turn_off"}
+PER_LOG = {
+    "bias_per_log",
+    "gyro_bias_per_log",
+    "turn_on_bias",
+    "bias_of_each_run",
+    "gyro_bias_jump",
+}
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One row that must be there.
+
+    `names`: any of them is right as the cause of a row, or as a member of its class; `alone`:
+    whether it must be found alone (True), in a class (False), or either; `count`: what the row
+    stands for. What is None may be anything.
+    """
+
+    names: frozenset[str]
+    sensor: str | None = None
+    axis: str | None = None
+    manoeuvre: str | None = None
+    alone: bool | None = None
+    count: int | None = None
+    most_moves: float | None = None
+
+
+def cause(names: Collection[str], *where: str | None, **more: Any) -> Cause:
+    return Cause(frozenset(names), *where, **more)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A campaign: `plan` makes its document, `hidden` what is wrong with it.
+
+    `causes`: every row that must be there; `accel`, `gyro`: the verdicts that are right; `known`:
+    parameters have a truth (a campaign whose result means something).
+    """
+
+    name: str
+    plan: Callable[..., Document]
+    causes: Sequence[Cause]
+    accel: frozenset[str] = GOOD
+    gyro: frozenset[str] = GOOD
+    hidden: Mapping[str, Any] = field(default_factory=dict)
+    seed: int = 1801
+
+    def document(self) -> Document:
+        """What the laboratory is told."""
+        return merged(self.plan(seed=self.seed), self.hidden)
+
+
+def merged(document: Document, changes: Mapping[str, Any]) -> Document:
+    """A document with changes of single keys; a plan is changed by the id of its manoeuvres."""
+    result = dict(document)
+    for key, value in changes.items():
+        if key == "plan" and isinstance(value, Mapping):
+            result[key] = [merged(one, value.get(one["id"], {})) for one in document[key]]
+        elif isinstance(value, Mapping) and isinstance(document.get(key), Mapping):
+            result[key] = merged(document[key], value)
+        else:
+            result[key] = value
+    return result
+
+
+# ---- plans
+
+
+def positions(**changes: Any) -> Document:
+    """The demo's plan: six rests of 300 s, six turns at 10 °/s, a log each; 214,800 samples."""
+    return hidden_plans.positions(**changes)
+
+
+def rates(**changes: Any) -> Document:
+    """Turns at 20, 40, 80 °/s and tumbles in one log of columns; 142,565 samples."""
+    return hidden_plans.rates(**changes)
+
+
+def short(**changes: Any) -> Document:
+    """Six rests of 20 s, six turns at 60 °/s, a log each; 19,800 samples."""
+    return chain.short(**changes)
+
+
+def there_and_back(**changes: Any) -> Document:
+    """From six positions there and back, up at 6 °/s, down at 12 °/s, rests of 30 s; heading."""
+    document = hidden_plans.stops(**changes)
+    for one in document["campaign"]["plan"]:
+        if one["do"] == "rest":
+            one["seconds"] = 30
+        else:
+            one["rate_deg_s"] = one["accel_deg_s2"] = one["rate_deg_s"] / 2
+    return document
+
+
+def one_attitude_each(**changes: Any) -> Document:
+    """Three turns about the vertical, each gyro in one attitude only, a log each."""
+    document = chain.short(**changes)
+    document["handling"]["still_s"] = 20
+    document["campaign"]["plan"] = [
+        {"id": f"{axis}-turn", "do": "turn", "up": f"+{axis}", "log": f"{axis}.asc"}
+        | {"degrees": 720, "rate_deg_s": 20, "accel_deg_s2": 20}
+        for axis in "xyz"
+    ]
+    return document
+
+
+def brief(**changes: Any) -> Document:
+    """As `short`, and of the rest with x up only half a second is recorded, as in a real log."""
+    document = chain.short(**changes)
+    document["campaign"]["plan"][0]["seconds"] = 0.5
+    return document
+
+
+def unstated_gravity(**changes: Any) -> Document:
+    """As `short`; gravity is that of the formula, which knows no local anomaly."""
+    document = chain.short(**changes)
+    document["campaign"]["site"] = {"latitude_deg": 30.5278, "height_m": 24}
+    return document
+
+
+PLAIN = short()["campaign"]["plan"]
+LOGS = tuple(one["log"] for one in PLAIN)
+TURNS = tuple(one["id"] for one in PLAIN if one["do"] == "turn")
+
+
+# ---- what is hidden
+
+
+def effect(**hidden: Any) -> Document:
+    return {"effects": hidden}
+
+
+def fault(*faults: Mapping[str, Any]) -> Document:
+    return {"faults": list(faults)}
+
+
+def flipped(sensor: str, axes: str) -> Document:
+    return fault(*({"flip": {"log": "all", "sensor": sensor, "axis": axis}} for axis in axes))
+
+
+def stated(**said: Any) -> Document:
+    return {"misstated": said}
+
+
+def of_each_log(channel: str, sizes: Sequence[float], logs: Sequence[str] = LOGS) -> list[Document]:
+    """A bias of a channel that is another one in each log, m/s² or rad/s."""
+    key = "size_m_s2" if channel.startswith("accel") else "size_rad_s"
+    return [
+        {"step": {"log": log, "channel": channel, "line": 1, key: float(size)}}
+        for log, size in zip(logs, sizes, strict=True)
+    ]
+
+
+def telegraph(channel: str, size: float, logs: Sequence[str]) -> list[Document]:
+    """A bias that comes and goes, in each log at other times: no effect of the catalogue."""
+    random = np.random.default_rng(12)
+    key = "size_m_s2" if channel.startswith("accel") else "size_rad_s"
+    faults = []
+    for log in logs:
+        for line in (int(random.integers(1, 9000)), int(random.integers(12000, 22000))):
+            place = {"log": log, "channel": channel, "line": line, "samples": 6000}
+            faults.append({"step": place | {key: size}})
+    return faults
+
+
+def turned_the_other_way(document: Document) -> Document:
+    """Every turn goes the other way than stated."""
+    turns = {o["id"]: o["degrees"] for o in document["campaign"]["plan"] if o["do"] == "turn"}
+    return {
+        "campaign": {"plan": {name: {"degrees": -degrees} for name, degrees in turns.items()}},
+        "misstated": {"plan": {name: {"degrees": degrees} for name, degrees in turns.items()}},
+    }
+
+
+def off(axis: str, by: float) -> list[float]:
+    """The direction `axis` up, off by an angle, rad, about the next axis but one."""
+    sign, place = (1 if axis[0] == "+" else -1), "xyz".index(axis[1])
+    up = np.zeros(3)
+    up[place], up[(place + 1) % 3] = sign * np.cos(by), np.sin(by)
+    return up.tolist()
+
+
+def set_off(manoeuvre: str, up: str, by: float) -> Document:
+    """One position was another one than stated, by an angle, rad."""
+    return {
+        "campaign": {"plan": {manoeuvre: {"up": off(up, by)}}},
+        "misstated": {"plan": {manoeuvre: {"up": up}}},
+    }
+
+
+ARC_SECOND = float(np.radians(1 / 3600))
+DEGREE_PER_HOUR = float(np.radians(1) / 3600)
+NORMAL = 9.7936  # m/s², in Wuhan
+CLIP = float(np.radians(60))  # rad/s
+GYROS = ("gyro_x", "gyro_y", "gyro_z")
+SPIKED = {"lines": list(range(103, 1103, 103))[:10], "channel": "gyro_y", "size_rad_s": 0.6}
+KNOCK = {"peak_m_s2": 60.0, "peak_rad_s": 3.0, "frequency_hz": 31.0, "decay_s": 0.08}
+ARCS_COUNT = 0.1 / 2**8 / 3600 * float(np.radians(1))  # rad: the FSAS's, 57.3 times smaller
+NEAR_G = {"channel": "accel_z", "limit_m_s2": 9.7940}  # within the scatter of z up, 1.07e-3 m/s²
+
+CASES: tuple[Case, ...] = (
+    # ---- nothing
+    Case("clean-positions", positions, ()),
+    Case("clean-short", short, ()),
+    Case("clean-rates", rates, ()),
+    Case(
+        "gravity-by-the-formula", unstated_gravity, (), hidden={"truth": {"gravity_m_s2": 9.7938}}
+    ),
+    # ---- the statements of the campaign
+    Case(
+        "gravity-stated",
+        short,
+        (cause(GRAVITY, "accel"),),
+        accel=CONDITIONAL,
+        hidden={
+            "campaign": {"site": {"gravity_m_s2": 9.8066}},
+            "truth": {"gravity_m_s2": NORMAL},
+        },
+    ),
+    Case(
+        "latitude-off",
+        there_and_back,
+        (cause({"latitude_error"}, "gyro"),),
+        gyro=CONDITIONAL | LIMITED,
+        hidden=effect(latitude_error={"error_deg": 2.0}),
+    ),
+    Case(
+        "latitude-of-the-other-hemisphere",
+        there_and_back,
+        (cause({"latitude_error", "latitude_sign"}, "gyro"),),
+        gyro=CONDITIONAL,
+        hidden={"truth": {"latitude_deg": -30.5278}},
+    ),
+    Case(
+        "sense-of-the-table",
+        short,
+        (cause(SENSE),),
+        gyro=CONDITIONAL,
+        hidden=turned_the_other_way(short()),
+    ),
+    Case(
+        "stated-sample-rate",
+        short,
+        (cause(STATED_RATE),),
+        accel=HARMLESS | CONDITIONAL,
+        gyro=HARMLESS | CONDITIONAL,
+        hidden={"receiver": {"rate_hz": 125}},
+    ),
+    Case(
+        "clock-fast",
+        short,
+        (cause(GRAVITY | CLOCK),),
+        accel=CONDITIONAL | LOST | LIMITED,
+        gyro=ANY,
+        hidden=effect(clock_scale={"fast_ppm": 1500}),
+    ),
+    # ---- the wiring
+    Case(
+        "sign-of-the-y-gyro",
+        short,
+        (cause(SIGNS, "gyro", "y"),),
+        gyro=CONDITIONAL,
+        hidden=flipped("gyro", "y"),
+    ),
+    Case(
+        "signs-of-all-gyros",
+        short,
+        (cause(SIGNS, "gyro"),),
+        gyro=CONDITIONAL,
+        hidden=flipped("gyro", "xyz"),
+    ),
+    Case(
+        "signs-of-all-accelerometers",
+        short,
+        (cause(SIGNS | {"gravity_told"}, "accel"),),
+        accel=CONDITIONAL,
+        hidden=flipped("accelerometer", "xyz"),
+    ),
+    Case(
+        "count-size-of-the-gyros",
+        short,
+        (cause(COUNTS, "gyro"),),
+        gyro=CONDITIONAL,
+        hidden={"receiver": {"gyro_count_rad": ARCS_COUNT}},
+    ),
+    Case(
+        "accelerometers-exchanged",
+        short,
+        (cause(AXES, "accel"),),
+        accel=CONDITIONAL,
+        hidden=fault({"swap": {"log": "all", "sensor": "accelerometer", "axes": ["x", "y"]}}),
+    ),
+    Case(
+        "gyros-exchanged",
+        short,
+        (cause(AXES, "gyro"),),
+        gyro=CONDITIONAL,
+        hidden=fault({"swap": {"log": "all", "sensor": "gyro", "axes": ["y", "z"]}}),
+    ),
+    # ---- the recording
+    Case(
+        "positions-logs-exchanged",
+        short,
+        (cause(EXCHANGED),),
+        accel=CONDITIONAL,
+        gyro=CONDITIONAL | GOOD,
+        hidden=fault({"exchange": {"logs": ["x-up.asc", "y-down.asc"]}}),
+    ),
+    Case(
+        "turns-logs-exchanged",
+        short,
+        (cause(EXCHANGED),),
+        accel=CONDITIONAL | GOOD,
+        gyro=CONDITIONAL,
+        hidden=fault({"exchange": {"logs": ["x-forward.asc", "z-forward.asc"]}}),
+    ),
+    Case(
+        "spikes-in-all-logs",
+        short,
+        (cause({"spike"}, "gyro", "y", count=120),),
+        gyro=HARMLESS,
+        hidden=fault({"spikes": {"log": "all"} | SPIKED}),
+    ),
+    Case(
+        "gap-in-a-turn",
+        positions,
+        (cause({"gap"}, manoeuvre=None, count=1),),
+        accel=HARMLESS,
+        gyro=LIMITED,
+        hidden=fault({"lose": {"log": "x-forward.asc", "line": 2001, "samples": 640}}),
+    ),
+    Case(
+        "gyros-clip-at-60",
+        rates,
+        (cause({"saturation", "gyro_saturation"}, "gyro"),),
+        gyro=LIMITED,
+        hidden=fault(
+            *(
+                {"clip": {"log": "session.csv", "channel": channel, "limit_rad_s": CLIP}}
+                for channel in GYROS
+            )
+        ),
+    ),
+    Case(
+        "clipping-within-the-noise",
+        short,
+        (cause({"saturation", "accel_saturation"}, "accel", "z"),),
+        accel=LIMITED | LOST,
+        hidden=fault({"clip": {"log": "z-up.asc"} | NEAR_G}),
+    ),
+    Case(
+        "impact-in-a-rest",
+        short,
+        (cause({"impact", "spike", "saturation"}),),
+        accel=HARMLESS,
+        gyro=HARMLESS,
+        hidden=fault({"knock": {"log": "y-up.asc", "line": 900} | KNOCK}),
+    ),
+    Case(
+        "impact-in-a-turn",
+        short,
+        (cause({"impact", "spike", "saturation"}),),
+        accel=HARMLESS,
+        gyro=HARMLESS,
+        hidden=fault({"knock": {"log": "y-forward.asc", "line": 600} | KNOCK}),
+    ),
+    Case(
+        "one-position-off",
+        short,
+        (cause(POSITION, "accel", manoeuvre="y-down"),),
+        accel=LIMITED,
+        hidden=set_off("y-down", "-y", 600 * ARC_SECOND),
+    ),
+    Case(
+        "one-brief-rest-off",
+        brief,
+        (cause(POSITION, "accel", manoeuvre="x-up"),),
+        accel=LIMITED,
+        hidden=set_off("x-up", "+x", 3600 * ARC_SECOND),
+    ),
+    Case(
+        "one-angle-off",
+        short,
+        (cause(ANGLE, "gyro", manoeuvre="y-forward"),),
+        gyro=LIMITED,
+        hidden={
+            "campaign": {"plan": {"y-forward": {"degrees": 358.0}}},
+            "misstated": {"plan": {"y-forward": {"degrees": 360}}},
+        },
+    ),
+    Case(
+        "bias-of-each-log",
+        positions,
+        (cause(PER_LOG | {"gyro_random_walk"}, "gyro"),),
+        gyro=LIMITED | LOST,
+        hidden=fault(
+            *(
+                one
+                for channel, seed in zip(GYROS, (1, 2, 3), strict=True)
+                for one in of_each_log(
+                    channel, np.random.default_rng(seed).normal(0, 4 * DEGREE_PER_HOUR, len(LOGS))
+                )
+            )
+        ),
+    ),
+    Case(
+        "one-attitude-each",
+        one_attitude_each,
+        (cause(PER_LOG | {"gyro_g_sensitivity"}, "gyro", alone=False),),
+        accel=ANY,
+        gyro=ANY,
+        hidden=effect(
+            gyro_g_sensitivity={
+                "matrix_deg_h_g": [[30.0, 0.0, 12.0], [5.0, -25.0, 0.0], [0.0, 8.0, 28.0]]
+            }
+        ),
+    ),
+    # ---- physics
+    Case(
+        "ripple-of-order-36",
+        there_and_back,
+        (cause({"table_ripple"}, "gyro", alone=True),),
+        gyro=HARMLESS,
+        hidden=effect(table_ripple={"order": 36, "amplitude_arcsec": 40}),
+    ),
+    Case(
+        "line-at-20-hz",
+        positions,
+        (cause({"oscillation"}, "gyro", most_moves=0.5),),
+        gyro=HARMLESS,
+        hidden=effect(
+            oscillation={"frequency_hz": 20, "amplitude_rad_s": 0.01, "axis": "+x"},
+        ),
+    ),
+    Case(
+        "ramp-of-the-y-gyro",
+        positions,
+        (cause({"gyro_bias_ramp"}, "gyro", "y"),),
+        gyro=LIMITED,
+        hidden=effect(gyro_bias_ramp={"ramp_deg_h_h": [0.0, 1.24, 0.0]}),  # SNR 9
+    ),
+    Case(
+        "tilt-of-the-table",
+        rates,
+        (cause({"table_tilt"}),),
+        accel=HARMLESS,
+        gyro=HARMLESS,
+        hidden=effect(table_tilt={"north_arcsec": 0.955, "east_arcsec": 0.0}),  # SNR 9
+    ),
+    Case(
+        "quadratic-accelerometer",
+        positions,
+        (cause({"accel_quadratic"}, "accel"),),
+        accel=LIMITED,
+        hidden=effect(accel_quadratic={"k2_micro_g_g2": [60.0, 0.0, 0.0]}),  # SNR 15
+    ),
+    Case(
+        "structure-outside-the-catalogue",
+        positions,
+        (cause({"unknown_structure", "accel_drift", "accel_random_walk"}, "accel"),),
+        accel=LIMITED | LOST,
+        hidden=fault(*telegraph("accel_x", 1.5e-3, LOGS[:6])),
+    ),
+    # ---- two at once
+    Case(
+        "sign-and-ramp",
+        positions,
+        (cause(SIGNS, "gyro", "y"), cause({"gyro_bias_ramp"}, "gyro")),
+        gyro=CONDITIONAL,
+        hidden=flipped("gyro", "y")
+        | effect(gyro_bias_ramp={"ramp_deg_h_h": [2.0, 0.0, 0.0]}),  # SNR 22
+    ),
+    Case(
+        "spikes-and-quadratic",
+        positions,
+        (cause({"spike"}, "gyro", "y"), cause({"accel_quadratic"}, "accel")),
+        accel=LIMITED,
+        gyro=HARMLESS,
+        hidden=fault({"spikes": {"log": "all"} | SPIKED})
+        | effect(accel_quadratic={"k2_micro_g_g2": [80.0, 0.0, 0.0]}),  # SNR 20
+    ),
+    Case(
+        "the-demo",
+        positions,
+        (
+            cause({"gap"}),
+            cause({"oscillation"}, "gyro"),
+            cause({"gyro_g_sensitivity"}, "gyro"),
+        ),
+        accel=HARMLESS,
+        gyro=LIMITED,
+        hidden=effect(
+            oscillation={"frequency_hz": 20, "amplitude_rad_s": 0.01, "axis": "+x"},
+            gyro_g_sensitivity={
+                "matrix_deg_h_g": [[1.4, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.2]]
+            },
+        )
+        | fault({"lose": {"log": "z-backward.asc", "line": 2193, "samples": 1197}}),
+    ),
+    Case(
+        "rest-not-recorded",
+        short,
+        (cause({"manoeuvre_missing"}),),
+        accel=ANY,
+        gyro=HARMLESS,
+        hidden=fault({"lose": {"log": "z-down.asc", "line": 11, "samples": 1980}}),
+    ),
+)
+BY_NAME = {case.name: case for case in CASES}
