@@ -83,7 +83,7 @@ def test_what_is_masked_in_a_turn_is_not_compared(lossy):
     spikes = [1105, 2000, 2001, 3000]
     rows = [
         {"log": "x-forward.asc", "from_record": record, "to_record": record + 1,
-         "finding": "spike", "sensor": None, "axis": None, "repeated": False}
+         "finding": "spike", "sensor": None, "axis": None, "repeated": False, "censored": False}
         for record in spikes
     ]  # fmt: skip
     tables = chain.again(lossy, "segment", masks=pd.DataFrame(rows))

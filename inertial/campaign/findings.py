@@ -3,7 +3,7 @@
 Events become findings: one for each cause and place, many equal events as one.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -14,10 +14,8 @@ from inertial.campaign.detection import Events
 from inertial.signal.detector import CHANNELS, UNITS, Detector, Event, Log
 from inertial.signal.plan_detector import PlanDetector
 from inertial.tables import FINDINGS, MASKS
-from inertial.text.messages import _
 
-MAX_SINGLE_EVENTS = 8  # in one place; more equal ones are one finding with a count
-MAX_NAMED_LOGS = 6  # in a sentence; of more the number is given
+MAX_SINGLE_EVENTS = 8  # of a kind in one place; more of them are one finding with a count
 
 
 @dataclass(frozen=True)
@@ -66,10 +64,11 @@ def masks_of(detections: Sequence[Detection]) -> pd.DataFrame:
             "to_record": event.after,
             **_channel(event.channel),
             "repeated": each.detector.repeats,
+            "censored": each.detector.censors(event),
             "finding": each.finding.id,
         }
         for each in detections
-        if each.detector.masks
+        if isinstance(each.detector, Detector) and each.detector.masks
         for log, event in each.events
     ]
     return pd.DataFrame(rows) if rows else MASKS.empty()
@@ -78,7 +77,7 @@ def masks_of(detections: Sequence[Detection]) -> pd.DataFrame:
 def detections_of(
     stage: str, events: Events, logs: Mapping[str, Log], *, of_manoeuvres: bool = False
 ) -> list[Detection]:
-    """All events as findings, in the order of detectors and logs.
+    """All events as findings, in the order of detectors: what is the same is one finding.
 
     Parameters
     ----------
@@ -86,23 +85,44 @@ def detections_of(
     of_manoeuvres : the names are those of manoeuvres
     """
     detections: list[Detection] = []
-    for (detector, name, channel), own in events.items():
+    for key, group in _groups(events).items():
+        detector = key[0]
+        name, largest = max(group, key=lambda pair: abs(pair[1].size))
         log = logs.get(name)
-        # What may be the same in all logs is one finding within a log as well.
-        many = len(own) > (1 if detector.everywhere else MAX_SINGLE_EVENTS)
-        for number, group in enumerate([own] if many else [[event] for event in own]):
-            largest = max(group, key=lambda event: abs(event.size))
-            part = detector.sensor if channel is None else CHANNELS[channel]
-            place = [name, *([part] if part else []), str(number)]
-            identifier = "/".join([stage, detector.name, *(place if name else [])])
-            finding = _finding(detector, largest, name, log, identifier)
-            if many:
-                finding = _of_many(finding, group)
-            if of_manoeuvres:
-                finding = replace(finding, manoeuvre=name)
-            placed = [(log.name, event) for event in group] if log else []
-            detections.append(Detection(finding, placed, detector))
-    return list(_joined_over_logs(detections))
+        part = key[1] or detector.sensor
+        identifier = "/".join([stage, detector.name, *([part] if part else []), *key[2:]])
+        finding = _finding(detector, largest, name, log, identifier)
+        if len(group) > 1:
+            finding = _of_many(finding, detector, group)
+        if of_manoeuvres:
+            finding = replace(finding, manoeuvre=name)
+        placed = [(logs[name].name, event) for name, event in group if name in logs]
+        detections.append(Detection(finding, placed, detector))
+    return detections
+
+
+Named = tuple[str, Event]  # under the name of its log, its rest, or none: the campaign's
+
+
+def _groups(events: Events) -> dict[tuple[Any, ...], list[Named]]:
+    """Events that are one finding, by detector, sensor or channel, and what else tells them apart.
+
+    Where events are things of their own they are told apart by their place and number, unless
+    many are in one place.
+    """
+    groups: dict[tuple[Any, ...], list[Named]] = {}
+    for (detector, name, channel), own in events.items():
+        part = "" if channel is None else CHANNELS[channel]
+        single = detector.alike == "event" and len(own) <= MAX_SINGLE_EVENTS
+        for number, event in enumerate(own):
+            if detector.alike == "event":
+                key = (detector, part, *([name] if name else []), *([str(number)] * single))
+            elif detector.alike == "sensor":
+                key = (detector, part.partition("_")[0])
+            else:
+                key = (detector, part)
+            groups.setdefault(key, []).append((name, event))
+    return groups
 
 
 def _channel(channel: int | None) -> dict[str, str | None]:
@@ -141,44 +161,20 @@ def _number(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def _of_many(finding: Finding, events: Sequence[Event]) -> Finding:
-    """One finding for many equal events, from the first to the last; it describes the largest."""
-    count = sum(event.count for event in events)
+def _of_many(finding: Finding, detector: Detector, group: Sequence[Named]) -> Finding:
+    """One finding for many events; it has the size of the largest, and the times within one log."""
+    description = detector.describe_many(group)
+    channels = {event.channel for _, event in group}
+    one_log = len({name for name, _ in group}) == 1
     return replace(
         finding,
-        from_s=_number(min(event.from_s for event in events)),
-        to_s=_number(max(event.to_s for event in events)),
-        count=count,
-        sentence=(
-            f"{finding.sentence} This occurs {count} times in this log; the largest is described."
-        ),
+        axis=finding.axis if len(channels) == 1 else None,
+        from_s=_number(min(e.from_s for _, e in group)) if one_log else finding.from_s,
+        to_s=_number(max(e.to_s for _, e in group)) if one_log else finding.to_s,
+        count=sum(event.count for _, event in group),
+        p_value=min((e.p_value for _, e in group if e.p_value is not None), default=None),
+        severity=max(event.severity or detector.severity for _, event in group),
+        sentence=description.sentence,
+        consequence=description.consequence,
+        action=description.action,
     )
-
-
-def _joined_over_logs(detections: Sequence[Detection]) -> Iterator[Detection]:
-    """Findings that are the same in several logs as one, where their detector says so."""
-    groups: dict[tuple[str, str | None, str | None, int], list[Detection]] = {}
-    for number, each in enumerate(detections):
-        finding = each.finding
-        alone = -1 if each.detector.everywhere else number
-        key = (finding.cause, finding.sensor, finding.axis, alone)
-        groups.setdefault(key, []).append(each)
-    for group in groups.values():
-        names = list(dict.fromkeys(str(each.finding.log) for each in group))
-        if len(names) == 1:
-            yield from group
-            continue
-        largest = max(group, key=lambda each: abs(each.finding.size or 0.0)).finding
-        others = [name for name in names if name != largest.log]
-        shown = ", ".join(others[:MAX_NAMED_LOGS])
-        if len(others) > MAX_NAMED_LOGS:
-            shown += _(" and {others} more", others=len(others) - MAX_NAMED_LOGS)
-        finding = replace(
-            largest,
-            id=largest.id.replace(f"/{largest.log}", ""),
-            count=sum(each.finding.count for each in group),
-            sentence=f"{largest.sentence} The same in {shown}.",
-        )
-        yield Detection(
-            finding, [pair for each in group for pair in each.events], group[0].detector
-        )

@@ -19,6 +19,8 @@ Integers = NDArray[np.int64]
 Booleans = NDArray[np.bool_]
 Columns = dict[str, NDArray[Any]]
 
+CENSORED = "censored "  # before the name of a channel
+
 
 @dataclass(frozen=True, eq=False)
 class Batch:
@@ -176,12 +178,14 @@ class Masked:
     """What is masked of n records.
 
     lost: (n,), time passed, but the readings are not to be used; repeated: (n,), it repeats
-    another record, and no time passed; channels: (n, 6), this reading is not to be used.
+    another record, and no time passed; channels: (n, 6), this reading is not to be used; censored:
+    (n, 6), of these, it is masked for its value, so the mean of the readings beside it is biased.
     """
 
     lost: Booleans
     repeated: Booleans
     channels: Booleans
+    censored: Booleans
 
     @property
     def whole(self) -> Booleans:
@@ -190,7 +194,9 @@ class Masked:
 
     def part(self, places: Integers) -> "Masked":
         """The same of some of the records."""
-        return Masked(self.lost[places], self.repeated[places], self.channels[places])
+        return Masked(
+            self.lost[places], self.repeated[places], self.channels[places], self.censored[places]
+        )
 
 
 class Masks:
@@ -201,6 +207,7 @@ class Masks:
         self._by_log: dict[str, list[tuple[str, Integers, Integers]]] = {}
         kinds = (table["sensor"] + "_" + table["axis"]).where(table["sensor"].notna(), "")
         kinds = kinds.mask(table["repeated"].astype(bool), "repeated")
+        kinds = kinds.mask(table["censored"].astype(bool), CENSORED + kinds)
         for (log, kind), rows in table.groupby([table["log"], kinds.rename("kind")]):
             edges = [rows[name].to_numpy(np.int64) for name in ("from_record", "to_record")]
             self._by_log.setdefault(str(log), []).append((str(kind), edges[0], edges[1]))
@@ -208,18 +215,22 @@ class Masks:
     def of(self, log: str, record: Integers) -> Masked:
         """What is masked of these records of a log."""
         lost, repeated = np.zeros(len(record), bool), np.zeros(len(record), bool)
-        channels = np.zeros((len(record), len(CHANNELS)), bool)
+        channels, censored = np.zeros((2, len(record), len(CHANNELS)), bool)
         for kind, first, after in self._by_log.get(log, ()):
             here = inside(record, first, after)
             if kind == "repeated":
                 repeated |= here
+            elif kind.startswith(CENSORED):
+                censored[:, CHANNELS.index(kind.removeprefix(CENSORED))] |= here
             elif kind:
                 channels[:, CHANNELS.index(kind)] |= here
             else:
                 lost |= here
+        channels = channels | censored
         if self._repairs is not None:
             channels = self._repairs.channel_masks(log, channels)
-        return Masked(lost & ~repeated, repeated, channels)
+            censored = self._repairs.channel_masks(log, censored)
+        return Masked(lost & ~repeated, repeated, channels, censored)
 
 
 def inside(records: Integers, first: Integers, after: Integers) -> Booleans:

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.records import Manoeuvre, Part
+from inertial.campaign.records import Manoeuvre, Part, Performed
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
 from inertial.physics.motion import turned
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
@@ -80,6 +80,7 @@ def _blocks(table: pd.DataFrame) -> Blocks:
 UNTIMED = Stretch("")
 NO_UP = _("which way is up is not known")
 NO_ATTITUDE = _("its attitude is not known, for the turn is not whole")
+NO_READING = _("none of its readings can be used")
 NO_NOISE = _("its noise is not known, for it has no time or is too short")
 PER_BLOCK = ("means", "counts", "seconds", "time", "temperature")
 BLOCK_COLUMNS = ("count", "seconds", "time", "temperature")
@@ -176,6 +177,7 @@ def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosi
     columns = {name: at_rest[name].to_numpy(np.float64) for name in BLOCK_COLUMNS}
     logs = at_rest["log"].to_numpy()
     rows = at_rest.groupby(["manoeuvre", "phase"]).indices
+    recorded = bool(np.isfinite(blocks[channels].to_numpy(np.float64)).any())
     for m in data.plan:
         if m.do == "positions":
             left_out.append(Part(m.name, None, _("the attitudes of its rests are not known")))
@@ -183,18 +185,20 @@ def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosi
             left_out.append(Part(m.name, None, _("not found in its log")))
         for phase in ("rest", "rest-before", "rest-after"):
             indices = rows.get((m.name, phase))
-            if indices is None or np.isnan(readings[indices]).all():
+            if indices is None:
+                continue
+            if np.isnan(readings[indices]).all():
+                if recorded:
+                    left_out.append(Part(m.name, phase, NO_READING))
                 continue
             count, seconds, time, temperature = (columns[name][indices] for name in BLOCK_COLUMNS)
             density = data.noise.of(m.name, "rest", channels)
-            after, whole = phase == "rest-after", performed[m.name].complete
-            part = Part(m.name, phase)
+            after, part = phase == "rest-after", Part(m.name, phase)
+            reason = _refusal(m, performed[m.name], phase, seconds, density)
             if m.up is None:
                 left_out.append(replace(part, reason=NO_UP))
-            elif after and (not (whole or performed[m.name].bridged) or m.angle is None):
-                left_out.append(replace(part, reason=NO_ATTITUDE))
-            elif np.isnan(seconds).any() or np.isnan(density).all():
-                left_out.append(replace(part, reason=NO_NOISE))
+            elif reason:
+                left_out.append(replace(part, reason=reason))
             else:
                 positions.append(
                     StaticPosition(
@@ -215,6 +219,15 @@ def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosi
                     )
                 )
     return positions, left_out
+
+
+def _refusal(m: Manoeuvre, done: Performed, phase: str, seconds: Array, density: Array) -> str:
+    """Why a static position cannot be used; empty where it can."""
+    if phase == "rest-after" and (not (done.complete or done.bridged) or m.angle is None):
+        return NO_ATTITUDE
+    if np.isnan(seconds).any() or np.isnan(density).all():
+        return NO_NOISE
+    return ""
 
 
 def stretch_of(name: str, part: Blocks, shared_clock: bool) -> Stretch:

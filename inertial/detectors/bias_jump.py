@@ -50,6 +50,7 @@ class BiasJump(Detector):
     source = "design study, 0: a jump at any time must be sought at every time"
     costs = _("the mean of this rest, hence bias and scale factor of the axis")
     severity = 2
+    alike = "event"
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         resting, every = jumps(piece, log)

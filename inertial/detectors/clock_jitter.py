@@ -53,7 +53,6 @@ class ClockJitter(Detector):
     costs = _("a rate made from stamp to stamp scatters; when something happens is less sure")
     unit = "s"
     severity = 1
-    everywhere = True
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         stamps = stamps_of(piece, log)

@@ -43,6 +43,7 @@ class HeldRecord(Detector):
     costs = _("a sum over time takes old readings for new ones: the scale factor of a turn")
     unit = "records"
     severity = 1
+    alike = "sensor"
     masks = True
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:

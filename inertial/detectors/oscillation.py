@@ -58,7 +58,6 @@ class Oscillation(Detector):
     source = "S0, figures 5-14 to 5-16: 20 Hz, 0.01 rad/s about x while the table turns"
     costs = _("angles and means over part of a turn; the noise level, if it counts as noise")
     severity = 1
-    everywhere = True
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         detected = sorted(tones(piece, log), key=lambda tone: -tone.clear)

@@ -64,7 +64,7 @@ class Quantisation(Detector):
     source = "Widrow & Kollár, Quantization Noise, 2008: the mean of a rounded Gaussian"
     costs = _("means do not become better with time: bias")
     severity = 1
-    everywhere = True
+    alike = "sensor"
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         events: dict[tuple[str, float], list[Event]] = {}

@@ -21,7 +21,6 @@ class RateOff(Detector):
     costs = _("nothing where stamps are recorded; where they are counted, rates by this factor")
     unit = "1"
     severity = 1
-    everywhere = True
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:
         factor = log.given.interval / log.step

@@ -1,13 +1,12 @@
 """A channel at the end of its range."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import bdtrc
 
 from inertial.signal.detector import (
-    UNITS,
     Array,
     Description,
     Detector,
@@ -15,7 +14,8 @@ from inertial.signal.detector import (
     Integers,
     Log,
     Piece,
-    channel_name,
+    names_of_axes,
+    names_of_logs,
 )
 from inertial.signal.runs import joined
 from inertial.signal.scatter import MAD_TO_SIGMA
@@ -37,6 +37,7 @@ OUTSIDE_READINGS = 64  # readings before the first visit and after the last, and
 SIDE_READINGS = 8
 # Scatters of those readings: so far away from the limit it must have been
 MIN_DISTANCE_SCATTER = 8.0
+MIN_LEAP_RATIO = 10.0  # times the changes beside a visit, by which readings leap to it and back
 MIN_FILLED_SHARE = 0.7  # of the counts from the median to the extreme: what noise fills of them
 
 
@@ -161,12 +162,14 @@ class Visit:
 
     limit: unit of the channel; seconds: that its readings stand for; lost: integral beyond the
     limit by the cubic that continues the readings beside it, unit of the channel × s, NaN where
-    the visit is too long for one.
+    the visit is too long for one; leapt: the readings leap to the limit and back, so they were
+    spoilt, and those beside them were not cut off.
     """
 
     limit: float
     seconds: float
     lost: float
+    leapt: bool
 
 
 class Saturation(Detector):
@@ -176,6 +179,9 @@ class Saturation(Detector):
     converter. Otherwise a pile of readings at the largest or smallest value of the log shows it,
     where the noise is no less than a count, and the readings run into it: a value that they leap
     to is no end of a range, nor is zero.
+
+    What is cut off is the upper part of the noise, so the mean of the readings left beside it is
+    too small: of Gaussian noise σ whose upper half is masked, by σ √(2/π).
     """
 
     name = "saturation"
@@ -184,6 +190,7 @@ class Saturation(Detector):
     costs = _("a turn's angle is too small, and with it the scale factor")
     unit = "samples"
     severity = 3
+    alike = "sensor"
     masks = True
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
@@ -207,52 +214,100 @@ class Saturation(Detector):
                     channel=i,
                     p_value=chance.get(limit),
                     facts=Visit(
-                        limit, (end - start) * log.step, _lost(values, start, end, log.step)
+                        limit,
+                        (end - start) * log.step,
+                        _lost(values, start, end, log.step),
+                        _leapt(values, start, end, log.noise[i]),
                     ),
                 )
 
+    def censors(self, event: Event) -> bool:
+        return not event.facts.leapt
+
     def describe(self, event: Event, name: str) -> Description:
-        assert event.channel is not None
-        visit, many = event.facts, event.size > 1
-        what, unit = ("velocity", "m/s") if event.channel < 3 else ("angle", "rad")
+        return self.describe_many([(name, event)])
+
+    def describe_many(self, events: Sequence[tuple[str, Event]]) -> Description:
+        name, largest = max(events, key=lambda pair: pair[1].size)
+        assert largest.channel is not None
+        number = round(sum(event.size for _, event in events))
+        where = _("{name} from line {line} on", name=name, line=largest.line)
+        if len({log for log, _ in events}) > 1:
+            where = _("{logs}, most of them in {where}", logs=names_of_logs(events), where=where)
+        what, unit = ("velocity", "m/s") if largest.channel < 3 else ("angle", "rad")
+        visit = largest.facts
         percent = abs(visit.limit) * visit.seconds / 100
+        lost = (
+            _(
+                "about {lost} {unit}, if the readings beside are continued",
+                lost=significant(visit.lost, 2),
+                unit=unit,
+            )
+            if np.isfinite(visit.lost)
+            else _(
+                "{percent} {unit} for each 1 % beyond", percent=significant(percent, 2), unit=unit
+            )
+            if np.isfinite(percent)
+            else _("by an unknown amount")
+        )
+        censored = any(not event.facts.leapt for _, event in events)
         return Description(
             _(
-                "{name}: {counted} of {channel} {value} at {limit} {units}, the end of the "
-                "range, from line {line} on.",
-                name=name,
-                counted=counted(round(event.size), "reading"),
-                channel=channel_name(event.channel),
-                value="stand" if many else "stands",
-                limit=significant(visit.limit, 6),
-                units=UNITS[event.channel],
-                line=event.line,
+                "The {axes} reach the end of the range at {limit}: {counted} in {where}.",
+                axes=names_of_axes(events),
+                limit=_limits([event for _, event in events]),
+                counted=counted(number, "reading"),
+                where=where,
+            )
+            if len({event.channel for _, event in events}) > 1
+            else _(
+                "The {axes} reaches the end of the range at {limit}: {counted} in {where}.",
+                axes=names_of_axes(events),
+                limit=_limits([event for _, event in events]),
+                counted=counted(number, "reading"),
+                where=where,
             ),
             _(
-                "The {what} over {value} is too small by all that went beyond: ",
+                "The {what} over them is too small by all that went beyond: {lost}.",
                 what=what,
-                value="them" if many else "it",
+                lost=lost,
             )
             + (
-                _(
-                    "about {lost} {unit}, if the readings beside are continued.",
-                    lost=significant(visit.lost, 2),
-                    unit=unit,
-                )
-                if np.isfinite(visit.lost)
-                else _(
-                    "{percent} {unit} for each 1 % beyond.",
-                    percent=significant(percent, 2),
-                    unit=unit,
-                )
-                if np.isfinite(percent)
-                else _("by an unknown amount.")
+                _(" So is the mean of the readings left beside them, for noise is cut off.")
+                if censored
+                else ""
             ),
-            _(
-                "{value} masked. Turn more slowly, or choose a wider range.",
-                value="The readings are" if many else "The reading is",
+            (
+                _(
+                    "The readings are masked, and no mean of a turn or a static position in which "
+                    "the channel is cut off is used. Turn more slowly, or choose a wider range."
+                )
+                if censored
+                else _("The readings are masked. Look for what spoils them.")
             ),
         )
+
+
+def _limits(events: Sequence[Event]) -> str:
+    """The ends of the range that events touch, without sign, in the unit of the sensor."""
+    values = np.abs([event.facts.limit for event in events])
+    gyros = (events[0].channel or 0) >= 3
+    values, unit = (np.degrees(values), "°/s") if gyros else (values, "m/s²")
+    ends = [significant(float(end), 5) for end in (values.min(), values.max())]
+    return f"{ends[0]} {unit}" if ends[0] == ends[1] else f"{ends[0]} … {ends[1]} {unit}"
+
+
+def _leapt(values: Array, start: int, end: int, noise: float) -> bool:
+    """Whether a visit is a leap: away from the limit before and after, as noise and motion are not.
+
+    By more than the readings beside change from one to the next, however fast the IMU turns up.
+    """
+    before, after = values[max(start - SIDE_READINGS, 0) : start], values[end : end + SIDE_READINGS]
+    if min(len(before), len(after)) < 2:
+        return False
+    leap = min(abs(values[start] - before[-1]), abs(values[start] - after[0]))
+    change = max(np.abs(np.diff(before)).max(), np.abs(np.diff(after)).max(), noise)
+    return bool(leap > MIN_LEAP_RATIO * change)
 
 
 def _known(sign: float, log: Log, i: int) -> float:

@@ -1,6 +1,6 @@
 """Single readings that have nothing to do with those beside them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +17,8 @@ from inertial.signal.detector import (
     Log,
     Piece,
     channel_name,
+    names_of_axes,
+    names_of_logs,
 )
 from inertial.signal.outliers import MAX_SPIKE_READINGS, MIN_DEVIATION_SCATTER, Channel
 from inertial.signal.runs import joined
@@ -62,6 +64,7 @@ class Spikes(Detector):
     source = "robust z: Iglewicz & Hoaglin, How to Detect and Handle Outliers, 1993"
     costs = _("it moves the mean of its block, and inflates the noise")
     severity = 1
+    alike = "sensor"
     masks = True
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
@@ -120,6 +123,25 @@ class Spikes(Detector):
                 signed_2=_signed(moves / facts.in_log),
             ),
             f"{'The readings are' if many else 'The reading is'} masked.",
+        )
+
+    def describe_many(self, events: Sequence[tuple[str, Event]]) -> Description:
+        name, largest = max(events, key=lambda pair: abs(pair[1].size))
+        one = self.describe(largest, name)
+        assert largest.channel is not None
+        return Description(
+            _(
+                "{count} spikes of the {axes} in {logs}, of up to {size} {unit}. The largest is "
+                "this one: {one}",
+                count=len(events),
+                axes=names_of_axes(events),
+                logs=names_of_logs(events),
+                size=significant(abs(largest.size), 3),
+                unit=UNITS[largest.channel],
+                one=one.sentence,
+            ),
+            one.consequence,
+            _("They are masked: in a rest left out, in a turn interpolated."),
         )
 
 

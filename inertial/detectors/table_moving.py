@@ -80,6 +80,7 @@ class TableMoving(Detector):
     costs = _("the attitude of this rest, hence biases and cross-axis terms")
     unit = "″"
     severity = 2
+    alike = "event"
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         resting, own = jumps(piece, log)

@@ -60,7 +60,6 @@ class TemperatureDrift(Detector):
     )
     costs = _("bias and scale factors are means over temperatures, and sure of none of them")
     unit = "K"
-    everywhere = True
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:
         temperature = log.windows.temperature

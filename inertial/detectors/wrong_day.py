@@ -19,7 +19,6 @@ class WrongDay(Detector):
     source = "S0: GPS week 2283 is 8 October 2023, where 18 October is stated; design study, 41h"
     costs = _("all results are those of another campaign, if the log is")
     unit = "days"
-    everywhere = True
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:
         recorded, stated = _day(log.recorded_on), _day(log.given.date)

@@ -83,7 +83,6 @@ class WrongImuType(Detector):
     costs = _("all readings and with them biases and scale factors, by the ratio of the counts")
     unit = "1"
     severity = 3
-    everywhere = True
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:
         if len(log.imu) > 1:

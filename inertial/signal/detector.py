@@ -1,12 +1,14 @@
 """Base class of the detectors of recording faults, and the data that they examine."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
+
+from inertial.text.messages import _
 
 SENSOR_NAMES = {"accel": "accelerometer", "gyro": "gyro"}
 
@@ -200,7 +202,8 @@ class Detector(ABC):
     `unit` of the size, empty where it is that of the channel; `sensor`: accel or gyro, where all
     axes of one are concerned. `severity`: 3 spoils a result, 2 weakens it, 1 is good to know.
     `masks`: readings that it detects are not used by others; `repeats`: no time passes with the
-    records that it masks. `everywhere`: the same in several logs is one finding.
+    records that it masks. `alike`: which of its events are one finding: those of a `sensor` (or
+    all, where they concern no channel), of a `channel`, or each `event` is one of its own.
     """
 
     name: ClassVar[str]
@@ -212,7 +215,11 @@ class Detector(ABC):
     severity: ClassVar[int] = 2
     masks: ClassVar[bool] = False
     repeats: ClassVar[bool] = False
-    everywhere: ClassVar[bool] = False
+    alike: ClassVar[Literal["sensor", "channel", "event"]] = "channel"
+
+    def censors(self, event: Event) -> bool:
+        """Whether it masks readings for their value, so that those left have a biased mean."""
+        return False
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         """Events in a piece of a log, in the order of the records."""
@@ -233,3 +240,40 @@ class Detector(ABC):
     @abstractmethod
     def describe(self, event: Event, name: str) -> Description:
         """An event in words; `name` is that of the log or rest, empty for the campaign."""
+
+    def describe_many(self, events: Sequence[tuple[str, Event]]) -> Description:
+        """Events that are one finding in words, each with the name of its log or rest."""
+        name, largest = max(events, key=lambda pair: abs(pair[1].size))
+        one = self.describe(largest, name)
+        return replace(one, sentence=f"{one.sentence} {occurrences(events)}")
+
+
+MAX_NAMED_LOGS = 6  # in a sentence; of more the number is given
+
+
+def occurrences(events: Sequence[tuple[str, Event]]) -> str:
+    """How often, and in which logs, of which the largest event was described."""
+    count = sum(event.count for _, event in events)
+    if len({name for name, _ in events}) == 1:
+        return _("This occurs {count} times in this log; the largest is described.", count=count)
+    return _(
+        "This occurs {count} times in {logs}; the largest is described.",
+        count=count,
+        logs=names_of_logs(events),
+    )
+
+
+def names_of_logs(events: Sequence[tuple[str, Event]]) -> str:
+    """The logs or rests of events in words; of many, how many they are."""
+    names = list(dict.fromkeys(name for name, _ in events))
+    if len(names) > MAX_NAMED_LOGS:
+        return _("{count} logs", count=len(names))
+    return ", ".join(names)
+
+
+def names_of_axes(events: Sequence[tuple[str, Event]]) -> str:
+    """The sensor of events and its axes, in words: gyros x, y."""
+    channels = sorted({event.channel for _, event in events if event.channel is not None})
+    sensor = SENSOR_NAMES[CHANNELS[channels[0]].partition("_")[0]]
+    axes = ", ".join(CHANNELS[channel][-1] for channel in channels)
+    return f"{sensor}{'s' if len(channels) > 1 else ''} {axes}"

@@ -134,9 +134,6 @@ class PlanDetector(ABC):
     unit: ClassVar[str] = "1"
     severity: ClassVar[int] = 2
     sensor: ClassVar[str | None] = None
-    masks: ClassVar[bool] = False
-    repeats: ClassVar[bool] = False
-    everywhere: ClassVar[bool] = False
 
     @abstractmethod
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:

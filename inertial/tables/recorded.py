@@ -128,13 +128,19 @@ FINDINGS = Table(
 )
 MASKS = Table(
     "masks",
-    3,
+    4,
     (
         LOG,
         *RECORDS,
         Column("sensor", TEXT, "", "accel or gyro where one channel is masked", nullable=True),
         Column("axis", TEXT, "", "x, y or z where one channel is masked", nullable=True),
         Column("repeated", TRUTH, "", "they repeat other records: no time passes with them"),
+        Column(
+            "censored",
+            TRUTH,
+            "",
+            "masked for their value, at the end of the range: the mean of those left is biased",
+        ),
         Column("finding", TEXT, "", "id of the finding that masks these records"),
     ),
 )

@@ -1,6 +1,6 @@
 """What was recorded of each manoeuvre, compared with its plan."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import degrees
 
@@ -9,6 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.records import Manoeuvre, Performed
+from inertial.signal.detector import channel_name
 from inertial.tables import CHANNELS
 from inertial.text.messages import _
 from stages.segment.explanations import Explained
@@ -192,10 +193,12 @@ def turn(
     gaps: pd.DataFrame,
     level: Array,
     tolerance: float,
+    clipped: Booleans,
 ) -> Performed:
     """A turn: its angle, its rate, whether all of it was recorded, or what is missing is known.
 
-    `moving`: its blocks in motion; `gaps`: of all logs; `level`: (3,), rad/s, the gyros at rest.
+    `moving`: its blocks in motion; `gaps`: of all logs; `level`: (3,), rad/s, the gyros at rest;
+    `clipped`: (3,), the gyros that are cut off at the end of their range in it.
     """
     if moving.empty:
         return Performed(m.name, _("it turns, but its gyros are masked."), True, False)
@@ -205,8 +208,18 @@ def turn(
     timed = bool(np.isfinite(length).all())
     angle = float(np.nansum(about * length)) if timed else None
     lacking = missing_of(moving, np.nan_to_num(about), gaps[gaps["log"] == binned.window.log])
-    rate = _steady_rate(moving, about)
     seconds = binned.duration(first, after)
+    if (clipped & (m.axis != 0)).any():
+        reasons, remark = _cut_off(binned, first, after, binned.about(m.axis, level), m)
+        reasons += [lacking.hindrance] if lacking.hindrance else []
+        whole = lacking.seconds == 0 and not (reasons and m.recorded == "whole")
+        sentence = _("turned, by an angle that is not measured")
+        sentence = f"{sentence}{remark}: {', and '.join(reasons)}." if reasons else f"{sentence}."
+        bridged = not whole and not reasons
+        return Performed(
+            m.name, sentence, True, whole, None, None, lacking.seconds, None, seconds, bridged
+        )
+    rate = _steady_rate(moving, about)
     if m.recorded == "steady":
         sentence = (
             _("steady at {signed} °/s.", signed=_signed(degrees(rate), 4))
@@ -247,6 +260,23 @@ def turn(
     return Performed(
         m.name, sentence, True, False, angle, missing, lacking.seconds, rate, seconds, bridged
     )
+
+
+def with_clipped(done: Performed, clipped: Mapping[str, Booleans]) -> Performed:
+    """The same, with the channels that are cut off in it, by phase, (6,); "" is that of motion."""
+    sentence = done.sentence
+    for phase, channels in clipped.items():
+        names = ", ".join(channel_name(int(i)) for i in np.flatnonzero(channels))
+        sentence += (
+            _(
+                " Not used in {phase}, for readings touch the end of the range: {names}.",
+                phase=phase,
+                names=names,
+            )
+            if phase not in ("", "rest")
+            else _(" Not used, for readings touch the end of the range: {names}.", names=names)
+        )
+    return replace(done, sentence=sentence)
 
 
 def _about(moving: pd.DataFrame, axis: Array, level: Array) -> Array:

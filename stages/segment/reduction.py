@@ -7,7 +7,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.masked_samples import Batch, Integers, Masks, regular
+from inertial.campaign.masked_samples import Batch, Booleans, Integers, Masks, regular
 from inertial.campaign.records import Clock
 from inertial.campaign.sums import ExtremesOver, SumsOver, TimesOver
 from inertial.tables import STATIC_PHASES
@@ -60,7 +60,9 @@ class Segments(TimesOver):
 class Blocks(SumsOver):
     """Every part in blocks of equal length; none reaches across a gap, or masked gyros in a turn.
 
-    A turn has no blocks where its gyros are masked: what is missing stands in the block behind.
+    A turn has no blocks where its gyros are masked: what is missing stands in the block behind. A
+    channel that is cut off at the end of its range anywhere in a static position, or in a turn
+    from start to stop, has no mean in any block of it: half of its noise is left, or less.
 
     Parameters
     ----------
@@ -83,6 +85,7 @@ class Blocks(SumsOver):
         }
         self._clocks = clocks
         hidden = _hidden(parts, masks)
+        self._clipped = _clipped(parts, masks)
         edges: list[tuple[Integers, Integers]] = []
         for part in parts:
             seconds = rest_block if part.phase in STATIC_PHASES else turn_block
@@ -95,6 +98,21 @@ class Blocks(SumsOver):
         self._table = _spans(parts, edges)
         self._spans = _Spans(self._table)
         super().__init__(self._spans.stretches, masks)
+
+    def clipped(self, name: str) -> dict[str, Booleans]:
+        """Which channels are cut off in a manoeuvre, (6,), by phase; that of motion is ""."""
+        return {phase: cut for (of, phase), cut in self._clipped.items() if of == name}
+
+    def _cut_off(self) -> Booleans:
+        """Which channels have no mean in which blocks, (k, 6)."""
+        cut = np.zeros((len(self._table), len(tables.CHANNELS)), bool)
+        if self._clipped:
+            phases = self._table["phase"].where(self._table["phase"].isin(STATIC_PHASES), "")
+            keys = zip(self._table["manoeuvre"], phases, strict=True)
+            for k, key in enumerate(keys):
+                if key in self._clipped:
+                    cut[k] = self._clipped[key]
+        return cut
 
     def _gaps_of(self, log: str) -> Integers:
         return self._gaps.get(log, np.array([], np.int64))
@@ -111,12 +129,14 @@ class Blocks(SumsOver):
 
         step = {log: clock.duration or np.nan for log, clock in self._clocks.items()}
         count, records = column("count"), column("records")
+        means = column("mean")
+        means[self._cut_off()] = np.nan
         table = table.assign(
             time=column("time"),
             seconds=count * table["log"].map(step).to_numpy(np.float64),
             count=count,
             missing_s=0.0,
-            **dict(zip(tables.CHANNELS, column("mean").T, strict=True)),
+            **dict(zip(tables.CHANNELS, means.T, strict=True)),
             table_angle=column("table_angle"),
             temperature=column("temperature"),
             mask_share=column("masked") / np.maximum(records, 1),
@@ -169,7 +189,8 @@ class LogsOfMeans:
 def _hidden(parts: Sequence[Part], masks: Masks) -> dict[str, Integers]:
     """For each turn the records in motion whose gyros are not to be used.
 
-    A gyro that is masked in all of them is one that was not recorded, and hides no other.
+    A gyro that is masked in all of them is one that was not recorded, and hides no other; nor does
+    one that is cut off at the end of its range, which is not used in the turn.
     """
     turns: dict[str, list[Part]] = {}
     for part in parts:
@@ -179,10 +200,27 @@ def _hidden(parts: Sequence[Part], masks: Masks) -> dict[str, Integers]:
     for name, own in turns.items():
         records = np.concatenate([np.arange(part.first, part.after) for part in own])
         masked = masks.of(own[0].log, records)
-        gyros = masked.channels[:, len(tables.CHANNELS) // 2 :]
+        unread = masked.channels
+        if own[0].phase != BETWEEN:
+            unread = unread & ~masked.censored  # of these no block is used
+        gyros = unread[:, len(tables.CHANNELS) // 2 :]
         unseen = masked.lost | gyros[:, ~gyros.all(axis=0)].any(axis=1)
         hidden[name] = records[unseen & ~masked.repeated]
     return hidden
+
+
+def _clipped(parts: Sequence[Part], masks: Masks) -> dict[tuple[str, str], Booleans]:
+    """The channels, (6,), that are cut off in a static phase, or in a turn, whose phase is ""."""
+    clipped: dict[tuple[str, str], Booleans] = {}
+    for part in parts:
+        if part.phase == BETWEEN:
+            continue  # it has only what is not masked
+        masked = masks.of(part.log, np.arange(part.first, part.after))
+        cut = np.asarray(masked.censored.any(axis=0), bool)
+        if cut.any():
+            key = (part.manoeuvre, part.phase if part.phase in STATIC_PHASES else "")
+            clipped[key] = cut | clipped.get(key, cut)
+    return clipped
 
 
 def _missing(turn: pd.DataFrame, after_gap: pd.Series, clock: Clock) -> Floats:

@@ -79,10 +79,20 @@ def segment(
     for located, place, m in turns:
         own = in_motion.get(m.name, blocks.iloc[:0])
         done = completeness.turn(
-            located.binned, located.stretches, place, m, own, gaps, level, angle_tolerance
+            located.binned,
+            located.stretches,
+            place,
+            m,
+            own,
+            gaps,
+            level,
+            angle_tolerance,
+            block_sums.clipped(m.name).get("", np.zeros(6, bool))[3:],
         )
         as_named = located.axes.gyro == AS_NAMED
         performed[m.name] = done if as_named else completeness.by_other_axes(done)
+    for m in plan:
+        performed[m.name] = completeness.with_clipped(performed[m.name], block_sums.clipped(m.name))
     recorded = recorded_of(
         plan, explained, performed, segments, gaps, _counts(by_name), stated.given, angle_tolerance
     )

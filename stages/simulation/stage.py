@@ -54,7 +54,8 @@ def simulation(
 
 def _whole(m: Manoeuvre, done: Performed) -> bool:
     known = m.up is not None and m.angle is not None
-    recorded = done.complete or done.bridged
+    # Of one whose gyros are cut off at the end of their range no angle is measured.
+    recorded = (done.complete or done.bridged) and done.angle is not None
     return m.do == "turn" and m.recorded == "whole" and known and recorded
 
 

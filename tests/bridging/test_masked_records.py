@@ -13,7 +13,7 @@ def masked(results: chain.Results, *stretches: tuple[int, int], **more) -> dict[
     """`segment` once more, with these records of z-backward masked."""
     rows = [
         {"log": "z-backward.asc", "from_record": first, "to_record": after, "finding": "spike",
-         "sensor": None, "axis": None, "repeated": False, **more}
+         "sensor": None, "axis": None, "repeated": False, "censored": False, **more}
         for first, after in stretches
     ]  # fmt: skip
     return chain.again(results, "segment", masks=pd.DataFrame(rows))

@@ -178,5 +178,6 @@ def _mask(fault: Fault) -> dict[str, Any]:
         "sensor": fault.channel[:-2] or None,
         "axis": fault.channel[-1:] or None,
         "repeated": fault.cause == "duplicate",
+        "censored": fault.cause == "saturation",
         "finding": fault.identifier,
     }

@@ -63,7 +63,9 @@ def test_only_what_is_masked_of_the_channel_counts(
         },
         {"from_record": start + 10, "to_record": start + 11, "sensor": None, "axis": None},
     ]
-    masks = pd.DataFrame(rows).assign(log=close_up.log, repeated=False, finding="quality/spike")
+    masks = pd.DataFrame(rows).assign(
+        log=close_up.log, repeated=False, censored=False, finding="quality/spike"
+    )
     if channel is not None:
         masks = masks.iloc[:1]
     assert masked_in(close_up, masks, ["gyro_z"]) == stretches
