@@ -85,6 +85,8 @@ def record_log(
     receiver, sensors = specification.receiver, specification.sensors
     interval, temperature = specification.handling.interval, specification.temperature
     generators = {name: specification.chance.stream("noise", name, log) for name in effects}
+    for name, effect in effects.items():
+        effect.begin_log(generators[name])
     delay = sum(effect.gyro_delay() for effect in effects.values())
     truths: list[Truth] = []
     readings: list[Reading] = []

@@ -59,6 +59,7 @@ from laboratory.effects.table_speed_error import TableSpeedError
 from laboratory.effects.table_sway import TableSway
 from laboratory.effects.table_tilt import TableTilt
 from laboratory.effects.table_wobble import TableWobble
+from laboratory.effects.turn_on_bias import TurnOnBias
 from laboratory.effects.white_noise import WhiteNoise
 
 # Effects that move the case act in the order of this list, not of the specification.
@@ -103,6 +104,8 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "gyro_flicker": GyroFlicker.specified,
     "gyro_saturation": GyroSaturation.specified,
     "gyro_latency": GyroLatency.specified,
+    # both
+    "turn_on_bias": TurnOnBias.specified,
     # the accelerometers
     "accel_quadratic": AccelQuadratic.specified,
     "accel_cubic": AccelCubic.specified,

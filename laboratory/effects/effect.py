@@ -78,6 +78,9 @@ class Effect:
 
     # ---- the IMU
 
+    def begin_log(self, generator: np.random.Generator) -> None:
+        """Called before the first sample of each log; `generator`: that of the log's noise."""
+
     def gyro_delay(self) -> float:
         """Delay of the gyros, s."""
         return 0.0

@@ -9,9 +9,41 @@ MOST_SIGMA = 4.5  # of some 700 errors of parameters in all cases, one in 200 ru
 
 # Cases that the diagnosis cannot yet tell; each must leave the list when it does.
 NOT_YET = {
-    case.name
-    for case in CASES
-    if case.name not in {"clean-positions", "clean-short", "clean-rates", "gravity-by-the-formula"}
+    "gravity-stated",
+    "latitude-off",
+    "latitude-of-the-other-hemisphere",
+    "sense-of-the-table",
+    "stated-sample-rate",
+    "clock-fast-in-one-log",
+    "sign-of-the-y-gyro",
+    "signs-of-all-gyros",
+    "signs-of-all-accelerometers",
+    "count-size-of-the-gyros",
+    "accelerometers-exchanged",
+    "gyros-exchanged",
+    "positions-logs-exchanged",
+    "turns-logs-exchanged",
+    "spikes-in-all-logs",
+    "gap-in-a-turn",
+    "gyros-clip-at-60",
+    "clipping-within-the-noise",
+    "impact-in-a-rest",
+    "impact-in-a-turn",
+    "one-position-off",
+    "one-brief-rest-off",
+    "one-angle-off",
+    "bias-of-each-log",
+    "one-attitude-each",
+    "ripple-of-order-36",
+    "line-at-20-hz",
+    "ramp-of-the-y-gyro",
+    "tilt-of-the-table",
+    "quadratic-accelerometer",
+    "structure-outside-the-catalogue",
+    "sign-and-ramp",
+    "spikes-and-quadratic",
+    "the-demo",
+    "rest-not-recorded",
 }
 
 
@@ -24,7 +56,8 @@ def marked(case: Case) -> object:
 def test_the_right_causes_and_nothing_else(case: Case) -> None:
     document = case.document()
     verdicts = {"accel": case.accel, "gyro": case.gyro}
-    judgement = judge(diagnosed(document), case.causes, verdicts, parameters_of(document))
+    truth = parameters_of(document) if case.known else None
+    judgement = judge(diagnosed(document), case.causes, verdicts, truth)
     assert judgement.good, str(judgement)
     far = {name: pull for name, pull in judgement.pulls.items() if abs(pull) > MOST_SIGMA}
     assert not far

@@ -421,3 +421,20 @@ def test_an_oscillation_bound_to_the_table_follows_its_rate(performed: Performed
         assert int(np.argmax(spectrum)) == 10 * frequency
         assert spectrum.max() == pytest.approx(0.01 * np.sinc(frequency * 0.01), rel=1e-4)
         assert (with_it - without)[:, 0].sum() * 0.01 == pytest.approx(0, abs=1e-9)
+
+
+def test_biases_are_others_after_each_switch_on(performed: Performed) -> None:
+    """40 logs: 120 biases of each sensor, whose scatter is known to 6.5 %; constant in a log."""
+    plan = [rest(name=f"still-{number}", seconds=1) for number in range(40)]
+    parameters = {"gyro_deg_h": 3, "accelerometer_micro_g": 50}
+    found = []
+    for effects in ({"turn_on_bias": parameters}, {}):
+        truth = performed(*plan, effects=effects).truth
+        readings = [np.hstack([o.noisy.accelerometer, o.noisy.gyro]) for o in truth.values()]
+        found.append(np.array([np.diff(sums, axis=0) / 0.01 for sums in readings]))
+    biases = found[0] - found[1]
+    assert np.abs(np.ptp(biases, axis=1)).max() < 1e-9
+    forces, rates = biases.mean(axis=1)[:, :3], biases.mean(axis=1)[:, 3:]
+    assert forces.std() == pytest.approx(50 * MICRO_G, rel=0.25)
+    assert rates.std() == pytest.approx(3 * DEG_H, rel=0.25)
+    assert abs(np.corrcoef(rates[:-1].ravel(), rates[1:].ravel())[0, 1]) < 0.4
