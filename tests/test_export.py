@@ -48,11 +48,13 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> chain.Results:
 def write_nothing_extended(folder: Path) -> None:
     """The tables of an extension that had no effect to add."""
     writes = {name: EXTENSION.writes[name] for name in ESTIMATES}
-    writes["decision"] = tables.DECISION
     made_by = {"stage": "extension", "settings": {}, "code": "c0", "inputs": {}}
     with Writer(folder / "extension", writes, lambda: made_by) as writer:
         for name, table in writes.items():
             writer.write(name, table.empty())
+    verdict = {"verdict": tables.VERDICTS}
+    with Writer(folder / "diagnosis", verdict, lambda: made_by | {"stage": "diagnosis"}) as writer:
+        writer.write("verdict", tables.VERDICTS.empty())
 
 
 @pytest.fixture(scope="module")
@@ -244,7 +246,7 @@ def extended(results: chain.Results) -> dict[str, pd.DataFrame]:
     )
     ids = list(rows["id"])
     spread = np.diag(rows["sigma"].to_numpy() ** 2)
-    decided = {column.name: [None if column.nullable else ""] for column in tables.DECISION.columns}
+    verdict = {column.name: [None if column.nullable else ""] for column in tables.VERDICTS.columns}
     return {
         "extension_parameters": pd.concat([rows, effect]).assign(stage="extension"),
         "extension_covariance": pd.DataFrame(
@@ -260,7 +262,7 @@ def extended(results: chain.Results) -> dict[str, pd.DataFrame]:
         "extension_fit_manoeuvres": results["gyroscope/fit_manoeuvres"]
         .query("method == 'joint'")
         .assign(method="extended"),
-        "decision": pd.DataFrame(decided | {"sensor": ["gyro"], "result": ["extended"]}),
+        "verdict": pd.DataFrame(verdict | {"sensor": ["gyro"], "method": ["extended"]}),
     }
 
 

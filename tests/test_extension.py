@@ -1,4 +1,4 @@
-"""The extended model: the parameters come back, it foretells what it has not seen, and counts."""
+"""The models with effects: the parameters come back, what was not seen is predicted."""
 
 import chain
 import numpy as np
@@ -9,12 +9,12 @@ from test_closure import truth_of
 G = 9.80665  # m/s², of the unit of the laboratory's K2
 GRAVITY = 9.7936174
 SIZE = 90.0  # µg/g², twenty sigma of the short campaign
-BETWEEN = ("studies", "comparison", "compensation")  # not needed for it
+BETWEEN = ("studies", "comparison")  # not needed for it
 
 
 def run(folder, **changes):
     campaign = chain.simulate(chain.short(**changes), folder / "short")
-    return chain.run(campaign, folder / "derived", "extension", without=BETWEEN)
+    return chain.run(campaign, folder / "derived", "diagnosis", without=BETWEEN)
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +28,8 @@ def quadratic(tmp_path_factory):
 
 
 def test_the_parameters_that_the_effect_had_spoiled_come_back(demo_criticised):
-    table = demo_criticised["extension/parameters"].set_index(["sensor", "parameter"])
+    table = demo_criticised.parameters("extension", "extended")
+    table = table.reset_index().set_index(["sensor", "parameter"])
     truth = truth_of("gyroscope")
     rows = table.loc["gyro"].loc[list(truth)]
     pulls = (rows["value"] - list(truth.values())) / rows["sigma"]
@@ -37,8 +38,9 @@ def test_the_parameters_that_the_effect_had_spoiled_come_back(demo_criticised):
     # Sigmas of noise alone again: the scatter that covered the effect is gone.
     assert table.loc[("gyro", "scale_x"), "sigma"] < joint.loc["scale_x", "sigma"] / 3
     assert "accel" not in table.index.get_level_values(0)  # they show nothing of it
-    decided = demo_criticised["extension/decision"].set_index("sensor")["result"]
-    assert dict(decided) == {"gyro": "extended", "accel": "joint"}
+    candidates = demo_criticised["extension/candidates"].set_index(["sensor", "method"])
+    assert "extended" in candidates.loc["gyro"].index
+    assert list(candidates.loc["accel"].index) == ["joint"]
 
 
 def test_the_gain_is_there_on_data_that_the_fit_has_not_seen(demo_criticised):
@@ -69,7 +71,7 @@ def test_covariance_and_parameters_agree(demo_criticised):
 
 
 def test_the_effect_and_what_it_moved_come_back(quadratic):
-    found = quadratic["extension/parameters"].set_index("parameter")
+    found = quadratic.parameters("extension", "extended")
     (name,) = set(quadratic["extension/gain_effects"]["effect"])
     assert name in ("accel_quadratic", "accel_scale_asymmetry")  # this plan cannot tell them apart
     if name == "accel_quadratic":
@@ -107,39 +109,108 @@ def test_a_rest_that_alone_shows_it_is_not_counted_and_that_is_said(quadratic):
     own = folds[(folds["sensor"] == "accel") & ~folds["counted"]]
     assert list(own["manoeuvre"]) == ["y-down"]  # the turns show y upward as well
     assert (held_out["folds"], held_out["counted"]) == (12, 11)
-    decided = quadratic["extension/decision"].set_index("sensor").loc["accel"]
-    assert "Not counted: y-down" in decided["sentence"]
+    told = quadratic["extension/candidates"].set_index(["sensor", "method"])
+    extended = told.loc["accel", "extended"]
+    assert (extended["folds"], extended["counted"]) == (12, 11)
+    assert extended["carried_by"] == "y-down"
+    for words in ("Not counted: y-down", "Without y-down the others do not show"):
+        assert words in extended["sentence"]
 
 
-def test_the_extended_result_counts_and_the_other_sensor_keeps_its_own(quadratic):
-    decided = quadratic["extension/decision"].set_index("sensor")
-    assert dict(decided["result"]) == {"gyro": "joint", "accel": "extended"}
-    result = quadratic["extension/result"]
-    assert len(result) == 24
-    assert set(result["id"].str.rpartition("/")[0]) == {
-        "gyroscope/joint",
+def test_each_member_of_the_class_is_a_candidate(quadratic):
+    """K2 and an asymmetry of scale: at ±g one reads k2 g² where the other reads a g."""
+    candidates = quadratic["extension/candidates"].set_index("sensor")
+    assert candidates.loc["gyro", "method"] == "joint"
+    own = candidates.loc["accel"].set_index("method")
+    assert list(own.index) == ["joint", "extended", "member_1"]
+    assert own.loc["joint", "probability"] == 0.0
+    assert own["probability"].sum() == pytest.approx(1.0)
+    assert own.loc["extended", "probability"] == pytest.approx(0.5, abs=0.02)
+    assert own["undetermined"].eq(0).all()
+    effects = quadratic["extension/candidate_effects"].set_index("method")["effect"]
+    assert set(effects) == {"accel_quadratic", "accel_scale_asymmetry"}
+    by_effect = {name: quadratic.parameters("extension", m) for m, name in effects.items()}
+    k2 = by_effect["accel_quadratic"].loc["accel_quadratic.k2_y"]
+    a = by_effect["accel_scale_asymmetry"].loc["accel_scale_asymmetry.a_y"]
+    assert a["value"] == pytest.approx(k2["value"] * GRAVITY, rel=1e-3)
+    assert a["sigma"] == pytest.approx(k2["sigma"] * GRAVITY, rel=1e-2)
+
+
+def test_ids_are_unique_and_each_candidate_has_its_covariance(quadratic):
+    parameters, covariance = (quadratic[f"extension/{of}"] for of in ("parameters", "covariance"))
+    assert parameters["id"].is_unique
+    assert set(parameters["id"].str.rpartition("/")[0]) == {
         "extension/accelerometer",
+        "extension/member_1/accelerometer",
     }
+    own = covariance[covariance["first"] == covariance["second"]].set_index("first")["covariance"]
+    sigma = parameters.set_index("id")["sigma"]
+    np.testing.assert_allclose(np.sqrt(own[sigma.index]), sigma, rtol=1e-9)
+    fit = quadratic["extension/fit"].set_index("method")
+    assert set(fit.index) == {"extended", "member_1"}
+    assert abs(fit.loc["extended", "chi_squared"] - fit.loc["member_1", "chi_squared"]) < 0.01
+    assert set(quadratic["extension/fit_manoeuvres"]["method"]) == set(fit.index)
 
 
-def test_an_alarm_keeps_the_joint_result_and_a_random_walk_is_none(quadratic):
-    findings = quadratic["criticism/findings"]
-    for cause, counts in (("accel_drift", "joint"), ("accel_random_walk", "extended")):
-        alarm = findings.iloc[:1].assign(
-            id=f"criticism/{cause}", cause=cause, sensor="accel", verdict="unknown_structure"
-        )
-        made = chain.again(quadratic, "extension", criticism_findings=pd.concat([findings, alarm]))
-        decided = made["decision"].set_index("sensor")
-        assert decided.loc["accel", "result"] == counts
-        assert decided.loc["gyro", "result"] == "joint"
-        own = made["result"]["id"].str.startswith("extension/")
-        assert own.sum() == (12 if counts == "extended" else 0)
+def test_unknown_probabilities_follow_from_the_evidence(quadratic):
+    """Both members explain the data alike, so each is as probable as the other."""
+    members = quadratic["criticism/members"].assign(probability=None)
+    made = chain.again(quadratic, "extension", members=members)
+    own = made["candidates"].query("sensor == 'accel' and method != 'joint'")
+    assert list(own["probability"]) == pytest.approx([0.5, 0.5], abs=0.02)
+
+
+def test_a_member_that_the_sensor_does_not_show_leaves_its_joint_fit(quadratic):
+    """A bias of the gyros instead: then the accelerometers have no effect at all."""
+    members = quadratic["criticism/members"]
+    other = members["rank"] == 2
+    changed = members.assign(effect=members["effect"].mask(other, "gyro_bias_ramp"))
+    made = chain.again(quadratic, "extension", members=changed)
+    candidates = made["candidates"].set_index(["sensor", "method"])["probability"]
+    assert dict(candidates["accel"]) == pytest.approx({"joint": 0.5, "extended": 0.5}, abs=0.02)
+    assert dict(candidates["gyro"]) == pytest.approx({"joint": 0.5, "member_1": 0.5}, abs=0.02)
+
+
+def test_a_scanned_member_gets_its_value_from_the_data(tmp_path):
+    """A jump of a gyro half way, of which criticism is made to say that a ramp is likelier."""
+    results = run(
+        tmp_path, effects={"gyro_bias_jump": {"at_s": 150, "size_deg_h": [0, 0, 60]}}, seed=3
+    )
+    jump = results["criticism/findings"].iloc[0]
+    assert jump["cause"] == "gyro_bias_jump"
+    findings = (
+        results["criticism/findings"]
+        .iloc[:1]
+        .assign(cause="gyro_bias_ramp", verdict="one_of_class")
+    )
+    member = {"finding": jump["id"], "mount": "", "probability": 0.5, "captured": 1.0}
+    members = pd.DataFrame(
+        [
+            member | {"rank": rank, "effect": effect}
+            for rank, effect in ((1, "gyro_bias_ramp"), (2, "gyro_bias_jump"))
+        ]
+    )
+    made = chain.again(
+        results,
+        "extension",
+        criticism_findings=findings,
+        members=members,
+        effects=results["criticism/effects"].iloc[:0],
+    )
+    fit = made["fit"].set_index(["sensor", "method"])["chi_squared"]
+    assert fit["gyro", "member_1"] < fit["gyro", "extended"]
+    own = made["parameters"].query("method == 'member_1'").set_index("parameter")
+    size = own.loc["gyro_bias_jump.b_z"]
+    assert abs(size["value"] - np.radians(60 / 3600)) < 4 * size["sigma"]
+    scores = results["criticism/scores"].set_index("effect")
+    at = own.loc["gyro_bias_jump.t0", "value"]
+    assert at == pytest.approx(scores.loc["gyro_bias_jump", "scan_value"])
 
 
 def test_the_worth_is_the_error_of_the_joint_result_by_hand(quadratic):
     worth = quadratic["extension/worth"].set_index("manoeuvre")
     moved = quadratic["extension/moved"].set_index("parameter")
-    effects = quadratic["extension/parameters"].set_index("parameter")
+    effects = quadratic.parameters("extension", "extended")
     (name,) = set(quadratic["extension/gain_effects"]["effect"])
     force = GRAVITY * np.array([0, -1, 0])  # y down
     error = np.zeros(3)
@@ -163,15 +234,16 @@ def test_the_worth_is_the_error_of_the_joint_result_by_hand(quadratic):
 # ---- nothing to add
 
 
-def test_without_a_named_effect_the_joint_result_counts(tmp_path):
+def test_without_a_named_effect_the_joint_result_is_the_only_candidate(tmp_path):
     results = run(tmp_path, seed=21)
     for table in ("parameters", "covariance", "fit", "gain", "moved", "worth"):
         assert results[f"extension/{table}"].empty
-    assert set(results["extension/decision"]["result"]) == {"joint"}
-    result = results["extension/result"].set_index("id")
+    assert list(results["extension/candidates"]["method"]) == ["joint", "joint"]
+    assert set(results["diagnosis/verdict"]["method"]) == {"joint"}
+    result = results["diagnosis/result"].set_index("id")
     for stage in ("gyroscope", "accelerometer"):
-        joint = results.parameters(stage).set_index("id")
-        own = result[result["stage"] == stage]
+        joint = results.parameters(stage)
+        own = result[result.index.str.startswith(f"diagnosis/{stage}/")].set_index("parameter")
         assert len(own) == 12
         pd.testing.assert_frame_equal(
             own[["value", "sigma"]], joint.loc[own.index, ["value", "sigma"]]

@@ -121,11 +121,10 @@ def run(
     by_extension = gyro | {"stage": "extension"}
     write(derived / "extension", "parameters", tables.PARAMETERS, rows, by_extension)
     write(derived / "extension", "covariance", tables.COVARIANCE, product, by_extension)
-    decided = {"sensor": "gyro", "mount": "", "result": "extended", "effects": "gyro_bias_ramp"}
-    nothing = dict.fromkeys(("drop", "snr_squared", "folds", "counted"))
-    decision = decided | nothing | {"alarms": "", "sentence": "It counts."}
-    some = [decision] if rows else [decision | {"result": "joint"}]
-    write(derived / "extension", "decision", tables.DECISION, some, by_extension)
+    verdict = {"mount": "", "sensor": "gyro", "verdict": "usable", "sentence": "It counts."}
+    verdict |= {"method": "extended" if rows else "joint", "condition": None, "reason": ""}
+    by_diagnosis = gyro | {"stage": "diagnosis"}
+    write(derived / "diagnosis", "verdict", tables.VERDICTS, [verdict], by_diagnosis)
     STAGE.run(derived, {"archive": [place / "history"]}, {})
     return dict(pd.read_parquet(derived / "history/archived.parquet").iloc[0])
 

@@ -125,7 +125,7 @@ def test_a_position_that_is_off_is_noticed_and_what_it_spoils_is_named(tmp_path)
     believed = {**true.campaign, "plan": told["campaign"]["plan"]}
     folder = tmp_path / "raw"
     laboratory.write(replace(true, campaign=believed), folder)
-    results = chain.run(folder, tmp_path / "derived", "extension")
+    results = chain.run(folder, tmp_path / "derived", "diagnosis")
     (found,) = results["accelerometer/findings"].to_dict("records")
     assert found["cause"] == "table_position_error"
     assert "y-up" in found["sentence"] and "z-up" not in found["sentence"]
@@ -145,4 +145,5 @@ def test_a_position_that_is_off_is_noticed_and_what_it_spoils_is_named(tmp_path)
     cross = moved.loc["accelerometer/joint/cross_zy"]
     assert abs(cross["difference"]) == pytest.approx(np.radians(OFF) / 8, rel=0.3)
     assert cross["extended_sigma"] < cross["joint_sigma"] / 10
-    assert set(results["extension/decision"].set_index("sensor")["result"]) == {"joint", "extended"}
+    verdict = results["diagnosis/verdict"].set_index("sensor")
+    assert dict(verdict["method"]) == {"gyro": "joint", "accel": "extended"}

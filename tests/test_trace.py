@@ -56,10 +56,14 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (raw / log).write_bytes(b"".join([*lines[:line], REMARK, *lines[line:]]))
     derived = data / "derived/short"
     chain.run(raw, derived, until="gyroscope")
-    nothing = {name: stage.STAGE.writes[name] for name in ("parameters", "covariance", "decision")}
+    nothing = {name: stage.STAGE.writes[name] for name in ("parameters", "covariance")}
     with Writer(derived / "extension", nothing, made_by_extension) as writer:
         for name, table in nothing.items():
             writer.write(name, table.empty())
+    made_by = made_by_extension() | {"stage": "diagnosis", "code": hash_of(code_of("diagnosis"))}
+    verdict = {"verdict": tables.VERDICTS}
+    with Writer(derived / "diagnosis", verdict, lambda: made_by) as writer:
+        writer.write("verdict", tables.VERDICTS.empty())
     history.STAGE.run(derived, {"archive": [data / "history"]}, {})
     return data
 

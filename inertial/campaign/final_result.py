@@ -6,12 +6,12 @@ from inertial.campaign.records import Row
 from inertial.text.parameters import EXTENDED, JOINT
 
 
-def extended_sensors(decision: Iterable[Row]) -> set[tuple[str, str]]:
-    """Sensor and mount of every extended result that is final.
+def extended_sensors(verdicts: Iterable[Row]) -> set[tuple[str, str]]:
+    """Sensor and mount of every result that is final and has effects in its model.
 
-    `decision`: the rows of the extension's table.
+    `verdicts`: the rows of the diagnosis.
     """
-    return {(row["sensor"], row["mount"]) for row in decision if row["result"] == EXTENDED}
+    return {(row["sensor"], row["mount"]) for row in verdicts if row["method"] != JOINT}
 
 
 def of_sensors(rows: Iterable[Row], sensors: Container[tuple[str, str]]) -> list[Row]:
@@ -22,9 +22,11 @@ def of_sensors(rows: Iterable[Row], sensors: Container[tuple[str, str]]) -> list
 def with_extended(parameters: Sequence[Row], extended: Iterable[Row]) -> list[Row]:
     """The rows, those of the joint method with value and sigma of the extended fit where it has.
 
-    The ids stay.
+    `extended`: of all methods of the extension. The ids stay.
     """
-    better = {_key(row): row for row in extended if row["value"] is not None}
+    better = {
+        _key(row): row for row in extended if row["method"] == EXTENDED and row["value"] is not None
+    }
     return [
         row | {key: better[_key(row)][key] for key in ("value", "sigma")}
         if row["method"] == JOINT and _key(row) in better

@@ -68,10 +68,7 @@ from inertial.tables.shared import (
     UNITS,
 )
 from inertial.tables.unmodelled import (
-    ALARMS,
     CAUSE_POSITIONS,
-    DECISION,
-    DECISION_EFFECTS,
     DETECTION_LIMITS,
     EFFECT_FINDINGS,
     EFFECTS,
@@ -94,7 +91,6 @@ __all__ = [
     "ACCEL",
     "ACCEPTED",
     "ACCOUNTS",
-    "ALARMS",
     "ARCHIVED",
     "AVERAGING",
     "AXES",
@@ -118,8 +114,6 @@ __all__ = [
     "CONSEQUENCES",
     "COUNT_SIZES",
     "COVARIANCE",
-    "DECISION",
-    "DECISION_EFFECTS",
     "DETECTION_LIMITS",
     "DIFFERENCES",
     "EARLIER",

@@ -76,7 +76,8 @@ CANDIDATES = Table(
             "probability",
             DOUBLE,
             "1",
-            "posterior probability among the members of its class, all equal beforehand",
+            "posterior probability among the members of its class, all equal beforehand; of the"
+            " joint method that of the members which this sensor does not show",
         ),
         Column(
             "drop",
@@ -93,7 +94,8 @@ CANDIDATES = Table(
             "carried_by",
             TEXT,
             "",
-            "manoeuvre without which the effect is not detected in the others",
+            "manoeuvre without which an effect of it is not detected in the others; by which"
+            " effect: candidate_effects",
             nullable=True,
         ),
         Column(
@@ -107,13 +109,21 @@ CANDIDATES = Table(
 )
 CANDIDATE_EFFECTS = Table(
     "candidate_effects",
-    1,
+    2,
     (
         MOUNT,
         Column("sensor", TEXT, "", "gyro or accel"),
         Column("method", TEXT, "", "as in candidates"),
         Column("effect", TEXT, "", "effect of the catalogue in the model of this candidate"),
         Column("finding", TEXT, "", "id of the finding of criticism that names it or its class"),
+        Column(
+            "carried_by",
+            TEXT,
+            "",
+            "manoeuvre without which this effect is not detected in the others, so that these do"
+            " not show it, or contradict it; none: no single manoeuvre carries it",
+            nullable=True,
+        ),
     ),
 )
 

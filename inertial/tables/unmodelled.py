@@ -316,7 +316,7 @@ STRUCTURE_POINTS = Table(
 )
 
 
-# ---- The extended model: its gain, the change of the parameters, and the decision.
+# ---- The extended model: its gain, and the change of the parameters.
 
 _MODEL = Column(
     "model",
@@ -438,38 +438,5 @@ WORTH = Table(
         Column("velocity_joint", DOUBLE, "m/s", "error with the joint result"),
         Column("velocity_joint_sigma", DOUBLE, "m/s", "its standard deviation"),
         Column("velocity_extended", DOUBLE, "m/s", "uncertainty of the extended result, rms"),
-    ),
-)
-DECISION = Table(
-    "decision",
-    2,
-    (
-        MOUNT,
-        Column("sensor", TEXT, "", "gyro or accel"),
-        Column("result", TEXT, "", "the final result: joint or extended"),
-        Column("drop", DOUBLE, "1", "held-out, as in gain, less random_walk_drop", nullable=True),
-        Column("snr_squared", DOUBLE, "1", "held-out, as in gain", nullable=True),
-        Column("folds", INTEGER, "1", "as in gain", nullable=True),
-        Column("counted", INTEGER, "1", "as in gain", nullable=True),
-        Column("sentence", TEXT, "", "the reason in words"),
-    ),
-)
-DECISION_EFFECTS = Table(
-    "decision_effects",
-    1,
-    (
-        MOUNT,
-        Column("sensor", TEXT, "", "gyro or accel"),
-        Column("effect", TEXT, "", "a named effect that the extended model of the sensor has"),
-    ),
-)
-ALARMS = Table(
-    "alarms",
-    1,
-    (
-        MOUNT,
-        Column("sensor", TEXT, "", "gyro or accel"),
-        Column("finding", TEXT, "", "id of a finding that no named effect explains"),
-        Column("cause", TEXT, "", "its cause"),
     ),
 )

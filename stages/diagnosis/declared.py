@@ -5,12 +5,15 @@ from inertial.tables.declared import Declared, From
 
 DECLARED = Declared(
     reads={
-        "extension_result": From("extension", tables.PARAMETERS, "result"),
+        "criticism_findings": From("criticism", tables.EFFECT_FINDINGS, "findings"),
+        "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
         "accelerometer_covariance": From("accelerometer", tables.COVARIANCE),
+        "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
         "gyroscope_covariance": From("gyroscope", tables.COVARIANCE),
-        "extension_covariance": From("extension", tables.COVARIANCE),
         "extension_parameters": From("extension", tables.PARAMETERS),
-        "decision": From("extension", tables.DECISION),
+        "extension_covariance": From("extension", tables.COVARIANCE),
+        "candidates": From("extension", tables.CANDIDATES),
+        "candidate_effects": From("extension", tables.CANDIDATE_EFFECTS),
     },
     writes={
         "causes": tables.CAUSES,

@@ -25,7 +25,7 @@ DECLARED = Declared(
                 tables.FIT_MANOEUVRES,
             )
         },
-        "decision": From("extension", tables.DECISION),
+        "verdict": From("diagnosis", tables.VERDICTS, "verdict"),
     },
     streams=("samples",),
     documents=(

@@ -59,7 +59,7 @@ def export(
             mounts=mounts_of(
                 plan,
                 fits,
-                extended_sensors(rows_of(tables["decision"])),
+                extended_sensors(rows_of(tables["verdict"])),
                 examples_of(plan, tables["blocks"], samples, tables["masks"], repairs),
             ),
         )

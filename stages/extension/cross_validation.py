@@ -154,25 +154,98 @@ class CrossValidation:
         return self.expected_drop >= MIN_SNR_SQUARED
 
 
-def cross_validate(models: Models) -> dict[str, CrossValidation]:
-    """For each sensor that shows the effects, every manoeuvre predicted from the others."""
-    every = models.evidence()
-    folds: dict[str, list[tuple[Fold, SensorEvidence | None]]] = {sensor: [] for sensor in SENSORS}
-    names = models.joint.manoeuvres
-    if not any(every):
-        return {}
-    for held_out in groups(names, MAX_FOLDS):
-        training = (
-            models.evidence(set(names) - set(held_out))
-            if len(names) > len(held_out)
-            else [None, None]
-        )
-        for sensor, whole, rest in zip(SENSORS, every, training, strict=True):
-            if whole is not None:
-                effects = rest.effects if rest else None
-                folds[sensor].append((fold_of(held_out, whole.effects, effects), rest))
-    return {
-        sensor: CrossValidation(sensor, whole, folds[sensor], snr_squared(whole.effects))
-        for sensor, whole in zip(SENSORS, every, strict=True)
-        if whole is not None
+class Trainings:
+    """The evidence of all manoeuvres of a mount, and of those that the folds leave.
+
+    It holds the columns of all candidates, so that no equation is formed twice.
+    """
+
+    def __init__(self, models: Models) -> None:
+        self.models = models
+        self.manoeuvres = models.joint.manoeuvres
+        self.whole = dict(zip(SENSORS, models.evidence(), strict=True))
+        self._without: dict[tuple[str, ...], dict[str, SensorEvidence | None]] = {}
+
+    @property
+    def folds(self) -> list[tuple[str, ...]]:
+        """The groups of manoeuvres that are held out together."""
+        return groups(self.manoeuvres, MAX_FOLDS)
+
+    def without(self, held_out: tuple[str, ...], sensor: str) -> SensorEvidence | None:
+        """The evidence of all other manoeuvres; None where there is none."""
+        if held_out not in self._without:
+            rest = set(self.manoeuvres) - set(held_out)
+            some = self.models.evidence(rest) if rest else [None] * len(SENSORS)
+            self._without[held_out] = dict(zip(SENSORS, some, strict=True))
+        return self._without[held_out][sensor]
+
+
+def cross_validate(
+    trainings: Trainings, sensor: str, columns: Sequence[str]
+) -> CrossValidation | None:
+    """Every manoeuvre predicted from the others by the model with some columns of effects."""
+    whole = trainings.whole[sensor]
+    if whole is None:
+        return None
+    whole = whole.of(columns)
+    folds: list[tuple[Fold, SensorEvidence | None]] = []
+    for held_out in trainings.folds:
+        rest = trainings.without(held_out, sensor)
+        if rest is not None:
+            rest = rest.of(columns)
+        effects = rest.effects if rest else None
+        folds.append((fold_of(held_out, whole.effects, effects), rest))
+    return CrossValidation(sensor, whole, folds, snr_squared(whole.effects))
+
+
+# ---- A manoeuvre that alone carries an effect.
+
+MIN_DETECTED = 9.0  # of the reduction of chi-squared, beyond its degrees: 3 sigma
+
+
+def carrier(
+    trainings: Trainings, sensor: str, columns: Sequence[str], own: Sequence[str]
+) -> str | None:
+    """The manoeuvre without which an effect is not detected in the others; None if there is none.
+
+    Either the others do not show the effect, or they contradict it. Where several are
+    needed, the one without which least is left. Single manoeuvres of a group are left out only
+    where the effect is not detected without the group.
+
+    Parameters
+    ----------
+    columns : of all effects of the model
+    own : of these, the columns of the effect
+    """
+    if not _detected(trainings.whole[sensor], columns, own):
+        return None
+    needed = [
+        (name,)
+        for held_out in trainings.folds
+        if not _detected(trainings.without(held_out, sensor), columns, own)
+        for name in held_out
+    ]
+    left = {
+        held_out[0]: trainings.without(held_out, sensor)
+        for held_out in needed
+        if not _detected(trainings.without(held_out, sensor), columns, own)
     }
+    return min(left, key=lambda name: _reduction(left[name], columns, own)[0], default=None)
+
+
+def _detected(evidence: SensorEvidence | None, columns: Sequence[str], own: Sequence[str]) -> bool:
+    drop, degrees = _reduction(evidence, columns, own)
+    return degrees > 0 and drop >= MIN_DETECTED + degrees
+
+
+def _reduction(
+    evidence: SensorEvidence | None, columns: Sequence[str], own: Sequence[str]
+) -> tuple[float, int]:
+    """The reduction of chi-squared by an effect beside the others of its model, and its degrees."""
+    if evidence is None:
+        return 0.0, 0
+    effects = evidence.effects.of(columns)
+    others = [i for i, name in enumerate(columns) if name not in own]
+    drop, degrees = effects.drop(range(len(columns)))
+    known, used = effects.drop(others) if others else (0.0, 0)
+    return drop - known, degrees - used

@@ -35,10 +35,8 @@ DECLARED = Declared(
         "held_out": tables.HELD_OUT,
         "moved": tables.MOVED,
         "worth": tables.WORTH,
-        "decision": tables.DECISION,
-        "decision_effects": tables.DECISION_EFFECTS,
-        "alarms": tables.ALARMS,
-        "result": tables.PARAMETERS,
+        "candidates": tables.CANDIDATES,
+        "candidate_effects": tables.CANDIDATE_EFFECTS,
     },
     streams=("simulated",),
 )

@@ -13,11 +13,12 @@ from inertial.campaign.estimates import UNIT, described
 from inertial.campaign.records import with_mount
 from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.triad import UNKNOWNS, errors_of, linear_names
+from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.parameters import EXTENDED, STAGES
-from stages.extension.models import Models
+from stages.extension.candidates import Candidate
 
-# ---- The parameters of the extended model with their covariance, and how well it fits.
+# ---- The parameters of a model with effects, their covariance, and how well it fits.
 
 Array = NDArray[np.float64]
 Row = Mapping[str, Any]
@@ -27,7 +28,7 @@ NOT_DETERMINED = _("with the effects in the model the manoeuvres do not determin
 
 @dataclass(frozen=True)
 class Solved:
-    """The extended fit of one sensor: rows of its parameters, their covariance in that order.
+    """The fit of a candidate for a sensor: rows of its parameters, covariance in that order.
 
     `effects`: the name of the effect of each row after the twelve; `constants`: rows of the numbers
     in the terms of the effects that are not estimated with them: a time, a mean temperature.
@@ -41,6 +42,7 @@ class Solved:
     effects: Sequence[str] = ()
     mount: str = ""
     constants: Sequence[Row] = ()
+    method: str = EXTENDED
 
     @property
     def stage(self) -> str:
@@ -57,6 +59,11 @@ class Solved:
         """The rows of the effects' parameters."""
         return self.rows[UNKNOWNS:]
 
+    @property
+    def determined(self) -> list[str]:
+        """Which of the twelve parameters are determined."""
+        return [row["parameter"] for row in self.of_sensor if row["value"] is not None]
+
     def covariance_rows(self) -> pd.DataFrame:
         """The covariance as its table has it, of the parameters that are determined."""
         there = [i for i, row in enumerate(self.rows) if row["value"] is not None]
@@ -71,11 +78,11 @@ class Solved:
         )
 
     def fit_row(self, noise_degrees: float) -> Row:
-        """How well the extended model describes the data."""
+        """How well the model describes the data."""
         return {
             "mount": self.mount,
             "sensor": self.sensor,
-            "method": EXTENDED,
+            "method": self.method,
             "chi_squared": self.estimate.chi_squared,
             "degrees": self.estimate.degrees,
             "p_value": self.estimate.p_value(noise_degrees),
@@ -86,14 +93,21 @@ class Solved:
         }
 
 
-def solved(models: Models, sensor: str, system: System, random_walk: float, mount: str) -> Solved:
-    """The twelve parameters of a sensor and those of the effects that it shows."""
+def solved(
+    sensor: str,
+    system: System,
+    candidate: Candidate,
+    motion: Motion,
+    random_walk: float,
+    mount: str,
+) -> Solved:
+    """The twelve parameters of a sensor and those of the effects of a candidate."""
     estimate = system.solve_shared()
     stage = STAGES[sensor]
     places = list(range(UNKNOWNS))
     effects: list[str] = []
     unknowns = [(name, *described(stage, name)) for name in linear_names()]
-    for effect in models.effects:
+    for effect in candidate.effects:
         for parameter in effect.parameters:
             place = system.column("effect", f"{effect.label}.{parameter.name}")
             if place is not None and estimate.determined[place]:
@@ -104,14 +118,15 @@ def solved(models: Models, sensor: str, system: System, random_walk: float, moun
     values = estimate.values.copy()
     values[:UNKNOWNS] = errors_of(values[:UNKNOWNS])
     effect_of = dict(zip(places[UNKNOWNS:], effects, strict=True))
+    folders = [] if candidate.method == EXTENDED else [candidate.method]
 
     def row(name: str, unit: str, frame: str, meaning: str, effect: str | None) -> dict[str, Any]:
         return {
-            "id": f"extension/{with_mount(stage, mount)}/{name}",
+            "id": "/".join(["extension", *folders, with_mount(stage, mount), name]),
             "stage": "extension",
             "mount": mount,
             "sensor": sensor,
-            "method": EXTENDED,
+            "method": candidate.method,
             "effect": effect,
             "parameter": name,
             "value": None,
@@ -131,12 +146,15 @@ def solved(models: Models, sensor: str, system: System, random_walk: float, moun
     constants = [
         row(f"{effect.name}.{one.name}", one.unit, "", one.meaning, effect.name)
         | {"value": one.value, "reason": ""}
-        for effect in models.effects
+        for effect in candidate.effects
         if effect.name in effects
-        for one in effect.constants(models.extended.motion)
+        for one in effect.constants(motion)
     ]
     covariance = estimate.covariance[np.ix_(places, places)]
-    return Solved(sensor, rows, covariance, estimate, random_walk, effects, mount, constants)
+    method = candidate.method
+    return Solved(
+        sensor, rows, covariance, estimate, random_walk, effects, mount, constants, method
+    )
 
 
 # ---- The change of each of the 24 parameters by the effects.

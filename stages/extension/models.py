@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from inertial.campaign.equations import MIN_OBSERVABLE_SIGMAS, Campaign
 from inertial.estimation.least_squares import (
@@ -15,8 +16,15 @@ from inertial.estimation.least_squares import (
 )
 from inertial.physics.effect import Effect
 
+Array = NDArray[np.float64]
+
 PRIOR_SIGMA = 1e4  # of an effect's parameters, in their typical sizes
 SENSORS = ("gyro", "accel")
+
+
+def names_of(effect: Effect) -> list[str]:
+    """The parameters of an effect, as the equations name them."""
+    return [f"{effect.label}.{parameter.name}" for parameter in effect.parameters]
 
 
 @dataclass(frozen=True)
@@ -33,10 +41,17 @@ class SensorEvidence:
     effects: EffectInformation
     walk_drop: float
 
+    def of(self, names: Sequence[str]) -> "SensorEvidence":
+        """The same for some parameters of the effects, the others being zero."""
+        return replace(self, effects=self.effects.of(names))
+
 
 @dataclass(frozen=True)
 class Models:
-    """Both models, the extended one with the random walks that remain given its effects."""
+    """Both models, the extended one with the random walks that remain given its effects.
+
+    `effects`: of all candidates; each candidate has some of their columns.
+    """
 
     joint: Campaign
     extended: Campaign
@@ -59,7 +74,7 @@ class Models:
         """The equations with the effects that each sensor shows; None where it shows none."""
         systems = self.extended.systems(self.effects, PRIOR_SIGMA, only)
         return [
-            None if system is None or not shown else _with(system, shown)
+            None if system is None or not shown else with_columns(system, shown)
             for system, shown in zip(systems, self.shown, strict=True)
         ]
 
@@ -94,12 +109,12 @@ def models_of(
 
 def _evidence(system: System, joint: System | None) -> SensorEvidence:
     """`joint`: the equations of the joint model where that has another random walk."""
-    plain = _with(system, frozenset()).solve_shared()
+    plain = with_columns(system, frozenset()).solve_shared()
     drop = 0.0 if joint is None else plain.deviance - joint.solve_shared().deviance
     return SensorEvidence(plain, system.effect_information(), drop)
 
 
-def _shown(system: System | None, largest: np.ndarray) -> frozenset[str]:
+def _shown(system: System | None, largest: Array) -> frozenset[str]:
     if system is None:
         return frozenset()
     reduced = system.effect_information()
@@ -109,8 +124,8 @@ def _shown(system: System | None, largest: np.ndarray) -> frozenset[str]:
     return frozenset(np.array(reduced.names)[determined & observable].tolist())
 
 
-def _with(system: System, shown: frozenset[str]) -> System:
-    """The equations without the columns of effects that are not shown."""
+def with_columns(system: System, shown: frozenset[str]) -> System:
+    """The equations with these columns of effects only."""
     kept = [i for i, (kind, name) in enumerate(system.names) if kind != "effect" or name in shown]
     return replace(
         system,

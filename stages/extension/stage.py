@@ -1,8 +1,8 @@
-"""The model with the named effects, refitted; its gain, and which result is final."""
+"""The models with the named effects, refitted: candidates for the result, and their gain."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import pandas as pd
@@ -12,18 +12,22 @@ from inertial.campaign.equations import campaign_of
 from inertial.campaign.records import rows_of
 from inertial.campaign.solution import joint_rows
 from inertial.campaign.steady_residuals import steady_residuals, steady_turns
+from inertial.estimation.least_squares import System
 from inertial.estimation.triad import linear_names
+from inertial.physics.motion import Motion
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
-from inertial.text.parameters import EXTENDED
-from stages.extension.cross_validation import CrossValidation, cross_validate
-from stages.extension.decision import Candidate
+from inertial.text.parameters import EXTENDED, JOINT
+from stages.extension.candidates import Candidate, candidates_of, carriers_of, normalised
+from stages.extension.combinations import combinations_of, compared
+from stages.extension.cross_validation import CrossValidation, Trainings, cross_validate
 from stages.extension.declared import DECLARED
 from stages.extension.estimates import Solved, moved, solved
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
-from stages.extension.models import SENSORS, models_of
+from stages.extension.models import SENSORS, Models, models_of, with_columns
 from stages.extension.named_effects import Named, named_of
 from stages.extension.navigation_error import change_of, worth
+from stages.extension.sentences import sentence_of
 
 Row = Mapping[str, Any]
 TableRow = tuple[str, Row]
@@ -38,10 +42,10 @@ def extension(
     random_walks: pd.DataFrame,
     joint: Mapping[str, tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]],
 ) -> Tables:
-    """Parameters and covariance of the extended model, and the final parameters.
+    """Candidates for the result, with parameters and covariance of each.
 
-    Where nothing was named there is nothing to extend: the joint result is final, and the tables
-    but `decision` and `result` are empty.
+    Where nothing was named there is nothing to extend: the joint result is the only candidate, and
+    all tables but that of the candidates are empty.
 
     Parameters
     ----------
@@ -102,7 +106,7 @@ class Joint:
 
 
 class Extension:
-    """The extended model of one mount.
+    """The candidates of one mount.
 
     `joint`: rows of the joint result, by sensor; `random_walks`: of the biases of gyros and
     accelerometers given the named effects.
@@ -117,54 +121,127 @@ class Extension:
     ) -> None:
         self.data, self.named, self.joint = data, named, joint
         self.random_walks = random_walks
-        self.solutions: dict[str, Solved] = {}
-        self.validated: Mapping[str, CrossValidation] = {}
 
     def rows(self, simulated: Stream) -> Iterator[tuple[str, Any]]:
         """The rows of all tables; of `covariance` tables."""
-        if self.named.in_blocks:
+        if self.named.classes:
             yield from self._of_blocks()
-        for sensor in SENSORS:
-            yield from self._final(sensor)
+        else:
+            for sensor in SENSORS:
+                yield from self._candidates(sensor, [Candidate(JOINT, probability=1.0)], {}, {})
         if self.named.in_spectrum and self.data.result.gyro is not None:
             yield from self._of_spectrum(simulated)
 
     def _of_blocks(self) -> Iterator[tuple[str, Any]]:
         data, mount = self.data, self.data.mount
-        models = models_of(campaign_of(data), self.named.in_blocks, self.random_walks)
-        for sensor, system, walk in zip(SENSORS, models.systems(), self.random_walks, strict=True):
-            if system is not None:
-                solution = solved(models, sensor, system, walk, mount)
-                self.solutions[sensor] = solution
-                yield "covariance", solution.covariance_rows()
-                rows = (*solution.rows, *solution.constants)
-                yield from (("parameters", row) for row in rows)
-                yield "fit", solution.fit_row(data.noise.degrees)
-                for row in self.joint[sensor].manoeuvres:
-                    yield "fit_manoeuvres", {**row, "method": EXTENDED}
-        self.validated = cross_validate(models)
-        yield from gain(models, self.validated, mount)
-        triads = {"gyro": data.result.gyro, "accel": data.result.accelerometer}
+        campaign = campaign_of(data)
+        classes = compared(campaign.with_random_walks(self.random_walks), self.named.classes)
+        combinations = combinations_of(classes)
+        every = {e.label: e for c in combinations for e in c.effects if e.sought_in == "blocks"}
+        models = models_of(campaign, list(every.values()), self.random_walks)
+        trainings = Trainings(models)
+        likeliest: dict[str, Solved] = {}
+        validated: dict[str, CrossValidation] = {}
+        for number, (sensor, system) in enumerate(zip(SENSORS, models.systems(), strict=True)):
+            candidates = candidates_of(combinations, models.shown[number])
+            solutions = {
+                candidate.method: solution
+                for candidate in candidates
+                if system is not None
+                and candidate.columns
+                and (solution := self._solved(sensor, system, candidate, campaign.motion)).effects
+            }
+            tested = {
+                candidate.method: validation
+                for candidate in candidates
+                if candidate.method in solutions
+                and (validation := cross_validate(trainings, sensor, candidate.columns))
+            }
+            there = [c for c in candidates if c.method in (JOINT, *solutions)]
+            yield from self._candidates(sensor, there, solutions, tested, trainings)
+            for solution in solutions.values():
+                yield from self._solution(solution)
+            if EXTENDED in solutions:
+                likeliest[sensor], validated[sensor] = solutions[EXTENDED], tested[EXTENDED]
+        of_likeliest = replace(models, effects=combinations[0].effects)
+        yield from gain(of_likeliest, validated, mount)
+        yield from self._worth(of_likeliest, likeliest)
+
+    def _solved(self, sensor: str, system: System, candidate: Candidate, motion: Motion) -> Solved:
+        own = with_columns(system, frozenset(candidate.columns))
+        walk = self.random_walks[SENSORS.index(sensor)]
+        return solved(sensor, own, candidate, motion, walk, self.data.mount)
+
+    def _solution(self, solution: Solved) -> Iterator[tuple[str, Any]]:
+        """The rows of a fit, and of the likeliest how far its parameters move."""
+        sensor, mount = solution.sensor, self.data.mount
+        yield "covariance", solution.covariance_rows()
+        yield from (("parameters", row) for row in (*solution.rows, *solution.constants))
+        yield "fit", solution.fit_row(self.data.noise.degrees)
+        for row in self.joint[sensor].manoeuvres:
+            yield "fit_manoeuvres", {**row, "method": solution.method}
+        if solution.method == EXTENDED:
+            own = self._joint_of(sensor)
+            scatter = any(row["scatter"] for row in self.joint[sensor].fit)
+            yield from (("moved", row) for row in moved(solution, own, scatter, mount))
+
+    def _worth(self, models: Models, likeliest: Mapping[str, Solved]) -> Iterator[TableRow]:
+        """The errors of navigation by the effects, of the likeliest members."""
+        triads = {"gyro": self.data.result.gyro, "accel": self.data.result.accelerometer}
         changes = {
             sensor: change
-            for sensor, solution in self.solutions.items()
+            for sensor, solution in likeliest.items()
             if (triad := triads[sensor]) is not None
             and (change := change_of(solution, triad)) is not None
         }
-        for row in worth(models.extended, models.effects, changes, mount):
+        for row in worth(models.extended, models.effects, changes, self.data.mount):
             yield "worth", row
 
-    def _final(self, sensor: str) -> Iterator[TableRow]:
-        """Which result of a sensor is final, and its parameters."""
-        own = [row for row in self.joint[sensor].parameters if row["parameter"] in TWELVE]
-        solution, mount = self.solutions.get(sensor), self.data.mount
-        validated = self.validated.get(sensor)
-        candidate = Candidate(sensor, mount, self.named, own, solution, validated)
-        yield from candidate.rows()
-        yield from (("result", row) for row in candidate.final_rows())
-        if solution is not None:
-            scatter = any(row["scatter"] for row in self.joint[sensor].fit)
-            yield from (("moved", row) for row in moved(solution, own, scatter, mount))
+    def _joint_of(self, sensor: str) -> list[Row]:
+        """The rows of the twelve parameters of the joint result."""
+        return [row for row in self.joint[sensor].parameters if row["parameter"] in TWELVE]
+
+    def _candidates(
+        self,
+        sensor: str,
+        candidates: Sequence[Candidate],
+        solutions: Mapping[str, Solved],
+        tested: Mapping[str, CrossValidation],
+        trainings: Trainings | None = None,
+    ) -> Iterator[TableRow]:
+        """The rows of the candidates of a sensor and of their effects."""
+        before = [row["parameter"] for row in self._joint_of(sensor) if row["value"] is not None]
+        for candidate in normalised(candidates):
+            method = candidate.method
+            own = {"mount": self.data.mount, "sensor": sensor, "method": method}
+            carriers = {} if trainings is None else carriers_of(trainings, sensor, candidate)
+            for effect in candidate.effects:
+                yield (
+                    "candidate_effects",
+                    {
+                        **own,
+                        "effect": effect.name,
+                        "finding": candidate.findings[effect.name],
+                        "carried_by": carriers[effect.name],
+                    },
+                )
+            validated, solution = tested.get(method), solutions.get(method)
+            after = solution.determined if solution else before
+            carried = list(dict.fromkeys(name for name in carriers.values() if name))
+            yield (
+                "candidates",
+                {
+                    **own,
+                    "probability": candidate.probability,
+                    "drop": validated.drop - validated.walk_drop if validated else None,
+                    "snr_squared": validated.expected_drop if validated else None,
+                    "folds": len(validated.folds) if validated else None,
+                    "counted": len(validated.counted) if validated else None,
+                    "carried_by": carried[0] if carried else None,
+                    "undetermined": len(set(before) - set(after)),
+                    "sentence": sentence_of(candidate, validated, carriers),
+                },
+            )
 
     def _of_spectrum(self, simulated: Stream) -> Iterator[TableRow]:
         """The gain of an oscillation, and of what depends on the table's angle."""

@@ -12,7 +12,7 @@ DECLARED = Declared(
             for stage in ("accelerometer", "gyroscope", "extension")
             for table in (tables.PARAMETERS, tables.COVARIANCE)
         },
-        "decision": From("extension", tables.DECISION),
+        "verdict": From("diagnosis", tables.VERDICTS, "verdict"),
     },
     writes={"archived": tables.ARCHIVED, "earlier": tables.EARLIER},
     files=("archive",),

@@ -37,7 +37,7 @@ def history(
         *rows_of(tables["gyroscope_covariance"]),
     ]
     archived_ids = {row["id"] for row in parameters if row["method"] == JOINT}
-    final = extended_sensors(rows_of(tables["decision"]))
+    final = extended_sensors(rows_of(tables["verdict"]))
     extended = of_sensors(rows_of(tables["extension_parameters"]), final)
     if extended:
         parameters += extended
@@ -53,7 +53,7 @@ def history(
         "made_by": _made_by(
             made
             for name, made in provenance.items()
-            if extended or DECLARED.reads[name].stage != "extension"
+            if extended or DECLARED.reads[name].stage not in ("extension", "diagnosis")
         ),
     }
     kept = Archive(archive[0], simulated=facts["simulated"])

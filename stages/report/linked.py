@@ -1,14 +1,15 @@
-"""Rows with what link tables list of them: members of a class, effects, manoeuvres, alarms."""
+"""Rows with what link tables list of them: members of a class, effects, manoeuvres."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+from inertial.text.parameters import EXTENDED
 from stages.report.tables import Record, Tables, once
 
 CAUSE_TABLES = ("criticism_findings", "members", "cause_positions", "effects")
 GAIN_TABLES = ("gain", "gain_effects", "held_out")
-DECISION_TABLES = ("decision", "decision_effects", "alarms")
+DECISION_TABLES = ("verdict", "candidate_effects")
 OF_SENSOR = ("mount", "sensor")
 OF_MODEL = (*OF_SENSOR, "model")
 
@@ -59,16 +60,15 @@ def gains(tables: Tables) -> list[Record]:
 
 @once
 def decisions(tables: Tables) -> list[Record]:
-    """The decisions with the effects of the extended model and the unexplained findings."""
-    effects, alarms = tables.rows("decision_effects"), tables.rows("alarms")
-    rows = []
-    for row in tables.rows("decision"):
-        of = [row[key] for key in OF_SENSOR]
-        rows.append(
-            row
-            | {
-                "effects": [one["effect"] for one in _listed(effects, OF_SENSOR, of)],
-                "alarms": [one["cause"] for one in _listed(alarms, OF_SENSOR, of)],
-            }
-        )
-    return rows
+    """The verdicts with the effects of the extended model."""
+    effects = [row for row in tables.rows("candidate_effects") if row["method"] == EXTENDED]
+    return [
+        row
+        | {
+            "effects": [
+                one["effect"]
+                for one in _listed(effects, OF_SENSOR, [row[key] for key in OF_SENSOR])
+            ]
+        }
+        for row in tables.rows("verdict")
+    ]

@@ -162,14 +162,18 @@ def _grouped(rows: Iterable[Record]) -> dict[tuple[str, str, str], list[Record]]
 
 @once
 def extended_estimates(tables: Tables) -> list[Estimate]:
-    """The results of the extension, one for each sensor and mount; its effects left out."""
-    return [estimate for estimate in _estimates(tables, EXTENDED) if estimate.parameters]
+    """The results with the likeliest effects, one for each sensor and mount; these left out."""
+    return [
+        estimate
+        for estimate in _estimates(tables, EXTENDED)
+        if estimate.parameters and estimate.method == EXTENDED
+    ]
 
 
 @once
 def replaced_sensors(tables: Tables) -> set[tuple[str, str]]:
     """The sensors and mounts whose extended result is the final one."""
-    return extended_sensors(tables.rows("decision"))
+    return extended_sensors(tables.rows("verdict"))
 
 
 def is_replaced(tables: Tables, estimate: Estimate) -> bool:

@@ -13,7 +13,11 @@ def finding(cause: str, verdict: str | None, sensor: str = "gyro", mount: str = 
 
 
 def members(cause: str, *others: str, mount: str = "") -> list[Row]:
-    return [{"finding": f"{cause} of {mount}", "effect": one} for one in (cause, *others)]
+    shared = {"finding": f"{cause} of {mount}", "mount": mount}
+    return [
+        shared | {"effect": one, "rank": rank, "probability": 0.6 if rank == 1 else 0.4}
+        for rank, one in enumerate((cause, *others), 1)
+    ]
 
 
 def test_effects_are_taken_by_mount_with_the_value_that_was_scanned():
@@ -21,6 +25,7 @@ def test_effects_are_taken_by_mount_with_the_value_that_was_scanned():
         finding("gyro_bias_jump", "found", mount="lying"),
         finding("accel_quadratic", "one_of_class", "accel"),
         finding("oscillation", "found"),
+        finding("gyro_drift", "unknown_structure"),
     ]
     effects = [
         {"finding": "gyro_bias_jump of lying", "effect": "gyro_bias_jump"}
@@ -28,24 +33,16 @@ def test_effects_are_taken_by_mount_with_the_value_that_was_scanned():
         {"finding": "oscillation of ", "effect": "oscillation"}
         | {"parameter": "frequency", "value": 20.0},
     ]
-    (jump,) = named_of(findings, effects, [], "lying").in_blocks
-    assert (jump.name, jump.at) == ("gyro_bias_jump", 812.5)
+    (alone,) = named_of(findings, effects, [], "lying").classes
+    (jump,) = alone.members
+    assert (jump.effect.name, jump.effect.at) == ("gyro_bias_jump", 812.5)
+    assert jump.probability is None
     classes = members("accel_quadratic", "accel_scale_asymmetry") + members("oscillation")
     other = named_of(findings, effects, classes, "")
-    assert [effect.name for effect in other.in_blocks] == ["accel_quadratic"]
-    assert other.classes == {"accel_quadratic": ["accel_quadratic", "accel_scale_asymmetry"]}
-    assert other.in_spectrum == {"oscillation": {"frequency": 20.0}}
-
-
-def test_what_is_not_understood_is_an_alarm_of_its_sensor_and_a_random_walk_is_none():
-    findings = [
-        finding("gyro_drift", "unknown_structure"),
-        finding("gyro_random_walk", "unknown_structure"),
-        finding("accel_random_walk", "unknown_structure", "accel"),
-        finding("accel_quadratic", "found", "accel"),
-        finding("unexplained/gyro", None) | {"cause": "unexplained"},
+    (own,) = other.classes
+    assert own.finding == "accel_quadratic of "
+    assert [(one.effect.name, one.probability) for one in own.members] == [
+        ("accel_quadratic", 0.6),
+        ("accel_scale_asymmetry", 0.4),
     ]
-    named = named_of(findings, [], [], "")
-    assert [one.cause for one in named.alarms["gyro"]] == ["gyro_drift", "unexplained"]
-    assert set(named.alarms) == {"gyro"}
-    assert [effect.name for effect in named.in_blocks] == ["accel_quadratic"]
+    assert other.in_spectrum == {"oscillation": {"frequency": 20.0}}

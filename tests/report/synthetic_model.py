@@ -40,9 +40,10 @@ def of_the_model(
         "worth": rows_as(tables.WORTH, _worth()),
         "gain_effects": rows_as(tables.GAIN_EFFECTS, _gain_effects()),
         "held_out": tables.HELD_OUT.empty(),
-        "decision": rows_as(tables.DECISION, _decision()),
-        "decision_effects": rows_as(tables.DECISION_EFFECTS, [OF_GYRO]),
-        "alarms": tables.ALARMS.empty(),
+        "verdict": rows_as(tables.VERDICTS, _verdict()),
+        "candidate_effects": rows_as(
+            tables.CANDIDATE_EFFECTS, [OF_GYRO | {"method": "extended", "finding": ""}]
+        ),
         "extended_parameters": rows_as(tables.PARAMETERS, _extended(parameters)),
         "extended_fit": rows_as(tables.FIT, _extended_fit()),
         "extended_fit_manoeuvres": rows_as(tables.FIT_MANOEUVRES, _extended_manoeuvres()),
@@ -225,7 +226,7 @@ def _gain_effects() -> Rows:
     return [OF_GYRO | {"model": "blocks"}, OF_GYRO | of_line]
 
 
-def _decision() -> Rows:
+def _verdict() -> Rows:
     told = {
         "gyro": "The extended result of the gyros counts, with gyro g-sensitivity.",
         "accel": "The joint result of the accelerometers counts: they show no effect.",
@@ -234,8 +235,10 @@ def _decision() -> Rows:
         {
             "sensor": sensor,
             "mount": "",
-            "result": "extended" if sensor == "gyro" else "joint",
-            "sentence": sentence,
+            "verdict": "usable",
+            "sentence": "",
+            "method": "extended" if sensor == "gyro" else "joint",
+            "reason": sentence,
         }
         for sensor, sentence in told.items()
     ]

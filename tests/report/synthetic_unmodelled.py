@@ -16,7 +16,7 @@ def without_effects() -> dict[str, Any]:
     made = synthetic.brief()
     made["scores"]["named"] = False
     made["scores"]["finding"] = None
-    for name in ("gain", "extended_parameters", "extended_fit", "worth", "decision"):
+    for name in ("gain", "extended_parameters", "extended_fit", "worth", "verdict"):
         made[name] = made[name].iloc[:0]
     return made | synthetic_causes.cause_tables([])
 

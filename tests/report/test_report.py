@@ -123,7 +123,7 @@ def test_what_is_not_determined_has_its_reason_and_no_value() -> None:
 
 def test_the_verdict_says_plainly_that_the_model_does_not_fit() -> None:
     tables = synthetic.brief()
-    tables["decision"] = tables["decision"].iloc[:0]  # the joint result counts
+    tables["verdict"] = tables["verdict"].iloc[:0]  # the joint result counts
     text = " ".join(synthetic.report_on(tables)["txt"].split())
     assert "Verdict: calibrated in part" in text
     assert (
@@ -148,7 +148,7 @@ def test_where_the_extended_result_is_final_its_sigmas_and_its_fit_are_stated() 
 
 def test_a_scatter_that_the_sigmas_include_is_stated() -> None:
     tables = synthetic.brief()
-    tables["decision"] = tables["decision"].iloc[:0]
+    tables["verdict"] = tables["verdict"].iloc[:0]
     tables["gyroscope_fit"]["scatter"] = 0.5 * np.pi / 180 / 3600
     words = "manoeuvres scatter by 0.50 °/h beyond it, which the σ include"
     assert words in " ".join(synthetic.report_on(tables)["txt"].split())
@@ -302,7 +302,7 @@ def test_texts_from_outside_are_harmless() -> None:
     tables["lines"]["manoeuvre"] = HOSTILE
     tables["gain_effects"]["effect"] = HOSTILE
     tables["detection_limits"][["sentence", "explanation", "remark", "parameter"]] = HOSTILE
-    tables["decision"]["sentence"] = HOSTILE
+    tables["verdict"]["reason"] = HOSTILE
     tables["structures"][["kind", "sensor", "axis"]] = HOSTILE
     tables["members"]["effect"] = HOSTILE
     told = ["sentence", "consequence", "action", "manoeuvre"]

@@ -84,7 +84,7 @@ PARAMETERS = Section(
         "unless a note beside it says that the fit with effects in the model replaces "
         "it; the other methods are given for comparison."
     ),
-    (*ESTIMATE_TABLES, "decision"),
+    (*ESTIMATE_TABLES, "verdict"),
     parts,
 )
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, shortened, significant
-from inertial.text.parameters import EXTENDED
+from inertial.text.parameters import JOINT
 from stages.report import outline
 from stages.report.linked import CAUSE_TABLES, GAIN_TABLES, decisions, effect_causes, gains
 from stages.report.results import RESULT_TABLES, shifts
@@ -126,12 +126,12 @@ def _summary(tables: Tables) -> outline.Paragraph:
 
 
 def _decisions(tables: Tables) -> Iterator[outline.Paragraph]:
-    """The decision of every sensor that shows an effect, or beside which something is wrong."""
+    """Which result of a sensor that shows an effect is final, and why."""
     for row in decisions(tables):
-        if row["effects"] or row["alarms"]:
+        if row["effects"]:
             mount = f"Mount {row['mount']}: " if row["mount"] else ""
-            tone: outline.Tone = "good" if row["result"] == EXTENDED else "fair"
-            yield outline.Paragraph(shortened(mount + row["sentence"], 900), tone)
+            tone: outline.Tone = "fair" if row["method"] == JOINT else "good"
+            yield outline.Paragraph(shortened(mount + row["reason"], 900), tone)
 
 
 def _not_detected(tables: Tables) -> Iterator[Tested]:

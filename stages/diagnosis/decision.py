@@ -1,0 +1,177 @@
+"""Which result of a sensor counts: the joint one, or one with effects in the model.
+
+One with effects does where it predicts the manoeuvres not used in its fit better than the joint
+one, no finding shows that the model is still incomplete, no single manoeuvre carries the effects,
+and no parameter is lost.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from inertial.campaign.records import Row
+from inertial.text.cause_names import in_words
+from inertial.text.messages import _
+from inertial.text.parameters import JOINT
+
+SENSORS = {"gyro": "gyros", "accel": "accelerometers"}
+UNKNOWN = "unknown_structure"
+UNEXPLAINED = "unexplained"
+RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")  # in the covariance of the joint result
+OF_ONE_MANOEUVRE = ("table_position_error", "gyro_bias_jump", "accel_bias_jump")
+MIN_SNR_SQUARED = 9.0  # of the effects in held-out manoeuvres: 3 sigma
+
+NO_JOINT = _("There is no joint result of the {sensors}.")
+DOUBTFUL = _(
+    "The joint result of the {sensors} is final, and its sigmas are doubtful: some "
+    "findings are not explained ({causes})."
+)
+NO_EFFECT = _("The joint result of the {sensors} is final: they show no effect that was named.")
+KEPT = _("The joint result of the {sensors} is final, though {effects} was named: {reason}.")
+NOT_EXPLAINED = _("beside it some findings are not explained ({causes})")
+CARRIED = _("{manoeuvre} alone carries {effect}, for without it the others do not show it")
+NOT_VALIDATED = _(
+    "it is not cross-validatable, for the manoeuvres that can be predicted from the "
+    "others hold too little of it (SNR² {snr_squared:.1f}, less than {least:.0f})"
+)
+NO_BETTER = _(
+    "manoeuvres that the fit has not seen are predicted no better with it (χ² grows "
+    "by {growth:.1f})"
+)
+ONE_NOT_DETERMINED = _("beside it one parameter would not be determined")
+NOT_DETERMINED = _("beside it {count} parameters would not be determined")
+REPLACED = _(
+    "The extended result of the {sensors} is final, with {effects}: χ² of "
+    "manoeuvres that the fit has not seen is reduced by {drop:.1f}, of "
+    "{expected:.1f} that exactly known effects would bring, and no finding remains "
+    "unexplained."
+)
+FREED = _(
+    "The extended result of the {sensors} is final, with {effects}: that is the own error of "
+    "{manoeuvres}, which no other manoeuvre shows, and no finding remains unexplained."
+)
+OTHER_MEMBERS = _(
+    " Instead of {effect} it may be {others}: that would do the same to these data, "
+    "within their noise."
+)
+
+
+@dataclass(frozen=True)
+class Decision:
+    """Which candidate counts for a sensor, and why.
+
+    `method`: joint, or that of the most probable candidate with effects; `reason`: a sentence.
+    """
+
+    method: str
+    reason: str
+
+
+def alarms_of(findings: Iterable[Row], mount: str, sensor: str) -> list[Row]:
+    """The findings of criticism that no named effect explains.
+
+    A random walk of the biases is none: it is in the covariance of the joint result.
+    """
+    return [
+        row
+        for row in findings
+        if (row["mount"], row["sensor"]) == (mount, sensor)
+        and row["cause"] not in RANDOM_WALKS
+        and (row["verdict"] == UNKNOWN or row["cause"] == UNEXPLAINED)
+    ]
+
+
+def decided(
+    candidates: Sequence[Row],
+    effects: Sequence[Row],
+    alarms: Sequence[Row] = (),
+    *,
+    determined: bool = True,
+) -> Decision:
+    """Which candidate of one sensor and mount counts.
+
+    Parameters
+    ----------
+    candidates, effects : rows of extension for this sensor and mount
+    alarms : findings that no named effect explains
+    determined : whether the joint fit determines any parameter
+    """
+    sensors = SENSORS[candidates[0]["sensor"]]
+    causes = _listed([alarm["cause"] for alarm in alarms])
+    if not determined:
+        return Decision(JOINT, NO_JOINT.format(sensors=sensors))
+    best = likeliest(candidates)
+    if best is None:
+        reason = DOUBTFUL if alarms else NO_EFFECT
+        return Decision(JOINT, reason.format(sensors=sensors, causes=causes))
+    own = [row for row in effects if row["method"] == best["method"]]
+    names = _listed([row["effect"] for row in own])
+    others = _other_members(own, effects)
+    if against := _against(best, own, causes):
+        kept = KEPT.format(sensors=sensors, effects=names, reason=against)
+        return Decision(JOINT, kept + others)
+    if freed := _freed(own):
+        manoeuvres = ", ".join(dict.fromkeys(freed))
+        reason = FREED.format(sensors=sensors, effects=names, manoeuvres=manoeuvres)
+    else:
+        drop, expected = best["drop"], best["snr_squared"]
+        reason = REPLACED.format(sensors=sensors, effects=names, drop=drop, expected=expected)
+    return Decision(best["method"], reason + others)
+
+
+def likeliest(candidates: Iterable[Row]) -> Row | None:
+    """The most probable candidate with effects; None where there is none."""
+    extended = [row for row in candidates if row["method"] != JOINT]
+    return max(extended, key=lambda row: float(row["probability"]), default=None)
+
+
+def _against(best: Row, effects: Sequence[Row], causes: str) -> str:
+    """What speaks against a candidate; empty where nothing does."""
+    if causes:
+        return NOT_EXPLAINED.format(causes=causes)
+    for row in effects:
+        if row["carried_by"] and row["effect"] not in OF_ONE_MANOEUVRE:
+            return CARRIED.format(manoeuvre=row["carried_by"], effect=in_words(row["effect"]))
+    if not _freed(effects):
+        if best["snr_squared"] is None or best["snr_squared"] < MIN_SNR_SQUARED:
+            size = max(best["snr_squared"] or 0.0, 0.0)
+            return NOT_VALIDATED.format(snr_squared=size, least=MIN_SNR_SQUARED)
+        if best["drop"] <= 0:
+            return NO_BETTER.format(growth=-best["drop"])
+    if lost := best["undetermined"]:
+        return ONE_NOT_DETERMINED if lost == 1 else NOT_DETERMINED.format(count=lost)
+    return ""
+
+
+def _freed(effects: Sequence[Row]) -> list[str]:
+    """The manoeuvres that the effects free, where each is the own error of one; else none.
+
+    Such an effect cannot be predicted from other manoeuvres, and needs not: in the model it only
+    gives its manoeuvre an unknown of its own, so that it no longer moves the parameters.
+    """
+    if any(r["effect"] not in OF_ONE_MANOEUVRE or not r["carried_by"] for r in effects):
+        return []
+    return [row["carried_by"] for row in effects]
+
+
+def _other_members(own: Sequence[Row], effects: Sequence[Row]) -> str:
+    """What the effects may be instead."""
+    return "".join(
+        OTHER_MEMBERS.format(effect=in_words(row["effect"]), others=_listed(others, "or"))
+        for row in own
+        if (
+            others := list(
+                dict.fromkeys(
+                    other["effect"]
+                    for other in effects
+                    if other["finding"] == row["finding"] and other["effect"] != row["effect"]
+                )
+            )
+        )
+    )
+
+
+def _listed(causes: Sequence[str], last: str = "and") -> str:
+    names = [in_words(cause) for cause in causes]
+    if len(names) < 2:
+        return "".join(names)
+    return f"{', '.join(names[:-1])} {last} {names[-1]}"

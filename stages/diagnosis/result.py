@@ -1,0 +1,120 @@
+"""The parameters that count for one sensor, with covariance: of one candidate, or of a mixture."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.campaign.records import Row, rows_of, with_mount
+from inertial.estimation.triad import UNKNOWNS, linear_names
+from inertial.text.messages import _
+from inertial.text.parameters import STAGES
+from stages.diagnosis.mixture import beside_effects, disagree, mixture
+
+Array = NDArray[np.float64]
+
+MIXTURE = "mixture"  # method of a result that several members of a class share
+NOT_BY_ALL = _("not all effects that these data may show leave it determined")
+
+
+@dataclass(frozen=True)
+class Result:
+    """The twelve parameters of a sensor, then those of its effects.
+
+    `rows`: as in the table of parameters; `covariance`: in their order, NaN: not determined, or a
+    constant of an effect.
+    """
+
+    method: str
+    rows: Sequence[Row]
+    covariance: Array
+
+    def covariance_rows(self) -> pd.DataFrame:
+        """The covariance as its table has it, of the parameters that are determined."""
+        there = [i for i, row in enumerate(self.rows) if row["sigma"] is not None]
+        names = [self.rows[i]["id"] for i in there]
+        return pd.DataFrame(
+            {
+                "first": np.repeat(names, len(names)),
+                "second": np.tile(names, len(names)),
+                "covariance": self.covariance[np.ix_(there, there)].ravel(),
+            }
+        )
+
+
+def result_of(
+    method: str,
+    parameters: Mapping[str, Sequence[Row]],
+    covariance: Mapping[tuple[str, str], float],
+    probability: Mapping[str, float],
+) -> Result:
+    """The result by a method or, where other members of its class disagree, their mixture.
+
+    Parameters
+    ----------
+    parameters : rows of the parameters by method, of this sensor and mount
+    covariance : by the ids of two parameters
+    probability : of the candidates that compete, by method
+    """
+    members = [method, *(other for other in probability if other != method)]
+    own = {each: _ordered(parameters[each]) for each in members}
+    spreads = {each: _covariance_of(own[each], covariance) for each in members}
+    rows, whole = own[method], spreads[method]
+    values = np.array([[_number(row["value"]) for row in own[m][:UNKNOWNS]] for m in members])
+    within = np.array([spreads[m][:UNKNOWNS, :UNKNOWNS] for m in members])
+    weights = np.array([probability.get(each, 1.0) for each in members])
+    some = weights > 0
+    some[0] = True
+    if len(members) > 1 and disagree(values[some], within[some]):
+        mean, spread = mixture(values, within, weights)
+        whole = beside_effects(spread, whole, float(weights[0] / weights.sum()))
+        sigma = np.sqrt(np.diagonal(whole))
+        rows = [
+            _mixed(row, mean[i], sigma[i]) if i < UNKNOWNS else row for i, row in enumerate(rows)
+        ]
+        method = MIXTURE
+    return Result(method, [_named(row) | {"method": method} for row in rows], whole)
+
+
+def _ordered(rows: Sequence[Row]) -> list[Row]:
+    """The twelve parameters in their order, then those of the effects."""
+    by_name = {row["parameter"]: row for row in rows if row["effect"] is None}
+    twelve = [by_name[name] for name in linear_names() if name in by_name]
+    return [*twelve, *(row for row in rows if row["effect"] is not None)]
+
+
+def _named(row: Row) -> Row:
+    stage = with_mount(STAGES[row["sensor"]], row["mount"])
+    return {**row, "id": f"diagnosis/{stage}/{row['parameter']}", "stage": "diagnosis"}
+
+
+def _mixed(row: Row, value: float, sigma: float) -> Row:
+    there = bool(np.isfinite(value))
+    reason = row["reason"] if there or row["value"] is None else NOT_BY_ALL
+    return {
+        **row,
+        "value": float(value) if there else None,
+        "sigma": float(sigma) if there else None,
+        "reason": reason,
+    }
+
+
+def _covariance_of(rows: Sequence[Row], covariance: Mapping[tuple[str, str], float]) -> Array:
+    names = [row["id"] for row in rows]
+    elements = [covariance.get((one, other), np.nan) for one in names for other in names]
+    return np.array(elements).reshape(len(names), len(names))
+
+
+def _number(value: float | None) -> float:
+    return np.nan if value is None else float(value)
+
+
+def covariance_by_ids(*covariances: pd.DataFrame) -> dict[tuple[str, str], float]:
+    """The elements of some tables of covariance by the ids of the two parameters."""
+    return {
+        (row["first"], row["second"]): float(row["covariance"])
+        for table in covariances
+        for row in rows_of(table)
+    }

@@ -1,0 +1,72 @@
+"""The candidates for the result of one sensor: the joint fit, and models with effects."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from inertial.physics.effect import Effect
+from inertial.text.parameters import EXTENDED, JOINT
+from stages.extension.combinations import Combination
+from stages.extension.cross_validation import Trainings, carrier
+from stages.extension.models import names_of
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A model of one sensor.
+
+    `effects`: those of the model that the sensor shows; `findings`: by the name of an effect;
+    `columns`: of the effects in its equations; `probability`: of the members of classes, those of
+    the joint fit being the members that this sensor does not show.
+    """
+
+    method: str
+    effects: tuple[Effect, ...] = ()
+    findings: dict[str, str] = field(default_factory=dict)
+    columns: tuple[str, ...] = ()
+    probability: float = 0.0
+
+
+def candidates_of(combinations: Sequence[Combination], shown: frozenset[str]) -> list[Candidate]:
+    """The different models that the combinations make of one sensor, the joint fit first.
+
+    A member that the sensor does not show leaves it without an effect, and so does one that no
+    equation of the means can hold, such as a random walk; beside other effects that one is no
+    candidate. `shown`: the columns of effects that the sensor shows.
+    """
+    models: dict[tuple[str, ...], Candidate] = {
+        (): Candidate(JOINT, probability=0.0 if combinations else 1.0)
+    }
+    for number, combination in enumerate(combinations):
+        effects = tuple(e for e in combination.effects if shown.intersection(names_of(e)))
+        if effects and any(e.sought_in != "blocks" for e in combination.effects):
+            continue
+        key = tuple(sorted(effect.label for effect in effects))
+        if key not in models:
+            findings = {
+                effect.name: finding
+                for effect, finding in zip(combination.effects, combination.findings, strict=True)
+                if effect in effects
+            }
+            columns = tuple(name for e in effects for name in names_of(e) if name in shown)
+            method = f"member_{number}" if number else EXTENDED
+            models[key] = Candidate(method, effects, findings, columns)
+        probability = models[key].probability + combination.probability
+        models[key] = replace(models[key], probability=probability)
+    return list(models.values())
+
+
+def normalised(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """The candidates with probabilities that add up to one."""
+    total = sum(each.probability for each in candidates)
+    return [replace(each, probability=each.probability / total) for each in candidates]
+
+
+def carriers_of(trainings: Trainings, sensor: str, candidate: Candidate) -> dict[str, str | None]:
+    """The manoeuvre that alone carries each effect, by the name of the effect; None: none does."""
+    columns = candidate.columns
+    return {
+        effect.name: carrier(
+            trainings, sensor, columns, [name for name in columns if name in names_of(effect)]
+        )
+        for effect in candidate.effects
+    }

@@ -1,0 +1,97 @@
+"""Which candidate counts: predicted better, no alarm, carried by no manoeuvre, nothing lost."""
+
+from typing import Any
+
+import pytest
+
+from stages.diagnosis.decision import alarms_of, decided
+
+Row = dict[str, Any]
+
+
+def candidate(method: str = "extended", **changes: Any) -> Row:
+    row = {"mount": "", "sensor": "gyro", "method": method, "probability": 1.0}
+    row |= {"drop": 35.0, "snr_squared": 40.0, "undetermined": 0}
+    return row | changes
+
+
+def effect(name: str = "gyro_bias_ramp", carried_by: str | None = None, **changes: Any) -> Row:
+    row = {"method": "extended", "effect": name, "carried_by": carried_by}
+    return row | {"finding": "criticism/1"} | changes
+
+
+JOINT = candidate("joint", probability=0.0, drop=None, snr_squared=None)
+
+
+def test_it_counts_where_others_predict_it_and_nothing_warns():
+    decision = decided([JOINT, candidate()], [effect()])
+    assert decision.method == "extended"
+    for words in ("of the gyros is final", "gyro bias ramp", "reduced by 35.0", "of 40.0"):
+        assert words in decision.reason
+
+
+@pytest.mark.parametrize(
+    ("alarms", "changes", "carried_by", "words"),
+    [
+        (["gyro_drift"], {}, None, "some findings are not explained"),
+        ([], {"drop": -2.0}, None, "grows by 2.0"),
+        ([], {"drop": 1.0, "snr_squared": 2.0}, None, "not cross-validatable"),
+        ([], {"undetermined": 1}, None, "one parameter would not be determined"),
+        ([], {"undetermined": 3}, None, "3 parameters would not be determined"),
+        ([], {}, "x-down", "x-down alone carries gyro bias ramp"),
+    ],
+)
+def test_the_joint_result_stays(alarms, changes, carried_by, words):
+    told = [{"cause": cause} for cause in alarms]
+    decision = decided([JOINT, candidate(**changes)], [effect(carried_by=carried_by)], told)
+    assert decision.method == "joint"
+    assert words in decision.reason and "though gyro bias ramp was named" in decision.reason
+
+
+def test_an_effect_of_one_manoeuvre_needs_no_other_to_predict_it():
+    """A position that is off is free to lean in the model: then it moves no parameter any more."""
+    nothing = candidate(drop=0.0, snr_squared=0.0)
+    decision = decided([JOINT, nothing], [effect("table_position_error", "y-up")])
+    assert decision.method == "extended" and "y-up" in decision.reason
+    # A jump half way is carried by none, so others can and must predict it.
+    assert decided([JOINT, nothing], [effect("gyro_bias_jump")]).method == "joint"
+    # And beside another effect it excuses nothing.
+    both = [effect("table_position_error", "y-up"), effect("accel_quadratic")]
+    assert decided([JOINT, nothing], both).method == "joint"
+    assert decided([JOINT, candidate()], both).method == "extended"
+
+
+def test_a_sensor_that_shows_no_effect_keeps_its_result():
+    alone = candidate("joint", sensor="accel", drop=None)
+    decision = decided([alone], [])
+    assert (decision.method, "show no effect" in decision.reason) == ("joint", True)
+    assert "sigmas are doubtful" in decided([alone], [], [{"cause": "unexplained"}]).reason
+    assert "no joint result" in decided([alone], [], determined=False).reason
+
+
+def test_the_most_probable_member_competes_and_the_others_are_said():
+    rows = [
+        JOINT,
+        candidate(probability=0.4, drop=-5.0),
+        candidate("member_1", probability=0.6),
+    ]
+    effects = [effect(), effect("gyro_warm_up", method="member_1")]
+    decision = decided(rows, effects)
+    assert decision.method == "member_1"
+    assert "Instead of gyro warm-up it may be gyro bias ramp" in decision.reason
+
+
+def test_what_is_not_understood_is_an_alarm_of_its_sensor_and_a_random_walk_is_none():
+    findings = [
+        {"mount": mount, "sensor": sensor, "cause": cause, "verdict": verdict}
+        for mount, sensor, cause, verdict in (
+            ("", "gyro", "gyro_drift", "unknown_structure"),
+            ("", "gyro", "gyro_random_walk", "unknown_structure"),
+            ("", "gyro", "unexplained", None),
+            ("", "accel", "accel_quadratic", "found"),
+            ("lying", "gyro", "table_tilt", "unknown_structure"),
+        )
+    ]
+    assert [r["cause"] for r in alarms_of(findings, "", "gyro")] == ["gyro_drift", "unexplained"]
+    assert alarms_of(findings, "", "accel") == []
+    assert [row["cause"] for row in alarms_of(findings, "lying", "gyro")] == ["table_tilt"]
