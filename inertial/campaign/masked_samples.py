@@ -63,7 +63,7 @@ class Repairs:
         # By log: for each channel the recorded one, (6,), and by what that is multiplied, (6,).
         self._by_log: dict[str, tuple[Integers, Array]] = {}
         for (log, _repair), rows in table.groupby(["log", "repair"], sort=False):
-            source, factor = self._of(str(log))
+            source, factor = self.channels(str(log))
             own, by = np.arange(len(CHANNELS)), np.ones(len(CHANNELS))
             names = ("sensor", "axis", "from_axis", "factor")
             for sensor, axis, recorded, times in rows[list(names)].itertuples(index=False):
@@ -71,7 +71,8 @@ class Repairs:
                 own[channel], by[channel] = CHANNELS.index(f"{sensor}_{recorded}"), times
             self._by_log[str(log)] = source[own], by * factor[own]
 
-    def _of(self, log: str) -> tuple[Integers, Array]:
+    def channels(self, log: str) -> tuple[Integers, Array]:
+        """For each channel of a log the recorded one, (6,), and its factor, (6,)."""
         return self._by_log.get(log, (np.arange(len(CHANNELS)), np.ones(len(CHANNELS))))
 
     def readings(self, log: str, recorded: Array) -> Array:

@@ -25,7 +25,9 @@ class IncompleteTurn(PlanDetector):
         common = common_turn_ratio(recorded)
         _, angle = turn_ratios(recorded)
         # By other axes no turn is used, though it may be whole.
-        misread = any(misread.sensor == "gyro" and not misread.log for misread in recorded.misread)
+        misread = any(
+            each.sensor == "gyro" and not each.log and not each.undone for each in recorded.misread
+        )
         for i, name in enumerate(recorded.name):
             whole_planned = recorded.do[i] == "turn" and not recorded.steady[i]
             if not whole_planned or not recorded.found[i] or recorded.complete[i]:

@@ -24,7 +24,9 @@ class ManoeuvreSwapped(PlanDetector):
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         for swapped in recorded.swapped:
             i = list(recorded.name).index(swapped.names[0])
-            yield self.of(recorded, i, float(len(swapped.names)), facts=swapped)
+            yield self.of(
+                recorded, i, float(len(swapped.names)), facts=swapped, repair=swapped.repair
+            )
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         swapped: Swapped = deviation.facts
@@ -49,9 +51,16 @@ class ManoeuvreSwapped(PlanDetector):
             )
         own = [i for i, name in enumerate(recorded.name) if name in swapped.names]
         return Description(
-            sentence + (_or_a_sign(recorded, own) if len(swapped.logs) == 2 else ""),
+            sentence
+            + (_or_a_sign(recorded, own) if len(swapped.logs) == 2 and not swapped.undone else ""),
             _if_used(recorded, own),
             _(
+                "Each is taken for what it holds, on this condition. Correct the names, or the "
+                "plan; or confirm it by accept: [{repair}].",
+                repair=swapped.repair,
+            )
+            if swapped.undone
+            else _(
                 "Both are left out, for only the laboratory knows which is which. Correct the "
                 "names, or the plan, and run it again."
             ),

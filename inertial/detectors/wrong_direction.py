@@ -21,6 +21,9 @@ class WrongDirection(PlanDetector):
     sensor = "gyro"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        if recorded.other_sense:
+            turns = sum(do == "turn" for do in recorded.do)
+            yield Deviation(None, "", -1.0, self.sensor, count=turns, repair=recorded.other_sense)
         for i, name in enumerate(recorded.name):
             ratio = ratio_of(recorded, i)
             if recorded.found[i] and ratio < 0 and name not in recorded.explained:
@@ -28,7 +31,9 @@ class WrongDirection(PlanDetector):
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at
-        assert i is not None and deviation.size is not None
+        if i is None:
+            return _all_the_other_way(deviation)
+        assert deviation.size is not None
         name, turned, planned = recorded.name[i], recorded.moved[i], recorded.angle[i]
         unit = "°"
         if not np.isfinite(turned * planned):
@@ -58,3 +63,20 @@ def ratio_of(recorded: Recorded, i: int) -> float:
     if np.isfinite(by_rate) or not recorded.angle[i]:
         return by_rate
     return float(recorded.moved[i] / recorded.angle[i])
+
+
+def _all_the_other_way(deviation: Deviation) -> Description:
+    """All turns against the plan, while the gyros see the earth turn as they should."""
+    return Description(
+        _(
+            "All {count} turns are against the planned direction, and the gyros see the earth "
+            "turn as it does: the table counts its angle the other way.",
+            count=deviation.count,
+        ),
+        _("Taken as planned, the scale errors of the gyros would be −200 %."),
+        _(
+            "All turns are taken the other way, on this condition. Correct the signs of degrees "
+            "or rate in the plan; or confirm it by accept: [{repair}].",
+            repair=deviation.repair,
+        ),
+    )

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from inertial.signal.detector import Description
-from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
+from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded, Rescaled
 from inertial.signal.scale_factor import common_turn_ratio, turn_ratios
 from inertial.text.messages import _
-from inertial.text.numbers import fixed, significant
+from inertial.text.numbers import counted, fixed, significant
 
 
 class WrongRate(PlanDetector):
@@ -21,6 +21,17 @@ class WrongRate(PlanDetector):
     sensor = "gyro"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        for each in recorded.restated:
+            yield Deviation(
+                None,
+                "",
+                each.ratio,
+                self.sensor,
+                count=len(each.names),
+                facts=each,
+                severity=1,
+                repair=each.repair,
+            )
         if common_turn_ratio(recorded) is not None:
             return
         rate, angle = turn_ratios(recorded)
@@ -30,6 +41,8 @@ class WrongRate(PlanDetector):
                 yield self.of(recorded, i, float(ratio), severity=1 if as_planned else 3)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        if isinstance(deviation.facts, Rescaled):
+            return _restated(deviation.facts)
         i, ratio = deviation.at, deviation.size
         assert i is not None and ratio is not None
         read, planned = np.degrees([recorded.speed[i], recorded.rate[i]]).tolist()
@@ -62,3 +75,17 @@ class WrongRate(PlanDetector):
             consequence,
             _("Correct the rate of the plan, or see what the table did."),
         )
+
+
+def _restated(restated: Rescaled) -> Description:
+    """Turns through their planned angles, all at one multiple of the planned rate."""
+    return Description(
+        _(
+            "{turns} go through the planned angles at {ratio} times the planned rate: {why}.",
+            turns=counted(len(restated.names), "turn"),
+            ratio=significant(restated.ratio, 5),
+            why=restated.why,
+        ),
+        _("The angles are as planned, so the scale factors hold."),
+        _("The rates are taken as recorded. Correct the rate of the plan."),
+    )

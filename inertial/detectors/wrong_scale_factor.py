@@ -22,6 +22,7 @@ class WrongScaleFactor(Detector):
     unit = "1"
     sensor = "accel"
     severity = 3
+    everywhere = True
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:
         force = force_at_rest(log)
@@ -50,7 +51,7 @@ class WrongScaleFactor(Detector):
                 size=significant(event.size),
             ),
             _(
-                "Nothing is changed. Correct the unit, counts_per_unit or count size, or the "
-                "name of the instrument in the campaign."
+                "Correct the unit, counts_per_unit or count size, or the name of the instrument in "
+                "the campaign. Where all rests confirm a known factor, segment divides by it."
             ),
         )

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from inertial.signal.detector import Description
-from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
+from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded, Rescaled
 from inertial.signal.scale_factor import common_turn_ratio, turn_ratios
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant
@@ -22,6 +22,16 @@ class WrongScaleOfTurns(PlanDetector):
     sensor = "gyro"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        for each in recorded.rescaled:
+            yield Deviation(
+                None,
+                each.log,
+                each.ratio,
+                self.sensor,
+                count=len(each.names),
+                facts=each,
+                repair=each.repair,
+            )
         common = common_turn_ratio(recorded)
         if common is not None:
             ratio, why = common
@@ -30,6 +40,8 @@ class WrongScaleOfTurns(PlanDetector):
             yield Deviation(None, "", ratio, self.sensor, count=number, facts=why)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        if isinstance(deviation.facts, Rescaled):
+            return _undone(deviation.facts)
         ratio, why = deviation.size, deviation.facts
         assert ratio is not None
         rate, angle = turn_ratios(recorded)
@@ -67,3 +79,29 @@ class WrongScaleOfTurns(PlanDetector):
                 "name of the instrument in the campaign."
             ),
         )
+
+
+def _undone(rescaled: Rescaled) -> Description:
+    """Turns that fit the plan once the size of a count is set right."""
+    where = _("in {log}", log=rescaled.log) if rescaled.log else _("in all logs")
+    ratio = significant(rescaled.ratio, 5)
+    return Description(
+        _(
+            "The gyros read {ratio} times what they should {where}, by {turns} of the plan: {why}.",
+            ratio=ratio,
+            where=where,
+            turns=counted(len(rescaled.names), "turn"),
+            why=rescaled.why,
+        ),
+        _(
+            "Taken as recorded, bias, scale factors and cross terms of the gyros would be {ratio} "
+            "times what they should be.",
+            ratio=ratio,
+        ),
+        _(
+            "The readings are divided by it before the estimation, on this condition. Correct the "
+            "unit, counts_per_unit or count size, or the name of the instrument; or confirm it by "
+            "accept: [{repair}].",
+            repair=rescaled.repair,
+        ),
+    )

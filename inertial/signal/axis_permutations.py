@@ -65,6 +65,18 @@ class Permutation:
         return np.array(self.signs) * vector[list(self.sources)]
 
 
+def composed(second: Permutation, first: Permutation) -> Permutation:
+    """One permutation after another."""
+    sources = tuple(first.sources[i] for i in second.sources)
+    signs = (sign * first.signs[i] for sign, i in zip(second.signs, second.sources, strict=True))
+    return Permutation(sources, tuple(signs))
+
+
+def simplicity(permutation: Permutation) -> tuple[int, int]:
+    """How many axes it moves, and how many signs it turns: the fewer, the likelier."""
+    return permutation.moved, permutation.signs.count(-1)
+
+
 # The simplest first: one sign, two axes, then what is left.
 PERMUTATIONS = sorted(
     (
@@ -73,7 +85,7 @@ PERMUTATIONS = sorted(
         for signs in product((1, -1), repeat=3)
         if (sources, signs) != ((0, 1, 2), (1, 1, 1))
     ),
-    key=lambda permutation: (permutation.moved, permutation.signs.count(-1)),
+    key=simplicity,
 )
 
 

@@ -29,6 +29,7 @@ def deviation(misread: Misread, recorded: Recorded) -> Deviation:
         from_s=min(times, default=None),
         to_s=max(times, default=None),
         facts=misread,
+        repair=misread.repair,
     )
 
 
@@ -48,7 +49,7 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
         "Of the {sensor}, {where}, {axes}: only so {agree} with the plan ({names}). {misread}",
         sensor=sensor,
         where=where,
-        axes=_reads(misread.axes),
+        axes=reads_in_words(misread.axes),
         agree=agree,
         names=names,
         misread=_handed(misread, recorded),
@@ -66,6 +67,13 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
                 "biases are under wrong names.",
                 axes=_in_the_matrix(misread.axes),
             )
+        if misread.undone:
+            consequence = _(
+                "Taken as they are named, the {sensor} would give {axes}; the biases would be "
+                "under wrong names.",
+                sensor=sensor,
+                axes=_in_the_matrix(misread.axes),
+            )
         action = _(
             "The manoeuvres are found by the right axes; the data are not changed. Correct "
             "the axes of the instrument, or the columns, and run it again."
@@ -78,6 +86,12 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
             value="m/s²" if misread.sensor == "accel" else "°",
         )
         action = _("It is left out. See how this log was written, and correct it.")
+    if misread.undone:
+        action = _(
+            "The readings are set right before the estimation, on this condition. Correct the axes "
+            "of the instrument, or the columns; or confirm it by accept: [{repair}].",
+            repair=misread.repair,
+        )
     return Description(sentence, consequence, action)
 
 
@@ -88,7 +102,7 @@ def determinant(axes: Permutation) -> int:
     return round(float(np.linalg.det(matrix)))
 
 
-def _reads(axes: Permutation) -> str:
+def reads_in_words(axes: Permutation) -> str:
     """Which axis reads what: x reads −y and y reads x."""
     back = axes.inverse
     parts = [

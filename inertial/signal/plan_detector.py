@@ -16,20 +16,42 @@ class Misread:
     """A sensor with exchanged or reversed axes; `log` is empty where all logs have it so.
 
     axes: takes its readings to the axes of the plan; explains: manoeuvres that fit only so.
+    repair: id of its repair; undone: whether that is applied.
     """
 
     sensor: str
     axes: Permutation
     log: str
     explains: Sequence[str]
+    repair: str = ""
+    undone: bool = False
 
 
 @dataclass(frozen=True)
 class Swapped:
-    """Manoeuvres that are found in each other's place, and the logs that hold them."""
+    """Manoeuvres that are found in each other's place, and the logs that hold them.
+
+    repair: id of its repair; undone: whether that is applied.
+    """
 
     names: Sequence[str]
     logs: Sequence[str]
+    repair: str = ""
+    undone: bool = False
+
+
+@dataclass(frozen=True)
+class Rescaled:
+    """Turns that were `ratio` times the planned ones, which is undone; log: empty where in all.
+
+    why: what makes such a ratio, in words; names: the turns; repair: id of its repair.
+    """
+
+    ratio: float
+    why: str
+    log: str
+    names: Sequence[str]
+    repair: str
 
 
 @dataclass(frozen=True)
@@ -52,7 +74,9 @@ class Recorded:
     gyros: (m, 3), whether its log has readings of them.
     count: (m,), rad, what a count of its gyros is by the campaign, NaN where not stated.
     gyro_signs: (3,), +1 right and −1 wrong, by the earth rate, 0 where it does not show.
-    misread, swapped: what explains that the plan is not found as it is.
+    misread, swapped: what explains that the plan is not found as it is. rescaled: count sizes of
+    the gyros that were undone, restated: rates of the plan. other_sense: id of the repair by
+    which all turns are taken the other way, empty where they are not.
     tolerance: accepted difference of an angle or a rate from the plan's, 1.
     """
 
@@ -90,12 +114,16 @@ class Recorded:
     gyro_signs: Sequence[int]
     misread: Sequence[Misread]
     swapped: Sequence[Swapped]
+    rescaled: Sequence[Rescaled] = ()
+    restated: Sequence[Rescaled] = ()
+    other_sense: str = ""
 
     @property
     def explained(self) -> set[str]:
         """Manoeuvres of which something is known that explains why they are not as planned."""
-        names = {name for each in self.misread for name in each.explains}
-        return names | {name for each in self.swapped for name in each.names}
+        misread = {name for each in self.misread if not each.undone for name in each.explains}
+        swapped = {name for each in self.swapped if not each.undone for name in each.names}
+        return misread | swapped
 
 
 @dataclass(frozen=True)
@@ -104,7 +132,7 @@ class Deviation:
 
     at: number of the manoeuvre, None where it is the whole campaign or a log; log: empty for the
     campaign; first, after: records that show it, −1 where none do; facts: what its description
-    needs; severity: where it is not that of the detector.
+    needs; severity: where it is not that of the detector; repair: id of the repair of this.
     """
 
     at: int | None
@@ -119,6 +147,7 @@ class Deviation:
     count: int = 1
     facts: Any = None
     severity: int | None = None
+    repair: str = ""
 
 
 class PlanDetector(ABC):

@@ -49,15 +49,29 @@ def explanation_of(ratio: float, sensor: str, given: Given, count: float = np.na
     count : m/s or rad, what one count is by the campaign; where it is not given, the counts of
         any two listed instruments are compared
     """
-    known = dict(_known_factors(sensor, given, count))
-    distance = {factor: abs(np.log(abs(ratio) / factor)) for factor in known}
-    nearest = min(distance, key=lambda factor: distance[factor], default=1.0)
-    if known and distance[nearest] < np.log1p(MAX_SCALE_ERROR[sensor]):
-        near = [f for f in distance if abs(f / nearest - 1) < MAX_FACTOR_DIFFERENCE]
-        return ", or ".join(known[factor] for factor in sorted(near, key=lambda f: distance[f]))
+    known = factors_near(ratio, sensor, given, count)
+    if known:
+        return ", or ".join(known.values())
     if abs(ratio) > MIN_RAW_COUNT_RATIO:
         return _("the values are counts, and counts_per_unit is missing")
     return None
+
+
+def factors_near(
+    ratio: float, sensor: str, given: Given, count: float = np.nan
+) -> dict[float, str]:
+    """The known factor that is nearest to a ratio, and those that differ little from it.
+
+    Each with what makes it, the nearest first; none where a sensor that is merely off is as near.
+    Arguments as of `explanation_of`.
+    """
+    known = dict(_known_factors(sensor, given, count))
+    distance = {factor: abs(np.log(abs(ratio) / factor)) for factor in known}
+    nearest = min(distance, key=lambda factor: distance[factor], default=1.0)
+    if not known or distance[nearest] >= np.log1p(MAX_SCALE_ERROR[sensor]):
+        return {}
+    near = [f for f in distance if abs(f / nearest - 1) < MAX_FACTOR_DIFFERENCE]
+    return {factor: known[factor] for factor in sorted(near, key=lambda f: distance[f])}
 
 
 def _known_factors(sensor: str, given: Given, count: float) -> Iterator[tuple[float, str]]:

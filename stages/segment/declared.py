@@ -17,6 +17,7 @@ DECLARED = Declared(
         "imu_types": From("decode", tables.IMU_TYPES),
         "gaps": From("quality", tables.GAPS),
         "masks": From("quality", tables.MASKS),
+        "quality_findings": From("quality", tables.FINDINGS),
         "channel_statistics": From("quality", tables.CHANNEL_STATISTICS),
     },
     writes={

@@ -14,10 +14,15 @@ from stages.segment.matching import Part
 # ---- What disagrees with the plan, as findings.
 
 
-def compare(stage: str, detectors: Sequence[PlanDetector], recorded: Recorded) -> list[Detection]:
-    """Everything in which the recording is not as planned, in the order of detectors and plan."""
+def compare(
+    stage: str, detectors: Sequence[PlanDetector], recorded: Recorded
+) -> list[tuple[Detection, str]]:
+    """Everything in which the recording is not as planned, in the order of detectors and plan.
+
+    Each with the id of its repair, empty where there is none.
+    """
     return [
-        _told(stage, detector, deviation, recorded)
+        (_told(stage, detector, deviation, recorded), deviation.repair)
         for detector in detectors
         for deviation in detector.detect(recorded)
     ]

@@ -1,6 +1,6 @@
-"""Explanations of a recording that differs from its plan: exchanged axes, signs or names."""
+"""Explanations of a recording that differs from its plan: axes, signs, names, sense of turns."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -8,15 +8,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.records import Manoeuvre
-from inertial.signal.axis_permutations import PERMUTATIONS, Permutation, read_as_other_axes
-from stages.segment.locating import AS_NAMED, AS_PLANNED, Axes, Division, Located, locate
+from inertial.signal.axis_permutations import (
+    PERMUTATIONS,
+    Permutation,
+    read_as_other_axes,
+    simplicity,
+)
+from stages.segment.locating import (
+    AS_NAMED,
+    AS_PLANNED,
+    Axes,
+    Division,
+    Located,
+    divide,
+    locate,
+)
+from stages.segment.motion import rest_level
+from stages.segment.windows import Binned
 
 Array = NDArray[np.float64]
 
+MIN_RATE_SHARE = 0.05  # of the slowest planned rate: what counts as motion
+MIN_MOTION_SIGMA = 6.0  # scatters of the gyros at rest: what cannot be noise
+MIN_HAND_RATE = np.radians(2.0)  # rad/s: what counts as motion where no rate is planned
 MIN_GAIN = 2  # observations more that agree with the plan, in place of as many that do not
 MIN_UPRIGHT_SHARE = 0.9  # share of the vertical in an axis that points up
 MIN_EARTH_SIGMA = 4.0  # sigmas to which the earth's rate must be seen to half of itself
 MAX_EXCHANGED = 4  # manoeuvres of a log for which an exchange with every other one is tried
+MAX_RIVAL_AXES = 2  # axes of a permutation that is a rival of exchanged names
 MIN_GAIN_OF_BOTH = 3  # the same, for both sensors of one log: it may have had another attitude
 
 
@@ -27,6 +46,35 @@ class Exchanged:
     names: tuple[str, ...]
     logs: tuple[str, ...]
 
+    @property
+    def id(self) -> str:
+        """The name of the repair that exchanges them back."""
+        half = len(self.names) // 2
+        return "/".join(["exchanged_manoeuvres", *sorted([self.names[0], self.names[half]])])
+
+
+@dataclass(frozen=True)
+class Step:
+    """What a supposition would set right: the id of its repair, its kind, and which sensor."""
+
+    id: str
+    repair: str
+    sensor: str | None = None
+
+
+SENSE = Step("sense_of_table", "sense_of_table")
+
+
+def axes_step(sensor: str, axes: Permutation, log: str = "") -> Step:
+    """That the axes of a sensor are others, in a log or in all."""
+    kind = "signs" if axes.in_place else "axes"
+    return Step("/".join([kind, sensor, *([log] if log else [])]), kind, sensor)
+
+
+def exchange_step(exchanged: Exchanged) -> Step:
+    """That manoeuvres are in each other's place."""
+    return Step(exchanged.id, "exchanged_manoeuvres")
+
 
 @dataclass(frozen=True)
 class Explained:
@@ -34,7 +82,9 @@ class Explained:
 
     `everywhere`: axes that are exchanged or reversed in all logs; `misread`: logs whose
     axes differ from those of the others; `exchanged`: exchanged manoeuvres; `gyro_signs`: by the
-    earth rate.
+    earth rate; `other_sense`: whether the table counts its turns the other way. `rivals`: for the
+    name of a repair those of others that explain as much. `fitting`: how many observations agree
+    with the plan as it is, with all of these, and how many there are.
     """
 
     located: Sequence[Located]
@@ -42,16 +92,30 @@ class Explained:
     everywhere: Axes
     misread: Mapping[str, Axes]
     exchanged: Sequence[Exchanged]
+    other_sense: bool
+    rivals: Mapping[str, Sequence[Step]]
+    fitting: tuple[int, int, int]
+
+
+Plans = tuple[Sequence[Manoeuvre], ...]
+Fitting = frozenset[tuple[str, int]]
 
 
 @dataclass(frozen=True)
 class _Case:
-    """A supposition: of each window its axes and its manoeuvres, and where they are then found."""
+    """A supposition: of each window its axes and its manoeuvres, and where they are then found.
+
+    `step`: what it adds to another case; `axes`: those that it supposes.
+    """
 
     located: tuple[Located, ...]
+    plans: Plans
     earth_rate: float
     everywhere: Axes = AS_PLANNED
     exchanged: tuple[Exchanged, ...] = ()
+    other_sense: bool = False
+    step: Step | None = None
+    axes: Permutation | None = None
 
     @property
     def balance(self) -> int:
@@ -66,85 +130,221 @@ class _Case:
         counts = [located.agreeing for located in self.located]
         return [k for k, (right, total) in enumerate(counts) if right < total]
 
+    @property
+    def fitting(self) -> Fitting:
+        """The observations that agree with the plan, by manoeuvre and number."""
+        return frozenset(one for located in self.located for one in located.fitting)
 
-def explain(windows: Sequence[Division], earth_rate: float) -> Explained:
+
+def explain(
+    windows: Sequence[Division],
+    earth_rate: float,
+    accepted: Collection[str] = (),
+    *,
+    with_sense: bool = False,
+) -> Explained:
     """Find every manoeuvre; where the plan is not found, by what explains clearly more of it.
 
     First what may have happened to the campaign as a whole: names or places of two manoeuvres
-    exchanged, or one signed permutation of the axes of a sensor, or of both. Where exchanged names
-    and a permutation explain as much, the names are taken: a permutation is seen by all
-    manoeuvres that see its axes, and so mostly by more than two. Then log by log.
+    exchanged, one signed permutation of the axes of a sensor, or of both, or turns that are
+    counted the other way. Then log by log.
 
-    earth_rate: rad/s, its part upwards; 0 where it is not known.
+    Parameters
+    ----------
+    earth_rate : rad/s, its part upwards; 0 where it is not known
+    accepted : repairs that the laboratory confirms: taken where others explain as much
+    with_sense : whether turns may be counted the other way
     """
-    case = _Case(tuple(locate(window) for window in windows), earth_rate)
+    plans = tuple(window.binned.window.manoeuvres for window in windows)
+    plain = _Case(tuple(locate(window) for window in windows), plans, earth_rate)
+    case, rivals = plain, dict[str, list[Step]]()
     while case.lacking:
-        best = max(
-            _suppositions(windows, case), key=lambda supposed: supposed.balance, default=case
-        )
+        supposed = list(_suppositions(windows, case, with_sense))
+        best = max(supposed, key=lambda one: one.balance, default=case)
         gain = best.balance - case.balance
         # Two that changed places within a log cost one of them at most: the other one fits.
         whole = gain >= 2 and not best.lacking and best.exchanged != case.exchanged
         if gain < 2 * MIN_GAIN and not whole:
             break
-        case = best
+        alike = [best, *(one for one in supposed if _rivals(case, best, one))]
+        # The sense of the table says nothing of where a turn is: its rivals show what is found.
+        confirmed = [one for one in alike if one.step and one.step.id in accepted]
+        case = (confirmed or [one for one in alike if one.step != SENSE] or alike)[0]
+        assert case.step is not None
+        if len(alike) > 1 and not confirmed:
+            rivals[case.step.id] = [one.step for one in alike if one.step and one is not case]
     misread = dict(_misread(windows, case))
     signs = earth_seen(case.located, case.everywhere, earth_rate)
-    return Explained(case.located, signs, case.everywhere, misread, case.exchanged)
+    right = sum(located.agreeing[0] for located in plain.located)
+    after, total = np.sum([(0, 0), *(located.agreeing for located in case.located)], axis=0)
+    return Explained(
+        case.located,
+        signs,
+        case.everywhere,
+        misread,
+        case.exchanged,
+        case.other_sense,
+        rivals,
+        (int(right), int(after), int(total)),
+    )
 
 
-def _suppositions(windows: Sequence[Division], case: _Case) -> Iterator[_Case]:
+def explained_of(
+    binned: Sequence[Binned],
+    plan: Sequence[Manoeuvre],
+    earth_rate: float,
+    accepted: Collection[str] = (),
+    *,
+    with_sense: bool = False,
+) -> tuple[Array, Explained]:
+    """What the gyros read at rest, (3,), rad/s, and where the manoeuvres are; as `explain`."""
+    level, scatter = _rest_level(binned)
+    rates = [abs(m.rate) for m in plan if m.rate]
+    noise = MIN_MOTION_SIGMA * scatter
+    threshold = max(MIN_RATE_SHARE * min(rates) if rates else MIN_HAND_RATE, noise)
+    ways = [divide(window, level, threshold, noise) for window in binned]
+    return level, explain(ways, earth_rate, accepted, with_sense=with_sense)
+
+
+def _rivals(case: _Case, best: _Case, other: _Case) -> bool:
+    """Whether another supposition explains the same observations as the best one, and as many."""
+    if other.step == best.step or other.balance < best.balance:
+        return False
+    if not (best.fitting - case.fitting) & (other.fitting - case.fitting):
+        return False  # they explain different things, and both may be
+    if SENSE in (best.step, other.step) and _turns_each_other(best, other):
+        return False
+    if other.axes is None:
+        return True
+    return other.axes.moved <= MAX_RIVAL_AXES if best.axes is None else _as_simple(best, other)
+
+
+def _as_simple(best: _Case, other: _Case) -> bool:
+    """Of two permutations of axes whether the other supposes no more."""
+    assert best.axes is not None
+    assert other.axes is not None
+    return simplicity(other.axes) <= simplicity(best.axes)
+
+
+def _turns_each_other(best: _Case, other: _Case) -> bool:
+    """Whether one exchanges a turn with its opposite: the angles are then as by the other sense.
+
+    Each log holds the turn that the other's plan has, so the same readings go with the same angle.
+    """
+    exchanged = [*best.exchanged, *other.exchanged][-1:]
+    plans = {m.name: m for plan in best.plans for m in plan}
+    for each in exchanged:
+        half = len(each.names) // 2
+        for one, two in zip(each.names[:half], each.names[half:], strict=True):
+            a, b = plans[one], plans[two]
+            if a.about is None or b.about is None or not a.angle or not b.angle:
+                return False
+            turns = np.linalg.norm(a.angle * a.about + b.angle * b.about)
+            ups = a.up is None or b.up is None or np.allclose(a.up, b.up)
+            if turns > 1e-6 * abs(a.angle) or not ups or a.mount != b.mount:
+                return False
+    return bool(exchanged)
+
+
+def _suppositions(windows: Sequence[Division], case: _Case, with_sense: bool) -> Iterator[_Case]:
     """All that may have happened to the campaign, the likelier first."""
     taken = {name for exchanged in case.exchanged for name in exchanged.names}
-    lacking = [k for k in case.lacking if not taken & {m.name for m in _named(windows, k)}]
+    lacking = [k for k in case.lacking if not taken & {m.name for m in case.plans[k]}]
+    if with_sense and not case.other_sense:
+        yield _with_other_sense(windows, case)
+    yield from _exchanges(windows, case, lacking)
+    for permutation in PERMUTATIONS:
+        for change in ({"accel": permutation}, {"gyro": permutation}):
+            if getattr(case.everywhere, next(iter(change))) == AS_NAMED:
+                yield _by_axes(windows, case, replace(case.everywhere, **change), permutation)
+        if case.everywhere.as_named:
+            yield _by_axes(windows, case, Axes(permutation, permutation), permutation)
+
+
+def _exchanges(windows: Sequence[Division], case: _Case, lacking: Sequence[int]) -> Iterator[_Case]:
+    """Two windows of as many manoeuvres exchanged, or two manoeuvres of one window."""
     for a, b in combinations(lacking, 2):
-        yield _with_names_exchanged(windows, case, a, b)
+        if len(case.plans[a]) == len(case.plans[b]):
+            yield _with_names_exchanged(windows, case, a, b)
     for k in lacking:
         lost = [m for m in case.located[k].plan if case.located[k].place(m) is None]
         for m in lost[:MAX_EXCHANGED]:
             for other in case.located[k].plan:
                 if other.name != m.name and "positions" not in (m.do, other.do):
                     yield _with_places_exchanged(windows, case, k, (m.name, other.name))
-    for permutation in PERMUTATIONS:
-        for change in ({"accel": permutation}, {"gyro": permutation}):
-            if getattr(case.everywhere, next(iter(change))) == AS_NAMED:
-                yield _by_axes(windows, case, replace(case.everywhere, **change))
-        if case.everywhere.as_named:
-            yield _by_axes(windows, case, Axes(permutation, permutation))
 
 
-def _named(windows: Sequence[Division], k: int) -> Sequence[Manoeuvre]:
-    return windows[k].binned.window.manoeuvres
+def _with_other_sense(windows: Sequence[Division], case: _Case) -> _Case:
+    plans = tuple([turned_back(m) for m in plan] for plan in case.plans)
+    located = tuple(
+        locate(window, case.everywhere, plan) for window, plan in zip(windows, plans, strict=True)
+    )
+    return replace(case, located=located, plans=plans, other_sense=True, step=SENSE, axes=None)
+
+
+def turned_back(m: Manoeuvre) -> Manoeuvre:
+    """A manoeuvre with its turn the other way."""
+    angle = None if m.angle is None else -m.angle
+    return replace(m, angle=angle, rate=None if m.rate is None else -m.rate)
 
 
 def _with_names_exchanged(windows: Sequence[Division], case: _Case, a: int, b: int) -> _Case:
-    located = list(case.located)
-    located[a] = locate(windows[a], case.everywhere, _named(windows, b))
-    located[b] = locate(windows[b], case.everywhere, _named(windows, a))
-    names = tuple(m.name for k in (a, b) for m in _named(windows, k))
+    located, plans = list(case.located), list(case.plans)
+    names = tuple(m.name for k in (a, b) for m in plans[k])
+    plans[a], plans[b] = plans[b], plans[a]
+    for k in (a, b):
+        located[k] = locate(windows[k], case.everywhere, plans[k])
     logs = tuple(dict.fromkeys(windows[k].binned.window.log for k in (a, b)))
-    return replace(
-        case, located=tuple(located), exchanged=(*case.exchanged, Exchanged(names, logs))
-    )
+    return _exchanging(case, located, plans, Exchanged(names, logs))
 
 
 def _with_places_exchanged(
     windows: Sequence[Division], case: _Case, k: int, pair: tuple[str, str]
 ) -> _Case:
-    order = list(_named(windows, k))
+    order = list(case.plans[k])
     i, j = (next(n for n, m in enumerate(order) if m.name == name) for name in pair)
+    names = tuple(sorted(pair, key=[m.name for m in order].index))
     order[i], order[j] = order[j], order[i]
-    located = list(case.located)
+    located, plans = list(case.located), list(case.plans)
+    plans[k] = order
     located[k] = locate(windows[k], case.everywhere, order)
-    names = tuple(sorted(pair, key=[m.name for m in _named(windows, k)].index))
-    exchanged = Exchanged(names, (windows[k].binned.window.log,))
-    return replace(case, located=tuple(located), exchanged=(*case.exchanged, exchanged))
+    return _exchanging(case, located, plans, Exchanged(names, (windows[k].binned.window.log,)))
 
 
-def _by_axes(windows: Sequence[Division], case: _Case, axes: Axes) -> _Case:
-    located = tuple(locate(window, axes) for window in windows)
+def _exchanging(
+    case: _Case,
+    located: Sequence[Located],
+    plans: Sequence[Sequence[Manoeuvre]],
+    exchanged: Exchanged,
+) -> _Case:
+    return replace(
+        case,
+        located=tuple(located),
+        plans=tuple(plans),
+        exchanged=(*case.exchanged, exchanged),
+        step=exchange_step(exchanged),
+        axes=None,
+    )
+
+
+def _by_axes(
+    windows: Sequence[Division], case: _Case, axes: Axes, permutation: Permutation
+) -> _Case:
     # What two names had explained, they explain by these axes as well, or not at all.
-    return replace(case, located=located, everywhere=axes, exchanged=())
+    plans = tuple(window.binned.window.manoeuvres for window in windows)
+    if case.other_sense:
+        plans = tuple([turned_back(m) for m in plan] for plan in plans)
+    located = tuple(locate(window, axes, plan) for window, plan in zip(windows, plans, strict=True))
+    sensor = "accel" if axes.accel != case.everywhere.accel else "gyro"
+    return replace(
+        case,
+        located=located,
+        plans=plans,
+        everywhere=axes,
+        exchanged=(),
+        step=axes_step(sensor, permutation),
+        axes=permutation,
+    )
 
 
 def _misread(windows: Sequence[Division], case: _Case) -> Iterator[tuple[str, Axes]]:
@@ -168,7 +368,7 @@ def _axes_of(windows: Sequence[Division], case: _Case, own: list[int]) -> Axes |
     for sensors in (("accel",), ("gyro",), ("accel", "gyro")):
         for permutation in PERMUTATIONS:
             axes = replace(case.everywhere, **dict.fromkeys(sensors, permutation))
-            located = [locate(windows[k], axes) for k in own]
+            located = [locate(windows[k], axes, case.plans[k]) for k in own]
             right, all_of_it = np.sum([each.agreeing for each in located], axis=0)
             if right < all_of_it or right <= now:
                 continue
@@ -272,3 +472,19 @@ def unlike(axes: Axes, others: Axes) -> Iterator[tuple[str, Permutation]]:
     ):
         if own != other:
             yield sensor, own
+
+
+def _rest_level(every: Sequence[Binned]) -> tuple[Array, float]:
+    """The gyros at rest over the campaign: from the windows of rests alone, if there are any.
+
+    An axis that none of them records does not count; one that some do not record is taken from the
+    others.
+    """
+    rests = [binned for binned in every if {m.do for m in binned.window.manoeuvres} == {"rest"}]
+    for group in (rests, every):
+        rates = np.concatenate([np.empty((0, 3)), *(binned.rates for binned in group)])
+        recorded = np.isfinite(rates).any(axis=0)
+        whole = rates[np.isfinite(rates[:, recorded]).all(axis=1)] if recorded.any() else []
+        if len(whole):
+            return rest_level(np.where(recorded, whole, 0.0))
+    return np.zeros(3), 0.0

@@ -86,6 +86,11 @@ class Located:
         agreements = [agrees for m in self.plan for agrees in self._agree(m)]
         return sum(agreements), len(agreements)
 
+    @property
+    def fitting(self) -> list[tuple[str, int]]:
+        """The observations that agree with the plan, by manoeuvre and number."""
+        return [(m.name, n) for m in self.plan for n, agrees in enumerate(self._agree(m)) if agrees]
+
     def _agree(self, m: Manoeuvre) -> list[bool]:
         place = self.place(m)
         if m.do == "positions":

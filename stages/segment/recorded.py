@@ -1,6 +1,7 @@
 """What was recorded of every manoeuvre, as arrays for the detectors that compare with the plan."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,14 @@ from numpy.typing import NDArray
 
 from inertial.campaign.records import Manoeuvre, Performed, rows_of
 from inertial.signal.detector import Given
-from inertial.signal.plan_detector import Misread, Recorded, Swapped
-from stages.segment.explanations import Exchanged, Explained, unlike
+from inertial.signal.plan_detector import Misread, Recorded, Rescaled, Swapped
+from stages.segment.explanations import (
+    Exchanged,
+    Explained,
+    axes_step,
+    exchange_step,
+    unlike,
+)
 from stages.segment.locating import AS_PLANNED, Located
 from stages.segment.matching import motion
 
@@ -18,9 +25,21 @@ Array = NDArray[np.float64]
 UNKNOWN = np.full(3, np.nan)
 
 
+@dataclass(frozen=True)
+class Undone:
+    """What was set right, for the findings that tell of it; as in Recorded."""
+
+    misread: Sequence[Misread] = ()
+    swapped: Sequence[Swapped] = ()
+    rescaled: Sequence[Rescaled] = ()
+    restated: Sequence[Rescaled] = ()
+    other_sense: str = ""
+
+
 def recorded_of(
     plan: Sequence[Manoeuvre],
     explained: Explained,
+    undone: Undone,
     performed: Mapping[str, Performed],
     segments: pd.DataFrame,
     gaps: pd.DataFrame,
@@ -32,6 +51,7 @@ def recorded_of(
 
     Parameters
     ----------
+    explained : what is still not as planned, undone : what was set right
     segments, gaps : their tables
     counts : rad, what a count of the gyros is, by log; NaN where not stated
     tolerance : accepted difference of a turn's angle or rate from the plan's, 1
@@ -77,8 +97,11 @@ def recorded_of(
         gyros=np.array([np.isfinite(where[m.name].binned.rates).any(axis=0) for m in plan], bool),
         count=_numbers([counts.get(m.log) for m in plan]),
         gyro_signs=explained.gyro_signs,
-        misread=_misread(plan, explained),
-        swapped=[_in_order(binned, [m.name for m in plan]) for binned in explained.exchanged],
+        misread=[*undone.misread, *misread_in(plan, explained)],
+        swapped=[*undone.swapped, *swapped_in(plan, explained)],
+        rescaled=undone.rescaled,
+        restated=undone.restated,
+        other_sense=undone.other_sense,
     )
 
 
@@ -150,22 +173,29 @@ def _hole(m: Manoeuvre, place: Place, gaps: pd.DataFrame) -> tuple[int, float | 
     return longest["record"], longest["from_s"], longest["to_s"]
 
 
+def swapped_in(plan: Sequence[Manoeuvre], explained: Explained) -> list[Swapped]:
+    """Exchanged manoeuvres, in each pair that first which the plan has earlier."""
+    return [_in_order(exchanged, [m.name for m in plan]) for exchanged in explained.exchanged]
+
+
 def _in_order(exchanged: Exchanged, plan: list[str]) -> Swapped:
-    """Exchanged manoeuvres, that which the plan has earlier first."""
-    half = len(exchanged.names) // 2
+    half, repair = len(exchanged.names) // 2, exchange_step(exchanged).id
     if plan.index(exchanged.names[0]) <= plan.index(exchanged.names[half]):
-        return Swapped(exchanged.names, exchanged.logs)
-    return Swapped(exchanged.names[half:] + exchanged.names[:half], exchanged.logs[::-1])
+        return Swapped(exchanged.names, exchanged.logs, repair)
+    names = exchanged.names[half:] + exchanged.names[:half]
+    return Swapped(names, exchanged.logs[::-1], repair)
 
 
-def _misread(plan: Sequence[Manoeuvre], explained: Explained) -> list[Misread]:
+def misread_in(plan: Sequence[Manoeuvre], explained: Explained) -> list[Misread]:
+    """The sensors whose axes are others than those of the plan, and the logs where they are."""
     found = []
     for sensor, axes in unlike(explained.everywhere, AS_PLANNED):
         seen_by = [m.name for m in plan if _sees(m, sensor) and not _same(m, sensor, axes)]
-        found.append(Misread(sensor, axes, "", seen_by))
+        found.append(Misread(sensor, axes, "", seen_by, axes_step(sensor, axes).id))
     for log, own in explained.misread.items():
         for sensor, axes in unlike(own, explained.everywhere):
-            found.append(Misread(sensor, axes, log, [m.name for m in plan if m.log == log]))
+            seen_by = [m.name for m in plan if m.log == log]
+            found.append(Misread(sensor, axes, log, seen_by, axes_step(sensor, axes, log).id))
     return found
 
 

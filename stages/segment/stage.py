@@ -1,6 +1,6 @@
 """Where the manoeuvres of the plan are in the logs, and each reduced to short means."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 
 import numpy as np
@@ -8,28 +8,26 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.close_ups import close_ups
-from inertial.campaign.findings import table_of
+from inertial.campaign.findings import Detection, table_of
 from inertial.campaign.log_properties import Stated, records_of, stated_by
-from inertial.campaign.masked_samples import Masks, RecordIndex, read_once
-from inertial.campaign.records import Manoeuvre, Performed, clocks_of, manoeuvres_of
+from inertial.campaign.masked_samples import Masks, RecordIndex, Repairs, read_once
+from inertial.campaign.records import Manoeuvre, Performed, Row, clocks_of, manoeuvres_of, rows_of
 from inertial.detectors import OF_PLAN, OF_RESTS
-from inertial.signal.detector import Log
-from inertial.tables import STATIC_PHASES
+from inertial.signal.detector import SENSORS, Log
+from inertial.tables import CHANNEL_REPAIRS, STATIC_PHASES
+from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
-from stages.segment import completeness, reduction
+from inertial.text.messages import _
+from stages.segment import completeness, reduction, repair
 from stages.segment.declared import DECLARED
 from stages.segment.detection import ExaminationOfRests, compare
-from stages.segment.explanations import Explained, explain
-from stages.segment.locating import AS_NAMED, Located, divide
+from stages.segment.explanations import Explained
+from stages.segment.locating import AS_NAMED, Located
 from stages.segment.matching import Part, between_parts, position_parts, rest_part, turn_parts
-from stages.segment.motion import rest_level
 from stages.segment.recorded import recorded_of
-from stages.segment.windows import Binned, Bins, Selection, Window, windows
-
-MIN_RATE_SHARE = 0.05  # of the slowest planned rate: what counts as motion
-MIN_MOTION_SIGMA = 6.0  # scatters of the gyros at rest: what cannot be noise
-MIN_HAND_RATE = np.radians(2.0)  # rad/s: what counts as motion where no rate is planned
+from stages.segment.repair import set_right
+from stages.segment.windows import Bins, Selection, Window, windows
 
 Array = NDArray[np.float64]
 
@@ -42,6 +40,7 @@ def segment(
     gaps: pd.DataFrame,
     masks: pd.DataFrame,
     channel_statistics: pd.DataFrame,
+    quality_findings: pd.DataFrame,
     gravity_repairs: pd.DataFrame,
     accepted: pd.DataFrame,
     *,
@@ -56,24 +55,44 @@ def segment(
     Two passes over the samples: blocks and the records of a rest are known only after manoeuvres
     were found in short means. Where the plan selects records by time or label, one of these two
     columns before.
+
+    Parameters
+    ----------
+    repairs : apply or refuse, whether what is wrong for certain is set right
     """
-    plan, clock, masked = manoeuvres_of(manoeuvres), clocks_of(clocks), Masks(masks)
-    by_name = stated.logs(channel_statistics)
+    plan, clock = manoeuvres_of(manoeuvres), clocks_of(clocks)
+    logs = stated.logs(channel_statistics)
     ends = records_of(clocks)
 
-    bins = Bins(_windows(samples, plan, ends), clock, masked)
-    traces, of_means = reduction.Traces(ends), reduction.LogsOfMeans(clock)
-    read_once(samples, [bins, traces, of_means])
-    binned = list(bins.binned())
-    level, explained = _explained(binned, plan, stated.earth_rate_up)
+    bins = Bins(_windows(samples, plan, ends), clock, Masks(masks))
+    of_means = reduction.LogsOfMeans(clock)
+    read_once(samples, [bins, of_means])
+    made = set_right(
+        list(bins.binned()),
+        plan,
+        repair.Stated(
+            stated.earth_rate_up,
+            stated.given,
+            _counts(logs),
+            list(ends),
+            angle_tolerance,
+            repairs == "refuse",
+            set(accepted["repair"]),
+        ),
+    )
+    _refuse_unknown(accepted, [*gravity_repairs["id"], *(row["id"] for row in made.rows)])
+    plan, level, explained = list(made.plan), made.level, made.explained
+    read_as = Repairs(CHANNEL_REPAIRS.frame(made.channels))
+    masked = Masks(masks, read_as)
+    by_name = {name: repair.log_as_read(log, read_as) for name, log in logs.items()}
     parts, performed, turns = _parts(explained, plan, level, margin)
 
     block_sums = reduction.Blocks(
         parts, gaps, masked, clock, of_means.names, rest_block, turn_block
     )
-    segment_times = reduction.Segments(parts)
+    segment_times, traces = reduction.Segments(parts), reduction.Traces(ends)
     rests, index = ExaminationOfRests(OF_RESTS, parts, by_name, masked), RecordIndex()
-    read_once(samples, [block_sums, segment_times, rests, index])
+    read_once(samples, [block_sums, segment_times, traces, rests, index], read_as)
     blocks, segments = block_sums.table(), segment_times.table()
     in_motion = dict(list(blocks[~blocks["phase"].isin(STATIC_PHASES)].groupby("manoeuvre")))
     for located, place, m in turns:
@@ -94,13 +113,22 @@ def segment(
     for m in plan:
         performed[m.name] = completeness.with_clipped(performed[m.name], block_sums.clipped(m.name))
     recorded = recorded_of(
-        plan, explained, performed, segments, gaps, _counts(by_name), stated.given, angle_tolerance
+        plan,
+        explained,
+        made.undone,
+        performed,
+        segments,
+        gaps,
+        _counts(by_name)["gyro"],
+        stated.given,
+        angle_tolerance,
     )
-    detections = [*compare("segment", OF_PLAN, recorded), *rests.detections("segment")]
+    of_plan = compare("segment", OF_PLAN, recorded)
+    detections = [*(each for each, _by in of_plan), *rests.detections("segment")]
     return {
-        "manoeuvres": manoeuvres,
-        "repairs": [],
-        "channel_repairs": [],
+        "manoeuvres": repair.plan_as_taken(manoeuvres, plan),
+        "repairs": list(_with_findings(made.rows, of_plan, quality_findings)),
+        "channel_repairs": list(made.channels),
         "segments": segments,
         "performed": pd.DataFrame([asdict(performed[m.name]) for m in plan]),
         "blocks": blocks,
@@ -116,18 +144,6 @@ def _windows(samples: Stream, plan: Sequence[Manoeuvre], ends: Mapping[str, int]
     if selection.manoeuvres:
         read_once(samples, [selection])
     return windows(plan, ends, selection)
-
-
-def _explained(
-    binned: Sequence[Binned], plan: Sequence[Manoeuvre], earth_rate_up: float
-) -> tuple[Array, Explained]:
-    """What the gyros read at rest, (3,), rad/s, and where the manoeuvres are."""
-    level, scatter = _rest_level(binned)
-    rates = [abs(m.rate) for m in plan if m.rate]
-    noise = MIN_MOTION_SIGMA * scatter
-    threshold = max(MIN_RATE_SHARE * min(rates) if rates else MIN_HAND_RATE, noise)
-    ways = [divide(window, level, threshold, noise) for window in binned]
-    return level, explain(ways, earth_rate_up)
 
 
 def _parts(
@@ -161,29 +177,46 @@ def _parts(
     return parts, performed, turns
 
 
-def _counts(logs_by_name: Mapping[str, Log]) -> dict[str, float]:
-    """What a count of the gyros is by the campaign, rad, where they write increments."""
+def _refuse_unknown(accepted: pd.DataFrame, known: Sequence[str]) -> None:
+    """A repair that the campaign file confirms is one that is found."""
+    for row in rows_of(accepted):
+        if row["repair"] not in known:
+            raise Refusal(
+                "campaign.yaml",
+                row["place"],
+                repr(row["repair"]),
+                _(
+                    "one of the repairs of this campaign: {known}",
+                    known=", ".join(dict.fromkeys(known)) or _("there are none"),
+                ),
+                _("correct the name, or remove it from accept"),
+            )
+
+
+def _with_findings(
+    rows: Sequence[Row], of_plan: Sequence[tuple[Detection, str]], of_quality: pd.DataFrame
+) -> Iterator[Row]:
+    """The repairs, each with the finding that tells of it."""
+    told = {by: each.finding.id for each, by in of_plan if by}
+    of_counts = of_quality[of_quality["cause"] == "wrong_scale_factor"]
+    for row in rows:
+        finding = told.get(row["id"])
+        if row["repair"] == "count_size" and finding is None:
+            same = of_counts[(of_counts["sensor"] == row["sensor"])]
+            finding = next(iter(same["id"]), None)
+        yield row | {"finding": finding}
+
+
+def _counts(logs: Mapping[str, Log]) -> dict[str, dict[str, float]]:
+    """By sensor and log, what a count is by the campaign, m/s and rad, where it is an increment."""
     return {
-        name: float(np.nanmedian(log.count[3:])) * log.step
-        for name, log in logs_by_name.items()
-        if log.increments and np.isfinite(log.count[3:]).any()
+        sensor: {
+            name: float(np.nanmedian(log.count[channels])) * log.step
+            for name, log in logs.items()
+            if log.increments and np.isfinite(log.count[channels]).any()
+        }
+        for sensor, channels in SENSORS.items()
     }
-
-
-def _rest_level(every: Sequence[Binned]) -> tuple[Array, float]:
-    """The gyros at rest over the campaign: from the windows of rests alone, if there are any.
-
-    An axis that none of them records does not count; one that some do not record is taken from the
-    others.
-    """
-    rests = [binned for binned in every if {m.do for m in binned.window.manoeuvres} == {"rest"}]
-    for group in (rests, every):
-        rates = np.concatenate([np.empty((0, 3)), *(binned.rates for binned in group)])
-        recorded = np.isfinite(rates).any(axis=0)
-        whole = rates[np.isfinite(rates[:, recorded]).all(axis=1)] if recorded.any() else []
-        if len(whole):
-            return rest_level(np.where(recorded, whole, 0.0))
-    return np.zeros(3), 0.0
 
 
 STAGE = Stage(segment, DECLARED, gathers={"stated": stated_by})

@@ -1,0 +1,489 @@
+"""What is wrong with readings and plan as a whole, set right before blocks are made of them.
+
+Each repair is decided once: by what explains clearly more of the plan than the recording as it
+is, and than anything else. Where others explain as much, none is applied.
+"""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial import tables
+from inertial.campaign.masked_samples import Repairs
+from inertial.campaign.records import Manoeuvre, Row
+from inertial.signal.axis_permutations import Permutation, composed
+from inertial.signal.detector import Given, Log
+from inertial.signal.misread_axes import SENSOR_NAMES, determinant, reads_in_words
+from inertial.signal.plan_detector import Misread, Rescaled, Swapped
+from inertial.text.messages import _
+from inertial.text.numbers import counted, significant
+from stages.segment.explanations import (
+    SENSE,
+    Exchanged,
+    Explained,
+    Step,
+    axes_step,
+    exchange_step,
+    explained_of,
+    turned_back,
+    unlike,
+)
+from stages.segment.locating import AS_NAMED, AS_PLANNED
+from stages.segment.recorded import Undone, misread_in, swapped_in
+from stages.segment.repair_scales import Scale, rates_of, scales_of
+from stages.segment.windows import Binned
+
+Array = NDArray[np.float64]
+
+MOUNTING = _("the IMU may be mounted turned against the plan, which reads the same")
+
+
+@dataclass(frozen=True)
+class Stated:
+    """What the repairs rest on beside the recording.
+
+    earth_rate : rad/s, its part upwards; given : of the campaign; counts : by sensor and log, m/s
+    and rad, what a count is; logs : all of them; tolerance : of rates and angles, 1; refused:
+    whether none is to be applied; accepted : ids of those that the laboratory confirms.
+    """
+
+    earth_rate: float
+    given: Given
+    counts: Mapping[str, Mapping[str, float]]
+    logs: Sequence[str]
+    tolerance: float
+    refused: bool
+    accepted: Collection[str]
+
+    def state(self, step: Step, *, rival: bool = False) -> str:
+        """Whether a repair is applied, confirmed, refused, or the rival of another."""
+        if self.refused:
+            return "refused"
+        if step.id in self.accepted:
+            return "confirmed"
+        return "rival" if rival else "applied"
+
+
+@dataclass(frozen=True)
+class SetRight:
+    """The campaign with its repairs: windows, plan, where it is found, and what was set right.
+
+    `level`: (3,), rad/s, the gyros at rest; `rows`: of the table of repairs.
+    """
+
+    binned: Sequence[Binned]
+    plan: Sequence[Manoeuvre]
+    level: Array
+    explained: Explained
+    rows: Sequence[Row]
+    channels: Sequence[Row]
+    undone: Undone
+
+
+def set_right(binned: Sequence[Binned], plan: Sequence[Manoeuvre], stated: Stated) -> SetRight:
+    """Decide the repairs of a campaign, one kind after another, and apply them."""
+    campaign = _Campaign(list(binned), list(plan), stated)
+    campaign.set_counts()
+    campaign.set_axes_and_names()
+    campaign.set_rates()
+    return campaign.result()
+
+
+class _Campaign:
+    """A campaign while it is set right."""
+
+    def __init__(self, binned: list[Binned], plan: list[Manoeuvre], stated: Stated) -> None:
+        self._binned, self._plan, self._stated = binned, plan, stated
+        self._rows: list[Row] = []
+        self._channels: list[Row] = []
+        self._misread: list[Misread] = []
+        self._swapped: list[Swapped] = []
+        self._rescaled: list[Rescaled] = []
+        self._restated: list[Rescaled] = []
+        self._other_sense = ""
+        self._explain()
+
+    def _explain(self) -> None:
+        self._level, self._explained = explained_of(
+            self._binned, self._plan, self._stated.earth_rate
+        )
+
+    def result(self) -> SetRight:
+        undone = Undone(
+            self._misread, self._swapped, self._rescaled, self._restated, self._other_sense
+        )
+        return SetRight(
+            self._binned,
+            self._plan,
+            self._level,
+            self._explained,
+            self._rows,
+            self._channels,
+            undone,
+        )
+
+    @property
+    def _applied(self) -> set[str]:
+        """The repairs that were applied so far."""
+        return {row["id"] for row in self._rows if row["state"] in APPLIED}
+
+    def _logs(self, log: str) -> Sequence[str]:
+        return [log] if log else self._stated.logs
+
+    def _read_again(self, channels: Sequence[Row]) -> None:
+        """Apply repairs of channels to the windows."""
+        repairs = Repairs(tables.CHANNEL_REPAIRS.frame(channels))
+        self._channels += channels
+        for k, one in enumerate(self._binned):
+            six = repairs.readings(one.window.log, np.hstack([one.forces, one.rates]))
+            self._binned[k] = replace(one, forces=six[:, :3], rates=six[:, 3:])
+
+    def _plan_again(self, plan: Sequence[Manoeuvre]) -> None:
+        """Take another plan, whose manoeuvres may stand in other windows."""
+        self._plan = list(plan)
+        own: dict[tuple[object, ...], list[Manoeuvre]] = {}
+        for m in plan:
+            own.setdefault(_place(m), []).append(m)
+        for k, one in enumerate(self._binned):
+            manoeuvres = own[_place(one.window.manoeuvres[0])]
+            self._binned[k] = replace(one, window=replace(one.window, manoeuvres=manoeuvres))
+
+    # ---- sizes of counts
+
+    def set_counts(self) -> None:
+        """Readings that are a known multiple of what they should be."""
+        stated = self._stated
+        channels: list[Row] = []
+        for scale in scales_of(self._explained, self._level, stated.given, stated.counts):
+            step = _scale_step(scale)
+            state = stated.state(step, rival=bool(scale.others))
+            before, after, seen = scale.fitting
+            condition = _(
+                "the {sensor} read {ratio} times what they should, {where}: {why}",
+                sensor=SENSOR_NAMES[scale.sensor],
+                ratio=significant(scale.factor, 6),
+                where=_where(scale.log),
+                why=scale.why,
+            )
+            row = _row(step, state, condition, (before, after, seen), scale.log)
+            self._rows.append(row | {"value": 1 / scale.factor, "stated": 1.0, "unit": "1"})
+            if state not in APPLIED:
+                continue
+            channels += [
+                _channel(step.id, log, scale.sensor, axis, axis, 1 / scale.factor)
+                for log in self._logs(scale.log)
+                for axis in tables.AXES
+            ]
+            if scale.sensor == "gyro":
+                names = [one.name for one in scale.seen]
+                self._rescaled.append(Rescaled(scale.factor, scale.why, scale.log, names, step.id))
+        if channels:
+            self._read_again(channels)
+            self._explain()
+
+    # ---- axes, signs, names and the sense of the table
+
+    def set_axes_and_names(self) -> None:
+        """What explains that the plan is not found as it is."""
+        explained = explained_of(
+            self._binned,
+            self._plan,
+            self._stated.earth_rate,
+            self._stated.accepted,
+            with_sense=True,
+        )[1]
+        first = len(self._rows)
+        fitting = explained.fitting
+        channels = list(self._axes_everywhere(explained, fitting))
+        channels += self._axes_of_logs(explained, fitting)
+        plan = self._plan_as_found(explained, fitting)
+        for steps in explained.rivals.values():
+            for step in steps:
+                condition = _RIVALS.get(step.repair, "")
+                self._rows.append(_row(step, self._stated.state(step, rival=True), condition))
+        moved = any(a is not b for a, b in zip(plan, self._plan, strict=True))
+        if channels or moved:
+            self._read_again(channels)
+            self._plan_again(plan)
+            self._explain()
+            right = sum(located.agreeing[0] for located in self._explained.located)
+            for row in self._rows[first:]:
+                if row["state"] in APPLIED:
+                    row["fitting_after"] = right
+
+    def _axes_everywhere(
+        self, explained: Explained, fitting: tuple[int, int, int]
+    ) -> Iterator[Row]:
+        """Axes that are others in all logs."""
+        axes = explained.everywhere
+        turned = _by_mounting(explained)
+        rivals = {
+            sensor
+            for sensor, own in unlike(axes, AS_PLANNED)
+            if axes_step(sensor, own).id in explained.rivals
+        }
+        for each in misread_in(self._plan, replace(explained, misread={})):
+            step = axes_step(each.sensor, each.axes)
+            both = axes.accel == axes.gyro and bool(rivals)
+            state = self._stated.state(step, rival=turned or both or each.sensor in rivals)
+            condition = _axes_in_words(each)
+            if turned:
+                condition += f"; {MOUNTING}"
+            self._rows.append(_row(step, state, condition, fitting))
+            if state in APPLIED:
+                self._misread.append(replace(each, undone=True))
+                yield from self._axes(step, each, each.axes)
+
+    def _axes_of_logs(self, explained: Explained, fitting: tuple[int, int, int]) -> Iterator[Row]:
+        """Axes that are others in single logs."""
+        for each in misread_in(self._plan, explained):
+            if not each.log:
+                continue
+            step = axes_step(each.sensor, each.axes, each.log)
+            own = explained.misread[each.log]
+            turned = own.accel == own.gyro and determinant(own.accel) > 0
+            common = getattr(explained.everywhere, each.sensor)
+            unsure = common != AS_NAMED and axes_step(each.sensor, common).id not in self._applied
+            state = self._stated.state(step, rival=turned or unsure)
+            condition = _axes_in_words(each) + (f"; {MOUNTING}" if turned else "")
+            self._rows.append(_row(step, state, condition, fitting, each.log))
+            if state in APPLIED:
+                self._misread.append(replace(each, undone=True))
+                yield from self._axes(step, each, composed(each.axes, common.inverse))
+
+    def _axes(self, step: Step, misread: Misread, axes: Permutation) -> Iterator[Row]:
+        for log in self._logs(misread.log):
+            for i, axis in enumerate(tables.AXES):
+                source, sign = tables.AXES[axes.sources[i]], float(axes.signs[i])
+                yield _channel(step.id, log, misread.sensor, axis, source, sign)
+
+    def _plan_as_found(
+        self, explained: Explained, fitting: tuple[int, int, int]
+    ) -> list[Manoeuvre]:
+        """The plan with exchanged manoeuvres in their places, and turns the other way."""
+        plan = list(self._plan)
+        pairs = zip(explained.exchanged, swapped_in(self._plan, explained), strict=True)
+        for exchanged, swapped in pairs:
+            step = exchange_step(exchanged)
+            state = self._stated.state(step, rival=step.id in explained.rivals)
+            row = _row(step, state, _exchange_in_words(swapped), fitting)
+            self._rows.append(row | {"manoeuvre": swapped.names[0]})
+            if state in APPLIED:
+                self._swapped.append(replace(swapped, undone=True))
+                plan = _exchanged_back(plan, exchanged)
+        if explained.other_sense:
+            state = self._stated.state(SENSE)
+            self._rows.append(_row(SENSE, state, _RIVALS["sense_of_table"], fitting))
+            if state in APPLIED:
+                self._other_sense = SENSE.id
+                plan = [turned_back(m) for m in plan]
+        return plan
+
+    # ---- rates of the plan
+
+    def set_rates(self) -> None:
+        """Rates that the plan misstates, while the angles are as planned."""
+        restated = rates_of(self._explained, self._level, self._stated.tolerance)
+        if restated is None:
+            return
+        step = Step("stated_rate", "stated_rate", "gyro")
+        state = self._stated.state(step)
+        number = len(restated.names)
+        turns = [m for m in self._plan if m.do == "turn" and m.rate]
+        condition = _(
+            "the table turned at {ratio} times the planned rate in {turns}",
+            ratio=significant(restated.ratio, 4),
+            turns=counted(number, "turn"),
+        )
+        fitting = (len(turns) - number, len(turns), len(turns))
+        row = _row(step, state, condition, fitting)
+        self._rows.append(row | {"value": restated.ratio, "stated": 1.0, "unit": "1"})
+        if state in APPLIED:
+            why = _("the plan states another rate than the table was set to")
+            self._restated.append(Rescaled(restated.ratio, why, "", restated.names, step.id))
+            self._plan_again([_at(m, restated.ratio, restated.names) for m in self._plan])
+            self._explain()
+
+
+APPLIED = ("applied", "confirmed")
+
+_RIVALS = {
+    "signs": _("axes of the sensor have the other sign"),
+    "axes": _("axes of the sensor are exchanged"),
+    "exchanged_manoeuvres": _("manoeuvres are in each other's place"),
+    "sense_of_table": _("the table counts all its turns the other way"),
+}
+
+
+def _row(
+    step: Step,
+    state: str,
+    condition: str,
+    fitting: tuple[int, int, int] | None = None,
+    log: str = "",
+) -> Row:
+    before, after, total = fitting or (None, None, None)
+    if state == "rival":
+        done = _("It is not applied, for others explain as much.")
+    elif state == "refused":
+        done = _("It is not applied, for the settings refuse repairs.")
+    else:
+        done = _("It is set right before the estimation.")
+    return {
+        "id": step.id,
+        "repair": step.repair,
+        "state": state,
+        "sensor": step.sensor,
+        "log": log or None,
+        "unit": "1",
+        "fitting_before": before,
+        "fitting_after": after,
+        "observations": total,
+        "condition": condition,
+        "sentence": f"{condition[0].upper()}{condition[1:]}. {done}" if condition else done,
+    }
+
+
+def _channel(repair: str, log: str, sensor: str, axis: str, from_axis: str, factor: float) -> Row:
+    return {
+        "repair": repair,
+        "log": log,
+        "sensor": sensor,
+        "axis": axis,
+        "from_axis": from_axis,
+        "factor": factor,
+    }
+
+
+def _scale_step(scale: Scale) -> Step:
+    place = [scale.log] if scale.log else []
+    return Step("/".join(["count_size", scale.sensor, *place]), "count_size", scale.sensor)
+
+
+def _where(log: str) -> str:
+    return _("in {log}", log=log) if log else _("in all logs")
+
+
+def _axes_in_words(misread: Misread) -> str:
+    words = _(
+        "of the {sensor}, {where}, {axes}",
+        sensor=SENSOR_NAMES[misread.sensor],
+        where=_where(misread.log),
+        axes=reads_in_words(misread.axes),
+    )
+    if misread.sensor == "accel" and misread.axes == ALL_REVERSED:
+        words += _(", or the log tells gravity in place of specific force, which is the same")
+    return words
+
+
+ALL_REVERSED = Permutation((0, 1, 2), (-1, -1, -1))
+
+
+def _by_mounting(explained: Explained) -> bool:
+    """Whether the axes of both sensors may be right, and the IMU is mounted otherwise.
+
+    Both triads are then turned alike; where only one is seen, the other one may be.
+    """
+    axes = explained.everywhere
+    turned = axes.accel if axes.accel != AS_NAMED else axes.gyro
+    if turned == AS_NAMED or determinant(turned) < 0:
+        return False
+    if axes.accel == axes.gyro:
+        return True
+    turns = any(
+        located.place(m) is not None
+        for located in explained.located
+        for m in located.plan
+        if m.do == "turn"
+    )
+    ups = any(m.up is not None for located in explained.located for m in located.plan)
+    if axes.gyro == AS_NAMED:
+        return not turns and not any(explained.gyro_signs)
+    return axes.accel == AS_NAMED and not ups
+
+
+def _exchange_in_words(swapped: Swapped) -> str:
+    half = len(swapped.names) // 2
+    first, second = ", ".join(swapped.names[:half]), ", ".join(swapped.names[half:])
+    if len(swapped.logs) == 2:
+        return _(
+            "{one} contains {second}, and {other} contains {first}",
+            one=swapped.logs[0],
+            second=second,
+            other=swapped.logs[1],
+            first=first,
+        )
+    return _(
+        "in {log}, {first} and {second} are in each other's place",
+        log=swapped.logs[0],
+        first=first,
+        second=second,
+    )
+
+
+def _place(m: Manoeuvre) -> tuple[object, ...]:
+    """Where the plan has it: its log, and what it selects of that."""
+    return m.log, m.from_s, m.to_s, m.from_row, m.to_row, m.label
+
+
+def _placed(m: Manoeuvre, like: Manoeuvre) -> Manoeuvre:
+    return replace(
+        m,
+        log=like.log,
+        from_s=like.from_s,
+        to_s=like.to_s,
+        from_row=like.from_row,
+        to_row=like.to_row,
+        label=like.label,
+    )
+
+
+def _exchanged_back(plan: Sequence[Manoeuvre], exchanged: Exchanged) -> list[Manoeuvre]:
+    """The plan with manoeuvres in each other's log or stretch, or in each other's turn."""
+    half = len(exchanged.names) // 2
+    number = {m.name: i for i, m in enumerate(plan)}
+    made = list(plan)
+    for one, two in zip(exchanged.names[:half], exchanged.names[half:], strict=True):
+        a, b = plan[number[one]], plan[number[two]]
+        if _place(a) == _place(b):
+            made[number[one]], made[number[two]] = b, a
+        else:
+            made[number[one]], made[number[two]] = _placed(a, b), _placed(b, a)
+    return made
+
+
+def _at(m: Manoeuvre, ratio: float, names: Sequence[str]) -> Manoeuvre:
+    """A turn at the rate at which it was recorded."""
+    return replace(m, rate=m.rate * ratio) if m.rate and m.name in names else m
+
+
+# ---- The plan as a table, and the properties of a log.
+
+
+def plan_as_taken(stated: pd.DataFrame, plan: Sequence[Manoeuvre]) -> pd.DataFrame:
+    """The table of the manoeuvres with what the repairs have changed."""
+    table = stated.set_index("manoeuvre").loc[[m.name for m in plan]].reset_index()
+    for name in ("log", "from_s", "to_s", "from_row", "to_row", "label", "angle", "rate"):
+        values = pd.Series([getattr(m, name) for m in plan], dtype=object)
+        table[name] = values.where(values.notna(), None)
+    return table[list(stated.columns)]
+
+
+def log_as_read(log: Log, repairs: Repairs) -> Log:
+    """A log whose channels are set right: their steps, noise and limits go with them."""
+    source, factor = repairs.channels(log.name)
+    size = np.abs(factor)
+    ends = np.sort([factor * log.least[source], factor * log.most[source]], axis=0)
+    return replace(
+        log,
+        quantum=size * log.quantum[source],
+        noise=size * log.noise[source],
+        equal=log.equal[source],
+        least=ends[0],
+        most=ends[1],
+        limit=size * log.limit[source],
+        count=size * log.count[source],
+    )

@@ -1,0 +1,206 @@
+"""Sizes of counts, and rates of the plan, that are wrong by a known factor or by one ratio."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.campaign.records import Manoeuvre
+from inertial.signal.detector import Given
+from inertial.signal.scale_factor import (
+    FULL_SCALE_FACTORS,
+    MAX_RATIO_SPREAD,
+    MAX_SCALE_ERROR,
+    factors_near,
+)
+from stages.segment.explanations import Explained
+from stages.segment.locating import Located
+from stages.segment.matching import motion
+from stages.segment.motion import steady_part
+
+Array = NDArray[np.float64]
+
+# Rests of one attitude do not tell a bias from a full scale that is another: two at 60° do.
+MAX_COSINE = 0.5
+MAX_ROUNDING = 1e-6  # relative: factors that are one, but for their last digits
+FULL_SCALES = (*FULL_SCALE_FACTORS, *(1 / factor for factor in FULL_SCALE_FACTORS))
+
+
+@dataclass(frozen=True)
+class Multiple:
+    """How many times too large a sensor reads in a log; of a turn in angle and in rate.
+
+    ratio : its rate or force over what it should be, 1
+    angle : the same of its angle, NaN where it is not known
+    direction : (3,), of the force at rest, unit vector; None of a turn
+    """
+
+    name: str
+    log: str
+    ratio: float
+    angle: float = np.nan
+    direction: Array | None = None
+
+
+@dataclass(frozen=True)
+class Scale:
+    """A sensor that reads `factor` times too large in a log, or in all where that is empty.
+
+    others : factors that explain the same ratio to the accuracy of the sensor; why: in words
+    """
+
+    sensor: str
+    log: str
+    factor: float
+    others: Sequence[float]
+    why: str
+    seen: Sequence[Multiple]
+    ratio: float
+
+    @property
+    def fitting(self) -> tuple[int, int, int]:
+        """How many observations fit as recorded, with the factor undone, and how many are seen."""
+        most = MAX_SCALE_ERROR[self.sensor]
+        ratios = np.array([one.ratio for one in self.seen])
+        as_read, undone = (np.abs(ratios / by - 1) <= most for by in (1.0, self.factor))
+        return int(as_read.sum()), int(undone.sum()), len(ratios)
+
+
+def scales_of(
+    explained: Explained,
+    level: Array,
+    given: Given,
+    counts: Mapping[str, Mapping[str, float]],
+) -> Iterator[Scale]:
+    """The sensors whose readings are a known multiple of what they should be.
+
+    A large bias or scale error is none: it is no known factor, or not the same in all attitudes.
+
+    Parameters
+    ----------
+    level : (3,), rad/s, the gyros at rest
+    counts : by sensor and log, what a count is by the campaign, m/s and rad
+    """
+    by_sensor = {
+        "accel": list(_forces(explained.located, given.gravity)),
+        "gyro": list(_turns(explained.located, level)),
+    }
+    for sensor, seen in by_sensor.items():
+        logs = list(dict.fromkeys(one.log for one in seen))
+        whole = _scale(sensor, "", seen, given, counts[sensor])
+        if whole is not None:
+            yield whole
+        elif len(logs) > 1:
+            for log in logs:
+                own = [one for one in seen if one.log == log]
+                alone = _scale(sensor, log, own, given, counts[sensor])
+                if alone is not None:
+                    yield alone
+
+
+def _scale(
+    sensor: str, log: str, seen: Sequence[Multiple], given: Given, counts: Mapping[str, float]
+) -> Scale | None:
+    """The known factor by which all that is seen is too large; None if there is none."""
+    most = MAX_SCALE_ERROR[sensor]
+    ratios = np.array([one.ratio for one in seen])
+    ratios = ratios[np.isfinite(ratios) & (ratios > 0)]
+    if not len(ratios):
+        return None
+    ratio = float(np.median(ratios))
+    if abs(np.log(ratio)) <= np.log1p(most) or np.abs(ratios / ratio - 1).max() > most:
+        return None
+    angles = np.array([one.angle for one in seen])
+    # A turn of which a part is missing may be short, but most of them are whole.
+    angle = float(np.nanmedian(angles)) if np.isfinite(angles).any() else ratio
+    if abs(angle / ratio - 1) > MAX_RATIO_SPREAD:
+        return None
+    known = [counts[one.log] for one in seen if np.isfinite(counts.get(one.log, np.nan))]
+    count = float(np.median(known)) if known else np.nan
+    near = factors_near(ratio, sensor, given, count)
+    if not near:
+        return None
+    factor = next(iter(near))
+    if _is_full_scale(factor) and not _shows_full_scale(sensor, seen):
+        return None
+    others = [other for other in near if abs(other / factor - 1) > MAX_ROUNDING]
+    # The unit itself is exact, where the count of an instrument is the same to its last digits.
+    return Scale(sensor, log, factor, others, ", or ".join(near.values()), seen, ratio)
+
+
+def _is_full_scale(factor: float) -> bool:
+    return any(abs(factor / scale - 1) < MAX_ROUNDING for scale in FULL_SCALES)
+
+
+def _shows_full_scale(sensor: str, seen: Sequence[Multiple]) -> bool:
+    """Whether a bias, or one turn that is planned otherwise than it was done, is excluded."""
+    if sensor == "gyro":
+        return len(seen) > 1
+    directions = np.array([one.direction for one in seen])
+    return bool((directions @ directions.T).min() < MAX_COSINE)
+
+
+def _forces(windows: Sequence[Located], gravity: float) -> Iterator[Multiple]:
+    """The specific force at every rest, over gravity."""
+    for located in windows:
+        for observation in located.observed:
+            length = float(np.linalg.norm(observation.force))
+            if not observation.moves and np.isfinite(length) and length > 0:
+                log = located.binned.window.log
+                yield Multiple("", log, length / gravity, direction=observation.force / length)
+
+
+def _turns(windows: Sequence[Located], level: Array) -> Iterator[Multiple]:
+    """Every turn that was found, over its plan; where no rate is planned, its angle."""
+    for located in windows:
+        for m in located.plan:
+            place = located.place(m)
+            if m.do != "turn" or place is None:
+                continue
+            angle = np.nan
+            if m.angle and m.recorded == "whole":
+                turned = np.nan_to_num(located.observed[place].turned)
+                angle = abs(float(turned @ m.axis) / m.angle)
+            rate = _rate(located, place, m, level) if m.rate else angle
+            if np.isfinite(rate):
+                yield Multiple(m.name, located.binned.window.log, rate, angle)
+
+
+def _rate(located: Located, place: int, m: Manoeuvre, level: Array) -> float:
+    """The rate of the steady part of a turn over the planned one."""
+    assert m.rate
+    first, after = motion(located.binned, located.stretches, place)
+    about = located.binned.about(m.axis, level)[first:after]
+    about = about[np.isfinite(about)]
+    if not len(about):
+        return np.nan
+    start, stop = steady_part(about)
+    return abs(float(np.median(about[start:stop])) / m.rate) if stop > start else np.nan
+
+
+# ---- Rates of the plan.
+
+
+@dataclass(frozen=True)
+class Restated:
+    """Turns through their planned angles whose rates are `ratio` times the planned ones."""
+
+    ratio: float
+    names: Sequence[str]
+
+
+def rates_of(explained: Explained, level: Array, tolerance: float) -> Restated | None:
+    """The turns whose rate alone is misstated, if it is so by one ratio."""
+    off = [
+        one
+        for one in _turns(explained.located, level)
+        if abs(one.angle - 1) <= tolerance < abs(one.ratio - 1)
+    ]
+    if not off:
+        return None
+    ratios = np.array([one.ratio for one in off])
+    ratio = float(np.median(ratios))
+    if len(off) < 2 or np.abs(ratios / ratio - 1).max() > MAX_RATIO_SPREAD:
+        return None
+    return Restated(ratio, [one.name for one in off])
