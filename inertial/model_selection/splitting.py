@@ -79,7 +79,10 @@ def split(
     """
     candidates = Candidates(effects)
     index = {effect.name: i for i, effect in enumerate(effects)}
-    members = [index[member] for member in causes[number].members]
+    # A random walk is no member with columns: it follows no law that a manoeuvre would show.
+    members = [index[member] for member in causes[number].members if member in index]
+    if len(members) < 2:
+        return []
     others = [
         int(
             np.flatnonzero((candidates.effect == index[c.effect]) & (candidates.value == c.value))[

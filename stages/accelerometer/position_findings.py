@@ -1,4 +1,8 @@
-"""A static position inconsistent with the others, as a finding with the affected parameters."""
+"""A static position inconsistent with the others, as a finding with the affected parameters.
+
+Only where the rests do not determine all parameters: else criticism weighs the position against
+every effect of the accelerometers, and what it finds likelier is said once.
+"""
 
 from collections.abc import Iterator
 from math import degrees
@@ -57,8 +61,8 @@ def findings(off: OffPosition, sigma: Array, mount: str) -> Iterator[Finding]:
         )
         + (_(" The readings do not distinguish which of these it is.") if several else "")
         + _(
-            " Or the accelerometers have an error outside the twelve parameters: "
-            "criticism compares the two."
+            " Or the accelerometers have an error outside the twelve parameters: these rests do "
+            "not tell the two apart."
         ),
         consequence=(
             _(

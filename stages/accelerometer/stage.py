@@ -68,7 +68,10 @@ def accelerometer(
         )
         estimates.add_fit("joint", fitted, used, left_out)
         matrix = fitted.estimate.values[:9].reshape(3, 3)
-        if fitted.p_value < MIN_CONSISTENT_P_VALUE:
+        weighed = bool(
+            np.all(fitted.estimate.determined[: triad.UNKNOWNS])
+        )  # by criticism, against effects
+        if not weighed and fitted.p_value < MIN_CONSISTENT_P_VALUE:
             raised += _position_findings(rests, about, matrix, effect_sigma, data.mount)
         for seconds in averaging_times(positions, averaging_steps):
             part = [*(_static_force(position, seconds) for position in positions), *moving]

@@ -17,6 +17,7 @@ from inertial.estimation.variance_components import (
     sigma_of,
     walk_search,
 )
+from inertial.model_selection.walk_odds import LOG_RANGE
 from inertial.physics.drift import without_clock
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
@@ -65,6 +66,18 @@ def random_walks_with_sigmas(campaign: Campaign, effects: Sequence[Effect]) -> d
         for sensor, size in zip(SENSORS, campaign.solution.random_walks, strict=True)
         if size
     }
+
+
+def walk_evidence(campaign: Campaign, sensor: str, size: float, effects: Sequence[Effect]) -> float:
+    """Log evidence of a random walk alike on all axes, of about this size, against none.
+
+    By the likelihood of the readings themselves: half waves leave out how fast it may change.
+    """
+    deviance = _deviance(campaign, sensor, effects)
+    width = float(np.nan_to_num(sigma_of(deviance, size) / size, nan=1.0))
+    return (deviance(0.0) - deviance(size)) / 2 + float(
+        np.log(np.sqrt(2 * np.pi) * width / LOG_RANGE)
+    )
 
 
 def _deviance(

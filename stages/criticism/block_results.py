@@ -27,6 +27,7 @@ from stages.criticism.finding_rows import (
     parameter_row,
 )
 from stages.criticism.selection import Selection
+from stages.criticism.without_law import WithoutLaw
 
 NAMED = (FOUND, ONE_OF_CLASS)
 MAX_RIVAL_DROP = 6.0  # of chi-squared between two positions that are both possible: 95 % of 2
@@ -71,9 +72,15 @@ class BlockResults:
     """The rows of one mount."""
 
     def __init__(
-        self, campaign: Campaign, selection: Selection, extended: ExtendedCampaigns, mount: str
+        self,
+        campaign: Campaign,
+        selection: Selection,
+        extended: ExtendedCampaigns,
+        lawless: WithoutLaw,
+        mount: str,
     ) -> None:
         self.campaign, self.selection, self.mount = campaign, selection, mount
+        self.lawless = lawless
         self.extended = extended
         self.causes = {cause.effect: cause for cause in selection.named.causes}
 
@@ -84,7 +91,11 @@ class BlockResults:
                 yield from self._of_effect(test)
         yield from self._limits()
         for number, cause in enumerate(self.selection.named.causes):
-            yield from self._finding(number, cause)
+            if self._reported_in(cause) == finding_id(cause.effect, self.mount):
+                yield from self._finding(number, cause)
+
+    def _reported_in(self, cause: Cause) -> str:
+        return self.lawless.finding(cause, self.selection.sensor(cause), self.mount)
 
     def _of_effect(self, test: EffectTest) -> Iterator[TableRow]:
         cause = self.causes.get(test.effect)
@@ -110,7 +121,7 @@ class BlockResults:
                 "effect": effect.name,
                 "cause": effect.cause,
                 "sought_in": "blocks",
-                "finding": identifier if cause else None,
+                "finding": self._reported_in(cause) if cause else None,
                 "statistic": _tested(test, cause.statistic if cause else test.statistic),
                 "degrees": cause.degrees if cause else test.degrees or None,
                 "p_value": _tested(test, cause.p_value if cause else test.after_search),
@@ -123,7 +134,7 @@ class BlockResults:
             },
         )
         for parameter in parameters:
-            finding = identifier if cause else None
+            finding = self._reported_in(cause) if cause else None
             yield parameter_row(self.mount, effect.name, parameter, finding, identifier)
 
     def _limits(self) -> Iterator[TableRow]:
@@ -189,7 +200,12 @@ class BlockResults:
                 "split_stated": clear if split else None,
             },
         )
-        yield from member_rows(identifier, self.mount, cause.members, cause.weights, cause.captured)
+        if free:
+            others = self.lawless.members[self.selection.sensor(cause)]
+            yield from member_rows(identifier, self.mount, (*cause.members, *others))
+        else:
+            shares = cause.weights, cause.captured
+            yield from member_rows(identifier, self.mount, cause.members, *shares)
         for rank, (position, statistic) in enumerate(positions, 1):
             row = {"finding": identifier, "mount": self.mount, "rank": rank}
             yield "cause_positions", row | {"position": position, "statistic": statistic}
@@ -284,17 +300,20 @@ def other_scores(walk: Walk | None, mount: str) -> Iterator[TableRow]:
 
 
 def random_walk_rows(
-    sensor: str, walk: Walk, alternatives: Sequence[str], mount: str, *, structured: bool
+    sensor: str, walk: Walk, alternatives: Sequence[str], lawless: WithoutLaw, mount: str
 ) -> Iterator[TableRow]:
     """The random walk of a sensor, `gyro` or `accel`, and the effects that may be it as well.
 
     With these it is one of a class. Without them it is never certain: other changes without a law,
-    such as telegraph noise, look much the same; nor where the residuals of the sensor
-    are `structured`.
+    such as telegraph noise, look much the same; nor where something else of the sensor follows
+    no law.
     """
     cause = f"{sensor}_random_walk"
     identifier = finding_id(cause, mount)
     others = [name for name in alternatives if name.startswith((sensor, *SHARED_EFFECTS[sensor]))]
+    certain = bool(others) and not (sensor in lawless.structured or lawless.members[sensor])
+    if lawless.owner[sensor] == cause:
+        others = list(dict.fromkeys([*others, *lawless.members[sensor]]))
     sentence = (WALK_OR if others else WALK_ALONE).format(
         sensors=SENSORS[sensor],
         size=_walk_size(sensor, walk),
@@ -315,7 +334,7 @@ def random_walk_rows(
             "sentence": sentence,
             "consequence": WALK_CONSEQUENCE,
             "action": REPEAT if others else SHORTEN,
-            "verdict": ONE_OF_CLASS if others and not structured else UNKNOWN_STRUCTURE,
+            "verdict": ONE_OF_CLASS if certain else UNKNOWN_STRUCTURE,
         },
     )
     yield from member_rows(identifier, mount, [cause, *others])
@@ -333,10 +352,12 @@ def _walk_size(sensor: str, walk: Walk) -> str:
     return f"{' ± '.join(with_sigma(value, sigma, decimals_of(sigma)))} {unit}/√h"
 
 
-def unexplained_rows(selection: Selection, mount: str) -> Iterator[TableRow]:
-    """A finding for each sensor whose residuals the named effects do not explain."""
+def unexplained_rows(selection: Selection, lawless: WithoutLaw, mount: str) -> Iterator[TableRow]:
+    """A finding for each sensor whose residuals nothing explains, with a law or without."""
     chosen = list(dict.fromkeys(i for cause in selection.named.causes for i in cause.columns))
     for sensor, reduced in zip(selection.evidence.labels, selection.evidence.sensors, strict=True):
+        if sensor in lawless.owner:
+            continue
         rest, degrees, p_value = selection.evidence.residual(reduced, chosen)
         if p_value >= MIN_CONSISTENT_P_VALUE or rest <= MIN_EXCESS * degrees:
             continue

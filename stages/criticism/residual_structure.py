@@ -237,11 +237,12 @@ DESCRIPTIONS = {  # by the kind of the test, and whether a value of a scan is kn
 
 
 def structure_rows(
-    tested: Tested, consistent: Mapping[str, Sequence[str]], mount: str
+    tested: Tested, reported: Mapping[str, Sequence[str]], mount: str
 ) -> Iterator[TableRow]:
     """The six tests, the residuals in bins where a test detects a structure, and findings.
 
-    `consistent`: of each sensor the effects with which the data are no more than consistent.
+    `reported`: of each sensor whose structure is a finding of its own, the effects with which the
+    data are no more than consistent.
     """
     for test in tested.tests:
         scanned = bool(np.isfinite(test.scan_value))
@@ -266,8 +267,8 @@ def structure_rows(
         for point in points(tested, test):
             yield "structure_points", shared | asdict(point)
     for sensor, words in SENSORS.items():
-        if tested.of(sensor):
-            yield from _finding(tested.of(sensor), sensor, words, consistent[sensor], mount)
+        if sensor in reported:
+            yield from _finding(tested.of(sensor), sensor, words, reported[sensor], mount)
 
 
 def _finding(

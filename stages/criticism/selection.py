@@ -9,26 +9,27 @@ consistent, for a random walk follows no law that could be tested.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from inertial.campaign.equations import Campaign, evidence
-from inertial.estimation.variance_components import MIN_DEVIANCE_DROP
-from inertial.model_selection.cause import UNKNOWN_STRUCTURE, Cause, Named
+from inertial.model_selection import walk_odds
+from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause, Named
 from inertial.model_selection.detection_limits import Visible, visible
 from inertial.model_selection.evidence import Evidence, SearchedEffect, searched_effect
 from inertial.model_selection.naming import causes, law_of
 from inertial.model_selection.search import finer, to_refine
-from inertial.physics.effect import Effect
+from inertial.physics.effect import Array, Effect
 from stages.criticism.bias_drift import (
     barely_detectable_walks,
     drift_name,
     half_waves,
     likely_random_walks,
+    walk_evidence,
 )
 
-MAX_OCCAM_DEVIANCE = 20.0  # largest penalty of the prior range of sizes
+MAX_LOG_ODDS = 3.0  # of a law and a random walk that are as likely
 FINER_STEPS = 4  # of the second search in each interval of the first
 MIN_THIRD_SEARCH_SNR = 20.0  # from which a third search is finer still
 MAX_WALK_SHARE = 0.2  # of the information of an effect that remains with a random walk
@@ -42,7 +43,8 @@ class Selection:
     `campaign`: with the random walks of its equations; `alternatives`: causes that would explain
     about as well what the random walk explains; `searched`: the columns of each effect in
     `evidence`; `families`: its candidates by its name, in the order of
-    `SearchedEffect.candidates`; `limits`: the detection limits.
+    `SearchedEffect.candidates`; `limits`: the detection limits;
+    `rivals`: by effect the random walk that is as likely, and the log odds of the effect.
     """
 
     campaign: Campaign
@@ -52,6 +54,14 @@ class Selection:
     families: Mapping[str, Sequence[Effect]]
     named: Named
     limits: Sequence[Visible]
+    rivals: Mapping[str, tuple[str, float]] = field(default_factory=dict)
+
+    def prior(self, effect: SearchedEffect) -> Array:
+        """The share of each value of a scan: that of its range which is nearest to it."""
+        count = len(effect.candidates)
+        if count == 1 or effect.free or not effect.between:
+            return np.ones(count)
+        return np.gradient(np.array([one.at for one in self.families[effect.name]], np.float64))
 
     def effect(self, name: str, value: int) -> Effect:
         """A candidate."""
@@ -90,23 +100,6 @@ class Selection:
                 members[self.sensor(cause)] += cause.members
         return members
 
-    def deviance(self) -> float:
-        """−2 log of the likelihood with the named effects, and the cost of each size.
-
-        The size of an effect is that of its estimate, in its typical sizes: an effect of nine
-        parameters has one size, as a random walk has one.
-        """
-        sizes = [self._size(place) for place in _effects(self)]
-        count = len(sizes) + sum(map(bool, self.random_walks))
-        return self.campaign.deviance(self.effects, sizes) + MIN_DEVIANCE_DROP * count
-
-    def _size(self, place: int) -> float:
-        """How large a named effect is, in its typical sizes."""
-        cause = self.named.causes[place]
-        effect = self.effect(cause.effect, cause.value)
-        typical = np.array([parameter.typical for parameter in effect.parameters])
-        return float(np.sqrt(np.mean(np.nan_to_num(np.array(cause.values) / typical) ** 2))) or 1.0
-
 
 def select_effects(
     campaign: Campaign, effects: Sequence[Effect], level: float, noise_degrees: float
@@ -116,51 +109,118 @@ def select_effects(
     def with_walks(walks: tuple[float, float]) -> Selection:
         return _select(campaign.with_random_walks(walks), effects, level, noise_degrees)
 
-    without = with_walks((0.0, 0.0))
-    walks = campaign.solution.random_walks
-    if not any(walks):
-        walks = _replacing_walks(without)
-    if not any(walks):
-        return without
-    selection = _likelier(without, with_walks(walks))
-    if selection.effects:
-        walks = likely_random_walks(selection.campaign, selection.effects)
-        if walks != selection.random_walks:
-            selection = (
-                replace(with_walks(walks), alternatives=selection.alternatives)
-                if any(walks)
-                else without
-            )
+    selection = without = with_walks((0.0, 0.0))
+    for number, walk in enumerate(campaign.solution.random_walks):
+        size = walk or _replacing_walk(selection, number)
+        if size:
+            walks = _replaced(selection.random_walks, number, size)
+            selection = _weighed(selection, with_walks(walks), number)
+    if any(selection.random_walks) and selection.effects:
+        likely = likely_random_walks(selection.campaign, selection.effects)
+        gyro, accel = (
+            new if old else 0.0 for new, old in zip(likely, selection.random_walks, strict=True)
+        )
+        if (gyro, accel) != selection.random_walks:
+            again = with_walks((gyro, accel)) if gyro or accel else without
+            selection = replace(again, alternatives=selection.alternatives, rivals=selection.rivals)
+    selection = _with_rivals(selection)
     if not any(selection.random_walks):
-        return selection
+        return replace(selection, alternatives=())
     named = _members(selection)
     others = tuple(member for member in selection.alternatives if member not in named)
     return _consistent(replace(selection, alternatives=others))
 
 
-def _likelier(without: Selection, with_walk: Selection) -> Selection:
-    """Effects without random walks, or with them, or random walks that may be these effects."""
-    if not without.effects:
-        return with_walk
-    reduction = without.deviance() - with_walk.deviance()
-    if reduction < -MIN_DEVIANCE_DROP:
-        return without
-    if reduction >= MAX_OCCAM_DEVIANCE:
-        return with_walk
-    return replace(with_walk, alternatives=_members(without))
+def _replaced(walks: tuple[float, float], number: int, size: float) -> tuple[float, float]:
+    """The random walks with that of one sensor replaced."""
+    return (size, walks[1]) if number == 0 else (walks[0], size)
 
 
-def _replacing_walks(selection: Selection) -> tuple[float, float]:
-    """The most likely random walks in place of effects that resemble them; 0 where none is."""
+def _weighed(law: Selection, walk: Selection, number: int) -> Selection:
+    """The likelier of effects without and with a random walk of one sensor, or both as a class.
+
+    Where they are alike a single effect keeps its name and the random walk joins its class; of
+    several effects the random walk is the simpler, and they are what it may be instead.
+    """
+    walk = replace(walk, alternatives=law.alternatives, rivals=law.rivals)
+    odds = _log_odds(law, walk, SENSORS[number])
+    kept = {cause.effect for cause in walk.named.causes}
+    only = [cause for cause in law.named.causes if cause.effect not in kept]
+    if any(cause.effect not in law.families for cause in only):
+        return walk  # a drift without a law has none that could be weighed
+    if odds > (MAX_LOG_ODDS if only else 0.0):
+        return law
+    if odds < -MAX_LOG_ODDS or not only:
+        return walk
+    if odds > 0 and len(only) == 1:
+        return replace(law, rivals={**law.rivals, only[0].effect: (walk_name(number), odds)})
+    members = [member for cause in only for member in cause.members]
+    return replace(walk, alternatives=tuple(dict.fromkeys([*law.alternatives, *members])))
+
+
+def walk_name(number: int) -> str:
+    """The name of the random walk of a sensor, gyros 0, accelerometers 1."""
+    return f"{SENSORS[number]}_random_walk"
+
+
+def _log_odds(law: Selection, walk: Selection, sensor: str) -> float:
+    """Of the effects without a random walk of a sensor against those with it."""
+    effects = {effect.name: effect for effect in law.searched}
+    total = law.evidence.observable().total
+    shared = {cause.effect for cause in walk.named.causes}
+    size = walk.random_walks[SENSORS.index(sensor)]
+    start = walk_odds.Equations(total.information, total.right).given(
+        [i for cause in law.named.causes if cause.effect in shared for i in cause.columns]
+    )
+
+    def of(selection: Selection, known: Selection, first: walk_odds.Explained) -> float:
+        evidence, rest = first.log_evidence, first.rest
+        own = {cause.effect for cause in known.named.causes}
+        for cause in selection.named.causes:
+            if cause.effect not in own:
+                searched = effects[cause.effect]
+                explained = walk_odds.law(rest, searched.candidates, law.prior(searched))
+                evidence, rest = evidence + explained.log_evidence, explained.rest
+        return evidence
+
+    axes = effects[drift_name(sensor)].candidates[: walk_odds.AXES]
+    nothing, walking = walk_odds.Explained(0.0, start), walk_odds.walk(start, axes)
+    known = [law.effect(c.effect, c.value) for c in law.named.causes if c.effect in shared]
+    alike = walk_evidence(law.campaign, sensor, size, known)
+    walking = replace(walking, log_evidence=max(alike, walking.log_evidence))
+    return of(law, walk, nothing) - of(walk, law, walking)
+
+
+def _with_rivals(selection: Selection) -> Selection:
+    """The same with each random walk in the class of the effect that is as likely."""
+
+    def joined(cause: Cause) -> Cause:
+        if cause.effect not in selection.rivals:
+            return cause
+        walk, odds = selection.rivals[cause.effect]
+        share = 1 / (1 + float(np.exp(odds)))
+        return replace(
+            cause,
+            verdict=ONE_OF_CLASS if cause.verdict == FOUND else cause.verdict,
+            members=(*cause.members, walk),
+            weights=(*(weight * (1 - share) for weight in cause.weights), share),
+            captured=(*cause.captured, 1.0),
+        )
+
+    causes = tuple(joined(cause) for cause in selection.named.causes)
+    return replace(selection, named=replace(selection.named, causes=causes))
+
+
+def _replacing_walk(selection: Selection, number: int) -> float:
+    """The most likely random walk of a sensor in place of effects that resemble it; 0: none."""
     campaign, effects = selection.campaign, selection.effects
-    resembling = _resembling_walks(
-        campaign.with_random_walks(barely_detectable_walks(campaign)), selection
-    )
+    barely = barely_detectable_walks(campaign)[number]
+    walking = campaign.with_random_walks(_replaced(selection.random_walks, number, barely))
+    resembling = _resembling_walks(walking, selection)
     if not any(resembling):
-        return (0.0, 0.0)
-    return likely_random_walks(
-        campaign, [effect for effect, like in zip(effects, resembling, strict=True) if not like]
-    )
+        return 0.0
+    others = [effect for effect, like in zip(effects, resembling, strict=True) if not like]
+    return likely_random_walks(campaign, others)[number]
 
 
 def _members(selection: Selection) -> tuple[str, ...]:

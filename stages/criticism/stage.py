@@ -27,6 +27,7 @@ from stages.criticism.oscillation_search import find_oscillations, without_lines
 from stages.criticism.residual_structure import structure_rows, structure_tests
 from stages.criticism.selection import SENSORS, select_effects
 from stages.criticism.temperature_findings import temperature_rows
+from stages.criticism.without_law import without_law
 
 BLOCKS_SHARE = 0.9  # of the accepted probability of a false name; the rest is that of the spectrum
 
@@ -72,18 +73,16 @@ def _of_mount(
         name: partial(_with, plan, data)
         for name, plan in extended_plans(data.plan, data.performed, quiet).items()
     }
+    lawless = without_law(selection, random_walks, tested)
     for sensor, walk in random_walks.items():
-        structured = bool(tested.of(sensor))
-        yield from random_walk_rows(
-            sensor, walk, selection.alternatives, mount, structured=structured
-        )
+        yield from random_walk_rows(sensor, walk, selection.alternatives, lawless, mount)
     yield from BlockResults(
-        campaign, selection, ExtendedCampaigns(selection, extended), mount
+        campaign, selection, ExtendedCampaigns(selection, extended), lawless, mount
     ).rows()
     yield from OscillationResults(spectrum, mount).rows()
     yield from other_scores(random_walks.get("gyro"), mount)
-    yield from structure_rows(tested, selection.consistent(), mount)
-    yield from unexplained_rows(selection, mount)
+    yield from structure_rows(tested, lawless.reported_structures, mount)
+    yield from unexplained_rows(selection, lawless, mount)
     yield from temperature_rows(data.blocks, data.plan, level, mount)
 
 

@@ -1,0 +1,137 @@
+"""Odds of laws against a random walk of each bias, with the Occam factors of all their parameters.
+
+A random walk from which its mean is fitted has independent components cos(k π t/T), k = 1, 2, …,
+of variance 2 K² T/(k π)² (Karhunen & Loève): a prior of the same half waves that a drift without a
+law consists of. So both explanations are compared in one set of normal equations. Each has a size
+whose logarithm is uniform, in units of what the campaign determines: a signal-to-noise ratio.
+
+A walk may be that of all axes or of one; so may a law with a parameter for each axis. Else a drift
+of one gyro would count as a walk of three of which two happen to be silent.
+
+Source: MacKay 1992, Bayesian interpolation (Occam factor); IEEE Std 952-2020, rate random walk.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import logsumexp
+
+from inertial.model_selection.effect_classes import MAX_PRIOR_SNR, MIN_PRIOR_SNR, log_evidence
+from inertial.model_selection.evidence import searched_effect
+from inertial.model_selection.scan import Candidates
+
+Array = NDArray[np.float64]
+
+LARGEST_SNR = 1e3  # of a walk that is tried; beyond MAX_PRIOR_SNR the prior goes on as before
+AXES = 3
+STEPS = 60  # of the sizes of a walk
+LOG_RANGE = float(np.log(MAX_PRIOR_SNR / MIN_PRIOR_SNR))
+
+
+@dataclass(frozen=True)
+class Equations:
+    """Normal equations of all columns, what is already explained removed: F (k, k), b (k,)."""
+
+    information: Array
+    right: Array
+
+    def given(self, columns: Sequence[int], variance: Array | None = None) -> "Equations":
+        """The same with some columns explained, with prior variances where they have one."""
+        if not len(columns):
+            return self
+        own = list(columns)
+        scale = np.sqrt(np.maximum(np.diag(self.information)[own], np.finfo(float).tiny))
+        block = self.information[np.ix_(own, own)] / np.outer(scale, scale)
+        if variance is not None:
+            block = block + np.diag(1 / np.maximum(variance * scale**2, np.finfo(float).tiny))
+        inverse = np.linalg.pinv(block, rcond=1e-9, hermitian=True) / np.outer(scale, scale)
+        across = self.information[:, own] @ inverse
+        return Equations(
+            self.information - across @ self.information[own],
+            self.right - across @ self.right[own],
+        )
+
+
+@dataclass(frozen=True)
+class Explained:
+    """Log evidence of an explanation against none, and the equations with it explained."""
+
+    log_evidence: float
+    rest: Equations
+
+
+def walk(equations: Equations, axes: Sequence[Sequence[int]]) -> Explained:
+    """A random walk of all biases alike, or of each by itself.
+
+    `axes`: of each axis the columns of its half waves, k = 1, 2, …
+    """
+    shape = np.arange(1, len(axes[0]) + 1, dtype=np.float64) ** -2.0
+    alike = _walk(equations, [i for axis in axes for i in axis], np.tile(shape, len(axes)))
+
+    def alone(rest: Equations, axis: int) -> Explained:
+        return _walk(rest, axes[axis], shape)
+
+    return _either(alike, _each(equations, alone))
+
+
+def law(equations: Equations, values: Sequence[Sequence[int]], weights: Array) -> Explained:
+    """An effect, of which each value of its scan has columns and a share of the prior.
+
+    Where it has a parameter for each axis, these together or each by itself.
+    """
+    together = _law(equations, values, weights)
+    if len(values[0]) != AXES:
+        return together
+
+    def alone(rest: Equations, axis: int) -> Explained:
+        return _law(rest, [columns[axis : axis + 1] for columns in values], weights)
+
+    return _either(together, _each(equations, alone))
+
+
+def _each(equations: Equations, alone: Callable[[Equations, int], Explained]) -> Explained:
+    """Each axis by itself: it acts or does not, as likely beforehand."""
+    total, rest = 0.0, equations
+    first = [alone(equations, axis).log_evidence for axis in range(AXES)]
+    for axis in np.argsort(first)[::-1]:
+        one = alone(rest, int(axis))
+        total += float(np.logaddexp(0.0, one.log_evidence) - np.log(2))
+        rest = one.rest if one.log_evidence > 0 else rest
+    return Explained(total, rest)
+
+
+def _either(one: Explained, other: Explained) -> Explained:
+    """Two kinds of the same, as likely beforehand."""
+    both = float(np.logaddexp(one.log_evidence, other.log_evidence) - np.log(2))
+    return Explained(both, max(one, other, key=lambda each: each.log_evidence).rest)
+
+
+def _walk(equations: Equations, columns: Sequence[int], shape: Array) -> Explained:
+    """A walk of one size K²; `shape`: variances of its components for K = 1."""
+    own = list(columns)
+    root = np.sqrt(shape)
+    block = equations.information[np.ix_(own, own)] * np.outer(root, root)
+    signal = float(np.trace(block))
+    if signal <= 0:
+        return Explained(0.0, equations)
+    values, vectors = np.linalg.eigh(block)
+    values = np.maximum(values, 0.0)
+    along = vectors.T @ (root * equations.right[own])
+    sizes = np.geomspace(MIN_PRIOR_SNR, LARGEST_SNR, STEPS)
+    variances = sizes[:, None] ** 2 / signal
+    gains = variances * along**2 / (1 + variances * values) - np.log1p(variances * values)
+    logs = np.sum(gains, axis=1) / 2
+    step = float(np.log(sizes[1] / sizes[0]))
+    total = float(logsumexp(logs)) + np.log(step) - np.log(LOG_RANGE)
+    best = float(variances[int(np.argmax(logs)), 0])
+    return Explained(float(total), equations.given(own, best * shape))
+
+
+def _law(equations: Equations, values: Sequence[Sequence[int]], weights: Array) -> Explained:
+    candidates = Candidates([searched_effect("", *values)])
+    drops, degrees = candidates.drops(equations.information, equations.right)
+    odds = np.where(degrees > 0, log_evidence(drops, degrees) - np.log(LOG_RANGE), 0.0)
+    total = float(logsumexp(odds, b=weights / np.sum(weights)))
+    return Explained(total, equations.given(values[int(np.argmax(odds))]))
