@@ -1,0 +1,92 @@
+"""The result that counts: the rows of a candidate, or of a mixture where members disagree."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from inertial.estimation.triad import linear_names
+from stages.diagnosis.result import result_of
+
+Row = dict[str, Any]
+SIGMA = 2.0
+
+
+def rows(method: str, value: float | None, *effects: str) -> list[Row]:
+    shared = {"stage": "extension", "mount": "lying", "sensor": "gyro", "method": method}
+    shared |= {"unit": "1", "frame": "body", "meaning": "", "reason": ""}
+    named = [(name, None, value) for name in linear_names()]
+    named += [(f"{effect}.k", effect, 7.0) for effect in effects]
+    return [
+        shared
+        | {"id": f"{method}/{name}", "parameter": name, "effect": effect, "value": number}
+        | {"sigma": None if number is None else SIGMA}
+        for name, effect, number in named
+    ]
+
+
+def covariance(*of: list[Row]) -> dict[tuple[str, str], float]:
+    return {
+        (one["id"], other["id"]): SIGMA**2 * (1.0 if one is other else 0.1)
+        for own in of
+        for one in own
+        for other in own
+        if one["sigma"] and other["sigma"]
+    }
+
+
+def made(values: tuple[float, float | None], **probability: float) -> Any:
+    parameters = {
+        "extended": rows("extended", values[0], "gyro_bias_ramp"),
+        "member_1": rows("member_1", values[1], "gyro_warm_up"),
+    }
+    return result_of("extended", parameters, covariance(*parameters.values()), probability)
+
+
+def test_one_result_is_handed_on_with_ids_of_its_own():
+    result = made((3.0, 99.0), extended=1.0)
+    assert result.method == "extended" and len(result.rows) == 13
+    first, effect = result.rows[0], result.rows[-1]
+    assert (first["id"], first["stage"]) == ("diagnosis/gyroscope@lying/scale_x", "diagnosis")
+    assert (first["value"], first["sigma"], effect["effect"]) == (3.0, SIGMA, "gyro_bias_ramp")
+    table = result.covariance_rows().set_index(["first", "second"])["covariance"]
+    assert len(table) == 13**2
+    assert table[first["id"], first["id"]] == SIGMA**2
+    assert table[first["id"], effect["id"]] == pytest.approx(0.1 * SIGMA**2)
+
+
+def test_members_within_a_sigma_stay_one_result():
+    assert made((3.0, 4.9), extended=0.6, member_1=0.4).method == "extended"
+
+
+def test_members_that_disagree_are_mixed():
+    result = made((3.0, 13.0), extended=0.6, member_1=0.4)
+    assert result.method == "mixture" and {row["method"] for row in result.rows} == {"mixture"}
+    first, effect = result.rows[0], result.rows[-1]
+    assert first["value"] == pytest.approx(7.0)  # 0.6 · 3 + 0.4 · 13
+    # Within: 4; between: 0.6 · 16 + 0.4 · 36 = 24.
+    assert first["sigma"] == pytest.approx(np.sqrt(28.0))
+    assert (effect["effect"], effect["value"], effect["sigma"]) == ("gyro_bias_ramp", 7.0, SIGMA)
+    table = result.covariance_rows().set_index(["first", "second"])["covariance"]
+    assert table[first["id"], first["id"]] == pytest.approx(28.0)
+    assert table[first["id"], effect["id"]] == pytest.approx(0.6 * 0.1 * SIGMA**2)
+
+
+def test_what_a_member_does_not_determine_is_not_determined():
+    result = made((3.0, None), extended=0.6, member_1=0.4)
+    assert {row["value"] for row in result.rows[:12]} == {None}
+    assert all("determined" in row["reason"] for row in result.rows[:12])
+    assert len(result.covariance_rows()) == 1  # of the effect
+
+
+def test_a_constant_of_an_effect_has_no_covariance():
+    parameters = {"extended": rows("extended", 3.0, "gyro_bias_jump")}
+    parameters["extended"][-1]["sigma"] = None
+    result = result_of("extended", parameters, covariance(*parameters.values()), {})
+    assert result.rows[-1]["value"] == 7.0
+    assert len(result.covariance_rows()) == 12**2
+
+
+def test_a_sensor_without_a_result_has_no_rows():
+    result = result_of("joint", {"joint": []}, {}, {})
+    assert (list(result.rows), len(result.covariance_rows())) == ([], 0)
