@@ -2,9 +2,9 @@
 
     python -m commands.check --campaign demo
 
-It reads the findings of quality and segment, which `make check` lets the workflow make first. It
-ends with 0 where nothing spoils a result, with 1 where something does, and with 2 where the tables
-are missing.
+It reads the findings of quality and segment, which `make check` lets the workflow make first, and
+states each cause with what follows from it. It ends with 0 where nothing spoils a result, with 1
+where something does, and with 2 where the tables are missing.
 """
 
 import argparse
@@ -16,31 +16,37 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from inertial import tables
-from inertial.campaign.records import Performed, Row, performed_of, rows_of
+from inertial.campaign.explanations import Explained, compete
+from inertial.campaign.hypotheses import findings_of, hypotheses
+from inertial.campaign.records import Performed, performed_of, rows_of
 from inertial.tables.errors import Refusal
 from inertial.text.cause_names import how_grave, in_words, tally
 from inertial.text.messages import _
 from inertial.text.numbers import counted, shortened, visible
 
 LINE_WIDTH = 100
-MAX_FULL_FINDINGS = 20  # of further ones only the causes are listed
+MAX_FULL_CAUSES = 20  # of further ones only the names are listed
 SPOILS_A_RESULT = 3  # severity
+APPLIED = ("applied", "confirmed")  # states of a repair
 LABELS = {"consequence": "Consequence", "action": _("What to do")}
 INDENT = " " * 4
 
 
 @dataclass(frozen=True)
 class Recording:
-    """Findings, the worst first; what was performed of each manoeuvre; refused lines by log."""
+    """Causes, the worst first; what was performed of each manoeuvre; refused lines by log."""
 
-    findings: Sequence[Row]
+    causes: Sequence[Explained]
     performed: Sequence[Performed]
     refused: dict[str, int]
 
     @property
     def spoiled(self) -> bool:
-        """Whether a finding spoils a result."""
-        return any(row["severity"] >= SPOILS_A_RESULT for row in self.findings)
+        """Whether a cause spoils a result and nothing undoes it."""
+        return any(
+            each.cause.row["severity"] >= SPOILS_A_RESULT and not _undone(each)
+            for each in self.causes
+        )
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -66,33 +72,42 @@ def recording_of(derived: Path) -> Recording:
     Refusal
         where one of them is missing, damaged, or of another version
     """
-    findings = [
-        row
-        for stage in ("quality", "segment")
-        for row in rows_of(tables.FINDINGS.read(derived / stage / "findings.parquet"))
-    ]
+    findings = findings_of(
+        tables.FINDINGS.read(derived / "quality/findings.parquet"),
+        tables.FINDINGS.read(derived / "segment/findings.parquet"),
+        tables.FINDINGS.empty(),
+        tables.EFFECT_FINDINGS.empty(),
+        tables.MEMBERS.empty(),
+        tables.REPAIRS.read(derived / "plan/repairs.parquet"),
+        tables.REPAIRS.read(derived / "segment/repairs.parquet"),
+        tables.MASKS.read(derived / "quality/masks.parquet"),
+        tables.GAPS.read(derived / "quality/gaps.parquet"),
+        tables.SEGMENTS.read(derived / "segment/segments.parquet"),
+    )
     performed = performed_of(tables.PERFORMED.read(derived / "segment/performed.parquet"))
     refused = {
         row["log"]: row["lines"]
         for row in rows_of(tables.ACCOUNTS.read(derived / "decode/accounts.parquet"))
         if row["kind"] == "refused"
     }
-    return Recording(sorted(findings, key=_worst_first), list(performed.values()), refused)
+    causes = sorted(compete(list(hypotheses(findings))), key=_worst_first)
+    return Recording(causes, list(performed.values()), refused)
 
 
-def _worst_first(row: Row) -> tuple[int, float, int, str]:
-    """By severity, then the least likely by chance, then by count; as the report has them."""
+def _worst_first(each: Explained) -> tuple[int, float, int, str]:
+    """By severity, then the least likely by chance, then by count."""
+    row = each.cause.row
     p_value = 1.0 if row["p_value"] is None else row["p_value"]
     return -row["severity"], p_value, -row["count"], row["id"]
 
 
 def as_text(recording: Recording, campaign: str) -> str:
-    """What was recorded, the findings, and their number in one line at the end."""
+    """What was recorded, the causes, and their number in one line at the end."""
     paragraphs = [_recorded(recording, campaign)]
-    paragraphs += [_finding(row) for row in recording.findings[:MAX_FULL_FINDINGS]]
-    if others := recording.findings[MAX_FULL_FINDINGS:]:
-        causes = Counter(in_words(row["cause"]) for row in others)
-        listed = ", ".join(f"{cause} ({count})" for cause, count in causes.most_common())
+    paragraphs += [_cause(each) for each in recording.causes[:MAX_FULL_CAUSES]]
+    if others := recording.causes[MAX_FULL_CAUSES:]:
+        named = Counter(in_words(each.cause.cause) for each in others)
+        listed = ", ".join(f"{cause} ({count})" for cause, count in named.most_common())
         paragraphs.append(
             _wrapped(_("And {others} more: {listed}.", others=len(others), listed=listed))
         )
@@ -125,24 +140,46 @@ def _recorded(recording: Recording, campaign: str) -> str:
     return "\n".join(_wrapped(shortened(sentence, 300)) for sentence in sentences)
 
 
-def _finding(row: Row) -> str:
-    """Cause and place, the sentence, what it does to the result, what to do."""
+def _cause(each: Explained) -> str:
+    """Cause and place, the sentence, what it does, what was done, what to do, what follows."""
+    row = each.cause.row
     place = row["manoeuvre"] or row["log"]
-    title = [how_grave(row["severity"]).upper(), in_words(row["cause"])]
+    grave = _("set right, on condition") if _undone(each) else how_grave(row["severity"])
+    title = [grave.upper(), in_words(row["cause"])]
     title += [shortened(place, 60)] if place else []
-    return "\n".join([_wrapped(" · ".join(title)), *_details(row)])
+    return "\n".join([_wrapped(" · ".join(title)), *_details(each)])
 
 
-def _details(row: Row) -> Iterator[str]:
+def _undone(each: Explained) -> bool:
+    """Whether a repair undoes it."""
+    repair = each.cause.repair
+    return repair is not None and repair["state"] in APPLIED
+
+
+def _details(each: Explained) -> Iterator[str]:
+    row, repair = each.cause.row, each.cause.repair
     yield _wrapped(shortened(row["sentence"], 600), INDENT)
     for name, label in LABELS.items():
         if row[name]:
             yield _wrapped(f"{label}: {shortened(row[name], 600)}", INDENT)
+    if repair is not None:
+        done = _(
+            "Done: {done} Valid if {condition}",
+            done=repair["sentence"],
+            condition=repair["condition"],
+        )
+        yield _wrapped(shortened(done, 600), INDENT)
+    following = Counter(
+        in_words(other.cause) for other in each.consequences if other is not each.cause
+    )
+    if following:
+        listed = ", ".join(f"{cause} ({count})" for cause, count in following.most_common())
+        yield _wrapped(_("Therefore: {listed}.", listed=listed), INDENT)
 
 
 def _summary(recording: Recording) -> str:
-    if recording.findings:
-        return tally([row["severity"] for row in recording.findings])
+    if recording.causes:
+        return tally([each.cause.row["severity"] for each in recording.causes])
     if refused := sum(recording.refused.values()):
         return _("No finding, but {refused} cannot be read.", refused=counted(refused, "line"))
     return _("Nothing is wrong with this recording.")

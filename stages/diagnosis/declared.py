@@ -5,13 +5,24 @@ from inertial.tables.declared import Declared, From
 
 DECLARED = Declared(
     reads={
+        "quality_findings": From("quality", tables.FINDINGS),
+        "segment_findings": From("segment", tables.FINDINGS),
+        "accelerometer_findings": From("accelerometer", tables.FINDINGS),
         "criticism_findings": From("criticism", tables.EFFECT_FINDINGS, "findings"),
-        "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
-        "accelerometer_covariance": From("accelerometer", tables.COVARIANCE),
-        "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
-        "gyroscope_covariance": From("gyroscope", tables.COVARIANCE),
-        "extension_parameters": From("extension", tables.PARAMETERS),
-        "extension_covariance": From("extension", tables.COVARIANCE),
+        "members": From("criticism", tables.MEMBERS),
+        "effects": From("criticism", tables.EFFECTS),
+        "random_walks": From("criticism", tables.RANDOM_WALKS),
+        "plan_repairs": From("plan", tables.REPAIRS),
+        "segment_repairs": From("segment", tables.REPAIRS),
+        "masks": From("quality", tables.MASKS),
+        "gaps": From("quality", tables.GAPS),
+        "segments": From("segment", tables.SEGMENTS),
+        "performed": From("segment", tables.PERFORMED),
+        **{
+            f"{stage}_{table.name}": From(stage, table)
+            for stage in ("accelerometer", "gyroscope", "extension")
+            for table in (tables.PARAMETERS, tables.COVARIANCE, tables.FIT)
+        },
         "candidates": From("extension", tables.CANDIDATES),
         "candidate_effects": From("extension", tables.CANDIDATE_EFFECTS),
     },

@@ -59,8 +59,8 @@ def result_of(
     probability : of the candidates that compete, by method
     """
     members = [method, *(other for other in probability if other != method)]
-    own = {each: _ordered(parameters[each]) for each in members}
-    spreads = {each: _covariance_of(own[each], covariance) for each in members}
+    own = {each: ordered(parameters[each]) for each in members}
+    spreads = {each: covariance_of(own[each], covariance) for each in members}
     rows, whole = own[method], spreads[method]
     values = np.array([[_number(row["value"]) for row in own[m][:UNKNOWNS]] for m in members])
     within = np.array([spreads[m][:UNKNOWNS, :UNKNOWNS] for m in members])
@@ -78,7 +78,7 @@ def result_of(
     return Result(method, [_named(row) | {"method": method} for row in rows], whole)
 
 
-def _ordered(rows: Sequence[Row]) -> list[Row]:
+def ordered(rows: Sequence[Row]) -> list[Row]:
     """The twelve parameters in their order, then those of the effects."""
     by_name = {row["parameter"]: row for row in rows if row["effect"] is None}
     twelve = [by_name[name] for name in linear_names() if name in by_name]
@@ -101,7 +101,7 @@ def _mixed(row: Row, value: float, sigma: float) -> Row:
     }
 
 
-def _covariance_of(rows: Sequence[Row], covariance: Mapping[tuple[str, str], float]) -> Array:
+def covariance_of(rows: Sequence[Row], covariance: Mapping[tuple[str, str], float]) -> Array:
     names = [row["id"] for row in rows]
     elements = [covariance.get((one, other), np.nan) for one in names for other in names]
     return np.array(elements).reshape(len(names), len(names))

@@ -1,78 +1,111 @@
 """Causes, the one result that counts, and the verdict per sensor; it fits nothing."""
 
+from collections.abc import Iterator, Sequence
+
 import pandas as pd
 
-from inertial.campaign.records import Row, rows_of
-from inertial.estimation.triad import linear_names
+from inertial.campaign.explanations import compete
+from inertial.campaign.hypotheses import Findings, findings_of, hypotheses
+from inertial.campaign.records import Row, performed_of, rows_of
 from inertial.tables.stage import Stage, Tables
-from inertial.text.parameters import JOINT
-from stages.diagnosis.decision import Decision, alarms_of, decided
+from stages.diagnosis.causes import Cause, Evidence
 from stages.diagnosis.declared import DECLARED
-from stages.diagnosis.result import Result, covariance_by_ids, result_of
+from stages.diagnosis.sensor_results import Estimated, SensorResult, estimated_of
+from stages.diagnosis.verdict import Verdict, verdict
 
 
 def diagnosis(
-    criticism_findings: pd.DataFrame,
-    accelerometer_parameters: pd.DataFrame,
-    accelerometer_covariance: pd.DataFrame,
-    gyroscope_parameters: pd.DataFrame,
-    gyroscope_covariance: pd.DataFrame,
-    extension_parameters: pd.DataFrame,
-    extension_covariance: pd.DataFrame,
-    candidates: pd.DataFrame,
-    candidate_effects: pd.DataFrame,
+    findings: Findings,
+    estimated: Estimated,
+    effects: pd.DataFrame,
+    random_walks: pd.DataFrame,
+    performed: pd.DataFrame,
 ) -> Tables:
-    """Causes, consequences, members of classes, the result with its covariance, the verdict."""
-    findings = rows_of(criticism_findings)
-    joint = [*rows_of(accelerometer_parameters), *rows_of(gyroscope_parameters)]
-    joint = [r for r in joint if r["method"] == JOINT and r["parameter"] in linear_names()]
-    parameters = [*joint, *rows_of(extension_parameters)]
-    covariance = covariance_by_ids(
-        accelerometer_covariance, gyroscope_covariance, extension_covariance
+    """Causes, consequences, members of classes, the result with its covariance, the verdict.
+
+    Parameters
+    ----------
+    estimated : the candidates for the result of each sensor and mount
+    effects : of criticism: sizes of the effects
+    """
+    explained = list(compete(list(hypotheses(findings))))
+    results = list(estimated.results(explained))
+    evidence = Evidence(
+        {(result.sensor, result.mount): result for result in results},
+        frozenset(random_walks["finding"]),
+        performed_of(performed),
     )
-    results: list[Result] = []
-    verdicts: list[Row] = []
-    for mount, sensor in dict.fromkeys((r["mount"], r["sensor"]) for r in rows_of(candidates)):
-        own, effects, values = (
-            [row for row in rows if (row["mount"], row["sensor"]) == (mount, sensor)]
-            for rows in (rows_of(candidates), rows_of(candidate_effects), parameters)
-        )
-        decision = decided(
-            own,
-            effects,
-            alarms_of(findings, mount, sensor),
-            determined=any(r["value"] is not None for r in values if r["method"] == JOINT),
-        )
-        by_method = {r["method"]: [v for v in values if v["method"] == r["method"]] for r in own}
-        result = result_of(decision.method, by_method, covariance, _competing(own, decision))
-        results.append(result)
-        verdicts.append(
-            {
-                "mount": mount,
-                "sensor": sensor,
-                "verdict": "usable",
-                "sentence": "",
-                "method": result.method,
-                "condition": None,
-                "reason": decision.reason,
-            }
-        )
-    tables = [result.covariance_rows() for result in results]
+    causes = evidence.causes(explained)
+    verdicts = [verdict(result, causes) for result in results]
+    sizes = _sizes(rows_of(effects))
     return {
-        "causes": [],
-        "members": [],
-        "consequences": [],
-        "result": [row for result in results for row in result.rows],
-        "covariance": pd.concat(tables) if tables else DECLARED.writes["covariance"].empty(),
-        "verdict": verdicts,
+        "causes": [cause.row(sizes) for cause in causes],
+        "members": [row for cause in causes for row in _members(cause, findings)],
+        "consequences": [row for cause in causes for row in _consequences(cause)],
+        **_written(results, verdicts),
+        "verdict": [
+            {
+                "mount": result.mount,
+                "sensor": result.sensor,
+                "verdict": given.verdict,
+                "sentence": given.sentence,
+                "method": result.chosen.method,
+                "condition": given.condition,
+                "reason": result.decision.reason,
+            }
+            for result, given in zip(results, verdicts, strict=True)
+        ],
     }
 
 
-def _competing(candidates: list[Row], decision: Decision) -> dict[str, float]:
-    """The probabilities of the members of a class by method; of the joint result nothing else."""
-    if decision.method == JOINT:
-        return {}
-    return {row["method"]: row["probability"] for row in candidates if row["probability"] > 0}
+def _sizes(effects: Sequence[Row]) -> dict[str, tuple[float | None, float | None, str]]:
+    """By finding value, sigma and unit of the parameter that is clearest in its sigma."""
+    clearest: dict[str, Row] = {}
+    for row in effects:
+        if row["finding"] and row["value"] is not None and row["sigma"]:
+            best = clearest.get(row["finding"])
+            if best is None or _sigmas(row) > _sigmas(best):
+                clearest[row["finding"]] = row
+    return {name: (row["value"], row["sigma"], row["unit"]) for name, row in clearest.items()}
 
 
-STAGE = Stage(diagnosis, DECLARED)
+def _sigmas(row: Row) -> float:
+    return abs(float(row["value"]) / float(row["sigma"]))
+
+
+def _members(cause: Cause, findings: Findings) -> Iterator[Row]:
+    """The members of its class, by the finding that speaks for it."""
+    for row in findings.members:
+        if row["finding"] == cause.main.id:
+            yield {
+                "id": f"{cause.id}/{row['rank']}",
+                "cause": cause.id,
+                "mount": row["mount"],
+                "rank": row["rank"],
+                "member": row["effect"],
+                "probability": row["probability"],
+            }
+
+
+def _consequences(cause: Cause) -> Iterator[Row]:
+    """Every finding that the cause explains, its own among them."""
+    for member in cause.members:
+        for each in member.consequences:
+            yield {"finding": each.id, "stage": each.stage, "cause": cause.id}
+
+
+def _written(results: Sequence[SensorResult], verdicts: Sequence[Verdict]) -> Tables:
+    """The rows of the result, null where it is spoilt, and the covariance of those with a value."""
+    rows: list[Row] = []
+    covariances = []
+    for result, given in zip(results, verdicts, strict=True):
+        if given.spoilt:
+            nothing = {"value": None, "sigma": None, "reason": given.sentence}
+            rows += [{**row, **nothing} for row in result.chosen.rows]
+        else:
+            rows += result.chosen.rows
+            covariances.append(result.chosen.covariance_rows())
+    return {"result": rows, "covariance": pd.concat(covariances) if covariances else []}
+
+
+STAGE = Stage(diagnosis, DECLARED, gathers={"findings": findings_of, "estimated": estimated_of})

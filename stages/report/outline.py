@@ -116,9 +116,10 @@ class Paragraph(Part):
 
 @dataclass(frozen=True)
 class Heading(Part):
-    """The name of what follows within a section."""
+    """The name of what follows within a section; other places lead to its `anchor`."""
 
     text: str
+    anchor: str = ""
 
 
 @dataclass(frozen=True)

@@ -30,25 +30,22 @@ from stages.report.sections.effect_sentences import (
     tested_effects,
     worth,
 )
-from stages.report.sections.findings import (
-    FINDING_TABLES,
-    LINES,
-    POSITION,
-    related_findings,
-    title_of,
-)
+from stages.report.sections.findings import FINDING_TABLES, cause_of_finding, title_of
 from stages.report.tables import Record, Tables, once
 from stages.report.words import capital, count_in_words
 
-MAX_LETTERS = 1500  # of a sentence
+POSITION = "table_position_error"  # what an effect of the accelerometers may look like
+LINES = {"oscillation", "table_ripple", "table_eccentricity"}  # periodic in turns, all of them
 MIN_SPLIT_SIGMA = 3.3  # at which the likelier member is right in 95 of 100 campaigns
 IDENTIFIED = frozenset({"found", "class"})
 
 
 @once
 def effect_findings(tables: Tables) -> list[Record]:
-    """The findings of criticism, the clearest first."""
-    return clearest_first(effect_causes(tables))
+    """The findings of criticism that are causes of their own, the clearest first."""
+    causes = cause_of_finding(tables)
+    own = [row for row in effect_causes(tables) if causes[row["id"]]["cause"] == row["cause"]]
+    return clearest_first(own)
 
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
@@ -157,8 +154,8 @@ def _blocks(tables: Tables) -> Iterator[outline.Finding]:
         place = (row["sensor"], mount)
         shown: list[outline.Figure | outline.Table] = [*_parameters(tables, row)]
         links = [
-            outline.Link(f"Findings: {title_of(other)}", f"finding/{other['id']}")
-            for other in related_findings(tables).get(row["id"], ())
+            outline.Link(title_of(tables, cause), f"cause/{cause['id']}")
+            for cause in [cause_of_finding(tables)[row["id"]]]
         ]
         residuals = None
         if row["cause"] not in LINES:
@@ -174,7 +171,7 @@ def _blocks(tables: Tables) -> Iterator[outline.Finding]:
             f"effect/{row['id']}",
             _title(row),
             GRADES[grade_of(row)],
-            shortened(row["sentence"], MAX_LETTERS),
+            certainty(row),
             answers=tuple(_answers(tables, row)),
             parts=shown,
             links=links,
@@ -216,7 +213,7 @@ def _own_figures(tables: Tables, row: Record, key: str) -> Iterator[outline.Figu
 
 def _answers(tables: Tables, row: Record) -> outline.Pairs:
     mount, kind = row["mount"], kind_of(row)
-    answers = [("Certainty", certainty(row))]
+    answers: list[tuple[str, str]] = []
     if kind in ("consistent", "walk") and (what := _meaning(tables, row["cause"], mount)):
         answers.append(("Cause", f"{capital(what)}."))
     if others := alternatives(row):
@@ -230,14 +227,10 @@ def _answers(tables: Tables, row: Record) -> outline.Pairs:
         (_("Ruled out"), " ".join(_positions(tables, row, mount))),
         (_("To distinguish"), _split(row) if row["split_manoeuvre"] else ""),
         ("Improvement", " ".join(_gain(tables, row, mount))),
-        ("Consequence", shortened(row["consequence"] or "", 900)),
     ]
     if row["cause"] == "oscillation" and effect_of(tables, row):
         answers.append(("Magnitude", " ".join(periodic_figures.angle(tables, row["cause"]))))
-    answers += [
-        ("Navigation", _worth(tables, row, mount)),
-        ("Action", shortened(row["action"] or "", 600)),
-    ]
+    answers.append(("Navigation", _worth(tables, row, mount)))
     return tuple((name, text) for name, text in answers if text)
 
 

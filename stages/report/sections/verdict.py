@@ -1,116 +1,182 @@
-"""The verdict in a few plain sentences, on the first page and as a text of its own."""
+"""Page one: the verdict of each sensor in a sentence, then one card for each cause."""
 
 from __future__ import annotations
 
 import textwrap
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
 from math import degrees
 
-from inertial.campaign.records import omissions
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import counted, fixed, probability, shortened, significant, whole
-from inertial.text.parameters import EXTENDED
+from inertial.text.numbers import (
+    decimals_of,
+    fixed,
+    probability,
+    shortened,
+    significant,
+    whole,
+    with_sigma,
+)
+from inertial.text.units import quantity
 from stages.report import outline
-from stages.report.linked import CAUSE_TABLES
 from stages.report.results import (
-    CALIBRATION,
     FREE,
     RESULT_TABLES,
     Estimate,
-    effects_in,
     final_results,
     kind_of,
     quantity_of,
 )
-from stages.report.sections.effect_sentences import summary
-from stages.report.sections.findings import FINDING_TABLES, model_findings, ranked
+from stages.report.sections.findings import FINDING_TABLES, causes, findings_of, title_of
 from stages.report.tables import Record, Tables, once
-from stages.report.words import listed
 
 SIMULATED = _(
     "SIMULATED: recorded by the simulated laboratory. No instrument of this serial was calibrated."
 )
-FITS = {FREE: _("unknown attitudes"), EXTENDED: _("with effects")}
-KINDS = {"bias": "bias", "scale": _("scale error"), "cross": _("cross-axis term")}
-TONE: dict[str, outline.Tone] = {
-    "calibrated": "good",
-    "calibrated in part": "fair",
-    "not calibrated": "poor",
+FITS = {
+    "joint": _("joint"),
+    FREE: _("unknown attitudes"),
+    "extended": _("with effects"),
+    "mixture": _("mean over a class"),
 }
-MEANING = {
-    "calibrated": _("All 24 parameters are determined and both models describe their data."),
-    "calibrated in part": _("Some results can be used; the reasons below say which."),
-    "not calibrated": _("This campaign gives no result that could be used."),
+KINDS = {"bias": _("bias"), "scale": _("scale error"), "cross": _("cross-axis term")}
+# The verdicts from the worst to the best, with words, tone and meaning.
+LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
+    "not_usable": (
+        _("not usable"),
+        "poor",
+        _(
+            "A cause that is not removed moves a parameter by more than its sigma, or parameters "
+            "are not determined."
+        ),
+    ),
+    "on_condition": (
+        _("usable on condition"),
+        "fair",
+        _(
+            "Something was set right that nobody has confirmed. The result is valid if the "
+            "condition below holds; `accept` in the campaign file confirms it."
+        ),
+    ),
+    "usable_within_limits": (
+        _("usable within limits"),
+        "fair",
+        _("Causes were found; each is in the model, masked, or harmless, as its card states."),
+    ),
+    "usable": (
+        _("usable"),
+        "good",
+        _("All parameters are determined, and nothing is wrong that this campaign could show."),
+    ),
 }
+SURE = {
+    "found": _("identified: nothing else explains these data as well"),
+    "one_of_class": _("one of a class: these data do not tell its members apart"),
+    "unknown_structure": _("certain that it is there, not what it is"),
+}
+CURED = {
+    "repaired": _("set right"),
+    "modelled": _("in the model"),
+    "masked": _("masked"),
+    "interpolated": _("interpolated"),
+    "left_out": _("left out"),
+    "none": _("not removed"),
+}
+MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter
 MOST_NAMES = 8
 
 
-@dataclass(frozen=True)
-class Verdict:
-    """How good the calibration is, in one of three levels, with the reasons in sentences."""
-
-    level: str
-    reasons: tuple[str, ...]
-
-
 @once
-def verdict(tables: Tables) -> Verdict:
-    """The level and its reasons.
-
-    Calibrated: the final results determine all twelve parameters of both sensors and
-    describe their data (p ≥ 0.01), and no finding spoils a result. Not calibrated: they
-    determine none. In part: everything between.
-    """
-    results = final_results(tables)
-    whole = all(len(result.calibration) == len(CALIBRATION) for result in results)
-    spoiled = any(finding["severity"] == 3 for finding in ranked(tables))
-    if not any(result.calibration for result in results):
-        level = _("not calibrated")
-    elif whole and not spoiled and not any(result.misfit for result in results):
-        level = "calibrated"
-    else:
-        level = _("calibrated in part")
-    return Verdict(level, tuple(_reasons(tables, results)))
+def worst(tables: Tables) -> str:
+    """The verdict of the campaign: the worst of its sensors."""
+    given = {row["verdict"] for row in tables.rows("verdict")}
+    return next((level for level in LEVELS if level in given), "not_usable")
 
 
-def _reasons(tables: Tables, results: Sequence[Estimate]) -> Iterator[str]:
-    for result in results:
-        yield _determined(result, effects_in(tables, result))
-    for result in results:
-        words, _unused = result.fit_in_words()
-        if words:
-            yield f"{result.sensor}: {words}."
-    if lacking := list(summary(model_findings(tables))):
-        yield _(
-            "{lacking} “Unmodelled effects” states their size and the action.",
-            lacking=" ".join(lacking),
-        )
-    for result in results:
-        if result.fit and (excluded := omissions(result.manoeuvres)):
-            text = shortened(excluded, 400).rstrip(".")
-            yield f"{result.sensor}, excluded: {text}."
-    yield _performed(tables)
-    yield _findings(ranked(tables))
+def _sentences(tables: Tables) -> Iterator[str]:
+    for row in tables.rows("verdict"):
+        mount = _("Mount {mount}. ", mount=row["mount"]) if row["mount"] else ""
+        yield mount + row["sentence"]
 
 
-def _determined(result: Estimate, effects: Sequence[str]) -> str:
-    """What is determined of a sensor, with effects in the model, and its worst sigma by kind."""
-    count = len(result.calibration)
-    if not count:
-        return _("{sensor}: nothing is determined.", sensor=result.sensor)
-    every = _("all 12 parameters are determined")
-    amount = (
-        every
-        if count == len(CALIBRATION)
-        else _("{count} of 12 parameters are determined", count=count)
+# ---- The card of a cause.
+
+
+def _card(tables: Tables, row: Record) -> outline.Finding:
+    facts = {
+        _("times"): whole(row["count"]) if row["count"] > 1 else None,
+        "SNR": None if row["snr"] is None else significant(row["snr"], 3),
+        "p": None if row["p_value"] is None else probability(row["p_value"]),
+        _("identifier"): row["id"],
+    }
+    return outline.Finding(
+        anchor=f"cause/{row['id']}",
+        title=title_of(tables, row),
+        grade=CURED[row["cure"]],
+        sentence=shortened(row["sentence"], 700),
+        answers=tuple(_answers(tables, row)),
+        facts=tuple((name, str(text)) for name, text in facts.items() if text),
+        links=tuple(_links(tables, row)),
+        tone=_tone(row),
     )
-    amount += _(", by static positions of unknown attitude") * (result.method == FREE)
-    amount += _(", with {effects} in the model", effects=listed(effects)) if effects else ""
-    worst = "; ".join(f"{KINDS[kind]} {text}" for kind, text in _largest_sigmas(result).items())
-    return f"{result.sensor}: {amount}." + (f" Largest σ: {worst}." if worst else "")
+
+
+def _tone(row: Record) -> outline.Tone:
+    if row["cure"] != "none":
+        return "fair"
+    return "" if (row["moves"] or 0.0) < MAX_HARMLESS_MOVE and row["moves"] is not None else "poor"
+
+
+def _answers(tables: Tables, row: Record) -> outline.Pairs:
+    texts = {
+        _("How sure"): SURE[row["verdict"]],
+        _("How large"): _size(row),
+        _("What it does"): _effect_on_result(row),
+        _("What was done"): row["done"],
+        _("Gain"): row["gain"],
+        _("Valid if"): row["condition"],
+        _("Therefore"): _therefore(tables, row),
+        _("In the laboratory"): row["action"],
+    }
+    return tuple((name, shortened(text, 600)) for name, text in texts.items() if text)
+
+
+def _size(row: Record) -> str | None:
+    if row["size"] is None:
+        return None
+    unit = quantity(row["cause"], row["unit"] or "1").laboratory
+    size, sigma = unit.of(row["size"]), unit.of(row["sigma"])
+    if sigma is None:
+        return f"{significant(size)} {unit.name}".removesuffix(" 1")
+    return f"{' ± '.join(with_sigma(size, sigma, decimals_of(sigma)))} {unit.name}"
+
+
+def _effect_on_result(row: Record) -> str:
+    if row["moves"] is None:
+        return str(row["consequence"])
+    moves = _(
+        "It moves a parameter by at most {moves} of its sigma.", moves=significant(row["moves"], 2)
+    )
+    return f"{moves} {row['consequence']}"
+
+
+def _therefore(tables: Tables, row: Record) -> str:
+    """The findings that this cause explains, by name, with how many."""
+    names = Counter(
+        in_words(each["cause"])
+        for each in findings_of(tables, row)
+        if each["cause"] != row["cause"]
+    )
+    return ", ".join(f"{name} ({count})" for name, count in names.most_common(MOST_NAMES))
+
+
+def _links(tables: Tables, row: Record) -> Iterator[outline.Link]:
+    if findings_of(tables, row):
+        yield outline.Link(_("What shows it"), f"evidence/{row['id']}")
+
+
+# ---- The plate, the section, and the text.
 
 
 def _largest_sigmas(result: Estimate) -> dict[str, str]:
@@ -122,46 +188,6 @@ def _largest_sigmas(result: Estimate) -> dict[str, str]:
             unit = quantity_of(worst).laboratory
             largest[kind] = f"{significant(unit.of(worst['sigma']), 2)} {unit.name}"
     return largest
-
-
-def _performed(tables: Tables) -> str:
-    planned, rows = len(tables.frame("manoeuvres")), tables.rows("performed")
-    if planned == 0:
-        return _("No manoeuvre was planned.")
-    complete = sum(bool(row["found"] and row["complete"]) for row in rows)
-    missing = [row["manoeuvre"] for row in rows if not row["found"]]
-    partly = [
-        row["manoeuvre"] + (_(" (gap interpolated)") if row["bridged"] else "")
-        for row in rows
-        if row["found"] and not row["complete"]
-    ]
-    text = _(
-        "{complete} of {planned} recorded as planned",
-        complete=complete,
-        planned=counted(planned, "manoeuvre"),
-    )
-    text += _("; not complete: {partly}", partly=_first(partly)) if partly else ""
-    text += _("; not found: {missing}", missing=_first(missing)) if missing else ""
-    return f"{text}."
-
-
-def _first(names: Sequence[str]) -> str:
-    shown = ", ".join(shortened(name, 60) for name in names[:MOST_NAMES])
-    return (
-        _("{shown} and {names} more", shown=shown, names=len(names) - MOST_NAMES)
-        if len(names) > MOST_NAMES
-        else shown
-    )
-
-
-def _findings(findings: Sequence[Record]) -> str:
-    if not findings:
-        return _("Findings: none.")
-    causes = Counter(row["cause"] for row in findings)
-    names = ", ".join(f"{in_words(cause)} ({n})" for cause, n in causes.most_common(MOST_NAMES))
-    rest = len(causes) - MOST_NAMES
-    others = _(" and {rest} further causes", rest=rest) if rest > 0 else ""
-    return f"Findings: {whole(len(findings))}; {names}{others}."
 
 
 def facts(tables: Tables) -> outline.Pairs:
@@ -206,15 +232,17 @@ def _with_unit(value: float | None, decimals: int, unit: str) -> str:
 
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
-    """The level, its reasons, the final results in short, and the plate of the report."""
-    given = verdict(tables)
+    """The verdict, a sentence per sensor, a card per cause, the results in short, the plate."""
     if tables.row("campaign")["simulated"]:
         yield outline.Paragraph(SIMULATED, "poor")
-    yield outline.Level(given.level, TONE[given.level], MEANING[given.level])
-    yield outline.Sentences(given.reasons)
+    word, tone, meaning = LEVELS[worst(tables)]
+    yield outline.Level(word, tone, meaning)
+    yield outline.Sentences(tuple(_sentences(tables)))
+    for row in causes(tables):
+        yield _card(tables, row)
     sigmas = ("Bias σ", "Scale σ", _("Cross-axis σ"))
     yield outline.Table(
-        "Final results: parameters determined, and the largest σ of each kind.",
+        _("The result: parameters determined, and the largest σ of each kind."),
         outline.columns("text", "Sensor", "Fit")
         + outline.columns("number", "Determined", *sigmas, "p of the fit"),
         [_in_short(row) for row in final_results(tables)],
@@ -225,22 +253,19 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
 SECTION = outline.Section(
     "verdict",
     "Verdict",
-    _("Whether this calibration can be used, and why."),
+    _("Whether this calibration can be used, and why: each cause once."),
     _(
-        "Calibrated: the final fits, joint or with effects in the model, determine all "
-        "24 parameters and describe their data (p ≥ 0.01). In part: some are not "
-        "determined, or a model does not describe its data. Not calibrated: none is "
-        "determined."
+        "A cause is what, taken as true and undone or modelled, makes other findings vanish; "
+        "those are its consequences and stand on its card. A manoeuvre that the plan lacks is no "
+        "cause."
     ),
     (
         *RESULT_TABLES,
         *FINDING_TABLES,
-        *CAUSE_TABLES[1:],
+        *("causes", "cause_members", "consequences", "verdict"),
         "campaign",
         "known",
         "clocks",
-        "manoeuvres",
-        "performed",
     ),
     parts,
 )
@@ -250,7 +275,7 @@ def _in_short(result: Estimate) -> outline.Row:
     largest = _largest_sigmas(result)
     return outline.table_row(
         result.sensor,
-        FITS.get(result.method, "joint"),
+        FITS.get(result.method, result.method),
         f"{len(result.calibration)} of 12",
         *(largest.get(kind, "—") for kind in KINDS),
         probability(result.fit["p_value"]) if result.fit else "—",
@@ -259,16 +284,26 @@ def _in_short(result: Estimate) -> outline.Row:
 
 def as_text(tables: Tables) -> str:
     """The verdict as plain text, 80 letters wide."""
-    given = verdict(tables)
+    word, _tone, meaning = LEVELS[worst(tables)]
     lines = []
     if tables.row("campaign")["simulated"]:
         lines += [*textwrap.wrap(SIMULATED, 80), ""]
-    lines += [f"Verdict: {given.level}", *textwrap.wrap(MEANING[given.level], 80), ""]
-    for reason in given.reasons:
-        lines += textwrap.wrap(reason, 80, initial_indent="- ", subsequent_indent="  ")
+    lines += [f"Verdict: {word}", *textwrap.wrap(meaning, 80), ""]
+    for sentence in _sentences(tables):
+        lines += textwrap.wrap(sentence, 80, initial_indent="- ", subsequent_indent="  ")
+    for row in causes(tables):
+        title = f"{title_of(tables, row)} ({CURED[row['cure']]})"
+        lines += ["", *textwrap.wrap(title, 80)]
+        lines += _indented(row["sentence"])
+        for name, text in _answers(tables, row):
+            lines += _indented(f"{name}: {text}")
     lines.append("")
     for name, text in facts(tables):
         lines += textwrap.wrap(
             f"{name + ':':<15}{text}", 80, subsequent_indent=" " * 15, break_on_hyphens=False
         )
     return "\n".join(lines) + "\n"
+
+
+def _indented(text: str) -> list[str]:
+    return textwrap.wrap(shortened(text, 700), 80, initial_indent="  ", subsequent_indent="  ")

@@ -1,0 +1,253 @@
+"""What each cause explains: the findings that vanish where it is true and undone, or modelled.
+
+One table, read from top to bottom: a cause, what it makes other stages report, and where it does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from inertial.campaign.hypotheses import MODEL, POSITIONS, Hypothesis
+
+Where = Callable[[Hypothesis, Hypothesis], bool]
+
+
+# ---- Where a cause acts.
+
+
+def anywhere(cause: Hypothesis, other: Hypothesis) -> bool:
+    """In the whole campaign."""
+    return True
+
+
+def same_sensor(cause: Hypothesis, other: Hypothesis) -> bool:
+    """In the sensor that the other finding concerns, or either is not about one alone."""
+    return None in (cause.sensor, other.sensor) or cause.sensor == other.sensor
+
+
+def same_axis(cause: Hypothesis, other: Hypothesis) -> bool:
+    """In the axis that the other finding concerns, or either is not about one alone."""
+    one_axis = None in (cause.axis, other.axis) or cause.axis == other.axis
+    return same_sensor(cause, other) and one_axis
+
+
+def same_manoeuvre(cause: Hypothesis, other: Hypothesis) -> bool:
+    """In a manoeuvre that the other finding is about."""
+    return bool(cause.manoeuvres & other.manoeuvres)
+
+
+def same_log(cause: Hypothesis, other: Hypothesis) -> bool:
+    """In the log that the other finding is about, or in one of its manoeuvres."""
+    log = cause.row["log"]
+    return (log is not None and log == other.row["log"]) or same_manoeuvre(cause, other)
+
+
+# ---- Which findings.
+
+
+def _is(*causes: str) -> Where:
+    return lambda _, other: other.cause in causes
+
+
+def _ends(*endings: str) -> Where:
+    return lambda _, other: other.cause.endswith(endings)
+
+
+def _same_cause(cause: Hypothesis, other: Hypothesis) -> bool:
+    """Another stage has the same cause, or the same physics by its own name for it."""
+    kind = {_KIND.get(name, name) for name in cause.causes}
+    return not kind.isdisjoint(_KIND.get(name, name) for name in other.causes)
+
+
+# What the recording shows as one thing and the model by several names.
+_KIND = {
+    name: kind
+    for kind, names in {
+        "bias jump": ("bias_jump", "gyro_bias_jump", "accel_bias_jump"),
+        "periodic": ("oscillation", "table_ripple", "table_eccentricity", "table_wobble"),
+        "temperature": (
+            "temperature_drift",
+            *(f"{s}_{what}" for s in ("gyro", "accel") for what in ("warm_up", "bias_ramp")),
+            *(f"{s}_{what}_temperature" for s in ("gyro", "accel") for what in ("bias", "scale")),
+        ),
+        "saturation": ("saturation", "gyro_saturation", "accel_saturation"),
+        "scale of counts": ("wrong_scale_factor", "wrong_scale_of_turns", "wrong_imu_type"),
+        "axes": ("axis_swap", "sign_flip"),
+    }.items()
+    for name in names
+}
+# What a recording shows of its circumstances: no fault, and whether it matters the model tells.
+CIRCUMSTANCES = ("temperature_drift",)
+MISFITS = ("unexplained", "unknown_structure")
+PERFORMANCE = (
+    "incomplete_turn",
+    "wrong_rate",
+    "wrong_direction",
+    "wrong_scale_of_turns",
+    "manoeuvre_missing",
+    "short_rest",
+    "table_moving",
+)
+MIN_SPOILING = 2  # severity of a fault that leaves a mark on what is estimated
+LOST_RECORDS = ("gap", "duplicate", "held_record", "time_backwards", "time_stands_still")
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """What these causes explain: the findings for which both conditions hold."""
+
+    causes: tuple[str, ...]
+    which: Where
+    where: Where
+
+
+EXPLANATIONS = (
+    # Readings that are no readings of this motion: the manoeuvre looks other than planned.
+    Explanation(
+        ("saturation", "spike", "impact", *LOST_RECORDS, "status_invalid", "clock_step"),
+        _is(*PERFORMANCE),
+        same_manoeuvre,
+    ),
+    Explanation(
+        ("dead_axis", "saturation"),
+        _is(*PERFORMANCE, "bias_jump", "oscillation", "quantisation", *MISFITS),
+        same_axis,
+    ),
+    # Axes, signs, units: they change everything that their sensor reads.
+    Explanation(
+        ("axis_swap", "sign_flip", "wrong_scale_factor", "wrong_imu_type", "wrong_direction"),
+        _is(*PERFORMANCE, "wrong_scale_factor", "manoeuvre_swapped", "gravity_error"),
+        same_sensor,
+    ),
+    Explanation(("manoeuvre_swapped",), _is(*PERFORMANCE), same_log),
+    # A clock that is set, or runs wrong, by what its stamps then look like.
+    Explanation(
+        ("clock_step", "time_backwards", "time_stands_still"),
+        _is("gap", "clock_jitter", "rate_off", "time_backwards", "duplicate"),
+        same_log,
+    ),
+    Explanation(
+        ("clock_scale", "rate_off"), _is("clock_scale", "rate_off", "wrong_rate"), anywhere
+    ),
+    Explanation(
+        ("gravity_error",), _is("wrong_scale_factor", "gravity_error", *MISFITS), same_sensor
+    ),
+    # A table that moves: the readings are right, the position is not the planned one.
+    Explanation(
+        ("table_moving", "impact"),
+        _is("bias_jump", "oscillation", "table_position_error", *PERFORMANCE),
+        same_manoeuvre,
+    ),
+)
+
+
+def explains(cause: Hypothesis, other: Hypothesis) -> bool:
+    """Whether the other finding vanishes where this cause is true."""
+    if cause is other or not _same_mount(cause, other):
+        return False
+    if _rank(cause) > _rank(other) and _same_cause(cause, other) and same_sensor(cause, other):
+        return True
+    if other.stage == POSITIONS:
+        return _explains_position(cause, other)
+    if other.cause == "bias_jump" and _without_law(cause):
+        return cause.sensor == other.sensor
+    if _uncertain(other):
+        return _explains_uncertain(cause, other)
+    return not other.named and any(
+        cause.cause in rule.causes and rule.which(cause, other) and rule.where(cause, other)
+        for rule in EXPLANATIONS
+    )
+
+
+def _rank(hypothesis: Hypothesis) -> int:
+    """Which of two findings of one thing speaks for it: the repaired, then the named one."""
+    return (
+        8 * (hypothesis.repair is not None)
+        + 4 * hypothesis.named
+        + 2 * (hypothesis.stage == MODEL)
+        + (hypothesis.stage != POSITIONS)
+    )
+
+
+def _same_mount(cause: Hypothesis, other: Hypothesis) -> bool:
+    return not cause.mount or not other.mount or cause.mount == other.mount
+
+
+def _explains_position(cause: Hypothesis, other: Hypothesis) -> bool:
+    """A static position off the others: any effect of the accelerometers may look so."""
+    if cause.stage == MODEL:
+        return cause.sensor in (None, other.sensor) or "table_position_error" in cause.causes
+    return cause.stage != POSITIONS and same_manoeuvre(cause, other)
+
+
+# Findings of the model whose law is not known, that which leaves most unsaid first: each explains
+# those behind it.
+UNSAID = ("unknown_structure", "random walk", "consistent", "unexplained")
+
+
+def _unsaid(finding: Hypothesis) -> int:
+    """The place of a finding of the model in UNSAID."""
+    if finding.cause in MISFITS:
+        return UNSAID.index(finding.cause)
+    walk = finding.cause.endswith("_random_walk")
+    return UNSAID.index("random walk" if walk else "consistent")
+
+
+def _uncertain(finding: Hypothesis) -> bool:
+    """Whether it is a finding of the model without a certain name."""
+    return finding.stage == MODEL and not finding.named
+
+
+def _without_law(cause: Hypothesis) -> bool:
+    """Whether it is a change of a bias of which no law is known, or a random walk."""
+    return _uncertain(cause) or (cause.stage == MODEL and cause.cause.endswith("_random_walk"))
+
+
+def _explains_uncertain(cause: Hypothesis, other: Hypothesis) -> bool:
+    """Residuals without a certain name, in the same sensor.
+
+    An effect that is named does not explain them, for it is in the model whose residuals these
+    are; a fault of the recording does, where it spoils what is not masked or repaired.
+    """
+    if _without_law(cause):
+        return cause.sensor == other.sensor and _unsaid(cause) < _unsaid(other)
+    if cause.stage in (MODEL, POSITIONS):
+        return False
+    spoils = int(cause.row["severity"]) >= MIN_SPOILING and not cause.masked
+    return spoils and cause.repair is None and same_axis(cause, other)
+
+
+# ---- The competition.
+
+
+@dataclass(frozen=True)
+class Explained:
+    """A cause, and the findings that are its consequences, its own among them."""
+
+    cause: Hypothesis
+    consequences: tuple[Hypothesis, ...]
+
+
+def compete(hypotheses: Sequence[Hypothesis]) -> Iterator[Explained]:
+    """The causes: the hypotheses that none other explains, each with what it explains.
+
+    A finding that several explain is the consequence of the one that explains most.
+    """
+    hypotheses = [h for h in hypotheses if h.cause not in CIRCUMSTANCES]
+    explained = {h.id: [other for other in hypotheses if explains(h, other)] for h in hypotheses}
+    by_strength = sorted(hypotheses, key=lambda h: (len(explained[h.id]), _rank(h)), reverse=True)
+    owner: dict[str, str] = {}
+    for cause in by_strength:
+        for other in explained[cause.id]:
+            if other.id not in owner and _root(cause.id, owner) != other.id:
+                owner[other.id] = cause.id
+    roots = [h for h in hypotheses if h.id not in owner]
+    for root in roots:
+        yield Explained(root, tuple(h for h in hypotheses if _root(h.id, owner) == root.id))
+
+
+def _root(finding: str, owner: dict[str, str]) -> str:
+    while finding in owner:
+        finding = owner[finding]
+    return finding

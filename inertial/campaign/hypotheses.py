@@ -1,0 +1,186 @@
+"""Every finding of the earlier stages as a hypothesis about the same recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import pandas as pd
+
+from inertial.campaign.records import Row, rows_of
+
+FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE = "found", "one_of_class", "unknown_structure"
+RECORDING, PLAN, POSITIONS, MODEL = "quality", "segment", "accelerometer", "criticism"
+PLANNED = "plan"  # the stage that repairs what the campaign file states
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """What would have to be true, where, how large, how sure, and what was done about it.
+
+    `stage`: whose finding it is; `manoeuvres`: those whose records it touches; `verdict`: of
+    criticism, else empty; `members`: effects that it may be, the most probable first;
+    `repair`: the row of the repair that undoes it, if any; `masked`: whether its records are.
+    """
+
+    id: str
+    stage: str
+    cause: str
+    row: Row = field(repr=False)
+    manoeuvres: frozenset[str] = frozenset()
+    verdict: str = ""
+    members: tuple[str, ...] = ()
+    repair: Row | None = None
+    masked: bool = False
+
+    @property
+    def sensor(self) -> str | None:
+        """The sensor concerned, gyro or accel; None: not one of them alone."""
+        return self.row["sensor"] or None
+
+    @property
+    def axis(self) -> str | None:
+        """The axis concerned, if it is one."""
+        return self.row["axis"] or None
+
+    @property
+    def mount(self) -> str:
+        """The mount concerned; empty where it is not one alone."""
+        return self.row["mount"] or ""
+
+    @property
+    def named(self) -> bool:
+        """Whether it is an effect that criticism names, or a class of effects."""
+        return self.stage == MODEL and self.verdict in (FOUND, ONE_OF_CLASS)
+
+    @property
+    def causes(self) -> frozenset[str]:
+        """What it may be."""
+        return frozenset((self.cause, *self.members))
+
+
+@dataclass(frozen=True)
+class Findings:
+    """The findings of the stages that hand over hypotheses, and what belongs to them."""
+
+    by_stage: Mapping[str, Sequence[Row]]
+    members: Sequence[Row]
+    repairs: Sequence[Row]
+    masks: pd.DataFrame
+    gaps: pd.DataFrame
+    segments: pd.DataFrame
+
+
+def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
+    """All findings as hypotheses; a repair without a finding, such as of gravity, is one itself."""
+    members: dict[str, list[str]] = {}
+    for row in sorted(findings.members, key=lambda row: row["rank"]):
+        members.setdefault(row["finding"], []).append(row["effect"])
+    repair_of = {row["finding"]: row for row in findings.repairs if row["finding"]}
+    touched = _touched(findings)
+    for stage, rows in findings.by_stage.items():
+        for row in rows:
+            own = {row["manoeuvre"]} if row["manoeuvre"] else set()
+            yield Hypothesis(
+                id=row["id"],
+                stage=stage,
+                cause=row["cause"],
+                row=row,
+                manoeuvres=frozenset(own | touched.get(row["id"], set())),
+                verdict=row.get("verdict") or "",
+                members=tuple(members.get(row["id"], ())),
+                repair=repair_of.get(row["id"]),
+                masked=row["id"] in touched,
+            )
+    for row in findings.repairs:
+        if not row["finding"]:
+            yield Hypothesis(
+                row["id"], PLANNED, _CAUSE_OF_REPAIR[row["repair"]], _as_finding(row), repair=row
+            )
+
+
+_CAUSE_OF_REPAIR = {
+    "gravity": "gravity_error",
+    "axes": "axis_swap",
+    "signs": "sign_flip",
+    "count_size": "wrong_scale_factor",
+    "sense_of_table": "wrong_direction",
+    "exchanged_manoeuvres": "manoeuvre_swapped",
+    "stated_rate": "wrong_rate",
+}
+
+
+def _as_finding(repair: Row) -> Row:
+    both = repair["value"] is not None and repair["stated"] is not None
+    return {
+        **{key: repair[key] for key in ("id", "sensor", "axis", "log", "manoeuvre", "unit")},
+        "mount": "",
+        "from_s": None,
+        "to_s": None,
+        "count": 1,
+        "size": repair["stated"] - repair["value"] if both else None,
+        "p_value": None,
+        "severity": 3,
+        "sentence": repair["sentence"],
+        "consequence": "",
+        "action": "",
+    }
+
+
+def _touched(findings: Findings) -> dict[str, set[str]]:
+    """By finding the manoeuvres of which it masks or lacks records."""
+    segments = findings.segments
+    touched: dict[str, set[str]] = {}
+    masks = findings.masks
+    for log, first, after, finding in zip(
+        masks["log"], masks["from_record"], masks["to_record"], masks["finding"], strict=True
+    ):
+        here = touched.setdefault(finding, set())
+        if len(here) < len(segments):
+            here |= _in(segments, log, first, after)
+    lost = set[str]()
+    for log, record in zip(findings.gaps["log"], findings.gaps["record"], strict=True):
+        lost |= _in(segments, log, record - 1, record + 1)
+    for row in findings.by_stage.get(RECORDING, ()):
+        if row["cause"] == "gap":
+            touched.setdefault(row["id"], set()).update(lost)
+    return touched
+
+
+def _in(segments: pd.DataFrame, log: str, first: int, after: int) -> set[str]:
+    """The manoeuvres of a log to which some of these records belong."""
+    same = (segments["log"] == log).to_numpy(bool)
+    inside = (segments["from_record"].to_numpy(np.int64) < after) & (
+        segments["to_record"].to_numpy(np.int64) > first
+    )
+    return set(segments["manoeuvre"].to_numpy(object)[same & inside])
+
+
+def findings_of(
+    quality_findings: pd.DataFrame,
+    segment_findings: pd.DataFrame,
+    accelerometer_findings: pd.DataFrame,
+    criticism_findings: pd.DataFrame,
+    members: pd.DataFrame,
+    plan_repairs: pd.DataFrame,
+    segment_repairs: pd.DataFrame,
+    masks: pd.DataFrame,
+    gaps: pd.DataFrame,
+    segments: pd.DataFrame,
+) -> Findings:
+    """The tables of the stages that hand over hypotheses."""
+    tables: Iterable[tuple[str, pd.DataFrame]] = (
+        (RECORDING, quality_findings),
+        (PLAN, segment_findings),
+        (POSITIONS, accelerometer_findings),
+        (MODEL, criticism_findings),
+    )
+    return Findings(
+        {stage: rows_of(table) for stage, table in tables},
+        rows_of(members),
+        [*rows_of(plan_repairs), *rows_of(segment_repairs)],
+        masks,
+        gaps,
+        segments,
+    )

@@ -1,0 +1,262 @@
+"""The rows of the causes: what each is, its cure, its gain, and by how much it moves the result."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from inertial.campaign.explanations import Explained
+from inertial.campaign.hypotheses import (
+    FOUND,
+    MODEL,
+    ONE_OF_CLASS,
+    UNKNOWN_STRUCTURE,
+    Hypothesis,
+)
+from inertial.campaign.records import Performed, Row
+from inertial.text.cause_names import in_words
+from inertial.text.messages import _, plural
+from inertial.text.numbers import significant
+from stages.diagnosis.sensor_results import SensorResult
+
+REPAIRED, MODELLED, MASKED, INTERPOLATED, LEFT_OUT, NONE = (
+    "repaired",
+    "modelled",
+    "masked",
+    "interpolated",
+    "left_out",
+    "none",
+)
+APPLIED = ("applied", "confirmed")  # states of a repair that the blocks were made with
+MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter: what a cause may move and be harmless
+MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed spoils the result
+SPOILS = 3  # severity of a finding
+DIFFERENT_THINGS = ("manoeuvre_missing", "manoeuvre_swapped")  # each is one of its own
+
+DONE = {
+    REPAIRED: _("It was set right before anything was estimated."),
+    MODELLED: _("It is in the model of the result, estimated with the parameters."),
+    MASKED: _("The readings are masked; nothing is estimated from them."),
+    INTERPOLATED: _("What is missing is interpolated from the steady rate before and after."),
+    LEFT_OUT: _("The manoeuvres concerned are left out of the estimates."),
+    NONE: _("Nothing was done about it."),
+}
+IN_COVARIANCE = _("The covariance of the result includes it.")
+HARMLESS = _("Nothing need be done about it for this result.")
+
+
+@dataclass(frozen=True)
+class Cause:
+    """A cause, or equal ones, with their consequences, and what was done about it.
+
+    `moves`: largest shift of a parameter of the result that it causes or, undone, caused, in its
+    sigma; None where it is not known. `sensors`: gyro, accel, those whose result it concerns.
+    """
+
+    members: tuple[Explained, ...]
+    sensors: tuple[str, ...]
+    cure: str
+    done: str
+    moves: float | None
+    held_out_drop: float | None = None
+    gain: str | None = None
+
+    @property
+    def main(self) -> Hypothesis:
+        """The largest of the equal ones, which speaks for all."""
+        return max(
+            (member.cause for member in self.members),
+            key=lambda h: (h.row["severity"], abs(h.row["size"] or 0.0)),
+        )
+
+    @property
+    def id(self) -> str:
+        """Its identifier."""
+        return f"diagnosis/{self.main.id}"
+
+    @property
+    def verdict(self) -> str:
+        """How sure its name is."""
+        if self.main.stage == MODEL:
+            return self.main.verdict or UNKNOWN_STRUCTURE
+        rivals = self.main.repair is not None and self.main.repair["state"] == "rival"
+        return ONE_OF_CLASS if rivals else FOUND
+
+    @property
+    def condition(self) -> str | None:
+        """What must be true for the result to be right, where nobody has confirmed it."""
+        repair = self.main.repair
+        return repair["condition"] if repair is not None and repair["state"] == "applied" else None
+
+    @property
+    def spoils(self) -> bool:
+        """Whether it is not removed and moves a parameter by more than its sigma."""
+        if self.cure != NONE:
+            return False
+        if self.moves is not None:
+            return self.moves > MAX_MOVE
+        return int(self.main.row["severity"]) >= SPOILS or self.verdict == UNKNOWN_STRUCTURE
+
+    @property
+    def name(self) -> str:
+        """The cause in a few words, with its class and its place."""
+        names = self.main.members[:3] if self.verdict == ONE_OF_CLASS else ()
+        words = _(" or ").join(in_words(name) for name in names or (self.main.cause,))
+        axis = self.main.axis
+        place = self.main.row["manoeuvre"]
+        words += _(" of the {axis} axis", axis=axis) if axis and self._one_axis() else ""
+        return words + (_(" ({place})", place=place) if place else "")
+
+    def _one_axis(self) -> bool:
+        return len({member.cause.axis for member in self.members}) == 1
+
+    def row(self, sizes: Mapping[str, tuple[float | None, float | None, str]]) -> Row:
+        """Its row; `sizes`: value, sigma and unit of the largest parameter of an effect."""
+        main, repair = self.main, self.main.repair
+        size, sigma, unit = sizes.get(main.id, (main.row["size"], None, main.row["unit"]))
+        count = sum(int(member.cause.row["count"]) for member in self.members)
+        sentence = main.row["sentence"]
+        if len(self.members) > 1:
+            sentence += " " + plural(
+                "There is {count} of them; the largest is described.",
+                "There are {count} of them; the largest is described.",
+                count,
+            )
+        return {
+            "id": self.id,
+            "cause": main.cause,
+            "verdict": self.verdict,
+            "mount": main.mount,
+            "sensor": main.sensor,
+            "axis": main.axis if self._one_axis() else None,
+            "log": main.row["log"] if len(self.members) == 1 else None,
+            "manoeuvre": main.row["manoeuvre"] if len(self.members) == 1 else None,
+            "count": count,
+            "sentence": sentence,
+            "size": size,
+            "sigma": sigma,
+            "unit": unit,
+            "snr": main.row.get("snr"),
+            "p_value": main.row["p_value"],
+            "cure": self.cure,
+            "gain": self.gain,
+            "fitting_before": repair["fitting_before"] if repair else None,
+            "fitting_after": repair["fitting_after"] if repair else None,
+            "held_out_drop": self.held_out_drop,
+            "moves": self.moves,
+            "condition": self.condition,
+            "consequence": main.row["consequence"],
+            "done": self.done,
+            "action": main.row["action"],
+        }
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What the cures and gains of causes are read from.
+
+    `results`: by sensor and mount; `walks`: ids of findings about random walks, which the
+    covariance includes; `performed`: by the name of the manoeuvre.
+    """
+
+    results: Mapping[tuple[str, str], SensorResult]
+    walks: frozenset[str]
+    performed: Mapping[str, Performed]
+
+    def causes(self, explained: Sequence[Explained]) -> list[Cause]:
+        """Every cause once: equal faults of one sensor are one."""
+        groups: dict[Any, list[Explained]] = {}
+        for number, each in enumerate(explained):
+            cause = each.cause
+            alone = cause.stage == MODEL or cause.cause in DIFFERENT_THINGS or cause.repair
+            key = number if alone else (cause.cause, cause.mount, cause.sensor)
+            groups.setdefault(key, []).append(each)
+        return [self._cause(tuple(group)) for group in groups.values()]
+
+    def _cause(self, members: tuple[Explained, ...]) -> Cause:
+        main = max(members, key=lambda m: m.cause.row["severity"]).cause
+        own = list(self._own(main))
+        cure, moves, drop = self._cure(main, own, members)
+        done = main.repair["sentence"] if cure == REPAIRED and main.repair else DONE[cure]
+        if main.id in self.walks:
+            done = IN_COVARIANCE
+        elif cure == NONE and (moves is not None and moves < MAX_HARMLESS_MOVE):
+            done = HARMLESS
+        sensors = tuple(dict.fromkeys(result.sensor for result in own))
+        return Cause(members, sensors, cure, done, moves, drop, _gain(main, drop))
+
+    def _own(self, cause: Hypothesis) -> Iterator[SensorResult]:
+        """The results that a cause concerns: of its sensor, and where the model has its effect."""
+        for (sensor, mount), result in self.results.items():
+            if cause.mount and mount and cause.mount != mount:
+                continue
+            if cause.sensor in (None, sensor) or cause.causes & result.effects.keys():
+                yield result
+
+    def _cure(
+        self, cause: Hypothesis, own: Sequence[SensorResult], members: Sequence[Explained]
+    ) -> tuple[str, float | None, float | None]:
+        """The cure, the largest shift of a parameter in sigma, and the gain on held-out data."""
+        if cause.repair is not None:
+            applied = cause.repair["state"] in APPLIED
+            return REPAIRED if applied else LEFT_OUT, _moved_by(cause.repair, own), None
+        if cause.stage == MODEL:
+            return self._cure_of_effect(cause, own)
+        touched = frozenset().union(*(member.cause.manoeuvres for member in members))
+        done = [self.performed[name] for name in touched if name in self.performed]
+        if cause.cause == "gap":
+            whole = all(each.complete or each.bridged for each in done)
+            return INTERPOLATED if whole else LEFT_OUT, None, None
+        if cause.masked:
+            return MASKED, None, None
+        if done and not any(each.complete or each.bridged for each in done):
+            return LEFT_OUT, None, None
+        harmless = int(cause.row["severity"]) == 1
+        return NONE, 0.0 if harmless else None, None
+
+    def _cure_of_effect(
+        self, cause: Hypothesis, own: Sequence[SensorResult]
+    ) -> tuple[str, float | None, float | None]:
+        if cause.id in self.walks:
+            return MODELLED, None, None
+        moves = [move for result in own if (move := result.moves(cause.causes)) is not None]
+        if cause.row.get("moves") is not None:
+            moves.append(float(cause.row["moves"]))
+        modelled = [result for result in own if result.models(cause.causes)]
+        kept = [result for result in own if result.shows(cause.causes) and result not in modelled]
+        drops = [result.drop for result in modelled if result.drop is not None]
+        largest = max(moves, default=None)
+        if modelled and not kept:
+            return MODELLED, largest, max(drops, default=None)
+        if kept and all(result.covers_misfit for result in kept):
+            # What manoeuvres differ by is in the sigmas, so the shift is measured in these.
+            return (MODELLED if modelled else NONE), largest, max(drops, default=None)
+        return NONE, largest, None
+
+
+def _moved_by(repair: Row, own: Sequence[SensorResult]) -> float | None:
+    """By how many sigma a stated value would have moved the scale factors."""
+    if repair["value"] is None or repair["stated"] is None or not repair["value"]:
+        return None
+    relative = abs(repair["stated"] / repair["value"] - 1)
+    sigmas = [sigma for result in own if (sigma := result.scale_sigma) is not None]
+    return relative / min(sigmas) if sigmas else None
+
+
+def _gain(cause: Hypothesis, drop: float | None) -> str | None:
+    repair = cause.repair
+    if repair is not None and repair["fitting_after"] is not None:
+        return _(
+            "With it {after} of {all} observations fit the plan, without it {before}.",
+            after=repair["fitting_after"],
+            before=repair["fitting_before"],
+            all=repair["observations"],
+        )
+    if drop is not None:
+        return _(
+            "Manoeuvres that the fit has not seen are predicted better with it: χ² is lower by "
+            "{drop}.",
+            drop=significant(drop, 3),
+        )
+    return None

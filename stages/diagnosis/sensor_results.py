@@ -1,0 +1,194 @@
+"""What counts of each sensor: the chosen result, its rivals, and what each effect moves."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from inertial.campaign.explanations import Explained
+from inertial.campaign.hypotheses import MODEL
+from inertial.campaign.records import Row, rows_of
+from inertial.estimation.triad import linear_names
+from inertial.text.parameters import JOINT, SCALE
+from stages.diagnosis.decision import Decision, alarms_of, decided
+from stages.diagnosis.result import Result, covariance_by_ids, covariance_of, ordered, result_of
+
+TWELVE = frozenset(linear_names())
+
+
+@dataclass(frozen=True, eq=False)
+class SensorResult:
+    """What counts of one sensor on one mount.
+
+    `chosen`: the result; `candidates`: by method; `effects`: by an effect of a candidate the
+    method of the likeliest candidate that has it; `decision`: which method, and why; `fits`: rows
+    of the fits by method; `held_out`: rows of the candidates by method.
+    """
+
+    sensor: str
+    mount: str
+    chosen: Result
+    candidates: Mapping[str, Result]
+    effects: Mapping[str, str]
+    decision: Decision
+    fits: Mapping[str, Row]
+    held_out: Mapping[str, Row]
+
+    @property
+    def undetermined(self) -> list[str]:
+        """Those of the twelve parameters that have no value."""
+        values = {r["parameter"]: r["value"] for r in self.chosen.rows if r["effect"] is None}
+        return [name for name in linear_names() if values.get(name) is None]
+
+    @property
+    def drop(self) -> float | None:
+        """Of chi-squared of held-out manoeuvres by the result against the joint one."""
+        drop: float | None = self.held_out[self.decision.method]["drop"]
+        return drop
+
+    @property
+    def covers_misfit(self) -> bool:
+        """Whether the sigmas of the result include what manoeuvres differ by beyond the noise."""
+        fit = self.fits.get(self.decision.method)
+        return fit is not None and bool(fit["scatter"] or fit["random_walk"])
+
+    @property
+    def scale_sigma(self) -> float | None:
+        """The smallest sigma of a scale factor of the result."""
+        rows = [row for row in self.chosen.rows if row["parameter"] in SCALE and row["sigma"]]
+        return min((row["sigma"] for row in rows), default=None)
+
+    def models(self, effects: Collection[str]) -> bool:
+        """Whether one of these effects is in the model of the result."""
+        return any(row["effect"] in effects for row in self.chosen.rows)
+
+    def shows(self, effects: Collection[str]) -> bool:
+        """Whether a candidate of this sensor has one of these effects."""
+        return not self.effects.keys().isdisjoint(effects)
+
+    def moves(self, effects: Collection[str]) -> float | None:
+        """The largest shift of one of the twelve parameters by one of these effects, in sigma.
+
+        In the sigma of the result; None where no candidate has such an effect.
+        """
+        sigma = {row["parameter"]: row["sigma"] for row in self.chosen.rows}
+        shifts = [
+            abs(by) / sigma[name]
+            for effect, method in self.effects.items()
+            if effect in effects
+            for name, by in shift(self.candidates[method], effect).items()
+            if sigma.get(name)
+        ]
+        return max(shifts, default=None)
+
+
+def shift(result: Result, effect: str) -> dict[str, float]:
+    """By how much each of the twelve parameters would move without an effect, by name.
+
+    With the effect's parameters β held at zero the others move by −C_θβ C_ββ⁻¹ β, the conditional
+    mean of a Gaussian.
+    """
+    rows = list(result.rows)
+    own = [i for i, row in enumerate(rows) if row["effect"] == effect and row["sigma"]]
+    twelve = [i for i, row in enumerate(rows) if row["effect"] is None and row["sigma"]]
+    if not own:
+        return {}
+    beta = np.array([rows[i]["value"] for i in own])
+    block = result.covariance[np.ix_(own, own)]
+    size = np.sqrt(np.diag(block))
+    weights = np.linalg.pinv(block / np.outer(size, size), hermitian=True) @ (beta / size) / size
+    moved = -result.covariance[np.ix_(twelve, own)] @ weights
+    return {rows[i]["parameter"]: float(by) for i, by in zip(twelve, moved, strict=True)}
+
+
+@dataclass(frozen=True, eq=False)
+class Estimated:
+    """The rows of the estimation and the extension from which the results are chosen."""
+
+    parameters: Sequence[Row]
+    covariance: Mapping[tuple[str, str], float]
+    fits: Sequence[Row]
+    candidates: Sequence[Row]
+    candidate_effects: Sequence[Row]
+
+    def results(self, explained: Sequence[Explained]) -> Iterator[SensorResult]:
+        """Of every sensor and mount; `explained`: the causes, of which some are alarms."""
+        roots = [each.cause.row for each in explained if each.cause.stage == MODEL]
+        keys = dict.fromkeys((row["mount"], row["sensor"]) for row in self.candidates)
+        for mount, sensor in keys:
+            candidates, effects, parameters, fits = (
+                [row for row in rows if (row["mount"], row["sensor"]) == (mount, sensor)]
+                for rows in (self.candidates, self.candidate_effects, self.parameters, self.fits)
+            )
+            by_method = {
+                one["method"]: [row for row in parameters if row["method"] == one["method"]]
+                for one in candidates
+            }
+            alarms = alarms_of(roots, mount, sensor)
+            determined = any(row["value"] is not None for row in by_method.get(JOINT, ()))
+            decision = decided(candidates, effects, alarms, determined=determined)
+            yield SensorResult(
+                sensor,
+                mount,
+                result_of(
+                    decision.method, by_method, self.covariance, _competing(candidates, decision)
+                ),
+                {
+                    method: Result(
+                        method, rows := ordered(own), covariance_of(rows, self.covariance)
+                    )
+                    for method, own in by_method.items()
+                },
+                {
+                    row["effect"]: row["method"]
+                    for one in sorted(candidates, key=lambda one: float(one["probability"]))
+                    for row in effects
+                    if row["method"] == one["method"]
+                },
+                decision,
+                {row["method"]: row for row in fits},
+                {row["method"]: row for row in candidates},
+            )
+
+
+def _competing(candidates: Sequence[Row], decision: Decision) -> dict[str, float]:
+    """The probabilities of the members of a class by method; of the joint result nothing else."""
+    if decision.method == JOINT:
+        return {}
+    return {row["method"]: row["probability"] for row in candidates if row["probability"] > 0}
+
+
+def estimated_of(
+    accelerometer_parameters: pd.DataFrame,
+    gyroscope_parameters: pd.DataFrame,
+    accelerometer_covariance: pd.DataFrame,
+    gyroscope_covariance: pd.DataFrame,
+    accelerometer_fit: pd.DataFrame,
+    gyroscope_fit: pd.DataFrame,
+    extension_parameters: pd.DataFrame,
+    extension_covariance: pd.DataFrame,
+    extension_fit: pd.DataFrame,
+    candidates: pd.DataFrame,
+    candidate_effects: pd.DataFrame,
+) -> Estimated:
+    """The tables of the estimation and the extension as rows."""
+    joint = [
+        row
+        for table in (accelerometer_parameters, gyroscope_parameters)
+        for row in rows_of(table)
+        if row["method"] == JOINT and row["parameter"] in TWELVE
+    ]
+    return Estimated(
+        [*joint, *rows_of(extension_parameters)],
+        covariance_by_ids(accelerometer_covariance, gyroscope_covariance, extension_covariance),
+        [
+            row
+            for table in (accelerometer_fit, gyroscope_fit, extension_fit)
+            for row in rows_of(table)
+        ],
+        rows_of(candidates),
+        rows_of(candidate_effects),
+    )

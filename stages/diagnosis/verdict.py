@@ -1,0 +1,136 @@
+"""The verdict of a sensor, never greener than the worst of its causes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from inertial.text.messages import _, plural
+from stages.diagnosis.causes import MAX_HARMLESS_MOVE, NONE, Cause
+from stages.diagnosis.sensor_results import TWELVE, SensorResult
+
+USABLE, WITHIN_LIMITS, ON_CONDITION, NOT_USABLE = (
+    "usable",
+    "usable_within_limits",
+    "on_condition",
+    "not_usable",
+)
+SENSORS = {"gyro": _("Gyros"), "accel": _("Accelerometers")}
+MOST_NAMES = 4  # of causes, or parameters, in a sentence
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Verdict, sentence, and the condition on which the result is valid."""
+
+    verdict: str
+    sentence: str
+    condition: str | None = None
+
+    @property
+    def spoilt(self) -> bool:
+        """Whether a cause spoils the result, so that none of its numbers may be used."""
+        return self.verdict == NOT_USABLE and self._by_cause
+
+    _by_cause: bool = False
+
+
+def verdict(result: SensorResult, causes: Sequence[Cause]) -> Verdict:
+    """Of one sensor: the worst that its causes, and the parameters it lacks, leave."""
+    own = [cause for cause in causes if result.sensor in cause.sensors]
+    sensors = SENSORS[result.sensor]
+    spoiling = [cause for cause in own if cause.spoils]
+    if spoiling:
+        sentence = _(
+            "{sensors}: {causes}. Not usable: {why}.",
+            sensors=sensors,
+            causes=_names(spoiling),
+            why=_why(spoiling),
+        )
+        return Verdict(NOT_USABLE, sentence, None, True)
+    if lacking := result.undetermined:
+        return Verdict(NOT_USABLE, _lacking(sensors, lacking, own))
+    conditions = list(dict.fromkeys(cause.condition for cause in own if cause.condition))
+    if conditions:
+        unconfirmed = [cause for cause in own if cause.condition]
+        sentence = _(
+            "{sensors}: {causes}. Set right; the result is valid on condition: {conditions}.",
+            sensors=sensors,
+            causes=_names(unconfirmed),
+            conditions="; ".join(text.rstrip(".") for text in conditions),
+        )
+        return Verdict(ON_CONDITION, sentence + _others(own, unconfirmed), " ".join(conditions))
+    if own:
+        sentence = _(
+            "{sensors}: {causes}. Usable within limits: {how}.",
+            sensors=sensors,
+            causes=_names(own),
+            how=_how(own),
+        )
+        return Verdict(WITHIN_LIMITS, sentence)
+    return Verdict(
+        USABLE,
+        _("{sensors}: usable. Nothing is wrong that this campaign could show.", sensors=sensors),
+    )
+
+
+def _names(causes: Sequence[Cause]) -> str:
+    names = list(dict.fromkeys(cause.name for cause in causes))
+    shown = "; ".join(names[:MOST_NAMES])
+    rest = len(names) - MOST_NAMES
+    return shown + (_(" and {rest} further causes", rest=rest) if rest > 0 else "")
+
+
+def _why(causes: Sequence[Cause]) -> str:
+    moves = [cause.moves for cause in causes if cause.moves is not None]
+    if moves:
+        return _(
+            "it is not removed and moves a parameter by {moves:.1f} of its sigma", moves=max(moves)
+        )
+    return _("it is not removed, and how far it moves the parameters is not known")
+
+
+def _lacking(sensors: str, names: Sequence[str], own: Sequence[Cause]) -> str:
+    causes = _names(own) + ". " if own else ""
+    if len(names) == len(TWELVE):
+        return _(
+            "{sensors}: {causes}Not usable: no parameter is determined.",
+            sensors=sensors,
+            causes=causes,
+        )
+    shown = ", ".join(names[:MOST_NAMES])
+    return _(
+        "{sensors}: {causes}Not usable as a whole: {count} of 12 parameters are not determined "
+        "({names}{more}).",
+        sensors=sensors,
+        causes=causes,
+        count=len(names),
+        names=shown,
+        more=" …" if len(names) > MOST_NAMES else "",
+    )
+
+
+def _how(causes: Sequence[Cause]) -> str:
+    return "; ".join(dict.fromkeys(_limits(causes)))
+
+
+def _limits(causes: Sequence[Cause]) -> Iterator[str]:
+    for cause in causes:
+        if cause.cure != NONE:
+            yield cause.done.rstrip(".")
+        elif cause.moves is not None and cause.moves < MAX_HARMLESS_MOVE:
+            yield _("what it moves is small against the sigmas")
+        else:
+            yield _("the sigmas include it")
+
+
+def _others(own: Sequence[Cause], said: Sequence[Cause]) -> str:
+    others = [cause for cause in own if cause not in said]
+    if not others:
+        return ""
+    return plural(
+        " Besides, {count} cause: {names}.",
+        " Besides, {count} causes: {names}.",
+        len(others),
+        names=_names(others),
+    )
