@@ -7,11 +7,14 @@ import pandas as pd
 from inertial.campaign.explanations import compete
 from inertial.campaign.hypotheses import Findings, findings_of, hypotheses
 from inertial.campaign.records import Row, performed_of, rows_of
+from inertial.effects import CATALOGUE
 from inertial.tables.stage import Stage, Tables
 from stages.diagnosis.causes import Cause, Evidence
 from stages.diagnosis.declared import DECLARED
 from stages.diagnosis.sensor_results import Estimated, SensorResult, estimated_of
 from stages.diagnosis.verdict import Verdict, verdict
+
+PLACES = ("frequency", "n", "phase")  # parameters of lines: where they are, not how large
 
 
 def diagnosis(
@@ -59,10 +62,15 @@ def diagnosis(
 
 
 def _sizes(effects: Sequence[Row]) -> dict[str, tuple[float | None, float | None, str]]:
-    """By finding value, sigma and unit of the parameter that is clearest in its sigma."""
+    """By finding value, sigma and unit of the parameter that is clearest in its sigma.
+
+    What is scanned, a time, a frequency or an order, is where an effect is, not how large.
+    """
     clearest: dict[str, Row] = {}
     for row in effects:
-        if row["finding"] and row["value"] is not None and row["sigma"]:
+        effect = CATALOGUE.get(row["effect"])
+        scanned = effect is not None and effect.scan is not None and effect.scan.name
+        if row["finding"] and row["sigma"] and row["parameter"] not in (scanned, *PLACES):
             best = clearest.get(row["finding"])
             if best is None or _sigmas(row) > _sigmas(best):
                 clearest[row["finding"]] = row

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from inertial.text.messages import _, plural
-from stages.diagnosis.causes import MAX_HARMLESS_MOVE, NONE, Cause
+from stages.diagnosis.causes import (
+    INTERPOLATED,
+    LEFT_OUT,
+    MASKED,
+    MAX_HARMLESS_MOVE,
+    MODELLED,
+    NONE,
+    REPAIRED,
+    Cause,
+)
 from stages.diagnosis.sensor_results import TWELVE, SensorResult
 
 USABLE, WITHIN_LIMITS, ON_CONDITION, NOT_USABLE = (
@@ -16,6 +25,13 @@ USABLE, WITHIN_LIMITS, ON_CONDITION, NOT_USABLE = (
     "not_usable",
 )
 SENSORS = {"gyro": _("Gyros"), "accel": _("Accelerometers")}
+LIMITS = {
+    REPAIRED: _("set right"),
+    MODELLED: _("in the model"),
+    MASKED: _("masked"),
+    INTERPOLATED: _("interpolated"),
+    LEFT_OUT: _("left out"),
+}
 MOST_NAMES = 4  # of causes, or parameters, in a sentence
 
 
@@ -62,10 +78,9 @@ def verdict(result: SensorResult, causes: Sequence[Cause]) -> Verdict:
         return Verdict(ON_CONDITION, sentence + _others(own, unconfirmed), " ".join(conditions))
     if own:
         sentence = _(
-            "{sensors}: {causes}. Usable within limits: {how}.",
+            "{sensors}: {causes}. Usable within these limits.",
             sensors=sensors,
-            causes=_names(own),
-            how=_how(own),
+            causes=_names(own, _limit),
         )
         return Verdict(WITHIN_LIMITS, sentence)
     return Verdict(
@@ -74,11 +89,21 @@ def verdict(result: SensorResult, causes: Sequence[Cause]) -> Verdict:
     )
 
 
-def _names(causes: Sequence[Cause]) -> str:
-    names = list(dict.fromkeys(cause.name for cause in causes))
-    shown = "; ".join(names[:MOST_NAMES])
+def _names(causes: Sequence[Cause], remark: Callable[[Cause], str] | None = None) -> str:
+    """The causes in words, each with a remark; of many the first."""
+    names = [cause.name + (f" ({remark(cause)})" if remark else "") for cause in causes]
+    names = list(dict.fromkeys(names))
     rest = len(names) - MOST_NAMES
-    return shown + (_(" and {rest} further causes", rest=rest) if rest > 0 else "")
+    more = plural(" and {count} further cause", " and {count} further causes", rest)
+    return "; ".join(names[:MOST_NAMES]) + (more if rest > 0 else "")
+
+
+def _limit(cause: Cause) -> str:
+    """What became of a cause, in a few words."""
+    if cause.cure == NONE:
+        small = cause.moves is not None and cause.moves < MAX_HARMLESS_MOVE
+        return _("harmless") if small else _("included in the sigmas")
+    return LIMITS[cause.cure]
 
 
 def _why(causes: Sequence[Cause]) -> str:
@@ -108,20 +133,6 @@ def _lacking(sensors: str, names: Sequence[str], own: Sequence[Cause]) -> str:
         names=shown,
         more=" …" if len(names) > MOST_NAMES else "",
     )
-
-
-def _how(causes: Sequence[Cause]) -> str:
-    return "; ".join(dict.fromkeys(_limits(causes)))
-
-
-def _limits(causes: Sequence[Cause]) -> Iterator[str]:
-    for cause in causes:
-        if cause.cure != NONE:
-            yield cause.done.rstrip(".")
-        elif cause.moves is not None and cause.moves < MAX_HARMLESS_MOVE:
-            yield _("what it moves is small against the sigmas")
-        else:
-            yield _("the sigmas include it")
 
 
 def _others(own: Sequence[Cause], said: Sequence[Cause]) -> str:
