@@ -52,7 +52,7 @@ def columns() -> np.ndarray:
 
 def carried(observed: np.ndarray, effect: str, size: int = 1) -> tuple[str | None, Readings]:
     readings = Readings(columns(), observed, size)
-    return carrier(readings, "gyro", COLUMNS, [effect]), readings  # type: ignore[arg-type]
+    return carrier(readings, "gyro", COLUMNS, [effect]), readings
 
 
 @pytest.mark.parametrize("size", [1, 2, 3])
@@ -90,12 +90,12 @@ def test_two_that_are_both_needed_are_named_by_the_one_that_matters_more():
     parts[:, 0] *= np.repeat([float(name in sizes) for name in NAMES], READINGS)
     readings = Readings(parts, parts[:, 0] * strength * 0.7)
     # 0.7² (10 + 19.6) = 14.5 of a mean over both; 4.9 and 9.6 of one alone.
-    assert carrier(readings, "gyro", COLUMNS, ["first"]) == "c"  # type: ignore[arg-type]
+    assert carrier(readings, "gyro", COLUMNS, ["first"]) == "c"
 
 
 def test_a_campaign_of_one_manoeuvre_carries_what_it_shows():
     class Alone(Readings):
-        def without(self, held_out: tuple[str, ...], sensor: str) -> None:  # type: ignore[override]
+        def without(self, held_out: tuple[str, ...], sensor: str) -> None:
             return None
 
-    assert carrier(Alone(columns(), columns()[:, 0], 6), "gyro", COLUMNS, ["first"]) == "a"  # type: ignore[arg-type]
+    assert carrier(Alone(columns(), columns()[:, 0], 6), "gyro", COLUMNS, ["first"]) == "a"
