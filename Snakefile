@@ -285,7 +285,7 @@ rule comparison:
         files=files("comparison"),
         code=code("comparison"),
     message:
-        "{wildcards.campaign}: static against rotation, method against method, published values"
+        "{wildcards.campaign}: static against rotation, method against method"
     shell:
         command("comparison")
 
@@ -390,7 +390,7 @@ rule history:
         files=files("history", archive="data/history"),
         code=code("history"),
     message:
-        "{wildcards.campaign}: into the archive of its IMU"
+        "{wildcards.campaign}: into the archive of its IMU, and against published values"
     shell:
         command("history")
 

@@ -1,5 +1,7 @@
 """Differences in units of their sigmas: silent where there is nothing, named where there is."""
 
+from typing import Any
+
 import chain
 import numpy as np
 import pandas as pd
@@ -216,34 +218,26 @@ def test_published_values_become_si(tmp_path):
 
 
 def test_a_right_published_value_agrees_and_a_wrong_one_is_named(clean, tmp_path):
-    right = chain.again(clean[0], "comparison", published=published(tmp_path, RIGHT))
-    table = of_kind(right["differences"], "published")
+    right = chain.again(clean[0], "history", **of_history(tmp_path, RIGHT))
+    table = of_kind(right["published_differences"], "published")
     assert len(table) == 4 and (table["in_sigmas"].abs() < 3.5).all()
     assert not table["sentence"].str.contains(": more than chance").any()
     alone = table.loc["gyro", "bias_y"]
-    ours = clean[0].parameters("gyroscope").loc["bias_y"]
-    assert alone["sigma"] == ours["sigma"] and "it is ours alone" in alone["sentence"]
+    ours = clean[0]["diagnosis/result"].set_index(["sensor", "parameter"]).loc["gyro"]
+    assert alone["sigma"] == ours.loc["bias_y", "sigma"] and "it is ours alone" in alone["sentence"]
     shared = table.loc[("gyro", "bias_x"), "sigma"]
-    assert shared == np.hypot(clean[0].parameters("gyroscope").loc["bias_x", "sigma"], 3e-7)
+    assert shared == np.hypot(ours.loc["bias_x", "sigma"], 3e-7)
 
-    wrong = published(tmp_path, RIGHT.replace("-0.43316", "0.43316"))
-    table = chain.again(clean[0], "comparison", published=wrong)["differences"]
+    wrong = of_history(tmp_path, RIGHT.replace("-0.43316", "0.43316"))
+    table = chain.again(clean[0], "history", **wrong)["published_differences"]
     named = table[table["sentence"].str.contains(": more than chance")]
     assert list(named["id"]) == ["comparison/published/gyroscope/bias_y"]
     assert "the published value (data sheet)" in named["sentence"].iloc[0]
 
 
-def test_a_published_value_of_what_is_not_determined_is_not_judged(clean, tmp_path):
-    parameters = clean[0]["gyroscope/parameters"]
-    lost = parameters["id"] == "gyroscope/joint/bias_x"
-    parameters.loc[lost, ["value", "sigma"]] = np.nan
-    parameters.loc[lost, "reason"] = "it was not recorded"
-    told = published(tmp_path, RIGHT)
-    table = chain.again(clean[0], "comparison", gyroscope_parameters=parameters, published=told)[
-        "differences"
-    ].set_index("id")
-    row = table.loc["comparison/published/gyroscope/bias_x"]
-    assert np.isnan(row["in_sigmas"]) and row["sentence"].endswith("it was not recorded.")
+def of_history(folder, text: str) -> dict[str, Any]:
+    """Published values, and an archive of their own."""
+    return {"published": published(folder, text), "archive": [folder / "archive"]}
 
 
 MISTAKES = {
@@ -273,9 +267,9 @@ def test_a_mistake_in_published_values_is_refused_with_place_and_cure(mistake, t
 def test_published_values_beside_the_campaign_pass_through_the_chain(tmp_path):
     campaign = chain.simulate(chain.demo(seed=5), tmp_path / "told")
     (campaign / "published.yaml").write_text(RIGHT, encoding="utf-8")
-    results = chain.run(campaign, tmp_path / "derived", until="comparison")
+    results = chain.run(campaign, tmp_path / "derived", until="history")
     assert len(results["plan/published"]) == 4
-    assert len(of_kind(results["comparison/differences"], "published")) == 4
+    assert len(of_kind(results["history/published_differences"], "published")) == 4
     assert "published.yaml" not in list(results["plan/inputs"]["file"])
 
 

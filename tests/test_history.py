@@ -13,6 +13,7 @@ from multiprocessing.synchronize import Barrier
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import pyarrow as pa
 import pytest
@@ -20,6 +21,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inertial import tables
+from inertial.campaign.records import rows_of
 from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Table, Writer, provenance, write_once
 from stages.history.archive import Archive, file_name
@@ -61,6 +63,24 @@ def parameter(name: str, value: float | None, sigma: float | None, method: str =
     }
 
 
+def verdict(verdict: str = "usable", condition: str | None = None) -> Row:
+    return {
+        "mount": "",
+        "sensor": "gyro",
+        "verdict": verdict,
+        "sentence": "It is usable.",
+        "method": "extended",
+        "condition": condition,
+        "reason": "held-out manoeuvres gain",
+    }
+
+
+def counted(name: str, value: float | None, sigma: float | None) -> Row:
+    """A row of the result that counts."""
+    row = parameter(name, value, sigma, method="extended")
+    return row | {"id": f"diagnosis/gyroscope/{name}", "stage": "diagnosis"}
+
+
 def calibration(
     bias: float = 1e-5, settings: Row = SETTINGS, code: str = "c0", **facts: Any
 ) -> Row:
@@ -71,6 +91,7 @@ def calibration(
         **facts,
         "parameters": [parameter("bias_x", bias, 1e-7), parameter("bias_y", None, None)],
         "covariance": [],
+        "verdicts": [verdict()],
         "inputs": [{"file": "x-up.asc", "size": 9, "sha256": "ab"}],
         "made_by": [maker],
     }
@@ -89,43 +110,51 @@ def write(folder: Path, name: str, table: Table, rows: Sequence[Row], made_by: R
 
 
 def run(
-    place: Path, bias: float = 1e-5, code: str = "c0", extended: float | None = None, **facts: Any
+    place: Path,
+    bias: float = 1e-5,
+    code: str = "c0",
+    verdicts: Sequence[Row] = (),
+    published: Sequence[Row] = (),
+    **facts: Any,
 ) -> Row:
     """Run the stage on a campaign in `place`, into the archive there; its row of `archived`.
 
-    `extended`: the bias with an effect in the model, whose result then counts.
+    `bias`: by the result that counts, by the joint method half as much.
     """
     campaign = CAMPAIGN | facts
     derived = place / "derived" / str(campaign["campaign"])
     by = {"settings": {}, "code": code, "inputs": {}}
-    plan, gyro = (by | {"stage": stage} for stage in ("plan", "gyroscope"))
     log = {"file": "x-up.asc", "size": 9, "sha256": "ab"}
-    write(derived / "plan", "campaign", tables.CAMPAIGN, [campaign], plan)
-    write(derived / "plan", "inputs", tables.INPUTS, [log], plan)
     estimates = [
-        parameter("bias_x", bias, 1e-7),
+        parameter("bias_x", bias / 2, 1e-7),
         parameter("bias_y", None, None),
         parameter("bias_x", bias + 1e-9, 2e-7, method="turns"),
     ]
-    spread = [
-        {"first": row["id"], "second": row["id"], "covariance": row["sigma"] ** 2}
-        for row in estimates
-        if row["sigma"]
-    ]
-    for stage, rows, product in (("accelerometer", [], []), ("gyroscope", estimates, spread)):
-        write(derived / stage, "parameters", tables.PARAMETERS, rows, gyro | {"stage": stage})
-        write(derived / stage, "covariance", tables.COVARIANCE, product, gyro | {"stage": stage})
-    better = {"id": "extension/gyroscope/bias_x", "stage": "extension", "method": "extended"}
-    rows = [] if extended is None else [parameter("bias_x", extended, 2e-7) | better]
-    product = [{"first": r["id"], "second": r["id"], "covariance": r["sigma"] ** 2} for r in rows]
-    by_extension = gyro | {"stage": "extension"}
-    write(derived / "extension", "parameters", tables.PARAMETERS, rows, by_extension)
-    write(derived / "extension", "covariance", tables.COVARIANCE, product, by_extension)
-    verdict = {"mount": "", "sensor": "gyro", "verdict": "usable", "sentence": "It counts."}
-    verdict |= {"method": "extended" if rows else "joint", "condition": None, "reason": ""}
-    by_diagnosis = gyro | {"stage": "diagnosis"}
-    write(derived / "diagnosis", "verdict", tables.VERDICTS, [verdict], by_diagnosis)
-    STAGE.run(derived, {"archive": [place / "history"]}, {})
+    result = [counted("bias_x", bias, 1e-7), counted("bias_y", None, None)]
+    effect = counted("gyro_bias_ramp.c_x", 1e-9, 1e-10) | {"effect": "gyro_bias_ramp"}
+    own = result[0]["id"]
+    made: dict[str, dict[str, tuple[Table, Sequence[Row]]]] = {
+        "plan": {
+            "campaign": (tables.CAMPAIGN, [campaign]),
+            "inputs": (tables.INPUTS, [log]),
+            "published": (tables.PUBLISHED, published),
+        },
+        "accelerometer": {"parameters": (tables.PARAMETERS, [])},
+        "gyroscope": {"parameters": (tables.PARAMETERS, estimates)},
+        "studies": {"growing": (tables.WINDOWS, []), "motions": (tables.MOTIONS, [])},
+        "diagnosis": {
+            "result": (tables.PARAMETERS, [*result, effect]),
+            "covariance": (
+                tables.COVARIANCE,
+                [{"first": own, "second": own, "covariance": 1e-14}],
+            ),
+            "verdict": (tables.VERDICTS, verdicts or [verdict()]),
+        },
+    }
+    for stage, each in made.items():
+        for name, (table, rows) in each.items():
+            write(derived / stage, name, table, rows, by | {"stage": stage})
+    STAGE.run(derived, {"archive": [place / "history"]}, {"level": 0.01})
     return dict(pd.read_parquet(derived / "history/archived.parquet").iloc[0])
 
 
@@ -141,16 +170,21 @@ def test_the_file_holds_the_calibration_and_what_it_was_made_from(tmp_path: Path
     held = tables.CALIBRATION.read(tmp_path / "history" / archived["file"]).iloc[0]
     assert (held["campaign"], held["instrument"], held["serial"]) == ("spring", "span-cpt", "A-017")
     by_id = {row["id"]: row for row in held["parameters"]}
-    assert by_id["gyroscope/joint/bias_x"]["value"] == 1e-5
+    assert by_id["diagnosis/gyroscope/bias_x"]["value"] == 1e-5
+    assert by_id["gyroscope/joint/bias_x"]["value"] == 5e-6
     assert by_id["gyroscope/joint/bias_x"]["unit"] == "rad/s"
     assert by_id["gyroscope/joint/bias_x"]["frame"] == "body"
     assert by_id["gyroscope/joint/bias_y"]["value"] is None
     assert by_id["gyroscope/turns/bias_x"]["sigma"] == 2e-7
-    (variance,) = held["covariance"]  # of the joint method alone
-    assert variance["first"] == "gyroscope/joint/bias_x"
+    assert by_id["diagnosis/gyroscope/gyro_bias_ramp.c_x"]["effect"] == "gyro_bias_ramp"
+    (variance,) = held["covariance"]  # of the result that counts alone
+    assert variance["first"] == "diagnosis/gyroscope/bias_x"
+    assert list(held["verdicts"]) == [verdict()]
     assert variance["covariance"] == pytest.approx(1e-14)
     assert [(row["file"], row["sha256"]) for row in held["inputs"]] == [("x-up.asc", "ab")]
-    assert {row["stage"] for row in held["made_by"]} == {"plan", "accelerometer", "gyroscope"}
+    assert {row["stage"] for row in held["made_by"]} == {
+        *("plan", "accelerometer", "gyroscope", "diagnosis")
+    }
 
 
 def test_the_same_content_writes_nothing(tmp_path: Path) -> None:
@@ -182,37 +216,61 @@ def test_the_report_gets_the_earlier_calibrations_of_the_same_imu(tmp_path: Path
     run(tmp_path, bias=0.0, campaign="compensated", compensated=True)
     run(tmp_path, bias=5e-5, campaign="winter", date="2026-12-02")
     run(tmp_path, bias=6e-5, campaign="autumn", date="2026-10-02")
-    (row,) = earlier(tmp_path, "autumn").to_dict("records")
+    (row,) = rows_of(earlier(tmp_path, "autumn"))
     assert row == {
         "campaign": "spring",
         "date": "2026-03-02",
         "file": held["file"],
-        "id": "gyroscope/joint/bias_x",
+        "id": "diagnosis/gyroscope/bias_x",
         "mount": "",
         "sensor": "gyro",
         "quantity": "bias_x",
         "value": 2e-5,
         "sigma": 1e-7,
         "unit": "rad/s",
+        "verdict": "usable",
+        "condition": None,
     }
 
 
-def test_the_extended_result_is_kept_beside_the_joint_one_and_compared_later(
-    tmp_path: Path,
-) -> None:
-    held = run(tmp_path, bias=1e-5, extended=3e-5, campaign="spring", date="2026-03-02")
-    entry = tables.CALIBRATION.read(tmp_path / "history" / held["file"]).iloc[0]
-    by_id = {row["id"]: row for row in entry["parameters"]}
-    assert by_id["gyroscope/joint/bias_x"]["value"] == 1e-5
-    assert by_id["extension/gyroscope/bias_x"]["value"] == 3e-5
-    assert {row["first"] for row in entry["covariance"]} == {
-        "gyroscope/joint/bias_x",
-        "extension/gyroscope/bias_x",
-    }
-    assert "extension" in {row["stage"] for row in entry["made_by"]}
+def test_the_condition_of_an_earlier_result_is_handed_on(tmp_path: Path) -> None:
+    wired = "the y gyro is wired in reverse"
+    run(tmp_path, verdicts=[verdict("on_condition", wired)], campaign="spring")
     run(tmp_path, bias=2e-5, campaign="autumn", date="2026-10-02")
-    (then,) = earlier(tmp_path, "autumn").to_dict("records")
-    assert (then["id"], then["value"], then["sigma"]) == ("gyroscope/joint/bias_x", 3e-5, 2e-7)
+    (row,) = rows_of(earlier(tmp_path, "autumn"))
+    assert (row["verdict"], row["condition"]) == ("on_condition", wired)
+
+
+def test_another_verdict_is_another_calibration(tmp_path: Path) -> None:
+    first = run(tmp_path)
+    second = run(tmp_path, verdicts=[verdict("on_condition", "as wired")])
+    assert second["supersedes"] == first["file"]
+
+
+# ---- archives of older versions: what they lacked
+
+
+def older(version: int, *lacking: str) -> Table:
+    """The contract of an older version, whose parameters lacked some of the columns."""
+    return replace(
+        tables.CALIBRATION,
+        version=version,
+        columns=tuple(
+            replace(column, type=tuple(f for f in column.type if f.name not in lacking))
+            if column.name == "parameters"
+            else column
+            for column in tables.CALIBRATION.columns
+            if column.name != "verdicts"
+        ),
+    )
+
+
+def archived_as(version: Table, place: Path, parameters: Sequence[Row]) -> None:
+    """A calibration of spring in the archive as an older version wrote it."""
+    facts = calibration(campaign="spring", date="2026-03-02") | {"content": "", "supersedes": []}
+    del facts["verdicts"]
+    file = place / "history/span-cpt/A-017/2026-03-02-spring-0123456789ab.parquet"
+    write_once(version, file, [facts | {"parameters": parameters}])
 
 
 def test_a_file_of_version_1_is_read_by_its_identifiers(tmp_path: Path) -> None:
@@ -225,32 +283,68 @@ def test_a_file_of_version_1_is_read_by_its_identifiers(tmp_path: Path) -> None:
         "extension/gyroscope@a/gyro_bias_ramp.c_x": "gyroscope@a",
     }
     numbers = {"sigma": 1e-7, "unit": "rad/s", "frame": "body", "meaning": "", "reason": ""}
-    (nested,) = (column for column in tables.CALIBRATION.columns if column.name == "parameters")
-    kept = tuple(f for f in nested.type if f.name not in ("mount", "sensor", "parameter"))
-    older = replace(
-        tables.CALIBRATION,
-        version=1,
-        columns=tuple(
-            replace(column, type=kept) if column is nested else column
-            for column in tables.CALIBRATION.columns
-        ),
-    )
     rows = [
         {"id": i, "method": m, "value": 1e-6 * n, **numbers} for n, (i, m) in enumerate(ids.items())
     ]
-    row = calibration(campaign="spring", date="2026-03-02") | {"parameters": rows}
-    folder = tmp_path / "history/span-cpt/A-017"
-    write_once(
-        older,
-        folder / "2026-03-02-spring-0123456789ab.parquet",
-        [row | {"content": "", "supersedes": []}],
-    )
+    version = older(1, "stage", "effect", "mount", "sensor", "parameter")
+    archived_as(version, tmp_path, rows)
     run(tmp_path, campaign="autumn", date="2026-10-02")
     found = earlier(tmp_path, "autumn").set_index("id")
     assert list(found.index) == ["gyroscope/joint@a/bias_x", "gyroscope/joint@a/bias_y"]
     assert list(found["value"]) == [3e-6, 1e-6]
     assert set(found["mount"]) == {"a"} and set(found["sensor"]) == {"gyro"}
     assert list(found["quantity"]) == ["bias_x", "bias_y"]
+    assert found["verdict"].isna().all()
+
+
+def test_of_a_file_of_version_2_the_extended_result_counts_where_there_is_one(
+    tmp_path: Path,
+) -> None:
+    """It had no verdict, and no rows of the result that counts."""
+    extended = parameter("bias_x", 3e-5, 2e-7, method="extended")
+    rows = [
+        parameter("bias_x", 1e-5, 1e-7),
+        parameter("bias_z", 4e-5, 1e-7),
+        parameter("bias_x", 9e-5, 1e-7, method="turns"),
+        extended | {"id": "extension/gyroscope/bias_x"},
+    ]
+    archived_as(older(2, "stage", "effect"), tmp_path, rows)
+    run(tmp_path, campaign="autumn", date="2026-10-02")
+    found = earlier(tmp_path, "autumn").set_index("quantity")
+    assert dict(found["value"]) == {"bias_x": 3e-5, "bias_z": 4e-5}
+    assert found.loc["bias_x", "id"] == "gyroscope/joint/bias_x"
+    assert found.loc["bias_x", "sigma"] == 2e-7
+
+
+# ---- what others published
+
+
+def told(place: Path, value: float, sigma: float | None = None, name: str = "bias_x") -> Row:
+    """The difference of the result from one published value."""
+    other = dict.fromkeys(("window", "samples")) | {"sensor": "gyro", "unit": "rad/s"}
+    other |= {"quantity": name, "value": value, "sigma": sigma, "source": "data sheet"}
+    run(place, bias=1e-5, published=[other])
+    (row,) = pd.read_parquet(
+        place / "derived/spring/history/published_differences.parquet"
+    ).to_dict("records")
+    return {str(key): value for key, value in row.items()}
+
+
+def test_published_values_are_held_against_the_result_that_counts(tmp_path: Path) -> None:
+    """The joint method has half of it: against that one the published value would be far off."""
+    agrees = told(tmp_path, 1.01e-5, 3e-7)
+    assert agrees["first"] == "diagnosis/gyroscope/bias_x"
+    assert agrees["in_sigmas"] == pytest.approx(-1e-7 / np.hypot(1e-7, 3e-7))
+    assert not agrees["significant"]
+    far = told(tmp_path, 0.5e-5)
+    assert far["in_sigmas"] == pytest.approx(50) and far["significant"]
+    assert "the published value (data sheet)" in far["sentence"]
+    assert "No sigma is published, so it is ours alone" in far["sentence"]
+
+
+def test_a_published_value_of_what_has_no_value_here_is_not_judged(tmp_path: Path) -> None:
+    row = told(tmp_path, 1e-5, name="bias_y")
+    assert np.isnan(row["in_sigmas"]) and row["sentence"].endswith("judged: not recorded.")
 
 
 def test_imus_without_a_serial_number_are_not_taken_for_one(tmp_path: Path) -> None:
@@ -282,8 +376,9 @@ def test_a_file_that_cannot_be_read_is_named_and_not_to_be_deleted(tmp_path: Pat
         calibration(date="2026-03-03"),
         calibration() | {"inputs": [{"file": "x-up.asc", "size": 9, "sha256": "cd"}]},
         calibration() | {"covariance": [{"first": "a", "second": "b", "covariance": 0.1}]},
+        calibration() | {"verdicts": [verdict("not_usable")]},
     ],
-    ids=["number", "setting", "date", "log", "covariance"],
+    ids=["number", "setting", "date", "log", "covariance", "verdict"],
 )
 def test_what_makes_it_another_calibration(tmp_path: Path, changed: Row) -> None:
     archive = Archive(tmp_path, simulated=False)
@@ -440,4 +535,4 @@ def test_tables_of_the_stage_say_what_made_them(tmp_path: Path) -> None:
     run(tmp_path)
     made_by = provenance(tmp_path / "derived/spring/history/archived.parquet")
     assert made_by["stage"] == "history"
-    assert "gyroscope/covariance.parquet" in made_by["inputs"]
+    assert "diagnosis/covariance.parquet" in made_by["inputs"]

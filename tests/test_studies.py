@@ -8,6 +8,7 @@ import pytest
 from inertial import tables
 from inertial.physics.motion import Profile
 from inertial.tables.yaml_file import YamlFile
+from stages.history.stage import history
 from stages.plan.published import published_values
 
 TRUTH = np.diag(np.array(chain.demo()["truth"]["gyro"]["matrix"])) - 1
@@ -174,14 +175,28 @@ ITS_WINDOW = "gyro_window: {degrees: 180, rate_deg_s: 10, rate_hz: 100}\n"
 
 
 def told(results, folder, scales, window="", **changes) -> list[str]:
-    """What comparison says of a fencepost."""
+    """What history says of a fencepost; the joint result counts."""
     values = "".join(
         f"  scale_{a}: {{value: {float(v)!r}}}\n" for a, v in zip("xyz", scales, strict=True)
     )
     path = folder / "published.yaml"
     path.write_text(f"source: others\n{window}gyro:\n{values}", encoding="utf-8")
     rows = tables.PUBLISHED.arrow(pd.DataFrame(published_values(YamlFile(path)))).to_pandas()
-    table = chain.again(results, "comparison", published=rows, **changes)["differences"]
+    joint = results["gyroscope/parameters"].query("method == 'joint'")
+    needed = {
+        "campaign": results["plan/campaign"],
+        "inputs": results["plan/inputs"],
+        "accelerometer_parameters": tables.PARAMETERS.empty(),
+        "gyroscope_parameters": joint,
+        "result": joint,
+        "covariance": tables.COVARIANCE.empty(),
+        "verdict": tables.VERDICTS.empty(),
+        "growing": results["studies/growing"],
+        "motions": results["studies/motions"],
+    }
+    settings = {"archive": [folder / "archive"], "provenance": {}, "level": 0.01}
+    made = history(**{**needed, "published": rows, **settings, **changes})
+    table = made["published_differences"]
     return list(table[table["kind"] == "fencepost"]["sentence"])
 
 

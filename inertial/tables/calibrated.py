@@ -67,7 +67,7 @@ def _rows(*fields: tuple[str, str, str]) -> tuple[Column, ...]:
 # version up writes how the older files are read.
 CALIBRATION = Table(
     "calibration",
-    2,
+    3,
     (
         Column("campaign", TEXT, "", "name of the campaign's folder"),
         Column("simulated", TRUTH, "", "recorded by the simulated laboratory"),
@@ -83,9 +83,11 @@ CALIBRATION = Table(
             "parameters",
             _rows(
                 ("id", TEXT, "stable identifier; no code reads anything from it"),
+                ("stage", TEXT, "stage whose row it is; diagnosis: of the result that counts"),
                 ("mount", TEXT, "of the plan; empty where the campaign has a single one"),
                 ("sensor", TEXT, "accel or gyro"),
                 ("method", TEXT, "method of estimation"),
+                ("effect", TEXT, "effect in the model that it is a parameter of; none: of M, b"),
                 ("parameter", TEXT, "name within the method"),
                 ("value", DOUBLE, "estimate in this unit; none where it is not determined"),
                 ("sigma", DOUBLE, "its standard deviation"),
@@ -95,7 +97,7 @@ CALIBRATION = Table(
                 ("reason", TEXT, "why it is not determined"),
             ),
             "as unit",
-            "the parameters of every method",
+            "the parameters of every method, and of the result that counts",
         ),
         Column(
             "covariance",
@@ -105,7 +107,21 @@ CALIBRATION = Table(
                 ("covariance", DOUBLE, "of the two estimates"),
             ),
             "product of the units",
-            "of the joint methods, and of the extended result where that counts",
+            "of the result that counts",
+        ),
+        Column(
+            "verdicts",
+            _rows(
+                ("mount", TEXT, "as in parameters"),
+                ("sensor", TEXT, "accel or gyro"),
+                ("verdict", TEXT, "usable, usable_within_limits, on_condition, or not_usable"),
+                ("sentence", TEXT, "the verdict in words"),
+                ("method", TEXT, "method of the result that counts"),
+                ("condition", TEXT, "on which the result is valid, in words"),
+                ("reason", TEXT, "why this method, in words"),
+            ),
+            "",
+            "one for each sensor and mount; none in older calibrations",
         ),
         Column(
             "inputs",
@@ -144,17 +160,19 @@ ARCHIVED = Table(
 )
 EARLIER = Table(
     "earlier",
-    3,
+    4,
     (
         Column("campaign", TEXT, "", "campaign of another calibration of the same IMU"),
         Column("date", TEXT, "", "its date, not later than this campaign's, or unknown"),
         Column("file", TEXT, "", "the archive's file that holds it"),
-        Column("id", TEXT, "", "identifier of the parameter by the joint method"),
+        Column("id", TEXT, "", "identifier of the parameter in its calibration"),
         MOUNT,
         SENSOR,
         QUANTITY,
         Column("value", DOUBLE, "as unit", "its estimate then, by the result that counted"),
         Column("sigma", DOUBLE, "as unit", "standard deviation of the estimate"),
         Column("unit", TEXT, "", "unit of value and sigma"),
+        Column("verdict", TEXT, "", "of its sensor, as in verdict; older: none", nullable=True),
+        Column("condition", TEXT, "", "on which it is valid, in words", nullable=True),
     ),
 )

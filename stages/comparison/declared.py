@@ -13,9 +13,6 @@ DECLARED = Declared(
         "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
         "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
         "gyroscope_fit": From("gyroscope", tables.FIT),
-        "growing": From("studies", tables.WINDOWS, "growing"),
-        "motions": From("studies", tables.MOTIONS),
-        "published": From("plan", tables.PUBLISHED),
     },
     writes={
         "differences": tables.DIFFERENCES,

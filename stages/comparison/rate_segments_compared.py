@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.differences import Difference
 from inertial.campaign.gyroscope_methods import upright_positions
 from inertial.campaign.rate_segments import angles_about
 from inertial.estimation.consistency import outliers
@@ -14,7 +15,7 @@ from inertial.estimation.gyroscopes import bias_and_scale
 from inertial.estimation.rate_table import columns_of, nonlinearities, own_axis
 from inertial.tables import AXES
 from inertial.text.messages import _
-from stages.comparison.difference import Difference, Results
+from stages.comparison.results import Results
 
 # ---- Gyros in static positions against rate segments, forward against backward.
 

@@ -1,21 +1,21 @@
-"""What should agree: rests and turns, both ways of turning, methods, rates, published and ours."""
+"""What should agree: rests and turns, both ways of turning, methods, rates."""
 
 from collections.abc import Iterator, Sequence
 
 import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.differences import Difference, table_of
 from inertial.campaign.solution import scatter_by_mount
 from inertial.tables.stage import Stage, Tables
 from stages.comparison.declared import DECLARED
-from stages.comparison.difference import Difference, Results, table_of
-from stages.comparison.fencepost_error import off_by_a_sample
-from stages.comparison.methods_compared import against_published, method_against_method
+from stages.comparison.methods_compared import method_against_method
 from stages.comparison.rate_segments_compared import (
     forward_against_backward,
     static_against_turns,
     straight_line,
 )
+from stages.comparison.results import Results
 
 
 def comparison(
@@ -23,13 +23,13 @@ def comparison(
     accelerometer_parameters: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
     gyroscope_fit: pd.DataFrame,
-    growing: pd.DataFrame,
-    motions: pd.DataFrame,
-    published: pd.DataFrame,
     *,
     level: float,
 ) -> Tables:
-    """Every difference in units of its sigma, with the verdict in a sentence."""
+    """Every difference in units of its sigma, with the verdict in a sentence.
+
+    They are evidence for the diagnosis: the result that counts is not known yet.
+    """
     scatter = scatter_by_mount(gyroscope_fit)
 
     def of_mount(data: CampaignData) -> Iterator[Difference]:
@@ -42,8 +42,6 @@ def comparison(
             yield from method_against_method(accelerometer, method)
         for method in ("turns", "turn_and_stop", "stops", "rate_table"):
             yield from method_against_method(gyro, method)
-        yield from against_published(published, {r.stage: r for r in (accelerometer, gyro)})
-        yield from off_by_a_sample(published, gyro, growing, motions, level)
 
     differences = [difference for data in mounts for difference in of_mount(data)]
     differences += straight_line(

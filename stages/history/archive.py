@@ -20,10 +20,10 @@ from inertial.tables import CALIBRATION
 from inertial.tables.errors import Refusal
 from inertial.tables.parquet import write_once
 from inertial.tables.table import Table
-from inertial.text.parameters import EXTENDED, SENSOR_OF
+from inertial.text.parameters import EXTENDED, JOINT, SENSOR_OF
 
 SIMULATED = "simulated"  # folder of simulated calibrations; no instrument's folder has this name
-VERSION_1 = replace(CALIBRATION, version=1)
+RESULT = "diagnosis"  # stage of the rows that are the result that counts
 COMPARABLE_BY = ("instrument", "serial", "compensated")  # equal where calibrations are compared
 FILE_HASH_DIGITS = 12
 MAX_NAME_LENGTH = 100  # characters; a file name holds campaign, date and hash, 255 at most
@@ -100,17 +100,26 @@ class Archive:
 
     def _entry(self, path: Path) -> Entry:
         try:
-            row = _row(CALIBRATION, path)
+            row = _row(path)
         except Refusal as refusal:
-            try:
-                row = _of_version_1(_row(VERSION_1, path))
-            except Refusal:
-                raise replace(refusal, cure="move this file out of the archive") from None
+            raise replace(refusal, cure="move this file out of the archive") from None
         return Entry(path.relative_to(self.root).as_posix(), row)
 
 
-def _row(contract: Table, path: Path) -> Row:
-    """The one row of a file of the archive."""
+def _row(path: Path) -> Row:
+    """The one row of a file of the archive, as the newest version has it."""
+    try:
+        return _row_of(CALIBRATION, path)
+    except Refusal as refusal:
+        for version, read in OLDER.items():
+            try:
+                return read(_row_of(replace(CALIBRATION, version=version), path))
+            except Refusal:
+                continue
+        raise refusal
+
+
+def _row_of(contract: Table, path: Path) -> Row:
     return {str(name): value for name, value in contract.read(path).iloc[0].items()}
 
 
@@ -134,11 +143,36 @@ def _of_version_1(row: Row) -> Row:
                 "parameter": parameter,
             }
         )
-    return row | {"parameters": parameters}
+    return _of_version_2(row | {"parameters": parameters})
+
+
+def _of_version_2(row: Row) -> Row:
+    """A row of version 2, which had no verdict, and no rows of the result that counts.
+
+    That was the joint one, with value and sigma of the extended one where that was archived.
+    """
+    rows = [{**old, "stage": old["id"].partition("/")[0]} for old in row["parameters"]]
+    for old in rows:
+        effect, point, _parameter = old["parameter"].partition(".")
+        old["effect"] = effect if point else None
+    better = {_key(old): old for old in rows if old["method"] == EXTENDED}
+    counted = [
+        old | {key: better.get(_key(old), old)[key] for key in ("value", "sigma")}
+        for old in rows
+        if old["method"] == JOINT
+    ]
+    return row | {"parameters": rows + [old | {"stage": RESULT} for old in counted], "verdicts": []}
+
+
+def _key(row: Row) -> tuple[str, str, str]:
+    return row["mount"], row["sensor"], row["parameter"]
+
+
+OLDER = {2: _of_version_2, 1: _of_version_1}  # how a row of each older version is read
 
 
 def content_hash(calibration: Row) -> str:
-    """SHA-256 over IMU and campaign, numbers, inputs and settings of a row of the archive.
+    """SHA-256 over IMU, campaign, numbers, verdicts, inputs and settings of a row of the archive.
 
     The code is left out: where a change of it leaves all numbers unchanged, the calibration is
     the same.
@@ -149,6 +183,10 @@ def content_hash(calibration: Row) -> str:
         "parameters": sorted(
             [row["id"], row["unit"], row["frame"], row["value"], row["sigma"]]
             for row in calibration["parameters"]
+        ),
+        "verdicts": sorted(
+            [row["mount"], row["sensor"], row["verdict"], row["method"], row["condition"] or ""]
+            for row in calibration["verdicts"]
         ),
         "covariance": sorted(
             [row["first"], row["second"], row["covariance"]] for row in calibration["covariance"]

@@ -7,13 +7,19 @@ DECLARED = Declared(
     reads={
         "campaign": From("plan", tables.CAMPAIGN),
         "inputs": From("plan", tables.INPUTS),
-        **{
-            f"{stage}_{table.name}": From(stage, table)
-            for stage in ("accelerometer", "gyroscope", "extension")
-            for table in (tables.PARAMETERS, tables.COVARIANCE)
-        },
+        "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
+        "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
+        "result": From("diagnosis", tables.PARAMETERS, "result"),
+        "covariance": From("diagnosis", tables.COVARIANCE),
         "verdict": From("diagnosis", tables.VERDICTS, "verdict"),
+        "published": From("plan", tables.PUBLISHED),
+        "growing": From("studies", tables.WINDOWS, "growing"),
+        "motions": From("studies", tables.MOTIONS),
     },
-    writes={"archived": tables.ARCHIVED, "earlier": tables.EARLIER},
+    writes={
+        "archived": tables.ARCHIVED,
+        "earlier": tables.EARLIER,
+        "published_differences": tables.DIFFERENCES,
+    },
     files=("archive",),
 )

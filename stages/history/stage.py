@@ -1,60 +1,63 @@
-"""This calibration into the archive of its IMU, and the earlier ones of the same IMU out of it."""
+"""This calibration into its IMU's archive, against the earlier ones and what others published."""
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from inertial.campaign.final_result import extended_sensors, of_sensors, with_extended
+from inertial.campaign.differences import Difference, table_of
+from inertial.campaign.measurement import measurements_of
 from inertial.campaign.records import Row, rows_of
 from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
-from inertial.text.parameters import EXTENDED, JOINT
-from stages.history.archive import Archive, Entry
+from stages.history.archive import RESULT, Archive, Entry
 from stages.history.declared import DECLARED
+from stages.history.fencepost_error import off_by_a_sample
+from stages.history.published import against_published
+
+# The inputs whose content is archived.
+KEPT = (
+    "campaign",
+    "inputs",
+    "accelerometer_parameters",
+    "gyroscope_parameters",
+    "result",
+    "covariance",
+    "verdict",
+)
 
 
 def history(
     archive: list[Path],
+    campaign: pd.DataFrame,
+    inputs: pd.DataFrame,
+    accelerometer_parameters: pd.DataFrame,
+    gyroscope_parameters: pd.DataFrame,
+    result: pd.DataFrame,
+    covariance: pd.DataFrame,
+    verdict: pd.DataFrame,
+    published: pd.DataFrame,
+    growing: pd.DataFrame,
+    motions: pd.DataFrame,
     provenance: Mapping[str, Mapping[str, Any]],
-    **tables: pd.DataFrame,
+    *,
+    level: float,
 ) -> Tables:
-    """Archive this calibration; earlier results of the same IMU.
+    """Archive the result that counts; earlier results of the same IMU; published values.
 
     The archive grows with every campaign. Later additions are read when this stage runs, but
-    never cause a rerun. Where the extended result of a sensor is the final one, it is kept beside
-    the joint one, with the effects.
+    never cause a rerun. The parameters by all methods are kept beside the result.
     """
-    (facts,) = rows_of(tables["campaign"])
-    parameters = [
-        *rows_of(tables["accelerometer_parameters"]),
-        *rows_of(tables["gyroscope_parameters"]),
-    ]
-    covariance = [
-        *rows_of(tables["accelerometer_covariance"]),
-        *rows_of(tables["gyroscope_covariance"]),
-    ]
-    archived_ids = {row["id"] for row in parameters if row["method"] == JOINT}
-    final = extended_sensors(rows_of(tables["verdict"]))
-    extended = of_sensors(rows_of(tables["extension_parameters"]), final)
-    if extended:
-        parameters += extended
-        extended_ids = {row["id"] for row in extended}
-        covariance += [
-            row for row in rows_of(tables["extension_covariance"]) if row["first"] in extended_ids
-        ]
-        archived_ids |= extended_ids
+    (facts,) = rows_of(campaign)
+    methods = rows_of(gyroscope_parameters)
     calibration = facts | {
-        "parameters": parameters,
-        "covariance": [row for row in covariance if row["first"] in archived_ids],
-        "inputs": rows_of(tables["inputs"]),
-        "made_by": _made_by(
-            made
-            for name, made in provenance.items()
-            if extended or DECLARED.reads[name].stage not in ("extension", "diagnosis")
-        ),
+        "parameters": [*rows_of(accelerometer_parameters), *methods, *rows_of(result)],
+        "covariance": rows_of(covariance),
+        "verdicts": rows_of(verdict),
+        "inputs": rows_of(inputs),
+        "made_by": _made_by(made for name, made in provenance.items() if name in KEPT),
     }
     kept = Archive(archive[0], simulated=facts["simulated"])
     entry = kept.add(calibration)
@@ -64,10 +67,17 @@ def history(
         "content": entry.row["content"],
         "supersedes": " ".join(entry.row["supersedes"]),
     }
-    earlier = [row for other in kept.earlier(calibration) for row in _final_results(other)]
+
+    def differences() -> Iterator[Difference]:
+        for mount, counted in measurements_of(result).items():
+            own = [row for row in methods if row["mount"] == mount]
+            yield from against_published(published, counted, mount, own)
+            yield from off_by_a_sample(published, counted.gyro, mount, growing, motions, level)
+
     return {
         "archived": [archived],
-        "earlier": earlier,
+        "earlier": [row for other in kept.earlier(calibration) for row in _results(other)],
+        "published_differences": table_of(list(differences()), level),
     }
 
 
@@ -85,21 +95,26 @@ def _made_by(provenance: Iterable[Mapping[str, Any]]) -> list[Row]:
     ]
 
 
-def _final_results(entry: Entry) -> list[Row]:
-    """The final results of an archived calibration, under the names of the joint methods.
-
-    Where the extended result is the final one, the values are its own.
-    """
-    parameters = list(entry.row["parameters"])
-    extended = [row for row in parameters if row["method"] == EXTENDED]
+def _results(entry: Entry) -> list[Row]:
+    """The parameters of the result that counted in an archived calibration, with its verdict."""
+    verdicts = {(row["mount"], row["sensor"]): row for row in _rows(entry, "verdicts")}
     origin = {"campaign": entry.row["campaign"], "date": entry.row["date"], "file": entry.file}
-    return [
-        origin
-        | {key: row[key] for key in ("id", "mount", "sensor", "value", "sigma", "unit")}
-        | {"quantity": row["parameter"]}
-        for row in with_extended([row for row in parameters if row["method"] == JOINT], extended)
-        if row["value"] is not None
-    ]
+    nothing: Row = {"verdict": None, "condition": None}
+    rows = []
+    for row in _rows(entry, "parameters"):
+        if row["stage"] == RESULT and row["effect"] is None and row["value"] is not None:
+            verdict = verdicts.get((row["mount"], row["sensor"]), nothing)
+            rows.append(
+                origin
+                | {key: row[key] for key in ("id", "mount", "sensor", "value", "sigma", "unit")}
+                | {"quantity": row["parameter"]}
+                | {key: verdict[key] for key in nothing}
+            )
+    return rows
+
+
+def _rows(entry: Entry, name: str) -> Sequence[Row]:
+    return list(entry.row[name])
 
 
 STAGE = Stage(history, DECLARED)

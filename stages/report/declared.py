@@ -73,6 +73,7 @@ DECLARED = Declared(
         "compensation_findings": From("compensation", tables.FINDINGS),
         "archived": From("history", tables.ARCHIVED),
         "earlier": From("history", tables.EARLIER),
+        "published_differences": From("history", tables.DIFFERENCES, "published_differences"),
     },
     streams=("simulated",),  # too long for memory
     documents=("html", "txt"),

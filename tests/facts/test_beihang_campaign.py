@@ -48,7 +48,7 @@ def results(tmp_path_factory):
     (folder / "campaign.yaml").write_text("\n".join(text) + "\n")
     told = ", ".join(f"cross_{axes}: {{value: {value}}}" for axes, value in CROSS.items())
     (folder / "published.yaml").write_text(f"source: program of S4\ngyro: {{{told}}}\n")
-    return chain.run(folder, folder.parent / "derived", "comparison")
+    return chain.run(folder, folder.parent / "derived", "history")
 
 
 def test_each_gyro_has_its_straight_line(results):
@@ -64,7 +64,7 @@ def test_each_gyro_has_its_straight_line(results):
 
 
 def test_published_cross_terms_that_nobody_recorded_are_told_so(results):
-    told = results["comparison/differences"]
+    told = results["history/published_differences"]
     for axes in CROSS:
         own = told[
             (told["quantity"] == f"cross_{axes}")

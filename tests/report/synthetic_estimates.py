@@ -18,6 +18,7 @@ from tests.report.synthetic_values import (
     SCALE,
     SENSOR,
     Rows,
+    rows_as,
 )
 
 
@@ -158,6 +159,25 @@ def differences() -> Rows:
             "bias of the x gyro: rests and turns differ by 0.2 °/h: more than chance.",
         ),
     ]
+
+
+def published() -> Rows:
+    (row, *_others) = differences()
+    told = {"id": "comparison/published/gyroscope/bias_y", "kind": "published"}
+    return [row | told | {"sentence": "bias: this one and the published value agree."}]
+
+
+def counted(made: dict[str, Any]) -> dict[str, pd.DataFrame]:
+    """The result that counts, the joint one of both sensors, and the verdict on it."""
+    both = [made[f"{stage}_parameters"] for stage in ("accelerometer", "gyroscope")]
+    joint = pd.concat(both).query("method == 'joint'")
+    joint = joint[joint["parameter"].str.match("bias|scale|cross")].assign(stage="diagnosis")
+    verdicts = [
+        {"mount": "", "sensor": sensor, "verdict": "usable", "method": "joint"}
+        | {"sentence": f"The {sensor} is usable.", "reason": "it shows no effect"}
+        for sensor in ("accel", "gyro")
+    ]
+    return {"result": joint, "verdict": rows_as(tables.VERDICTS, verdicts)}
 
 
 def checks(manoeuvres: Rows) -> Rows:

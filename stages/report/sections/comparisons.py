@@ -1,4 +1,4 @@
-"""The results against each other, against published values and against earlier calibrations."""
+"""Results against each other; the one that counts against published and earlier ones."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from matplotlib.axes import Axes
 from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.messages import _
-from inertial.text.parameters import JOINT, SENSOR_OF
+from inertial.text.parameters import SENSOR_OF
 from inertial.text.units import quantity
 from stages.report import outline
 from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks
-from stages.report.results import KIND, RESULT_TABLES, final_parameters
+from stages.report.results import KIND
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR_OF_STAGE, capital, with_mount
+from stages.report.words import SENSOR, SENSOR_OF_STAGE, capital, with_mount
 
 KINDS = {
     "static_against_turns": _("Static, rotation"),
@@ -32,6 +32,18 @@ MOST_DIFFERENCES = 120
 def comparison_parts(tables: Tables) -> Iterator[outline.Part]:
     """Every difference in units of its sigma with the verdict in words, worst first."""
     rows = sorted(tables.rows("differences"), key=_worst_first)
+    yield from _judged(rows)
+    yield _differences(
+        rows, _("None: no parameter was estimated in two ways that could be compared.")
+    )
+    yield outline.Heading(_("Published values against the result that counts"))
+    published = sorted(tables.rows("published_differences"), key=_worst_first)
+    yield from _judged(published)
+    yield _differences(published, _("None: no published value is known for this instrument."))
+
+
+def _judged(rows: Sequence[Record]) -> Iterator[outline.Paragraph]:
+    """How many of them are more than chance."""
     compared = [row for row in rows if row["in_sigmas"] is not None]
     beyond = sum(map(_beyond, compared))
     if compared:
@@ -49,25 +61,22 @@ def comparison_parts(tables: Tables) -> Iterator[outline.Part]:
         )
     for row in filter(_fencepost, rows):
         yield outline.Paragraph(capital(str(row["sentence"])), "fair")
-    yield _differences(rows)
-    if rows and not any(row["kind"] == "published" for row in rows):
-        yield outline.Paragraph(_("Published values: none is known for this instrument."))
 
 
 COMPARISONS = outline.Section(
     "comparisons",
     "Comparisons",
     _(
-        "Static against rotation, forward against backward, method against method, "
-        "published values against these: the same parameter by two ways that should "
-        "agree."
+        "Static against rotation, forward against backward, method against method: the same "
+        "parameter by two ways that should agree. Then published values against the result that "
+        "counts."
     ),
     _(
         "Worst first, the difference in units of its σ. p is the probability of a "
         "difference this large if the two are equal; among many comparisons some are "
         "large by chance, which the verdict takes into account."
     ),
-    ("differences",),
+    ("differences", "published_differences"),
     comparison_parts,
 )
 
@@ -86,7 +95,7 @@ def _beyond(row: Record) -> bool:
     return bool(row["significant"]) or _fencepost(row)
 
 
-def _differences(rows: Sequence[Record]) -> outline.Table:
+def _differences(rows: Sequence[Record], none: str) -> outline.Table:
     shown = rows[:MOST_DIFFERENCES]
     sigmas = numbers.aligned([numbers.fixed(row["in_sigmas"], 1) for row in shown])
     return outline.Table(
@@ -98,7 +107,7 @@ def _differences(rows: Sequence[Record]) -> outline.Table:
             *outline.columns("number", "in σ", "p"),
         ),
         [_difference(row, sigma) for row, sigma in zip(shown, sigmas, strict=True)],
-        "None: no parameter was estimated in two ways that could be compared.",
+        none,
         outline.more(len(rows) - len(shown), " in the table of differences"),
     )
 
@@ -126,17 +135,23 @@ FOLDER = "data/history"
 MOST_DRAWN = 12
 MOST_CALIBRATIONS = 40
 THIS = _("this one")
+VERDICTS = {
+    "usable": _("usable"),
+    "usable_within_limits": _("usable within limits"),
+    "on_condition": _("on condition:"),
+    "not_usable": _("not usable"),
+}
 BIAS_UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 Key = tuple[str, str, str]  # mount, sensor and parameter
-Calibration = Mapping[Key, Record]  # the parameters by the joint method
+Calibration = Mapping[Key, Record]  # the parameters of the result that counts
 
 
 def history_parts(tables: Tables) -> Iterator[outline.Part]:
     """The earlier ones as a table, bias and scale over the dates, and this one's archive file."""
     now = {
         (row["mount"], row["sensor"], row["parameter"]): row
-        for row in final_parameters(tables)
-        if row["method"] == JOINT and row["value"] is not None
+        for row in tables.rows("result")
+        if row["effect"] is None and row["value"] is not None
     }
     by_file: dict[str, list[Record]] = {}
     for row in tables.rows("earlier"):
@@ -175,11 +190,10 @@ HISTORY = outline.Section(
     _("Earlier calibrations"),
     _("Earlier results of the same instrument, by its serial number, and the file of this one."),
     _(
-        "Each point is value ± σ of the final result, of the joint fit or of the fit "
-        "with effects in the model, relative to the last value. A bias may change from "
-        "one switch-on to the next; a scale error should not."
+        "Each point is value ± σ of the result that counted, relative to the last value. A bias "
+        "may change from one switch-on to the next; a scale error should not."
     ),
-    (*RESULT_TABLES, "campaign", "earlier", "archived"),
+    ("result", "verdict", "campaign", "earlier", "archived"),
     history_parts,
 )
 
@@ -203,6 +217,7 @@ def _calibrations(calibrations: Sequence[Sequence[Record]], now: Calibration) ->
             outline.Column("Campaign"),
             *outline.columns("number", "Parameters", "Largest change since, in σ"),
             outline.Column("of"),
+            outline.Column("Verdict"),
             outline.Column("File", "code"),
         ),
         [_calibration(rows, now) for rows in calibrations[-MOST_CALIBRATIONS:]],
@@ -223,8 +238,20 @@ def _calibration(rows: Sequence[Record], now: Calibration) -> outline.Row:
         numbers.whole(len(rows)),
         numbers.fixed(largest, 1),
         numbers.shortened(identifier, 80) or "—",
+        _verdicts(rows),
         numbers.shortened(rows[0]["file"], 200),
     )
+
+
+def _verdicts(rows: Sequence[Record]) -> str:
+    """The verdicts of the sensors of a calibration, with the conditions."""
+    said = {
+        row["sensor"]: f"{VERDICTS.get(row['verdict'], row['verdict'])} {row['condition'] or ''}"
+        for row in rows
+        if row["verdict"]
+    }
+    parts = [f"{capital(SENSOR[sensor])}: {words.strip()}" for sensor, words in said.items()]
+    return numbers.shortened("; ".join(parts), 200) or "—"
 
 
 def _figure(

@@ -10,6 +10,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from inertial.campaign.differences import Difference
+from inertial.campaign.measurement import SensorResult
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.angle_windows import Fencepost, fencepost
 from inertial.estimation.consistency import common_cause
@@ -17,7 +19,6 @@ from inertial.text.messages import _
 from inertial.text.numbers import fixed, whole
 from inertial.text.parameters import PARTS, SCALE
 from inertial.text.units import PPM
-from stages.comparison.difference import Difference, Results
 
 Array = NDArray[np.float64]
 
@@ -28,7 +29,8 @@ MAX_EXPLAINED_SIGMAS = 3.0  # sigmas within which the speed of the table would e
 
 def off_by_a_sample(
     published: pd.DataFrame,
-    gyro: Results,
+    gyro: SensorResult,
+    mount: str,
     growing: pd.DataFrame,
     motions: pd.DataFrame,
     level: float,
@@ -55,11 +57,11 @@ def off_by_a_sample(
         return
     yield Difference(
         kind=KIND,
-        mount=gyro.mount,
+        mount=mount,
         stage="gyroscope",
         quantity="scale",
         unit="1",
-        first=gyro.id("joint"),
+        first=_("the result that counts"),
         second=scales[0]["source"],
         first_value=None,
         second_value=None,
@@ -69,17 +71,17 @@ def off_by_a_sample(
     )
 
 
-def _case(row: Row, gyro: Results, windows: Sequence[Row]) -> tuple[float, ...] | None:
+def _case(row: Row, gyro: SensorResult, windows: Sequence[Row]) -> tuple[float, ...] | None:
     """Published and our scale factor, sigma of their difference, and N, if all are known."""
     axis, angle = PARTS[row["quantity"]].axes, row["window"] or pi
-    ours = gyro.determined("joint", f"scale_{axis}")
+    ours = gyro.rows.get(f"scale_{axis}")
     like = {w["axis"]: w for w in sorted(windows, key=lambda w: -abs(w["angle"] - angle))}
     # An axis without windows of its own counts with the worst of the others.
     window = like.get(axis) or max(like.values(), key=lambda w: w["cut_sigma"], default=None)
     samples = row["samples"]
     if samples is None and window is not None:
         samples = round(angle / window["angle"] * window["samples"])
-    if ours is None or not samples:
+    if ours is None or ours["value"] is None or not samples:
         return None
     cut = window["cut_sigma"] if window is not None else 0.0
     sigma = float(np.linalg.norm([ours["sigma"], row["sigma"] or 0.0, cut]))
