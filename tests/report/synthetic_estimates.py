@@ -18,7 +18,6 @@ from tests.report.synthetic_values import (
     SCALE,
     SENSOR,
     Rows,
-    rows_as,
 )
 
 
@@ -167,17 +166,11 @@ def published() -> Rows:
     return [row | told | {"sentence": "bias: this one and the published value agree."}]
 
 
-def counted(made: dict[str, Any]) -> dict[str, pd.DataFrame]:
-    """The result that counts, the joint one of both sensors, and the verdict on it."""
+def counted(made: dict[str, Any]) -> pd.DataFrame:
+    """The result that counts: the joint one of both sensors."""
     both = [made[f"{stage}_parameters"] for stage in ("accelerometer", "gyroscope")]
     joint = pd.concat(both).query("method == 'joint'")
-    joint = joint[joint["parameter"].str.match("bias|scale|cross")].assign(stage="diagnosis")
-    verdicts = [
-        {"mount": "", "sensor": sensor, "verdict": "usable", "method": "joint"}
-        | {"sentence": f"The {sensor} is usable.", "reason": "it shows no effect"}
-        for sensor in ("accel", "gyro")
-    ]
-    return {"result": joint, "verdict": rows_as(tables.VERDICTS, verdicts)}
+    return joint[joint["parameter"].str.match("bias|scale|cross")].assign(stage="diagnosis")
 
 
 def checks(manoeuvres: Rows) -> Rows:
