@@ -5,7 +5,14 @@ from collections.abc import Iterator
 import numpy as np
 
 from inertial.signal.detector import Description
-from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded, Swapped
+from inertial.signal.plan_detector import (
+    Deviation,
+    PlanDetector,
+    Recorded,
+    Swapped,
+    confirming,
+    rivals_in_words,
+)
 from inertial.text.messages import _
 
 
@@ -30,6 +37,7 @@ class ManoeuvreSwapped(PlanDetector):
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         swapped: Swapped = deviation.facts
+        own = [i for i, name in enumerate(recorded.name) if name in swapped.names]
         half = len(swapped.names) // 2
         first, second = ", ".join(swapped.names[:half]), ", ".join(swapped.names[half:])
         if len(swapped.logs) == 2:
@@ -49,11 +57,11 @@ class ManoeuvreSwapped(PlanDetector):
                 first=first,
                 second=second,
             )
-        own = [i for i, name in enumerate(recorded.name) if name in swapped.names]
-        return Description(
-            sentence
-            + (_or_a_sign(recorded, own) if len(swapped.logs) == 2 and not swapped.undone else ""),
-            _if_used(recorded, own),
+        if swapped.rivals:
+            sentence += rivals_in_words(swapped.rivals)
+        elif len(swapped.logs) == 2 and not swapped.undone:
+            sentence += _or_a_sign(recorded, own)
+        action = (
             _(
                 "Each is taken for what it holds, on this condition. Correct the names, or the "
                 "plan; or confirm it by accept: [{repair}].",
@@ -63,8 +71,10 @@ class ManoeuvreSwapped(PlanDetector):
             else _(
                 "Both are left out, for only the laboratory knows which is which. Correct the "
                 "names, or the plan, and run it again."
-            ),
+            )
         )
+        action += confirming(swapped.repair, swapped.rivals)
+        return Description(sentence, _if_used(recorded, own), action)
 
 
 def _or_a_sign(recorded: Recorded, own: list[int]) -> str:

@@ -32,7 +32,7 @@ class WrongDirection(PlanDetector):
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at
         if i is None:
-            return _all_the_other_way(deviation)
+            return _all_the_other_way(deviation, recorded)
         assert deviation.size is not None
         name, turned, planned = recorded.name[i], recorded.moved[i], recorded.angle[i]
         unit = "°"
@@ -65,13 +65,16 @@ def ratio_of(recorded: Recorded, i: int) -> float:
     return float(recorded.moved[i] / recorded.angle[i])
 
 
-def _all_the_other_way(deviation: Deviation) -> Description:
+def _all_the_other_way(deviation: Deviation, recorded: Recorded) -> Description:
     """All turns against the plan, while the gyros see the earth turn as they should."""
+    earth = any(sign > 0 for sign in recorded.gyro_signs)
+    seen = _(", while the gyros see the earth turn as it does") if earth else ""
     return Description(
         _(
-            "All {count} turns are against the planned direction, and the gyros see the earth "
-            "turn as it does: the table counts its angle the other way.",
+            "All {count} turns are against the planned direction{seen}: the table counts its angle "
+            "the other way.",
             count=deviation.count,
+            seen=seen,
         ),
         _("Taken as planned, the scale errors of the gyros would be −200 %."),
         _(

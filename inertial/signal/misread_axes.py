@@ -4,7 +4,13 @@ import numpy as np
 
 from inertial.signal.axis_permutations import AXES, Permutation
 from inertial.signal.detector import Description
-from inertial.signal.plan_detector import Deviation, Misread, Recorded
+from inertial.signal.plan_detector import (
+    Deviation,
+    Misread,
+    Recorded,
+    confirming,
+    rivals_in_words,
+)
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 
@@ -54,6 +60,7 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
         names=names,
         misread=_handed(misread, recorded),
     )
+    sentence += rivals_in_words(misread.rivals)
     if not misread.log:
         consequence = _(
             "The parameters of the {sensor} come out under wrong names: {axes}; the biases "
@@ -92,7 +99,7 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
             "of the instrument, or the columns; or confirm it by accept: [{repair}].",
             repair=misread.repair,
         )
-    return Description(sentence, consequence, action)
+    return Description(sentence, consequence, action + confirming(misread.repair, misread.rivals))
 
 
 def determinant(axes: Permutation) -> int:

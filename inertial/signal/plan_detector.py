@@ -9,6 +9,7 @@ import numpy as np
 
 from inertial.signal.axis_permutations import Permutation
 from inertial.signal.detector import Array, Booleans, Description, Given, Integers
+from inertial.text.messages import _
 
 
 @dataclass(frozen=True)
@@ -16,7 +17,8 @@ class Misread:
     """A sensor with exchanged or reversed axes; `log` is empty where all logs have it so.
 
     axes: takes its readings to the axes of the plan; explains: manoeuvres that fit only so.
-    repair: id of its repair; undone: whether that is applied.
+    repair: id of its repair; undone: whether that is applied. rivals: the ids of others that
+    explain as much, each with what would have to be true, in words.
     """
 
     sensor: str
@@ -25,19 +27,39 @@ class Misread:
     explains: Sequence[str]
     repair: str = ""
     undone: bool = False
+    rivals: Sequence[tuple[str, str]] = ()
 
 
 @dataclass(frozen=True)
 class Swapped:
     """Manoeuvres that are found in each other's place, and the logs that hold them.
 
-    repair: id of its repair; undone: whether that is applied.
+    repair, undone, rivals: as of Misread.
     """
 
     names: Sequence[str]
     logs: Sequence[str]
     repair: str = ""
     undone: bool = False
+    rivals: Sequence[tuple[str, str]] = ()
+
+
+def rivals_in_words(rivals: Sequence[tuple[str, str]]) -> str:
+    """What explains as much, as a sentence that follows another one; empty where nothing does."""
+    if not rivals:
+        return ""
+    return _(
+        " That {rivals} explains as much, so nothing is set right.",
+        rivals=_(", or that ").join(words for _id, words in rivals),
+    )
+
+
+def confirming(repair: str, rivals: Sequence[tuple[str, str]]) -> str:
+    """How the laboratory confirms one of several that explain as much."""
+    if not rivals:
+        return ""
+    ids = [f"accept: [{one}]" for one in (repair, *(one for one, _words in rivals))]
+    return _(" The laboratory decides, by one of {ids} in the campaign file.", ids=", ".join(ids))
 
 
 @dataclass(frozen=True)

@@ -55,11 +55,16 @@ class Exchanged:
 
 @dataclass(frozen=True)
 class Step:
-    """What a supposition would set right: the id of its repair, its kind, and which sensor."""
+    """What a supposition would set right: the id of its repair, its kind, and what it concerns.
+
+    `axes`: of the sensor; `exchanged`: manoeuvres.
+    """
 
     id: str
     repair: str
     sensor: str | None = None
+    axes: Permutation | None = None
+    exchanged: Exchanged | None = None
 
 
 SENSE = Step("sense_of_table", "sense_of_table")
@@ -68,12 +73,12 @@ SENSE = Step("sense_of_table", "sense_of_table")
 def axes_step(sensor: str, axes: Permutation, log: str = "") -> Step:
     """That the axes of a sensor are others, in a log or in all."""
     kind = "signs" if axes.in_place else "axes"
-    return Step("/".join([kind, sensor, *([log] if log else [])]), kind, sensor)
+    return Step("/".join([kind, sensor, *([log] if log else [])]), kind, sensor, axes)
 
 
 def exchange_step(exchanged: Exchanged) -> Step:
     """That manoeuvres are in each other's place."""
-    return Step(exchanged.id, "exchanged_manoeuvres")
+    return Step(exchanged.id, "exchanged_manoeuvres", exchanged=exchanged)
 
 
 @dataclass(frozen=True)
@@ -214,15 +219,9 @@ def _rivals(case: _Case, best: _Case, other: _Case) -> bool:
         return False  # they explain different things, and both may be
     if SENSE in (best.step, other.step) and _turns_each_other(best, other):
         return False
-    if other.axes is None:
-        return True
-    return other.axes.moved <= MAX_RIVAL_AXES if best.axes is None else _as_simple(best, other)
-
-
-def _as_simple(best: _Case, other: _Case) -> bool:
-    """Of two permutations of axes whether the other supposes no more."""
-    assert best.axes is not None
-    assert other.axes is not None
+    if other.axes is None or best.axes is None:
+        few = other.axes is None or other.axes.moved <= MAX_RIVAL_AXES
+        return few or best.step == SENSE
     return simplicity(other.axes) <= simplicity(best.axes)
 
 

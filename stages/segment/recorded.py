@@ -1,8 +1,8 @@
 """What was recorded of every manoeuvre, as arrays for the detectors that compare with the plan."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar
 
 import numpy as np
 import pandas as pd
@@ -27,13 +27,17 @@ UNKNOWN = np.full(3, np.nan)
 
 @dataclass(frozen=True)
 class Undone:
-    """What was set right, for the findings that tell of it; as in Recorded."""
+    """What was set right, for the findings that tell of it; as in Recorded.
+
+    rivals : for the id of a repair that is not applied those of others that explain as much.
+    """
 
     misread: Sequence[Misread] = ()
     swapped: Sequence[Swapped] = ()
     rescaled: Sequence[Rescaled] = ()
     restated: Sequence[Rescaled] = ()
     other_sense: str = ""
+    rivals: Mapping[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
 
 
 def recorded_of(
@@ -97,12 +101,20 @@ def recorded_of(
         gyros=np.array([np.isfinite(where[m.name].binned.rates).any(axis=0) for m in plan], bool),
         count=_numbers([counts.get(m.log) for m in plan]),
         gyro_signs=explained.gyro_signs,
-        misread=[*undone.misread, *misread_in(plan, explained)],
-        swapped=[*undone.swapped, *swapped_in(plan, explained)],
+        misread=[*undone.misread, *(_beside(each, undone) for each in misread_in(plan, explained))],
+        swapped=[*undone.swapped, *(_beside(each, undone) for each in swapped_in(plan, explained))],
         rescaled=undone.rescaled,
         restated=undone.restated,
         other_sense=undone.other_sense,
     )
+
+
+Left = TypeVar("Left", Misread, Swapped)
+
+
+def _beside(left: Left, undone: Undone) -> Left:
+    """What is not set right, with what explains as much."""
+    return replace(left, rivals=undone.rivals.get(left.repair, ()))
 
 
 Place = tuple[int, int, float | None, float | None]
@@ -175,15 +187,17 @@ def _hole(m: Manoeuvre, place: Place, gaps: pd.DataFrame) -> tuple[int, float | 
 
 def swapped_in(plan: Sequence[Manoeuvre], explained: Explained) -> list[Swapped]:
     """Exchanged manoeuvres, in each pair that first which the plan has earlier."""
-    return [_in_order(exchanged, [m.name for m in plan]) for exchanged in explained.exchanged]
+    return [in_order(exchanged, plan) for exchanged in explained.exchanged]
 
 
-def _in_order(exchanged: Exchanged, plan: list[str]) -> Swapped:
+def in_order(exchanged: Exchanged, plan: Sequence[Manoeuvre]) -> Swapped:
+    """Exchanged manoeuvres, that first which the plan has earlier."""
+    names = [m.name for m in plan]
     half, repair = len(exchanged.names) // 2, exchange_step(exchanged).id
-    if plan.index(exchanged.names[0]) <= plan.index(exchanged.names[half]):
+    if names.index(exchanged.names[0]) <= names.index(exchanged.names[half]):
         return Swapped(exchanged.names, exchanged.logs, repair)
-    names = exchanged.names[half:] + exchanged.names[:half]
-    return Swapped(names, exchanged.logs[::-1], repair)
+    later_first = exchanged.names[half:] + exchanged.names[:half]
+    return Swapped(later_first, exchanged.logs[::-1], repair)
 
 
 def misread_in(plan: Sequence[Manoeuvre], explained: Explained) -> list[Misread]:

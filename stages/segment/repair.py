@@ -32,7 +32,7 @@ from stages.segment.explanations import (
     unlike,
 )
 from stages.segment.locating import AS_NAMED, AS_PLANNED
-from stages.segment.recorded import Undone, misread_in, swapped_in
+from stages.segment.recorded import Undone, in_order, misread_in, swapped_in
 from stages.segment.repair_scales import Scale, rates_of, scales_of
 from stages.segment.windows import Binned
 
@@ -71,7 +71,8 @@ class Stated:
 class SetRight:
     """The campaign with its repairs: windows, plan, where it is found, and what was set right.
 
-    `level`: (3,), rad/s, the gyros at rest; `rows`: of the table of repairs.
+    `level`: (3,), rad/s, the gyros at rest; `rows`: of the table of repairs, where `finding` is
+    the id of the repair whose finding tells of it.
     """
 
     binned: Sequence[Binned]
@@ -104,6 +105,7 @@ class _Campaign:
         self._rescaled: list[Rescaled] = []
         self._restated: list[Rescaled] = []
         self._other_sense = ""
+        self._rivals: dict[str, list[tuple[str, str]]] = {}
         self._explain()
 
     def _explain(self) -> None:
@@ -113,7 +115,12 @@ class _Campaign:
 
     def result(self) -> SetRight:
         undone = Undone(
-            self._misread, self._swapped, self._rescaled, self._restated, self._other_sense
+            self._misread,
+            self._swapped,
+            self._rescaled,
+            self._restated,
+            self._other_sense,
+            self._rivals,
         )
         return SetRight(
             self._binned,
@@ -200,10 +207,11 @@ class _Campaign:
         channels = list(self._axes_everywhere(explained, fitting))
         channels += self._axes_of_logs(explained, fitting)
         plan = self._plan_as_found(explained, fitting)
-        for steps in explained.rivals.values():
+        for taken, steps in explained.rivals.items():
             for step in steps:
-                condition = _RIVALS.get(step.repair, "")
-                self._rows.append(_row(step, self._stated.state(step, rival=True), condition))
+                row = _row(step, self._stated.state(step, rival=True), self._in_words(step))
+                self._rows.append(row | {"finding": taken})
+            self._rivals[taken] = [(step.id, self._in_words(step)) for step in steps]
         moved = any(a is not b for a, b in zip(plan, self._plan, strict=True))
         if channels or moved:
             self._read_again(channels)
@@ -213,6 +221,14 @@ class _Campaign:
             for row in self._rows[first:]:
                 if row["state"] in APPLIED:
                     row["fitting_after"] = right
+
+    def _in_words(self, step: Step) -> str:
+        """What would have to be true for a repair to be right."""
+        if step.axes is not None and step.sensor is not None:
+            return _axes_in_words(Misread(step.sensor, step.axes, "", ()))
+        if step.exchanged is not None:
+            return _exchange_in_words(in_order(step.exchanged, self._plan))
+        return _("the table counts all its turns the other way")
 
     def _axes_everywhere(
         self, explained: Explained, fitting: tuple[int, int, int]
@@ -276,7 +292,7 @@ class _Campaign:
                 plan = _exchanged_back(plan, exchanged)
         if explained.other_sense:
             state = self._stated.state(SENSE)
-            self._rows.append(_row(SENSE, state, _RIVALS["sense_of_table"], fitting))
+            self._rows.append(_row(SENSE, state, self._in_words(SENSE), fitting))
             if state in APPLIED:
                 self._other_sense = SENSE.id
                 plan = [turned_back(m) for m in plan]
@@ -310,13 +326,6 @@ class _Campaign:
 
 APPLIED = ("applied", "confirmed")
 
-_RIVALS = {
-    "signs": _("axes of the sensor have the other sign"),
-    "axes": _("axes of the sensor are exchanged"),
-    "exchanged_manoeuvres": _("manoeuvres are in each other's place"),
-    "sense_of_table": _("the table counts all its turns the other way"),
-}
-
 
 def _row(
     step: Step,
@@ -339,6 +348,7 @@ def _row(
         "sensor": step.sensor,
         "log": log or None,
         "unit": "1",
+        "finding": step.id,
         "fitting_before": before,
         "fitting_after": after,
         "observations": total,

@@ -200,7 +200,7 @@ def _with_findings(
     told = {by: each.finding.id for each, by in of_plan if by}
     of_counts = of_quality[of_quality["cause"] == "wrong_scale_factor"]
     for row in rows:
-        finding = told.get(row["id"])
+        finding = told.get(row["finding"])
         if row["repair"] == "count_size" and finding is None:
             same = of_counts[(of_counts["sensor"] == row["sensor"])]
             finding = next(iter(same["id"]), None)

@@ -1,0 +1,356 @@
+"""Repairs: what is wrong as a whole is set right, named once, and moves no parameter."""
+
+from collections.abc import Callable
+from math import degrees
+from pathlib import Path
+from typing import Any
+
+import chain
+import in_memory
+import numpy as np
+import pandas as pd
+import pytest
+
+import laboratory
+from inertial.estimation.triad import linear_names
+from inertial.tables.errors import Refusal
+
+Document = dict[str, Any]
+Fault = dict[str, dict[str, Any]]
+Edit = Callable[[Document], None]
+
+MAX_PULL = 4.5  # sigma: 24 parameters of a normal distribution stay within it but once in 6000
+
+
+def flip(sensor: str, axis: str, log: str = "all") -> Fault:
+    return {"flip": {"log": log, "sensor": sensor, "axis": axis}}
+
+
+def swap(sensor: str, axes: str, log: str = "all") -> Fault:
+    return {"swap": {"log": log, "sensor": sensor, "axes": list(axes)}}
+
+
+def exchange(*names: str) -> Fault:
+    return {"exchange": {"logs": [f"{name}.asc" for name in names]}}
+
+
+def faults(*all_of_them: Fault) -> Edit:
+    return lambda document: document.update(faults=list(all_of_them))
+
+
+def misstated(**said: Any) -> Edit:
+    return lambda document: document.update(misstated={**document.get("misstated", {}), **said})
+
+
+def all_turns(change: Callable[[Document], Document]) -> Edit:
+    """The plan misstates all of its turns."""
+
+    def edit(document: Document) -> None:
+        plan = document["campaign"]["plan"]
+        misstated(plan={one["id"]: change(one) for one in plan if one["do"] == "turn"})(document)
+
+    return edit
+
+
+def count_size(sensor: str, key: str, factor: float) -> Edit:
+    """The campaign names counts that are `factor` times as large as those of the IMU."""
+
+    def edit(document: Document) -> None:
+        receiver = document["receiver"]
+        counts = {
+            "gyro": {"count_rad": receiver["gyro_count_rad"]},
+            "accelerometer": {"count_m_s": receiver["accelerometer_count_m_s"]},
+        }
+        document["campaign"]["instrument"] = {
+            "name": "of 100 Hz",
+            "rate_hz": 100,
+            "axes": ["z", "-y", "x"],
+            "format": {"kind": "rawimus"},
+            **counts,
+        }
+        misstated(instrument={sensor: {key: counts[sensor][key] * factor}})(document)
+
+    return edit
+
+
+def noisy(document: Document) -> None:
+    """Gyros that do not see the earth turn: 3 °/√h is 40 °/h over a rest of 20 s."""
+    document["noise"]["angle_random_walk_deg_sqrt_h"] = 3.0
+
+
+def recorded(folder: Path, *edits: Edit, until: str = "gyroscope") -> chain.Results:
+    document = chain.short()
+    for edit in edits:
+        edit(document)
+    recording = laboratory.perform(laboratory.specify(document))
+    with in_memory.recorded(recording, folder / "campaign") as campaign:
+        return chain.run(campaign, folder / "derived", until)
+
+
+def findings(results: chain.Results) -> pd.DataFrame:
+    return pd.concat([results["quality/findings"], results["segment/findings"]])
+
+
+def repairs(results: chain.Results) -> pd.DataFrame:
+    return pd.concat([results["plan/repairs"], results["segment/repairs"]]).set_index("id")
+
+
+def pulls(results: chain.Results) -> np.ndarray:
+    """The 24 parameters less those of the laboratory, in sigma."""
+    truth = chain.short()["truth"]
+    made = []
+    for stage, sensor, unit in (("accelerometer",) * 2 + ("m_s2",), ("gyroscope", "gyro", "rad_s")):
+        matrix, bias = np.array(truth[sensor]["matrix"]), truth[sensor][f"bias_{unit}"]
+        true = {f"bias_{axis}": bias[i] for i, axis in enumerate("xyz")}
+        for i, axis in enumerate("xyz"):
+            for j, other in enumerate("xyz"):
+                name = f"scale_{axis}" if i == j else f"cross_{axis}{other}"
+                true[name] = matrix[i, j] - (i == j)
+        solved = results.parameters(stage).reindex(linear_names())
+        made.append((solved["value"] - pd.Series(true)) / solved["sigma"])
+    return np.concatenate(made)
+
+
+SET_RIGHT = {
+    "the y gyro reads its negative": ([faults(flip("gyro", "y"))], "signs/gyro", "sign_flip"),
+    "x and y accelerometers exchanged": (
+        [faults(swap("accelerometer", "xy"))],
+        "axes/accel",
+        "axis_swap",
+    ),
+    "all accelerometers reversed": (
+        [faults(*(flip("accelerometer", axis) for axis in "xyz"))],
+        "signs/accel",
+        "sign_flip",
+    ),
+    "all gyros reversed": ([faults(*(flip("gyro", a) for a in "xyz"))], "signs/gyro", "sign_flip"),
+    "accelerometers exchanged in one log": (
+        [faults(swap("accelerometer", "xy", "x-up.asc"))],
+        "axes/accel/x-up.asc",
+        "axis_swap",
+    ),
+    "degrees read as radians": (
+        [count_size("gyro", "count_rad", degrees(1))],
+        "count_size/gyro",
+        "wrong_scale_factor",
+    ),
+    "another full scale of the gyros": (
+        [count_size("gyro", "count_rad", 16)],
+        "count_size/gyro",
+        "wrong_scale_factor",
+    ),
+    "m/s² read as g": (
+        [count_size("accelerometer", "count_m_s", 9.80665)],
+        "count_size/accel",
+        "wrong_scale_factor",
+    ),
+    "two logs under each other's names": (
+        [faults(exchange("x-up", "y-up"))],
+        "exchanged_manoeuvres/x-up/y-up",
+        "manoeuvre_swapped",
+    ),
+    "a turn and its opposite exchanged": (
+        [faults(exchange("z-forward", "z-backward"))],
+        "exchanged_manoeuvres/z-backward/z-forward",
+        "manoeuvre_swapped",
+    ),
+    "the table counts the other way": (
+        [all_turns(lambda turn: {"degrees": -turn["degrees"]})],
+        "sense_of_table",
+        "wrong_direction",
+    ),
+    "half the rate is stated": (
+        [all_turns(lambda turn: {"rate_deg_s": 30})],
+        "stated_rate",
+        "wrong_rate",
+    ),
+    "the unit g for gravity": (
+        [misstated(site={"gravity_m_s2": 9.8066})],
+        "gravity",
+        "gravity_error",
+    ),
+}
+
+
+@pytest.mark.parametrize(("edits", "repair", "cause"), SET_RIGHT.values(), ids=SET_RIGHT)
+def test_what_is_wrong_as_a_whole_is_set_right_and_named_once(edits, repair, cause, tmp_path):
+    results = recorded(tmp_path, *edits)
+    assert results["segment/performed"]["complete"].all()
+    of_all = pulls(results)
+    assert len(of_all) == 24 and np.isfinite(of_all).all()
+    assert np.abs(of_all).max() < MAX_PULL
+    (finding,) = findings(results).to_dict("records")
+    assert finding["cause"] == cause
+    (row,) = repairs(results).reset_index().to_dict("records")
+    assert (row["id"], row["state"], row["finding"]) == (repair, "applied", finding["id"])
+    assert row["condition"] and row["sentence"]
+    if repair != "gravity":
+        assert row["fitting_before"] < row["fitting_after"] == row["observations"]
+
+
+def test_two_causes_are_two_repairs(tmp_path):
+    wrong = [faults(flip("gyro", "y")), count_size("gyro", "count_rad", degrees(1))]
+    results = recorded(tmp_path, *wrong)
+    assert np.abs(pulls(results)).max() < MAX_PULL
+    assert sorted(repairs(results).index) == ["count_size/gyro", "signs/gyro"]
+    assert sorted(findings(results)["cause"]) == ["sign_flip", "wrong_scale_factor"]
+
+
+def test_gravity_of_the_place_has_the_sigma_of_the_field(tmp_path):
+    results = recorded(tmp_path, misstated(site={"gravity_m_s2": 9.8066}), until="accelerometer")
+    gravity = results["plan/known"].set_index("quantity").loc["gravity"]
+    # WGS 84 at 30.5278° and 24 m; 50 mGal.
+    assert gravity["value"] == pytest.approx(9.79359, abs=1e-5)
+    assert gravity["sigma"] == pytest.approx(5e-4)
+    sigma = results.parameters("accelerometer").loc["scale_x", "sigma"]
+    assert sigma == pytest.approx(5e-4 / 9.79359, rel=0.05)
+    row = repairs(results).loc["gravity"]
+    assert row["stated"] == 9.8066
+    assert "latitude of 45.5°" in row["condition"]
+
+
+# ---- where others explain as much
+
+
+@pytest.mark.parametrize(
+    "edits",
+    [
+        [all_turns(lambda turn: {"degrees": -turn["degrees"]})],
+        [faults(*(flip("gyro", axis) for axis in "xyz"))],
+    ],
+)
+def test_gyros_that_do_not_see_the_earth_leave_two_explanations(edits, tmp_path):
+    results = recorded(tmp_path, noisy, *edits)
+    told = repairs(results)
+    assert set(told.index) == {"signs/gyro", "sense_of_table"}
+    assert (told["state"] == "rival").all()
+    assert results["segment/channel_repairs"].empty
+    (finding,) = findings(results).to_dict("records")
+    assert (told["finding"] == finding["id"]).all()
+    assert "the table counts all its turns the other way" in finding["sentence"]
+    assert (
+        not results["segment/performed"].query("manoeuvre.str.contains('ward')")["complete"].any()
+    )
+    assert (
+        results.parameters("gyroscope")["value"].drop(["bias_x", "bias_y", "bias_z"]).isna().all()
+    )
+
+
+def test_the_laboratory_decides_between_two_explanations(tmp_path):
+    reversed_ = faults(*(flip("gyro", axis) for axis in "xyz"))
+    for repair, way in (("signs/gyro", 1), ("sense_of_table", -1)):
+        folder = tmp_path / repair.replace("/", "-")
+        results = recorded(folder, noisy, reversed_, misstated(accept=[repair]))
+        told = repairs(results)
+        assert list(told["state"]) == ["confirmed"]
+        assert list(told.index) == [repair]
+        assert results["segment/performed"]["complete"].all()
+        solved = results.parameters("gyroscope")
+        # Read the other way, the bias comes out with the other sign.
+        true = way * np.array(chain.short()["truth"]["gyro"]["bias_rad_s"])
+        off = solved.loc[["bias_x", "bias_y", "bias_z"], "value"] - true
+        assert (np.abs(off) < MAX_PULL * solved.loc[off.index, "sigma"]).all()
+
+
+def test_one_reversed_axis_may_be_two_exchanged_logs(tmp_path):
+    told = repairs(recorded(tmp_path, noisy, faults(flip("gyro", "y")), until="segment"))
+    assert set(told.index) == {"signs/gyro", "exchanged_manoeuvres/y-backward/y-forward"}
+    assert (told["state"] == "rival").all()
+
+
+def test_both_triads_turned_alike_may_be_the_mounting(tmp_path):
+    both = [flip(sensor, axis) for sensor in ("accelerometer", "gyro") for axis in "xy"]
+    told = repairs(recorded(tmp_path, faults(*both), until="segment"))
+    assert (told["state"] == "rival").all()
+    assert told["condition"].str.contains("may be mounted turned").all()
+
+
+# ---- what only looks like it
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_large_scale_error_of_a_gyro_is_no_count_size(axis, tmp_path):
+    def off(document: Document) -> None:
+        document["truth"]["gyro"]["matrix"][axis][axis] = 1.235
+
+    results = recorded(tmp_path, off, until="segment")
+    assert repairs(results).empty
+    assert results["segment/channel_repairs"].empty
+
+
+def test_large_scale_errors_of_all_gyros_are_no_count_size(tmp_path):
+    def off(document: Document) -> None:
+        for i in range(3):
+            document["truth"]["gyro"]["matrix"][i][i] = 1.235
+
+    results = recorded(tmp_path, off, until="segment")
+    assert repairs(results).empty
+    assert list(findings(results)["cause"]) == ["wrong_scale_factor"]
+
+
+@pytest.mark.parametrize("bias", [[6.4, 0, 0], [0, 0, 6.4], [-6.4, 6.4, 6.4], [9.8, 0, 0]])
+def test_a_large_bias_of_an_accelerometer_is_no_count_size(bias, tmp_path):
+    def off(document: Document) -> None:
+        document["truth"]["accelerometer"]["bias_m_s2"] = bias
+
+    assert "count_size/accel" not in repairs(recorded(tmp_path, off, until="segment")).index
+
+
+def test_an_impact_reverses_nothing(tmp_path):
+    knock = {"log": "x-up.asc", "line": 700, "peak_m_s2": 30.0, "peak_rad_s": 2.0}
+    results = recorded(
+        tmp_path, faults({"knock": knock | {"frequency_hz": 12, "decay_s": 0.4}}), until="segment"
+    )
+    assert repairs(results).empty
+    assert not {"sign_flip", "axis_swap"} & set(findings(results)["cause"])
+
+
+# ---- the settings, and the campaign file
+
+
+@pytest.fixture
+def refused(monkeypatch):
+    for stage in ("plan", "segment"):
+        monkeypatch.setitem(chain.SETTINGS, stage, {**chain.SETTINGS[stage], "repairs": "refuse"})
+
+
+def test_refused_repairs_leave_the_recording_as_it_is(refused, tmp_path):
+    wrong = [faults(flip("gyro", "y")), misstated(site={"gravity_m_s2": 9.8066})]
+    results = recorded(tmp_path, *wrong, until="segment")
+    told = repairs(results)
+    assert set(told.index) == {"gravity", "signs/gyro"}
+    assert (told["state"] == "refused").all()
+    assert results["segment/channel_repairs"].empty
+    assert results["plan/known"].set_index("quantity").loc["gravity", "value"] == 9.8066
+    done = results["segment/performed"].set_index("manoeuvre")
+    assert not done.loc[["y-forward", "y-backward"], "complete"].any()
+    assert sorted(findings(results)["cause"]) == ["gravity_error", "sign_flip"]
+
+
+def test_refused_exchanges_and_senses_are_left_out(refused, tmp_path):
+    results = recorded(tmp_path / "names", faults(exchange("x-up", "y-up")), until="segment")
+    done = results["segment/performed"].set_index("manoeuvre")["found"]
+    assert list(done.index[~done]) == ["x-up", "y-up"]
+    edit = all_turns(lambda turn: {"degrees": -turn["degrees"]})
+    results = recorded(tmp_path / "sense", edit, until="segment")
+    assert dict(repairs(results)["state"]) == {"sense_of_table": "refused"}
+    done = results["segment/performed"].set_index("manoeuvre")["complete"]
+    assert not done[done.index.str.contains("ward")].any()
+
+
+def test_the_campaign_file_confirms_a_repair(tmp_path):
+    wrong = [faults(flip("gyro", "y")), misstated(site={"gravity_m_s2": 9.8066})]
+    accept = misstated(accept=["signs/gyro", "gravity"])
+    assert (
+        repairs(recorded(tmp_path, *wrong, accept, until="segment"))["state"] == "confirmed"
+    ).all()
+
+
+def test_a_repair_that_is_none_of_the_campaign_is_refused(tmp_path):
+    with pytest.raises(Refusal) as said:
+        accept = misstated(accept=["signs/gyros"])
+        recorded(tmp_path, faults(flip("gyro", "y")), accept, until="segment")
+    words = str(said.value)
+    assert "campaign.yaml, line" in words and "accept[0]" in words
+    assert "'signs/gyros'" in words and "signs/gyro" in words
+    assert "remove it from accept" in words
