@@ -12,7 +12,9 @@
 #   make style                    linters, types, and which room may import which
 #   make challenge                hides effects in many campaigns and reports what is detected, in
 #                                 docs/challenge.md; 90 minutes on two cores, can be resumed; with
-#                                 DRAWS=100 a tenth of them
+#                                 DRAWS=100 a tenth of them; with ONLY=diagnosis only what the
+#                                 diagnosis says of 708 of them, in docs/diagnosis.md; with
+#                                 ONLY="diagnosis fault spikes" those that have these words
 #   make docs                     docs/tables.md and the catalogue of messages, from the code
 #   make clean                    deletes what can be computed again from the raw logs; reports stay
 #   make setup                    only the environment, .venv, which every target above needs
@@ -94,7 +96,13 @@ bench: .venv/complete benchmarks/.venv/complete
 	PYTHONPATH=tests:tests/bounds OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks "$${parts[@]}"
 
 challenge: .venv/complete
-	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m hidden "$$DRAWS" data/derived/challenge
+	export OPENBLAS_NUM_THREADS=1
+	read -ra words <<< "$$ONLY"
+	if [[ $${words:-} != diagnosis ]]; then
+		PYTHONPATH=tests $(BIN)/python -m hidden "$$DRAWS" data/derived/challenge
+	fi
+	PYTHONPATH=tests:tests/hidden:tests/diagnosis $(BIN)/python -m diagnosis \
+		data/derived/challenge "$${words[@]:1}"
 
 # Files generated from the code; tests fail where they are not current.
 docs: .venv/complete

@@ -18,10 +18,15 @@ BESIDE = ("studies", "comparison")  # nothing of the diagnosis rests on them in 
 TABLES = ("causes", "members", "consequences", "verdict", "result")
 
 
+def performed(document: Mapping[str, Any]) -> laboratory.Recording:
+    """What the laboratory records."""
+    return laboratory.perform(laboratory.specify(document))
+
+
 @contextmanager
 def results_of(document: Mapping[str, Any], until: str = "diagnosis") -> Iterator[chain.Results]:
     """The tables of a campaign, as long as they are looked at."""
-    recording = laboratory.perform(laboratory.specify(document))
+    recording = performed(document)
     folder = Path(tempfile.mkdtemp(dir=SHARED_MEMORY if SHARED_MEMORY.is_dir() else None))
     try:
         with in_memory.recorded(recording, folder / "raw") as raw:

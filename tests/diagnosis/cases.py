@@ -181,12 +181,18 @@ def stated(**said: Any) -> Document:
 
 
 def turned_the_other_way(document: Document) -> Document:
-    """Every turn goes the other way than stated."""
-    turns = {o["id"]: o["degrees"] for o in document["campaign"]["plan"] if o["do"] == "turn"}
-    return {
-        "campaign": {"plan": {name: {"degrees": -degrees} for name, degrees in turns.items()}},
-        "misstated": {"plan": {name: {"degrees": degrees} for name, degrees in turns.items()}},
-    }
+    """Every turn and every tumble goes the other way than stated."""
+    done, said = {}, {}
+    for one in document["campaign"]["plan"]:
+        if one["do"] == "turn":
+            done[one["id"]], said[one["id"]] = (
+                {"degrees": sign * one["degrees"]} for sign in (-1, 1)
+            )
+        elif one["do"] == "tumble":
+            about = one["about"]
+            done[one["id"]] = {"about": ("-" if about[0] == "+" else "+") + about[1]}
+            said[one["id"]] = {"about": about}
+    return {"campaign": {"plan": done}, "misstated": {"plan": said}}
 
 
 def off(axis: str, by: float) -> list[float]:
@@ -208,6 +214,7 @@ def set_off(manoeuvre: str, up: str, by: float) -> Document:
 ARC_SECOND = float(np.radians(1 / 3600))
 NORMAL = 9.7936  # m/s², in Wuhan
 CLIP = float(np.radians(60))  # rad/s
+UPS = tuple(sign + axis for axis in "xyz" for sign in "+-")
 GYROS = ("gyro_x", "gyro_y", "gyro_z")
 SPIKED = {"lines": list(range(103, 1103, 103))[:10], "channel": "gyro_y", "size_rad_s": 0.6}
 KNOCK = {"peak_m_s2": 60.0, "peak_rad_s": 3.0, "frequency_hz": 31.0, "decay_s": 0.08}
@@ -274,8 +281,8 @@ CASES: tuple[Case, ...] = (
         "clock-fast-in-one-log",
         short,
         (cause(CLOCK),),
-        accel=HARMLESS,
-        gyro=HARMLESS,
+        accel=LIMITED | CONDITIONAL | LOST,
+        gyro=HARMLESS | CONDITIONAL,
         hidden=fault({"drift": {"log": "y-up.asc", "ppm": 1500}}),
     ),
     # ---- the wiring

@@ -1,0 +1,261 @@
+"""What is drawn, in which plan and how large; each from its own name, so that it can be made again.
+
+Gravity and sensors are drawn anew for each campaign: gravity as far from the stated one as its
+sigma says, and where none is stated as far from the formula's as that of the formula says.
+"""
+
+import json
+import zlib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Any
+
+import cases
+import numpy as np
+from campaigns import performed, results_of
+from cases import Cause, cause
+from diagnosis_faults import BY_NAME, FAULTS, FORMULA_SIGMA, Place, Setting
+from hidden_draws import COMMON, _hide
+from hidden_plans import PLANS, sensors
+from hidden_sizes import KEPT, code, size
+from hidden_ways import ABSORBED, WAYS
+
+from inertial.text.parameters import STAGES
+from laboratory.site import normal_gravity
+
+RATIOS = (15.0, 30.0)
+SIGMAS = (2.0, 5.0, 20.0)
+PAIRS, CLEAN, SILENT, REPORTED = 60, 300, 3, 5  # campaigns; the last two of each and plan
+BETWEEN = (15.0, 40.0)  # the signal-to-noise ratio of an effect beside a fault
+STATED_SIGMA = 5e-5  # m/s², of the gravity that the demo states
+
+Document = dict[str, Any]
+Random = np.random.Generator
+Told = Callable[[Random], Document]
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """One campaign: `changes` of the plan's document, and the rows that are right.
+
+    `part`: effect, fault, absorbed, reported, pair or clean; `what`: in words; `size`: SNR or
+    sigma; `ratio`: the signal-to-noise ratio of an effect.
+    """
+
+    name: str
+    part: str
+    plan: str
+    what: str
+    size: float | None
+    changes: Document
+    causes: tuple[Cause, ...] = ()
+    ratio: float | None = None
+    document: Document = field(default_factory=dict)
+
+
+def names() -> Iterator[str]:
+    """All draws, in the order in which they are run: the parts well mixed."""
+    parts = [list(part) for part in (_effects(), _faults(), _absorbed(), _reported(), _pairs())]
+    parts.append([f"clean|{COMMON[n % len(COMMON)]}||{n}" for n in range(CLEAN)])
+    placed = [(i / len(part), name) for part in parts for i, name in enumerate(part)]
+    return iter([name for _, name in sorted(placed)])
+
+
+def _effects() -> Iterator[str]:
+    for ratio in RATIOS:
+        for name, way in WAYS.items():
+            yield from (f"effect|{plan}|{name}|{ratio:g}" for plan in way.plans)
+
+
+def _faults() -> Iterator[str]:
+    for sigma in SIGMAS:
+        for fault in FAULTS:
+            yield from (f"fault|{plan}|{fault.name}|{sigma:g}" for plan in fault.plans)
+
+
+def _absorbed() -> Iterator[str]:
+    for number in range(SILENT):
+        for name in ABSORBED:
+            yield from (f"absorbed|{plan}|{name}|{number}" for plan in PLANS)
+
+
+def _reported() -> Iterator[str]:
+    for number in range(REPORTED):
+        yield from (f"reported|{plan}|{name}|{number}" for name, (plan, _) in WITHOUT_BAR.items())
+
+
+def _pairs() -> Iterator[str]:
+    plans = list(PLANS)
+    yield from (f"pair|{plans[n % len(plans)]}||{n}" for n in range(PAIRS))
+
+
+def _limits(low: float, high: float) -> Callable[[Random], list[float]]:
+    return lambda random: [float(random.uniform(low, high))] * 3
+
+
+WITHOUT_BAR: Mapping[str, tuple[str, Told]] = {
+    "gyro_dead_band": (
+        "rates",
+        lambda r: {"gyro_dead_band": {"width_deg_h": r.uniform(3, 14, 3).tolist()}},
+    ),
+    "gyro_saturation": (
+        "positions",
+        lambda r: {"gyro_saturation": {"limit_deg_s": _limits(9.9, 9.98)(r)}},
+    ),
+    "accel_saturation": (
+        "positions",
+        lambda r: {"accel_saturation": {"limit_g": _limits(0.99, 0.995)(r)}},
+    ),
+    "gyro_hysteresis": (
+        "positions",
+        lambda r: {"gyro_hysteresis": {"offset_deg_h": r.normal(0, 1, 3).tolist()}},
+    ),
+}
+
+
+def drawn(name: str) -> Drawn:
+    """The draw of a name: `part|plan|what|size`."""
+    part, plan, what, number = name.split("|")
+    random = np.random.default_rng([2031, zlib.crc32(name.encode())])
+    document = _document(plan, random)
+    made = PARTS[part](plan, what, float(number), random, document)
+    return Drawn(
+        **made | {"name": name, "part": part, "plan": plan},
+        document=cases.merged(document, made["changes"]),
+    )
+
+
+def _document(plan: str, random: Random) -> Document:
+    """A clean campaign of a plan: sensors and gravity by chance, gravity stated or not."""
+    document = PLANS[plan](seed=int(random.integers(2**31)))
+    site = document["campaign"]["site"]
+    document["truth"] = sensors(random)
+    if random.random() < 0.5:
+        height = random.normal(site["height_m"], 3.0)
+        true = normal_gravity(np.radians(site["latitude_deg"]), height)
+        true += random.normal(0, FORMULA_SIGMA)
+        document["campaign"]["site"] = {key: site[key] for key in ("latitude_deg", "height_m")}
+    else:
+        true = site["gravity_m_s2"] + random.normal(0, STATED_SIGMA)
+    document["truth"]["gravity_m_s2"] = float(true)
+    return document
+
+
+def _stated(document: Document) -> None:
+    """The site of the demo, gravity stated: for faults of that statement."""
+    site = PLANS["positions"]()["campaign"]["site"]
+    document["campaign"]["site"] = site
+    document["truth"]["gravity_m_s2"] = site["gravity_m_s2"]
+
+
+def _effect(
+    plan: str, what: str, ratio: float, random: Random, document: Document
+) -> dict[str, Any]:
+    hidden = _hide({what: ("ratio", ratio)}, plan, random, size)
+    return {
+        "what": what,
+        "size": ratio,
+        "ratio": ratio,
+        "changes": cases.effect(**hidden["effects"]),
+        "causes": (cause({what}),),
+    }
+
+
+def _fault(
+    plan: str, what: str, sigma: float, random: Random, document: Document
+) -> dict[str, Any]:
+    fault = BY_NAME[what]
+    if "gravity" in what:
+        _stated(document)
+    told = fault.hide(Setting(document, places(plan), sigmas(plan)), random, sigma)
+    return {
+        "what": what,
+        "size": sigma if fault.sized else None,
+        "changes": told.changes,
+        "causes": (told.cause,),
+    }
+
+
+def _silent(
+    plan: str, what: str, number: float, random: Random, document: Document
+) -> dict[str, Any]:
+    much = float(random.choice([-1, 1]) * np.exp(random.uniform(np.log(0.3), np.log(3))))
+    told = ABSORBED[what](much)
+    return {"what": what, "size": much, "changes": cases.effect(**{what: told})}
+
+
+def _without_bar(
+    plan: str, what: str, number: float, random: Random, document: Document
+) -> dict[str, Any]:
+    told = WITHOUT_BAR[what][1](random)
+    names = {what, "saturation"} if what.endswith("saturation") else {what}
+    return {
+        "what": what,
+        "size": None,
+        "changes": cases.effect(**told),
+        "causes": (cause(names),),
+    }
+
+
+def _pair(
+    plan: str, what: str, number: float, random: Random, document: Document
+) -> dict[str, Any]:
+    shown = [name for name, way in WAYS.items() if plan in way.plans]
+    faults = [fault.name for fault in FAULTS if plan in fault.plans]
+    effect, fault = str(random.choice(shown)), str(random.choice(faults))
+    ratio = float(np.exp(random.uniform(*np.log(BETWEEN))))
+    one = _effect(plan, effect, ratio, random, document)
+    other = _fault(plan, fault, float(random.choice(SIGMAS[1:])), random, document)
+    return {
+        "what": f"{fault} + {effect}",
+        "size": other["size"],
+        "ratio": ratio,
+        "changes": one["changes"] | other["changes"],
+        "causes": other["causes"] + one["causes"],
+    }
+
+
+def _clean(
+    plan: str, what: str, number: float, random: Random, document: Document
+) -> dict[str, Any]:
+    return {"what": "", "size": None, "changes": {}}
+
+
+PARTS = {
+    "effect": _effect,
+    "fault": _fault,
+    "absorbed": _silent,
+    "reported": _without_bar,
+    "pair": _pair,
+    "clean": _clean,
+}
+
+
+@cache
+def places(plan: str) -> tuple[Place, ...]:
+    """Where each manoeuvre of a plan stands in its log; tumbles are left out."""
+    document = PLANS[plan]()
+    told = {one["id"]: one for one in document["campaign"]["plan"] if one["do"] != "tumble"}
+    return tuple(
+        Place(name, log, rows, told[name]["up"], told[name]["do"] == "turn")
+        for log, truth in performed(document).truth.items()
+        for name, rows in truth.rows.items()
+        if name in told
+    )
+
+
+@cache
+def sigmas(plan: str) -> dict[str, dict[str, float]]:
+    """The sigmas of the 24 parameters of a clean campaign, kept on disk as the code is the same."""
+    file = KEPT / f"sigmas-{plan}-{code()}.json"
+    if not file.exists():
+        with results_of(PLANS[plan](), "gyroscope") as results:
+            found = {
+                sensor: results.parameters(stage)["sigma"].dropna().to_dict()
+                for sensor, stage in STAGES.items()
+            }
+        KEPT.mkdir(parents=True, exist_ok=True)
+        file.write_text(json.dumps(found), encoding="utf-8")
+    kept: dict[str, dict[str, float]] = json.loads(file.read_text(encoding="utf-8"))
+    return kept

@@ -1,0 +1,70 @@
+"""A drawn campaign through the stages, and how its diagnosis compares with what was hidden."""
+
+import time
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import chain
+from campaigns import BESIDE, diagnosed
+from diagnosis_draws import Drawn, drawn
+from judge import judge, parameters_of
+
+from inertial.tables.code import code_of, hash_of
+
+HERE = Path(__file__).parent
+DRAWN_BY = ("campaigns", "cases", "judge", "diagnosis_draws", "diagnosis_faults")
+HIDDEN_BY = ("plans", "sizes", "ways", "draws", "elsewhere")
+UNKNOWN_TRUTH = {"absorbed", "reported"}  # the 24 parameters take up what is hidden
+
+Outcome = dict[str, Any]
+
+
+@cache
+def code() -> str:
+    """A hash of all that an outcome rests on."""
+    stages = [
+        name for name in chain.ORDER[: chain.ORDER.index("diagnosis") + 1] if name not in BESIDE
+    ]
+    files = {file for stage in stages for file in code_of(stage)}
+    files |= {*(chain.ROOT / "laboratory").rglob("*.py"), chain.ROOT / "config.yaml"}
+    files |= {HERE / f"{name}.py" for name in DRAWN_BY}
+    files |= {HERE.parent / "hidden" / f"hidden_{name}.py" for name in HIDDEN_BY}
+    return hash_of(sorted(files))[:16]
+
+
+def outcome(name: str) -> Outcome:
+    """What was hidden and what was said, as plain numbers and text; or the error it ended with."""
+    told = drawn(name)
+    row = {
+        "name": name,
+        "code": code(),
+        "part": told.part,
+        "plan": told.plan,
+        "what": told.what,
+        "size": told.size,
+        "ratio": told.ratio,
+    }
+    start = time.process_time()
+    try:
+        said = _said(told)
+    except Exception as error:  # it is counted, and the others go on
+        said = {"error": f"{type(error).__name__}: {error}"}
+    return row | said | {"seconds": time.process_time() - start}
+
+
+def _said(told: Drawn) -> Outcome:
+    tables = diagnosed(told.document)
+    truth = None if told.part in UNKNOWN_TRUTH else parameters_of(told.document)
+    found = judge(tables, told.causes, None, truth)
+    return {
+        "rows": len(tables["causes"]),
+        "right": list(found.right),
+        "missing": list(found.missing),
+        "extra": list(found.extra),
+        "flawed": list(found.flawed),
+        "verdicts": {
+            str(row["sensor"]): str(row["verdict"]) for row in tables["verdict"].to_dict("records")
+        },
+        "pulls": dict(found.pulls),
+    }
