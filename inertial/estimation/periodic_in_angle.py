@@ -1,7 +1,7 @@
 """Ripples of a turntable: oscillations periodic in its angle."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 from scipy.optimize import minimize_scalar
 
-from inertial.estimation.probability import chi2_isf
+from inertial.estimation.probability import chi2_isf, f_sf
 
 Array = NDArray[np.float64]
 
@@ -23,6 +23,9 @@ MIN_SEPARATION = 1.5  # periods, between an order and others that are independen
 MIN_DETECTION_SIGMAS = 5.0
 MIN_ORDER_WITH_NEIGHBOURS = 4.0  # from which there are enough of them for a level
 STEPS_PER_PERIOD = 4.0  # of all turns together, in the search for a peak
+MAX_ORDER_SHIFT = 0.5  # bins between an order in the search and refined
+MIN_CHANCE_COMMON = 1e-3  # of turns that differ by more than noise
+MAX_OWN_SHARE = 0.02  # of the energy, that the turns' own amplitudes add where they are the same
 
 
 @dataclass(frozen=True)
@@ -77,9 +80,9 @@ class Course:
         return np.asarray(columns - self.slow @ (self.slow.T @ columns))
 
     def gain(self, order: Array) -> Array:
-        """Amplitude of the rate for an angle of 1 rad, rad/s; zero from half the sample rate on."""
+        """Amplitude of the rate for an angle of 1 rad, rad/s; beyond `highest` that of an alias."""
         share = np.sinc(order / (2 * self.highest)) if self.averaged else 1.0
-        return np.asarray(np.where(order < self.highest, order * self.rate * share, 0.0))
+        return np.asarray(order * self.rate * share)
 
     def shapes(self, order: float) -> Array:
         """The rates for a and b of 1 rad, (n, 2), rad/s."""
@@ -101,16 +104,25 @@ class Orders:
     """The turns together at each order, (m,) each.
 
     drop : of chi-squared by one a and one b, two degrees of freedom
-    apart : further drop with an own a and b for each turn; turns : number with information
-    sigma : rad, of a and b; hertz : the highest frequency at which a turn has it
+    own : (k, m), drop in each turn with an a and b of its own; zero without information
+    sigma : rad, of a and b; hertz : (k, m), the frequency in each turn
     """
 
     order: Array
     drop: Array
-    apart: Array
-    turns: Array
+    own: Array
     sigma: Array
     hertz: Array
+
+    @cached_property
+    def turns(self) -> Array:
+        """The number of turns with information."""
+        return np.asarray((self.own > 0).sum(axis=0))
+
+    @cached_property
+    def apart(self) -> Array:
+        """Further drop with an own a and b for each turn."""
+        return np.asarray(np.maximum(self.own.sum(axis=0) - self.drop, 0.0))
 
 
 def span(courses: Sequence[Course]) -> float:
@@ -133,23 +145,22 @@ def search(courses: Sequence[Course]) -> Orders:
     information = np.zeros((len(courses), len(orders), 2, 2))
     product = np.zeros((len(courses), len(orders), 2))
     for i, course in enumerate(courses):
-        for j in range(few):
+        for j in np.flatnonzero(orders[:few] < course.highest).tolist():
             information[i, j], product[i, j] = course.normal_equations(float(orders[j]))
-        gain = course.gain(orders[few:]) / course.sigma
+        resolved = orders[few:] < course.highest
+        gain = np.where(resolved, course.gain(orders[few:]), 0.0) / course.sigma
         turned = gain * _transform(course, orders[few:]) / course.sigma
         information[i, few:] = (len(course.record) * gain**2 / 2)[:, None, None] * np.eye(2)
         product[i, few:] = np.stack([turned.real, turned.imag], axis=-1)
     drop, inverse = _dropped(information.sum(axis=0), product.sum(axis=0))
     each, _ = _dropped(information, product)
     rates = np.array([abs(course.rate) for course in courses])
-    observable = information[..., 0, 0] > 0
     return Orders(
         orders,
         drop,
-        np.maximum(each.sum(axis=0) - drop, 0.0),
-        observable.sum(axis=0),
+        each,
         np.sqrt(np.maximum(inverse[:, 0, 0], inverse[:, 1, 1])),
-        orders * (rates[:, None] * observable).max(axis=0) / (2 * np.pi),
+        np.outer(rates, orders) / (2 * np.pi),
     )
 
 
@@ -187,17 +198,57 @@ def log_chance(spectrum: Orders, turned: float) -> Array:
 
     turned : length of a record in whole turns, which sets the separation of independent orders.
     """
-    each = spectrum.drop + spectrum.apart
     turns = np.maximum(spectrum.turns, 1)
+    each = spectrum.drop + spectrum.apart
     level = median_filter(each / (2 * turns), NEIGHBOURS, mode="nearest")
     level /= chi2_isf(0.5, 2 * turns) / (2 * turns)
     chance = -spectrum.drop / 2 / np.maximum(level, 1.0)
-    for i in np.flatnonzero(spectrum.hertz < WHITE_FROM).tolist():
+    for i in _slow(spectrum):
         degrees, chi_squared = _noise_by_turns(spectrum, i, turned)
         ratio = spectrum.drop[i] / 2 / max(chi_squared / max(degrees, 1.0), 1.0)
         by_turns = -degrees / 2 * np.log1p(2 * ratio / degrees) if degrees else 0.0
         chance[i] = max(-spectrum.drop[i] / 2, by_turns)
     return np.asarray(np.where(spectrum.turns > 0, chance, 0.0))
+
+
+def log_chance_of_own(spectrum: Orders, leaked: Array, turned: float) -> tuple[Array, Array]:
+    """Drop with an a and b of each turn's own, (m,), and the logarithm of its p-value.
+
+    For no one knows how the amplitude of a ripple goes with the rate, nor from which tooth of a
+    gear a turn starts. Only turns count in which the frequency is not below `WHITE_FROM`. The level
+    is the mean of the orders from half to twice, but for those that are not independent of a line:
+    so what drifts is no line; an F-test.
+
+    leaked : (k, m), what may remain in each turn of lines that were removed; turned : as in
+    `log_chance`
+    """
+    white = (spectrum.hertz >= WHITE_FROM) & (spectrum.own > 0)
+    drop = np.where(white, np.maximum(spectrum.own - leaked, 0.0), 0.0).sum(axis=0)
+    turns = white.sum(axis=0)
+    place = np.arange(len(drop))
+    step = float(spectrum.order[1] - spectrum.order[0])
+    apart, near = max(1 / turned / step, 1.0), round(MIN_SEPARATION / turned / step)
+
+    def around(values: Array) -> Array:
+        summed = np.append(0.0, np.cumsum(values))
+        low = np.searchsorted(spectrum.order, spectrum.order / 2)
+        high = np.searchsorted(spectrum.order, spectrum.order * 2, side="right")
+        of_line = np.maximum(place - near, low), np.minimum(place + near + 1, high)
+        whole = summed[high] - summed[low]
+        return np.asarray(whole - (summed[of_line[1]] - summed[of_line[0]]))
+
+    degrees = np.maximum(around(2.0 * turns), 1.0)
+    level = around(np.where(white, spectrum.own, 0.0).sum(axis=0)) / degrees
+    ratio = drop / np.maximum(2 * turns, 1) / np.maximum(level, 1.0)
+    with np.errstate(divide="ignore"):
+        chance = np.log(f_sf(ratio, 2 * np.maximum(turns, 1), np.maximum(degrees / apart, 1.0)))
+    return drop, np.asarray(np.where(turns > 0, chance, 0.0))
+
+
+def _slow(spectrum: Orders) -> list[int]:
+    """The orders that are slower in every turn than white noise is known."""
+    highest = np.where(spectrum.own > 0, spectrum.hertz, 0.0).max(axis=0)
+    return [int(i) for i in np.flatnonzero(highest < WHITE_FROM)]
 
 
 def detection_limit(spectrum: Orders, turned: float, level: float) -> Array:
@@ -206,7 +257,7 @@ def detection_limit(spectrum: Orders, turned: float, level: float) -> Array:
     Infinite without an estimate of the noise: for a slow ripple in one turn.
     """
     limits = np.where(spectrum.turns > 0, MIN_DETECTION_SIGMAS, np.inf)
-    for i in np.flatnonzero(spectrum.hertz < WHITE_FROM).tolist():
+    for i in _slow(spectrum):
         degrees, _ = _noise_by_turns(spectrum, i, turned)
         limit = np.sqrt(degrees * (level ** (-2 / degrees) - 1)) if degrees else np.inf
         limits[i] = max(limits[i], limit)
@@ -237,7 +288,8 @@ class Ripple:
     """One order over all turns: a and b, rad, with their covariance and that of the order.
 
     own : (k, 2), a and b of each turn by itself, NaN without information; power : (k,), the
-    squared signal-to-noise ratio of each turn for an angle of 1 rad.
+    squared signal-to-noise ratio of each turn for an angle of 1 rad; drop : of chi-squared by one
+    a and b; apart : further drop by those of each turn.
     """
 
     order: float
@@ -250,26 +302,31 @@ class Ripple:
     power: Array
 
     @property
+    def turns(self) -> int:
+        """The number of turns with information."""
+        return int(np.isfinite(self.own).all(axis=1).sum())
+
+    @property
+    def common(self) -> bool:
+        """Whether one a and b explain all turns, to within noise or a small share."""
+        others = self.turns - 1
+        by_noise = float(chi2_isf(MIN_CHANCE_COMMON, 2 * others)) if others > 0 else 0.0
+        return self.apart <= by_noise + MAX_OWN_SHARE * self.drop
+
+    @property
     def amplitude(self) -> float:
-        """√(a² + b²), rad."""
-        return float(np.linalg.norm(self.values))
+        """√(a² + b²), rad; where each turn has its own, their root mean square without noise."""
+        if self.common:
+            return float(np.linalg.norm(self.values))
+        return float(np.sqrt((self.drop + self.apart - 2 * self.turns) / self.power.sum()))
 
     @property
     def amplitude_sigma(self) -> float:
         """Its standard deviation, rad."""
+        if not self.common:
+            return float(self.power.sum() ** -0.5)
         along = self.values / self.amplitude
         return float(np.sqrt(along @ self.covariance @ along))
-
-    def beyond(self, tolerance: float) -> float:
-        """Chi-squared of the turns' own a and b about the common ones.
-
-        The angle at which each turn starts is known to `tolerance`, rad, one sigma.
-        """
-        observable = np.isfinite(self.own).all(axis=1)
-        ratio = (self.own[observable] @ [1, 1j]) / (self.values @ [1, 1j])
-        power = self.power[observable] * self.amplitude**2
-        turned = ratio.imag**2 / (1 + power * (self.order * tolerance) ** 2)
-        return float(np.sum(power * ((ratio.real - 1) ** 2 + turned)))
 
 
 def fitted(courses: Sequence[Course], near: float, width: float) -> Ripple:
@@ -298,6 +355,20 @@ def fitted(courses: Sequence[Course], near: float, width: float) -> Ripple:
         np.array(own),
         np.array(power),
     )
+
+
+def ripple_of(courses: Sequence[Course], order: float) -> Ripple:
+    """The ripple near an order: one a and b where they explain all turns, else each its own.
+
+    The sigma of the order is then that of the frequencies of the turns, Rife & Boorstyn (1974).
+    """
+    common = fitted(courses, order, MAX_ORDER_SHIFT / max(course.turned for course in courses))
+    if common.common:
+        return common
+    each = fitted(courses, order, 0.0)
+    turned = np.array([2 * np.pi * course.turned for course in courses])
+    drops = np.nan_to_num(each.power * np.sum(each.own**2, axis=1))
+    return replace(each, order_sigma=float(np.sqrt(12 / np.sum(drops * turned**2))))
 
 
 def _best(courses: Sequence[Course], near: float, width: float) -> float:

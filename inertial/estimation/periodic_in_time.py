@@ -14,7 +14,6 @@ Array = NDArray[np.float64]
 MIN_SAMPLES = 64  # in which a line can be distinguished from noise
 OVERSAMPLING = 2  # the search steps by half a bin, so that no line lies between two
 MAX_LEAKAGE = 0.05  # of the amplitude of a removed line, one bin away from it
-MIN_LOG_ODDS = 3.0  # of one of two hypotheses to be accepted alone: 20 to 1
 
 
 @dataclass(frozen=True)
@@ -147,14 +146,6 @@ def without_line(record: Array, rate: float, frequency: float) -> Split:
     return Split(level, amplitude, line / amplitude if amplitude else line)
 
 
-def energy(record: Array, rate: float, frequency: float) -> float:
-    """Drop of the sum of squares by a line of one frequency, mean and slope fitted too."""
-    columns, parts = _fitted(record, rate, frequency)
-    slow = np.linalg.qr(columns[:, 2:])[0]
-    level = record - slow @ (slow.T @ record)
-    return float(level @ level - np.sum((record - columns @ parts) ** 2))
-
-
 def phasor(record: Array, rate: float, frequency: float) -> complex:
     """c of Re c exp(2πi f t), t from the first sample, of the line of one frequency."""
     sine, cosine = _fitted(record, rate, frequency)[1][:2]
@@ -208,54 +199,17 @@ def pooled(
     return frequency, drop, chi2_logsf(drop, degrees)
 
 
-# ---- Whether an oscillation is periodic in time or in the table's angle.
-#
-# In time it has a random phase in each turn; frequency and amplitude are the same in all turns, or
-# not. Against the angle it has an order and one a and b for all turns. The score of each is half
-# the drop of chi-squared less the logarithms of the prior over posterior widths of its free
-# parameters and of the number of values searched. At a signal-to-noise ratio R the posterior of a
-# phase takes 1/(√(2π) R) of its range, an amplitude that was known to be no larger than twice the
-# estimate √(2π)/(2 R), a frequency that was known to a bin about 1/R; a search over m values costs
-# ln m. The difference of two scores is the natural logarithm of the odds.
+def score(drops: Array) -> Array:
+    """Natural logarithm of how much likelier a line is than none, for drops of chi-squared by it.
 
-
-def in_time(own: Array, amplitudes: Array, drops: Array, searched: float) -> float:
-    """Score of an oscillation periodic in time; in a turn that fits better without, it is absent.
-
-    own : (k,), drops of chi-squared with a frequency, an amplitude and a phase of each turn's own
-    amplitudes, drops : (k,), in each turn and by it, at one frequency for all
-    searched : how many frequencies and axes were tried
+    Half of the drop, less the logarithm of prior over posterior widths of amplitude and phase: at a
+    signal-to-noise ratio R, whose square is the drop, the posterior of a phase takes 1/(√(2π) R) of
+    its range, and an amplitude that was known to be no larger than twice the estimate √(2π)/(2 R).
+    Where a turn fits better without the line, it is absent.
     """
-    penalty = _phase(own) + _amplitude(own)
-    each = np.maximum(own / 2 - penalty - _frequency(own), 0.0)
-    present = each > 0
-    if not present.any():
-        return float(-np.log(searched))
-    # One of the frequencies is that of the search.
-    separate = float(each.sum() + _frequency(own[present]).max())
-    weight = drops[present] / amplitudes[present] ** 2
-    off = amplitudes[present] - np.average(amplitudes[present], weights=weight)
-    same = (drops[present] - weight * off**2) / 2 - _phase(drops[present])
-    common = float(same.sum() - _amplitude(drops[present].sum()))
-    return max(separate, common) - float(np.log(searched))
+    return np.asarray(np.maximum(drops / 2 - np.log(np.maximum(2 * drops, 1.0)), 0.0))
 
 
-def in_angle(drop: float, searched: float) -> float:
-    """Score of an oscillation periodic in the angle, by the drop of chi-squared in all turns."""
-    penalty = _phase(np.asarray(drop)) + _amplitude(np.asarray(drop))
-    return float(drop / 2 - penalty - np.log(searched))
-
-
-def _phase(drop: Array) -> Array:
-    """ln of prior over posterior width of a phase; R² is the drop."""
-    return np.asarray(np.log(np.maximum(np.sqrt(2 * np.pi * drop), 1.0)))
-
-
-def _amplitude(drop: Array) -> Array:
-    """The same of an amplitude."""
-    return np.asarray(np.log(np.maximum(2 * np.sqrt(drop / (2 * np.pi)), 1.0)))
-
-
-def _frequency(drop: Array) -> Array:
-    """The same of a frequency: sigma is √6/(π R T), Rife & Boorstyn (1974)."""
-    return np.asarray(np.log(np.maximum(np.sqrt(drop), 1.0)))
+def score_of_own_frequency(drops: Array) -> Array:
+    """The same for a frequency that is known to a bin: its sigma is about 1/R of that."""
+    return np.asarray(score(drops) - np.log(np.maximum(np.sqrt(drops), 1.0)))

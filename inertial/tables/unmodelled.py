@@ -41,7 +41,7 @@ FINDING = Column("finding", TEXT, "", "id of the finding that names it", nullabl
 
 EFFECT_FINDINGS = Table(
     "effect_findings",
-    3,
+    4,
     (
         *FINDINGS.columns,
         Column("verdict", TEXT, "", "found, one_of_class, unknown_structure", nullable=True),
@@ -54,6 +54,13 @@ EFFECT_FINDINGS = Table(
         ),
         Column("degrees", INTEGER, "1", "degrees of freedom of the statistic", nullable=True),
         Column("snr", DOUBLE, "1", "signal-to-noise ratio: √(statistic − degrees)", nullable=True),
+        Column(
+            "moves",
+            DOUBLE,
+            "1",
+            "largest shift of a parameter by it, in sigma of that parameter, where it is known",
+            nullable=True,
+        ),
         Column(
             "split_manoeuvre",
             TEXT,

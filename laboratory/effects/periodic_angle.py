@@ -26,7 +26,11 @@ class PeriodicAngle(Effect):
     ) -> Sequence[Turning]:
         if not turnings or not turnings[0].planned:
             return turnings
-        return [self.error.added_to(turnings[0]), *turnings[1:]]
+        return [self.error_at(turnings[0]).added_to(turnings[0]), *turnings[1:]]
+
+    def error_at(self, table: Turning) -> Harmonic:
+        """The error while the table turns."""
+        return self.error
 
     def position_error(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
         angle = 0.0 if manoeuvre.step is None else manoeuvre.step.angle

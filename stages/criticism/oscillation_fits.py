@@ -7,12 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.steady_residuals import SteadyTurn
-from inertial.estimation.periodic_in_angle import Orders, log_chance
+from inertial.estimation.periodic_in_angle import Orders, log_chance, log_chance_of_own
 from inertial.estimation.periodic_in_time import Line, Taken, phasor, pooled, strongest
 from inertial.physics.motion import cross
 from inertial.tables import AXES
-
-# ---- Oscillations in the residuals of the rate segments, fitted in time and in angle.
 
 # ---- A detection, before its cause is known.
 
@@ -126,13 +124,18 @@ def in_all(
             for removed in taken[turn.name]:
                 leakage = removed.leaks(frequency, turn.seconds) / noise
                 log_p = np.where(drop > len(visible) * leakage**2, log_p, 0.0)
-        best = int(np.argmin(log_p))
+        best = _least_likely(log_p, drop)
         trials = len(AXES) * len(frequency)
         p_value = float(np.exp(min(log_p[best] + np.log(trials), 0.0)))
         detections.append(
             Detection(float(drop[best]), p_value, None, float(frequency[best]), visible[0])
         )
     return detections
+
+
+def _least_likely(log_p: Array, drop: Array) -> int:
+    """The place of the smallest p-value; of those that are too small for a number, by the drop."""
+    return int(np.argmax(np.where(log_p == log_p.min(), drop, -1.0)))
 
 
 # ---- Detection against the table's angle.
@@ -143,21 +146,31 @@ ECCENTRICITY_ORDER = 1.0  # of an encoder off its axis
 def best_orders(
     turns: Sequence[SteadyTurn], orders: Orders, taken: Mapping[str, Sequence[Taken]]
 ) -> list[Detection]:
-    """The order 1, and the best of all others: two searches."""
+    """The order 1, the best of all others, and the best with amplitudes of each turn: searches."""
     log_p = log_chance(orders, shortest(turns))
+    leaked = np.zeros_like(orders.own)
     # What may remain of a line that was removed from any turn is no ripple.
     amplitude = np.sqrt(orders.drop) * np.where(orders.turns > 0, orders.sigma, 0.0)
-    for turn in turns:
+    for i, turn in enumerate(turns):
+        noise = turn.sigma(turn.about) * np.sqrt(2 / len(turn.truth))
         for removed in taken[turn.name]:
-            leakage = removed.leaks(turn.hertz(1.0) * orders.order, turn.seconds)
+            leakage = removed.leaks(orders.hertz[i], turn.seconds)
+            leaked[i] += (leakage / noise) ** 2
             exceeds = amplitude * orders.order * abs(turn.rate) > leakage
             log_p = np.where(exceeds, log_p, 0.0)
-    detections = []
+    own_drop, own_log_p = log_chance_of_own(orders, leaked, shortest(turns))
     others = np.where(orders.order > ECCENTRICITY_ORDER, log_p, 0.0)
-    for i, trials in ((0, 1.0), (int(np.argmin(others)), float(len(others)))):
-        p_value = float(np.exp(min(log_p[i] + np.log(trials), 0.0)))
+    first, best, best_own = 0, int(np.argmin(others)), _least_likely(own_log_p, own_drop)
+    many = float(len(others))
+    detections = []
+    for i, drop, log_chance_at, trials in (
+        (first, orders.drop[first], log_p[first], 1.0),
+        (best, orders.drop[best], log_p[best], many),
+        (best_own, own_drop[best_own], own_log_p[best_own], many),
+    ):
+        p_value = float(np.exp(min(log_chance_at + np.log(trials), 0.0)))
         order, turn = float(orders.order[i]), turns[0]
-        detections.append(Detection(float(orders.drop[i]), p_value, order, turn.hertz(order), turn))
+        detections.append(Detection(float(drop), p_value, order, turn.hertz(order), turn))
     return detections
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.effects import CATALOGUE
 from inertial.effects.table_ripple import HIGHEST, LOWEST, STEP
-from inertial.estimation.periodic_in_angle import MIN_DETECTION_SIGMAS
+from inertial.estimation.periodic_in_angle import MIN_DETECTION_SIGMAS, Ripple
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.tables import AXES
@@ -21,56 +21,81 @@ from stages.criticism.finding_rows import (
     finding_id,
     member_rows,
     parameter_row,
+    snr_of,
 )
 from stages.criticism.oscillation_fits import ECCENTRICITY_ORDER, TABLE, TurnLine
-from stages.criticism.oscillation_search import ANGLE, Oscillation, SearchResult
+from stages.criticism.oscillation_hypotheses import ECCENTRICITY, IN_TIME, RIPPLE
+from stages.criticism.oscillation_search import Oscillation, SearchResult
 
 Array = NDArray[np.float64]
 
-IN_TIME, RIPPLE, ECCENTRICITY = "oscillation", "table_ripple", "table_eccentricity"
 EFFECTS = (IN_TIME, RIPPLE, ECCENTRICITY)
 SIZES = {IN_TIME: ("amplitude",), RIPPLE: ("a", "b"), ECCENTRICITY: ("a", "b")}
-DEGREES = {IN_TIME: 3, RIPPLE: 3, ECCENTRICITY: 2}  # a frequency or an order, and two parts
+# A frequency or an order, and two parts: of the search in one turn, or by one a and one b.
+DEGREES = {IN_TIME: 3, RIPPLE: 3, ECCENTRICITY: 2}
 
 
 @dataclass(frozen=True)
 class Named:
-    """An oscillation with the effects that it may be, the likeliest first, and its finding."""
+    """An oscillation with its finding.
+
+    `moves`: the largest shift of a parameter by it, in sigma, where it is known.
+    """
 
     oscillation: Oscillation
-    members: Sequence[str]
     finding: str
+    moves: float | None
 
     @property
     def effect(self) -> str:
         """The likeliest effect."""
-        return self.members[0]
+        return self.oscillation.effects[0]
+
+    @property
+    def ripple(self) -> Ripple | None:
+        """Its order against the table's angle, where that is the likeliest."""
+        return self.oscillation.ripple if self.effect != IN_TIME else None
 
     @property
     def statistic(self) -> float:
-        """Reduction of chi-squared by it."""
-        ripple = self.oscillation.ripple
-        if self.effect == IN_TIME or ripple is None:
-            return max(line.drop for line in self.oscillation.lines)
-        return ripple.drop
+        """Reduction of chi-squared by it in all turns."""
+        if self.ripple:
+            return self.ripple.drop + (0.0 if self.ripple.common else self.ripple.apart)
+        return sum(line.drop for line in self.oscillation.lines)
+
+    @property
+    def degrees(self) -> int:
+        """Of freedom of the statistic: a frequency or an order, and two parts of each amplitude."""
+        if self.ripple and self.ripple.common:
+            return DEGREES[self.effect]
+        return 1 + 2 * (self.ripple.turns if self.ripple else len(self.oscillation.lines))
+
+    @property
+    def snr(self) -> float:
+        """Signal-to-noise ratio."""
+        return snr_of(self.statistic, self.degrees)
 
     @property
     def verdict(self) -> str:
         """Whether the data distinguish the effects that it may be."""
-        return FOUND if len(self.members) == 1 else ONE_OF_CLASS
+        return FOUND if len(self.oscillation.effects) == 1 else ONE_OF_CLASS
 
 
 class OscillationResults:
-    """The rows of one mount."""
+    """The rows of one mount; `moves`: of each oscillation, as in `Named`."""
 
-    def __init__(self, result: SearchResult, mount: str) -> None:
+    def __init__(
+        self, result: SearchResult, mount: str, moves: Sequence[float | None] | None = None
+    ) -> None:
         self.result, self.mount = result, mount
         self.named: list[Named] = []
-        for oscillation in result.oscillations:
-            members = members_of(oscillation)
-            before = sum(other.effect == members[0] for other in self.named)
+        known = moves or [None] * len(result.oscillations)
+        for oscillation, moved in zip(result.oscillations, known, strict=True):
+            effect = oscillation.effects[0]
+            before = sum(other.effect == effect for other in self.named)
             number = [str(before + 1)] if before else []
-            self.named.append(Named(oscillation, members, finding_id(members[0], mount, *number)))
+            finding = finding_id(effect, mount, *number)
+            self.named.append(Named(oscillation, finding, moved))
 
     def rows(self) -> Iterator[TableRow]:
         """Scores, parameters, detection limits, spectral lines, and findings."""
@@ -90,11 +115,11 @@ class OscillationResults:
         """The test of each of the three effects; none where no turn can show it."""
         first, row = self._first(name), dict[str, object]()
         if first:
-            order = first.oscillation.ripple.order if first.oscillation.ripple else None
-            scan = CATALOGUE[RIPPLE].scan
+            scan = CATALOGUE[name].scan
             row |= {"statistic": first.statistic, "p_value": first.oscillation.p_value}
-            row |= {"snr": sqrt(first.statistic), "scan_value": order if name == RIPPLE else None}
-            row["scan_unit"] = scan.unit if scan and name == RIPPLE else None
+            row["snr"] = first.snr
+            row["scan_value"] = first.ripple.order if scan and first.ripple else None
+            row["scan_unit"] = scan.unit if scan else None
         else:
             remaining = [d for d in self.result.remaining if _kind(d.order) == name]
             best = min(remaining, key=lambda detection: detection.p_value, default=None)
@@ -108,16 +133,15 @@ class OscillationResults:
             "cause": CATALOGUE[name].cause,
             "sought_in": "spectrum",
             "finding": first.finding if first else None,
-            "degrees": DEGREES[name] if tested else None,
+            "degrees": first.degrees if first else DEGREES[name] if tested else None,
             "named": first is not None,
             "verdict": first.verdict if first else "",
             "sentence": self._sentence(first.oscillation) if first else self._not_named(name),
         }
 
     def _finding(self, named: Named) -> Iterator[TableRow]:
-        oscillation = named.oscillation
-        ripple = oscillation.ripple if named.effect != IN_TIME else None
-        several = len(named.members) > 1
+        oscillation, ripple, members = named.oscillation, named.ripple, named.oscillation.effects
+        several = len(members) > 1
         yield (
             "findings",
             {
@@ -135,8 +159,9 @@ class OscillationResults:
                 "action": sentences.action(oscillation),
                 "verdict": named.verdict,
                 "statistic": named.statistic,
-                "degrees": DEGREES[named.effect],
-                "snr": sqrt(named.statistic),
+                "degrees": named.degrees,
+                "snr": named.snr,
+                "moves": named.moves,
                 "split_manoeuvre": sentences.SPLIT if several else None,
                 "split_snr": sqrt(named.statistic / len(oscillation.lines)) if several else None,
                 "split_stated": False if several else None,
@@ -144,7 +169,7 @@ class OscillationResults:
         )
         likelier = 1 / (1 + exp(-oscillation.log_odds))
         probability = (likelier, 1 - likelier) if several else (1.0,)
-        yield from member_rows(named.finding, self.mount, named.members, probability)
+        yield from member_rows(named.finding, self.mount, members, probability)
 
     def _parameters(self, name: str) -> Iterator[TableRow]:
         """The parameters of each oscillation that is this effect; or their detection limits."""
@@ -199,14 +224,16 @@ class OscillationResults:
         listed = set()
         for line in self.result.strongest:
             turn = turns[line.manoeuvre]
-            named = next((n for n in self.named if _is(line, n.oscillation, turn)), None)
-            listed.add((line.manoeuvre, line.axis, named.effect if named else None))
+            parts = ((part, n) for n in self.named for part in n.oscillation.parts)
+            part, named = next(((p, n) for p, n in parts if _is(line, p, turn)), (None, None))
+            listed.add((line.manoeuvre, line.axis, id(part)))
             yield self._line(line, turn, named)
         for named in self.named:
-            for line in named.oscillation.lines:
-                turn = turns[line.manoeuvre]
-                if (line.manoeuvre, _axis(line, turn), named.effect) not in listed:
-                    yield self._line(line, turn, named)
+            for part in named.oscillation.parts:
+                for line in part.lines:
+                    turn = turns[line.manoeuvre]
+                    if (line.manoeuvre, _axis(line, turn), id(part)) not in listed:
+                        yield self._line(line, turn, named)
 
     def _line(self, line: TurnLine, turn: SteadyTurn, named: Named | None) -> TableRow:
         frequency = line.line.frequency
@@ -225,31 +252,15 @@ class OscillationResults:
         }
 
     def _sentence(self, oscillation: Oscillation) -> str:
-        if (
-            oscillation.periodic_in == ANGLE
-            and oscillation.axis == TABLE
-            and oscillation.ripple is not None
-        ):
+        if oscillation.effects[0] != IN_TIME and oscillation.ripple:
             return sentences.of_ripple(oscillation, oscillation.ripple, self.result.turns)
-        return sentences.of_oscillation(oscillation, self.result.turns)
+        return sentences.of_oscillation(oscillation)
 
     def _not_named(self, name: str) -> str:
         for named in self.named:
-            if name in named.members:
+            if name in named.oscillation.effects:
                 return sentences.may_be(named.effect, name)
         return not_named(self.result, name)
-
-
-def members_of(oscillation: Oscillation) -> Sequence[str]:
-    """The effects that an oscillation may be, the likeliest first."""
-    of_table = RIPPLE
-    if oscillation.ripple is not None and sentences.eccentric(oscillation.ripple):
-        of_table = ECCENTRICITY
-    if oscillation.periodic_in == ANGLE:
-        first, second = (of_table if oscillation.axis == TABLE else IN_TIME), IN_TIME
-    else:
-        first, second = IN_TIME, of_table
-    return [first] if oscillation.decided or first == second else [first, second]
 
 
 def _kind(order: float | None) -> str:
@@ -261,7 +272,7 @@ def _kind(order: float | None) -> str:
 
 def _is(line: TurnLine, oscillation: Oscillation, turn: SteadyTurn) -> bool:
     """Whether a line is that of an oscillation: within a bin."""
-    frequency = oscillation.frequencies.get(turn.name, np.inf)
+    frequency = oscillation.likeliest.frequencies.get(turn.name, np.inf)
     return abs(line.line.frequency - frequency) < 1 / turn.seconds
 
 
@@ -271,7 +282,10 @@ def _axis(line: TurnLine, turn: SteadyTurn) -> str:
 
 
 def _estimates(name: str, oscillation: Oscillation) -> dict[str, tuple[float, float]]:
-    """Value and sigma of each parameter: Hz and rad/s, or rad and periods per revolution."""
+    """Value and sigma of each parameter: Hz and rad/s, or rad and periods per revolution.
+
+    Of turns with an a and b of their own only the order is one number.
+    """
     if name == IN_TIME:
         return {
             "frequency": (oscillation.mean.frequency, oscillation.mean.frequency_sigma),
@@ -283,6 +297,7 @@ def _estimates(name: str, oscillation: Oscillation) -> dict[str, tuple[float, fl
     estimates = {
         part: (float(value), float(sigma))
         for part, value, sigma in zip("ab", ripple.values, sigmas, strict=True)
+        if ripple.common
     }
     if name == RIPPLE:
         estimates["n"] = (ripple.order, ripple.order_sigma)

@@ -1,6 +1,6 @@
-"""The search for oscillations: in which channels, periodic in time or in angle."""
+"""The search for oscillations in the turns of one mount, and their removal from the blocks."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -8,29 +8,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.steady_residuals import SteadyTurn
-from inertial.estimation.periodic_in_angle import (
-    Orders,
-    Ripple,
-    detection_limit,
-    fitted,
-    grid,
-    search,
-)
-from inertial.estimation.periodic_in_time import (
-    MIN_LOG_ODDS,
-    Taken,
-    energy,
-    in_angle,
-    in_time,
-    line_at,
-    near,
-    phasor,
-    without_line,
-)
+from inertial.estimation.periodic_in_angle import Orders, Ripple, detection_limit, search
+from inertial.estimation.periodic_in_time import Taken, line_at, phasor, without_line
 from inertial.tables import AXES, GYRO
 from stages.criticism.oscillation_fits import (
-    ECCENTRICITY_ORDER,
-    TABLE,
     Coupled,
     Detection,
     MeanLine,
@@ -44,155 +25,122 @@ from stages.criticism.oscillation_fits import (
     shortest,
     strongest_lines,
 )
+from stages.criticism.oscillation_hypotheses import (
+    IN_TIME,
+    MIN_LOG_ODDS,
+    RIPPLE,
+    Hypothesis,
+    folded,
+    hypotheses_of,
+)
 
 Array = NDArray[np.float64]
 
-# ---- Whether an oscillation is periodic in time or in angle, and about which axis it arises.
-
-MAX_START_ERROR = 1e-5  # rad, 2″, of the angle at which the table starts a turn
-MAX_ORDER_SHIFT = 0.5  # bins between an order in the search and refined
-MIN_FREE_ORDER_DROP = 9.0  # of chi-squared, by an order other than 1
-MIN_REFINED_DROP = 30.0  # of chi-squared, from which a turn has a frequency of its own
-MIN_PERIODS = 3.0  # in a turn, for a frequency of its own
-TIME, ANGLE = "time", "angle"
+MAX_MULTIPLE = 10  # of a frequency or an order, that is still the same cause
+MAX_ALIAS_MULTIPLE = 3  # the same beyond half the sample rate
+MULTIPLE_SIGMAS = 4.0  # within which a line is a multiple of another
+MAX_MULTIPLE_SHARE = 0.02  # of a frequency or an order: less certain, a multiple says nothing
+UNRESOLVED_BINS = 2.0  # between two lines, that are one whose frequency wanders
 
 
 @dataclass(frozen=True)
 class Oscillation:
     """An oscillation over all turns.
 
-    periodic_in : time or angle, whichever is likelier; axis : x, y or z of the case, or the
-    table's, about which it arises; log_odds : natural logarithm of its odds against the other
-    frequencies : Hz, in each turn; mean : over the turns, as one in time; ripple : as one against
-    the angle, None where no angle is known; lines : its line in each turn; coupled : the other
-    axes of the case; eccentric : whether of the order 1
+    hypotheses : the likeliest of each effect that it may be, the likeliest first
+    p_value : of its detection; mean : over the turns that show it, as a line in time
+    lines : its line in each turn; coupled : the other axes of the case
+    multiples : further lines of the same cause, at multiples of its frequency or order
     """
 
-    periodic_in: str
-    axis: str
-    log_odds: float
+    hypotheses: Sequence[Hypothesis]
     p_value: float
-    frequencies: Mapping[str, float]
     mean: MeanLine
-    ripple: Ripple | None
     lines: Sequence[TurnLine]
     coupled: Sequence[Coupled]
+    multiples: Sequence["Oscillation"] = ()
 
     @property
-    def decided(self) -> bool:
-        """Whether the data distinguish time from angle."""
-        return self.log_odds >= MIN_LOG_ODDS
+    def likeliest(self) -> Hypothesis:
+        """The likeliest hypothesis."""
+        return self.hypotheses[0]
+
+    @property
+    def log_odds(self) -> float:
+        """Logarithm of the odds of the likeliest against the other; its multiples tell too."""
+        if len(self.hypotheses) < 2:
+            return np.inf
+        return sum(_lead(part.hypotheses, self.likeliest.effect) for part in self.parts)
+
+    @property
+    def effects(self) -> Sequence[str]:
+        """The effects that it may be, the likeliest first."""
+        decided = self.log_odds >= MIN_LOG_ODDS
+        return [one.effect for one in (self.hypotheses[:1] if decided else self.hypotheses)]
+
+    @property
+    def ripple(self) -> Ripple | None:
+        """Its order against the angle, where it has one."""
+        return next((one.ripple for one in self.hypotheses if one.ripple), None)
+
+    @property
+    def parts(self) -> Sequence["Oscillation"]:
+        """It and its multiples."""
+        return (self, *self.multiples)
+
+    def axis(self, effect: str) -> str | None:
+        """The axis about which an effect that it may be has it."""
+        own = (one.axis for one in self.hypotheses if one.effect == effect)
+        return next(own, None) if effect in self.effects else None
+
+    def number(self, effect: str) -> tuple[float, float] | None:
+        """Frequency, Hz, or order as which an effect has it, with its sigma."""
+        if effect == IN_TIME:
+            return self.mean.frequency, self.mean.frequency_sigma
+        if effect == RIPPLE and self.ripple:
+            return self.ripple.order, self.ripple.order_sigma
+        return None
 
 
-def explanation_of(
+def _lead(hypotheses: Sequence[Hypothesis], effect: str) -> float:
+    """By how much the logarithm of the likelihood of an effect exceeds that of the other."""
+    score = {one.effect: one.score for one in hypotheses}
+    own = score.pop(effect, 0.0)
+    return own - max(score.values(), default=0.0)
+
+
+def oscillation_of(
     detection: Detection, turns: Sequence[SteadyTurn], lowest: float, level: float
 ) -> Oscillation:
-    """The more likely explanation of a detection, and its odds against the other."""
-    angle_score, axis_of_ripple, ripple = _in_angle(detection, turns)
-    time_score, axis, lines = _in_time(detection, turns, lowest)
-    rates = [turn for turn in turns if np.isfinite(turn.rate)]
-    periodic_in, frequencies = TIME, {line.manoeuvre: line.line.frequency for line in lines}
-    if ripple is not None and angle_score > time_score:
-        periodic_in, axis = ANGLE, axis_of_ripple
-        frequencies = {turn.name: turn.hertz(ripple.order) for turn in rates}
-        lines = _lines(turns, axis, frequencies, lowest, fixed=True)
+    """What a detection is."""
+    hypotheses = hypotheses_of(detection, turns)
+    likeliest = hypotheses[0]
+    lines = _lines(turns, likeliest, lowest)
     clear = _clear(lines, turns, level)
-    mean = combined(clear)
-    if periodic_in == TIME:
-        own = {line.manoeuvre: line.line.frequency for line in clear}
-        frequencies = {turn.name: own.get(turn.name, mean.frequency) for turn in turns}
     names = [line.manoeuvre for line in clear]
+    showing = [turn for turn in turns if turn.name in names]
     return Oscillation(
-        periodic_in,
-        axis,
-        abs(angle_score - time_score),
+        hypotheses,
         detection.p_value,
-        frequencies,
-        mean,
-        ripple,
-        lines if periodic_in == ANGLE else clear,
-        coupled([turn for turn in turns if turn.name in names], axis, frequencies),
+        combined(clear),
+        clear if likeliest.effect == IN_TIME else lines,
+        coupled(showing, likeliest.axis, likeliest.frequencies),
     )
 
 
-def _in_angle(
-    detection: Detection, turns: Sequence[SteadyTurn]
-) -> tuple[float, str, Ripple | None]:
-    """The best score of an order about any axis, the axis, and the ripple."""
-    known = [turn for turn in turns if np.isfinite(turn.rate)]
-    order = detection.order
-    if order is None and np.isfinite(detection.turn.rate):
-        order = detection.frequency / detection.turn.hertz(1.0)
-    best: tuple[float, str, Ripple | None] = (-np.inf, TABLE, None)
-    if order is None:
-        return best
-    for axis in (TABLE, *AXES):
-        courses = [turn.course(direction(turn, axis)) for turn in known]
-        width = MAX_ORDER_SHIFT / max(course.turned for course in courses)
-        ripple = fitted(courses, order, width)
-        trials = float(len(grid(courses)) * (1 + len(AXES)))
-        if axis == TABLE and abs(ripple.order - ECCENTRICITY_ORDER) < 2 * width:
-            eccentric = fitted(courses, ECCENTRICITY_ORDER, 0.0)
-            if ripple.drop - eccentric.drop < MIN_FREE_ORDER_DROP:
-                ripple, trials = eccentric, 1.0
-        drop = ripple.drop + ripple.apart - ripple.beyond(MAX_START_ERROR)
-        score = in_angle(max(drop, ripple.drop), trials)
-        if score > best[0]:
-            best = (score, axis, ripple)
-    return best
-
-
-def _in_time(
-    detection: Detection, turns: Sequence[SteadyTurn], lowest: float
-) -> tuple[float, str, list[TurnLine]]:
-    """The best score of a frequency about any axis, the axis, and its line in each turn."""
-    tried = {detection.frequency}
-    if detection.order is not None:
-        tried = {round(turn.hertz(detection.order), 6) for turn in turns if np.isfinite(turn.rate)}
-    best: tuple[float, str, list[TurnLine]] = (-np.inf, TABLE, [])
-    bins = max(turn.seconds / turn.step for turn in turns)
-    for frequency in sorted(tried):
-        frequencies = {turn.name: frequency for turn in turns}
-        for axis in (*AXES, TABLE):
-            lines = _lines(turns, axis, frequencies, lowest)
-            if not lines:
-                continue
-            known = [line for line in lines if line.drop > MIN_REFINED_DROP]
-            mean = combined(known).frequency if known else frequency
-            same = _lines(turns, axis, dict.fromkeys(frequencies, mean), lowest, fixed=True)
-            score = in_time(
-                np.array([line.drop for line in lines]),
-                np.array([line.line.amplitude for line in same]),
-                np.array([line.drop for line in same]),
-                bins * (1 + len(AXES)),
-            )
-            if score > best[0]:
-                best = (score, axis, lines)
-    return best
-
-
-def _lines(
-    turns: Sequence[SteadyTurn],
-    axis: str,
-    frequencies: Mapping[str, float],
-    lowest: float,
-    fixed: bool = False,
-) -> list[TurnLine]:
-    """The line of each turn at or near its frequency; none from half the sample rate on."""
+def _lines(turns: Sequence[SteadyTurn], likeliest: Hypothesis, lowest: float) -> list[TurnLine]:
+    """The line in each turn that observes it."""
     lines = []
     for turn in turns:
-        frequency, rate = frequencies.get(turn.name, np.inf), 1 / turn.step
-        along = direction(turn, axis)
-        if frequency >= rate / 2 or not turn.observes(along):
+        along = direction(turn, likeliest.axis)
+        frequency = likeliest.frequencies.get(turn.name)
+        if frequency is None or not turn.observes(along):
             continue
-        record, sigma = turn.along(along), turn.sigma(along)
-        drop = energy(record, rate, frequency) / sigma**2
-        line = line_at(record, rate, lowest, frequency, 1.0)
-        if drop > MIN_REFINED_DROP and not fixed and frequency * turn.seconds > MIN_PERIODS:
-            line = near(record, rate, lowest, frequency, 1.0)
-            drop = energy(record, rate, line.frequency) / sigma**2
-        searched = min(len(record) * float(np.exp(-min(drop / 2, 700.0))), 1.0)
-        lines.append(TurnLine(turn.name, axis, turn.whole(replace(line, p_value=searched)), drop))
+        line = line_at(turn.along(along), 1 / turn.step, lowest, frequency, 1.0)
+        drop = (line.amplitude / line.sigma_amplitude) ** 2
+        searched = min(len(turn.truth) * float(np.exp(-min(drop / 2, 700.0))), 1.0)
+        whole = turn.whole(replace(line, p_value=searched))
+        lines.append(TurnLine(turn.name, likeliest.axis, whole, drop))
     return lines
 
 
@@ -207,7 +155,8 @@ def _clear(
 # ---- The oscillations of all turns of one mount, one after another.
 
 MAX_OSCILLATIONS = 6  # that are searched for one after another
-SEARCHES = 4  # in each turn, in all turns, of orders, of the order 1: equal shares of the level
+# In each turn, in all turns, of orders with amplitudes of all turns and of each, of the order 1.
+SEARCHES = 5  # with equal shares of the level
 
 
 @dataclass(frozen=True)
@@ -253,15 +202,68 @@ def find_oscillations(turns: Sequence[SteadyTurn], level: float, lowest: float) 
         if not significant or len(oscillations) == MAX_OSCILLATIONS:
             break
         largest = max(significant, key=lambda detection: detection.drop)
-        oscillations.append(explanation_of(largest, remaining, lowest, share))
-        remaining = [_without(turn, oscillations[-1], taken[turn.name]) for turn in remaining]
+        oscillations.append(oscillation_of(largest, remaining, lowest, share))
+        frequencies = oscillations[-1].likeliest.frequencies
+        remaining = [
+            _without(turn, frequencies.get(turn.name), taken[turn.name]) for turn in remaining
+        ]
     sigmas = np.zeros(0) if orders is None else detection_limit(orders, shortest(turning), share)
-    return SearchResult(turns, oscillations, first, orders, every, sigmas, bool(significant))
+    causes = in_causes(oscillations, turns)
+    return SearchResult(turns, causes, first, orders, every, sigmas, bool(significant))
 
 
-def _without(turn: SteadyTurn, oscillation: Oscillation, taken: list[Taken]) -> SteadyTurn:
+def in_causes(
+    oscillations: Sequence[Oscillation], turns: Sequence[SteadyTurn]
+) -> Sequence[Oscillation]:
+    """One oscillation for each cause, in the order of detection.
+
+    Lines at multiples of one frequency, or of one order, have one cause, and so have lines that no
+    turn resolves.
+    """
+    detected = {id(one): i for i, one in enumerate(oscillations)}
+    causes: list[Oscillation] = []
+    for one in sorted(oscillations, key=lambda one: one.mean.frequency):
+        for i, cause in enumerate(causes):
+            shared = [
+                effect
+                for effect in cause.effects
+                if cause.axis(effect) == one.axis(effect) is not None
+                and _is_multiple(cause, one, effect, turns)
+            ]
+            if shared:
+                hypotheses = [each for each in cause.hypotheses if each.effect in shared]
+                multiples = (*cause.multiples, one)
+                causes[i] = replace(cause, hypotheses=hypotheses, multiples=multiples)
+                detected[id(causes[i])] = min(detected[id(cause)], detected[id(one)])
+                break
+        else:
+            causes.append(one)
+    return sorted(causes, key=lambda cause: detected[id(cause)])
+
+
+def _is_multiple(
+    cause: Oscillation, one: Oscillation, effect: str, turns: Sequence[SteadyTurn]
+) -> bool:
+    """Whether an oscillation is at a whole multiple of another, as an effect has both."""
+    base, other = cause.number(effect), one.number(effect)
+    if base is None or other is None:
+        return False
+    base, other = min(base, other), max(base, other)
+    length = np.nanmax([t.seconds * (1.0 if effect == IN_TIME else t.hertz(1.0)) for t in turns])
+    if abs(other[0] - base[0]) * length < UNRESOLVED_BINS:
+        return True
+    multiples = {k: k * base[0] for k in range(2, MAX_MULTIPLE + 1)}
+    if effect == IN_TIME:
+        aliased = range(2, MAX_ALIAS_MULTIPLE + 1)
+        multiples |= {k: folded(k * base[0], turns[0].step) for k in aliased}
+    within = {k: MULTIPLE_SIGMAS * float(np.hypot(k * base[1], other[1])) for k in multiples}
+    return any(
+        abs(other[0] - at) < within[k] < MAX_MULTIPLE_SHARE * base[0] for k, at in multiples.items()
+    )
+
+
+def _without(turn: SteadyTurn, frequency: float | None, taken: list[Taken]) -> SteadyTurn:
     """A turn without an oscillation, of which amplitude and phase are fitted about each axis."""
-    frequency = oscillation.frequencies.get(turn.name)
     if frequency is None:
         return turn
     parts = [without_line(record, 1 / turn.step, frequency) for record in turn.truth.T]
@@ -307,8 +309,8 @@ def _mean_rates(turn: SteadyTurn, lines: Sequence[Oscillation], blocks: pd.DataF
     since = blocks["time"].to_numpy(np.float64) - turn.start
     count = blocks["count"].to_numpy(np.float64)
     means = np.zeros((len(blocks), 3))
-    for line in lines:
-        frequency = line.frequencies.get(turn.name)
+    for line in (part for cause in lines for part in cause.parts):
+        frequency = line.likeliest.frequencies.get(turn.name)
         if frequency is None:
             continue
         half = np.pi * frequency * turn.step

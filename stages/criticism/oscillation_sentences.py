@@ -13,7 +13,8 @@ from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, fixed, significant, with_sigma
 from inertial.text.units import ARC_SECOND
 from stages.criticism.oscillation_fits import MIN_EXCESS_SIGMA, TABLE, Coupled
-from stages.criticism.oscillation_search import ANGLE, Oscillation
+from stages.criticism.oscillation_hypotheses import ANGLE, IN_TIME
+from stages.criticism.oscillation_search import Oscillation
 
 MAX_LOG_ODDS = 40.0  # beyond which the number of the odds says nothing
 MIN_PERIODS_IN_TURN = 1.5  # below which a turn determines little of an eccentricity
@@ -28,7 +29,7 @@ SINGLE_TURN = _(
     "there is one turn only."
 )
 
-IN_TIME = _(
+VIBRATION = _(
     "The case oscillates about {axis} while the table turns: {frequency} Hz, "
     "{amplitude} rad/s ({arc:.1f}″), in {manoeuvres}."
 )
@@ -37,6 +38,7 @@ NO_NET_ANGLE = _(" Over a whole turn it adds no angle.")
 RIPPLE = _("The table's rate has a ripple {order} per revolution, of {size} of its angle, {turns}.")
 ECCENTRIC = _("The angle of the table has an error once per revolution, of {size}, {turns}.")
 SAME_IN_TURNS = _("the same in {count} turns against the table's angle")
+OWN_IN_TURNS = _("rms, of its own amplitude or phase in each of {count} turns")
 IN_ONE_TURN = "in one turn"
 AT_RATES = " That is {each}."
 AT_RATE = _("{frequency} Hz and {amplitude} rad/s at {rate} °/s")
@@ -46,13 +48,12 @@ UNDECIDED = _(
     "angle: the first is {odds} as likely."
 )
 NOT_IN_TIME = _(
-    " As an oscillation in time, with a phase of its own in each turn, it would be "
-    "{odds} less likely."
+    " As an oscillation in time, of one frequency in all turns, it would be {odds} less likely."
 )
 NOT_IN_ANGLE = _(
-    " It is periodic in time: as a ripple of order {orders} of the table's angle it "
-    "would be {odds} less likely."
+    " As a ripple of order {orders} of the table's angle it would be {odds} less likely."
 )
+MULTIPLES = _(" Lines at {each} have the same cause.")
 VERY_LARGE_ODDS = "more than 10¹⁷ times"
 
 COUPLED_UNKNOWN = _(" Through their cross terms the other axes contain it too.")
@@ -101,35 +102,41 @@ SHORT_TURN = _(
 )
 
 
-def of_oscillation(oscillation: Oscillation, turns: Sequence[SteadyTurn]) -> str:
+def of_oscillation(oscillation: Oscillation) -> str:
     """An oscillation in time, or of an axis of the case against the table's angle."""
-    mean = oscillation.mean
-    sentence = IN_TIME.format(
-        axis="the table's axis" if oscillation.axis == TABLE else oscillation.axis,
+    mean, axis = oscillation.mean, oscillation.likeliest.axis
+    sentence = VIBRATION.format(
+        axis="the table's axis" if axis == TABLE else axis,
         frequency=_with_sigma(mean.frequency, mean.frequency_sigma),
         amplitude=_with_sigma(mean.amplitude, mean.amplitude_sigma),
         arc=degrees(mean.amplitude / (2 * pi * mean.frequency)) * 3600,
         manoeuvres=", ".join(mean.manoeuvres),
     )
-    if oscillation.periodic_in == ANGLE and oscillation.ripple is not None:
+    if oscillation.likeliest.bound_to == ANGLE and oscillation.ripple is not None:
         sentence += IN_ANGLE.format(order=_order(oscillation.ripple))
     return (
         sentence
+        + _multiples(oscillation)
         + _coupling(oscillation.coupled)
-        + _other_explanation(oscillation, turns)
+        + _other_explanation(oscillation)
         + NO_NET_ANGLE
     )
 
 
 def of_ripple(oscillation: Oscillation, ripple: Ripple, turns: Sequence[SteadyTurn]) -> str:
     """A ripple of the table, or its eccentricity."""
-    count = int(np.isfinite(ripple.own).all(axis=1).sum())
+    in_turns = SAME_IN_TURNS if ripple.common else OWN_IN_TURNS
     sentence = (ECCENTRIC if eccentric(ripple) else RIPPLE).format(
         order=_order(ripple),
         size=_with_sigma(ripple.amplitude / ARC_SECOND, ripple.amplitude_sigma / ARC_SECOND) + "″",
-        turns=SAME_IN_TURNS.format(count=count) if count > 1 else IN_ONE_TURN,
+        turns=in_turns.format(count=ripple.turns) if ripple.turns > 1 else IN_ONE_TURN,
     )
-    return sentence + _at_rates(ripple, turns) + _other_explanation(oscillation, turns)
+    return (
+        sentence
+        + _at_rates(oscillation, ripple, turns)
+        + _multiples(oscillation)
+        + _other_explanation(oscillation)
+    )
 
 
 def eccentric(ripple: Ripple) -> bool:
@@ -140,7 +147,7 @@ def eccentric(ripple: Ripple) -> bool:
 def consequence(oscillation: Oscillation) -> str:
     """The effect on the model and on angles."""
     ripple = oscillation.ripple
-    if oscillation.periodic_in == ANGLE and ripple is not None:
+    if oscillation.likeliest.bound_to == ANGLE and ripple is not None:
         swing = 2 * ripple.amplitude
         off = abs(ripple.order - round(ripple.order))
         turn = CLOSED if off < MAX_INTEGER_SIGMAS * ripple.order_sigma + 1e-9 else NOT_CLOSED
@@ -152,9 +159,9 @@ def consequence(oscillation: Oscillation) -> str:
 
 def action(oscillation: Oscillation) -> str:
     """What to do about it."""
-    if not oscillation.decided:
+    if len(oscillation.effects) > 1:
         return ACTION_UNDECIDED.format(split=SPLIT)
-    return ACTION_ANGLE if oscillation.periodic_in == ANGLE else ACTION_TIME
+    return ACTION_ANGLE if oscillation.likeliest.bound_to == ANGLE else ACTION_TIME
 
 
 def not_searched(effect: str, count: int) -> str:
@@ -228,34 +235,45 @@ def _order(ripple: Ripple) -> str:
     return f"{text} times"
 
 
-def _at_rates(ripple: Ripple, turns: Sequence[SteadyTurn]) -> str:
-    """The frequency and the amplitude in rad/s that it has at each rate of the table."""
-    rates = sorted({round(degrees(abs(t.rate)), 2) for t in turns if np.isfinite(t.rate)})
+def _at_rates(oscillation: Oscillation, ripple: Ripple, turns: Sequence[SteadyTurn]) -> str:
+    """The frequency and the rms amplitude in rad/s that it has at each rate of the table."""
+    rate_of = {t.name: round(degrees(abs(t.rate)), 2) for t in turns if np.isfinite(t.rate)}
+    squares: dict[float, list[float]] = {}
+    for line in oscillation.lines:
+        own = squares.setdefault(rate_of[line.manoeuvre], [])
+        own.append(line.line.amplitude**2)
     each = [
         AT_RATE.format(
             frequency=fixed(ripple.order * rate / 360, 3),
-            amplitude=significant(ripple.order * ripple.amplitude * rate * pi / 180, 2),
+            amplitude=significant(float(np.sqrt(np.mean(squares[rate]))), 2),
             rate=significant(rate, 3),
         )
-        for rate in rates[:MAX_RATES]
+        for rate in sorted(squares)[:MAX_RATES]
     ]
     return AT_RATES.format(each=", ".join(each))
 
 
-def _other_explanation(oscillation: Oscillation, turns: Sequence[SteadyTurn]) -> str:
+def _multiples(oscillation: Oscillation) -> str:
+    """Further lines of the same cause."""
+    numbers = [part.number(oscillation.effects[0]) for part in oscillation.multiples]
+    unit = " Hz" if oscillation.effects[0] == IN_TIME else " per revolution"
+    each = [_with_sigma(*number) + unit for number in numbers if number]
+    return MULTIPLES.format(each=", ".join(each)) if each else ""
+
+
+def _other_explanation(oscillation: Oscillation) -> str:
     """The other explanation, and its odds."""
-    if oscillation.ripple is None:
+    if len(oscillation.hypotheses) < 2:
         return ""
     odds = VERY_LARGE_ODDS
     if oscillation.log_odds <= MAX_LOG_ODDS:
         odds = f"{significant(exp(oscillation.log_odds), 1)} times"
-    if not oscillation.decided:
+    if len(oscillation.effects) > 1:
         return UNDECIDED.format(odds=odds)
-    if oscillation.periodic_in == ANGLE:
+    if oscillation.effects[0] != IN_TIME:
         return NOT_IN_TIME.format(odds=odds)
-    rates = sorted({round(turn.hertz(1.0), 6) for turn in turns if np.isfinite(turn.rate)})
-    orders = [significant(oscillation.mean.frequency / rate, 4) for rate in rates[:MAX_RATES]]
-    return NOT_IN_ANGLE.format(orders=" or ".join(orders), odds=odds)
+    orders = significant(oscillation.hypotheses[1].value, 4)
+    return NOT_IN_ANGLE.format(orders=orders, odds=odds)
 
 
 def _coupling(coupled: Sequence[Coupled]) -> str:

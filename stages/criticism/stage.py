@@ -24,6 +24,7 @@ from stages.criticism.declared import DECLARED
 from stages.criticism.finding_rows import Row, TableRow
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations, without_lines
+from stages.criticism.oscillation_shifts import shifts
 from stages.criticism.residual_structure import structure_rows, structure_tests
 from stages.criticism.selection import SENSORS, select_effects
 from stages.criticism.temperature_findings import temperature_rows
@@ -79,7 +80,8 @@ def _of_mount(
     yield from BlockResults(
         campaign, selection, ExtendedCampaigns(selection, extended), lawless, mount
     ).rows()
-    yield from OscillationResults(spectrum, mount).rows()
+    moves = shifts(data, turns, spectrum.oscillations, campaign)
+    yield from OscillationResults(spectrum, mount, moves).rows()
     yield from other_scores(random_walks.get("gyro"), mount)
     yield from structure_rows(tested, lawless.reported_structures, mount)
     yield from unexplained_rows(selection, lawless, mount)
