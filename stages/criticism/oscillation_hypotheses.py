@@ -38,6 +38,7 @@ MIN_PERIODS = 3.0  # in a turn, of what is bound to time; slower it is not told 
 MIN_PERIODS_REMOVED = 0.5  # in a turn; an alias slower than that is bias and slope
 MIN_REFINED_DROP = 30.0  # of chi-squared, from which a turn has a frequency of its own
 MIN_FREE_ORDER_DROP = 9.0  # of chi-squared, by an order other than 1
+FAVOURED_SHARE = 0.5  # of the best score, from which a favoured hypothesis comes first
 MIN_RATE_RATIO = 1.001  # of two rates of the table that are not the same
 
 
@@ -111,8 +112,13 @@ class Hypothesis:
         return ECCENTRICITY if self.ripple and self.ripple.order_sigma == 0 else RIPPLE
 
 
-def hypotheses_of(detection: Detection, turns: Sequence[SteadyTurn]) -> list[Hypothesis]:
-    """The likeliest hypothesis of each effect, the likeliest of all first."""
+def hypotheses_of(
+    detection: Detection, turns: Sequence[SteadyTurn], favoured: str = ""
+) -> list[Hypothesis]:
+    """The likeliest hypothesis of each effect, the likeliest of all first.
+
+    `favoured`: time or angle, what is bound to it comes first if it explains half as much.
+    """
     every = [Probe(turn) for turn in turns]
     known = [probe for probe in every if np.isfinite(probe.turn.rate)]
     paces = _different([probe.turn.hertz(1.0) for probe in known])
@@ -141,6 +147,8 @@ def hypotheses_of(detection: Detection, turns: Sequence[SteadyTurn]) -> list[Hyp
     # As likely in time as against the angle, one phase against the angle in all turns comes first.
     if len(likeliest) > 1 and abs(likeliest[0].score - likeliest[1].score) < MIN_LOG_ODDS:
         likeliest.sort(key=lambda one: bool(one.ripple and one.ripple.common), reverse=True)
+    enough = FAVOURED_SHARE * max(one.score for one in likeliest)
+    likeliest.sort(key=lambda one: one.bound_to == favoured and one.score >= enough, reverse=True)
     return likeliest
 
 

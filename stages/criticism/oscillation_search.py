@@ -26,9 +26,11 @@ from stages.criticism.oscillation_fits import (
     strongest_lines,
 )
 from stages.criticism.oscillation_hypotheses import (
+    ANGLE,
     IN_TIME,
     MIN_LOG_ODDS,
     RIPPLE,
+    TIME,
     Hypothesis,
     folded,
     hypotheses_of,
@@ -110,10 +112,10 @@ def _lead(hypotheses: Sequence[Hypothesis], effect: str) -> float:
 
 
 def oscillation_of(
-    detection: Detection, turns: Sequence[SteadyTurn], lowest: float, level: float
+    detection: Detection, turns: Sequence[SteadyTurn], lowest: float, level: float, favoured: str
 ) -> Oscillation:
-    """What a detection is."""
-    hypotheses = hypotheses_of(detection, turns)
+    """What a detection is; `favoured`: as in `hypotheses_of`."""
+    hypotheses = hypotheses_of(detection, turns, favoured)
     likeliest = hypotheses[0]
     lines = _lines(turns, likeliest, lowest)
     clear = _clear(lines, turns, level)
@@ -181,10 +183,25 @@ class SearchResult:
 
 
 def find_oscillations(turns: Sequence[SteadyTurn], level: float, lowest: float) -> SearchResult:
-    """Find the most significant oscillation, remove it, and search again.
+    """The oscillations that explain the turns by the fewest causes.
+
+    Where several lines are found each one taken alone may be bound to the wrong one: turns at one
+    rate and at twice it have the harmonics of a ripple at one frequency. So what is bound to time,
+    and what is bound to the angle, is tried first too, where it explains a line half as well.
 
     level : accepted probability of a false detection; lowest : Hz, of lines in time
     """
+    plain = _searched(turns, level, lowest, "")
+    if len(plain.oscillations) < 2:
+        return plain
+    tried = [plain, *(_searched(turns, level, lowest, first) for first in (ANGLE, TIME))]
+    return min(tried, key=lambda result: (result.truncated, len(result.oscillations)))
+
+
+def _searched(
+    turns: Sequence[SteadyTurn], level: float, lowest: float, favoured: str
+) -> SearchResult:
+    """Find the most significant oscillation, remove it, and search again."""
     share = level / SEARCHES
     remaining, taken = list(turns), {turn.name: list[Taken]() for turn in turns}
     oscillations: list[Oscillation] = []
@@ -202,7 +219,7 @@ def find_oscillations(turns: Sequence[SteadyTurn], level: float, lowest: float) 
         if not significant or len(oscillations) == MAX_OSCILLATIONS:
             break
         largest = max(significant, key=lambda detection: detection.drop)
-        oscillations.append(oscillation_of(largest, remaining, lowest, share))
+        oscillations.append(oscillation_of(largest, remaining, lowest, share, favoured))
         frequencies = oscillations[-1].likeliest.frequencies
         remaining = [
             _without(turn, frequencies.get(turn.name), taken[turn.name]) for turn in remaining

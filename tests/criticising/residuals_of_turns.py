@@ -55,6 +55,31 @@ def locked(seed: int, hertz: float, size: float, where: str) -> list[SteadyTurn]
     return made
 
 
+def rippling(
+    seed: int,
+    orders: Sequence[tuple[float, float]],
+    power: float = 1.0,
+    rates: Sequence[float] = (20, -20, 40, -40),
+    axes: str = "xyz",
+) -> list[SteadyTurn]:
+    """Turns of a table whose rate ripples, from another tooth of its gear on in each turn.
+
+    `orders`: with its amplitude in rad/s at the first rate; `power`: of the rate, as which the
+    amplitude goes.
+    """
+    rng = np.random.default_rng(seed)
+    made = []
+    for turn in turns(seed + 1000, rates=rates, axes=axes):
+        truth = turn.truth.copy()
+        share = (np.degrees(abs(turn.rate)) / abs(rates[0])) ** power
+        for order, size in orders:
+            phase = rng.uniform(0, 2 * np.pi)
+            sampled = line(len(truth), turn.hertz(order), share * size, phase)
+            truth += np.outer(sampled, turn.about)
+        made.append(replace(turn, truth=truth))
+    return made
+
+
 def still(axis: str, speed: float) -> SteadyTurn:
     """A whole turn at `speed`, °/s, without noise."""
     rate = np.radians(speed)

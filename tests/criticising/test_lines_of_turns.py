@@ -20,6 +20,7 @@ LEVEL = 1e-3  # of the spectrum: a tenth of the accepted one in a hundred
 LOWEST = 2.0  # Hz
 A, B = 0.3 * ARC_SECOND, 0.4 * ARC_SECOND
 RINGING = (20.013, 0.01, "x")
+TWO_RATES = (20, -20, 30)
 
 
 Rows = dict[str, list[Mapping[str, Any]]]
@@ -53,7 +54,7 @@ def assert_near(found: tuple[float, float], true: float) -> None:
 @pytest.mark.parametrize("order", [36.0, 7.25])
 def test_a_ripple_is_found_with_its_order_and_its_parts(order):
     a, b = 36 / order * A, 36 / order * B
-    lines = said(turns(2, ripples=[(order, a, b)]))
+    lines = said(turns(2, ripples=[(order, a, b)], rates=TWO_RATES))
     (finding,) = lines["findings"]
     assert [finding["cause"]] == members(lines, finding) == ["table_ripple"]
     assert finding["verdict"] == "found" and finding["p_value"] < 1e-9
@@ -79,7 +80,7 @@ def test_what_rings_in_time_is_an_oscillation_about_its_axis():
     lines = said(turns(3, ringing=[RINGING]))
     (finding,) = lines["findings"]
     assert [finding["cause"]] == members(lines, finding) == ["oscillation"]
-    assert "oscillates about x" in finding["sentence"] and "periodic in time" in finding["sentence"]
+    assert "oscillates about x" in finding["sentence"]
     assert "order 360.2" in finding["sentence"]  # what it would be against the angle
     assert_near(estimated(lines)["oscillation", "frequency"], RINGING[0])
     assert_near(estimated(lines)["oscillation", "amplitude"], RINGING[1])
@@ -87,7 +88,7 @@ def test_what_rings_in_time_is_an_oscillation_about_its_axis():
 
 def test_several_are_told_apart_at_once():
     ripples = [(36.0, A, B), (1.0, 20 * ARC_SECOND, -20 * ARC_SECOND)]
-    lines = said(turns(8, ripples=ripples, ringing=[RINGING]))
+    lines = said(turns(8, ripples=ripples, ringing=[RINGING], rates=TWO_RATES))
     assert {finding["cause"] for finding in lines["findings"]} == {
         "oscillation",
         "table_ripple",
@@ -103,7 +104,7 @@ def test_several_are_told_apart_at_once():
     assert {row["effect"] for row in rows} - {None} == {one for one, _ in values}
     for row in rows:
         if row["effect"] == "table_ripple":
-            assert row["order"] == pytest.approx(36, abs=0.1)
+            assert row["order"] == pytest.approx(36, abs=0.2)
             assert row["axis"] == row["manoeuvre"][0]  # the axis that the table turns about
 
 
@@ -151,9 +152,10 @@ def test_an_oscillation_that_begins_with_each_turn_is_not_taken_for_a_ripple():
     assert findings["oscillation"]["verdict"] == "found"
 
 
-def test_a_ripple_of_the_order_of_an_oscillation_is_a_ripple():
+def test_a_ripple_of_the_order_of_an_oscillation_may_be_either_at_one_rate():
     findings = named(turns(5, ripples=[(360.0, A, B)]))
     assert set(findings) == {"table_ripple"}
+    assert findings["table_ripple"]["verdict"] == "one_of_class"
     assert "20.000 Hz" in findings["table_ripple"]["sentence"]
 
 
@@ -162,7 +164,7 @@ def test_two_rates_tell_time_from_angle():
     assert set(named(turns(7, ripples=[(36.0, A, B)], rates=rates))) == {"table_ripple"}
     findings = named(turns(7, ringing=[(20.0, 5e-5, "y")], rates=rates))
     assert set(findings) == {"oscillation"}
-    assert "order 360.0 or 144.0" in findings["oscillation"]["sentence"]
+    assert "order 360.0 of" in findings["oscillation"]["sentence"]
 
 
 def test_what_no_turn_shows_by_itself_all_show_together():
@@ -188,7 +190,7 @@ def test_one_turn_cannot_tell_time_from_angle_and_another_rate_would():
 
 def test_the_axis_that_only_sees_it_by_coupling_is_named_so():
     (found,) = find_oscillations(turns(3, ringing=[RINGING]), LEVEL, LOWEST).oscillations
-    assert found.axis == "x"
+    assert found.likeliest.axis == "x"
     for one in found.coupled:
         expected = RINGING[1] * abs(MATRIX["xyz".index(one.axis), 0])
         assert one.expected == pytest.approx(expected, rel=1e-3)
@@ -196,7 +198,7 @@ def test_the_axis_that_only_sees_it_by_coupling_is_named_so():
     also = [RINGING, (RINGING[0], 3e-4, "z")]
     (found,) = find_oscillations(turns(3, ringing=also), LEVEL, LOWEST).oscillations
     more = {one.axis: one.exceeds for one in found.coupled}
-    assert found.axis == "x" and more == {"y": False, "z": True}
+    assert found.likeliest.axis == "x" and more == {"y": False, "z": True}
 
 
 def test_gravity_that_goes_round_in_the_case_is_no_eccentricity():
