@@ -1,7 +1,7 @@
 """The observation equations of a campaign with effects of the catalogue as further unknowns."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import accumulate, pairwise
 
@@ -16,6 +16,7 @@ from inertial.campaign.solution import Solution
 from inertial.campaign.static_positions import Blocks, StaticPosition
 from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.gyroscope_equations import Linearisation
 from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import EffectInformation, System
@@ -54,6 +55,9 @@ class Campaign:
     gravity: Known
     position_sigma: float
     positions: Sequence[str]
+    _known: dict[tuple[str, float | None, float | None], Reading] = field(
+        default_factory=dict, repr=False, compare=False
+    )  # responses to effects, which random walks do not change
 
     @property
     def manoeuvres(self) -> list[str]:
@@ -111,7 +115,7 @@ class Campaign:
             for parameter in effect.parameters
         }
         systems = (
-            self._equations(s, self._sensitivities(s, effects, responses), sigmas, None)
+            self._system(s, self._sensitivities(s, effects, responses), sigmas, None)
             for s in SENSORS
         )
         return sum(system.solve_shared().deviance for system in systems if system is not None)
@@ -126,32 +130,24 @@ class Campaign:
         """
         responses = self._responses(effects)
         gyro, accel = (
-            self._system(s, effects, prior_sigma, only, responses) for s in ("gyro", "accel")
+            self._system(s, *self._with_sigmas(s, effects, prior_sigma, responses), only)
+            for s in SENSORS
         )
         return gyro, accel
 
     def system(self, sensor: str, effects: Sequence[Effect], prior_sigma: float) -> System | None:
         """The equations of one sensor, `gyro` or `accel`; arguments as in `systems`."""
-        return self._system(sensor, effects, prior_sigma, None, self._responses(effects))
-
-    def system_of_random_walk(
-        self, sensor: str, effects: Sequence[Effect], prior_sigma: float
-    ) -> Callable[[float], System | None]:
-        """The equations of one sensor as a function of the random walk of its biases."""
         inputs = self._with_sigmas(sensor, effects, prior_sigma, self._responses(effects))
-        return lambda walk: self.with_random_walks((walk, walk))._equations(sensor, *inputs, None)
+        return self._system(sensor, *inputs, None)
 
-    def _system(
-        self,
-        sensor: str,
-        effects: Sequence[Effect],
-        prior_sigma: float,
-        only: set[str] | None,
-        responses: Sequence[Reading],
-    ) -> System | None:
-        return self._equations(
-            sensor, *self._with_sigmas(sensor, effects, prior_sigma, responses), only
-        )
+    def deviance_of_random_walk(
+        self, sensor: str, effects: Sequence[Effect], prior_sigma: float
+    ) -> Callable[[float], float]:
+        """−2 log of the likelihood of one sensor as a function of the random walk of its biases."""
+        inputs = self._with_sigmas(sensor, effects, prior_sigma, self._responses(effects))
+        drifting = self._drifting(sensor, *inputs, None, walking=True)
+        assert drifting is not None  # else it has no times
+        return drifting.likelihood.of_walk()
 
     def _with_sigmas(
         self,
@@ -168,22 +164,36 @@ class Campaign:
         }
         return self._sensitivities(sensor, effects, responses), prior_sigmas
 
-    def _equations(
+    def _system(
         self,
         sensor: str,
         sensitivities: list[Sensitivities],
         prior_sigmas: Mapping[str, float],
         only: set[str] | None,
     ) -> System | None:
-        make = self._gyro if sensor == "gyro" else self._accelerometer
-        return make(sensitivities, prior_sigmas, only)
+        walk = self.solution.random_walks[SENSORS.index(sensor)]
+        drifting = self._drifting(sensor, sensitivities, prior_sigmas, only, walking=bool(walk))
+        return drifting.system(walk=walk) if drifting else None
+
+    def _drifting(
+        self,
+        sensor: str,
+        sensitivities: list[Sensitivities],
+        prior_sigmas: Mapping[str, float],
+        only: set[str] | None,
+        *,
+        walking: bool,
+    ) -> DriftingEquations | None:
+        if sensor == "gyro":
+            return self._gyro(sensitivities, prior_sigmas, only)
+        return self._accelerometer(sensitivities, prior_sigmas, only, walking=walking)
 
     def _gyro(
         self,
         sensitivities: list[Sensitivities],
         prior_sigmas: Mapping[str, float],
         only: set[str] | None,
-    ) -> System | None:
+    ) -> DriftingEquations | None:
         if self.solution.gyro is None:
             return None
         rests, turns = [], []
@@ -213,15 +223,16 @@ class Campaign:
             constrained_positions(levels, self.inputs.earth.level),
         )
         known = (self.inputs.earth, self.position_sigma)
-        equations = gyroscopes.linearised(point, turns, [], *known, prior_sigmas)
-        return equations.system(rests, walk=self.solution.random_walks[0])
+        return gyroscopes.linearised(point, turns, [], *known, prior_sigmas).drifting(rests)
 
     def _accelerometer(
         self,
         sensitivities: list[Sensitivities],
         prior_sigmas: Mapping[str, float],
         only: set[str] | None,
-    ) -> System | None:
+        *,
+        walking: bool,
+    ) -> DriftingEquations | None:
         if self.solution.accelerometer is None:
             return None
         rests = [
@@ -231,15 +242,14 @@ class Campaign:
         ]
         if not rests:
             return None
-        return accelerometers.equations(
+        return accelerometers.drifting(
             rests,
             self.gravity.number,
             self.gravity.scatter,
             self.position_sigma,
-            0.0,
             self.solution.accelerometer.matrix,
             prior_sigmas,
-            self.solution.random_walks[1],
+            walking=walking,
         )
 
     def _responses(self, effects: Sequence[Effect]) -> list[Reading]:
@@ -248,7 +258,15 @@ class Campaign:
             return []
         unit = Triad(np.eye(3), np.zeros(3))
         triads = self.solution.gyro or unit, self.solution.accelerometer or unit
-        return signatures(self.motion, self.solution.site, *triads, effects)
+        keys = [(effect.name, effect.at, effect.reference) for effect in effects]
+        every = dict(zip(keys, effects, strict=True))
+        missing = {key: effect for key, effect in every.items() if key not in self._known}
+        found = signatures(self.motion, self.solution.site, *triads, list(missing.values()))
+        responses = self._known | dict(zip(missing, found, strict=True))
+        self._known.update(
+            (key, responses[key]) for key, e in missing.items() if e.signature(self.motion) is None
+        )
+        return [responses[key] for key in keys]
 
     def _sensitivities(
         self, sensor: str, effects: Sequence[Effect], responses: Sequence[Reading]

@@ -6,24 +6,24 @@ u is the upward direction in body axes; δ the tilt of the position, two unknown
 the table; g one unknown with the sigma of gravity.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.elimination import (
-    EquationBlock,
-    Name,
-    compressed,
-    eliminate,
-    whitened,
-)
+from inertial.estimation.drifting_equations import DriftingEquations
+from inertial.estimation.elimination import EquationBlock, Name, compressed, whitened
 from inertial.estimation.least_squares import Estimate, System
-from inertial.estimation.random_walk import Stretch, linear_trend, with_drifts
+from inertial.estimation.random_walk import Stretch, linear_trend
 from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
 from inertial.estimation.triad import UNKNOWNS
-from inertial.estimation.variance_components import ScatterFit, walk_search, with_random_walk
+from inertial.estimation.variance_components import (
+    Deviances,
+    ScatterFit,
+    walk_search,
+    with_random_walk,
+)
 from inertial.physics.motion import all_level_axes, cross
 
 Array = NDArray[np.float64]
@@ -91,25 +91,21 @@ def fit(
     def fit_with(scatter: float, walk: float) -> Estimate:
         return equations(statics, *known, scatter, matrix, effect_sigma, walk).solve_shared()
 
-    def deviance(groups: Sequence[Stretch]) -> Callable[[float], float]:
-        some = [replace(s, stretch=group) for s, group in zip(statics, groups, strict=True)]
-        return lambda size: (
-            equations(some, *known, size, matrix, effect_sigma, grouped=True)
-            .solve_shared()
-            .deviance
-        )
-
+    each = list(range(len(statics)))  # has a block of its own, and so a scatter of its own
+    likelihood = _drifting(statics, *known, matrix, effect_sigma, each).likelihood
     stretches = [static.stretch for static in statics if static.stretch is not None]
     alternatives = [
-        deviance([Stretch(static.position) for static in statics]),
-        deviance([Stretch(str(np.round(static.up, 3))) for static in statics]),
+        likelihood.of_scatter([static.position for static in statics]),
+        likelihood.of_scatter([str(np.round(static.up, 3)) for static in statics]),
     ]
     if stretches:
-        trend = linear_trend(stretches)
-        alternatives.append(deviance([trend(s.stretch or Stretch("")) for s in statics]))
+        trend = list(map(linear_trend(stretches), likelihood.stretches))
+        named = [stretch.name for stretch in trend]
+        alternatives.append(likelihood.of_scatter(named, [stretch.weight for stretch in trend]))
     noise = float(np.nanmedian([*(static.sigma for static in statics), np.full(3, np.nan)]))
     search = walk_search(stretches, noise, MAX_RANDOM_WALK)
-    result = with_random_walk(fit_with, SCATTER_BOUNDS, search, alternatives, noise_degrees)
+    likely = Deviances(likelihood.of_scatter(), likelihood.of_walk(), likelihood.of_both)
+    result = with_random_walk(fit_with, likely, SCATTER_BOUNDS, search, alternatives, noise_degrees)
     if result.scatter or result.random_walk:
         estimate = weighted(statics, *known, result.scatter, result.random_walk, effect_sigma)
     return replace(result, estimate=estimate)
@@ -124,46 +120,76 @@ def equations(
     matrix: Array,
     effect_sigma: Mapping[str, float] | None = None,
     walk: float = 0.0,
-    *,
-    grouped: bool = False,
 ) -> System:
     """All equations, linear about M = `matrix`; `scatter`, `walk` as in `weighted`.
 
-    `grouped`: static positions of one stretch share their scatter.
     Unknowns: M by rows, bias, gravity, effects; eliminated: the tilts.
     """
+    known = (gravity, gravity_sigma, position_sigma, matrix, effect_sigma)
+    if walk:  # else each static position has a scatter of its own
+        return drifting(statics, *known, walking=True).system(scatter, walk)
+    return drifting(statics, *known, scatter, walking=False).system()
+
+
+def drifting(
+    statics: Sequence[StaticForce],
+    gravity: float,
+    gravity_sigma: float,
+    position_sigma: float,
+    matrix: Array,
+    effect_sigma: Mapping[str, float] | None = None,
+    scatter: float = 0.0,
+    *,
+    walking: bool,
+) -> DriftingEquations:
+    """All equations before the errors are eliminated, arguments as in `equations`.
+
+    `walking`: a random walk may be added, so that only what is of one stretch is one block.
+    """
+    keys: list[Hashable] = [(s.position, s.stretch if walking else None) for s in statics]
+    known = (gravity, gravity_sigma, position_sigma, matrix, effect_sigma)
+    return _drifting(statics, *known, keys, scatter)
+
+
+def _drifting(
+    statics: Sequence[StaticForce],
+    gravity: float,
+    gravity_sigma: float,
+    position_sigma: float,
+    matrix: Array,
+    effect_sigma: Mapping[str, float] | None,
+    keys: Sequence[Hashable],
+    scatter: float = 0.0,
+) -> DriftingEquations:
+    """The same, to which drifts may be added; `keys`: what has one key is one block."""
     effect_sigma = effect_sigma or {}
     names = [("parameter", str(i)) for i in range(UNKNOWNS)] + [("gravity", "")]
     names += [("effect", name) for name in effect_sigma]
     prior = np.concatenate([PRIOR, [gravity], np.zeros(len(effect_sigma))])
     rows = _rows(statics, gravity, matrix, prior, list(effect_sigma))
-    noise = np.array([static.sigma for static in statics])
-    with_drift = grouped or bool(walk)  # else each static position has a scatter of its own
-    noise = noise if with_drift else np.hypot(noise, scatter)
-    same_tilt: dict[tuple[str, Stretch | None], list[int]] = {}
-    for i, static in enumerate(statics):
-        key = (static.position, static.stretch if with_drift else None)
-        same_tilt.setdefault(key, []).append(i)
+    noise = np.hypot([static.sigma for static in statics], scatter)
+    same: dict[Hashable, list[int]] = {}
+    for i, key in enumerate(keys):
+        same.setdefault(key, []).append(i)
     blocks: list[tuple[EquationBlock, Stretch]] = []
+    positions: list[str] = []
     sigma: dict[Name, float] = {}
-    for number, ((position, stretch), some) in enumerate(same_tilt.items()):
+    for number, some in enumerate(same.values()):
+        position, stretch = statics[some[0]].position, statics[some[0]].stretch
         tilts = tuple((f"tilt {axis}", position) for axis in (0, 1))
         sigma |= dict.fromkeys(tilts, position_sigma)
         block = whitened(rows[some].reshape(-1, rows.shape[-1]), noise[some].ravel(), tilts)
         block = replace(block, rows=compressed(block.rows))
         blocks.append((block, stretch or Stretch(f"rest {number}")))
-    drift_scatter = scatter if with_drift else 0.0
-    every, drift_sigma = with_drifts(blocks, len(prior), BIAS, drift_scatter, walk)
-    shared, eliminated = eliminate(every, len(prior), sigma | drift_sigma)
-    return System(
-        shared[:, :-1],
-        shared[:, -1] + shared[:, :-1] @ prior,
-        np.ones(len(shared)),
+        positions.append(position)
+    return DriftingEquations(
+        blocks,
+        positions,
+        sigma,
         prior,
         np.array([*PRIOR_SIGMA, gravity_sigma, *effect_sigma.values()]),
-        UNKNOWNS,
         tuple(names),
-        eliminated,
+        BIAS,
     )
 
 

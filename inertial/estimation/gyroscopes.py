@@ -1,12 +1,13 @@
 """The gyros from static positions and rate segments of a known angle, all nine elements of M."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.elimination import EquationBlock, Name, eliminate
+from inertial.estimation.drifting_equations import DriftingEquations
+from inertial.estimation.elimination import EquationBlock, Name
 from inertial.estimation.gyroscope_equations import (
     Linearisation,
     segment_equations,
@@ -22,9 +23,14 @@ from inertial.estimation.gyroscope_observations import (
 )
 from inertial.estimation.horizontal_earth_rate import known_azimuths, size_constraint
 from inertial.estimation.least_squares import Estimate, System, solve
-from inertial.estimation.random_walk import Stretch, linear_trend, with_drifts
+from inertial.estimation.random_walk import Stretch, linear_trend
 from inertial.estimation.triad import UNKNOWNS
-from inertial.estimation.variance_components import ScatterFit, walk_search, with_random_walk
+from inertial.estimation.variance_components import (
+    Deviances,
+    ScatterFit,
+    walk_search,
+    with_random_walk,
+)
 
 Array = NDArray[np.float64]
 
@@ -94,26 +100,30 @@ def fit(
     estimate = joint(statics, *others)
     equations = linearised(linearisation_at(estimate, earth), *others)
 
-    def fit_with(scatter: float, walk: float) -> Estimate:
-        return equations.system(statics, scatter, walk).solve_shared()
+    drifting = equations.drifting(statics)
+    likelihood = drifting.likelihood
 
-    def deviance(group: Callable[[str, Stretch], Stretch]) -> Callable[[float], float]:
-        return lambda size: equations.system(statics, size, group=group).solve_shared().deviance
+    def fit_with(scatter: float, walk: float) -> Estimate:
+        return drifting.system(scatter, walk).solve_shared()
 
     every: list[StaticRate | RateSegment | SteadyRate] = [*statics, *segments, *steadies]
     attitudes = {item.position.name: str(np.round(item.position.up, 3)) for item in every}
     stretches = [item.stretch for item in every if item.stretch is not None]
     alternatives = [
-        deviance(lambda position, _: Stretch(position)),
-        deviance(lambda position, _: Stretch(attitudes[position])),
+        likelihood.of_scatter(likelihood.positions),
+        likelihood.of_scatter([attitudes[position] for position in likelihood.positions]),
     ]
     if stretches:
-        trend = linear_trend(stretches)
-        alternatives.append(deviance(lambda _, stretch: trend(stretch)))
+        trend = list(map(linear_trend(stretches), likelihood.stretches))
+        named = [stretch.name for stretch in trend]
+        alternatives.append(likelihood.of_scatter(named, [stretch.weight for stretch in trend]))
     sigmas = [item.sigma for item in every if not isinstance(item, RateSegment)]
     noise = float(np.nanmedian([*sigmas, np.full(3, np.nan)])) if sigmas else 0.0
     search = walk_search(stretches, noise, MAX_RANDOM_WALK)
-    result = with_random_walk(fit_with, SCATTER_BOUNDS, search, alternatives, noise_degrees)
+    likely = Deviances(
+        likelihood.of_scatter(likelihood.stretches), likelihood.of_walk(), likelihood.of_both
+    )
+    result = with_random_walk(fit_with, likely, SCATTER_BOUNDS, search, alternatives, noise_degrees)
     if result.scatter or result.random_walk:
         estimate = joint(statics, *others, result.scatter, result.random_walk)
     return replace(result, estimate=estimate)
@@ -150,41 +160,32 @@ class LinearisedEquations:
     blocks: Sequence[tuple[str, EquationBlock, Stretch]]
     sigma: Mapping[Name, float]
 
-    def system(
-        self,
-        statics: Sequence[StaticRate],
-        scatter: float = 0.0,
-        walk: float = 0.0,
-        group: Callable[[str, Stretch], Stretch] | None = None,
-    ) -> System:
-        """All equations. Unknowns: M by rows, bias, upward earth rate, effects; errors eliminated.
-
-        `scatter`, `walk`: as in `joint`; `group`: by position and stretch, another stretch, with
-        which it shares its scatter.
-        """
+    def drifting(self, statics: Sequence[StaticRate]) -> DriftingEquations:
+        """All equations. Unknowns: M by rows, bias, upward earth rate, effects."""
         prior = np.concatenate([PRIOR, [self.earth.up], np.zeros(len(self.effect_sigma))])
         sigma, effects = dict(self.sigma), list(self.effect_sigma)
         static = static_equations(statics, self.point.matrix, self.earth, prior, effects, sigma)
         by_position: dict[str, list[tuple[EquationBlock, Stretch]]] = {}
         constrained = size_constraint(self.point, self.earth, len(prior), sigma)
         for position, block, stretch in (*static, *self.blocks):
-            own = stretch if group is None else group(position, stretch)
-            by_position.setdefault(position, []).append((constrained(block), own))
-        every = [pair for pairs in by_position.values() for pair in pairs]
-        blocks, drift_sigma = with_drifts(every, len(prior), BIAS, scatter, walk)
-        rows, eliminated = eliminate(blocks, len(prior), sigma | drift_sigma)
+            by_position.setdefault(position, []).append((constrained(block), stretch))
         names = [("parameter", str(i)) for i in range(UNKNOWNS)]
         names += [("earth", "up"), *(("effect", name) for name in effects)]
-        return System(
-            rows[:, :-1],
-            rows[:, -1] + rows[:, :-1] @ prior,
-            np.ones(len(rows)),
+        return DriftingEquations(
+            [pair for pairs in by_position.values() for pair in pairs],
+            [position for position, pairs in by_position.items() for _ in pairs],
+            sigma,
             prior,
             np.array([*PRIOR_SIGMA, self.earth.up_sigma, *self.effect_sigma.values()]),
-            UNKNOWNS,
             tuple(names),
-            eliminated,
+            BIAS,
         )
+
+    def system(
+        self, statics: Sequence[StaticRate], scatter: float = 0.0, walk: float = 0.0
+    ) -> System:
+        """The same, the errors eliminated; `scatter`, `walk`: as in `joint`."""
+        return self.drifting(statics).system(scatter, walk)
 
 
 def linearised(

@@ -49,8 +49,20 @@ class ScatterFit:
     random_walk_sigma: float = 0.0
 
 
+@dataclass(frozen=True)
+class Deviances:
+    """The deviance as a function of a scatter alone, of a random walk alone, and of both."""
+
+    of_scatter: Deviance
+    of_walk: Deviance
+    of_both: Callable[[float, float], float]
+
+
 def with_scatter(
-    fit: Callable[[float], Estimate], between: tuple[float, float], noise_degrees: float
+    fit: Callable[[float], Estimate],
+    between: tuple[float, float],
+    noise_degrees: float,
+    deviance: Deviance | None = None,
 ) -> ScatterFit:
     """The fit with a scatter where noise alone cannot explain the residuals.
 
@@ -62,7 +74,9 @@ def with_scatter(
     fit : the estimate as a function of the scatter
     between : smallest and largest scatter, in the unit of the readings
     noise_degrees : see `Estimate.p_value`
+    deviance : of the estimate, as a function of the scatter, where there is a shorter way to it
     """
+    deviance = deviance or (lambda scatter: fit(scatter).deviance)
     noise_only = fit(0.0)
     p_value = noise_only.p_value(noise_degrees)
     if p_value >= MIN_CONSISTENT_P_VALUE:
@@ -71,14 +85,13 @@ def with_scatter(
     grid = _grid(between)
     deviances: list[float] = []
     for size in grid:
-        deviances.append(fit(float(np.exp(size))).deviance)
+        deviances.append(deviance(float(np.exp(size))))
         if deviances[-1] > min(deviances) + MAX_DEVIANCE_RISE:
             break
-    scatter, _ = _minimum(lambda size: fit(size).deviance, grid, int(np.argmin(deviances)))
-    scattered = fit(scatter)
-    if noise_only.deviance - scattered.deviance < MIN_DEVIANCE_DROP:
+    scatter, smallest = _minimum(deviance, grid, int(np.argmin(deviances)))
+    if deviance(0.0) - smallest < MIN_DEVIANCE_DROP:
         return ScatterFit(noise_only, 0.0, p_value)
-    return ScatterFit(scattered, scatter, p_value)
+    return ScatterFit(fit(scatter), scatter, p_value)
 
 
 @dataclass(frozen=True)
@@ -113,6 +126,7 @@ def walk_search(stretches: Sequence[Stretch], noise: float, largest: float) -> W
 
 def with_random_walk(
     fit: Callable[[float, float], Estimate],
+    likely: Deviances,
     between: tuple[float, float],
     search: WalkSearch | None,
     alternatives: Sequence[Deviance],
@@ -122,36 +136,40 @@ def with_random_walk(
 
     Parameters
     ----------
-    fit : the estimate as a function of both
+    fit : the estimate as a function of both; `likely`: its deviance
     between : smallest and largest scatter, in the unit of the readings
     search : None where the times are not known: then no random walk
     alternatives : deviance by the size of other differences that resemble a random walk
     noise_degrees : see `Estimate.p_value`
     """
-    scattered = with_scatter(lambda scatter: fit(scatter, 0.0), between, noise_degrees)
+    scattered = with_scatter(
+        lambda scatter: fit(scatter, 0.0), between, noise_degrees, likely.of_scatter
+    )
     if search is None:
         return scattered
-    noise_only = fit(0.0, 0.0).deviance
-    walk, deviance = most_likely(lambda size: fit(0.0, size).deviance, search.bounds, noise_only)
+    noise_only = likely.of_scatter(0.0)
+    walk, deviance = most_likely(likely.of_walk, search.bounds, noise_only)
     if noise_only - deviance < MIN_DEVIANCE_DROP:
         return scattered
     # Without a common clock the times from log to log are unknown, and little distinguishes a
     # random walk from the alternatives: then it must be clearly more likely than all of them.
     margin = -MIN_DEVIANCE_DROP if search.common_clock else MIN_DEVIANCE_DROP
     sizes = (MIN_SIZE * search.noise, MAX_SIZE * search.noise)
-    scatter, scatter_deviance = most_likely(lambda size: fit(size, 0.0).deviance, sizes, np.inf)
+    scatter, scatter_deviance = most_likely(likely.of_scatter, sizes, np.inf)
     others = [most_likely(alternative, sizes, np.inf)[1] for alternative in alternatives]
     if min(scatter_deviance, *others) - margin < deviance:
         if scattered.scatter or noise_only - scatter_deviance < MIN_DEVIANCE_DROP:
             return scattered
         return replace(scattered, estimate=fit(scatter, 0.0), scatter=scatter)
-    scatter, walk = _joint_maximum(fit, (scattered.scatter or search.noise, walk), deviance)
+    scatter, walk = _joint_maximum(
+        likely.of_both, (scattered.scatter or search.noise, walk), deviance
+    )
     return replace(
         scattered,
         estimate=fit(scatter, walk),
         scatter=scatter,
         random_walk=walk,
-        random_walk_sigma=_random_walk_sigma(fit, scatter, walk),
+        random_walk_sigma=_random_walk_sigma(likely, scatter, walk),
     )
 
 
@@ -196,12 +214,12 @@ def sigma_of(deviance: Deviance, size: float) -> float:
 
 
 def _joint_maximum(
-    fit: Callable[[float, float], Estimate], start: tuple[float, float], deviance: float
+    of_both: Callable[[float, float], float], start: tuple[float, float], deviance: float
 ) -> tuple[float, float]:
     """Scatter and random walk of largest likelihood; no scatter unless it adds to that."""
 
     def joint(sizes: Array) -> float:
-        return fit(float(np.exp(sizes[0])), float(np.exp(sizes[1]))).deviance
+        return of_both(float(np.exp(sizes[0])), float(np.exp(sizes[1])))
 
     first = np.log(np.array(start))
     if deviance - joint(first) < -MIN_DEVIANCE_DROP:
@@ -217,15 +235,13 @@ def _joint_maximum(
     return float(np.exp(minimum.x[0])), float(np.exp(minimum.x[1]))
 
 
-def _random_walk_sigma(
-    fit: Callable[[float, float], Estimate], scatter: float, walk: float
-) -> float:
+def _random_walk_sigma(likely: Deviances, scatter: float, walk: float) -> float:
     """The sigma of the random walk by the curvature of the likelihood, the scatter fitted too."""
     sizes = np.array([walk, scatter] if scatter else [walk])
 
     def deviance(steps: Array) -> float:
-        changed = [*(sizes * np.exp(CURVATURE_STEP * steps)).tolist(), 0.0]
-        return fit(changed[1], changed[0]).deviance
+        changed, *scatters = (sizes * np.exp(CURVATURE_STEP * steps)).tolist()
+        return likely.of_both(scatters[0], changed) if scatters else likely.of_walk(changed)
 
     unit = np.eye(len(sizes))
     curvature = np.zeros((len(sizes), len(sizes)))

@@ -1,6 +1,6 @@
 """Drift of the biases of a sensor given the named effects: random walk and half waves."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -45,7 +45,7 @@ def _random_walk(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> 
     search = _walk_search(campaign, sensor)
     if search is None:
         return 0.0
-    deviance = _deviance(campaign, sensor, effects)
+    deviance = campaign.deviance_of_random_walk(sensor, effects, PRIOR_SIZE)
     alone = deviance(0.0)
     size, smallest = most_likely(deviance, search.bounds, alone)
     return size if alone - smallest >= MIN_DEVIANCE_DROP else 0.0
@@ -62,7 +62,9 @@ class Walk:
 def random_walks_with_sigmas(campaign: Campaign, effects: Sequence[Effect]) -> dict[str, Walk]:
     """The random walks in the equations of a campaign, by sensor."""
     return {
-        sensor: Walk(size, sigma_of(_deviance(campaign, sensor, effects), size))
+        sensor: Walk(
+            size, sigma_of(campaign.deviance_of_random_walk(sensor, effects, PRIOR_SIZE), size)
+        )
         for sensor, size in zip(SENSORS, campaign.solution.random_walks, strict=True)
         if size
     }
@@ -73,24 +75,11 @@ def walk_evidence(campaign: Campaign, sensor: str, size: float, effects: Sequenc
 
     By the likelihood of the readings themselves: half waves leave out how fast it may change.
     """
-    deviance = _deviance(campaign, sensor, effects)
+    deviance = campaign.deviance_of_random_walk(sensor, effects, PRIOR_SIZE)
     width = float(np.nan_to_num(sigma_of(deviance, size) / size, nan=1.0))
     return (deviance(0.0) - deviance(size)) / 2 + float(
         np.log(np.sqrt(2 * np.pi) * width / LOG_RANGE)
     )
-
-
-def _deviance(
-    campaign: Campaign, sensor: str, effects: Sequence[Effect]
-) -> Callable[[float], float]:
-    equations = campaign.system_of_random_walk(sensor, effects, PRIOR_SIZE)
-
-    def deviance(size: float) -> float:
-        system = equations(size)
-        assert system is not None  # else it has no times
-        return system.solve_shared().deviance
-
-    return deviance
 
 
 def _walk_search(campaign: Campaign, sensor: str) -> WalkSearch | None:

@@ -1,0 +1,160 @@
+"""The equations of a sensor whose bias drifts from stretch to stretch, and their likelihood.
+
+The likelihood of a scatter or a random walk is asked for many sizes. With the drifts d as further
+unknowns, all others eliminated, the equations say N d = r, and before them d ~ N(0, size² B Bᵀ). So
+−2 log of the restricted likelihood is, up to a constant,
+
+    log det(I + size² Bᵀ N B) − size² rᵀ B (I + size² Bᵀ N B)⁻¹ Bᵀ r,
+
+for every size by the eigenvalues of one matrix (Patterson & Thompson 1971; Kang et al. 2008,
+Efficient control of population structure in model organism association mapping).
+"""
+
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+
+from inertial.estimation.elimination import EquationBlock, Name, eliminate, partial_r_factor
+from inertial.estimation.least_squares import System, solve
+from inertial.estimation.random_walk import Stretch, walk_covariance, with_drifts
+from inertial.estimation.triad import UNKNOWNS
+
+Array = NDArray[np.float64]
+Deviance = Callable[[float], float]
+
+
+@dataclass(frozen=True)
+class DriftingEquations:
+    """Equations of one sensor, of which the bias may have a scatter or a random walk.
+
+    `blocks`: in the order of their elimination, with the stretch of each; `positions`: of each;
+    `sigma`: of the errors; `prior`, `prior_sigma`, `names`: of the shared unknowns; `bias`: the
+    first of the three biases in them.
+    """
+
+    blocks: Sequence[tuple[EquationBlock, Stretch]]
+    positions: Sequence[str]
+    sigma: Mapping[Name, float]
+    prior: Array
+    prior_sigma: Array
+    names: tuple[tuple[str, str], ...]
+    bias: int
+
+    def system(self, scatter: float = 0.0, walk: float = 0.0) -> System:
+        """All equations, the errors eliminated; unit of the readings, and the same per √s."""
+        shared = len(self.prior)
+        blocks, drift_sigma = with_drifts(self.blocks, shared, self.bias, scatter, walk)
+        rows, eliminated = eliminate(blocks, shared, {**self.sigma, **drift_sigma})
+        return System(
+            rows[:, :-1],
+            rows[:, -1] + rows[:, :-1] @ self.prior,
+            np.ones(len(rows)),
+            self.prior,
+            self.prior_sigma,
+            UNKNOWNS,
+            self.names,
+            eliminated,
+        )
+
+    @cached_property
+    def likelihood(self) -> "DriftLikelihood":
+        """The likelihood of drifts, one in each block."""
+        shared, count = len(self.prior), len(self.blocks)
+        every = shared + 3 * count
+        blocks = []
+        for place, (block, _) in enumerate(self.blocks):
+            rows = np.zeros((len(block.rows), block.rows.shape[1] + 3 * count))
+            rows[:, :shared] = block.rows[:, :shared]
+            drift = shared + 3 * place
+            rows[:, drift : drift + 3] = block.rows[:, self.bias : self.bias + 3]
+            rows[:, every:] = block.rows[:, shared:]
+            blocks.append(EquationBlock(rows, block.own, block.count, block.deviance))
+        rows, eliminated = eliminate(blocks, every, self.sigma)
+        design, observed = rows[:, :shared], rows[:, -1] + rows[:, :shared] @ self.prior
+        constant = solve(
+            design, observed, np.ones(len(rows)), self.prior, self.prior_sigma, UNKNOWNS
+        )
+        stacked = np.vstack([rows, np.eye(shared, every + 1)])
+        stacked[: len(rows), :shared] *= self.prior_sigma
+        corner = partial_r_factor(stacked, shared)[shared:, shared:]
+        return DriftLikelihood(
+            [stretch for _, stretch in self.blocks],
+            self.positions,
+            corner[:, :-1].T @ corner[:, :-1],
+            corner[:, :-1].T @ corner[:, -1],
+            constant.deviance + eliminated.deviance,
+        )
+
+
+@dataclass(frozen=True)
+class DriftLikelihood:
+    """−2 log of the restricted likelihood of drifts of the bias, up to a constant.
+
+    `stretches`, `positions`: of the n blocks; `information`, (3n, 3n), `right`, (3n,): the normal
+    equations of their drifts, all else eliminated; `constant`: the deviance of a constant bias.
+    """
+
+    stretches: Sequence[Stretch]
+    positions: Sequence[str]
+    information: Array
+    right: Array
+    constant: float
+
+    def of_scatter(
+        self, names: Sequence[Hashable] | None = None, weights: Sequence[float] | None = None
+    ) -> Deviance:
+        """As a function of a scatter; blocks of one name share theirs, in proportion to a weight.
+
+        Without names each block has its own.
+        """
+        named = range(len(self.stretches)) if names is None else names
+        factor = _shared(named)
+        return self._of(factor if weights is None else factor * np.array(weights)[:, None])
+
+    def of_walk(self) -> Deviance:
+        """As a function of a random walk alone."""
+        return self._of(self._spread(0.0, 1.0))
+
+    def of_both(self, scatter: float, walk: float) -> float:
+        """With a scatter of each stretch and a random walk."""
+        return self._of(self._spread(scatter, walk))(1.0)
+
+    def _spread(self, scatter: float, walk: float) -> Array:
+        """B of the drifts of the blocks with a scatter of each stretch and a random walk."""
+        own = list(dict.fromkeys(self.stretches))
+        timed = [walk and np.isfinite(stretch.end) for stretch in own]
+        inside = [stretch for stretch, there in zip(own, timed, strict=True) if there]
+        outside = len(own) - len(inside)
+        covariance = walk**2 * walk_covariance(inside) + scatter**2 * np.eye(len(inside))
+        root = block_diag(np.linalg.cholesky(covariance), scatter * np.eye(outside))
+        order = [*np.flatnonzero(timed), *np.flatnonzero(np.logical_not(timed))]
+        spread = np.zeros_like(root)
+        spread[order] = root
+        return np.asarray(_shared(self.stretches) @ spread)
+
+    def _of(self, factor: Array) -> Deviance:
+        """As a function of the size of drifts `factor` · independent ones; the axes are alike."""
+        n, q = factor.shape
+        half = np.tensordot(factor.T, self.information.reshape(n, -1), 1)  # (q, 3 · 3n)
+        whole = half.reshape(q, 3, n, 3).transpose(0, 1, 3, 2) @ factor  # (q, 3, 3, q)
+        information = whole.transpose(0, 1, 3, 2).reshape(3 * q, 3 * q)
+        values, vectors = np.linalg.eigh(information)
+        values = np.maximum(values, 0.0)
+        squares = (vectors.T @ (factor.T @ self.right.reshape(n, 3)).ravel()) ** 2
+
+        def deviance(size: float) -> float:
+            grown = size**2 * values
+            drop = float(np.sum(size**2 * squares / (1 + grown)))
+            return self.constant + float(np.sum(np.log1p(grown))) - drop
+
+        return deviance
+
+
+def _shared(names: Sequence[Hashable]) -> Array:
+    """Which block has which of the names, in the order of their first occurrence, (n, q)."""
+    place = {name: i for i, name in enumerate(dict.fromkeys(names))}
+    return np.asarray(np.eye(len(place))[[place[name] for name in names]])
