@@ -42,7 +42,12 @@ class Hypothesis:
     @property
     def axis(self) -> str | None:
         """The axis concerned, if it is one."""
-        return self.row["axis"] or None
+        return self.row["axis"] or (self.repair["axis"] if self.repair else None) or None
+
+    @property
+    def manoeuvre(self) -> str | None:
+        """The manoeuvre concerned, if it is one."""
+        return self.row["manoeuvre"] or None
 
     @property
     def mount(self) -> str:
@@ -66,7 +71,9 @@ class Findings:
 
     by_stage: Mapping[str, Sequence[Row]]
     members: Sequence[Row]
+    positions: Sequence[Row]
     repairs: Sequence[Row]
+    channels: Sequence[Row]
     masks: pd.DataFrame
     gaps: pd.DataFrame
     segments: pd.DataFrame
@@ -77,10 +84,12 @@ def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
     members: dict[str, list[str]] = {}
     for row in sorted(findings.members, key=lambda row: row["rank"]):
         members.setdefault(row["finding"], []).append(row["effect"])
-    repair_of = {row["finding"]: row for row in findings.repairs if row["finding"]}
+    repair_of, without = _repairs(findings)
+    place = {row["finding"]: row["position"] for row in findings.positions if row["rank"] == 1}
     touched = _touched(findings)
     for stage, rows in findings.by_stage.items():
         for row in rows:
+            row = row | {"manoeuvre": row["manoeuvre"] or place.get(row["id"])}
             own = {row["manoeuvre"]} if row["manoeuvre"] else set()
             yield Hypothesis(
                 id=row["id"],
@@ -93,11 +102,36 @@ def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
                 repair=repair_of.get(row["id"]),
                 masked=row["id"] in touched,
             )
+    for row in without:
+        cause = _CAUSE_OF_REPAIR[row["repair"]]
+        yield Hypothesis(row["id"], PLANNED, cause, _as_finding(row), repair=row)
+
+
+def _repairs(findings: Findings) -> tuple[dict[str, Row], list[Row]]:
+    """The repairs by the id of the finding that they undo, and those that no finding reports.
+
+    A repair of the plan cannot know that id: it has the finding of its cause and sensor.
+    """
+    axes: dict[str, set[str]] = {}
+    for row in findings.channels:
+        if row["axis"] == row["from_axis"] and row["factor"] == 1:
+            continue
+        axes.setdefault(row["repair"], set()).add(row["axis"])
+    every = [row for rows in findings.by_stage.values() for row in rows]
+    ids = {row["id"] for row in every}
+    repair_of, without = {}, []
     for row in findings.repairs:
-        if not row["finding"]:
-            yield Hypothesis(
-                row["id"], PLANNED, _CAUSE_OF_REPAIR[row["repair"]], _as_finding(row), repair=row
-            )
+        own = axes.get(row["id"], set())
+        repair = row | {"axis": row["axis"] or (next(iter(own)) if len(own) == 1 else None)}
+        cause = _CAUSE_OF_REPAIR[row["repair"]]
+        alike = [f["id"] for f in every if (f["cause"], f["sensor"]) == (cause, row["sensor"])]
+        if row["finding"] in ids:
+            repair_of[row["finding"]] = repair
+        elif alike:
+            repair_of[alike[0]] = repair
+        else:
+            without.append(repair)
+    return repair_of, without
 
 
 _CAUSE_OF_REPAIR = {
@@ -163,8 +197,10 @@ def findings_of(
     accelerometer_findings: pd.DataFrame,
     criticism_findings: pd.DataFrame,
     members: pd.DataFrame,
+    cause_positions: pd.DataFrame,
     plan_repairs: pd.DataFrame,
     segment_repairs: pd.DataFrame,
+    channel_repairs: pd.DataFrame,
     masks: pd.DataFrame,
     gaps: pd.DataFrame,
     segments: pd.DataFrame,
@@ -179,7 +215,9 @@ def findings_of(
     return Findings(
         {stage: rows_of(table) for stage, table in tables},
         rows_of(members),
+        rows_of(cause_positions),
         [*rows_of(plan_repairs), *rows_of(segment_repairs)],
+        rows_of(channel_repairs),
         masks,
         gaps,
         segments,

@@ -47,6 +47,16 @@ HARMLESS = _("Nothing need be done about it for this result.")
 
 
 @dataclass(frozen=True)
+class Size:
+    """How large an effect is by its clearest parameter, and its axis where it is one alone."""
+
+    value: float | None
+    sigma: float | None
+    unit: str
+    axis: str | None = None
+
+
+@dataclass(frozen=True)
 class Cause:
     """A cause, or equal ones, with their consequences, and what was done about it.
 
@@ -104,17 +114,17 @@ class Cause:
         names = self.main.members[:3] if self.verdict == ONE_OF_CLASS else ()
         words = _(" or ").join(in_words(name) for name in names or (self.main.cause,))
         axis = self.main.axis
-        place = self.main.row["manoeuvre"]
+        place = self.main.manoeuvre
         words += _(" of the {axis} axis", axis=axis) if axis and self._one_axis() else ""
         return words + (_(" ({place})", place=place) if place else "")
 
     def _one_axis(self) -> bool:
         return len({member.cause.axis for member in self.members}) == 1
 
-    def row(self, sizes: Mapping[str, tuple[float | None, float | None, str]]) -> Row:
-        """Its row; `sizes`: value, sigma and unit of the largest parameter of an effect."""
+    def row(self, sizes: Mapping[str, Size]) -> Row:
+        """Its row; `sizes`: of effects, by the finding that names them."""
         main, repair = self.main, self.main.repair
-        size, sigma, unit = sizes.get(main.id, (main.row["size"], None, main.row["unit"]))
+        size = sizes.get(main.id, Size(main.row["size"], None, main.row["unit"]))
         count = sum(int(member.cause.row["count"]) for member in self.members)
         sentence = main.row["sentence"]
         if len(self.members) > 1:
@@ -129,14 +139,14 @@ class Cause:
             "verdict": self.verdict,
             "mount": main.mount,
             "sensor": main.sensor,
-            "axis": main.axis if self._one_axis() else None,
+            "axis": (main.axis if self._one_axis() else None) or size.axis,
             "log": main.row["log"] if len(self.members) == 1 else None,
-            "manoeuvre": main.row["manoeuvre"] if len(self.members) == 1 else None,
+            "manoeuvre": main.manoeuvre if len(self.members) == 1 else None,
             "count": count,
             "sentence": sentence,
-            "size": size,
-            "sigma": sigma,
-            "unit": unit,
+            "size": size.value,
+            "sigma": size.sigma,
+            "unit": size.unit,
             "snr": main.row.get("snr"),
             "p_value": main.row["p_value"],
             "cure": self.cure,

@@ -9,12 +9,15 @@ from inertial.campaign.hypotheses import Findings, findings_of, hypotheses
 from inertial.campaign.records import Row, performed_of, rows_of
 from inertial.effects import CATALOGUE
 from inertial.tables.stage import Stage, Tables
-from stages.diagnosis.causes import Cause, Evidence
+from inertial.text.parameters import AXES
+from stages.diagnosis.causes import Cause, Evidence, Size
 from stages.diagnosis.declared import DECLARED
 from stages.diagnosis.sensor_results import Estimated, SensorResult, estimated_of
 from stages.diagnosis.verdict import Verdict, verdict
 
 PLACES = ("frequency", "n", "phase")  # parameters of lines: where they are, not how large
+
+MIN_CLEAR_SIGMA = 4.0  # of a parameter: the effect is in its axis
 
 
 def diagnosis(
@@ -61,20 +64,26 @@ def diagnosis(
     }
 
 
-def _sizes(effects: Sequence[Row]) -> dict[str, tuple[float | None, float | None, str]]:
-    """By finding value, sigma and unit of the parameter that is clearest in its sigma.
+def _sizes(effects: Sequence[Row]) -> dict[str, Size]:
+    """By finding the parameter that is clearest in its sigma.
 
     What is scanned, a time, a frequency or an order, is where an effect is, not how large.
     """
-    clearest: dict[str, Row] = {}
+    by_finding: dict[str, list[Row]] = {}
     for row in effects:
         effect = CATALOGUE.get(row["effect"])
         scanned = effect is not None and effect.scan is not None and effect.scan.name
         if row["finding"] and row["sigma"] and row["parameter"] not in (scanned, *PLACES):
-            best = clearest.get(row["finding"])
-            if best is None or _sigmas(row) > _sigmas(best):
-                clearest[row["finding"]] = row
-    return {name: (row["value"], row["sigma"], row["unit"]) for name, row in clearest.items()}
+            by_finding.setdefault(row["finding"], []).append(row)
+    return {finding: _size(rows) for finding, rows in by_finding.items()}
+
+
+def _size(rows: Sequence[Row]) -> Size:
+    """Of an effect with a parameter for each axis the axis, where only one is clear."""
+    best = max(rows, key=_sigmas)
+    clear = [i for i, row in enumerate(rows) if _sigmas(row) > MIN_CLEAR_SIGMA]
+    axis = AXES[clear[0]] if len(rows) == len(AXES) and len(clear) == 1 else None
+    return Size(best["value"], best["sigma"], best["unit"], axis)
 
 
 def _sigmas(row: Row) -> float:

@@ -56,8 +56,10 @@ def candidates_of(combinations: Sequence[Combination], shown: frozenset[str]) ->
 
 
 def normalised(candidates: Sequence[Candidate]) -> list[Candidate]:
-    """The candidates with probabilities that add up to one."""
+    """The candidates with probabilities that add up to one; alike where none has any."""
     total = sum(each.probability for each in candidates)
+    if not total:
+        return [replace(each, probability=1 / len(candidates)) for each in candidates]
     return [replace(each, probability=each.probability / total) for each in candidates]
 
 
