@@ -33,10 +33,13 @@ def test_the_gap_of_the_demo_is_the_one_that_was_found_by_hand(demo):  # T4
     assert degrees(turn["angle"]) == pytest.approx(-240.3, abs=0.1)
 
 
-def test_the_incomplete_turn_is_named_and_bridged(demo):
-    finding = demo["segment/findings"]
-    assert list(finding["cause"]) == ["incomplete_turn"]
-    assert list(finding["manoeuvre"]) == ["z-backward"]
+def test_the_turn_with_a_gap_is_bridged_and_its_gap_the_only_finding(demo):
+    assert demo["segment/findings"].empty
+    found = demo["quality/findings"]
+    (gap,) = found[found["cause"] == "gap"].to_dict("records")
+    assert gap["log"] == "z-backward.asc"
+    # 1197 samples at 100 Hz and 10 °/s
+    assert "gap of 12.0 s" in gap["sentence"] and "turned by 120° meanwhile" in gap["sentence"]
     turn = performed(demo).loc["z-backward"]
     assert turn["bridged"] and not turn["complete"]
     fitted = demo["gyroscope/fit_manoeuvres"].query("method == 'joint'")

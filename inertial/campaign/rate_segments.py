@@ -69,6 +69,11 @@ def gaps_of(part: Blocks) -> list[Gap]:
     return gaps
 
 
+def weights_of(part: Blocks) -> Array:
+    """The weights of the k blocks of a turn in its sums, (k,), so that these have no gaps."""
+    return np.ones(len(part)) + sum((gap.shares for gap in gaps_of(part)), np.zeros(1))
+
+
 def sigma_of(
     part: Blocks,
     gaps: Sequence[Gap],
@@ -142,6 +147,11 @@ class Recorded:
     def steady(self) -> Blocks:
         """The blocks at the steady rate."""
         return self.blocks.those(self.blocks.steady)
+
+    @property
+    def weights(self) -> Array:
+        """How often each block counts in the turn, (k,): with its share of what is missing."""
+        return weights_of(self.blocks)
 
 
 @dataclass(frozen=True)
@@ -328,10 +338,10 @@ def _angle(rotation: Recorded, i: int, noise: NoiseLevels) -> WholeTurn:
     m, part = rotation.plan, rotation.blocks
     assert m.up is not None and m.angle is not None and m.angle_sigma is not None  # else refused
     return WholeTurn(
-        summed=float((part.gyro[:, i] * part.seconds).sum()),
+        summed=float((part.gyro[:, i] * part.seconds * rotation.weights).sum()),
         angle=m.angle * float(m.axis[i]),
         angle_sigma=m.angle_sigma,
-        seconds=float(part.seconds.sum()),
+        seconds=float(rotation.weights @ part.seconds),
         up=float(m.up[i]),
         density=float(noise.of(m.name, "rest", GYRO)[i]),
     )

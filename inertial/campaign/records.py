@@ -108,6 +108,7 @@ class Performed:
     rate: float | None = None
     seconds: float = 0.0
     bridged: bool = False
+    lost: bool = False
 
 
 def performed_of(table: pd.DataFrame) -> dict[str, Performed]:

@@ -1,16 +1,39 @@
 """Samples that were never written."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.signal.detector import Description, Detector, Event, Log, Piece
+from inertial.signal.detector import Array, Description, Detector, Event, Log, Piece
 from inertial.signal.stamps import disorders, stamps_of
 from inertial.text.messages import _, plural
-from inertial.text.numbers import fixed
+from inertial.text.numbers import fixed, significant
 
 MIN_GAP_INTERVALS = 1.5  # median intervals: what is no jitter of the stamps any more
 SIDE_STAMPS = 4  # stamps on either side that must agree
+SIDE_RECORDS = 16  # on either side, of which the rate is taken
+MIN_TURN_RATE = np.radians(0.5)  # rad/s: more than any gyro's bias
+MAX_RATE_CHANGE = 0.05  # of the rate, across a gap in a steady part
+
+
+@dataclass(frozen=True)
+class Lost:
+    """What a gap lacks: seconds; rate before and after it, rad/s, NaN without gyros."""
+
+    seconds: float
+    before: float
+    after: float
+
+    @property
+    def turning(self) -> bool:
+        """Whether the IMU turns before it or after it."""
+        return bool(np.fmax(self.before, self.after) > MIN_TURN_RATE)
+
+    @property
+    def steady(self) -> bool:
+        """Whether it turns at one rate."""
+        return abs(self.after - self.before) < MAX_RATE_CHANGE * max(self.before, self.after)
 
 
 class Gap(Detector):
@@ -46,24 +69,65 @@ class Gap(Detector):
                     float(time[k]),
                     float(time[k + 1]),
                     float(missing),
+                    facts=Lost(
+                        missing * log.interval,
+                        _rate(piece.values[max(after - SIDE_RECORDS, 0) : after]),
+                        _rate(piece.values[after : after + SIDE_RECORDS]),
+                    ),
                 )
 
     def describe(self, event: Event, name: str) -> Description:
+        lost: Lost = event.facts
+        sentence = plural(
+            "{name}: gap of {seconds} s: {count} sample is missing between {from_s} s and {to_s} s;"
+            " line {line} is the first after it.",
+            "{name}: gap of {seconds} s: {count} samples are missing between {from_s} s and {to_s}"
+            " s; line {line} is the first after them.",
+            round(event.size),
+            name=name,
+            seconds=significant(lost.seconds, 3),
+            from_s=fixed(event.from_s, 3),
+            to_s=fixed(event.to_s, 3),
+            line=event.line,
+        )
+        if not lost.turning:
+            return Description(
+                sentence,
+                _("A mean of a rest hardly changes by it."),
+                _("Nothing is taken in its place."),
+            )
+        if not lost.steady:
+            return Description(
+                _(
+                    "{sentence} The rate is {before} °/s before and {after} °/s after it.",
+                    sentence=sentence,
+                    before=significant(float(np.degrees(lost.before)), 3),
+                    after=significant(float(np.degrees(lost.after)), 3),
+                ),
+                _("The angle of the turn is not known by the gyros, nor the attitude after it."),
+                _("The turn is left out. Record it again."),
+            )
+        angle = float(np.degrees((lost.before + lost.after) / 2 * lost.seconds))
         return Description(
-            plural(
-                "{name}: {count} sample is missing between {from_s} s and {to_s} s; line {line} is"
-                " the first after it.",
-                "{name}: {count} samples are missing between {from_s} s and {to_s} s; line {line}"
-                " is the first after them.",
-                round(event.size),
-                name=name,
-                from_s=fixed(event.from_s, 3),
-                to_s=fixed(event.to_s, 3),
-                line=event.line,
-            ),
-            _("A sum over the gap lacks what was not recorded; means of a rest hardly change."),
             _(
-                "A turn with the gap in its steady part is interpolated; one with the gap in a ramp"
-                " is left out."
+                "{sentence} It turned by {angle}° meanwhile, at the rate before and after.",
+                sentence=sentence,
+                angle=significant(angle, 3),
+            ),
+            _(
+                "A sum over the turn lacks these {angle}°, which follow from the rate beside them.",
+                angle=significant(angle, 3),
+            ),
+            _(
+                "The joint estimate bridges them, where a second of steady rate is recorded before "
+                "and after, or as much as is missing; formulas of whole turns leave this one out."
             ),
         )
+
+
+def _rate(values: Array) -> float:
+    """The magnitude of the mean rate over some records, (n, 6), rad/s; NaN without gyros."""
+    rates = values[:, 3:]
+    rates = rates[np.isfinite(rates).any(axis=1)]
+    there = np.isfinite(rates).all(axis=0) if len(rates) else np.zeros(3, bool)
+    return float(np.linalg.norm(rates[:, there].mean(axis=0))) if there.any() else np.nan

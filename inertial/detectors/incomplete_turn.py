@@ -12,10 +12,13 @@ from inertial.text.numbers import fixed, whole
 
 
 class IncompleteTurn(PlanDetector):
-    """A turn that was not recorded from rest to rest, or not to the planned angle."""
+    """A turn that was not recorded from rest to rest, or not to the planned angle.
+
+    What a gap or masked records lack of it is told with these: they are the cause.
+    """
 
     name = "incomplete_turn"
-    cause = _("samples were lost, or the log begins or ends while the table turns")
+    cause = _("the log begins or ends while the table turns, or it turned by another angle")
     source = "S0, figure 5-9: 11.98 s are missing of a turn, so 240° of 360° are recorded"
     costs = _("its angle, and with it a scale factor, if the planned or a rounded one is taken")
     unit = "°"
@@ -30,39 +33,28 @@ class IncompleteTurn(PlanDetector):
         )
         for i, name in enumerate(recorded.name):
             whole_planned = recorded.do[i] == "turn" and not recorded.steady[i]
-            if not whole_planned or not recorded.found[i] or recorded.complete[i]:
+            if not whole_planned or not recorded.found[i]:
                 continue
-            scaled = common is not None and abs(angle[i] / common[0] - 1) <= MAX_RATIO_SPREAD
+            if recorded.complete[i] or recorded.lost[i]:
+                continue
+            # Where all turns have another angle, that of one with a gap is not known at all.
+            scaled = common is not None and (
+                abs(angle[i] / common[0] - 1) <= MAX_RATIO_SPREAD or recorded.lacking_s[i] > 0
+            )
             reversed_ = angle[i] < 0
             refused = misread and recorded.lacking_s[i] == 0
             if scaled or reversed_ or refused or name in recorded.explained:
                 continue
             missing = float(np.degrees(recorded.lacking[i]))
-            place = {}
-            if recorded.gap_first[i] >= 0:
-                place = {
-                    "first": int(recorded.gap_first[i]),
-                    "after": int(recorded.gap_first[i]),
-                    "from_s": float(recorded.gap_from_s[i]),
-                    "to_s": float(recorded.gap_to_s[i]),
-                }
-            yield self.of(recorded, i, missing if np.isfinite(missing) else None, **place)
+            yield self.of(recorded, i, missing if np.isfinite(missing) else None)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at
         assert i is not None  # it is a turn that is not complete
-        bridged = bool(recorded.bridged[i])
         return Description(
             f"{recorded.name[i]}: {recorded.said[i]}",
             _if_taken(recorded, i),
-            _(
-                "The joint estimate bridges what is missing; every formula that needs the whole "
-                "angle leaves the turn out."
-            )
-            if bridged
-            else _(
-                "It is left out of the joint estimate and of the angle method. Record it again."
-            ),
+            _("It is left out of the joint estimate and of the angle method. Record it again."),
         )
 
 

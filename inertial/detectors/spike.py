@@ -93,6 +93,7 @@ class Spikes(Detector):
                         float(channel.off[k]),
                         channel=i,
                         p_value=chance(scatters),
+                        count=end - start,
                         facts=Spike(end - start, 1 / log.interval, len(channel.places)),
                     )
 
@@ -131,9 +132,9 @@ class Spikes(Detector):
         assert largest.channel is not None
         return Description(
             _(
-                "{count} spikes of the {axes} in {logs}, of up to {size} {unit}. The largest is "
-                "this one: {one}",
-                count=len(events),
+                "{count} spikes of the {axes} in {logs}, of up to {size} {unit}. The largest: "
+                "{one}",
+                count=sum(event.count for _, event in events),
                 axes=names_of_axes(events),
                 logs=names_of_logs(events),
                 size=significant(abs(largest.size), 3),

@@ -84,15 +84,15 @@ class Recorded:
     steady part is planned to be recorded.
     up, about: (m, 3), planned directions, NaN where none; angle, rate, seconds: (m,), planned, the
     first two signed about `about`, NaN where none.
-    found, complete, bridged: (m,); said: what was recorded of it, in words.
+    found, complete, lost: (m,), the last where gaps and masks alone are why it is not complete;
+    said: what was recorded of it, in words.
     force: (m, 3), mean of its rest, or of that before its turn; of one that is not found, of what
     its log holds instead; turned: (m, 3), angles of its motion; NaN where not recorded.
     moved: (m,), angle about `about`; speed: (m,), mean rate of its steady part about `about`;
     lacking, lacking_s: (m,), angle and time that are missing; duration: (m,), s, of the rest
     or from start to stop.
     first, after: (m,), records of it, or of what its log holds instead, −1 where there are none;
-    from_s, to_s: (m,). gap_first, gap_from_s, gap_to_s: (m,), record after the longest gap in its
-    motion, −1 and NaN where it has none.
+    from_s, to_s: (m,).
     gyros: (m, 3), whether its log has readings of them.
     count: (m,), rad, what a count of its gyros is by the campaign, NaN where not stated.
     gyro_signs: (3,), +1 right and −1 wrong, by the earth rate, 0 where it does not show.
@@ -115,7 +115,7 @@ class Recorded:
     seconds: Array
     found: Booleans
     complete: Booleans
-    bridged: Booleans
+    lost: Booleans
     said: Sequence[str]
     force: Array
     turned: Array
@@ -128,9 +128,6 @@ class Recorded:
     after: Integers
     from_s: Array
     to_s: Array
-    gap_first: Integers
-    gap_from_s: Array
-    gap_to_s: Array
     gyros: Booleans
     count: Array
     gyro_signs: Sequence[int]

@@ -182,11 +182,16 @@ SEGMENTS = Table(
 )
 PERFORMED = Table(
     "performed",
-    2,
+    3,
     (
         Column("manoeuvre", TEXT, "", "as in manoeuvres"),
         Column("found", TRUTH, "", "found in its log"),
-        Column("complete", TRUTH, "", "recorded from rest to rest without a gap, as planned"),
+        Column(
+            "complete",
+            TRUTH,
+            "",
+            "recorded from rest to rest without a gap, as planned, but for a few masked samples",
+        ),
         Column(
             "bridged",
             TRUTH,
@@ -198,9 +203,20 @@ PERFORMED = Table(
         Column(
             "missing_angle", DOUBLE, "rad", "angle that was planned but not recorded", BODY, True
         ),
-        Column("missing_s", DOUBLE, "s", "time that is lost or masked while it turns"),
+        Column(
+            "missing_s",
+            DOUBLE,
+            "s",
+            "time that is lost or masked while it turns; 0 where it is complete",
+        ),
         Column("rate", DOUBLE, "rad/s", "mean rate of the steady part, about `about`", BODY, True),
         Column("seconds", DOUBLE, "s", "duration of the rest, or from start to stop of the turn"),
+        Column(
+            "lost",
+            TRUTH,
+            "",
+            "not complete, because of a gap or masked records alone: their findings are the cause",
+        ),
         Column("sentence", TEXT, "", "what was recorded of it, in words"),
     ),
 )

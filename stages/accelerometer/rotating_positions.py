@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.rate_segments import refusal_of
+from inertial.campaign.rate_segments import gaps_of, refusal_of, weights_of
 from inertial.campaign.records import Manoeuvre, Part
 from inertial.campaign.static_positions import Blocks, by_manoeuvre, stretch_of
 from inertial.estimation.accelerometers import StaticForce
@@ -57,6 +57,8 @@ def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[S
     angle = _angles(m, part, quiet)
     steady = np.flatnonzero(part.steady)
     middle = np.cumsum(angle) - angle / 2
+    for gap in gaps_of(part):
+        middle[gap.before :] += gap.shares @ angle
     ups = mean_turned(m.up, m.axis, middle, angle)
     level = np.linalg.norm(m.up - (m.up @ m.axis) * m.axis)
     rate = angle / seconds
@@ -85,4 +87,4 @@ def _angles(m: Manoeuvre, part: Blocks, quiet: Blocks) -> Array:
     along = np.nan_to_num(part.gyro) @ m.axis
     offset = float(np.nan_to_num(quiet.gyro @ m.axis).mean())
     increments = (along - offset) * part.seconds
-    return np.asarray(increments * (m.angle / increments.sum()))
+    return np.asarray(increments * (m.angle / (weights_of(part) @ increments)))

@@ -262,10 +262,10 @@ def _angle(
     time: ω_e sinφ for an upright axis.
     """
     m, blocks = rotation.plan, rotation.blocks
-    seconds = blocks.seconds
+    seconds = blocks.seconds * rotation.weights
     assert m.angle is not None and m.angle_sigma is not None  # else it is refused
     time = float(seconds.sum())
-    motion = stretches(blocks.time, seconds, blocks.temperature)
+    motion = stretches(blocks.time, blocks.seconds, blocks.temperature)
     force = measurement.force(blocks.accel, motion)
     rates = measurement.rate(blocks.gyro, motion, force)
     before, turned = (float(seconds @ values @ m.axis) for values in (blocks.gyro, rates))

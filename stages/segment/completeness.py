@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
 MAX_MASKED_RUN = 3  # masked samples in a row that may be interpolated where the rate changes
-MAX_MASKED_SHARE = 0.1  # of the time of the ramps: what may be interpolated there in all
+MAX_MASKED_SHARE = 0.1  # of the time of the ramps, or of a turn: what may be interpolated in all
 # s of steady rate that must be recorded on either side of what is missing, or as much as is
 # missing where that is less: ten of the bins in which the end of a ramp is sought, so that no
 # part of a ramp hides in the gap; on S0's turn the rate before and the rate after are then known
@@ -65,6 +65,20 @@ def missing_of(moving: pd.DataFrame, about: Array, gaps: pd.DataFrame) -> Missin
     angle = float(beside[holes] @ missing[holes])
     hindrance = _hindrance(moving, holes, inside, gaps) if len(holes) else ""
     return Missing(float(np.maximum(missing, 0.0).sum()), angle, hindrance)
+
+
+def _few_are_masked(moving: pd.DataFrame, missing: Missing, gaps: pd.DataFrame) -> bool:
+    """Whether all that is missing are a few masked samples here and there: the turn is whole."""
+    holes = moving["missing_s"].to_numpy(np.float64)
+    step = float(moving["seconds"].sum() / moving["count"].sum())
+    first, last = moving["from_record"].min(), moving["to_record"].max()
+    return bool(
+        missing.seconds > 0
+        and not missing.hindrance
+        and not gaps["record"].between(first, last).any()
+        and holes.max() <= (MAX_MASKED_RUN + 0.5) * step
+        and missing.seconds <= MAX_MASKED_SHARE * moving["seconds"].sum()
+    )
 
 
 def _hindrance(
@@ -217,9 +231,21 @@ def turn(
         sentence = f"{sentence}{remark}: {', and '.join(reasons)}." if reasons else f"{sentence}."
         bridged = not whole and not reasons
         return Performed(
-            m.name, sentence, True, whole, None, None, lacking.seconds, None, seconds, bridged
+            m.name,
+            sentence,
+            True,
+            whole,
+            seconds=seconds,
+            missing_s=lacking.seconds,
+            bridged=bridged,
+            lost=not whole,
         )
     rate = _steady_rate(moving, about)
+    interpolated = ""
+    if _few_are_masked(moving, lacking, gaps[gaps["log"] == binned.window.log]):
+        interpolated = _("; {seconds:.2f} s are masked and interpolated", seconds=lacking.seconds)
+        angle = None if angle is None else angle + lacking.angle
+        lacking = Missing(0.0, 0.0, "")
     if m.recorded == "steady":
         sentence = (
             _("steady at {signed} °/s.", signed=_signed(degrees(rate), 4))
@@ -234,6 +260,7 @@ def turn(
     of = f"{_signed(degrees(angle), 2)}°"
     of += f" of {_signed(degrees(m.angle), 0)}°" if m.angle else ""
     reasons, remark = _cut_off(binned, first, after, binned.about(m.axis, level), m)
+    remark = interpolated + remark
     known = 0.0 if lacking.hindrance else lacking.angle
     off = m.angle and abs((angle + known) / m.angle - 1) > tolerance
     if off and not (reasons or lacking.hindrance):
@@ -258,7 +285,17 @@ def turn(
     if bridged:
         sentence += _(" The rate before and after gives them, so the joint estimate uses the turn.")
     return Performed(
-        m.name, sentence, True, False, angle, missing, lacking.seconds, rate, seconds, bridged
+        m.name,
+        sentence,
+        True,
+        False,
+        angle,
+        missing,
+        lacking.seconds,
+        rate,
+        seconds,
+        bridged,
+        lost=not reasons,
     )
 
 

@@ -46,7 +46,6 @@ def recorded_of(
     undone: Undone,
     performed: Mapping[str, Performed],
     segments: pd.DataFrame,
-    gaps: pd.DataFrame,
     counts: Mapping[str, float],
     given: Given,
     tolerance: float,
@@ -56,7 +55,7 @@ def recorded_of(
     Parameters
     ----------
     explained : what is still not as planned, undone : what was set right
-    segments, gaps : their tables
+    segments : the table
     counts : rad, what a count of the gyros is, by log; NaN where not stated
     tolerance : accepted difference of a turn's angle or rate from the plan's, 1
     """
@@ -67,7 +66,6 @@ def recorded_of(
     done = [performed[m.name] for m in plan]
     observations = [_shown(m, where[m.name]) for m in plan]
     places = [parts.get(m.name) or _instead(m, where[m.name]) for m in plan]
-    holes = [_hole(m, place, gaps) for m, place in zip(plan, places, strict=True)]
     return Recorded(
         given=given,
         tolerance=tolerance,
@@ -82,7 +80,7 @@ def recorded_of(
         seconds=_numbers([m.seconds for m in plan]),
         found=np.array([d.found for d in done], bool),
         complete=np.array([d.complete for d in done], bool),
-        bridged=np.array([d.bridged for d in done], bool),
+        lost=np.array([d.lost for d in done], bool),
         said=[d.sentence for d in done],
         force=_vectors([force for force, _ in observations]),
         turned=_vectors([turned for _, turned in observations]),
@@ -95,9 +93,6 @@ def recorded_of(
         after=np.array([place[1] for place in places], np.int64),
         from_s=_numbers([place[2] for place in places]),
         to_s=_numbers([place[3] for place in places]),
-        gap_first=np.array([hole[0] for hole in holes], np.int64),
-        gap_from_s=_numbers([hole[1] for hole in holes]),
-        gap_to_s=_numbers([hole[2] for hole in holes]),
         gyros=np.array([np.isfinite(where[m.name].binned.rates).any(axis=0) for m in plan], bool),
         count=_numbers([counts.get(m.log) for m in plan]),
         gyro_signs=explained.gyro_signs,
@@ -172,17 +167,6 @@ def _shown(m: Manoeuvre, located: Located) -> tuple[Array | None, Array | None]:
         own = [w.turned for s, w in pairs if first <= s.first and s.after <= after]
         turned = np.asarray(np.sum(own, axis=0))
     return None if before is None else located.observed[before].force, turned
-
-
-def _hole(m: Manoeuvre, place: Place, gaps: pd.DataFrame) -> tuple[int, float | None, float | None]:
-    """The record after the longest gap within these records, and its times."""
-    inside = gaps[
-        (gaps["log"] == m.log) & (gaps["record"] > place[0]) & (gaps["record"] < place[1])
-    ]
-    if m.do != "turn" or inside.empty:
-        return -1, None, None
-    longest = max(rows_of(inside), key=lambda row: row["missing"])
-    return longest["record"], longest["from_s"], longest["to_s"]
 
 
 def swapped_in(plan: Sequence[Manoeuvre], explained: Explained) -> list[Swapped]:

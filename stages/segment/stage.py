@@ -118,7 +118,6 @@ def segment(
         made.undone,
         performed,
         segments,
-        gaps,
         _counts(by_name)["gyro"],
         stated.given,
         angle_tolerance,

@@ -240,12 +240,11 @@ def test_the_counts_of_another_instrument_are_one_finding(tmp_path):  # as S0 na
     assert performed(results)["found"].all()
 
 
-def test_a_gap_is_told_beside_a_wrong_count(tmp_path):
+def test_a_gap_is_no_second_finding_beside_a_wrong_count(tmp_path):
     fault = {"lose": {"log": "z-backward.asc", "line": 550, "samples": 200}}
     results = segmented(tmp_path, [fault], lambda text: text.replace("span-cpt", "imar-fsas"))
-    found = found_in(results).set_index("cause")
-    assert list(found.index) == ["wrong_scale_factor", "incomplete_turn"]
-    assert found.loc["incomplete_turn", "manoeuvre"] == "z-backward"
+    assert list(found_in(results)["cause"]) == ["wrong_scale_factor"]
+    assert list(results["quality/findings"]["cause"]).count("gap") == 1
 
 
 def with_line(name: str, old: str, new: str):
@@ -277,23 +276,32 @@ def test_a_rate_that_is_not_the_planned_one_is_named_for_its_turn(tmp_path):
 
 
 def test_an_incomplete_turn_says_what_a_wrong_angle_would_cost(tmp_path):
-    fault = {"lose": {"log": "z-backward.asc", "line": 500, "samples": 200}}
+    """The log ends while the table turns."""
+    fault = {"lose": {"log": "z-backward.asc", "line": 800, "samples": 500}}
     results = segmented(tmp_path, [fault])
     (finding,) = found_in(results).to_dict("records")
     assert finding["cause"] == "incomplete_turn"
     turn = performed(results).loc["z-backward"]
-    assert degrees(turn["angle"]) == pytest.approx(-240.2, abs=0.1)
+    assert not turn["complete"] and not turn["bridged"] and not turn["lost"]
+    assert "ends while it turns" in finding["sentence"]
     assert finding["size"] == pytest.approx(degrees(turn["missing_angle"]))
-    # The place is the gap: 200 samples, 2.01 s from stamp to stamp.
-    assert finding["to_s"] - finding["from_s"] == pytest.approx(2.01)
     share = 1e6 * (degrees(turn["angle"]) / -360 - 1)
     thin = finding["consequence"].replace("\u202f", "").replace("−", "-")
     assert f"wrong by {share:.0f} ppm ({share / 2:.0f} ppm in a pair" in thin
-    rounded = 1e6 * (degrees(turn["angle"]) / -240 - 1)
-    assert f"rounded to -240°, its scale error is wrong by {rounded:.0f} ppm" in thin
-    assert turn["bridged"] == ("bridges" in finding["action"])
-    shown = results["segment/close_ups"]
-    assert set(shown["finding"]) == {finding["id"]} and len(shown) == 120
+
+
+@pytest.mark.parametrize(("line", "samples"), [(500, 60), (330, 100)], ids=["steady", "ramp"])
+def test_what_a_gap_takes_from_a_turn_is_told_by_the_gap_alone(line, samples, tmp_path):
+    fault = {"lose": {"log": "z-backward.asc", "line": line, "samples": samples}}
+    results = segmented(tmp_path, [fault])
+    assert found_in(results).empty
+    (gap,) = results["quality/findings"].to_dict("records")
+    assert (gap["cause"], gap["count"], gap["size"]) == ("gap", 1, samples)
+    turn = performed(results).loc["z-backward"]
+    assert turn["lost"] and not turn["complete"]
+    bridged = line == 500
+    assert turn["bridged"] == bridged == ("turned by 36.0° meanwhile" in gap["sentence"])
+    assert bridged or "is left out" in gap["action"]
 
 
 # ---- what is missing
