@@ -160,17 +160,6 @@ def _angle(rows: pd.DataFrame, rate: Array, step: float) -> Array:
     return np.asarray(np.cumsum(turning * passed) * step - turning * step / 2)
 
 
-def steady_residuals(simulated: Stream) -> Iterator[tuple[str, Array]]:
-    """The gyro residuals of the steady part of each turn, (n, 3), rad/s; one turn at a time.
-
-    Of a turn with a gap it is the longest stretch without one.
-    """
-    for name, rows in by_turn(simulated, ["time", *RESIDUALS]):
-        steady = rows.loc[rows["phase"] == "steady", ["time", *RESIDUALS]]
-        if len(steady):
-            yield name, unbroken(steady.to_numpy(np.float64))[0]
-
-
 def by_turn(simulated: Stream, columns: list[str]) -> Iterator[tuple[str, pd.DataFrame]]:
     """The rows of each manoeuvre with their phase, one manoeuvre at a time."""
     name, parts = "", []  # type: str, list[pd.DataFrame]

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.least_squares import EffectInformation, System
 from inertial.estimation.periodic_in_time import without_line
-from inertial.physics.forward import Triad
 from inertial.tables import AXES
 from stages.extension.channels import Channels, Mean, system_of
 from stages.extension.cross_validation import CrossValidation, Fold, drop_of, fold_of, snr_squared
@@ -155,25 +154,13 @@ def row_of(scope: str, before: float, drop: float, degrees: int) -> dict[str, An
 # ---- The full-rate residuals of the turns: an oscillation in time.
 
 
-def gain_of_line(
-    turns: Sequence[tuple[str, Array]],
-    step_of: Mapping[str, float],
-    frequency: float,
-    gyro: Triad,
-    mount: str,
-) -> Iterator[TableRow]:
+def gain_of_line(turns: Sequence[SteadyTurn], frequency: float, mount: str) -> Iterator[TableRow]:
     """The reduction by an oscillation about its axis, that of the largest standard deviation.
 
-    Held-out: the frequency is that of all turns and the amplitude that of the other turns; only
-    the phase is the turn's own, for nothing could predict it.
-
-    Parameters
-    ----------
-    turns : name and residuals of the gyros, (n, 3), rad/s; `step_of`: s, of a sample of each
-    frequency : Hz
+    Held-out: the frequency, Hz, is that of all turns and the amplitude that of the other turns;
+    only the phase is the turn's own, for nothing could predict it.
     """
-    inverse = np.linalg.inv(gyro.matrix)
-    truths = {name: residuals @ inverse.T for name, residuals in turns}
+    truths, step_of = {t.name: t.truth for t in turns}, {t.name: t.step for t in turns}
     if not truths:
         return
     spread = np.mean([truth.std(axis=0) for truth in truths.values()], axis=0)
@@ -212,6 +199,7 @@ def gain_of_line(
 
 # ---- The full-rate residuals of the turns: a ripple of the table.
 
+RATE_SHARE = 0.01  # within which two rates are the same
 ORDERS = {"table_eccentricity": 1.0}  # the order of an effect that has none to scan
 
 
@@ -221,7 +209,9 @@ def gain_of_ripple(
     """The reduction by a sine and a cosine of the table's angle about its axis, in all turns.
 
     Bias and slope are each turn's own, and the noise is white. Held-out: each turn with the ripple
-    of the others; only the order is that of all. `values`: of the effect's parameters, with n.
+    of the others; only the order is that of all. `values`: of the effect's parameters, with n; and
+    with a and b where these are the same in all turns. Else only the amplitude is that of the
+    others, of those at its rate where there are any.
     """
     order = ORDERS.get(effect, values.get("n"))
     courses = {t.name: t.course(t.about) for t in turns if np.isfinite(t.rate)}
@@ -244,12 +234,17 @@ def gain_of_ripple(
     folds = [
         fold_of([n], whole, summed([other for other in courses if other != n])) for n in courses
     ]
+    fitted, snr = drop_of(best_of(whole), whole), snr_squared(whole)
+    if "n" in values and "a" not in values:
+        each = {name: summed([name]) for name in courses}
+        folds = _with_own_phases(each, {name: abs(c.rate) for name, c in courses.items()})
+        fitted = sum(drop_of(best_of(one), one) for one in each.values())
+        snr = sum(snr_squared(one) for one in each.values())
     counted = [fold for fold in folds if fold.counts]
     shared = {"mount": mount, "sensor": "gyro", "model": effect}
     yield "gain_effects", shared | {"effect": effect}
-    fitted = float(best_of(whole) @ whole.right)
     row = row_of(FITTED, whole.chi_squared, fitted, whole.degrees)
-    yield "gain", {**shared, "axis": None, **row, "snr_squared": snr_squared(whole)}
+    yield "gain", {**shared, "axis": None, **row, "snr_squared": snr}
     predicted = summed([name for fold in counted for name in fold.manoeuvres])
     drop = sum(fold.drop for fold in counted)
     row = row_of(HELD_OUT, predicted.chi_squared, drop, predicted.degrees)
@@ -257,3 +252,20 @@ def gain_of_ripple(
     row |= {"folds": len(folds), "counted": len(counted)}
     yield "gain", {**shared, "axis": None, **row}
     yield from _fold_rows(shared, [(fold, fold.counts) for fold in folds])
+
+
+def _with_own_phases(
+    turns: Mapping[str, EffectInformation], rates: Mapping[str, float]
+) -> list[Fold]:
+    """Each turn by the mean amplitude of the others at its rate, or of all, and its own phase."""
+    own = {name: best_of(one) for name, one in turns.items()}
+    folds = []
+    for name, one in turns.items():
+        others = [other for other in turns if other != name]
+        alike = [other for other in others if np.isclose(rates[other], rates[name], RATE_SHARE)]
+        sizes = [np.linalg.norm(own[other]) for other in alike or others]
+        amplitude = float(np.mean(sizes)) if sizes else 0.0
+        beta = own[name] * amplitude / max(float(np.linalg.norm(own[name])), np.finfo(float).tiny)
+        kept = 1.0 if sizes else 0.0
+        folds.append(Fold((name,), kept, beta, drop_of(beta, one), snr_squared(one)))
+    return folds

@@ -11,7 +11,7 @@ from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.equations import campaign_of
 from inertial.campaign.records import rows_of
 from inertial.campaign.solution import joint_rows
-from inertial.campaign.steady_residuals import steady_residuals, steady_turns
+from inertial.campaign.steady_residuals import steady_turns
 from inertial.estimation.least_squares import System
 from inertial.estimation.triad import linear_names
 from inertial.physics.motion import Motion
@@ -245,18 +245,12 @@ class Extension:
 
     def _of_spectrum(self, simulated: Stream) -> Iterator[TableRow]:
         """The gain of an oscillation, and of what depends on the table's angle."""
-        data, gyro = self.data, self.data.result.gyro
-        assert gyro is not None  # for oscillations were detected in its residuals
-        of_table = set(self.named.in_spectrum) - {"oscillation"}
-        turns = steady_turns(data, simulated) if of_table else []
+        turns, mount = steady_turns(self.data, simulated), self.data.mount
         for effect, values in self.named.in_spectrum.items():
             if effect != "oscillation":
-                yield from gain_of_ripple(turns, effect, values, data.mount)
+                yield from gain_of_ripple(turns, effect, values, mount)
             elif "frequency" in values:
-                step_of = {m.name: data.clocks[m.log].step for m in data.plan}
-                residuals = [(n, r) for n, r in steady_residuals(simulated) if n in step_of]
-                frequency = values["frequency"]
-                yield from gain_of_line(residuals, step_of, frequency, gyro, data.mount)
+                yield from gain_of_line(turns, values["frequency"], mount)
 
 
 STAGE = Stage(

@@ -27,8 +27,9 @@ def turns(phases: list[float]) -> list[SteadyTurn]:
     return found
 
 
-def drop(scope: str, phases: list[float]) -> dict[str, float]:
-    rows = list(gain_of_ripple(turns(phases), "table_ripple", {"n": 36.0}, ""))
+def drop(scope: str, phases: list[float], common: bool = True) -> dict[str, float]:
+    values = {"n": 36.0} | ({"a": AHEAD, "b": 0.0} if common else {})
+    rows = list(gain_of_ripple(turns(phases), "table_ripple", values, ""))
     (own,) = (row for table, row in rows if table == "gain" and row["scope"] == scope)
     held_out = [row for table, row in rows if table == "held_out"]
     return {**own, "not counted": [row["fold"] for row in held_out if not row["counted"]]}
@@ -46,6 +47,13 @@ def test_one_phase_against_the_angle_is_foretold_from_turn_to_turn():
 
 def test_a_phase_of_its_own_in_each_turn_is_not():
     assert drop("held-out", [0.0, 1.6, 3.1, 4.7])["drop"] < 0
+
+
+def test_but_its_amplitude_is():
+    held_out = drop("held-out", [0.0, 1.6, 3.1, 4.7], common=False)
+    expected = 4 * 3600 * (36 * RATE * AHEAD / NOISE) ** 2 / 2
+    assert held_out["drop"] == pytest.approx(expected, rel=0.2)
+    assert (held_out["folds"], held_out["counted"]) == (4, 4)
 
 
 def test_an_eccentric_encoder_is_of_the_first_order_and_nothing_is_said_without_turns():
