@@ -83,6 +83,11 @@ class Campaign:
             *(motion for _, _, motion in self.static_forces),
         ]
 
+    @property
+    def recorded(self) -> bool:
+        """Whether there is anything to simulate."""
+        return bool(self._motions)
+
     def stretches(self, sensor: str) -> slice:
         """Which stretches of `motion` are those of a sensor, `gyro` or `accel`."""
         gyros = sum(len(motion.rate) for motion in [*self.static_motions, *self.turn_motions])

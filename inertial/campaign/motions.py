@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import Recorded, position_of
-from inertial.campaign.records import Manoeuvre
+from inertial.campaign.records import Manoeuvre, runs_of
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_observations import RateSegment
 from inertial.physics.forward import Site, Triad
@@ -177,6 +177,8 @@ class CampaignMotions:
         self._visits = {m.name: float(place) for place, m in enumerate(data.plan)}
         names = positions_of(data.plan)
         self._places = {m.name: float(names.index(m.position)) for m in data.plan}
+        runs = runs_of(dict.fromkeys(m.log for m in data.plan), data.clocks, data.shared_clock)
+        self._runs = {m.name: float(runs[m.log]) for m in data.plan}
         self._at_rest: dict[tuple[str, float], Motion] = {}
 
     def at_rest(self, position: StaticPosition) -> Motion:
@@ -193,6 +195,7 @@ class CampaignMotions:
             seconds=np.array([position.seconds.sum()]),
             visit=np.array([self._visits[name] + later]),
             position=np.array([self._places[name]]),
+            run=np.array([self._runs[name]]),
             temperature=np.array([position.mean_of(position.temperature)]),
             vibration=self._data.noise.of_samples(name, "rest", ACCEL)[None],
         )
@@ -211,6 +214,7 @@ class CampaignMotions:
             motion,
             visit=np.full(len(time), self._visits[name] + MOVING),
             position=np.full(len(time), self._places[name]),
+            run=np.full(len(time), self._runs[name]),
             temperature=blocks.temperature,
             vibration=np.tile(vibration, (len(time), 1)),
         )
@@ -232,5 +236,6 @@ def mean_motion(motion: Motion, some: slice, share: Array) -> Motion:
     # The acceleration at a lever arm is quadratic in the rate, so the rate is the rms.
     means["rate"] = np.sign(means["rate"]) * np.sqrt(mean(motion.rate**2))
     means["seconds"] = np.array([motion.seconds[some].sum()])
-    means["surveyed"], means["position"] = motion.surveyed[some][:1], motion.position[some][:1]
+    for name in ("surveyed", "position", "run"):
+        means[name] = getattr(motion, name)[some][:1]
     return Motion(about=motion.about, **means)

@@ -1,6 +1,6 @@
 """Rows of the small tables as records with types: manoeuvres, what was performed, what is known."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -180,12 +180,15 @@ def known_of(table: pd.DataFrame) -> dict[str, Known]:
 class Clock:
     """The clock of a log, s: median interval, and what a sample counts for in a sum over time.
 
-    `averaged`: whether a sample is the mean over its interval, an increment, as receivers log it.
+    `averaged`: whether a sample is the mean over its interval, an increment, as receivers log it;
+    `begin`, `end`: GPS time of the first and last sample, NaN where it is not known.
     """
 
     interval: float | None
     duration: float | None  # None without time
     averaged: bool = False
+    begin: float = np.nan
+    end: float = np.nan
 
     @property
     def step(self) -> float:
@@ -196,9 +199,40 @@ class Clock:
 def clocks_of(table: pd.DataFrame) -> dict[str, Clock]:
     """The clocks by the name of the log."""
     return {
-        row["log"]: Clock(row["interval"], row["integration_step"], row["clock"] == "GPS")
+        row["log"]: Clock(
+            row["interval"],
+            row["integration_step"],
+            row["clock"] == "GPS",
+            *(_gps_time(row, key) for key in ("from_s", "to_s")),
+        )
         for row in rows_of(table)
     }
+
+
+MAX_PAUSE = 600.0  # s, between two logs of one run of the instrument
+
+
+def _gps_time(row: Row, key: str) -> float:
+    """s."""
+    epoch, time = row.get("epoch_gps"), row.get(key)
+    return np.nan if epoch is None or time is None else float(epoch + time)
+
+
+def runs_of(logs: Iterable[str], clocks: Mapping[str, Clock], shared: bool) -> dict[str, int]:
+    """Which run of the instrument each log is of, from switch-on to switch-off.
+
+    Logs that share a clock and follow one another within minutes are of one run, for nobody
+    switches an instrument off that must warm up again. Of others nothing tells, so each may be one.
+    """
+    names = list(logs)
+    if not shared or any(name not in clocks for name in names):
+        return {name: number for number, name in enumerate(names)}
+    number, end, runs = 0, np.nan, {}
+    for name in sorted(names, key=lambda name: clocks[name].begin):
+        if clocks[name].begin - end > MAX_PAUSE:
+            number += 1
+        runs[name], end = number, float(np.fmax(end, clocks[name].end))
+    return runs
 
 
 def share_a_clock(table: pd.DataFrame) -> bool:

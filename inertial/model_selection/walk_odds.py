@@ -42,7 +42,8 @@ class Equations:
         if not len(columns):
             return self
         own = list(columns)
-        scale = np.sqrt(np.maximum(np.diag(self.information)[own], np.finfo(float).tiny))
+        size = np.diag(self.information)[own]
+        scale = np.sqrt(np.where(size > 0, size, 1.0))
         block = self.information[np.ix_(own, own)] / np.outer(scale, scale)
         if variance is not None:
             block = block + np.diag(1 / np.maximum(variance * scale**2, np.finfo(float).tiny))

@@ -91,7 +91,8 @@ class Motion:
     table's vertical; `north`: (n, 3), NaN where the azimuth is not known.
 
     Further properties of a stretch: `seconds`: (n,), its duration; `visit`: (n,), the place of its
-    manoeuvre in the plan, and `position`: (n,), that of its position among those of the plan;
+    manoeuvre in the plan, `position`: (n,), that of its position among those of the plan, and
+    `run`: (n,), which run of the instrument it is of, from switch-on to switch-off;
     `surveyed`: (n,), whether north is known from the table's heading and not from the gyros;
     `temperature`: (n,), K, and `vibration`: (n, 3), m/s², the standard deviation of the samples of
     specific force, both NaN where they are not known.
@@ -107,6 +108,7 @@ class Motion:
     seconds: Array
     visit: Array
     position: Array
+    run: Array
     surveyed: NDArray[np.bool_]
     temperature: Array
     vibration: Array
@@ -185,6 +187,7 @@ def turning(
         seconds,
         np.zeros(n),
         np.zeros(n),
+        np.zeros(n),
         np.zeros(n, bool),
         np.full(n, np.nan),
         np.full((n, 3), np.nan),
@@ -201,7 +204,7 @@ def stretches(time: Array, seconds: Array, temperature: Array) -> Motion:
         *(zero, zero, zero),
         *(unknown, unknown),
         seconds,
-        *(zero, zero),
+        *(zero, zero, zero),
         np.zeros(n, bool),
         temperature,
         unknown,

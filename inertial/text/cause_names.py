@@ -9,6 +9,7 @@ from inertial.text.numbers import counted, shortened, whole
 
 # Where the identifier with spaces between its words would not do.
 NAMES = {
+    "accel_bias_per_log": _("bias of the accelerometers after each switch-on"),
     "accel_bias_jump": _("accelerometer bias jump"),
     "accel_bias_ramp": _("accelerometer bias ramp"),
     "accel_bias_temperature": _("accelerometer bias with temperature"),
@@ -32,6 +33,7 @@ NAMES = {
     "gravity_error": _("wrong gravity"),
     "gyro_accel_misalignment": _("gyros rotated against accelerometers"),
     "gyro_bias_temperature": _("gyro bias with temperature"),
+    "gyro_bias_per_log": _("bias of the gyros after each switch-on"),
     "gyro_drift": _("drift of the gyros without a law"),
     "gyro_g2_sensitivity": _("gyro g²-sensitivity"),
     "gyro_g_sensitivity": _("gyro g-sensitivity"),

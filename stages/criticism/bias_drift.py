@@ -34,13 +34,6 @@ def likely_random_walks(campaign: Campaign, effects: Sequence[Effect]) -> tuple[
     return gyro, accel
 
 
-def barely_detectable_walks(campaign: Campaign) -> tuple[float, float]:
-    """Random walks over the campaign of three times the noise of a stretch: barely detectable."""
-    searches = (_walk_search(campaign, sensor) for sensor in SENSORS)
-    gyro, accel = (3 * s.noise / float(np.sqrt(s.span)) if s else 0.0 for s in searches)
-    return gyro, accel
-
-
 def _random_walk(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> float:
     search = _walk_search(campaign, sensor)
     if search is None:
@@ -136,6 +129,43 @@ class HalfWave(Effect):
         if self.sensor == "gyro":
             return replace(reading, gyro=reading.gyro + wave)
         return replace(reading, accel=reading.accel + wave)
+
+
+class BiasOfRun(Effect):
+    """Reading += c in one run of the instrument: its bias is another one after each switch-on.
+
+    That of the first run is the bias itself.
+    """
+
+    cause = _("the bias is another one after each switch-on")
+    source = "IEEE Std 528-2019, 'bias repeatability'"
+    thinkable = 1e4
+
+    def __init__(self, sensor: str, run: int) -> None:
+        unit, size = TYPICAL_SIZE[sensor]
+        self.sensor, self.at = sensor, float(run)
+        self.name = per_log_name(sensor)  # type: ignore[misc]
+        self.parameters = tuple(  # type: ignore[misc]
+            Parameter(f"c_{axis}", unit, size, _("of the {axis} reading", axis=axis))
+            for axis in "xyz"
+        )
+        self.sizes = {"usual": size}  # type: ignore[misc]
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        step = np.outer(motion.run == self.at, values)
+        if self.sensor == "gyro":
+            return replace(reading, gyro=reading.gyro + step)
+        return replace(reading, accel=reading.accel + step)
+
+
+def per_log_name(sensor: str) -> str:
+    """The name of biases of a sensor that are others in each run."""
+    return f"{sensor}_bias_per_log"
+
+
+def biases_of_runs(sensor: str, motion: Motion) -> tuple[BiasOfRun, ...]:
+    """The bias of each run but the first; none where there is a single one."""
+    return tuple(BiasOfRun(sensor, int(run)) for run in np.unique(motion.run)[1:])
 
 
 def drift_name(sensor: str) -> str:

@@ -15,7 +15,7 @@ from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, with_sigma
 from inertial.text.units import DEGREE_PER_HOUR, MICRO_G
 from stages.criticism import block_sentences as sentences
-from stages.criticism.bias_drift import Walk
+from stages.criticism.bias_drift import Walk, drift_name
 from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
 from stages.criticism.finding_rows import (
     SENSORS,
@@ -200,7 +200,7 @@ class BlockResults:
                 "split_stated": clear if split else None,
             },
         )
-        if free:
+        if cause.effect == drift_name(self.selection.sensor(cause)):
             others = self.lawless.members[self.selection.sensor(cause)]
             yield from member_rows(identifier, self.mount, (*cause.members, *others))
         else:

@@ -48,6 +48,10 @@ CONSISTENT = _(
     "The data are consistent with {effects}; no more can be said, for the remaining "
     "residuals, or a random walk, follow no law. As {effect}: {numbers}."
 )
+PER_LOG = {
+    "gyro_bias_per_log": _("The biases of the gyros are others in each run.{others}"),
+    "accel_bias_per_log": _("The biases of the accelerometers are others in each run.{others}"),
+}
 DRIFT = _("The biases drift in a way that no effect of the catalogue explains{nearest}.")
 NO_NUMBER = _("no parameter by itself")
 
@@ -79,6 +83,10 @@ def cause_sentence(
     """
     title = in_words(cause.effect)
     others = [in_words(member) for member in cause.members if member != cause.effect]
+    if effect is None and cause.effect in PER_LOG:
+        return PER_LOG[cause.effect].format(
+            others=_(" Or it is {others}.", others=" or ".join(others)) if others else ""
+        )
     if effect is None:
         return DRIFT.format(
             nearest=_("; nearest is {others}", others=", ".join(others)) if others else ""

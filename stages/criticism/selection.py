@@ -8,7 +8,7 @@ the named effects. With an effect that a random walk describes as well the data 
 consistent, for a random walk follows no law that could be tested.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -22,10 +22,11 @@ from inertial.model_selection.naming import causes, law_of
 from inertial.model_selection.search import finer, to_refine
 from inertial.physics.effect import Array, Effect
 from stages.criticism.bias_drift import (
-    barely_detectable_walks,
+    biases_of_runs,
     drift_name,
     half_waves,
     likely_random_walks,
+    per_log_name,
     walk_evidence,
 )
 
@@ -63,15 +64,44 @@ class Selection:
             return np.ones(count)
         return np.gradient(np.array([one.at for one in self.families[effect.name]], np.float64))
 
+    def equations_without(self, effects: Collection[str]) -> walk_odds.Equations:
+        """The evidence given all named effects but some."""
+        total = self.evidence.observable().total
+        given = [c.columns for c in self.named.causes if c.effect not in effects]
+        equations = walk_odds.Equations(total.information, total.right)
+        return equations.given(list(dict.fromkeys(i for columns in given for i in columns)))
+
+    def half_waves(self, sensor: str) -> Sequence[Sequence[int]]:
+        """The columns of the half waves of each axis."""
+        drift = next(each for each in self.searched if each.name == drift_name(sensor))
+        return drift.candidates[: walk_odds.AXES]
+
+    def explained(self, effects: Collection[str], first: walk_odds.Explained) -> float:
+        """The log evidence of some effects after something else is explained, and of that."""
+        evidence, rest = first.log_evidence, first.rest
+        for searched in self.searched:
+            if searched.name in effects:
+                law = walk_odds.law(rest, searched.candidates, self.prior(searched))
+                evidence, rest = evidence + law.log_evidence, law.rest
+        return evidence
+
     def effect(self, name: str, value: int) -> Effect:
         """A candidate."""
         return self.families[name][value]
 
     @property
     def effects(self) -> list[Effect]:
-        """The named effects; a drift without a law is none."""
+        """The named effects of the catalogue."""
         causes = self.named.causes
         return [self.effect(c.effect, c.value) for c in causes if c.effect in self.families]
+
+    @property
+    def fitted(self) -> list[Effect]:
+        """These, and the biases of each run where they are named."""
+        named = {cause.effect for cause in self.named.causes}
+        own = [sensor for sensor in SENSORS if per_log_name(sensor) in named]
+        runs = [run for sensor in own for run in biases_of_runs(sensor, self.campaign.motion)]
+        return [*self.effects, *runs]
 
     @property
     def random_walks(self) -> tuple[float, float]:
@@ -116,7 +146,7 @@ def select_effects(
             walks = _replaced(selection.random_walks, number, size)
             selection = _weighed(selection, with_walks(walks), number)
     if any(selection.random_walks) and selection.effects:
-        likely = likely_random_walks(selection.campaign, selection.effects)
+        likely = likely_random_walks(selection.campaign, selection.fitted)
         gyro, accel = (
             new if old else 0.0 for new, old in zip(likely, selection.random_walks, strict=True)
         )
@@ -146,7 +176,7 @@ def _weighed(law: Selection, walk: Selection, number: int) -> Selection:
     odds = _log_odds(law, walk, SENSORS[number])
     kept = {cause.effect for cause in walk.named.causes}
     only = [cause for cause in law.named.causes if cause.effect not in kept]
-    if any(cause.effect not in law.families for cause in only):
+    if drift_name(SENSORS[number]) in {cause.effect for cause in only}:
         return walk  # a drift without a law has none that could be weighed
     if odds > (MAX_LOG_ODDS if only else 0.0):
         return law
@@ -165,30 +195,18 @@ def walk_name(number: int) -> str:
 
 def _log_odds(law: Selection, walk: Selection, sensor: str) -> float:
     """Of the effects without a random walk of a sensor against those with it."""
-    effects = {effect.name: effect for effect in law.searched}
-    total = law.evidence.observable().total
-    shared = {cause.effect for cause in walk.named.causes}
+    kept = {cause.effect for cause in walk.named.causes}
+    only = [cause.effect for cause in law.named.causes if cause.effect not in kept]
+    others = {cause.effect for cause in law.named.causes}
+    beside = [cause.effect for cause in walk.named.causes if cause.effect not in others]
+    start = law.equations_without(only)
+    walking = walk_odds.walk(start, law.half_waves(sensor))
+    known = [effect for effect in law.effects if effect.name in kept]
     size = walk.random_walks[SENSORS.index(sensor)]
-    start = walk_odds.Equations(total.information, total.right).given(
-        [i for cause in law.named.causes if cause.effect in shared for i in cause.columns]
-    )
-
-    def of(selection: Selection, known: Selection, first: walk_odds.Explained) -> float:
-        evidence, rest = first.log_evidence, first.rest
-        own = {cause.effect for cause in known.named.causes}
-        for cause in selection.named.causes:
-            if cause.effect not in own:
-                searched = effects[cause.effect]
-                explained = walk_odds.law(rest, searched.candidates, law.prior(searched))
-                evidence, rest = evidence + explained.log_evidence, explained.rest
-        return evidence
-
-    axes = effects[drift_name(sensor)].candidates[: walk_odds.AXES]
-    nothing, walking = walk_odds.Explained(0.0, start), walk_odds.walk(start, axes)
-    known = [law.effect(c.effect, c.value) for c in law.named.causes if c.effect in shared]
     alike = walk_evidence(law.campaign, sensor, size, known)
     walking = replace(walking, log_evidence=max(alike, walking.log_evidence))
-    return of(law, walk, nothing) - of(walk, law, walking)
+    nothing = walk_odds.Explained(0.0, start)
+    return law.explained(only, nothing) - law.explained(beside, walking)
 
 
 def _with_rivals(selection: Selection) -> Selection:
@@ -212,15 +230,21 @@ def _with_rivals(selection: Selection) -> Selection:
 
 
 def _replacing_walk(selection: Selection, number: int) -> float:
-    """The most likely random walk of a sensor in place of effects that resemble it; 0: none."""
-    campaign, effects = selection.campaign, selection.effects
-    barely = barely_detectable_walks(campaign)[number]
-    walking = campaign.with_random_walks(_replaced(selection.random_walks, number, barely))
-    resembling = _resembling_walks(walking, selection)
-    if not any(resembling):
-        return 0.0
-    others = [effect for effect, like in zip(effects, resembling, strict=True) if not like]
-    return likely_random_walks(campaign, others)[number]
+    """The most likely random walk of a sensor in place of effects that it explains as well.
+
+    These may be one of the named effects of the sensor or all of them; 0: none.
+    """
+    sensor = SENSORS[number]
+    own = [c.effect for c in selection.named.causes if selection.sensor(c) == sensor]
+    for replaced in [[effect] for effect in own] + [own] * (len(own) > 1):
+        start = selection.equations_without(replaced)
+        walking = walk_odds.walk(start, selection.half_waves(sensor)).log_evidence
+        law = selection.explained(replaced, walk_odds.Explained(0.0, start))
+        if law - walking < MAX_LOG_ODDS:
+            others = [effect for effect in selection.effects if effect.name not in replaced]
+            if size := likely_random_walks(selection.campaign, others)[number]:
+                return size
+    return 0.0
 
 
 def _members(selection: Selection) -> tuple[str, ...]:
@@ -274,7 +298,7 @@ def _select(
     equations, searched = evidence_of(campaign, families, noise_degrees)
     law = law_of(equations, searched, level)
     named = causes(equations, searched, law)
-    limits = visible(equations, [effect for effect in searched if not effect.free])
+    limits = visible(equations, [effect for effect in searched if effect.name in families])
     min_snr = 0.0
     while refined := to_refine(equations, named, searched, min_snr):
         families |= {name: _finer(families[name], places) for name, places in refined.items()}
@@ -299,9 +323,22 @@ def columns_of(effect: Effect) -> list[str]:
 def evidence_of(
     campaign: Campaign, families: Mapping[str, Sequence[Effect]], noise_degrees: float
 ) -> tuple[Evidence, list[SearchedEffect]]:
-    """The evidence on all candidates and on drifts without a law, and the columns of each."""
+    """The evidence on all candidates, and the columns of each.
+
+    Besides those of the catalogue these are drifts without a law, and the biases of all runs of
+    the instrument where there are several.
+    """
     drifts = {drift_name(sensor): tuple(half_waves(sensor)) for sensor in SENSORS}
-    every = [effect for family in [*families.values(), *drifts.values()] for effect in family]
+    of_runs = {
+        per_log_name(sensor): biases_of_runs(sensor, campaign.motion)
+        for sensor in SENSORS
+        if campaign.recorded
+    }
+    every = [
+        effect
+        for family in [*families.values(), *drifts.values(), *of_runs.values()]
+        for effect in family
+    ]
     equations = evidence(campaign, every, noise_degrees)
     if not equations.sensors:
         return equations, [searched_effect(name) for name in families]
@@ -317,4 +354,8 @@ def evidence_of(
     for name, waves in drifts.items():
         axes = np.array([columns(wave) for wave in waves]).T  # (3, waves)
         searched.append(searched_effect(name, *axes.tolist(), axes.ravel().tolist(), free=True))
+    for name, runs in of_runs.items():
+        if runs:
+            every_run = [column for run in runs for column in columns(run)]
+            searched.append(searched_effect(name, every_run, between=False))
     return equations, searched

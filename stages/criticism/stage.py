@@ -67,9 +67,9 @@ def _of_mount(
     campaign = campaign_of(replace(data, blocks=quiet))
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
     selection = select_effects(campaign, in_blocks, level * BLOCKS_SHARE, degrees)
-    tested = structure_tests(selection.campaign, selection.effects, degrees)
+    tested = structure_tests(selection.campaign, selection.fitted, degrees)
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
-    random_walks = random_walks_with_sigmas(selection.campaign, selection.effects)
+    random_walks = random_walks_with_sigmas(selection.campaign, selection.fitted)
     extended = {
         name: partial(_with, plan, data)
         for name, plan in extended_plans(data.plan, data.performed, quiet).items()

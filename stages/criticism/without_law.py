@@ -48,7 +48,7 @@ def without_law(selection: Selection, walks: Collection[str], tested: Tested) ->
     """Of a selection; `walks`: the sensors that have a random walk."""
     owner: dict[str, str] = {}
     members: dict[str, tuple[str, ...]] = {}
-    drifts = {cause.effect for cause in selection.named.causes} - set(selection.families)
+    drifts = {cause.effect for cause in selection.named.causes}
     for number, sensor in enumerate(SENSORS):
         kinds = {test.kind for test in tested.of(sensor)}
         if sensor in walks and kinds <= set(OF_WALKS):

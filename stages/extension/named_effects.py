@@ -81,7 +81,7 @@ def _class_of(
     others = [
         Member(CATALOGUE[effect], probability[effect])
         for effect in probability
-        if effect in CATALOGUE and effect != name
+        if effect in CATALOGUE and effect != name and CATALOGUE[effect].sought_in == "blocks"
     ]
     named = Member(_fixed(CATALOGUE[name], values), probability.get(name))
     return NamedClass(finding, (named, *others))
