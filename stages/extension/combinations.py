@@ -65,12 +65,31 @@ def compared(campaign: Campaign, classes: Sequence[NamedClass]) -> list[NamedCla
     A member whose scanned value is not known has that of the largest reduction of chi-squared,
     beside the likeliest of the other classes. Where criticism compared no probabilities, they
     follow from the reductions, every effect being equally probable beforehand, and so is every
-    value of a scan.
+    value of a scan. An effect of a single position is a member once for each position that may be
+    it.
     """
+    placed = [_placed(campaign, each) for each in classes]
     return [
-        _compared(campaign, each, [other.members[0].effect for other in classes if other != each])
-        for each in classes
+        _compared(campaign, each, [other.members[0].effect for other in placed if other != each])
+        for each in placed
     ]
+
+
+def _placed(campaign: Campaign, own: NamedClass) -> NamedClass:
+    """The class with its first member at each of its positions, as likely as chi-squared says."""
+    first, *others = own.members
+    probability = first.probability if others else 1.0
+    if len(own.positions) < 2 or first.effect.at is None or probability is None:
+        return own
+    at = [campaign.positions.index(position) for position, _ in own.positions]
+    likelihood = np.array([statistic / 2 for _, statistic in own.positions])
+    shares = probability * np.exp(likelihood - logsumexp(likelihood))
+    each = [
+        Member(first.effect.fixed(float(place)), float(share))
+        for place, share in zip(at, shares, strict=True)
+    ]
+    each.sort(key=lambda member: member.effect.at != first.effect.at)  # the named one stays first
+    return replace(own, members=(*each, *others))
 
 
 def _compared(campaign: Campaign, own: NamedClass, others: Sequence[Effect]) -> NamedClass:

@@ -9,6 +9,7 @@ DECLARED = Declared(
         "criticism_findings": From("criticism", tables.EFFECT_FINDINGS, "findings"),
         "members": From("criticism", tables.MEMBERS),
         "effects": From("criticism", tables.EFFECTS),
+        "cause_positions": From("criticism", tables.CAUSE_POSITIONS),
         "random_walks": From("criticism", tables.RANDOM_WALKS),
         "blocks": From("segment", tables.BLOCKS),
         "manoeuvres": From("segment", tables.MANOEUVRES),

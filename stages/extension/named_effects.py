@@ -1,7 +1,7 @@
 """The named effects of one mount, each with the other members of its class."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from inertial.effects import CATALOGUE
@@ -23,11 +23,13 @@ class Member(NamedTuple):
 class NamedClass:
     """A finding and the effects that it may be, the named one first.
 
-    That one has the value of its scanned variable, the others have none yet.
+    That one has the value of its scanned variable, the others have none yet. `positions`: at which
+    an effect of a single position may be, and the reduction of chi-squared there.
     """
 
     finding: str
     members: tuple[Member, ...]
+    positions: tuple[tuple[str, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -43,10 +45,15 @@ class Named:
 
 
 def named_of(
-    findings: Iterable[Row], effects: Iterable[Row], members: Iterable[Row], mount: str
+    findings: Iterable[Row],
+    effects: Iterable[Row],
+    members: Iterable[Row],
+    positions: Iterable[Row],
+    mount: str,
 ) -> Named:
     """The findings of a mount, with the parameters in `effects` and the `members` of classes.
 
+    `positions`: at which a finding about a single position may be.
     Of several oscillations the first counts.
     """
     values: dict[str, dict[str, float]] = {}
@@ -56,13 +63,19 @@ def named_of(
     of_class: dict[str, list[Row]] = {}
     for row in sorted(members, key=lambda row: int(row["rank"])):
         of_class.setdefault(row["finding"], []).append(row)
+    places: dict[str, list[tuple[str, float]]] = {}
+    for row in sorted(positions, key=lambda row: int(row["rank"])):
+        places.setdefault(row["finding"], []).append((row["position"], row["statistic"]))
     first: dict[str, str] = {}  # effect → finding
     for row in findings:
         if row["mount"] == mount and row["verdict"] in NAMED and row["cause"] in CATALOGUE:
             first.setdefault(row["cause"], row["id"])
     return Named(
         tuple(
-            _class_of(name, finding, values.get(finding, {}), of_class.get(finding, ()))
+            replace(
+                _class_of(name, finding, values.get(finding, {}), of_class.get(finding, ())),
+                positions=tuple(places.get(finding, ())),
+            )
             for name, finding in first.items()
             if CATALOGUE[name].sought_in == "blocks"
         ),

@@ -38,7 +38,7 @@ TWELVE = linear_names()
 def extension(
     mounts: Sequence[CampaignData],
     simulated: Stream,
-    causes: tuple[Sequence[Row], Sequence[Row], Sequence[Row]],
+    causes: tuple[Sequence[Row], Sequence[Row], Sequence[Row], Sequence[Row]],
     random_walks: pd.DataFrame,
     joint: Mapping[str, tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]],
 ) -> Tables:
@@ -49,7 +49,7 @@ def extension(
 
     Parameters
     ----------
-    causes : rows of the findings, effects and members of criticism
+    causes : rows of the findings, effects, members and positions of criticism
     joint : by sensor, parameters, fit and manoeuvres of the joint result
     """
     walk_of: dict[tuple[str, str], float] = defaultdict(float)
@@ -75,10 +75,18 @@ def extension(
 
 
 def causes_of(
-    criticism_findings: pd.DataFrame, effects: pd.DataFrame, members: pd.DataFrame
-) -> tuple[Sequence[Row], Sequence[Row], Sequence[Row]]:
+    criticism_findings: pd.DataFrame,
+    effects: pd.DataFrame,
+    members: pd.DataFrame,
+    cause_positions: pd.DataFrame,
+) -> tuple[Sequence[Row], Sequence[Row], Sequence[Row], Sequence[Row]]:
     """The causes that criticism found, as rows."""
-    return rows_of(criticism_findings), rows_of(effects), rows_of(members)
+    return (
+        rows_of(criticism_findings),
+        rows_of(effects),
+        rows_of(members),
+        rows_of(cause_positions),
+    )
 
 
 def joint_of(

@@ -1,10 +1,13 @@
 """Of every class a member: one class is varied at a time, the most probable come first."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
 
 from inertial.effects import CATALOGUE
 from stages.extension.candidates import candidates_of, normalised
-from stages.extension.combinations import combinations_of
+from stages.extension.combinations import combinations_of, compared
 from stages.extension.models import names_of
 from stages.extension.named_effects import Member, NamedClass
 
@@ -53,6 +56,22 @@ def test_members_that_a_sensor_does_not_show_are_one_model_for_it():
     # The walk is in the covariance of the joint fit: 0.06 of 0.42 + 0.28 + 0.12 + 0.06.
     assert gyro["joint"][1] == pytest.approx(0.06 / 0.88)
     assert told() == {"joint": ((), pytest.approx(1.0))}
+
+
+def test_an_effect_of_one_position_is_a_member_for_each_that_may_be_it():
+    campaign: Any = SimpleNamespace(positions=["x-up", "y-up", "z-up"])
+    # Reductions of 103 and 100: odds of e^1.5, 0.82 to 0.18.
+    off = Member(CATALOGUE["table_position_error"].fixed(2.0), 0.5)
+    tilt = Member(CATALOGUE["table_tilt"], 0.5)
+    own = NamedClass("p", (off, tilt), (("z-up", 103.0), ("x-up", 100.0)))
+    (told_of,) = compared(campaign, [own])
+    named = [(one.effect.name, one.effect.at) for one in told_of.members]
+    error = "table_position_error"
+    assert named == [(error, 2.0), (error, 0.0), ("table_tilt", None)]
+    shares = [one.probability for one in told_of.members]
+    assert shares == pytest.approx([0.409, 0.091, 0.5], abs=0.001)
+    (alone,) = compared(campaign, [NamedClass("p", (off,), (("z-up", 103.0),))])
+    assert [(one.effect.at, one.probability) for one in alone.members] == [(2.0, 1.0)]
 
 
 def test_not_more_than_eight_and_no_effect_twice():

@@ -33,12 +33,12 @@ def test_effects_are_taken_by_mount_with_the_value_that_was_scanned():
         {"finding": "oscillation of ", "effect": "oscillation"}
         | {"parameter": "frequency", "value": 20.0},
     ]
-    (alone,) = named_of(findings, effects, [], "lying").classes
+    (alone,) = named_of(findings, effects, [], [], "lying").classes
     (jump,) = alone.members
     assert (jump.effect.name, jump.effect.at) == ("gyro_bias_jump", 812.5)
     assert jump.probability is None
     classes = members("accel_quadratic", "accel_scale_asymmetry") + members("oscillation")
-    other = named_of(findings, effects, classes, "")
+    other = named_of(findings, effects, classes, [], "")
     (own,) = other.classes
     assert own.finding == "accel_quadratic of "
     assert [(one.effect.name, one.probability) for one in own.members] == [
