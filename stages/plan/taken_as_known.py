@@ -132,7 +132,7 @@ def gravity_repairs(file: YamlFile, repairs: str) -> Iterator[Row]:
         "sigma": ANOMALY_SIGMA,
         "stated": stated,
         "unit": "m/s²",
-        "finding": "quality/gravity_error",
+        "finding": "quality/gravity_error/accel",
         "condition": _(
             "gravity is that of latitude {latitude:g}° and height {height:g} m, not the stated "
             "{stated:.5f} m/s².{rival}",
