@@ -68,14 +68,14 @@ def test_at_one_rate_a_line_about_the_tables_axis_may_be_either(seed):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_line_that_turns_of_one_rate_alone_show_may_be_either(seed):
-    """At the other rate it is lost in the noise: as the square of the rate, or of the resonance."""
+    """At the other rate it is lost in the noise."""
     (one,) = found(rippling(seed, [(36.0, 0.02 * SNR_15)], 6.0, TWO_RATES))
     assert one["verdict"] == "one_of_class" and one["members"] == BOTH
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_near_the_limit_it_is_still_told(seed):
-    """A ratio of 5 in each of twelve turns: in no turn significant alone."""
+    """A ratio of 5 in each turn: hardly one is significant alone."""
     for power in (0.5, 1.0):  # at twice the rate a turn is half as long
         (one,) = found(rippling(seed, [(90.0, SNR_15 / 3)], power, TWO_RATES))
         assert one["members"] == {"table_ripple"}
@@ -94,7 +94,7 @@ def test_multiples_of_one_frequency_are_one_finding_and_other_frequencies_anothe
     harmonics = [(13.7, SNR_15, "x"), (27.4, SNR_15, "x"), (41.1, SNR_15, "x")]
     (one,) = found(turns(4, ringing=harmonics, rates=TWO_RATES))
     assert one["cause"] == "oscillation" and "41.1" in one["sentence"]
-    # Beyond 50 Hz, half the sample rate, twice 33.3 Hz shows at 33.4.
+    # Beyond 50 Hz, half the sample rate, three times 21.1 Hz shows at 36.7 Hz.
     (one,) = found(turns(4, ringing=[(21.1, 1e-4, "x"), (42.2, 1e-4, "x"), (36.7, 1e-4, "x")]))
     assert one["cause"] == "oscillation"
     two = found(turns(4, ringing=[(13.7, SNR_15, "x"), (22.4, SNR_15, "y")], rates=TWO_RATES))
@@ -102,7 +102,7 @@ def test_multiples_of_one_frequency_are_one_finding_and_other_frequencies_anothe
 
 
 def test_a_ripple_beyond_half_the_sample_rate_of_fast_turns_is_one():
-    """Order 450: 25 Hz at 20 °/s; 75 Hz at 60 °/s, which samples at 100 Hz show at 25 Hz too."""
+    """Order 480: 26.7 Hz at 20 °/s; 80 Hz at 60 °/s, which samples at 100 Hz show at 20 Hz."""
     (one,) = found(rippling(5, [(480.0, 3e-4)], 0.0, (20, -20, 60, -60)))
     assert one["cause"] == "table_ripple" and one["members"] == {"table_ripple"}
 
