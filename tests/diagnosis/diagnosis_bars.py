@@ -42,7 +42,8 @@ def bars(outcomes: Sequence[Outcome]) -> Iterator[Bar]:
     pairs = of(outcomes, "pair")
     both = sum(good(one) for one in pairs)
     yield Bar(
-        f"a fault and an effect at SNR {BETWEEN[0]:g} to {BETWEEN[1]:g}: both, and nothing else",
+        f"a fault, and an effect at SNR {BETWEEN[0]:g} to {BETWEEN[1]:g} in what it leaves:"
+        " both, and nothing else",
         f"≥ {BOTH} of {PAIRS}",
         _counts(both, len(pairs)),
         both * PAIRS >= BOTH * len(pairs) if pairs else None,

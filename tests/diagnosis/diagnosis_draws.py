@@ -6,7 +6,7 @@ sigma says, and where none is stated as far from the formula's as that of the fo
 
 import json
 import zlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
@@ -18,7 +18,7 @@ from cases import Cause, cause
 from diagnosis_faults import BY_NAME, FAULTS, FORMULA_SIGMA, Place, Setting
 from hidden_draws import COMMON, _hide
 from hidden_plans import PLANS, sensors
-from hidden_sizes import KEPT, code, size
+from hidden_sizes import KEPT, code, reference, size
 from hidden_ways import ABSORBED, WAYS
 
 from inertial.text.parameters import STAGES
@@ -27,7 +27,8 @@ from laboratory.site import normal_gravity
 RATIOS = (15.0, 30.0)
 SIGMAS = (2.0, 5.0, 20.0)
 PAIRS, CLEAN, SILENT, REPORTED = 60, 300, 3, 5  # campaigns; the last two of each and plan
-BETWEEN = (15.0, 40.0)  # the signal-to-noise ratio of an effect beside a fault
+BETWEEN = (15.0, 40.0)  # the signal-to-noise ratio of an effect in what a fault leaves
+LEFT = 0.5  # of its ratio that an effect keeps at least where the fault has spoiled the readings
 STATED_SIGMA = 5e-5  # m/s², of the gravity that the demo states
 
 Document = dict[str, Any]
@@ -120,6 +121,7 @@ def drawn(name: str) -> Drawn:
     random = np.random.default_rng([2031, zlib.crc32(name.encode())])
     document = _document(plan, random)
     made = PARTS[part](plan, what, float(number), random, document)
+    made.pop("spoiled", None)
     return Drawn(
         **made | {"name": name, "part": part, "plan": plan},
         document=cases.merged(document, made["changes"]),
@@ -149,6 +151,21 @@ def _stated(document: Document) -> None:
     document["truth"]["gravity_m_s2"] = site["gravity_m_s2"]
 
 
+def ratio_without(
+    plan: str, name: str, at: float | None, values: Any, spoiled: Collection[str]
+) -> float:
+    """The signal-to-noise ratio of an effect in a plan of which some manoeuvres are spoiled."""
+    known = reference(plan)
+    family = known.families[name]
+    effect = min(family, key=lambda one: abs((one.at or 0.0) - (at or 0.0)))
+    kept = set(known.campaign.manoeuvres) - set(spoiled)
+    squared = 0.0
+    for system in known.campaign.systems([effect], 1.0, kept):
+        if system is not None:
+            squared += float(values @ system.effect_information().information @ values)
+    return float(np.sqrt(max(squared, 0.0)))
+
+
 def _effect(
     plan: str, what: str, ratio: float, random: Random, document: Document
 ) -> dict[str, Any]:
@@ -174,6 +191,7 @@ def _fault(
         "size": sigma if fault.sized else None,
         "changes": told.changes,
         "causes": (told.cause,),
+        "spoiled": told.spoiled,
     }
 
 
@@ -203,16 +221,23 @@ def _pair(
 ) -> dict[str, Any]:
     shown = [name for name, way in WAYS.items() if plan in way.plans]
     faults = [fault.name for fault in FAULTS if plan in fault.plans]
-    effect, fault = str(random.choice(shown)), str(random.choice(faults))
-    ratio = float(np.exp(random.uniform(*np.log(BETWEEN))))
-    one = _effect(plan, effect, ratio, random, document)
+    fault, ratio = str(random.choice(faults)), float(np.exp(random.uniform(*np.log(BETWEEN))))
     other = _fault(plan, fault, float(random.choice(SIGMAS[1:])), random, document)
+    share = 0.0
+    while share < LEFT:  # else the fault leaves too little to see the effect by
+        effect = str(random.choice([o for o in shown if o not in other["causes"][0].names]))
+        hidden = _hide({effect: ("ratio", ratio)}, plan, random, size)
+        values = np.array(list(hidden["truth"][effect].values()))
+        left = ratio_without(plan, effect, hidden["at"].get(effect), values, other["spoiled"])
+        share = left / ratio
+    way, extra = WAYS[effect], hidden["effects"][effect]
+    told = extra | way.told(values / share)
     return {
         "what": f"{fault} + {effect}",
         "size": other["size"],
         "ratio": ratio,
-        "changes": one["changes"] | other["changes"],
-        "causes": other["causes"] + one["causes"],
+        "changes": cases.effect(**{effect: told}) | other["changes"],
+        "causes": (*other["causes"], cause({effect})),
     }
 
 

@@ -54,6 +54,10 @@ class Setting:
         """One of the turns."""
         return _one(random, [place for place in self.places if place.turns])
 
+    def within(self, log: str) -> tuple[str, ...]:
+        """The manoeuvres of a log."""
+        return tuple(place.manoeuvre for place in self.places if place.log == log)
+
     def bias(self, sensor: str, axis: str) -> float:
         """By how much one rest must be off to move the bias by one sigma, m/s² or rad/s."""
         rests = sum(not place.turns for place in self.places)
@@ -62,10 +66,14 @@ class Setting:
 
 @dataclass(frozen=True)
 class Told:
-    """A fault as the laboratory is told of it, and what the diagnosis must say."""
+    """A fault as the laboratory is told of it, and what the diagnosis must say.
+
+    `spoiled`: manoeuvres whose readings it leaves nothing of.
+    """
 
     changes: Document
     cause: Cause
+    spoiled: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -101,7 +109,7 @@ def _gap(setting: Setting, random: Random, sigma: float) -> Told:
     place, samples = setting.turn(random), int(10 * sigma)
     line = place.rows[0] + len(place.rows) // 2 + int(random.integers(-40, 40))
     told = {"log": place.log, "line": line, "samples": samples}
-    return Told(cases.fault({"lose": told}), cause({"gap"}))
+    return Told(cases.fault({"lose": told}), cause({"gap"}), (place.manoeuvre,))
 
 
 def _repeated(setting: Setting, random: Random, sigma: float) -> Told:
@@ -124,7 +132,7 @@ def _clipped(setting: Setting, random: Random, sigma: float) -> Told:
     told = {"log": place.log, "channel": f"accel_{axis}"}
     told |= {"limit_m_s2": level + at * SCATTER["accel"]}
     names = {"saturation", "accel_saturation"}
-    return Told(cases.fault({"clip": told}), cause(names, "accel", axis))
+    return Told(cases.fault({"clip": told}), cause(names, "accel", axis), (place.manoeuvre,))
 
 
 def _knock(setting: Setting, random: Random, sigma: float) -> Told:
@@ -139,7 +147,7 @@ def _clock(setting: Setting, random: Random, sigma: float) -> Told:
     place = setting.rest(random)
     ppm = sigma * 2 * setting.sigmas["accel"]["scale_x"] * 1e6 * float(random.choice([-1, 1]))
     told = {"log": place.log, "ppm": ppm}
-    return Told(cases.fault({"drift": told}), cause(cases.CLOCK))
+    return Told(cases.fault({"drift": told}), cause(cases.CLOCK), setting.within(place.log))
 
 
 def _dead(setting: Setting, random: Random, sigma: float) -> Told:
@@ -159,6 +167,7 @@ def _position(setting: Setting, random: Random, sigma: float) -> Told:
     return Told(
         cases.set_off(place.manoeuvre, place.up, by),
         cause(cases.POSITION, "accel", manoeuvre=place.manoeuvre),
+        (place.manoeuvre,),
     )
 
 
@@ -175,6 +184,7 @@ def _angle(setting: Setting, random: Random, sigma: float) -> Told:
     return Told(
         {"campaign": {"plan": wrong}, "misstated": {"plan": right}},
         cause(cases.ANGLE, "gyro", manoeuvre=place.manoeuvre),
+        (place.manoeuvre,),
     )
 
 
