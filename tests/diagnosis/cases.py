@@ -216,16 +216,15 @@ NORMAL = 9.7936  # m/s², in Wuhan
 CLIP = float(np.radians(60))  # rad/s
 UPS = tuple(sign + axis for axis in "xyz" for sign in "+-")
 GYROS = ("gyro_x", "gyro_y", "gyro_z")
-SPIKED = {"lines": list(range(103, 1103, 103))[:10], "channel": "gyro_y", "size_rad_s": 0.6}
+SPIKED = {"lines": [120 + 103 * k for k in range(10)], "channel": "gyro_y", "size_rad_s": 0.6}
 KNOCK = {"peak_m_s2": 60.0, "peak_rad_s": 3.0, "frequency_hz": 31.0, "decay_s": 0.08}
-ARCS_COUNT = 0.1 / 2**8 / 3600 * float(np.radians(1))  # rad: the FSAS's, 57.3 times smaller
+COUNT = 0.1 / (3600 * 256)  # rad, stated; that of another instrument is 180/π times it
 SWELL = {"channel": "accel_x", "frequency_hz": 1 / 600, "amplitude_m_s2": 5e-4}  # 300 s: half of it
 NEAR_G = {"channel": "accel_z", "limit_m_s2": 9.7940}  # within the scatter of z up, 1.07e-3 m/s²
 
 CASES: tuple[Case, ...] = (
     # ---- nothing
     Case("clean-positions", positions, ()),
-    Case("clean-short", short, ()),
     Case("clean-rates", rates, ()),
     Case(
         "gravity-by-the-formula", unstated_gravity, (), hidden={"truth": {"gravity_m_s2": 9.7938}}
@@ -312,7 +311,14 @@ CASES: tuple[Case, ...] = (
         short,
         (cause(COUNTS, "gyro"),),
         gyro=CONDITIONAL,
-        hidden={"receiver": {"gyro_count_rad": ARCS_COUNT}},
+        hidden={"receiver": {"gyro_count_rad": float(np.degrees(COUNT))}},
+    ),
+    Case(
+        "count-size-beyond-the-range",  # the readings are 180/π times too large
+        short,
+        (cause(COUNTS, "gyro"),),
+        gyro=CONDITIONAL,
+        hidden={"receiver": {"gyro_count_rad": float(np.radians(COUNT))}},
     ),
     Case(
         "accelerometers-exchanged",
