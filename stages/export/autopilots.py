@@ -26,7 +26,7 @@ from stages.export.axis_correction import (
     scale_errors,
 )
 from stages.export.calibration import Calibration
-from stages.export.header import commented, effect_terms, mounts, origin
+from stages.export.header import commented, effect_terms, mounts, origin, verdicts
 
 
 @dataclass(frozen=True)
@@ -143,6 +143,8 @@ def parameter_file(calibration: Calibration, autopilot: Autopilot) -> str:
     chosen = [calibration.best(kind) for kind in autopilot.parameters]
     accelerometer, gyroscope = (triad for _unused, triad in chosen)
     head += [
+        *verdicts(triad for _unused, triad in chosen),
+        "",
         *autopilot.notes,
         *mounts(calibration, chosen),
         "",

@@ -1,11 +1,13 @@
 """A calibration as it is exported: M and bias of both triads on every mount, and their context.
 
-    reading = M · truth + bias            truth = M⁻¹ · (reading − bias)
+    reading = M · truth + bias + effects(truth)
+    truth = M⁻¹ · (reading − bias − effects(truth))
 
-An element that was not determined is NaN here and null in the files, never 0 or 1.
+by the result that counts. An element that was not determined, or is not usable, is NaN here and
+null in the files, never 0 or 1.
 """
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite
 from statistics import median
@@ -15,7 +17,12 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.estimates import UNIT
-from inertial.campaign.final_result import of_sensors
+from inertial.campaign.measurement import (
+    EffectOfResult,
+    SensorResult,
+    measurement_of,
+    measurements_of,
+)
 from inertial.campaign.records import (
     Manoeuvre,
     Part,
@@ -23,18 +30,25 @@ from inertial.campaign.records import (
     by_mount,
     parts_of,
     rows_of,
+    share_a_clock,
     with_mount,
 )
 from inertial.estimation.triad import linear_names
+from inertial.physics import forward as physics
+from inertial.physics.inverse import Sized, force_of, rate_of
+from inertial.physics.motion import stretches
 from inertial.tables import CHANNELS
 from inertial.text.messages import _
-from inertial.text.parameters import EXTENDED, JOINT, SENSOR_OF
+from inertial.text.parameters import SENSOR_OF
 from stages.export.examples import Example
 
 Array = NDArray[np.float64]
 
 PARAMETERS = linear_names()  # M − I by rows, then the bias
 MAX_CONDITION = 1e6  # condition number of M; that of three good sensors is 1.01
+INSTANT = 1e-6  # s, duration of a sample that has none
+NOT_USABLE = "not_usable"
+NOTHING = measurement_of([])
 COMPENSATED = _(
     "The campaign says that the errors were taken out of its logs already. Its "
     "parameters are what that first compensation has left over, not those of the "
@@ -45,27 +59,27 @@ COMPENSATED = _(
 
 @dataclass(frozen=True)
 class Fitted:
-    """The tables of parameters of a stage."""
+    """The tables of the fits by all methods."""
 
-    parameters: pd.DataFrame
-    covariance: pd.DataFrame
     fit: pd.DataFrame
     manoeuvres: pd.DataFrame
 
 
 @dataclass(frozen=True)
 class Triad:
-    """The estimates of three sensors of one kind on one mount.
+    """The result that counts of three sensors of one kind on one mount.
 
     kind : accelerometer or gyroscope
     id_prefix : what the ids of its parameters begin with
     matrix, matrix_sigma : M, (3, 3), unit 1, NaN where not determined; row: the sensor
     bias, bias_sigma : (3,), `unit`, NaN where not determined
-    ids, covariance : ids of the n parameters that are determined, and their covariance, (n, n)
+    ids, covariance : ids of the n parameters that are determined, those of effects last, and their
+        covariance, (n, n)
     reasons : parameter → why it is not determined
-    fit : the row of the fit table; none where nothing was fitted
+    fit : the row of the fit table; none where nothing was fitted, or several fits share the result
     manoeuvres : those of the fit, and those that it leaves out
-    effects : rows of the parameters of effects, where the extended result is the final one
+    effects : those in the model
+    verdict : row of the diagnosis; none where there is no result
     """
 
     kind: str
@@ -79,7 +93,32 @@ class Triad:
     reasons: Mapping[str, str]
     fit: Row | None
     manoeuvres: Sequence[Part] = ()
-    effects: Sequence[Row] = ()
+    effects: Sequence[EffectOfResult] = ()
+    verdict: Row | None = None
+
+    @property
+    def determined(self) -> int:
+        """How many of the twelve parameters have a value."""
+        return int(np.isfinite(self.matrix).sum() + np.isfinite(self.bias).sum())
+
+    @property
+    def unusable(self) -> str | None:
+        """Why nothing of it is to be used, if so."""
+        if self.verdict is None or self.verdict["verdict"] != NOT_USABLE:
+            return None
+        return str(self.verdict["sentence"])
+
+    @property
+    def removable(self) -> list[EffectOfResult]:
+        """The effects that can be taken out of readings."""
+        return [one for one in self.effects if one.effect.terms]
+
+    @property
+    def model(self) -> tuple[physics.Triad | None, list[Sized]]:
+        """M and bias with the effects that can be taken out; none where M has no inverse."""
+        sized = [(one.effect, one.values) for one in self.removable]
+        whole = not self.no_inverse and np.isfinite(self.bias).all()
+        return (physics.Triad(self.matrix, self.bias) if whole else None), sized
 
     @property
     def unit(self) -> str:
@@ -109,16 +148,8 @@ class Triad:
         if inverse is None:
             return None
         jacobian = -np.kron(inverse, inverse.T)
-        elements = [self.ids.index(f"{self.id_prefix}/{name}") for name in PARAMETERS[:9]]
-        covariance = self.covariance[np.ix_(elements, elements)]
+        covariance = self.covariance[:9, :9]  # M comes first, and is whole
         return np.asarray(np.sqrt(np.diag(jacobian @ covariance @ jacobian.T)).reshape(3, 3))
-
-    def truth(self, reading: Array) -> Array | None:
-        """M⁻¹ · (reading − bias), (3,); none where an element of it is unknown."""
-        inverse = self.inverse
-        if inverse is None or not np.isfinite([*self.bias, *reading]).all():
-            return None
-        return np.asarray(inverse @ (reading - self.bias))
 
 
 @dataclass(frozen=True)
@@ -134,6 +165,22 @@ class Mount:
         """The triad of a kind: accelerometer or gyroscope."""
         return self.accelerometer if kind == "accelerometer" else self.gyroscope
 
+    def corrected(self, example: Example) -> dict[str, Array | None]:
+        """Specific force and angular rate of an example, by kind; none where one is unknown.
+
+        The time of a mean is its middle, as if it were one sample: the equation of the file is
+        that of one sample.
+        """
+        instant = np.array([INSTANT])
+        motion = stretches(np.array([example.time]), instant, np.array([example.temperature]))
+        readings = example.reading[None]
+        force = force_of(readings[:, :3], *self.accelerometer.model, motion)
+        rate = rate_of(readings[:, 3:], *self.gyroscope.model, motion, force)
+        return {
+            kind: truth[0] if np.isfinite(truth).all() else None
+            for kind, truth in (("accelerometer", force), ("gyroscope", rate))
+        }
+
 
 @dataclass(frozen=True)
 class Calibration:
@@ -142,6 +189,7 @@ class Calibration:
     campaign : the row of the campaign table
     not_exported : why there is no calibration, if there is none
     noise : per channel the random walk, and its spread over the manoeuvres
+    epoch_gps : GPS time at time 0, s; none where the logs share no such clock
     rate : measured sample rate, Hz; none without time
     temperature : K, mean, lowest and highest of the blocks; none where it is not recorded
     """
@@ -153,37 +201,35 @@ class Calibration:
     noise: Sequence[Row] = ()
     rate: float | None = None
     temperature: Row | None = None
+    epoch_gps: float | None = None
     mounts: Sequence[Mount] = ()
     not_exported: str | None = None
 
     def best(self, kind: str) -> tuple[str, Triad]:
         """The mount that determines most of a triad, and the triad; the first one of equals."""
         triads = [(mount.name, mount.triad(kind)) for mount in self.mounts]
-        return max(triads, key=lambda named: len(named[1].ids))
+        return max(triads, key=lambda named: named[1].determined)
 
 
 def mounts_of(
     plan: list[Manoeuvre],
-    fits: Mapping[str, Fitted],
-    extended: Collection[tuple[str, str]],
+    result: pd.DataFrame,
+    covariance: pd.DataFrame,
+    verdicts: pd.DataFrame,
+    fits: Fitted,
     examples: Mapping[str, Sequence[Example]],
 ) -> list[Mount]:
-    """The final result of every mount: the joint one, or the extended one.
-
-    Parameters
-    ----------
-    fits : accelerometer, gyroscope and extension → its tables
-    extended : sensor and mount of every extended result that is the final one
-    examples : mount → worked examples
-    """
+    """The result that counts of every mount; `examples`: by mount."""
+    products = {
+        (first, second): value for first, second, value in covariance.itertuples(index=False)
+    }
+    verdict_of = {(row["mount"], row["sensor"]): row for row in rows_of(verdicts)}
+    measurements = measurements_of(result)
 
     def triad(kind: str, mount: str) -> Triad:
-        of = SENSOR_OF[kind], mount
-        if of in extended:
-            return _triad(
-                kind, f"extension/{with_mount(kind, mount)}", EXTENDED, of, fits["extension"]
-            )
-        return _triad(kind, f"{kind}/{with_mount(JOINT, mount)}", JOINT, of, fits[kind])
+        measurement = measurements.get(mount, NOTHING)
+        own = measurement.accelerometer if kind == "accelerometer" else measurement.gyro
+        return _triad(kind, mount, own, products, verdict_of.get((mount, SENSOR_OF[kind])), fits)
 
     return [
         Mount(
@@ -196,28 +242,32 @@ def mounts_of(
     ]
 
 
-def _triad(kind: str, id_prefix: str, method: str, of: tuple[str, str], fit: Fitted) -> Triad:
-    """The result of a method for `of`, a sensor and its mount."""
-
-    def own(table: pd.DataFrame) -> list[Row]:
-        return [row for row in of_sensors(rows_of(table), [of]) if row["method"] == method]
-
-    rows = {row["parameter"]: row for row in own(fit.parameters)}
+def _triad(
+    kind: str,
+    mount: str,
+    result: SensorResult,
+    products: Mapping[tuple[str, str], float],
+    verdict: Row | None,
+    fits: Fitted,
+) -> Triad:
+    rows = result.rows
     determined = [n for n in PARAMETERS if rows.get(n, {}).get("value") is not None]
-    ids = [f"{id_prefix}/{name}" for name in determined]
+    of_effects = [row for one in result.effects for row in one.parameters.values()]
+    ids = [rows[name]["id"] for name in determined]
+    ids += [row["id"] for row in of_effects if row["sigma"] is not None]
     values, sigmas = (
         np.array([rows[n][key] if n in determined else np.nan for n in PARAMETERS], np.float64)
         for key in ("value", "sigma")
     )
-    products = {
-        (first, second): value
-        for first, second, value in fit.covariance.itertuples(index=False)
-        if first in ids and second in ids
-    }
     no_result = {"reason": _("there is no result for the {kind}", kind=kind)}
+    key = [mount, result.sensor, verdict["method"] if verdict else ""]
+
+    def own(table: pd.DataFrame) -> list[Row]:
+        return [r for r in rows_of(table) if [r["mount"], r["sensor"], r["method"]] == key]
+
     return Triad(
         kind,
-        id_prefix,
+        f"diagnosis/{with_mount(kind, mount)}",
         matrix=np.eye(3) + values[:9].reshape(3, 3),
         matrix_sigma=sigmas[:9].reshape(3, 3),
         bias=values[9:],
@@ -225,9 +275,10 @@ def _triad(kind: str, id_prefix: str, method: str, of: tuple[str, str], fit: Fit
         ids=tuple(ids),
         covariance=np.array([products[a, b] for a in ids for b in ids]).reshape(len(ids), len(ids)),
         reasons={n: rows.get(n, no_result)["reason"] for n in PARAMETERS if n not in determined},
-        fit=next(iter(own(fit.fit)), None),
-        manoeuvres=parts_of(own(fit.manoeuvres)),
-        effects=[row for row in rows.values() if row["effect"]],
+        fit=next(iter(own(fits.fit)), None),
+        manoeuvres=parts_of(own(fits.manoeuvres)),
+        effects=result.effects,
+        verdict=verdict,
     )
 
 
@@ -252,7 +303,16 @@ def noise_of(noise: pd.DataFrame) -> list[Row]:
     return summaries
 
 
-def rate_of(clocks: pd.DataFrame) -> float | None:
+def epoch_of(clocks: pd.DataFrame) -> float | None:
+    """GPS time at time 0, s, where all logs count from it; else none."""
+    epochs = {row["epoch_gps"] for row in rows_of(clocks)}
+    if not share_a_clock(clocks) or len(epochs) != 1:
+        return None
+    (epoch,) = epochs
+    return None if epoch is None else float(epoch)
+
+
+def sample_rate(clocks: pd.DataFrame) -> float | None:
     """The measured sample rate, Hz: the median of the logs; none where no log has time."""
     steps = [row["integration_step"] for row in rows_of(clocks)]
     steps = [step for step in steps if step and isfinite(step)]

@@ -18,13 +18,10 @@ DECLARED = Declared(
         **{
             f"{stage}_{table.name}": From(stage, table)
             for stage in ("accelerometer", "gyroscope", "extension")
-            for table in (
-                tables.PARAMETERS,
-                tables.COVARIANCE,
-                tables.FIT,
-                tables.FIT_MANOEUVRES,
-            )
+            for table in (tables.FIT, tables.FIT_MANOEUVRES)
         },
+        "result": From("diagnosis", tables.PARAMETERS, "result"),
+        "covariance": From("diagnosis", tables.COVARIANCE),
         "verdict": From("diagnosis", tables.VERDICTS, "verdict"),
     },
     streams=("samples",),

@@ -18,25 +18,40 @@ from ruamel.yaml.comments import CommentedSeq
 from ruamel.yaml.representer import RoundTripRepresenter
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
+from inertial.campaign.measurement import EffectOfResult
 from inertial.campaign.records import Part, Row, labels, omissions
 from inertial.tables import CHANNEL_PARTS
+from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from stages.export.calibration import PARAMETERS, Calibration, Mount, Triad
+from stages.export.equation import added_by, equations
 from stages.export.examples import Example
 
 Array = NDArray[np.float64]
 
 FORMAT = "turntable calibration"
-VERSION = 2
+VERSION = 3
 SQRT_HZ = {"accel": "(m/s²)/√Hz", "gyro": "(rad/s)/√Hz"}
 EQUATION = {
-    "reading": _("reading = M · truth + bias"),
-    "correction": _("truth = inverse · (reading − bias), with inverse = M⁻¹"),
+    "reading": _("reading = M · truth + bias + effects(truth, t, T)"),
+    "correction": _(
+        "truth = inverse · (reading − bias − effects(truth, t, T)), with inverse = M⁻¹"
+    ),
     "in_words": _(
-        "Take the bias off the three readings, then multiply by the inverse: row i of "
-        "it times the three differences gives the truth along axis i. All nine elements "
-        "are meant, not the diagonal alone. Readings are those of the log in m/s² and "
-        "rad/s, with the count size that the campaign states."
+        "Take the bias off the three readings, then multiply by the inverse: row i of it times the "
+        "three differences gives the truth along axis i. All nine elements are meant, not the "
+        "diagonal alone. Where there are effects, compute from this truth what they add, take it "
+        "off the readings together with the bias, multiply again, and repeat until the truth no "
+        "longer changes; three times are enough. The accelerometers come first, for effects of the "
+        "gyros may need the specific force. Readings are those of the log in m/s² and rad/s, with "
+        "the count size that the campaign states, or as the condition sets them right."
+    ),
+    "symbols": _(
+        "f_x, f_y, f_z: specific force, m/s². w_x, w_y, w_z: angular rate, rad/s. t: time of the "
+        "log, s, since time.epoch_gps or, where that is null, since the first sample. T: "
+        "temperature of the instrument, K. M_xy, bias_x: elements of matrix and bias. Others: "
+        "parameters and constants of effects by their names. abs, exp: absolute value, "
+        "exponential; (t > a) is 1 where it is true, else 0."
     ),
     "matrix": _(
         "Row: the sensor that reads, x y z. Column: the axis that it feels, x y z. "
@@ -80,6 +95,7 @@ def document(calibration: Calibration) -> Row:
             "stated": _number(campaign["rate"]),
         },
         "temperature": calibration.temperature and {"unit": "K", **calibration.temperature},
+        "time": {"unit": "s", "epoch_gps": _number(calibration.epoch_gps)},
         "known": [
             {
                 "quantity": row["quantity"],
@@ -108,18 +124,12 @@ def _mount(mount: Mount) -> Row:
 
 def _triad(triad: Triad) -> Row:
     reasons = {**triad.reasons, "inverse": triad.no_inverse}
+    verdict = triad.verdict or {}
     return {
-        "result": "extended" if triad.effects else "joint",
-        "effects": [
-            {
-                "name": row["parameter"],
-                "value": _number(row["value"]),
-                "sigma": _number(row["sigma"]),
-                "unit": row["unit"],
-                "meaning": row["meaning"],
-            }
-            for row in triad.effects
-        ],
+        **{key: verdict.get(key) for key in ("verdict", "sentence", "condition", "method")},
+        "why_this_method": verdict.get("reason"),
+        "equation": equations(triad.kind, triad.removable),
+        "effects": [_effect(one, triad.kind) for one in triad.effects],
         "matrix": _with_sigma("1", triad.matrix, triad.matrix_sigma),
         "inverse": _with_sigma("1", triad.inverse, triad.inverse_sigma),
         "bias": _with_sigma(triad.unit, triad.bias, triad.bias_sigma),
@@ -130,6 +140,30 @@ def _triad(triad: Triad) -> Row:
             if (reason := reasons.get(name))
         ],
         "fit": triad.fit and _fit(triad.fit, triad.manoeuvres),
+    }
+
+
+def _effect(one: EffectOfResult, kind: str) -> Row:
+    return {
+        "effect": one.effect.name,
+        "name": in_words(one.effect.name),
+        "cause": one.effect.cause,
+        "in_equation": bool(one.effect.terms),
+        "not_in_equation": None if one.effect.terms else one.effect.stays,
+        "added": [{"axis": axis, "to_reading": t} for axis, t in added_by(one, kind).items()],
+        "parameters": [_named(row) for row in one.parameters.values()],
+        "constants": [_named(row) for row in one.constants.values()],
+    }
+
+
+def _named(row: Row) -> Row:
+    """A number of an effect."""
+    return {
+        "name": row["parameter"],
+        "value": _number(row["value"]),
+        "sigma": _number(row["sigma"]),
+        "unit": row["unit"],
+        "meaning": row["meaning"],
     }
 
 
@@ -150,13 +184,8 @@ def _fit(row: Row, manoeuvres: Sequence[Part]) -> Row:
 
 
 def _example(example: Example, mount: Mount) -> Row:
-    def correction(triad: Triad, reading: Array) -> Row:
-        return {
-            "unit": triad.unit,
-            "reading": _numbers(reading),
-            "corrected": _numbers(triad.truth(reading)),
-        }
-
+    truth = mount.corrected(example)
+    readings = {"accelerometer": example.reading[:3], "gyroscope": example.reading[3:]}
     return {
         "what": example.what,
         "manoeuvre": example.manoeuvre,
@@ -164,8 +193,16 @@ def _example(example: Example, mount: Mount) -> Row:
         "from_record": example.first,
         "to_record": example.after,
         "line": example.line,
-        "accelerometer": correction(mount.accelerometer, example.reading[:3]),
-        "gyroscope": correction(mount.gyroscope, example.reading[3:]),
+        "time": _number(example.time),
+        "temperature": _number(example.temperature),
+        **{
+            kind: {
+                "unit": mount.triad(kind).unit,
+                "reading": _numbers(reading),
+                "corrected": _numbers(truth[kind]),
+            }
+            for kind, reading in readings.items()
+        },
     }
 
 

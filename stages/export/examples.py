@@ -30,6 +30,7 @@ class Example:
 
     reading : (6,) in the order of CHANNELS, m/s² and rad/s, NaN where not recorded
     line : number of the line of a single sample, from 1; none for a mean
+    time, temperature : s and K, of the middle of a mean; NaN where not recorded
     """
 
     what: str
@@ -39,6 +40,8 @@ class Example:
     after: int
     line: int | None
     reading: Array
+    time: float = np.nan
+    temperature: float = np.nan
 
 
 def examples_of(
@@ -85,7 +88,7 @@ def _channels_in_all(blocks: pd.DataFrame) -> int:
 def _mean(blocks: pd.DataFrame) -> Example:
     """The mean over the blocks of one phase, which are means themselves."""
     first = blocks.iloc[0]
-    values = blocks[list(CHANNELS)].to_numpy(np.float64)
+    values = blocks[[*CHANNELS, "time", "temperature"]].to_numpy(np.float64)
     mean = np.average(values, axis=0, weights=blocks["count"].to_numpy(np.float64))
     return Example(
         what=_("mean over {phase}", phase=first["phase"]),
@@ -94,7 +97,9 @@ def _mean(blocks: pd.DataFrame) -> Example:
         first=int(first["from_record"]),
         after=int(blocks.iloc[-1]["to_record"]),
         line=None,
-        reading=np.asarray(mean),
+        reading=np.asarray(mean[: len(CHANNELS)]),
+        time=float(mean[-2]),
+        temperature=float(mean[-1]),
     )
 
 
@@ -104,9 +109,10 @@ def _samples(
     """Mount → the first most complete sample of its block; the logs are read no further."""
     examples: dict[str, Example] = {}
     known = Masks(masks, repairs)
+    columns = ["record", "line", "time", "temperature", *CHANNELS]
     if not blocks:
         return examples
-    for log, piece in pieces(samples, ["record", "line", *CHANNELS], repairs):
+    for log, piece in pieces(samples, columns, repairs):
         record = piece["record"]
         readings = np.column_stack([piece[channel] for channel in CHANNELS])
         masked = known.of(log, record)
@@ -126,6 +132,8 @@ def _samples(
                 number + 1,
                 line,
                 readings[i],
+                float(piece["time"][i]),
+                float(piece["temperature"][i]),
             )
         if len(examples) == len(blocks):
             break

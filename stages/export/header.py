@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from stages.export.calibration import Calibration, Triad
+from stages.export.equation import added_by
 
 LINE_WIDTH = 96
 MAX_NAME_LENGTH = 80  # characters of a name from outside
@@ -64,25 +65,57 @@ def mounts(calibration: Calibration, chosen: Sequence[tuple[str, Triad]]) -> Ite
         )
 
 
-def effect_terms(triads: Iterable[Triad]) -> Iterator[str]:
-    """For each triad whose extended result is final, the terms that the file does not contain."""
+def verdicts(triads: Iterable[Triad]) -> Iterator[str]:
+    """What the diagnosis says of each triad, and on which condition its numbers are valid."""
     for triad in triads:
-        if not triad.effects:
-            continue
-        names = dict.fromkeys(row["effect"] for row in triad.effects)
-        terms = ", ".join(
-            f"{row['parameter']} = {row['value']:.4g} {row['unit'].removeprefix('1')}".rstrip()
-            for row in triad.effects
-        )
-        yield (
-            _(
-                "- terms of effects of the {kind}s: its numbers are those of the model with "
-                "{join}; readings corrected without these terms still contain them: {terms}",
+        verdict = triad.verdict
+        if triad.unusable:
+            yield _(
+                "The {kind}s are not usable, so nothing is given for them. {reason}",
                 kind=triad.kind,
-                join=" and ".join(in_words(name) for name in names),
-                terms=terms,
+                reason=triad.unusable,
             )
-        )
+        elif verdict and verdict["condition"]:
+            yield _(
+                "The numbers of the {kind}s are valid on this condition: {condition}",
+                kind=triad.kind,
+                condition=verdict["condition"],
+            )
+        elif verdict and verdict["sentence"]:
+            yield f"{triad.kind.capitalize()}: {verdict['sentence']}"
+
+
+def effect_terms(triads: Iterable[Triad]) -> Iterator[str]:
+    """For each effect in the model of a triad, the terms that the file does not contain."""
+    for triad in triads:
+        for one in triad.effects:
+            terms = ", ".join(
+                f"{row['parameter']} = {row['value']:.4g} {row['unit'].removeprefix('1')}".rstrip()
+                for row in (*one.parameters.values(), *one.constants.values())
+                if row["value"] is not None
+            )
+            if not terms:
+                continue
+            if not one.effect.terms:
+                yield _(
+                    "- {effect}: the numbers of the {kind}s are those of a model with it "
+                    "({terms}). It is in no correction of readings: {stays}",
+                    effect=in_words(one.effect.name),
+                    kind=triad.kind,
+                    terms=terms,
+                    stays=one.effect.stays,
+                )
+                continue
+            yield _(
+                "- {effect}: the numbers of the {kind}s are those of a model with it, and readings "
+                "corrected without it still contain it: {terms}. It adds to the reading of {added}",
+                effect=in_words(one.effect.name),
+                kind=triad.kind,
+                terms=terms,
+                added="; ".join(
+                    f"{axis}: {text}" for axis, text in added_by(one, triad.kind).items()
+                ),
+            )
 
 
 def commented(paragraphs: Iterable[str]) -> list[str]:

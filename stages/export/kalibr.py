@@ -17,7 +17,7 @@ from inertial.text.parameters import SENSOR_OF
 from stages.export.axis_correction import biases, cross_terms, remaining_errors, scale_errors
 from stages.export.calibration import Calibration
 from stages.export.document import as_yaml
-from stages.export.header import commented, effect_terms, mounts, origin
+from stages.export.header import commented, effect_terms, mounts, origin, verdicts
 
 KINDS = ("accelerometer", "gyroscope")
 
@@ -27,6 +27,7 @@ def imu_yaml(calibration: Calibration) -> str:
     head = list(origin(calibration, _("Kalibr (imu.yaml)")))
     if calibration.not_exported:
         return "\n".join(commented(head)) + "\n"
+    head += ["", *verdicts(calibration.best(kind)[1] for kind in KINDS)]
     values, to_fill_in = _values(calibration)
     head += ["", _("To be filled in before Kalibr accepts this file:"), *to_fill_in]
     head += ["", _("Not contained in this file, because Kalibr reads no such key:")]
@@ -50,7 +51,16 @@ def _values(calibration: Calibration) -> tuple[dict[str, float], list[str]]:
         )
     for kind in KINDS:
         levels = list(_densities(calibration, kind).values())
-        if levels:
+        if reason := calibration.best(kind)[1].unusable:
+            to_fill_in.append(
+                _(
+                    "- {kind}_noise_density: left out, because the {kind}s are not usable: "
+                    "{reason}",
+                    kind=kind,
+                    reason=reason,
+                )
+            )
+        elif levels:
             values[f"{kind}_noise_density"] = max(levels)
         else:
             to_fill_in.append(

@@ -6,7 +6,6 @@ from typing import Any
 
 import pandas as pd
 
-from inertial.campaign.final_result import extended_sensors
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.records import Row, manoeuvres_of, rows_of
 from inertial.tables.parquet import Stream
@@ -16,15 +15,18 @@ from stages.export.calibration import (
     COMPENSATED,
     Calibration,
     Fitted,
+    epoch_of,
     mounts_of,
     noise_of,
-    rate_of,
+    sample_rate,
     temperature_of,
 )
 from stages.export.declared import DECLARED
 from stages.export.document import as_json, as_yaml, document
 from stages.export.examples import examples_of
 from stages.export.kalibr import imu_yaml
+
+FITTED = ("accelerometer", "gyroscope", "extension")  # stages that keep fits
 
 
 def export(
@@ -39,27 +41,25 @@ def export(
     else:
         repairs = Repairs(tables["channel_repairs"])
         plan = manoeuvres_of(tables["manoeuvres"])
-        fits = {
-            stage: Fitted(
-                tables[f"{stage}_parameters"],
-                tables[f"{stage}_covariance"],
-                tables[f"{stage}_fit"],
-                tables[f"{stage}_fit_manoeuvres"],
-            )
-            for stage in ("accelerometer", "gyroscope", "extension")
-        }
+        fits, manoeuvres = (
+            pd.concat([tables[f"{stage}_{name}"] for stage in FITTED])
+            for name in ("fit", "fit_manoeuvres")
+        )
         calibration = Calibration(
             campaign,
             inputs,
             made_by=made_by,
             known=rows_of(tables["known"]),
             noise=noise_of(tables["noise"]),
-            rate=rate_of(tables["clocks"]),
+            rate=sample_rate(tables["clocks"]),
+            epoch_gps=epoch_of(tables["clocks"]),
             temperature=temperature_of(tables["blocks"]),
             mounts=mounts_of(
                 plan,
-                fits,
-                extended_sensors(rows_of(tables["verdict"])),
+                tables["result"],
+                tables["covariance"],
+                tables["verdict"],
+                Fitted(fits, manoeuvres),
                 examples_of(plan, tables["blocks"], samples, tables["masks"], repairs),
             ),
         )

@@ -18,6 +18,13 @@ ERRORS = {
 }
 BIAS = {"accelerometer": [-0.0523, 0.0507, -0.0188], "gyroscope": [1.3e-5, -2.1e-5, 9e-6]}
 SIGMA = {"accelerometer": 1e-5, "gyroscope": 2e-7}
+VERDICT: dict[str, Any] = {
+    "verdict": "usable",
+    "sentence": "It is usable.",
+    "condition": None,
+    "method": "joint",
+    "reason": "they show no effect",
+}
 CAMPAIGN: dict[str, Any] = {
     "campaign": "spring",
     "simulated": False,
@@ -80,6 +87,7 @@ def triad(kind: str, missing: Sequence[str] = (), method: str = "joint") -> Tria
         covariance=covariance,
         reasons=dict.fromkeys(missing, REASON),
         fit=None,
+        verdict=VERDICT,
     )
 
 
