@@ -289,3 +289,37 @@ def test_every_report_says_what_it_could_not_determine(recorded):
         determined = told[told["method"].str.match("joint|free")]["value"].notna().any()
         assert ("not calibrated" in verdict) == (not determined), name
         assert "SIMULATED" not in verdict
+
+
+# ---- mikoff_mpu9150, by hand, without time
+
+BY_HAND = """\
+campaign: 1
+instrument:
+  name: MPU-9150
+  rate_hz: 100
+  format:
+    kind: columns
+    delimiter: " "
+    time: {rate_hz: 100}
+    accelerometer: {columns: [1, 2, 3], unit: m/s2}
+    gyro: {columns: [4, 5, 6], unit: rad/s}
+serial: unknown
+date: unknown
+site: {latitude_deg: null, gravity_m_s2: 9.81, gravity_sigma_m_s2: 0.02}
+table: {name: by hand, position_sigma_arcsec: 3600}
+log: imu4.log
+plan:
+  - {id: rests, do: positions, seconds: 2}
+"""
+
+
+def test_a_blow_against_the_case_reverses_no_axis(recordings, tmp_path):
+    """At record 3656 the accelerometers jump by 9.5 m/s², and the gyros stop within 40 ms."""
+    folder = tmp_path / "blow"
+    folder.mkdir()
+    (folder / "campaign.yaml").write_text(BY_HAND)
+    (folder / "imu4.log").write_bytes((recordings / "mikoff_mpu9150/imu4.log").read_bytes())
+    results = chain.run(folder, tmp_path / "derived", "segment")
+    assert not {"sign_flip", "axis_swap"} & set(results["quality/findings"]["cause"])
+    assert results["segment/repairs"].empty

@@ -185,6 +185,8 @@ def _exchanges(piece: Piece, log: Log, sensor: str) -> Iterator[Exchange]:
         fitting = [p for p in PERMUTATIONS if _fits(p, before, after, sigma)]
         if not fitting or (sensor == "accel" and _turned(piece, log, places, k, before, after)):
             continue
+        if _struck(piece, log, int(places[k]), "gyro" if sensor == "accel" else "accel"):
+            continue
         if open_ is None:
             open_ = k, before, after, fitting
             continue
@@ -246,6 +248,26 @@ def _fits(permutation: Permutation, before: Array, after: Array, sigma: Array) -
     alike = np.abs(after - permutation.of(before)) <= MAX_FIT_SIGMA * both
     apart = np.abs(permutation.of(before) - before) > MIN_JUMP_SIGMA * both
     return bool(alike.all() and apart[permutation.changed].all())
+
+
+def _struck(piece: Piece, log: Log, place: int, other: str) -> bool:
+    """Whether the other sensor jumps beside this place as well: a blow moves both, a driver none.
+
+    Where its axes are exchanged at the same record, that jump is none.
+    """
+    first = max(place - SCATTER_READINGS, 0)
+    values = piece.values[first : place + SCATTER_READINGS, SENSORS[other]]
+    there = np.flatnonzero(np.isfinite(values).all(axis=1))
+    values, at = values[there], int(np.searchsorted(there, place - first))
+    if min(at, len(values) - at) < SIDE_READINGS:
+        return False
+    smallest = np.nan_to_num(log.quantum[SENSORS[other]])
+    changes = np.abs(np.diff(values, axis=0))
+    scatter = np.maximum(MAD_TO_SIGMA * np.median(changes, axis=0), smallest)
+    jumps = (changes > MIN_JUMP_SIGMA * scatter).any(axis=1)
+    before, after, sigma = _beside(values, at, smallest)
+    jumps[at - 1] &= not any(_fits(p, before, after, sigma) for p in PERMUTATIONS)
+    return bool(jumps[at - SIDE_READINGS : at + SIDE_READINGS - 1].any())
 
 
 def _turned(piece: Piece, log: Log, places: Integers, k: int, before: Array, after: Array) -> bool:

@@ -195,6 +195,9 @@ class _Campaign:
 
     def set_axes_and_names(self) -> None:
         """What explains that the plan is not found as it is."""
+        right, _after, total = self._explained.fitting
+        if right == total:
+            return
         explained = explained_of(
             self._binned,
             self._plan,
