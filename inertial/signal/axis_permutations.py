@@ -264,7 +264,7 @@ def _struck(piece: Piece, log: Log, place: int, other: str) -> bool:
     smallest = np.nan_to_num(log.quantum[SENSORS[other]])
     changes = np.abs(np.diff(values, axis=0))
     scatter = np.maximum(MAD_TO_SIGMA * np.median(changes, axis=0), smallest)
-    jumps = (changes > MIN_JUMP_SIGMA * scatter).any(axis=1)
+    jumps = np.asarray((changes > MIN_JUMP_SIGMA * scatter).any(axis=1))
     before, after, sigma = _beside(values, at, smallest)
     jumps[at - 1] &= not any(_fits(p, before, after, sigma) for p in PERMUTATIONS)
     return bool(jumps[at - SIDE_READINGS : at + SIDE_READINGS - 1].any())
