@@ -96,7 +96,7 @@ def lay_out(
     manoeuvres: Sequence[Manoeuvre],
     placements: Mapping[str, Placement],
     handling: Handling,
-    actual_profiles: Callable[[Profile], Profile],
+    actual_profiles: Callable[[Manoeuvre], Profile],
 ) -> list[Segment]:
     """The segments of one log. A change of position is one rotation about one axis.
 
@@ -117,7 +117,7 @@ def lay_out(
             start = segments[-1].end
             segments.append(step(start, placement.attitude, axis, steps[-1], handling))
         samples = manoeuvre.samples(handling.interval)
-        profile = actual_profiles(manoeuvre.profile)
+        profile = actual_profiles(manoeuvre)
         segments.append(Segment(manoeuvre.name, samples, placement.attitude, axis, profile))
         before = manoeuvre
     return segments

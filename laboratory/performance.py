@@ -12,6 +12,7 @@ from laboratory.effects.effect import Effect
 from laboratory.gps_time import NANOSECONDS
 from laboratory.instants import NODES_PER_INTERVAL, Instants
 from laboratory.layout import Segment, lay_out, logs_of
+from laboratory.manoeuvre import Manoeuvre
 from laboratory.motion import Turning, move
 from laboratory.placement import place
 from laboratory.profiles import Profile, Standing
@@ -66,10 +67,10 @@ def perform(specification: Specification) -> Recording:
     )
 
 
-def actual_profiles(effects: Effects) -> Callable[[Profile], Profile]:
+def actual_profiles(effects: Effects) -> Callable[[Manoeuvre], Profile]:
     """The actual course of a turn, by the course that is set."""
-    return lambda profile: reduce(
-        lambda p, effect: effect.actual_profile(p), effects.values(), profile
+    return lambda manoeuvre: reduce(
+        lambda p, effect: effect.actual_turn(manoeuvre, p), effects.values(), manoeuvre.profile
     )
 
 

@@ -40,6 +40,7 @@ NOT_NEEDED = ("studies", "comparison", "compensation")  # by criticism and exten
 # What this plan cannot tell from it.
 CLASS = {
     "accel_quadratic": {"accel_scale_asymmetry"},
+    "gyro_scale_asymmetry": {"turn_angle_error"},  # of one of the two turns about x
     "lever_arm": {"size_effect"},
 }
 

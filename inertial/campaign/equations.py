@@ -44,7 +44,7 @@ MERGED_BLOCKS = 5  # blocks of a rotation in one mean of the accelerometers, who
 class Campaign:
     """One mount of a campaign with its joint result, from which systems with effects are formed.
 
-    `positions`: of the plan, in its order.
+    `positions`, `planned`: positions and manoeuvres of the plan, in its order.
     """
 
     inputs: GyroInputs
@@ -55,6 +55,7 @@ class Campaign:
     gravity: Known
     position_sigma: float
     positions: Sequence[str]
+    planned: Sequence[str] = ()
     _known: dict[tuple[str, float | None, float | None], Reading] = field(
         default_factory=dict, repr=False, compare=False
     )  # responses to effects, which random walks do not change
@@ -328,6 +329,7 @@ def campaign_of(data: CampaignData) -> Campaign:
         data.gravity,
         data.position_sigma,
         positions_of(data.plan),
+        [m.name for m in data.plan],
     )
 
 

@@ -49,6 +49,7 @@ from inertial.effects.table_ripple import TableRipple
 from inertial.effects.table_speed_error import TableSpeedError
 from inertial.effects.table_tilt import TableTilt
 from inertial.effects.table_wobble import TableWobble
+from inertial.effects.turn_angle_error import TurnAngleError
 from inertial.physics.effect import Effect
 
 CATALOGUE: dict[str, Effect] = {
@@ -98,6 +99,7 @@ CATALOGUE: dict[str, Effect] = {
         TableRipple(),
         Oscillation(),
         TableAngleScale(),
+        TurnAngleError(),
         # site and clock
         GravityError(),
         LatitudeError(),

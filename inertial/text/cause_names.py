@@ -50,6 +50,7 @@ NAMES = {
     "status_invalid": _("invalid status"),
     "table_angle_scale": _("scale of the table's angle"),
     "table_axis_non_orthogonality": _("table axis non-orthogonality"),
+    "turn_angle_error": _("turn whose angle is off"),
     "table_position_error": _("set position that is off"),
     "table_speed_error": _("wrong speed of the table"),
     "time_backwards": _("time goes backwards"),

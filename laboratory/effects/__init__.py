@@ -59,6 +59,7 @@ from laboratory.effects.table_speed_error import TableSpeedError
 from laboratory.effects.table_sway import TableSway
 from laboratory.effects.table_tilt import TableTilt
 from laboratory.effects.table_wobble import TableWobble
+from laboratory.effects.turn_angle_error import TurnAngleError
 from laboratory.effects.turn_on_bias import TurnOnBias
 from laboratory.effects.white_noise import WhiteNoise
 
@@ -77,6 +78,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "table_position_error": TablePositionError.specified,
     "table_speed_error": TableSpeedError.specified,
     "table_angle_scale": TableAngleScale.specified,
+    "turn_angle_error": TurnAngleError.specified,
     "table_eccentricity": TableEccentricity.specified,
     "table_ripple": TableRipple.specified,
     "table_wobble": TableWobble.specified,

@@ -58,6 +58,10 @@ class Effect:
         """The actual course of a turn that is set to `profile`."""
         return profile
 
+    def actual_turn(self, manoeuvre: Manoeuvre, profile: Profile) -> Profile:
+        """The actual course of one turn, where the effects before it make it `profile`."""
+        return self.actual_profile(profile)
+
     def change_rotations(
         self, turnings: Sequence[Turning], instants: Instants
     ) -> Sequence[Turning]:

@@ -211,7 +211,7 @@ class BlockResults:
             yield "cause_positions", row | {"position": position, "statistic": statistic}
 
     def _positions(self, effect: Effect | None) -> list[tuple[str, float]]:
-        """The positions that an effect of a single position may be at, and its χ² drop there."""
+        """The positions, or turns, that an effect of a single one may be at, and its χ² drop."""
         if effect is None or effect.at is None or effect.scan is None or effect.scan.between:
             return []
         total, family = self.selection.evidence.total, self.selection.families[effect.name]
@@ -219,7 +219,9 @@ class BlockResults:
         searched = next(s for s in self.selection.searched if s.name == effect.name)
         drops = [total.drop([*columns, *others])[0] for columns in searched.candidates]
         near = [i for i in np.argsort(drops)[::-1] if drops[i] > max(drops) - MAX_RIVAL_DROP]
-        return [(self.campaign.positions[int(family[i].at or 0)], float(drops[i])) for i in near]
+        turn = effect.scan.name == "turn"
+        names = self.campaign.planned if turn else self.campaign.positions
+        return [(names[int(family[i].at or 0)], float(drops[i])) for i in near]
 
     def _same_rate(self, effect: Effect, parameter: str) -> str | None:
         """What turns up and down at the same rate, unlike those of source S3, would bring."""

@@ -48,3 +48,13 @@ def test_telegraph_noise_is_no_jump_and_its_structure_is_shown(tmp_path):
     assert len(off)
     assert (off["residual"].abs() > 5 * off["sigma"]).any()
     assert not results["criticism/scores"].set_index("effect").loc["gyro_bias_jump", "named"]
+
+
+@pytest.mark.parametrize("seed", [1801, 102])
+def test_a_ramp_of_one_gyro_is_no_walk_of_all(tmp_path, seed):
+    ramp = {"gyro_bias_ramp": {"ramp_deg_h_h": [0, 1.24, 0]}}  # SNR 9
+    results = criticised(tmp_path, seed, ramp, {})
+    (finding,) = results["criticism/findings"].to_dict("records")
+    assert finding["verdict"] in CLEAR and finding["cause"] in ("gyro_bias_ramp", "gyro_warm_up")
+    assert "gyro_bias_ramp" in set(results["criticism/members"]["effect"])
+    assert results["criticism/random_walks"].empty

@@ -92,6 +92,7 @@ def test_what_is_scanned_has_candidates_of_its_own(motion):
     assert {e.name for e in scanned} == {
         "gyro_warm_up", "gyro_bias_jump", "gyro_dead_band",
         "accel_warm_up", "accel_bias_jump", "table_ripple", "table_position_error",
+        "turn_angle_error",
     }  # fmt: skip
     for effect in CATALOGUE.values():
         candidates = effect.candidates(motion)

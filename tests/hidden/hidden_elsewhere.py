@@ -118,6 +118,11 @@ def direction(random: Random, axes: int = 3) -> Any:
     return drawn / np.linalg.norm(drawn)
 
 
+def _turned_too_far(random: Random) -> Told:
+    turn = f"{random.choice(list('xyz'))}-up-{random.choice([20, 40, 80])}-forward"
+    return {"turn_angle_error": {"turn": turn, "further_arcsec": between(random, 60, 600)}}, {}
+
+
 ELSEWHERE: tuple[Elsewhere, ...] = (
     Elsewhere(("oscillation",), "positions", _ringing),
     Elsewhere(("table_ripple",), "positions", _ripple),
@@ -158,4 +163,5 @@ ELSEWHERE: tuple[Elsewhere, ...] = (
             {},
         ),
     ),
+    Elsewhere(("turn_angle_error",), "rates", _turned_too_far),
 )

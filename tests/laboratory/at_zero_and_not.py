@@ -24,6 +24,10 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
     ),
     "table_speed_error": ({"rate_ppm": 0, "ramp_ppm": 0}, {"rate_ppm": 0, "ramp_ppm": 100}),
     "table_angle_scale": ({"scale_ppm": 0}, {"scale_ppm": 100}),
+    "turn_angle_error": (
+        {"turn": "turn", "further_arcsec": 0},
+        {"turn": "turn", "further_arcsec": 100},
+    ),
     "table_eccentricity": (
         {"sin_arcsec": 0, "cos_arcsec": 0},
         {"sin_arcsec": 0, "cos_arcsec": 30},

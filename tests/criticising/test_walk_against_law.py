@@ -1,0 +1,72 @@
+"""A law and a random walk of each axis explain a drift: which is likelier, by their evidence.
+
+The readings are made here: a bias of three gyros that are read in stretches, with white noise.
+"""
+
+import numpy as np
+import pytest
+
+from inertial.model_selection.walk_odds import Equations, law, walk
+
+STRETCHES, SPAN, HALF_WAVES = 60, 2800.0, 8
+TIME = np.linspace(0.0, SPAN, STRETCHES)
+SEEDS = range(40)
+
+
+def columns():
+    """A ramp of each axis, and its half waves: the design (180, 3 + 24) and the places of each."""
+    ramp = (TIME / SPAN - 0.5)[:, None]
+    waves = np.cos(np.pi * TIME[:, None] / SPAN * np.arange(1, HALF_WAVES + 1))
+    every = np.zeros((STRETCHES, 3, 3 + 3 * HALF_WAVES))
+    for axis in range(3):
+        every[:, axis, axis] = ramp[:, 0]
+        every[:, axis, 3 + axis * HALF_WAVES : 3 + (axis + 1) * HALF_WAVES] = waves
+    every -= every.mean(axis=0)  # the bias is fitted
+    axes = [list(range(3 + a * HALF_WAVES, 3 + (a + 1) * HALF_WAVES)) for a in range(3)]
+    return every.reshape(-1, every.shape[2]), [0, 1, 2], axes
+
+
+def log_odds(drift):
+    """Of a ramp against random walks, for the drift of the biases, (60, 3), in units of noise."""
+    design, ramp, axes = columns()
+    read = drift - drift.mean(axis=0)
+    equations = Equations(design.T @ design, design.T @ read.reshape(-1))
+    single = np.ones(1)
+    return law(equations, [ramp], single).log_evidence - walk(equations, axes).log_evidence
+
+
+def noisy(drift, seed):
+    return drift + np.random.default_rng(seed).standard_normal((STRETCHES, 3))
+
+
+def of_ratio(drift, ratio):
+    """As large as a signal-to-noise ratio says, the bias fitted."""
+    return drift * ratio / np.sqrt(np.sum((drift - drift.mean(axis=0)) ** 2))
+
+
+@pytest.mark.parametrize("axes", [[0, 1, 0], [1, -0.5, 0.7]])
+def test_a_straight_line_is_a_ramp_or_in_its_class(axes):
+    drift = of_ratio(np.outer(TIME, axes), 9.0)
+    odds = np.array([log_odds(noisy(drift, seed)) for seed in SEEDS])
+    assert np.mean(odds > -3) == 1.0 and np.median(odds) > 2
+
+
+@pytest.mark.parametrize("axes", [[1, 1, 1], [0, 0, 1]])
+def test_a_random_walk_is_no_ramp(axes):
+    """Of a clear walk a few are as straight as a ramp; none is more clearly one than chance."""
+    odds = []
+    for seed in SEEDS:
+        steps = np.random.default_rng([7, seed]).standard_normal((STRETCHES, 3)) * axes
+        odds.append(log_odds(noisy(of_ratio(np.cumsum(steps, axis=0), 25.0), seed)))
+    assert np.mean(np.array(odds) > 3) <= 0.05
+    assert np.median(odds) < -3
+
+
+def test_nothing_is_explained_by_neither():
+    design, ramp, axes = columns()
+    for seed in range(10):
+        read = noisy(np.zeros((STRETCHES, 3)), seed)
+        read -= read.mean(axis=0)
+        equations = Equations(design.T @ design, design.T @ read.reshape(-1))
+        assert walk(equations, axes).log_evidence < 2
+        assert law(equations, [ramp], np.ones(1)).log_evidence < 2
