@@ -63,17 +63,26 @@ def recorded(recordings, tmp_path_factory) -> dict[str, chain.Results]:
 
 @pytest.fixture(scope="session")
 def demo_criticised(tmp_path_factory) -> chain.Results:
-    """The demo campaign with all that it hides, through the chain up to the compensation."""
+    """The demo campaign with all that it hides, through the chain up to the extension."""
     folder = tmp_path_factory.mktemp("demo")
     document = chain.laboratory.read(chain.ROOT / "data/simulated/demo.yaml").document
     campaign = chain.simulate(document, folder / "demo")
-    return chain.run(campaign, folder / "derived", "compensation")
+    return chain.run(campaign, folder / "derived", "extension")
 
 
 @pytest.fixture(scope="session")
 def demo(demo_criticised) -> chain.Results:
     """The same; what the first stages make of it."""
     return demo_criticised
+
+
+@pytest.fixture(scope="session")
+def coupled(tmp_path_factory) -> chain.Results:
+    """A short campaign whose x, y, z gyros read 14, −10 and 12 °/h per g along their own axes."""
+    folder = tmp_path_factory.mktemp("coupled")
+    hidden = {"gyro_g_sensitivity": {"matrix_deg_h_g": [[14, 0, 0], [0, -10, 0], [0, 0, 12]]}}
+    campaign = chain.simulate(chain.short(effects=hidden), folder / "coupled")
+    return chain.run(campaign, folder / "derived", until="compensation")
 
 
 @pytest.fixture(scope="session")
