@@ -26,6 +26,7 @@ from inertial.text.parameters import JOINT, STAGES
 
 GPS_WEEK = 604_800  # s
 OF_SENSOR = ("mount", "sensor")
+RESULT = "diagnosis/result.parquet"  # the parameters that count
 MAX_SHOWN_BYTES = 100  # of a line
 MAX_SUGGESTIONS = 6  # identifiers, where one is not known
 
@@ -104,7 +105,8 @@ def number_of(campaign: Campaign, identifier: str) -> Number:
         where the campaign has no results, or none with this identifier, with similar ones
     """
     numbers: dict[str, Number] = {}
-    for path in sorted(campaign.derived.glob("*/parameters.parquet")):
+    results = [*campaign.derived.glob("*/parameters.parquet"), *campaign.derived.glob(RESULT)]
+    for path in sorted(results):
         rows = rows_of(tables.PARAMETERS.read(path))
         numbers |= {row["id"]: Number(row, path.parent.name, path.name) for row in rows}
     if not numbers:
@@ -171,7 +173,8 @@ def _value(number: Number) -> Step:
         return Step(
             _("{id} is not determined", id=row["id"]), [row["meaning"] + frame, row["reason"]]
         )
-    value = f"{row['value']:.10g} ± {row['sigma']:.2g}" + _unit(row["unit"])
+    sigma = "" if row["sigma"] is None else f" ± {row['sigma']:.2g}"  # none of a constant
+    value = f"{row['value']:.10g}{sigma}" + _unit(row["unit"])
     return Step(f"{row['id']} = {value}", [row["meaning"] + frame])
 
 
