@@ -33,7 +33,7 @@ EXCHANGED = {"exchanged_manoeuvres", "manoeuvre_swapped"}
 STATED_RATE = {"stated_rate", "rate_off"}
 CLOCK = {"clock_scale", "stated_rate", "rate_off"}
 POSITION = {"table_position_error", "position_outlier", "position_off"}
-ANGLE = {"turn_angle", "incomplete_turn", "wrong_angle", "turn_off"}
+ANGLE = {"turn_angle_error", "turn_angle", "incomplete_turn", "wrong_angle", "turn_off"}
 IMPACT = {"impact", "knock", "table_moving", "spike"}
 PER_LOG = {
     "bias_per_log",
@@ -416,10 +416,10 @@ CASES: tuple[Case, ...] = (
         hidden=set_off("x-up", "+x", 3600 * ARC_SECOND),
     ),
     Case(
-        "one-angle-off",
+        "one-angle-off",  # with one turn each way, in a class with the scale asymmetry
         short,
-        (cause(ANGLE, "gyro", manoeuvre="y-forward"),),
-        gyro=LIMITED,
+        (cause(ANGLE, "gyro"),),
+        gyro=LIMITED | LOST,
         hidden={
             "campaign": {"plan": {"y-forward": {"degrees": 358.0}}},
             "misstated": {"plan": {"y-forward": {"degrees": 360}}},

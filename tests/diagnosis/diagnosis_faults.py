@@ -183,7 +183,7 @@ def _angle(setting: Setting, random: Random, sigma: float) -> Told:
     right = {place.manoeuvre: {"degrees": written["degrees"]}}
     return Told(
         {"campaign": {"plan": wrong}, "misstated": {"plan": right}},
-        cause(cases.ANGLE, "gyro", manoeuvre=place.manoeuvre),
+        cause(cases.ANGLE, "gyro"),
         (place.manoeuvre,),
     )
 
