@@ -55,16 +55,21 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
         lines = (raw / log).read_bytes().splitlines(keepends=True)
         (raw / log).write_bytes(b"".join([*lines[:line], REMARK, *lines[line:]]))
     derived = data / "derived/short"
-    chain.run(raw, derived, until="gyroscope")
+    chain.run(raw, derived, until="studies")
     nothing = {name: stage.STAGE.writes[name] for name in ("parameters", "covariance")}
     with Writer(derived / "extension", nothing, made_by_extension) as writer:
         for name, table in nothing.items():
             writer.write(name, table.empty())
     made_by = made_by_extension() | {"stage": "diagnosis", "code": hash_of(code_of("diagnosis"))}
-    verdict = {"verdict": tables.VERDICTS}
-    with Writer(derived / "diagnosis", verdict, lambda: made_by) as writer:
-        writer.write("verdict", tables.VERDICTS.empty())
-    history.STAGE.run(derived, {"archive": [data / "history"]}, {})
+    none = {
+        "result": tables.PARAMETERS,
+        "covariance": tables.COVARIANCE,
+        "verdict": tables.VERDICTS,
+    }
+    with Writer(derived / "diagnosis", none, lambda: made_by) as writer:
+        for name, table in none.items():
+            writer.write(name, table.empty())
+    history.STAGE.run(derived, {"archive": [data / "history"]}, {"level": 0.01})
     return data
 
 
