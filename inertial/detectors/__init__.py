@@ -15,6 +15,7 @@ from inertial.detectors.duplicate import Duplicate
 from inertial.detectors.gap import Gap
 from inertial.detectors.gravity_error import GravityError
 from inertial.detectors.held_record import HeldRecord
+from inertial.detectors.impact import Impact
 from inertial.detectors.incomplete_turn import IncompleteTurn
 from inertial.detectors.manoeuvre_missing import ManoeuvreMissing
 from inertial.detectors.manoeuvre_swapped import ManoeuvreSwapped
@@ -55,7 +56,8 @@ OF_RECORDS: tuple[Detector, ...] = (
     RateOff(),
     WrongDay(),
     WrongImuType(),
-    # readings: a channel at its limit or one that repeats would resemble a spike
+    # readings: a blow, a channel at its limit or one that repeats would resemble a spike
+    Impact(),
     Saturation(),
     DeadAxis(),
     Spikes(),

@@ -20,7 +20,12 @@ from inertial.signal.detector import (
     names_of_axes,
     names_of_logs,
 )
-from inertial.signal.outliers import MAX_SPIKE_READINGS, MIN_DEVIATION_SCATTER, Channel
+from inertial.signal.outliers import (
+    MAX_SPIKE_READINGS,
+    MEDIAN_WIDTH,
+    MIN_DEVIATION_SCATTER,
+    Channel,
+)
 from inertial.signal.runs import joined
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.text.messages import _
@@ -36,6 +41,7 @@ MAX_OTHER_SPIKES = 4  # of them may be spikes as well
 FIFTH_LARGEST_SIGMA = 1.37  # sigma: the fifth largest of 24 Gaussian readings
 # Of that scatter, which comes from few readings, so that noise alone seldom raises it
 SIDE_SCATTER_SHARE = 0.75
+MIN_NEIGHBOUR_SHARE = 0.1  # of the largest within nine readings: what is less is not judged
 CAMPAIGN_READINGS = 1.2e6  # of a campaign like S0's, among which the largest is sought
 
 
@@ -93,7 +99,6 @@ class Spikes(Detector):
                         float(channel.off[k]),
                         channel=i,
                         p_value=chance(scatters),
-                        count=end - start,
                         facts=Spike(end - start, 1 / log.interval, len(channel.places)),
                     )
 
@@ -134,7 +139,7 @@ class Spikes(Detector):
             _(
                 "{count} spikes of the {axes} in {logs}, of up to {size} {unit}. The largest: "
                 "{one}",
-                count=sum(event.count for _, event in events),
+                count=len(events),
                 axes=names_of_axes(events),
                 logs=names_of_logs(events),
                 size=significant(abs(largest.size), 3),
@@ -172,7 +177,11 @@ def _spikes(channel: Channel, handled: Booleans) -> Iterator[tuple[int, int, flo
     moved = np.maximum(
         MIN_GROSS_SCATTER * scatter, MIN_CHANGE_RATIO * _beside(channel.change, far, 0)
     )
-    certain = off[far] > np.where(handled[channel.places[far]], moved, MIN_SPIKE_SCATTER * scatter)
+    # A large spike bends the lines by which what lies beside it is judged.
+    near = np.clip(far[:, None] + np.arange(-MEDIAN_WIDTH, MEDIAN_WIDTH + 1), 0, len(off) - 1)
+    far_beside = off[near].max(axis=1)
+    certain = off[far] > MIN_NEIGHBOUR_SHARE * far_beside
+    certain &= off[far] > np.where(handled[channel.places[far]], moved, MIN_SPIKE_SCATTER * scatter)
     far, scatter = far[certain], scatter[certain]
     for start, end in joined(_with_others(off, far, scatter), 0):
         own = (far >= start) & (far < end)

@@ -1,0 +1,150 @@
+"""A blow against the case or the table."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from inertial.signal.detector import (
+    Array,
+    Booleans,
+    Description,
+    Detector,
+    Event,
+    Log,
+    Piece,
+)
+from inertial.signal.runs import joined
+from inertial.text.messages import _
+from inertial.text.numbers import counted, significant
+
+MIN_ROUGH_SIGMA = 8.0  # sigma of noise, by which a second difference is none
+MIN_CHANNELS = 4  # that are shaken at once; a table that turns up moves one axis
+MIN_RECORDS = 6  # a spoilt record has second differences in three, three of them in five
+MAX_SECONDS = 2.0  # s; what lasts longer is a motion or an oscillation
+MAX_BREAK = 8  # records within it in which fewer channels are shaken
+MIN_SHAKEN_SHARE = 0.5  # of its records
+SIDE_RECORDS = 32  # before and after, which are quiet
+MAX_QUIET_ROUGH = 3.0  # times the noise of the log: the median of them
+# Of the peak, that may remain in a channel afterwards: a turn or a ramp goes on meanwhile
+MAX_LEFT_SHARE = 0.3
+TAIL_SHARE = 0.5  # of its length, in which what rings below the noise of a record dies away
+
+
+@dataclass(frozen=True)
+class Blow:
+    """Duration of an impact, s, and how many channels it shakes."""
+
+    seconds: float
+    channels: int
+
+
+class Impact(Detector):
+    """A short burst in most channels at once, after which everything is as before.
+
+    Noise is seen in the second differences, of which a steady turn and a ramp have none; of white
+    noise they have √6 σ. In a burst most channels exceed it by far, for more records than a spoilt
+    one has, and the magnitude of the specific force changes; before it and after it they do not,
+    and what they read then is the same. So it is no spike, no motion, and no oscillation.
+    """
+
+    name = "impact"
+    cause = _("something struck the case or the table, or a switch or a brake did")
+    source = "mikoff, IMU 4: a knock in a rest, which rings for some tenths of a second"
+    costs = _("the mean of a short rest, and its noise")
+    unit = "m/s²"
+    severity = 1
+    masks = True
+
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
+        noise = np.fmax(log.noise, np.nan_to_num(log.quantum))
+        known = [i for i in range(6) if np.isfinite(noise[i])]
+        if not np.isfinite(log.interval) or len(known) < MIN_CHANNELS:
+            return
+        rough = np.full((len(piece), 6), np.nan)
+        for i in known:
+            places, values = piece.channel(i)
+            if len(places) > 2:
+                rough[places[1:-1], i] = np.abs(np.diff(values, 2)) / (np.sqrt(6) * noise[i])
+        shaken = np.count_nonzero(np.nan_to_num(rough) > MIN_ROUGH_SIGMA, axis=1) >= MIN_CHANNELS
+        for start, end in joined(np.flatnonzero(shaken), MAX_BREAK):
+            if _short_and_dense(shaken, start, end, log.interval) and _quiet(rough, start, end):
+                blow = _blow(piece.values, start, end, noise)
+                if blow is None:
+                    continue
+                peak, channels = blow
+                start, end = max(start - 1, 0), min(end + _tail(start, end), len(piece))
+                yield piece.event(
+                    start, end, peak, facts=Blow((end - start) * log.interval, channels)
+                )
+
+    def describe(self, event: Event, name: str) -> Description:
+        blow: Blow = event.facts
+        return Description(
+            _(
+                "{name}: an impact of {size} m/s² at line {line} shakes {channels} for "
+                "{seconds} s.",
+                name=name,
+                size=significant(event.size, 2),
+                line=event.line,
+                channels=counted(blow.channels, "channel"),
+                seconds=significant(blow.seconds, 2),
+            ),
+            _("Its records say nothing of the rest or the turn; what follows reads as before."),
+            _("They are masked: left out of a rest, interpolated in a turn at steady rate."),
+        )
+
+
+def _short_and_dense(shaken: Booleans, start: int, end: int, interval: float) -> bool:
+    number = end - start
+    dense = np.count_nonzero(shaken[start:end]) > MIN_SHAKEN_SHARE * number
+    return bool(MIN_RECORDS <= number <= MAX_SECONDS / interval and dense)
+
+
+def _sides(values: Array, start: int, end: int) -> tuple[Array, Array]:
+    """The records before a burst and those behind its tail."""
+    tail = end + _tail(start, end)
+    return values[max(start - 1 - SIDE_RECORDS, 0) : max(start - 1, 0)], values[tail:][
+        :SIDE_RECORDS
+    ]
+
+
+def _tail(start: int, end: int) -> int:
+    return max(round(TAIL_SHARE * (end - start)), 2)
+
+
+def _quiet(rough: Array, start: int, end: int) -> bool:
+    """Whether all channels are as quiet as usual before a burst and behind it."""
+    for side in _sides(rough, start, end):
+        read = side[:, np.isfinite(side).any(axis=0)]
+        if len(read) < SIDE_RECORDS // 2 or not read.size:
+            return False
+        if (np.nanmedian(read, axis=0) > MAX_QUIET_ROUGH).any():
+            return False
+    return True
+
+
+def _blow(values: Array, start: int, end: int, noise: Array) -> tuple[float, int] | None:
+    """The largest change of the specific force, m/s², and how many channels are shaken.
+
+    None where the magnitude of the force does not change, or a channel reads something else
+    afterwards.
+    """
+    before, behind = (_means(side) for side in _sides(values, start, end))
+    peak = np.nanmax(np.abs(values[start:end] - before), axis=0, initial=0.0)
+    least = MIN_ROUGH_SIGMA * noise
+    with np.errstate(invalid="ignore"):
+        changed = np.abs(behind - before) > np.fmax(MAX_LEFT_SHARE * peak, least)
+    force = np.linalg.norm(values[start:end, :3], axis=1) - np.linalg.norm(before[:3])
+    if changed.any() or not np.isfinite(force).any():
+        return None
+    largest = float(np.nanmax(np.abs(force)))
+    if largest < np.nanmax(least[:3]):
+        return None
+    return largest, int(np.count_nonzero(peak > least))
+
+
+def _means(side: Array) -> Array:
+    """The mean of each channel, NaN where it is not recorded."""
+    number = np.isfinite(side).sum(axis=0)
+    return np.where(number > 0, np.nansum(side, axis=0) / np.maximum(number, 1), np.nan)

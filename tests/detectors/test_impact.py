@@ -1,0 +1,63 @@
+"""A blow shakes all channels at once, and nothing remains; motions and spoilt records are none."""
+
+import numpy as np
+import pytest
+from on_a_table import recorded, rest, tumble, turn
+from recorded_by_hand import COUNT, INTERVAL, NOISE, assert_told
+
+from inertial.detectors.impact import Impact
+
+
+def found(values):
+    one, log = recorded(values)
+    events = list(Impact().detect(one, log))
+    for event in events:
+        assert_told(Impact(), event, "log")
+    return events
+
+
+def ringing(records, frequency=31.0, decay=0.08):
+    """A decaying sine, (n, 1), from 0 on."""
+    time = INTERVAL * np.arange(records)
+    return (np.exp(-time / decay) * np.sin(2 * np.pi * frequency * time))[:, None]
+
+
+def counted(values):
+    return np.rint(values / COUNT) * COUNT
+
+
+@pytest.mark.parametrize("times", [200, 2000, 50_000])
+@pytest.mark.parametrize("still", [True, False], ids=["rest", "turn"])
+def test_a_blow_is_found(times, still):
+    """`times`: the noise of a reading."""
+    values = rest(4000) if still else turn()
+    share = np.array([0.9, -0.6, 0.4, 0.7, -0.8, 0.5])
+    values[2000:2300] += counted(times * NOISE * share * ringing(300))
+    (event,) = found(values)
+    assert abs(event.first - 2000) <= 3
+    audible = 0.08 * np.log(times) / INTERVAL  # records, until it is the noise of one
+    assert 2000 + audible / 2 < event.after < 2000 + 3 * audible
+    assert event.channel is None
+
+
+def test_spoilt_records_steps_and_oscillations_are_none():
+    values = rest(6000)
+    values[1000:1003] += counted(1000 * NOISE)  # three records, all channels
+    values[2000:, 3:] += counted(500 * NOISE)[3:]  # a step of the gyros
+    time = INTERVAL * np.arange(1500)
+    values[3000:4500] += counted(300 * NOISE * np.sin(2 * np.pi * 37 * time)[:, None])
+    assert found(values) == []
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_clean_readings_are_silent(seed):
+    assert [found(values) for values in (rest(200_000, seed), turn(seed), tumble(seed))] == [[]] * 3
+
+
+def test_a_hand_that_lifts_the_imu_is_none():
+    """Half a second up and down by 0.1 m and 20°, smoothly."""
+    values = rest(4000)
+    phase = np.linspace(0, 2 * np.pi, 100)
+    lift = 0.1 * (2 * np.pi / 1.0) ** 2 * np.cos(phase)
+    values[2000:2100] += counted(np.outer(lift, [0.3, 0.5, 1, 0.2, 0.3, 0.2]))
+    assert found(values) == []
