@@ -313,19 +313,32 @@ def without_lines(
     for turn in turns:
         own = (blocks["manoeuvre"] == turn.name) & (blocks["phase"] == "steady")
         if own.any() and np.isfinite(turn.start):
-            rates = _mean_rates(turn, lines, blocks[own])
-            rates -= np.average(rates, axis=0, weights=blocks.loc[own, "seconds"])
-            quiet.loc[own, GYRO] -= rates @ turn.matrix.T
+            rates = _mean_rates(turn, lines, *_stretches(blocks[own], turn))
+            quiet.loc[own, GYRO] -= (rates[:-1] - rates[-1]) @ turn.matrix.T
     return quiet
 
 
-def _mean_rates(turn: SteadyTurn, lines: Sequence[Oscillation], blocks: pd.DataFrame) -> Array:
-    """The mean rates of all lines in blocks of a turn, (k, 3), rad/s, about the case's axes."""
+def _stretches(blocks: pd.DataFrame, turn: SteadyTurn) -> tuple[Array, Array]:
+    """The blocks of a steady part, and last the whole of it, what is missing included.
+
+    Returns the middle of each in s since the first sample, and the number of its samples.
+    """
+    middle, seconds = (blocks[name].to_numpy(np.float64) for name in ("time", "seconds"))
+    start, end = middle[0] - seconds[0] / 2, middle[-1] + seconds[-1] / 2
+    count = np.append(blocks["count"].to_numpy(np.float64), round((end - start) / turn.step))
+    return np.append(middle, (start + end) / 2) - turn.start, count
+
+
+def _mean_rates(
+    turn: SteadyTurn, lines: Sequence[Oscillation], since: Array, count: Array
+) -> Array:
+    """The mean rates of all lines, (k, 3), rad/s, about the case's axes.
+
+    Of k stretches of a turn with their middle, s since its first sample, and number of samples.
+    """
     rates = turn.truth.copy()
     time = turn.step * np.arange(len(rates))
-    since = blocks["time"].to_numpy(np.float64) - turn.start
-    count = blocks["count"].to_numpy(np.float64)
-    means = np.zeros((len(blocks), 3))
+    means = np.zeros((len(since), 3))
     for line in (part for cause in lines for part in cause.parts):
         frequency = line.likeliest.frequencies.get(turn.name)
         if frequency is None:
