@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.motions import CampaignMotions, mean_motion, positions_of
+from inertial.campaign.motions import CampaignMotions, Merged, mean_motions, positions_of
 from inertial.campaign.rate_segments import GyroInputs, Recorded
 from inertial.campaign.records import Known, Manoeuvre
 from inertial.campaign.solution import Solution
@@ -18,6 +18,7 @@ from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.gyroscope_equations import Linearisation
+from inertial.estimation.gyroscopes import LinearisedEquations
 from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import EffectInformation, System
 from inertial.estimation.sensitivities import Sensitivities
@@ -37,7 +38,26 @@ MIN_PIECE_S = 30.0  # s, duration of a piece of a static position
 MAX_PIECES = 100  # pieces of all static positions together
 SENSORS = ("gyro", "accel")
 POSITION_UNKNOWNS = {"tilt": "tilt", "horizontal": "level"}  # by quantity, in the equations
+MAX_KEPT = 4  # equations with different effects
 MERGED_BLOCKS = 5  # blocks of a rotation in one mean of the accelerometers, whose input is slow
+
+
+EffectKey = tuple[str, float | None, float | None]
+EffectKeys = tuple[EffectKey, ...]
+
+
+def _key(effect: Effect) -> EffectKey:
+    """What distinguishes an effect from others of its campaign."""
+    return effect.name, effect.at, effect.reference
+
+
+def _prior_sigmas(effects: Sequence[Effect], prior_sigma: float) -> dict[str, float]:
+    """Prior sigmas of the parameters of effects, by column; `prior_sigma`: in typical sizes."""
+    return {
+        f"{effect.label}.{parameter.name}": prior_sigma * parameter.typical
+        for effect in effects
+        for parameter in effect.parameters
+    }
 
 
 @dataclass(frozen=True)
@@ -56,9 +76,12 @@ class Campaign:
     position_sigma: float
     positions: Sequence[str]
     planned: Sequence[str] = ()
-    _known: dict[tuple[str, float | None, float | None], Reading] = field(
+    _known: dict[EffectKey, Reading] = field(
         default_factory=dict, repr=False, compare=False
     )  # responses to effects, which random walks do not change
+    _linear: dict[EffectKeys, LinearisedEquations] = field(
+        default_factory=dict, repr=False, compare=False
+    )  # equations of the gyros, nor these
 
     @property
     def manoeuvres(self) -> list[str]:
@@ -114,16 +137,12 @@ class Campaign:
 
     def deviance(self, effects: Sequence[Effect], sizes: Sequence[float]) -> float:
         """−2 log of the likelihood; `sizes`: prior sigma of each effect, in its typical sizes."""
-        responses = self._responses(effects)
         sigmas = {
             f"{effect.label}.{parameter.name}": size * parameter.typical
             for effect, size in zip(effects, sizes, strict=True)
             for parameter in effect.parameters
         }
-        systems = (
-            self._system(s, self._sensitivities(s, effects, responses), sigmas, None)
-            for s in SENSORS
-        )
+        systems = (self._system(s, effects, sigmas, None) for s in SENSORS)
         return sum(system.solve_shared().deviance for system in systems if system is not None)
 
     def systems(
@@ -134,90 +153,90 @@ class Campaign:
         `prior_sigma`: of the effects' parameters, in their typical sizes; `only`: the
         manoeuvres that are used.
         """
-        responses = self._responses(effects)
-        gyro, accel = (
-            self._system(s, *self._with_sigmas(s, effects, prior_sigma, responses), only)
-            for s in SENSORS
-        )
+        sigmas = _prior_sigmas(effects, prior_sigma)
+        gyro, accel = (self._system(s, effects, sigmas, only) for s in SENSORS)
         return gyro, accel
 
     def system(self, sensor: str, effects: Sequence[Effect], prior_sigma: float) -> System | None:
         """The equations of one sensor, `gyro` or `accel`; arguments as in `systems`."""
-        inputs = self._with_sigmas(sensor, effects, prior_sigma, self._responses(effects))
-        return self._system(sensor, *inputs, None)
+        return self._system(sensor, effects, _prior_sigmas(effects, prior_sigma), None)
 
     def deviance_of_random_walk(
         self, sensor: str, effects: Sequence[Effect], prior_sigma: float
     ) -> Callable[[float], float]:
         """−2 log of the likelihood of one sensor as a function of the random walk of its biases."""
-        inputs = self._with_sigmas(sensor, effects, prior_sigma, self._responses(effects))
-        drifting = self._drifting(sensor, *inputs, None, walking=True)
+        sigmas = _prior_sigmas(effects, prior_sigma)
+        drifting = self._drifting(sensor, effects, sigmas, None, walking=True)
         assert drifting is not None  # else it has no times
         return drifting.likelihood.of_walk()
-
-    def _with_sigmas(
-        self,
-        sensor: str,
-        effects: Sequence[Effect],
-        prior_sigma: float,
-        responses: Sequence[Reading],
-    ) -> tuple[list[Sensitivities], dict[str, float]]:
-        """Sensitivities to the effects in each stretch, and prior sigmas of their parameters."""
-        prior_sigmas = {
-            f"{effect.label}.{parameter.name}": prior_sigma * parameter.typical
-            for effect in effects
-            for parameter in effect.parameters
-        }
-        return self._sensitivities(sensor, effects, responses), prior_sigmas
 
     def _system(
         self,
         sensor: str,
-        sensitivities: list[Sensitivities],
+        effects: Sequence[Effect],
         prior_sigmas: Mapping[str, float],
         only: set[str] | None,
     ) -> System | None:
         walk = self.solution.random_walks[SENSORS.index(sensor)]
-        drifting = self._drifting(sensor, sensitivities, prior_sigmas, only, walking=bool(walk))
+        drifting = self._drifting(sensor, effects, prior_sigmas, only, walking=bool(walk))
         return drifting.system(walk=walk) if drifting else None
 
     def _drifting(
         self,
         sensor: str,
-        sensitivities: list[Sensitivities],
+        effects: Sequence[Effect],
         prior_sigmas: Mapping[str, float],
         only: set[str] | None,
         *,
         walking: bool,
     ) -> DriftingEquations | None:
         if sensor == "gyro":
-            return self._gyro(sensitivities, prior_sigmas, only)
-        return self._accelerometer(sensitivities, prior_sigmas, only, walking=walking)
+            return self._gyro(effects, prior_sigmas, only)
+        return self._accelerometer(effects, prior_sigmas, only, walking=walking)
 
     def _gyro(
         self,
-        sensitivities: list[Sensitivities],
+        effects: Sequence[Effect],
         prior_sigmas: Mapping[str, float],
         only: set[str] | None,
     ) -> DriftingEquations | None:
         if self.solution.gyro is None:
             return None
-        rests, turns = [], []
-        static = len(self.static_motions)
-        of_positions, of_turns = sensitivities[:static], sensitivities[static:]
-        for position, rest, responses in zip(
-            self.inputs.static_positions, self.inputs.static_rates, of_positions, strict=True
-        ):
-            if only is None or position.manoeuvre.name in only:
-                rests.append(
-                    replace(rest, sensitivities=Sensitivities(responses.names, responses.values[0]))
-                )
-        for recorded, turn, responses in zip(self._whole, self.inputs.turns, of_turns, strict=True):
-            if only is None or recorded.plan.name in only:
-                turns.append(replace(turn, sensitivities=responses))
-        if not (rests or turns):
+        names = [position.manoeuvre.name for position in self.inputs.static_positions]
+        names += [recorded.plan.name for recorded in self._whole]
+        used = [only is None or name in only for name in names]
+        if not any(used):
             return None
+        equations = replace(self._linearised(effects), effect_sigma=prior_sigmas)
+        return equations.only(used).drifting()
+
+    def _linearised(self, effects: Sequence[Effect]) -> LinearisedEquations:
+        """The equations of all static positions and rate segments, with no prior of the effects."""
+        key = tuple(_key(effect) for effect in effects)
+        if key in self._linear:
+            return self._linear[key]
+        made = self._newly_linearised(effects)
+        if all(known in self._known for known in key):
+            if len(self._linear) >= MAX_KEPT:
+                self._linear.clear()
+            self._linear[key] = made
+        return made
+
+    def _newly_linearised(self, effects: Sequence[Effect]) -> LinearisedEquations:
+        sensitivities = self._sensitivities("gyro", effects, self._responses(effects))
+        static = len(self.static_motions)
+        rests = [
+            replace(rest, sensitivities=Sensitivities(responses.names, responses.values[0]))
+            for rest, responses in zip(
+                self.inputs.static_rates, sensitivities[:static], strict=True
+            )
+        ]
+        turns = [
+            replace(turn, sensitivities=responses)
+            for turn, responses in zip(self.inputs.turns, sensitivities[static:], strict=True)
+        ]
         gyro = self.solution.gyro
+        assert gyro is not None  # else it has no equations
         levels = {
             (f"{POSITION_UNKNOWNS[quantity]} {component}", position): value
             for (position, quantity, component), value in self.solution.position_parameters.items()
@@ -229,11 +248,12 @@ class Campaign:
             constrained_positions(levels, self.inputs.earth.level),
         )
         known = (self.inputs.earth, self.position_sigma)
-        return gyroscopes.linearised(point, turns, [], *known, prior_sigmas).drifting(rests)
+        columns = _prior_sigmas(effects, 1.0)
+        return gyroscopes.linearised(point, turns, [], *known, columns).with_statics(rests)
 
     def _accelerometer(
         self,
-        sensitivities: list[Sensitivities],
+        effects: Sequence[Effect],
         prior_sigmas: Mapping[str, float],
         only: set[str] | None,
         *,
@@ -241,6 +261,7 @@ class Campaign:
     ) -> DriftingEquations | None:
         if self.solution.accelerometer is None:
             return None
+        sensitivities = self._sensitivities("accel", effects, self._responses(effects))
         rests = [
             replace(rest, sensitivities=Sensitivities(responses.names, responses.values[0]))
             for (name, rest, _), responses in zip(self.static_forces, sensitivities, strict=True)
@@ -264,7 +285,7 @@ class Campaign:
             return []
         unit = Triad(np.eye(3), np.zeros(3))
         triads = self.solution.gyro or unit, self.solution.accelerometer or unit
-        keys = [(effect.name, effect.at, effect.reference) for effect in effects]
+        keys = [_key(effect) for effect in effects]
         every = dict(zip(keys, effects, strict=True))
         missing = {key: effect for key, effect in every.items() if key not in self._known}
         found = signatures(self.motion, self.solution.site, *triads, list(missing.values()))
@@ -354,18 +375,17 @@ def _turning(
     read, seconds = blocks.accel, blocks.seconds
     assert m.up is not None  # else the turn is refused
     ups = mean_turned(m.up, m.axis, motion.angle, motion.rate * seconds)
-    parts = []
     pieces = [range(first, after, MERGED_BLOCKS) for first, after in pairwise(edges)]
     starts = [start for piece in pieces for start in piece]
-    for start, after in pairwise([*starts, len(read)]):
-        some = slice(start, after)
-        share = seconds[some] / seconds[some].sum()
-        mean = share @ read[some]
-        up = share @ ups[some]
-        sigma = density / np.sqrt(seconds[some].sum())
-        rest = StaticForce(m.position, up, mean, sigma)
-        parts.append((m.name, rest, mean_motion(motion, some, share)))
-    return parts
+    merged = Merged(seconds, starts)
+    sigmas = density / np.sqrt(merged.seconds)[:, None]
+    rests = [
+        StaticForce(m.position, up, mean, sigma)
+        for up, mean, sigma in zip(merged.mean(ups), merged.mean(read), sigmas, strict=True)
+    ]
+    return [
+        (m.name, rest, at) for rest, at in zip(rests, mean_motions(motion, merged), strict=True)
+    ]
 
 
 def evidence(

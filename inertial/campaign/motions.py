@@ -225,17 +225,33 @@ def positions_of(plan: Sequence[Manoeuvre]) -> list[str]:
     return list(dict.fromkeys(m.position for m in plan))
 
 
-def mean_motion(motion: Motion, some: slice, share: Array) -> Motion:
-    """The mean of some stretches; `share`: their weights."""
+class Merged:
+    """Stretches one after another, some of which are merged into one from each of `starts` on.
 
-    def mean(values: Array) -> Array:
-        return np.asarray([share @ values[some]])
+    `weights`: (n,), s, their durations.
+    """
 
+    def __init__(self, weights: Array, starts: Sequence[int]) -> None:
+        self._weights, self.starts = weights, list(starts)
+        self.seconds = np.add.reduceat(weights, self.starts)
+
+    def mean(self, values: Array) -> Array:
+        """The mean of each, (m, …), of values (n, …)."""
+        shape = (-1, *(1,) * (values.ndim - 1))
+        sums = np.add.reduceat(values * self._weights.reshape(shape), self.starts)
+        return np.asarray(sums / self.seconds.reshape(shape))
+
+
+def mean_motions(motion: Motion, merged: Merged) -> list[Motion]:
+    """The mean motion of each of the merged stretches."""
     names = [field.name for field in fields(Motion) if field.name != "about"]
-    means: dict[str, Any] = {name: mean(getattr(motion, name)) for name in names}
+    means: dict[str, Any] = {name: merged.mean(getattr(motion, name)) for name in names}
     # The acceleration at a lever arm is quadratic in the rate, so the rate is the rms.
-    means["rate"] = np.sign(means["rate"]) * np.sqrt(mean(motion.rate**2))
-    means["seconds"] = np.array([motion.seconds[some].sum()])
+    means["rate"] = np.sign(means["rate"]) * np.sqrt(merged.mean(motion.rate**2))
+    means["seconds"] = merged.seconds
     for name in ("surveyed", "position", "run"):
-        means[name] = getattr(motion, name)[some][:1]
-    return Motion(about=motion.about, **means)
+        means[name] = getattr(motion, name)[merged.starts]
+    return [
+        Motion(about=motion.about, **{name: values[i : i + 1] for name, values in means.items()})
+        for i in range(len(merged.starts))
+    ]

@@ -100,7 +100,7 @@ def fit(
     estimate = joint(statics, *others)
     equations = linearised(linearisation_at(estimate, earth), *others)
 
-    drifting = equations.drifting(statics)
+    drifting = equations.with_statics(statics).drifting()
     likelihood = drifting.likelihood
 
     def fit_with(scatter: float, walk: float) -> Estimate:
@@ -150,27 +150,40 @@ def _median_rate(statics: Sequence[StaticRate]) -> Array:
 class LinearisedEquations:
     """The equations of rate segments, to which those of static positions are added.
 
-    `blocks`: with the position and the stretch of each; `sigma`: of the errors; `effect_sigma`:
-    prior sigmas of the parameters of effects.
+    `blocks`: with the position and the stretch of each, None of a segment that no gyro senses;
+    `sigma`: of the errors; `effect_sigma`: prior sigmas of the parameters of effects.
     """
 
     point: Linearisation
     earth: Earth
     effect_sigma: Mapping[str, float]
-    blocks: Sequence[tuple[str, EquationBlock, Stretch]]
+    blocks: Sequence[tuple[str, EquationBlock, Stretch] | None]
     sigma: Mapping[Name, float]
 
-    def drifting(self, statics: Sequence[StaticRate]) -> DriftingEquations:
-        """All equations. Unknowns: M by rows, bias, upward earth rate, effects."""
-        prior = np.concatenate([PRIOR, [self.earth.up], np.zeros(len(self.effect_sigma))])
-        sigma, effects = dict(self.sigma), list(self.effect_sigma)
+    def with_statics(self, statics: Sequence[StaticRate]) -> "LinearisedEquations":
+        """The same with the equations of static positions, before the others."""
+        prior, effects, sigma = self._prior, list(self.effect_sigma), dict(self.sigma)
         static = static_equations(statics, self.point.matrix, self.earth, prior, effects, sigma)
+        return replace(self, blocks=[*static, *self.blocks], sigma=sigma)
+
+    def only(self, used: Sequence[bool]) -> "LinearisedEquations":
+        """Some of the blocks; `used`: of each, whether it is."""
+        blocks = [block for block, there in zip(self.blocks, used, strict=True) if there]
+        return replace(self, blocks=blocks)
+
+    @property
+    def _prior(self) -> Array:
+        return np.concatenate([PRIOR, [self.earth.up], np.zeros(len(self.effect_sigma))])
+
+    def drifting(self) -> DriftingEquations:
+        """All equations. Unknowns: M by rows, bias, upward earth rate, effects."""
+        prior, sigma = self._prior, dict(self.sigma)
         by_position: dict[str, list[tuple[EquationBlock, Stretch]]] = {}
         constrained = size_constraint(self.point, self.earth, len(prior), sigma)
-        for position, block, stretch in (*static, *self.blocks):
+        for position, block, stretch in filter(None, self.blocks):
             by_position.setdefault(position, []).append((constrained(block), stretch))
         names = [("parameter", str(i)) for i in range(UNKNOWNS)]
-        names += [("earth", "up"), *(("effect", name) for name in effects)]
+        names += [("earth", "up"), *(("effect", name) for name in self.effect_sigma)]
         return DriftingEquations(
             [pair for pairs in by_position.values() for pair in pairs],
             [position for position, pairs in by_position.items() for _ in pairs],
@@ -184,8 +197,8 @@ class LinearisedEquations:
     def system(
         self, statics: Sequence[StaticRate], scatter: float = 0.0, walk: float = 0.0
     ) -> System:
-        """The same, the errors eliminated; `scatter`, `walk`: as in `joint`."""
-        return self.drifting(statics).system(scatter, walk)
+        """All equations and those of static positions; `scatter`, `walk`: as in `joint`."""
+        return self.with_statics(statics).drifting().system(scatter, walk)
 
 
 def linearised(
@@ -205,12 +218,12 @@ def linearised(
     prior = np.concatenate([PRIOR, [earth.up], np.zeros(len(effect_sigma))])
     sigma: dict[Name, float] = {}
     common = (earth, position_sigma, prior, list(effect_sigma), sigma)
-    blocks: list[tuple[str, EquationBlock, Stretch]] = []
+    blocks: list[tuple[str, EquationBlock, Stretch] | None] = []
     for number, segment in enumerate(segments):
         name = f"{segment.position.name} {number}"
         block = segment_equations(segment, name, point, *common)
-        if block is not None:
-            blocks.append((segment.position.name, block, segment.stretch or Stretch(name)))
+        stretch = segment.stretch or Stretch(name)
+        blocks.append(None if block is None else (segment.position.name, block, stretch))
     for number, steady in enumerate(steadies):
         name = f"{steady.position.name} {number}"
         block = steady_equations(steady, name, point.matrix, *common)

@@ -41,25 +41,23 @@ class Visible:
 def visible(evidence: Evidence, effects: Sequence[SearchedEffect]) -> list[Visible]:
     """For every parameter of every effect five sigma; the median over a scan."""
     return [
-        _of_parameter(evidence, effect, parameter)
+        _of_parameter(effect, parameter, [each[parameter] for each in of_candidates])
         for effect in effects
+        for of_candidates in [[_of_columns(evidence, columns) for columns in effect.candidates]]
         for parameter in range(max((len(c) for c in effect.candidates), default=0))
     ]
 
 
-def _of_parameter(evidence: Evidence, effect: SearchedEffect, parameter: int) -> Visible:
-    sizes, reasons, shares = [], [], []
-    for columns in effect.candidates:
-        size, reason, share = _of_column(evidence, columns, parameter)
-        sizes.append(size)
-        reasons.append(reason)
-        shares.append(share)
+_Limit = tuple[float, str, float]  # size, reason and share
+
+
+def _of_parameter(effect: SearchedEffect, parameter: int, limits: Sequence[_Limit]) -> Visible:
+    sizes, reasons, shares = zip(*limits, strict=True)
     finite = np.array([size for size in sizes if np.isfinite(size)])
     if not len(finite):
         order = (ONLY_TOGETHER, ABSORBED, NOT_EXCITED)
         reason = next((r for r in order if r in reasons), NOT_EXCITED)
-        share = max(shares, default=np.nan)
-        return Visible(effect.name, parameter, np.nan, np.nan, np.nan, reason, share)
+        return Visible(effect.name, parameter, np.nan, np.nan, np.nan, reason, max(shares))
     middle = sizes.index(float(np.sort(finite)[len(finite) // 2]))
     return Visible(
         effect.name,
@@ -72,25 +70,25 @@ def _of_parameter(evidence: Evidence, effect: SearchedEffect, parameter: int) ->
     )
 
 
-def _of_column(
-    evidence: Evidence, columns: Sequence[int], parameter: int
-) -> tuple[float, str, float]:
+def _of_columns(evidence: Evidence, columns: Sequence[int]) -> list[_Limit]:
+    """Of each parameter of a candidate."""
     if not evidence.sensors:
-        return np.nan, NOT_EXCITED, np.nan
+        return [(np.nan, NOT_EXCITED, np.nan)] * len(columns)
     total = evidence.total
-    own = float(total.information[columns[parameter], columns[parameter]])
-    share = np.nan
-    if evidence.raw is not None:
-        raw = float(evidence.raw[columns[parameter]])
-        if raw <= 0:
-            return np.nan, NOT_EXCITED, np.nan
-        share = own / raw
-        if share <= MIN_INFORMATION_SHARE:
-            return np.nan, ABSORBED, share
-    elif own <= 0:
-        return np.nan, NOT_EXCITED, share
     _, covariance = total.estimate(columns)
-    variance = float(covariance[parameter, parameter])
-    if not np.isfinite(variance):
-        return np.nan, ONLY_TOGETHER, share
-    return DETECTION_SIGMAS * float(np.sqrt(variance)), VISIBLE, share
+    limits: list[_Limit] = []
+    for column, variance in zip(columns, np.diag(covariance).tolist(), strict=True):
+        own, share = float(total.information[column, column]), np.nan
+        if evidence.raw is not None:
+            raw = float(evidence.raw[column])
+            share = own / raw if raw > 0 else np.nan
+            if raw <= 0 or share <= MIN_INFORMATION_SHARE:
+                limits.append((np.nan, ABSORBED if raw > 0 else NOT_EXCITED, share))
+                continue
+        elif own <= 0:
+            limits.append((np.nan, NOT_EXCITED, share))
+            continue
+        seen = np.isfinite(variance)
+        size = DETECTION_SIGMAS * float(np.sqrt(variance)) if seen else np.nan
+        limits.append((size, VISIBLE if seen else ONLY_TOGETHER, share))
+    return limits

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import reduce
+from functools import cached_property, reduce
 from operator import add
 
 import numpy as np
@@ -64,7 +64,7 @@ class Evidence:
         """The parameters of the effects."""
         return self.sensors[0].names if self.sensors else ()
 
-    @property
+    @cached_property
     def total(self) -> EffectInformation:
         """All sensors together."""
         return reduce(add, self.sensors)

@@ -30,11 +30,12 @@ SENSORS = ("gyro", "accel")
 
 def likely_random_walks(campaign: Campaign, effects: Sequence[Effect]) -> tuple[float, float]:
     """The most likely random walks of gyros and accelerometers; 0 where none is significant."""
-    gyro, accel = (_random_walk(campaign, sensor, effects) for sensor in SENSORS)
+    gyro, accel = (likely_random_walk(campaign, sensor, effects) for sensor in SENSORS)
     return gyro, accel
 
 
-def _random_walk(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> float:
+def likely_random_walk(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> float:
+    """The most likely random walk of one sensor; 0 where none is significant."""
     search = _walk_search(campaign, sensor)
     if search is None:
         return 0.0

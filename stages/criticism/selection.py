@@ -25,6 +25,7 @@ from stages.criticism.bias_drift import (
     biases_of_runs,
     drift_name,
     half_waves,
+    likely_random_walk,
     likely_random_walks,
     per_log_name,
     walk_evidence,
@@ -242,7 +243,7 @@ def _replacing_walk(selection: Selection, number: int) -> float:
         law = selection.explained(replaced, walk_odds.Explained(0.0, start))
         if law - walking < MAX_LOG_ODDS:
             others = [effect for effect in selection.effects if effect.name not in replaced]
-            if size := likely_random_walks(selection.campaign, others)[number]:
+            if size := likely_random_walk(selection.campaign, sensor, others):
                 return size
     return 0.0
 
