@@ -1,11 +1,14 @@
 """The stages one after another in this process, as the workflow runs them."""
 
-from collections.abc import Collection, Mapping
+import tempfile
+from collections.abc import Collection, Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
+import pyarrow as pa
+from in_memory import MemoryStream, recorded
 from ruamel.yaml import YAML
 
 import laboratory
@@ -33,10 +36,93 @@ class Results:
     def __getitem__(self, name: str) -> pd.DataFrame:
         return pd.read_parquet(self.folder / f"{name}.parquet")
 
+    def __contains__(self, name: str) -> bool:
+        return (self.folder / f"{name}.parquet").exists()
+
     def parameters(self, stage: str, method: str = "joint") -> pd.DataFrame:
         """The parameters of one method by name."""
         table = self[f"{stage}/parameters"]
         return table[table["method"] == method].set_index("parameter")
+
+
+class Tables(Results, Mapping[str, pd.DataFrame]):
+    """The same, of a run in memory."""
+
+    def __init__(self) -> None:
+        self.arrow: dict[str, pa.Table] = {}
+        self._frames: dict[str, pd.DataFrame] = {}
+
+    def __getitem__(self, name: str) -> pd.DataFrame:
+        if name not in self._frames:
+            self._frames[name] = self.arrow[name].to_pandas()
+        return self._frames[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.arrow
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.arrow)
+
+    def __len__(self) -> int:
+        return len(self.arrow)
+
+    def add(self, stage: Stage, result: Any) -> None:
+        """Keep what a stage returned, in the columns of its contracts."""
+        pieces = result.items() if isinstance(result, Mapping) else result
+        made: dict[str, list[pa.Table]] = {name: [] for name in stage.writes}
+        for name, rows in pieces:
+            made[name].append(stage.writes[name].arrow(rows))
+        for name, parts in made.items():
+            empty = stage.writes[name].schema.empty_table()
+            self.arrow[f"{stage.name}/{name}"] = pa.concat_tables(parts or [empty])
+
+
+def in_memory(
+    recording: laboratory.Recording,
+    until: str = "gyroscope",
+    without: Collection[str] = (),
+    onto: Tables | None = None,
+) -> Tables:
+    """The chain on a recording of the laboratory up to and with `until`; tables stay in memory.
+
+    `without`: as in `run`; `onto`: the tables of an earlier run, whose stages are not run again.
+    """
+    tables = onto or Tables()
+    done = {name.partition("/")[0] for name in tables}
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        recorded(recording, Path(folder) / "raw") as campaign,
+    ):
+        sources = _sources(campaign, Path(folder))
+        for name in ORDER[: ORDER.index(until) + 1]:
+            if name not in done and name not in without:
+                stage = stage_of(name)
+                inputs = {file: sources.get(file, []) for file in stage.declared.files}
+                tables.add(stage, stage.result({**inputs, **_inputs(stage, tables, name)}))
+    return tables
+
+
+def _inputs(stage: Stage, tables: Tables, name: str) -> dict[str, Any]:
+    """The tables that a stage reads, and its settings."""
+    streams = stage.declared.streams
+    inputs: dict[str, Any] = {}
+    for argument, source in stage.declared.reads.items():
+        place = source.place.removesuffix(".parquet")
+        streamed = argument in streams
+        inputs[argument] = MemoryStream(tables.arrow[place]) if streamed else tables[place]
+    return inputs | SETTINGS.get(name, {})
+
+
+def _sources(campaign: Path, archive: Path) -> Mapping[str, list[Path]]:
+    """The files that stages read, by the names of their declarations."""
+    told = {"campaign.yaml", "published.yaml"}
+    return {
+        "campaign": [campaign / "campaign.yaml"],
+        "raw": [path for path in campaign.iterdir() if path.name not in told],
+        "instruments": [ROOT / "data/instruments.yaml"],
+        "published": list(campaign.glob("published.yaml")),
+        "archive": [archive / "history"],
+    }
 
 
 def run(
@@ -46,15 +132,7 @@ def run(
 
     `without`: stages that are left out, because no later one needs them.
     """
-    told = {"campaign.yaml", "published.yaml"}
-    raw = [path for path in campaign.iterdir() if path.name not in told]
-    sources: Mapping[str, list[Path]] = {
-        "campaign": [campaign / "campaign.yaml"],
-        "raw": raw,
-        "instruments": [ROOT / "data/instruments.yaml"],
-        "published": list(campaign.glob("published.yaml")),
-        "archive": [derived.parent / "history"],
-    }
+    sources = _sources(campaign, derived.parent)
     for name in ORDER[: ORDER.index(until) + 1]:
         if name in without:
             continue
@@ -75,7 +153,7 @@ def mounts(results: Results, **changes: Any) -> list[CampaignData]:
         "clocks": "decode/clocks",
     }
     for stage in ("accelerometer", "gyroscope"):
-        if (results.folder / stage).is_dir():
+        if f"{stage}/parameters" in results:
             tables |= {
                 f"{stage}_{of}": f"{stage}/{of}" for of in ("parameters", "positions", "fit")
             }

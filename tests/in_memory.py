@@ -7,14 +7,17 @@ writes, checksums and text, is left out: tests of bytes do that.
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow as pa
 
 from inertial.formats.account import DECODED, Account
 from inertial.formats.columns import column_reader
 from inertial.formats.novatel import novatel_reader
+from inertial.tables.parquet import BATCH_ROWS
 from laboratory.folder import campaign_yaml
 from laboratory.recording import Recording
 from laboratory.records import Records
@@ -23,6 +26,24 @@ from laboratory.records import Records
 SENT, SIGNS = [2, 1, 0, 5, 4, 3], [1, -1, 1, 1, -1, 1]
 LINE_BYTES = 90  # of a line that was never written: only sizes of files follow from it
 ICE_POINT = 273.15  # K
+
+
+@dataclass(frozen=True)
+class MemoryStream:
+    """A table in memory that stages read batch by batch, like `parquet.Stream`."""
+
+    table: pa.Table
+
+    def __iter__(self) -> Iterator[pa.RecordBatch]:
+        yield from self.table.to_batches(BATCH_ROWS)
+
+    def columns(self, names: list[str]) -> Iterator[pa.RecordBatch]:
+        """The same, of some columns only."""
+        yield from self.table.select(names).to_batches(BATCH_ROWS)
+
+    def rows(self, first: int, after: int, names: list[str]) -> Iterator[pa.RecordBatch]:
+        """Some columns of the rows [first, after)."""
+        yield from self.table.select(names).slice(first, after - first).to_batches()
 
 
 @contextmanager

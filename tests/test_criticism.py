@@ -3,7 +3,6 @@
 from functools import cache
 
 import chain
-import in_memory
 import numpy as np
 import pytest
 
@@ -46,17 +45,15 @@ CLASS = {
 
 
 @pytest.fixture(scope="module")
-def criticised(tmp_path_factory):
+def criticised():
     """The chain up to the extension on the demo's plan with some effects hidden."""
 
     @cache
     def run(name: str, seed: int) -> chain.Results:
         effects = {name: HIDDEN[name][0]} if name else {}
-        folder = tmp_path_factory.mktemp(name or "clean")
         document = chain.demo(effects=effects, seed=seed)
         recording = laboratory.perform(laboratory.specify(document))
-        with in_memory.recorded(recording, folder / "campaign") as campaign:
-            return chain.run(campaign, folder / "derived", "extension", NOT_NEEDED)
+        return chain.in_memory(recording, "extension", NOT_NEEDED)
 
     return run
 

@@ -1,6 +1,5 @@
 """A drawn campaign through the stages, and what criticism and extension made of it."""
 
-import shutil
 import tempfile
 import time
 from collections.abc import Mapping
@@ -8,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import chain
-import in_memory
 import numpy as np
 import pandas as pd
 from hidden_draws import Draw
@@ -16,7 +14,6 @@ from hidden_sizes import BESIDE, apart, code, reference
 
 import laboratory
 
-SHARED_MEMORY = Path("/dev/shm")
 CLEAR = ("found", "one_of_class")
 Outcome = dict[str, Any]
 
@@ -55,20 +52,17 @@ def run(draw: Draw) -> Outcome:
 
 def _found(draw: Draw) -> Outcome:
     """What the stages made of it, and what that took."""
-    place = SHARED_MEMORY if SHARED_MEMORY.is_dir() and not draw.on_disk else None
-    folder = Path(tempfile.mkdtemp(dir=place))
-    try:
-        start = time.process_time()
-        recording = laboratory.perform(laboratory.specify(draw.document()))
-        performed = time.process_time()
+    start = time.process_time()
+    recording = laboratory.perform(laboratory.specify(draw.document()))
+    performed = written = time.process_time()
+    with tempfile.TemporaryDirectory() as name:
+        folder, results = Path(name), chain.Results(Path(name) / "derived")
         if draw.on_disk:
             laboratory.write(recording, folder / "raw")
             written = time.process_time()
-            results = chain.run(folder / "raw", folder / "derived", "extension")
+            chain.run(folder / "raw", results.folder, "extension")
         else:
-            written = performed
-            with in_memory.recorded(recording, folder / "raw") as raw:
-                results = chain.run(raw, folder / "derived", "extension", BESIDE)
+            results = chain.in_memory(recording, "extension", BESIDE)
         seconds = time.process_time() - written
         outcome = {
             "samples": sum(len(records) for records in recording.records.values()),
@@ -78,10 +72,8 @@ def _found(draw: Draw) -> Outcome:
         outcome |= _said(results) | _estimated(draw, results)
         outcome["gain"] = _gain(results)
         if draw.twin:
-            outcome["shift"] = _shift(draw, results, folder)
+            outcome["shift"] = _shift(draw, results)
         return outcome
-    finally:
-        shutil.rmtree(folder)
 
 
 def _said(results: chain.Results) -> Outcome:
@@ -149,11 +141,10 @@ def _gain(results: chain.Results) -> list[Mapping[str, Any]]:
     ]
 
 
-def _shift(draw: Draw, results: chain.Results, folder: Path) -> float:
+def _shift(draw: Draw, results: chain.Results) -> float:
     """The largest change of the 24 parameters by what is hidden, in sigma."""
     twin = laboratory.perform(laboratory.specify(draw.document(effects={})))
-    with in_memory.recorded(twin, folder / "twin") as raw:
-        without = chain.run(raw, folder / "twin-derived", "gyroscope", BESIDE)
+    without = chain.in_memory(twin, "gyroscope", BESIDE)
     largest = 0.0
     for stage in ("accelerometer", "gyroscope"):
         one, other = (some.parameters(stage) for some in (results, without))

@@ -1,17 +1,13 @@
 """What each plan says of every effect, by a clean campaign: sizes, and the threshold of a name."""
 
 import pickle
-import shutil
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import permutations
-from pathlib import Path
 from typing import Any
 
 import chain
-import in_memory
 import numpy as np
 from hidden_plans import PLANS
 from hidden_ways import WAYS
@@ -137,13 +133,9 @@ def apart(plan: str, truth: Mapping[str, Mapping[str, float]], at: Mapping[str, 
 
 
 def _made(plan: str) -> Reference:
-    folder = Path(tempfile.mkdtemp())
     recording = laboratory.perform(laboratory.specify(PLANS[plan](seed=SEED)))
-    with in_memory.recorded(recording, folder / "raw") as raw:
-        results = chain.run(raw, folder / "derived", "gyroscope", BESIDE)
-    (data,) = chain.mounts(results)
+    (data,) = chain.mounts(chain.in_memory(recording, "gyroscope", BESIDE))
     campaign, degrees = campaign_of(data).without_random_walks(), data.noise.degrees
-    shutil.rmtree(folder)
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
     families = {name: tuple(one) for name, one in campaign.candidates(in_blocks).items()}
     said, asked = evidence_of(campaign, families, degrees)

@@ -4,13 +4,14 @@ import chain
 import hidden_plans
 import in_memory
 import numpy as np
+import pandas as pd
 import pytest
 from hidden_campaigns import run
 from hidden_draws import CYCLE, KINDS, draw
 from hidden_elsewhere import ELSEWHERE
 from hidden_outside import OUTSIDE
 from hidden_scores import class_right, detected, false_names, truly_named, warned
-from hidden_sizes import LEVEL, reference, size
+from hidden_sizes import BESIDE, LEVEL, reference, size
 from hidden_statistics import tried
 from hidden_ways import ABSORBED, WAYS
 
@@ -70,6 +71,18 @@ def test_in_memory_is_as_on_disk(tmp_path):
             left, right = one[f"decode/{table}"], other[f"decode/{table}"]
             offsets = ["offset"] if table == "samples" else []
             assert left.drop(columns=offsets).equals(right.drop(columns=offsets))
+
+
+def test_a_run_in_memory_has_the_tables_of_one_on_disk(tmp_path):
+    recording = laboratory.perform(laboratory.specify(chain.short(seed=4)))
+    laboratory.write(recording, tmp_path / "raw")
+    disk = chain.run(tmp_path / "raw", tmp_path / "derived", "diagnosis", BESIDE)
+    memory = chain.in_memory(recording, "diagnosis", BESIDE)
+    of_bytes = ("plan/", "decode/")  # these tell sizes and hashes of files too
+    compared = [name for name in memory if not name.startswith(of_bytes)]
+    assert len(compared) > 40
+    for name in compared:
+        pd.testing.assert_frame_equal(memory[name], disk[name], obj=name)
 
 
 def test_nothing_is_named_where_nothing_is_hidden():
