@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from inertial.physics.site import normal_gravity
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant, whole
@@ -170,7 +171,8 @@ def _compared(tables: Tables, row: Record) -> Compared | None:
 
 def _by_size(tables: Tables, entry: Record, size: float) -> Compared | None:
     """Those of a finding whose size says how far it is off."""
-    rate = tables.row("campaign")["rate"]
+    campaign = tables.row("campaign")
+    rate = campaign["rate"]
     known = {row["quantity"]: row["value"] for row in tables.rows("known")}
     gravity = known.get("gravity")
     if entry["cause"] == "unexplained":
@@ -179,8 +181,10 @@ def _by_size(tables: Tables, entry: Record, size: float) -> Compared | None:
         return Compared(_("samples per second"), "Hz", rate, rate * size)
     if entry["cause"] == "wrong_scale_factor" and entry["sensor"] == "accel" and gravity:
         return Compared(_("specific force at rest"), "m/s²", gravity, gravity * size)
-    if entry["cause"] == "gravity_error" and gravity:
-        return Compared("gravity", "m/s²", gravity - size, gravity, origin="stated")
+    if entry["cause"] == "gravity_error" and campaign["latitude"] is not None:
+        # What is known may be either of the two.
+        normal = normal_gravity(campaign["latitude"], campaign["height"] or 0.0)
+        return Compared("gravity", "m/s²", normal, normal + size, origin="stated")
     return None
 
 
