@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from inertial.campaign.final_result import extended_sensors, of_sensors, with_extended
+from inertial.campaign.final_result import extended_sensors, of_sensors
 from inertial.campaign.records import Part, parts_of
 from inertial.tables import AXES
 from inertial.text import numbers, units
@@ -201,14 +201,6 @@ def final_results(tables: Tables) -> list[Estimate]:
     missing = [stage for stage in SENSOR_OF_STAGE if all(result.stage != stage for result in final)]
     final += [Estimate(stage, JOINT) for stage in missing]
     return sorted(final, key=lambda result: list(SENSOR_OF_STAGE).index(result.stage))
-
-
-@once
-def final_parameters(tables: Tables) -> list[Record]:
-    """The parameters of all methods; with value and sigma of the extended fit where it is final."""
-    rows = [row for stage in SENSOR_OF_STAGE for row in tables.rows(f"{stage}_parameters")]
-    better = of_sensors(tables.rows("extended_parameters"), replaced_sensors(tables))
-    return with_extended(rows, better)
 
 
 def effects_in(tables: Tables, estimate: Estimate) -> list[str]:
