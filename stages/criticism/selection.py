@@ -171,7 +171,8 @@ def _weighed(law: Selection, walk: Selection, number: int) -> Selection:
     """The likelier of effects without and with a random walk of one sensor, or both as a class.
 
     Where they are alike a single effect keeps its name and the random walk joins its class; of
-    several effects the random walk is the simpler, and they are what it may be instead.
+    several effects the random walk is the simpler, and they are what it may be instead. One that
+    stands for no effect must be clearly likelier than none.
     """
     walk = replace(walk, alternatives=law.alternatives, rivals=law.rivals)
     odds = _log_odds(law, walk, SENSORS[number])
@@ -179,9 +180,9 @@ def _weighed(law: Selection, walk: Selection, number: int) -> Selection:
     only = [cause for cause in law.named.causes if cause.effect not in kept]
     if drift_name(SENSORS[number]) in {cause.effect for cause in only}:
         return walk  # a drift without a law has none that could be weighed
-    if odds > (MAX_LOG_ODDS if only else 0.0):
+    if odds > (MAX_LOG_ODDS if only else -MAX_LOG_ODDS):
         return law
-    if odds < -MAX_LOG_ODDS or not only:
+    if odds < -MAX_LOG_ODDS:
         return walk
     if odds > 0 and len(only) == 1:
         return replace(law, rivals={**law.rivals, only[0].effect: (walk_name(number), odds)})
