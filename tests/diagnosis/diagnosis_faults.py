@@ -209,8 +209,8 @@ def _axes(setting: Setting, random: Random, sigma: float) -> Told:
 
 def _counts(setting: Setting, random: Random, sigma: float) -> Told:
     factor = float(random.choice([180 / np.pi, 2.0, 0.5, np.pi / 180]))
-    changes = {"receiver": {"gyro_count_rad": 0.1 / (3600 * 256) * factor}}
-    return Told(changes, cause(cases.COUNTS, "gyro"))
+    stated = cases.stated(instrument=cases.of_counts(cases.COUNT * factor))
+    return Told(stated, cause(cases.COUNTS, "gyro"))
 
 
 def _sense(setting: Setting, random: Random, sigma: float) -> Told:
