@@ -104,7 +104,8 @@ def _compared(campaign: Campaign, own: NamedClass, others: Sequence[Effect]) -> 
         for member, scanned in zip(own.members, open_scan, strict=True)
     ]
     every = {e.label: e for family in (*families, others) for e in family}
-    information = evidence(campaign, list(every.values())).total
+    equations = evidence(campaign, list(every.values()))
+    information = equations.total if equations.sensors else None  # such as of means alone
     odds = [[_odds(information, [e, *others], others) for e in family] for family in families]
     log_odds = np.array([logsumexp(each) - np.log(len(each)) for each in odds])
     if not np.isfinite(log_odds).any():  # no reading depends on any of them
@@ -132,10 +133,10 @@ def _family(campaign: Campaign, effect: Effect) -> list[Effect]:
 
 
 def _odds(
-    information: EffectInformation, effects: Sequence[Effect], others: Sequence[Effect]
+    information: EffectInformation | None, effects: Sequence[Effect], others: Sequence[Effect]
 ) -> float:
     """Logarithm of the odds for the first effect beside the others."""
-    if effects[0].sought_in != "blocks":
+    if information is None or effects[0].sought_in != "blocks":
         return -np.inf
     drop, degrees = information.drop(_columns(information, effects))
     known, used = information.drop(_columns(information, others)) if others else (0.0, 0)
