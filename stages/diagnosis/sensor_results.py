@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -12,11 +12,16 @@ from inertial.campaign.explanations import Explained
 from inertial.campaign.hypotheses import MODEL
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.triad import linear_names
+from inertial.text.messages import _
 from inertial.text.parameters import JOINT, SCALE
 from stages.diagnosis.decision import Decision, alarms_of, decided
 from stages.diagnosis.result import Result, covariance_by_ids, covariance_of, ordered, result_of
 
 TWELVE = frozenset(linear_names())
+FREE = "free_positions"  # method
+BY_FREE_POSITIONS = _(
+    "No attitude is known, so the result is that of static positions of unknown attitude."
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +57,7 @@ class SensorResult:
     @property
     def covers_misfit(self) -> bool:
         """Whether the sigmas of the result include what manoeuvres differ by beyond the noise."""
-        fit = self.fits.get(self.decision.method)
+        fit = self.fits.get(FREE if self.chosen.method == FREE else self.decision.method)
         return fit is not None and bool(fit["scatter"] or fit["random_walk"])
 
     @property
@@ -106,13 +111,18 @@ def shift(result: Result, effect: str) -> dict[str, float]:
 
 @dataclass(frozen=True, eq=False)
 class Estimated:
-    """The rows of the estimation and the extension from which the results are chosen."""
+    """The rows of the estimation and the extension from which the results are chosen.
+
+    `free`: mounts and sensors of which no attitude is known; static positions of unknown attitude
+    take the place of the joint fit.
+    """
 
     parameters: Sequence[Row]
     covariance: Mapping[tuple[str, str], float]
     fits: Sequence[Row]
     candidates: Sequence[Row]
     candidate_effects: Sequence[Row]
+    free: frozenset[tuple[str, str]] = frozenset()
 
     def results(self, explained: Sequence[Explained]) -> Iterator[SensorResult]:
         """Of every sensor and mount; `explained`: the causes, of which some are alarms."""
@@ -130,12 +140,18 @@ class Estimated:
             alarms = alarms_of(roots, mount, sensor)
             determined = any(row["value"] is not None for row in by_method.get(JOINT, ()))
             decision = decided(candidates, effects, alarms, determined=determined)
+            chosen = result_of(
+                decision.method, by_method, self.covariance, _competing(candidates, decision)
+            )
+            if (mount, sensor) in self.free:
+                chosen = replace(
+                    chosen, method=FREE, rows=[row | {"method": FREE} for row in chosen.rows]
+                )
+                decision = Decision(JOINT, BY_FREE_POSITIONS)
             yield SensorResult(
                 sensor,
                 mount,
-                result_of(
-                    decision.method, by_method, self.covariance, _competing(candidates, decision)
-                ),
+                chosen,
                 {
                     method: Result(
                         method, rows := ordered(own), covariance_of(rows, self.covariance)
@@ -179,10 +195,14 @@ def estimated_of(
         row
         for table in (accelerometer_parameters, gyroscope_parameters)
         for row in rows_of(table)
-        if row["method"] == JOINT and row["parameter"] in TWELVE
+        if row["method"] in (JOINT, FREE) and row["parameter"] in TWELVE
     ]
+    known = {_place(row) for row in joint if row["method"] == JOINT and row["value"] is not None}
+    free = {_place(row) for row in joint if row["method"] == FREE and row["value"] is not None}
+    free -= known
+    kept = [r for r in joint if r["method"] == (FREE if _place(r) in free else JOINT)]
     return Estimated(
-        [*joint, *rows_of(extension_parameters)],
+        [*({**row, "method": JOINT} for row in kept), *rows_of(extension_parameters)],
         covariance_by_ids(accelerometer_covariance, gyroscope_covariance, extension_covariance),
         [
             row
@@ -191,4 +211,9 @@ def estimated_of(
         ],
         rows_of(candidates),
         rows_of(candidate_effects),
+        frozenset(free),
     )
+
+
+def _place(row: Row) -> tuple[str, str]:
+    return row["mount"], row["sensor"]
