@@ -84,7 +84,7 @@ style: setup
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy stages inertial commands laboratory
-	MYPYPATH=tests:tests/bounds $(BIN)/mypy benchmarks/*.py benchmarks/own/*.py
+	MYPYPATH=tests:tests/bounds:tests/hidden $(BIN)/mypy benchmarks/*.py benchmarks/own/*.py
 	$(BIN)/snakefmt --check -l 100 Snakefile
 	$(BIN)/lint-imports
 	# Each rule runs in the environment of requirements.lock, so none names one of its own.
@@ -93,7 +93,7 @@ style: setup
 
 bench: .venv/complete benchmarks/.venv/complete
 	read -ra parts <<< "$$ONLY"
-	PYTHONPATH=tests:tests/bounds OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks "$${parts[@]}"
+	PYTHONPATH=tests:tests/bounds:tests/hidden OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks "$${parts[@]}"
 
 challenge: .venv/complete
 	export OPENBLAS_NUM_THREADS=1

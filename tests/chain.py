@@ -66,6 +66,12 @@ class Tables(Results, Mapping[str, pd.DataFrame]):
     def __len__(self) -> int:
         return len(self.arrow)
 
+    def copy(self) -> "Tables":
+        """The same tables, to which others may be added."""
+        other = Tables()
+        other.arrow, other._frames = dict(self.arrow), dict(self._frames)
+        return other
+
     def add(self, stage: Stage, result: Any) -> None:
         """Keep what a stage returned, in the columns of its contracts."""
         pieces = result.items() if isinstance(result, Mapping) else result
@@ -85,9 +91,10 @@ def in_memory(
 ) -> Tables:
     """The chain on a recording of the laboratory up to and with `until`; tables stay in memory.
 
-    `without`: as in `run`; `onto`: the tables of an earlier run, whose stages are not run again.
+    `without`: as in `run`; `onto`: tables of an earlier run, to which the others are
+    added.
     """
-    tables = onto or Tables()
+    tables = Tables() if onto is None else onto
     done = {name.partition("/")[0] for name in tables}
     with (
         tempfile.TemporaryDirectory() as folder,

@@ -54,8 +54,8 @@ def recorded(recording: Recording, folder: Path) -> Iterator[Path]:
     for log in recording.records:
         (folder / log).touch()
     kept = novatel_reader.read, column_reader.read
-    novatel_reader.read = _reader(recording, kept[0], _rawimusa)  # type: ignore[assignment]
-    column_reader.read = _reader(recording, kept[1], _of_columns)  # type: ignore[assignment]
+    novatel_reader.read = _reader(recording, kept[0], _rawimusa)
+    column_reader.read = _reader(recording, kept[1], _of_columns)
     try:
         yield folder
     finally:

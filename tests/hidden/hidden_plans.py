@@ -78,7 +78,7 @@ def rates(**changes: Any) -> Document:
                 plan.append(turn | {"id": f"{name}-forward", "degrees": 360})
                 plan.append(turn | {"id": f"{name}-backward", "degrees": -360})
     for axis in "xyz":
-        tumble = {"id": f"about-{axis}", "do": "tumble", "about": f"+{axis}"}
+        tumble: Document = {"id": f"about-{axis}", "do": "tumble", "about": f"+{axis}"}
         tumble["mark"] = TUMBLED[axis]
         tumble |= {"up": ACROSS[axis], "step_degrees": 45, "steps": 8, "seconds": 12}
         # Two of three on the way back too show the hysteresis of all three axes.
@@ -109,7 +109,7 @@ def sensors(random: np.random.Generator) -> Document:
     turned = np.array(
         [[0, -askew[2], askew[1]], [askew[2], 0, -askew[0]], [-askew[1], askew[0], 0]]
     )
-    made = {}
+    made: Document = {}
     for sensor, key, bias in (("accelerometer", "bias_m_s2", 5e-3), ("gyro", "bias_rad_s", 2e-6)):
         matrix = np.eye(3) + turned + random.normal(0, 1e-3, (3, 3))
         made[sensor] = {key: random.normal(0, bias, 3).tolist(), "matrix": matrix.tolist()}
