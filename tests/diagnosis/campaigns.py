@@ -1,19 +1,14 @@
-"""A campaign of the simulated laboratory through the stages, without bytes on disk."""
+"""A campaign of the simulated laboratory through the stages, in memory."""
 
-import shutil
-import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import chain
-import in_memory
 import pandas as pd
 
 import laboratory
 
-SHARED_MEMORY = Path("/dev/shm")
 BESIDE = ("studies", "comparison")  # nothing of the diagnosis rests on them in these campaigns
 TABLES = ("causes", "members", "consequences", "verdict", "result")
 
@@ -23,19 +18,18 @@ def performed(document: Mapping[str, Any]) -> laboratory.Recording:
     return laboratory.perform(laboratory.specify(document))
 
 
+def tables_of(document: Mapping[str, Any], until: str = "diagnosis") -> chain.Tables:
+    """The tables of a campaign up to and with the stage `until`."""
+    return chain.in_memory(performed(document), until, BESIDE)
+
+
 @contextmanager
-def results_of(document: Mapping[str, Any], until: str = "diagnosis") -> Iterator[chain.Results]:
-    """The tables of a campaign, as long as they are looked at."""
-    recording = performed(document)
-    folder = Path(tempfile.mkdtemp(dir=SHARED_MEMORY if SHARED_MEMORY.is_dir() else None))
-    try:
-        with in_memory.recorded(recording, folder / "raw") as raw:
-            yield chain.run(raw, folder / "derived", until, BESIDE)
-    finally:
-        shutil.rmtree(folder)
+def results_of(document: Mapping[str, Any]) -> Iterator[chain.Tables]:
+    """The same, as long as they are looked at."""
+    yield tables_of(document)
 
 
 def diagnosed(document: Mapping[str, Any]) -> dict[str, pd.DataFrame]:
     """The tables of the stage diagnosis."""
-    with results_of(document) as results:
-        return {table: results[f"diagnosis/{table}"] for table in TABLES}
+    tables = tables_of(document)
+    return {table: tables[f"diagnosis/{table}"] for table in TABLES}

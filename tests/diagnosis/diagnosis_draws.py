@@ -13,7 +13,7 @@ from typing import Any
 
 import cases
 import numpy as np
-from campaigns import performed, results_of
+from campaigns import performed, tables_of
 from cases import Cause, cause
 from diagnosis_faults import BY_NAME, FAULTS, FORMULA_SIGMA, Place, Setting
 from hidden_draws import COMMON, _hide
@@ -275,11 +275,11 @@ def sigmas(plan: str) -> dict[str, dict[str, float]]:
     """The sigmas of the 24 parameters of a clean campaign, kept on disk as the code is the same."""
     file = KEPT / f"sigmas-{plan}-{code()}.json"
     if not file.exists():
-        with results_of(PLANS[plan](), "gyroscope") as results:
-            found = {
-                sensor: results.parameters(stage)["sigma"].dropna().to_dict()
-                for sensor, stage in STAGES.items()
-            }
+        tables = tables_of(PLANS[plan](), "gyroscope")
+        found = {
+            sensor: tables.parameters(stage)["sigma"].dropna().to_dict()
+            for sensor, stage in STAGES.items()
+        }
         KEPT.mkdir(parents=True, exist_ok=True)
         file.write_text(json.dumps(found), encoding="utf-8")
     kept: dict[str, dict[str, float]] = json.loads(file.read_text(encoding="utf-8"))
