@@ -125,6 +125,7 @@ def _performed(manoeuvres: pd.DataFrame) -> pd.DataFrame:
             "found": True,
             "complete": True,
             "bridged": False,
+            "lost": False,
             "angle": manoeuvres["angle"],
             "missing_angle": 0.0,
             "missing_s": 0.0,

@@ -172,6 +172,7 @@ def performed(manoeuvres: Rows) -> Rows:
                 "found": True,
                 "complete": whole,
                 "bridged": not whole,
+                "lost": not whole,
                 "angle": angle,
                 "missing_angle": missing if turn else None,
                 "missing_s": 0.0 if whole else GAP[1] - GAP[0],
