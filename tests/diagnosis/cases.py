@@ -131,11 +131,16 @@ def there_and_back(**changes: Any) -> Document:
 
 
 def one_attitude_each(**changes: Any) -> Document:
-    """Three turns about the vertical, each gyro in one attitude only, a log each."""
+    """Three turns about the vertical, each gyro in one attitude only, a log each.
+
+    The logs have no common clock, so nothing tells that they are of one run of the instrument.
+    """
     document = chain.short(**changes)
     document["handling"]["still_s"] = 20
+    document["receiver"] |= {"message": "columns", "line_end": "lf"}
+    document["campaign"]["instrument"] = {"name": "simulated", "rate_hz": 100}
     document["campaign"]["plan"] = [
-        {"id": f"{axis}-turn", "do": "turn", "up": f"+{axis}", "log": f"{axis}.asc"}
+        {"id": f"{axis}-turn", "do": "turn", "up": f"+{axis}", "log": f"{axis}.csv"}
         | {"degrees": 720, "rate_deg_s": 20, "accel_deg_s2": 20}
         for axis in "xyz"
     ]
