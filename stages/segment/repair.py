@@ -151,12 +151,13 @@ class _Campaign:
     def _plan_again(self, plan: Sequence[Manoeuvre]) -> None:
         """Take another plan, whose manoeuvres may stand in other windows."""
         self._plan = list(plan)
-        own: dict[tuple[object, ...], list[Manoeuvre]] = {}
-        for m in plan:
-            own.setdefault(_place(m), []).append(m)
         for k, one in enumerate(self._binned):
-            manoeuvres = own[_place(one.window.manoeuvres[0])]
-            self._binned[k] = replace(one, window=replace(one.window, manoeuvres=manoeuvres))
+            place = _place(one.window.manoeuvres[0])
+            names = {m.name for m in one.window.manoeuvres}
+            there = [m for m in plan if _place(m) == place]
+            # Two may be planned in one stretch: each has a window of its own.
+            own = [m for m in there if m.name in names] or there
+            self._binned[k] = replace(one, window=replace(one.window, manoeuvres=own))
 
     # ---- sizes of counts
 
