@@ -26,14 +26,14 @@ REASONS = {
 }
 
 ACTION = _(
-    "Use the parameters of the extended model where they predict data that it was not fitted to."
+    "Remove it at its origin, or compensate readings with its terms too, which the export holds."
 )
 ACTION_WITHOUT_LAW = _(
     "Look at the residuals against time; record again with the IMU switched on long before."
 )
 CONSEQUENCE = _(
     "Without it bias, scale factors and cross terms absorb a part of it and do not "
-    "hold in other motions; the extension estimates how much that is."
+    "hold in other motions."
 )
 CONSEQUENCE_WITHOUT_LAW = _(
     "The joint estimate allows for it as a random walk or as a scatter of the manoeuvres."

@@ -31,7 +31,7 @@ SINGLE_TURN = _(
 
 VIBRATION = _(
     "The case oscillates about {axis} while the table turns: {frequency} Hz, "
-    "{amplitude} rad/s ({arc:.1f}″), in {manoeuvres}."
+    "{amplitude} °/s ({arc:.1f}″), in {manoeuvres}."
 )
 IN_ANGLE = _(" It is periodic in the table's angle: {order} per revolution.")
 NO_NET_ANGLE = _(" Over a whole turn it adds no angle.")
@@ -41,7 +41,7 @@ SAME_IN_TURNS = _("the same in {count} turns against the table's angle")
 OWN_IN_TURNS = _("rms, of its own amplitude or phase in each of {count} turns")
 IN_ONE_TURN = "in one turn"
 AT_RATES = " That is {each}."
-AT_RATE = _("{frequency} Hz and {amplitude} rad/s at {rate} °/s")
+AT_RATE = _("{frequency} Hz and {amplitude} °/s at {rate} °/s")
 
 UNDECIDED = _(
     " The data do not distinguish whether it is periodic in time or in the table's "
@@ -58,17 +58,15 @@ VERY_LARGE_ODDS = "more than 10¹⁷ times"
 
 COUPLED_UNKNOWN = _(" Through their cross terms the other axes contain it too.")
 COUPLED = _(" Through their cross terms {each}.")
-COUPLED_HIDDEN = _("{axis} contains {expected} rad/s, less than its noise shows")
-COUPLED_READ = _("{axis} contains {expected} rad/s and reads {read}")
+COUPLED_HIDDEN = _("{axis} contains {expected} °/s, less than its noise shows")
+COUPLED_READ = _("{axis} contains {expected} °/s and reads {read} °/s")
 COUPLED_MORE = (
-    " In {axis} {excess} rad/s is more than coupling; the case tips into the table's rate, which"
-    " brings {tipping}."
+    " In {axis} {excess} °/s is more than coupling; the case tips into the table's rate, which"
+    " brings {tipping} °/s."
 )
 
 CONSEQUENCE = _(
-    "{turn} bias, scale factors and cross terms. Part of a turn is in error by up "
-    "to {swing}″. The finding “oscillation” of the logs at this frequency is the "
-    "same."
+    "{turn} bias, scale factors and cross terms. Part of a turn is in error by up to {swing}″."
 )
 CLOSED = _("A whole turn is free of it, and so are")
 NOT_CLOSED = _(
@@ -89,7 +87,7 @@ NO_FURTHER = _("{effect}: none besides the named ones.")
 MAY_BE = _("What is named {named} may be {effect}.")
 WOULD_BE = _("It would be {detected}")
 
-FROM_AMPLITUDE = _("detected from {size} rad/s on in each turn.")
+FROM_AMPLITUDE = _("detected from {size} °/s on in each turn.")
 FROM_ANGLE = _("detected from {size}″ on.")
 FROM_ANGLE_BY_ORDER = _(
     "detected from {size}″ on; from {largest}″ where it has {lowest} periods per "
@@ -108,7 +106,7 @@ def of_oscillation(oscillation: Oscillation) -> str:
     sentence = VIBRATION.format(
         axis="the table's axis" if axis == TABLE else axis,
         frequency=_with_sigma(mean.frequency, mean.frequency_sigma),
-        amplitude=_with_sigma(mean.amplitude, mean.amplitude_sigma),
+        amplitude=_with_sigma(degrees(mean.amplitude), degrees(mean.amplitude_sigma)),
         arc=degrees(mean.amplitude / (2 * pi * mean.frequency)) * 3600,
         manoeuvres=", ".join(mean.manoeuvres),
     )
@@ -196,7 +194,7 @@ def limit(effect: str, parameter: str, detected: str, why: str | None) -> str:
 
 def from_amplitude(size: float) -> str:
     """A size in rad/s."""
-    return FROM_AMPLITUDE.format(size=significant(size, 2))
+    return FROM_AMPLITUDE.format(size=significant(degrees(size), 2))
 
 
 def from_angle(size: float) -> str:
@@ -236,7 +234,7 @@ def _order(ripple: Ripple) -> str:
 
 
 def _at_rates(oscillation: Oscillation, ripple: Ripple, turns: Sequence[SteadyTurn]) -> str:
-    """The frequency and the rms amplitude in rad/s that it has at each rate of the table."""
+    """The frequency and the rms amplitude in °/s that it has at each rate of the table."""
     rate_of = {t.name: round(degrees(abs(t.rate)), 2) for t in turns if np.isfinite(t.rate)}
     squares: dict[float, list[float]] = {}
     for line in oscillation.lines:
@@ -245,7 +243,7 @@ def _at_rates(oscillation: Oscillation, ripple: Ripple, turns: Sequence[SteadyTu
     each = [
         AT_RATE.format(
             frequency=fixed(ripple.order * rate / 360, 3),
-            amplitude=significant(float(np.sqrt(np.mean(squares[rate]))), 2),
+            amplitude=significant(degrees(np.sqrt(np.mean(squares[rate]))), 2),
             rate=significant(rate, 3),
         )
         for rate in sorted(squares)[:MAX_RATES]
@@ -283,7 +281,7 @@ def _coupling(coupled: Sequence[Coupled]) -> str:
     sentence = COUPLED.format(each=" and ".join(_coupled(axis) for axis in coupled))
     for axis in coupled:
         if axis.exceeds:
-            excess, tipping = significant(axis.residual, 2), significant(axis.tipping, 2)
+            excess, tipping = (significant(degrees(of), 2) for of in (axis.residual, axis.tipping))
             sentence += COUPLED_MORE.format(axis=axis.axis, excess=excess, tipping=tipping)
     return sentence
 
@@ -291,5 +289,7 @@ def _coupling(coupled: Sequence[Coupled]) -> str:
 def _coupled(axis: Coupled) -> str:
     hidden = axis.read < MIN_EXCESS_SIGMA * axis.residual_sigma
     return (COUPLED_HIDDEN if hidden else COUPLED_READ).format(
-        axis=axis.axis, expected=significant(axis.expected, 2), read=significant(axis.read, 2)
+        axis=axis.axis,
+        expected=significant(degrees(axis.expected), 2),
+        read=significant(degrees(axis.read), 2),
     )

@@ -1,18 +1,16 @@
-"""The parameters by every method, which results are final, and how a parameter is written."""
+"""The result that counts, the parameters by every method, and how a parameter is written."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from inertial.campaign.final_result import extended_sensors, of_sensors
 from inertial.campaign.records import Part, parts_of
 from inertial.tables import AXES
 from inertial.text import numbers, units
-from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.parameters import EXTENDED, JOINT, PARTS, SENSOR_OF, STAGES
-from stages.report.linked import DECISION_TABLES, decisions
+from stages.report.linked import DECISION_TABLES
 from stages.report.outline import Tone
 from stages.report.tables import Record, Tables, once
 from stages.report.words import SENSOR_OF_STAGE, capital, sensor_of_stage, with_mount
@@ -26,12 +24,15 @@ ESTIMATE_TABLES = (
     "gyroscope_fit_manoeuvres",
 )
 EXTENDED_TABLES = ("extended_parameters", "extended_fit", "extended_fit_manoeuvres")
-RESULT_TABLES = (*ESTIMATE_TABLES, *EXTENDED_TABLES, *DECISION_TABLES)
-FREE = "free_positions"
+RESULT_TABLES = (*ESTIMATE_TABLES, *EXTENDED_TABLES, *DECISION_TABLES, "result")
+MIXTURE = "mixture"
+WITH_EFFECTS = _("fit with effects in the model")  # also by the other members of a class
 METHOD = {
     JOINT: _("joint fit of all manoeuvres"),
+    EXTENDED: WITH_EFFECTS,
+    MIXTURE: _("mean over the members of a class, by their probability"),
     "six_position": _("six positions, S0"),
-    FREE: _("static positions of unknown attitude, by |f| = g"),
+    "free_positions": _("static positions of unknown attitude, by |f| = g"),
     "up_and_down": _("two positions with tilt, S1"),
     "pooled_positions": _("static positions at one attitude pooled, S3"),
     "static": _("static positions up and down, S0"),
@@ -52,6 +53,7 @@ CALIBRATION = frozenset(
     [f"{kind}_{axis}" for kind in ("bias", "scale") for axis in AXES]
     + [f"cross_{row}{column}" for row in AXES for column in AXES if row != column]
 )
+Key = tuple[str, str, str]  # sensor, mount and method
 MIN_P = 0.01  # of a fit that describes its data
 MISFIT = _("the model does not describe the data within the noise; the σ include noise only")
 
@@ -60,7 +62,8 @@ MISFIT = _("the model does not describe the data within the noise; the σ includ
 class Estimate:
     """The parameters that one method estimated on a mount, with its fit and its manoeuvres.
 
-    `stage`: the one that estimates its sensor, also of an extended result.
+    `stage`: the one that estimates its sensor, also of an extended result; `effects`: parameters of
+    the effects in the model of the result that counts.
     """
 
     stage: str
@@ -69,6 +72,7 @@ class Estimate:
     parameters: tuple[Record, ...] = ()
     fit: Record | None = None
     manoeuvres: tuple[Part, ...] = ()
+    effects: tuple[Record, ...] = ()
 
     @property
     def place(self) -> tuple[str, str]:
@@ -83,7 +87,8 @@ class Estimate:
     @property
     def name(self) -> str:
         """Sensor and method in words."""
-        return f"{self.sensor}, {METHOD.get(self.method, self.method)}"
+        other = WITH_EFFECTS if self.method.startswith("member_") else self.method
+        return f"{self.sensor}, {METHOD.get(self.method, other)}"
 
     @property
     def determined(self) -> list[Record]:
@@ -142,19 +147,29 @@ def estimates(tables: Tables) -> list[Estimate]:
 
 def _estimates(tables: Tables, of: str) -> Iterator[Estimate]:
     """The estimates in the tables of one stage; effects in the model left out."""
-    names = (f"{of}_parameters", f"{of}_fit", f"{of}_fit_manoeuvres")
-    rows, fits, parts = (_grouped(tables.rows(name)) for name in names)
+    rows = _grouped(tables.rows(f"{of}_parameters"))
+    fits, parts = _fits(tables, of), _fit_manoeuvres(tables, of)
     for key in dict.fromkeys([*rows, *fits]):
         sensor, mount, method = key
         own = by_kind(row for row in rows.get(key, ()) if row["effect"] is None)
-        fit = next(iter(fits.get(key, ())), None)
         used = parts_of(parts.get(key, ()))
-        yield Estimate(STAGES[sensor], method, mount, tuple(own), fit, tuple(used))
+        yield Estimate(STAGES[sensor], method, mount, tuple(own), fits.get(key), tuple(used))
 
 
-def _grouped(rows: Iterable[Record]) -> dict[tuple[str, str, str], list[Record]]:
+def _fits(tables: Tables, *stages: str) -> dict[Key, Record]:
+    """The rows of the fits of some stages by sensor, mount and method."""
+    rows = [row for of in stages for row in tables.rows(f"{of}_fit")]
+    return {key: own[0] for key, own in _grouped(rows).items()}
+
+
+def _fit_manoeuvres(tables: Tables, *stages: str) -> dict[Key, list[Record]]:
+    """The rows of the manoeuvres of these fits."""
+    return _grouped(row for of in stages for row in tables.rows(f"{of}_fit_manoeuvres"))
+
+
+def _grouped(rows: Iterable[Record]) -> dict[Key, list[Record]]:
     """The rows by sensor, mount and method."""
-    groups: dict[tuple[str, str, str], list[Record]] = {}
+    groups: dict[Key, list[Record]] = {}
     for row in rows:
         groups.setdefault((row["sensor"], row["mount"], row["method"]), []).append(row)
     return groups
@@ -171,44 +186,30 @@ def extended_estimates(tables: Tables) -> list[Estimate]:
 
 
 @once
-def replaced_sensors(tables: Tables) -> set[tuple[str, str]]:
-    """The sensors and mounts whose extended result is the final one."""
-    return extended_sensors(tables.rows("verdict"))
-
-
-def is_replaced(tables: Tables, estimate: Estimate) -> bool:
-    """Whether the extended result is final in place of this joint one."""
-    place = SENSOR_OF[estimate.stage], estimate.mount
-    return estimate.method == JOINT and place in replaced_sensors(tables)
-
-
-@once
 def final_results(tables: Tables) -> list[Estimate]:
-    """The final results of both sensors, one per mount; an empty one where there is none.
+    """The result that counts of each sensor and mount, as the diagnosis chose it.
 
-    They are of the joint fits, or of those with effects in the model. Where no attitude is known,
-    the fit to static positions of unknown attitude takes its place.
+    Its fit is that of the method it was taken from; a mixture has none. A sensor without a result
+    has an empty one.
     """
-    extended = {result.place: result for result in extended_estimates(tables)}
-    each = estimates(tables)
-    free = {result.place: result for result in each if result.method == FREE}
+    rows = _grouped(tables.rows("result"))
+    fits = _fits(tables, *SENSOR_OF_STAGE, EXTENDED)
+    parts = _fit_manoeuvres(tables, *SENSOR_OF_STAGE, EXTENDED)
     final = [
-        extended.get(result.place, result) if is_replaced(tables, result) else result
-        for result in each
-        if result.method in (JOINT, EXTENDED)
+        Estimate(
+            STAGES[sensor],
+            method,
+            mount,
+            tuple(by_kind(row for row in own if row["effect"] is None)),
+            fits.get((sensor, mount, method)),
+            tuple(parts_of(parts.get((sensor, mount, method), ()))),
+            tuple(row for row in own if row["effect"] is not None),
+        )
+        for (sensor, mount, method), own in rows.items()
     ]
-    final = [result if result.determined else free.get(result.place, result) for result in final]
     missing = [stage for stage in SENSOR_OF_STAGE if all(result.stage != stage for result in final)]
     final += [Estimate(stage, JOINT) for stage in missing]
     return sorted(final, key=lambda result: list(SENSOR_OF_STAGE).index(result.stage))
-
-
-def effects_in(tables: Tables, estimate: Estimate) -> list[str]:
-    """The effects in the model of an estimate, in words; none of a joint fit."""
-    if estimate.method != EXTENDED:
-        return []
-    own = of_sensors(decisions(tables), [(SENSOR_OF[estimate.stage], estimate.mount)])
-    return [in_words(name) for row in own for name in row["effects"]]
 
 
 @dataclass(frozen=True)
@@ -281,14 +282,19 @@ def by_kind(rows: Iterable[Record]) -> list[Record]:
 def symbol(parameter: str) -> str:
     """The parameter's sign with its axes: b_x, s_x, m_xy; its name where it has none."""
     if parameter not in PARTS:
-        return parameter
+        return _without_effect(parameter)
     kind, axes = PARTS[parameter]
     return f"{SYMBOL[kind]}_{axes}"
 
 
 def quantity_of(row: Record) -> units.Quantity:
     """The units that a parameter is written in."""
-    return units.quantity(row["parameter"], row["unit"])
+    return units.quantity(_without_effect(row["parameter"]), row["unit"])
+
+
+def _without_effect(parameter: str) -> str:
+    """The own name of a parameter of an effect, which the result has behind that of the effect."""
+    return parameter.rpartition(".")[2]
 
 
 def written(group: Sequence[Record]) -> list[tuple[str, ...]]:

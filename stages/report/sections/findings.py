@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import counted, fixed, probability, shortened, significant, whole
+from inertial.text.numbers import fixed, probability, shortened, whole
 from stages.report.declared import DECLARED
 from stages.report.outline import (
     Figure,
@@ -20,8 +20,9 @@ from stages.report.outline import (
     table_row,
 )
 from stages.report.sections.evidence import evidence
+from stages.report.sizes import size_in_words
 from stages.report.tables import Record, Tables, once
-from stages.report.words import capital, listed
+from stages.report.words import SENSOR, capital, listed
 
 FINDING_TABLES = (
     "quality_findings",
@@ -35,20 +36,30 @@ FINDING_TABLES = (
 MODEL = "criticism"  # the stage whose findings are about the model, not about the recording
 MOST_ROWS = 30  # findings of a cause that are listed
 MOST_SHOWN = 4  # findings of a cause that have a picture
-MOST_NAMES = 8  # members of a class
+MOST_NAMES = 3  # members of a class in a title
+MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter
 # Cures, that which leaves most to be done first.
 CURES = ("none", "left_out", "repaired", "modelled", "interpolated", "masked")
-COUNTED = frozenset({"samples", "records", "readings", "days"})  # units of sizes that are counts
-SENSOR = {"accel": _("accelerometer"), "gyro": _("gyroscope")}
 
 
 @once
 def causes(tables: Tables) -> list[Record]:
-    """The causes, those that are not removed first, then by how far they move the result."""
+    """The causes, the worst first: not removed, then by their cures, and what is harmless last."""
     return sorted(
         tables.rows("causes"),
-        key=lambda row: (CURES.index(row["cure"]), -(row["moves"] or 0.0), row["id"]),
+        key=lambda row: (
+            harmless(row),
+            CURES.index(row["cure"]),
+            -(row["moves"] or 0.0),
+            row["id"],
+        ),
     )
+
+
+def harmless(row: Record) -> bool:
+    """Whether a cause needs no cure, for it moves no parameter of the result."""
+    moves = row["moves"]
+    return row["cure"] == "none" and moves is not None and bool(moves < MAX_HARMLESS_MOVE)
 
 
 @once
@@ -79,21 +90,33 @@ def cause_of_finding(tables: Tables) -> dict[str, Record]:
 
 
 def title_of(tables: Tables, row: Record) -> str:
-    """What it is, its class, and where."""
-    names = members(tables, row)
-    name = listed([in_words(one) for one in names or [row["cause"]]], "or")
-    sensor = {"gyro": _("gyroscope"), "accel": _("accelerometer")}.get(row["sensor"] or "", "")
-    concerned = f"{row['axis']} {sensor}" if row["axis"] and sensor else sensor
-    places = [shortened(text, 60) for text in (row["manoeuvre"] or row["log"], concerned) if text]
-    return " · ".join([capital(name), *places])
+    """What it is, its class, and where; equal ones in several places have no place."""
+    names = [in_words(one["member"]) for one in members(tables, row)] or [in_words(row["cause"])]
+    if len(names) > MOST_NAMES:
+        names = [*names[: MOST_NAMES - 1], _("{count} others", count=len(names) - MOST_NAMES + 1)]
+    name, where = listed(names, "or"), concerned(row)
+    if row["sensor"] and SENSOR[row["sensor"]] in name:
+        where = _("{axis} axis", axis=row["axis"]) if row["axis"] else ""
+    place = (row["manoeuvre"] or row["log"]) if row["count"] == 1 else None
+    return _joined(capital(name), place, where)
 
 
-def members(tables: Tables, row: Record) -> list[str]:
+def concerned(row: Record) -> str:
+    """The sensor and the axis that a row is about."""
+    sensor = SENSOR.get(row["sensor"] or "", "")
+    return f"{row['axis']} {sensor}" if row["axis"] and sensor else sensor
+
+
+def _joined(*texts: str | None) -> str:
+    return " · ".join(shortened(text, 120) for text in texts if text)
+
+
+def members(tables: Tables, row: Record) -> list[Record]:
     """The members of its class, the most probable first; none where it is no class."""
     if row["verdict"] != "one_of_class":
         return []
     own = [each for each in tables.rows("cause_members") if each["cause"] == row["id"]]
-    return [each["member"] for each in sorted(own, key=lambda each: each["rank"])][:MOST_NAMES]
+    return sorted(own, key=lambda each: int(each["rank"]))
 
 
 # ---- The section.
@@ -130,9 +153,9 @@ def _table(findings: list[Record]) -> Table:
         [
             table_row(
                 capital(in_words(row["cause"])),
-                _where(row),
+                _joined(row["manoeuvre"] or row["log"], concerned(row)),
                 _time(row) or "—",
-                _size(row) or "—",
+                size_in_words(row) or "—",
                 whole(row["count"]),
                 "—" if row["p_value"] is None else probability(row["p_value"]),
                 row["id"],
@@ -161,13 +184,6 @@ SECTION = Section(
 )
 
 
-def _where(row: Record) -> str:
-    sensor = SENSOR.get(row["sensor"] or "", "")
-    concerned = f"{row['axis']} {sensor}" if row["axis"] and sensor else sensor
-    places = (row["manoeuvre"] or row["log"], concerned)
-    return " · ".join(shortened(text, 60) for text in places if text)
-
-
 def _time(row: Record) -> str | None:
     start, end = row["from_s"], row["to_s"]
     if start is None:
@@ -175,12 +191,3 @@ def _time(row: Record) -> str | None:
     if end is None or end == start:
         return f"{fixed(start, 2)} s"
     return f"{fixed(start, 2)} … {fixed(end, 2)} s"
-
-
-def _size(row: Record) -> str | None:
-    if row["size"] is None:
-        return None
-    if row["unit"] in COUNTED:
-        return counted(round(row["size"]), row["unit"].removesuffix("s"))
-    size = f"{significant(row['size'])} {row['unit'] or ''}".strip().replace(" °", "°")
-    return size.removesuffix(" 1")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 from typing import Any
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from inertial.campaign.records import labels, omissions
 from inertial.tables import AXES
 from inertial.text import units
+from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import aligned, counted, fixed, shortened, significant
 from stages.report.outline import (
@@ -33,26 +34,27 @@ from stages.report.outline import (
 from stages.report.results import (
     ESTIMATE_TABLES,
     KIND,
+    RESULT_TABLES,
     Estimate,
     estimates,
-    is_replaced,
+    final_results,
     kind_of,
     quantity_of,
     symbol,
     written,
 )
 from stages.report.tables import Record, Tables
+from stages.report.words import capital
 
-REPLACED = _(
-    "These are not the final parameters: those of the fit with effects in the model "
-    "replace them, in “Unmodelled effects”, in the archive and in the export."
+BY_METHOD = _(
+    "What follows is no result of its own: the same parameters by each method, for comparison."
 )
 MAX_LETTERS = 40  # of an identifier that stays in one line
 MAX_SYMBOLS = 18
 
 
 def parts(tables: Tables) -> Iterator[Part]:
-    """The model, and every method with its fit, its parameters and its matrices."""
+    """The model, the result that counts, and every method with its fit, parameters and matrices."""
     yield Equation(
         _("reading = M · truth + bias"),
         _(
@@ -62,35 +64,38 @@ def parts(tables: Tables) -> Iterator[Part]:
         ),
     )
     yield Equation(_("truth = M⁻¹ · (reading − bias)"), _("the compensation of a reading."))
-    for estimate in estimates(tables):
-        yield from _estimate(estimate)
-        if is_replaced(tables, estimate):
-            yield Paragraph(REPLACED, "fair")
     if not any(estimate.parameters for estimate in estimates(tables)):
         yield Paragraph(_("None: no method estimated a parameter."), "poor")
+        return
+    for result in final_results(tables):
+        yield Heading(_("Result: {name}", name=result.name))
+        yield from _estimate(result)
+    yield Heading(_("By method"))
+    yield Paragraph(BY_METHOD)
+    for estimate in estimates(tables):
+        yield Heading(estimate.name)
+        yield from _estimate(estimate)
 
 
 PARAMETERS = Section(
     "parameters",
     "Parameters",
     _(
-        "Bias, scale error and cross-axis terms of both sensors, by each method that "
-        "the plan allows."
+        "Bias, scale error and cross-axis terms of both sensors: the result that counts, then "
+        "each method that the plan allows."
     ),
     _(
         "Each value stands with its standard deviation σ, first in the unit of the "
         "laboratory, then in the SI. Specific force: the axis that points up reads +g. "
-        "Rotations follow the right-hand rule. The joint fit is the final result, "
-        "unless a note beside it says that the fit with effects in the model replaces "
-        "it; the other methods are given for comparison."
+        "Rotations follow the right-hand rule. The result is the one that the archive, the export "
+        "and every other section use; it holds under the verdict of page one."
     ),
-    (*ESTIMATE_TABLES, "verdict"),
+    RESULT_TABLES,
     parts,
 )
 
 
 def _estimate(estimate: Estimate) -> Iterator[Part]:
-    yield Heading(estimate.name)
     if estimate.fit is not None:
         yield _fit(estimate, estimate.fit)
     long = any(len(row["id"]) > MAX_LETTERS for row in estimate.determined)
@@ -103,11 +108,19 @@ def _estimate(estimate: Estimate) -> Iterator[Part]:
             Column("Meaning", "note"),
             Column("Identifier", "code" if long else "identifier"),
         ),
-        list(_rows(estimate.determined)),
-        "None is determined; “Undetermined parameters” states the reasons.",
+        [*_rows(estimate.determined), *_effects(estimate)],
+        _reason(estimate),
     )
     if matrices := _matrices(estimate):
         yield matrices
+
+
+def _reason(estimate: Estimate) -> str:
+    """Why nothing is determined: the one reason of all, or where the reasons stand."""
+    reasons = {row["reason"] for row in estimate.parameters}
+    if len(reasons) == 1 and (reason := reasons.pop()):
+        return shortened(reason, 600)
+    return _("None is determined; “Undetermined parameters” states the reasons.")
 
 
 def _fit(estimate: Estimate, fit: Record) -> Paragraph:
@@ -149,14 +162,22 @@ def _random_walk(fit: Record) -> str:
     )
 
 
-def _rows(parameters: Sequence[Record]) -> Iterator[Row]:
+def _effects(estimate: Estimate) -> Iterator[Row]:
+    """The parameters of the effects in its model, below the name of each effect."""
+    there = [row for row in estimate.effects if row["value"] is not None]
+    yield from _rows(there, lambda row: in_words(row["effect"]))
+
+
+def _rows(
+    parameters: Sequence[Record],
+    kind_in: Callable[[Record], str] = lambda row: kind_of(row["parameter"]),
+) -> Iterator[Row]:
     """One row per parameter below the name of its kind, digits under digits."""
-    kinds = groupby(parameters, lambda row: kind_of(row["parameter"]))
-    groups = {kind: list(own) for kind, own in kinds}
+    groups = {kind: list(own) for kind, own in groupby(parameters, kind_in)}
     cells = [line for group in groups.values() for line in written(group)]
     lines = iter(zip(*map(aligned, zip(*cells, strict=True)), strict=True))
     for kind, group in groups.items():
-        name = KIND.get(kind, shortened(kind, 60).capitalize())
+        name = KIND.get(kind, capital(shortened(kind, 60)))
         frames = " and ".join(dict.fromkeys(row["frame"] for row in group))
         yield head(f"{name}; frame: {shortened(frames, 60)}")
         for row, (value, sigma, si_value, si_sigma) in zip(group, lines, strict=False):

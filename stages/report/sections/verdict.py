@@ -10,35 +10,41 @@ from math import degrees
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import (
-    decimals_of,
     fixed,
+    p_is,
     probability,
     shortened,
     significant,
     whole,
-    with_sigma,
 )
-from inertial.text.units import quantity
+from inertial.text.parameters import JOINT
 from stages.report import outline
 from stages.report.results import (
-    FREE,
+    MIXTURE,
     RESULT_TABLES,
     Estimate,
     final_results,
     kind_of,
     quantity_of,
 )
-from stages.report.sections.findings import FINDING_TABLES, causes, findings_of, title_of
+from stages.report.sections.findings import (
+    FINDING_TABLES,
+    causes,
+    findings_of,
+    harmless,
+    members,
+    title_of,
+)
+from stages.report.sizes import size_in_words
 from stages.report.tables import Record, Tables, once
+from stages.report.words import capital
 
 SIMULATED = _(
     "SIMULATED: recorded by the simulated laboratory. No instrument of this serial was calibrated."
 )
 FITS = {
-    "joint": _("joint"),
-    FREE: _("unknown attitudes"),
-    "extended": _("with effects"),
-    "mixture": _("mean over a class"),
+    JOINT: _("joint"),
+    MIXTURE: _("mean over a class"),
 }
 KINDS = {"bias": _("bias"), "scale": _("scale error"), "cross": _("cross-axis term")}
 # The verdicts from the worst to the best, with words, tone and meaning.
@@ -56,7 +62,7 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
         "fair",
         _(
             "Something was set right that nobody has confirmed. The result is valid if the "
-            "condition below holds; `accept` in the campaign file confirms it."
+            "condition below holds; “accept” in the campaign file confirms it."
         ),
     ),
     "usable_within_limits": (
@@ -71,9 +77,9 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
     ),
 }
 SURE = {
-    "found": _("identified: nothing else explains these data as well"),
-    "one_of_class": _("one of a class: these data do not tell its members apart"),
-    "unknown_structure": _("certain that it is there, not what it is"),
+    "found": _("identified: no other cause explains these data as well"),
+    "one_of_class": _("one of a class whose members these data do not distinguish"),
+    "unknown_structure": _("certain to be there; its nature is not known"),
 }
 CURED = {
     "repaired": _("set right"),
@@ -83,8 +89,9 @@ CURED = {
     "left_out": _("left out"),
     "none": _("not removed"),
 }
-MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter
-MOST_NAMES = 8
+HARMLESS = _("harmless")
+MIN_MOVE, MAX_MOVE = 0.01, 1000.0  # sigma: between these the number says something
+MOST_CONSEQUENCES = 8
 
 
 @once
@@ -95,6 +102,9 @@ def worst(tables: Tables) -> str:
 
 
 def _sentences(tables: Tables) -> Iterator[str]:
+    """A sentence for each sensor, the cause first."""
+    if not tables.rows("verdict"):
+        yield _("Nothing was estimated of any sensor.")
     for row in tables.rows("verdict"):
         mount = _("Mount {mount}. ", mount=row["mount"]) if row["mount"] else ""
         yield mount + row["sentence"]
@@ -104,61 +114,88 @@ def _sentences(tables: Tables) -> Iterator[str]:
 
 
 def _card(tables: Tables, row: Record) -> outline.Finding:
-    facts = {
-        _("times"): whole(row["count"]) if row["count"] > 1 else None,
-        "SNR": None if row["snr"] is None else significant(row["snr"], 3),
-        "p": None if row["p_value"] is None else probability(row["p_value"]),
-        _("identifier"): row["id"],
-    }
+    facts = [(_("times"), whole(row["count"]))] if row["count"] > 1 else []
     return outline.Finding(
         anchor=f"cause/{row['id']}",
         title=title_of(tables, row),
-        grade=CURED[row["cure"]],
+        grade=_grade(row),
         sentence=shortened(row["sentence"], 700),
         answers=tuple(_answers(tables, row)),
-        facts=tuple((name, str(text)) for name, text in facts.items() if text),
+        facts=(*facts, (_("identifier"), row["id"])),
         links=tuple(_links(tables, row)),
         tone=_tone(row),
     )
 
 
+def _grade(row: Record) -> str:
+    """What became of it, in two words."""
+    return HARMLESS if harmless(row) else CURED[row["cure"]]
+
+
 def _tone(row: Record) -> outline.Tone:
     if row["cure"] != "none":
         return "fair"
-    return "" if (row["moves"] or 0.0) < MAX_HARMLESS_MOVE and row["moves"] is not None else "poor"
+    return "" if harmless(row) else "poor"
 
 
 def _answers(tables: Tables, row: Record) -> outline.Pairs:
     texts = {
-        _("How sure"): SURE[row["verdict"]],
-        _("How large"): _size(row),
+        _("How sure"): _sure(tables, row),
+        _("How large"): size_in_words(row),
         _("What it does"): _effect_on_result(row),
         _("What was done"): row["done"],
         _("Gain"): row["gain"],
-        _("Valid if"): row["condition"],
-        _("Therefore"): _therefore(tables, row),
+        _("Valid if"): _sentence(row["condition"] or ""),
+        _("Therefore"): _sentence(_therefore(tables, row)),
         _("In the laboratory"): row["action"],
     }
     return tuple((name, shortened(text, 600)) for name, text in texts.items() if text)
 
 
-def _size(row: Record) -> str | None:
-    if row["size"] is None:
-        return None
-    unit = quantity(row["cause"], row["unit"] or "1").laboratory
-    size, sigma = unit.of(row["size"]), unit.of(row["sigma"])
-    if sigma is None:
-        return f"{significant(size)} {unit.name}".removesuffix(" 1")
-    return f"{' ± '.join(with_sigma(size, sigma, decimals_of(sigma)))} {unit.name}"
+def _sentence(text: str) -> str:
+    """With a capital letter and a full stop; nothing of nothing."""
+    return capital(text if not text or text.endswith((".", "…")) else f"{text}.")
+
+
+def _sure(tables: Tables, row: Record) -> str:
+    """The degree of certainty, the members of a class, and the significance."""
+    words = SURE[row["verdict"]]
+    own = members(tables, row)
+    shares = [one["probability"] is not None for one in own]
+    if own:
+        each = [
+            in_words(one["member"])
+            + (f" ({probability(one['probability'])})" if all(shares) else "")
+            for one in own
+        ]
+        words += ": " + ", ".join(each)
+    numbers = []
+    if row["snr"] is not None:
+        numbers.append(f"SNR {significant(row['snr'], 3)}")
+    if row["p_value"] is not None:
+        numbers.append(p_is(row["p_value"]))
+    return _sentence(words + (f" ({', '.join(numbers)})" if numbers else ""))
 
 
 def _effect_on_result(row: Record) -> str:
-    if row["moves"] is None:
+    """By how much it moves or would move the parameters, and what else it does."""
+    moves = row["moves"]
+    if moves is None:
         return str(row["consequence"])
-    moves = _(
-        "It moves a parameter by at most {moves} of its sigma.", moves=significant(row["moves"], 2)
-    )
-    return f"{moves} {row['consequence']}"
+    return f"{_moves(row['cure'], moves)} {row['consequence']}"
+
+
+def _moves(cure: str, moves: float) -> str:
+    if moves < MIN_MOVE:
+        return _("It shifts no parameter by more than 0.01 σ.")
+    size = significant(moves, 2)
+    if moves > MAX_MOVE:
+        size = _("more than {most}", most=whole(MAX_MOVE))
+    if cure == "none":
+        return _("It shifts a parameter by up to {size} σ.", size=size)
+    if cure == "repaired":
+        return _("Not set right, it would shift a parameter by up to {size} σ.", size=size)
+    return _("Left out of the model, it would shift a parameter by up to {size} σ.", size=size)
 
 
 def _therefore(tables: Tables, row: Record) -> str:
@@ -168,7 +205,7 @@ def _therefore(tables: Tables, row: Record) -> str:
         for each in findings_of(tables, row)
         if each["cause"] != row["cause"]
     )
-    return ", ".join(f"{name} ({count})" for name, count in names.most_common(MOST_NAMES))
+    return ", ".join(f"{name} ({count})" for name, count in names.most_common(MOST_CONSEQUENCES))
 
 
 def _links(tables: Tables, row: Record) -> Iterator[outline.Link]:
@@ -233,8 +270,6 @@ def _with_unit(value: float | None, decimals: int, unit: str) -> str:
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
     """The verdict, a sentence per sensor, a card per cause, the results in short, the plate."""
-    if tables.row("campaign")["simulated"]:
-        yield outline.Paragraph(SIMULATED, "poor")
     word, tone, meaning = LEVELS[worst(tables)]
     yield outline.Level(word, tone, meaning)
     yield outline.Sentences(tuple(_sentences(tables)))
@@ -255,17 +290,13 @@ SECTION = outline.Section(
     "Verdict",
     _("Whether this calibration can be used, and why: each cause once."),
     _(
-        "A cause is what, taken as true and undone or modelled, makes other findings vanish; "
-        "those are its consequences and stand on its card. A manoeuvre that the plan lacks is no "
-        "cause."
+        "A cause is what, set right or modelled, makes other findings vanish; these are its "
+        "consequences and stand on its card. Shifts of parameters are in σ of the result."
     ),
     (
         *RESULT_TABLES,
         *FINDING_TABLES,
-        *("causes", "cause_members", "consequences", "verdict"),
-        "campaign",
-        "known",
-        "clocks",
+        *("campaign", "known", "clocks"),
     ),
     parts,
 )
@@ -275,7 +306,7 @@ def _in_short(result: Estimate) -> outline.Row:
     largest = _largest_sigmas(result)
     return outline.table_row(
         result.sensor,
-        FITS.get(result.method, result.method),
+        FITS.get(result.method, _("with effects")),
         f"{len(result.calibration)} of 12",
         *(largest.get(kind, "—") for kind in KINDS),
         probability(result.fit["p_value"]) if result.fit else "—",
@@ -292,7 +323,7 @@ def as_text(tables: Tables) -> str:
     for sentence in _sentences(tables):
         lines += textwrap.wrap(sentence, 80, initial_indent="- ", subsequent_indent="  ")
     for row in causes(tables):
-        title = f"{title_of(tables, row)} ({CURED[row['cure']]})"
+        title = f"{title_of(tables, row)} ({_grade(row)})"
         lines += ["", *textwrap.wrap(title, 80)]
         lines += _indented(row["sentence"])
         for name, text in _answers(tables, row):

@@ -1,0 +1,45 @@
+"""How large a finding or a cause is, in the units of the laboratory."""
+
+from __future__ import annotations
+
+from math import pi
+
+from inertial.effects import CATALOGUE
+from inertial.text import units
+from inertial.text.numbers import counted, decimals_of, significant, with_sigma
+from stages.report.tables import Record
+
+COUNTS = frozenset({"samples", "records", "readings", "days", "manoeuvres", "positions"})
+RATIO = units.Unit("", 1.0)
+# From these sizes on the larger unit is read more easily.
+LARGE = {
+    "rad/s": (100 * units.DEGREES_PER_HOUR.size, units.DEGREES_PER_SECOND),
+    "m/s²": (1e4 * units.MICRO_G.size, units.METRES),
+    "rad": (0.1 * pi / 180, units.DEGREES),
+}
+
+
+def size_in_words(row: Record) -> str | None:
+    """The size of a row, with its sigma where it has one; None where it has no size."""
+    size, unit = row["size"], row["unit"] or "1"
+    if size is None:
+        return None
+    if unit in COUNTS:
+        return counted(round(size), unit.removesuffix("s"))
+    if unit == "sigma":
+        return f"{significant(size, 3)} σ"
+    shown = _unit(row["cause"], unit, size)
+    value, sigma = shown.of(size), shown.of(row.get("sigma"))
+    number = significant(value)
+    if sigma is not None:
+        number = " ± ".join(with_sigma(value, sigma, decimals_of(sigma)))
+    return number + (shown.name if shown.name == "°" else f" {shown.name}".rstrip())
+
+
+def _unit(cause: str, unit: str, size: float) -> units.Unit:
+    """The unit of a size; that of a fault without a dimension is a ratio, of an effect in ppm."""
+    if unit in LARGE and abs(size) >= LARGE[unit][0]:
+        return LARGE[unit][1]
+    if unit == "1" and cause not in CATALOGUE:
+        return RATIO
+    return units.quantity(cause, unit).laboratory
