@@ -12,6 +12,7 @@ from inertial.campaign.records import Row, rows_of
 
 FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE = "found", "one_of_class", "unknown_structure"
 RECORDING, PLAN, POSITIONS, MODEL = "quality", "segment", "accelerometer", "criticism"
+RIVAL = "rival"  # state of a repair that others explain as well
 PLANNED = "plan"  # the stage that repairs what the campaign file states
 
 
@@ -21,7 +22,8 @@ class Hypothesis:
 
     `stage`: whose finding it is; `manoeuvres`: those whose records it touches; `verdict`: of
     criticism, else empty; `members`: effects that it may be, the most probable first;
-    `repair`: the row of the repair that undoes it, if any; `masked`: whether its records are.
+    `repair`: the row of the repair that undoes it, if any; `rivals`: of repairs of which each
+    would, so that none is applied; `masked`: whether its records are.
     """
 
     id: str
@@ -32,6 +34,7 @@ class Hypothesis:
     verdict: str = ""
     members: tuple[str, ...] = ()
     repair: Row | None = None
+    rivals: tuple[Row, ...] = ()
     masked: bool = False
 
     @property
@@ -99,7 +102,8 @@ def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
                 manoeuvres=frozenset(own | touched.get(row["id"], set())),
                 verdict=row.get("verdict") or "",
                 members=tuple(members.get(row["id"], ())),
-                repair=repair_of.get(row["id"]),
+                repair=next(iter(repair_of.get(row["id"], ())), None),
+                rivals=tuple(r for r in repair_of.get(row["id"], ()) if r["state"] == RIVAL),
                 masked=row["id"] in touched,
             )
     for row in without:
@@ -107,7 +111,7 @@ def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
         yield Hypothesis(row["id"], PLANNED, cause, _as_finding(row), repair=row)
 
 
-def _repairs(findings: Findings) -> tuple[dict[str, Row], list[Row]]:
+def _repairs(findings: Findings) -> tuple[dict[str, list[Row]], list[Row]]:
     """The repairs by the id of the finding that they undo, and those that no finding reports.
 
     A repair of the plan cannot know that id: it has the finding of its cause and sensor.
@@ -119,16 +123,17 @@ def _repairs(findings: Findings) -> tuple[dict[str, Row], list[Row]]:
         axes.setdefault(row["repair"], set()).add(row["axis"])
     every = [row for rows in findings.by_stage.values() for row in rows]
     ids = {row["id"] for row in every}
-    repair_of, without = {}, []
+    repair_of: dict[str, list[Row]] = {}
+    without = []
     for row in findings.repairs:
         own = axes.get(row["id"], set())
         repair = row | {"axis": row["axis"] or (next(iter(own)) if len(own) == 1 else None)}
         cause = _CAUSE_OF_REPAIR[row["repair"]]
         alike = [f["id"] for f in every if (f["cause"], f["sensor"]) == (cause, row["sensor"])]
         if row["finding"] in ids:
-            repair_of[row["finding"]] = repair
+            repair_of.setdefault(row["finding"], []).append(repair)
         elif alike:
-            repair_of[alike[0]] = repair
+            repair_of.setdefault(alike[0], []).append(repair)
         else:
             without.append(repair)
     return repair_of, without

@@ -32,6 +32,7 @@ APPLIED = ("applied", "confirmed")  # states of a repair that the blocks were ma
 MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter: what a cause may move and be harmless
 MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed spoils the result
 SPOILS = 3  # severity of a finding
+MOST_MEMBERS = 3  # of a class in its name
 DIFFERENT_THINGS = ("manoeuvre_missing", "manoeuvre_swapped")  # each is one of its own
 
 DONE = {
@@ -90,8 +91,7 @@ class Cause:
         """How sure its name is."""
         if self.main.stage == MODEL:
             return self.main.verdict or UNKNOWN_STRUCTURE
-        rivals = self.main.repair is not None and self.main.repair["state"] == "rival"
-        return ONE_OF_CLASS if rivals else FOUND
+        return ONE_OF_CLASS if self.main.rivals else FOUND
 
     @property
     def condition(self) -> str | None:
@@ -111,7 +111,8 @@ class Cause:
     @property
     def name(self) -> str:
         """The cause in a few words, with its class and its place."""
-        names = self.main.members[:3] if self.verdict == ONE_OF_CLASS else ()
+        names = self.main.members or tuple(row["repair"] for row in self.main.rivals)
+        names = names[:MOST_MEMBERS] if self.verdict == ONE_OF_CLASS else ()
         words = _(" or ").join(in_words(name) for name in names or (self.main.cause,))
         axis = self.main.axis
         place = self.main.manoeuvre
@@ -210,7 +211,7 @@ class Evidence:
         """The cure, the largest shift of a parameter in sigma, and the gain on held-out data."""
         if cause.repair is not None:
             applied = cause.repair["state"] in APPLIED
-            return REPAIRED if applied else LEFT_OUT, _moved_by(cause.repair, own), None
+            return REPAIRED if applied else NONE, _moved_by(cause.repair, own), None
         if cause.stage == MODEL:
             return self._cure_of_effect(cause, own)
         touched = frozenset().union(*(member.cause.manoeuvres for member in members))

@@ -91,17 +91,23 @@ def _sigmas(row: Row) -> float:
 
 
 def _members(cause: Cause, findings: Findings) -> Iterator[Row]:
-    """The members of its class, by the finding that speaks for it."""
-    for row in findings.members:
-        if row["finding"] == cause.main.id:
-            yield {
-                "id": f"{cause.id}/{row['rank']}",
-                "cause": cause.id,
-                "mount": row["mount"],
-                "rank": row["rank"],
-                "member": row["effect"],
-                "probability": row["probability"],
-            }
+    """The members of its class: effects, or repairs of which each would undo it."""
+    own = [row for row in findings.members if row["finding"] == cause.main.id]
+    members = [(row["effect"], row["probability"]) for row in sorted(own, key=_rank)]
+    members += [(row["repair"], None) for row in cause.main.rivals]
+    for rank, (member, probability) in enumerate(members, 1):
+        yield {
+            "id": f"{cause.id}/{rank}",
+            "cause": cause.id,
+            "mount": cause.main.mount,
+            "rank": rank,
+            "member": member,
+            "probability": probability,
+        }
+
+
+def _rank(member: Row) -> int:
+    return int(member["rank"])
 
 
 def _consequences(cause: Cause) -> Iterator[Row]:
