@@ -100,18 +100,19 @@ def _names(causes: Sequence[Cause], remark: Callable[[Cause], str] | None = None
 
 def _limit(cause: Cause) -> str:
     """What became of a cause, in a few words."""
-    if cause.cure == NONE:
-        small = cause.moves is not None and cause.moves < MAX_HARMLESS_MOVE
-        return _("harmless") if small else _("included in the sigmas")
-    return LIMITS[cause.cure]
+    if cause.cure != NONE:
+        return LIMITS[cause.cure]
+    if cause.moves is None:
+        return _("included in the sigmas")
+    if cause.moves < MAX_HARMLESS_MOVE:
+        return _("harmless")
+    return _("shifts a parameter by up to {moves:.1f} σ", moves=cause.moves)
 
 
 def _why(causes: Sequence[Cause]) -> str:
     moves = [cause.moves for cause in causes if cause.moves is not None]
     if moves:
-        return _(
-            "it is not removed and moves a parameter by {moves:.1f} of its sigma", moves=max(moves)
-        )
+        return _("it is not removed and shifts a parameter by {moves:.1f} σ", moves=max(moves))
     return _("it is not removed, and how far it moves the parameters is not known")
 
 
