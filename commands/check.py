@@ -20,15 +20,20 @@ from inertial.campaign.explanations import Explained, compete
 from inertial.campaign.hypotheses import findings_of, hypotheses
 from inertial.campaign.records import Performed, performed_of, rows_of
 from inertial.tables.errors import Refusal
-from inertial.text.cause_names import how_grave, in_words, tally
+from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import counted, shortened, visible
 
 LINE_WIDTH = 100
 MAX_FULL_CAUSES = 20  # of further ones only the names are listed
-SPOILS_A_RESULT = 3  # severity
 APPLIED = ("applied", "confirmed")  # states of a repair
-LABELS = {"consequence": "Consequence", "action": _("What to do")}
+SPOILS, SET_RIGHT, WEAKENS, GOOD_TO_KNOW = range(4)
+GRADES = {
+    SPOILS: (_("spoils a result"), _("spoil a result")),
+    SET_RIGHT: (_("is set right"), _("are set right")),
+    WEAKENS: (_("weakens a result"), _("weaken a result")),
+    GOOD_TO_KNOW: (_("is good to know"), _("are good to know")),
+}
 INDENT = " " * 4
 
 
@@ -43,10 +48,7 @@ class Recording:
     @property
     def spoiled(self) -> bool:
         """Whether a cause spoils a result and nothing undoes it."""
-        return any(
-            each.cause.row["severity"] >= SPOILS_A_RESULT and not _undone(each)
-            for each in self.causes
-        )
+        return any(_grade(each) == SPOILS for each in self.causes)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -97,10 +99,18 @@ def recording_of(derived: Path) -> Recording:
 
 
 def _worst_first(each: Explained) -> tuple[int, float, int, str]:
-    """By severity, then the least likely by chance, then by count."""
+    """By grade, then the least likely by chance, then by count."""
     row = each.cause.row
     p_value = 1.0 if row["p_value"] is None else row["p_value"]
-    return -row["severity"], p_value, -row["count"], row["id"]
+    return _grade(each), p_value, -row["count"], row["id"]
+
+
+def _grade(each: Explained) -> int:
+    """How grave a cause is; what a repair undoes spoils nothing."""
+    repair, severity = each.cause.repair, each.cause.row["severity"]
+    if repair is not None and repair["state"] in APPLIED:
+        return SET_RIGHT
+    return {3: SPOILS, 2: WEAKENS}.get(severity, GOOD_TO_KNOW)
 
 
 def as_text(recording: Recording, campaign: str) -> str:
@@ -143,47 +153,38 @@ def _recorded(recording: Recording, campaign: str) -> str:
 
 
 def _cause(each: Explained) -> str:
-    """Cause and place, the sentence, what it does, what was done, what to do, what follows."""
+    """Grade, cause and place, the sentence, and what page one of the report answers as well."""
     row = each.cause.row
+    one, _many = GRADES[_grade(each)]
     place = row["manoeuvre"] or row["log"]
-    grave = _("set right, on condition") if _undone(each) else how_grave(row["severity"])
-    title = [grave.upper(), in_words(row["cause"])]
+    title = [one.upper(), in_words(row["cause"])]
     title += [shortened(place, 60)] if place else []
-    return "\n".join([_wrapped(" · ".join(title)), *_details(each)])
+    paragraphs = [_wrapped(" · ".join(title)), _wrapped(shortened(row["sentence"], 600), INDENT)]
+    answers = [f"{name}: {shortened(text, 600)}" for name, text in _answers(each) if text]
+    return "\n".join([*paragraphs, *(_wrapped(answer, INDENT) for answer in answers)])
 
 
-def _undone(each: Explained) -> bool:
-    """Whether a repair undoes it."""
-    repair = each.cause.repair
-    return repair is not None and repair["state"] in APPLIED
-
-
-def _details(each: Explained) -> Iterator[str]:
+def _answers(each: Explained) -> Iterator[tuple[str, str]]:
     row, repair = each.cause.row, each.cause.repair
-    yield _wrapped(shortened(row["sentence"], 600), INDENT)
-    for name, label in LABELS.items():
-        if row[name]:
-            yield _wrapped(f"{label}: {shortened(row[name], 600)}", INDENT)
+    yield _("What it does"), row["consequence"]
     if repair is not None:
-        done = _(
-            "Done: {done} Valid if {condition}",
-            done=repair["sentence"],
-            condition=repair["condition"],
-        )
-        yield _wrapped(shortened(done, 600), INDENT)
+        yield _("What was done"), repair["sentence"]
+        if repair["state"] == "applied":
+            yield _("Valid if"), repair["condition"]
     following = Counter(
         in_words(other.cause) for other in each.consequences if other is not each.cause
     )
-    if following:
-        listed = ", ".join(f"{cause} ({count})" for cause, count in following.most_common())
-        yield _wrapped(_("Therefore: {listed}.", listed=listed), INDENT)
+    yield _("Therefore"), ", ".join(f"{name} ({n})" for name, n in following.most_common())
+    yield _("In the laboratory"), row["action"]
 
 
 def _summary(recording: Recording) -> str:
     if recording.causes:
-        return tally([each.cause.row["severity"] for each in recording.causes])
+        grades = Counter(_grade(each) for each in recording.causes)
+        each = [f"{n} {GRADES[grade][n > 1]}" for grade, n in sorted(grades.items())]
+        return f"{counted(len(recording.causes), 'cause')}: {', '.join(each)}."
     if refused := sum(recording.refused.values()):
-        return _("No finding, but {refused} cannot be read.", refused=counted(refused, "line"))
+        return _("No cause, but {refused} cannot be read.", refused=counted(refused, "line"))
     return _("Nothing is wrong with this recording.")
 
 

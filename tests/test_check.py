@@ -17,7 +17,13 @@ from commands.check import LINE_WIDTH, main
 from inertial import tables
 
 NAME = "demo"
-READ = ("quality/findings", "segment/findings", "segment/performed", "decode/accounts")
+FINDINGS = ("quality/findings", "segment/findings")
+READ = (
+    *FINDINGS,
+    *("plan/repairs", "segment/repairs", "segment/channel_repairs"),
+    *("quality/masks", "quality/gaps", "segment/segments", "segment/performed"),
+    "decode/accounts",
+)
 
 
 @pytest.fixture
@@ -53,21 +59,50 @@ def test_what_is_wrong_with_the_demo(data: Path, capsys: pytest.CaptureFixture[s
     lines = said.splitlines()
     assert lines[0] == "demo: 12 of 12 manoeuvres found, 11 complete."
     assert "1197 samples are missing between 2771.800 s and 2783.780 s" in " ".join(said.split())
-    assert "incomplete turn · z-backward" in said
-    assert said.count("Consequence: ") == said.count("What to do: ") == said.count(" · ") / 2
-    assert lines[-1].endswith(".")
-    assert ": " in lines[-1]
-    findings = pd.concat(
-        [pd.read_parquet(data / f"derived/{NAME}/{name}.parquet") for name in READ[:2]]
+    assert (
+        said.count("What it does: ") == said.count("In the laboratory: ") == said.count(" · ") / 2
     )
-    assert lines[-1].startswith(f"{len(findings)} findings: ")
-    assert code == int((findings["severity"] == 3).any())
+    assert lines[-1] == "2 causes: 2 are good to know."  # a gap, and an oscillation of the case
+    assert code == 0
 
 
 def test_the_worst_comes_first(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = data / f"derived/{NAME}/quality/findings.parquet"
+    causes = pd.read_parquet(path)["cause"].tolist()
+    change(data, "quality/findings", severity=[2 if cause == "gap" else 1 for cause in causes])
     check(data)
     said = capsys.readouterr().out
-    assert said.index("WEAKENS A RESULT") < said.index("GOOD TO KNOW")
+    assert said.index("WEAKENS A RESULT · gap") < said.index("IS GOOD TO KNOW · oscillation")
+
+
+@pytest.fixture(scope="module")
+def reversed_gyro(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    """The y gyro reads -y, which the segments set right."""
+    folder = tmp_path_factory.mktemp("reversed")
+    fault = {"flip": {"log": "all", "sensor": "gyro", "axis": "y"}}
+    chain.simulate(chain.short(faults=[fault]), folder / NAME)
+    return chain.run(folder / NAME, folder / "derived", "segment")
+
+
+def test_what_is_set_right_spoils_nothing_and_states_its_condition(
+    reversed_gyro: Results, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = copied(reversed_gyro, tmp_path / "data")
+    assert check(data) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "IS SET RIGHT · reversed sign" in said
+    assert "Valid if: of the gyros, in all logs, y reads −y" in said
+    assert "accept: [signs/gyro]" in said
+    assert said.endswith("1 cause: 1 is set right.")
+
+
+def test_what_nobody_set_right_spoils_a_result(
+    reversed_gyro: Results, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = copied(reversed_gyro, tmp_path / "data")
+    change(data, "segment/repairs", state="refused")
+    assert check(data) == 1
+    assert "SPOILS A RESULT · reversed sign" in capsys.readouterr().out
 
 
 def test_it_fits_into_a_terminal(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -85,13 +120,11 @@ def test_a_number_stays_in_one_line(data: Path, capsys: pytest.CaptureFixture[st
 def test_what_spoils_a_result_is_told_by_the_exit_code(
     data: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for table in READ[:2]:
-        change(data, table, severity=2)
+    change(data, "quality/findings", severity=2)
     assert check(data) == 0
-    change(data, "segment/findings", severity=3)
+    change(data, "quality/findings", severity=3)
     assert check(data) == 1
-    last = capsys.readouterr().out.splitlines()[-1]
-    assert "1 spoils a result, " in last
+    assert "2 spoil a result." in capsys.readouterr().out.splitlines()[-1]
 
 
 def test_nothing_is_wrong(clean: list[Results], tmp_path: Path, capsys) -> None:
@@ -112,7 +145,7 @@ def test_lines_that_cannot_be_read_are_not_passed_over(
     check(data)
     said = capsys.readouterr().out
     assert "1 line of x-up.asc cannot be read and is left out." in said
-    assert "No finding, but 12 lines cannot be read." in said
+    assert "No cause, but 12 lines cannot be read." in said
 
 
 def test_a_log_cannot_act_on_the_terminal(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -131,7 +164,7 @@ def test_more_than_a_screenful_is_summed_up(data: Path, capsys: pytest.CaptureFi
     pq.write_table(new.replace_schema_metadata(old.schema.metadata), path)
     check(data)
     said = capsys.readouterr().out
-    assert said.count("Consequence: ") == 20
+    assert said.count("What it does: ") == 20
     assert "more: gap (" in said
 
 
@@ -148,7 +181,7 @@ def test_a_campaign_that_names_no_log_is_refused_as_by_make_report(tmp_path: Pat
     document = chain.short()
     chain.simulate(document, raw)
     (raw / "x-up.asc").rename(raw / "x_up.asc")
-    goals = [f"data/derived/{NAME}/{name}.parquet" for name in READ[:2]]
+    goals = [f"data/derived/{NAME}/{name}.parquet" for name in FINDINGS]
     command = [sys.executable, "-m", "snakemake", "--cores", "2", "--directory", str(tmp_path)]
     done = subprocess.run(
         [*command, "--snakefile", str(ROOT / "Snakefile"), "--", *goals],
@@ -171,7 +204,7 @@ def test_a_check_makes_what_a_report_begins_with(tmp_path: Path) -> None:
     chain.simulate(chain.short(), raw)
     recipe = (ROOT / "Makefile").read_text().partition("\ncheck:")[2].partition("\n\n")[0]
     assert "data/derived/$$CAMPAIGN/{quality,segment}/findings.parquet" in recipe
-    goals = [f"data/derived/{NAME}/{name}.parquet" for name in READ[:2]]
+    goals = [f"data/derived/{NAME}/{name}.parquet" for name in FINDINGS]
     command = [sys.executable, "-m", "snakemake", "--cores", "2", "--directory", str(tmp_path)]
     command += ["--snakefile", str(ROOT / "Snakefile"), "--", *goals]
     subprocess.run(command, capture_output=True, check=True)

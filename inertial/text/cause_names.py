@@ -1,11 +1,9 @@
-"""The names of causes and effects as they are read, and how grave a finding is, in words."""
+"""The names of causes and effects as they are read."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from inertial.text.messages import _
-from inertial.text.numbers import counted, shortened, whole
+from inertial.text.numbers import shortened
 
 # Where the identifier with spaces between its words would not do.
 NAMES = {
@@ -25,6 +23,7 @@ NAMES = {
     "accel_drift": _("drift of the accelerometers without a law"),
     "accel_quadratic": _("accelerometer quadratic term"),
     "already_compensated": _("compensated already"),
+    "axis_swap": _("exchanged axes"),
     "clock_jitter": _("jitter of the clock"),
     "clock_step": _("clock that was set"),
     "clock_scale": _("clock too fast or too slow"),
@@ -44,8 +43,12 @@ NAMES = {
     "gyro_scale_temperature": _("gyro scale factor with temperature"),
     "gyro_warm_up": _("gyro warm-up"),
     "heading_error": _("wrong heading"),
+    "impact": _("impact on the IMU"),
     "latitude_error": _("wrong latitude"),
+    "manoeuvre_missing": _("missing manoeuvre"),
+    "manoeuvre_swapped": _("exchanged manoeuvres"),
     "rate_off": _("another sample rate"),
+    "sign_flip": _("reversed sign"),
     "size_effect": _("accelerometers apart from each other"),
     "status_invalid": _("invalid status"),
     "table_angle_scale": _("scale of the table's angle"),
@@ -57,30 +60,10 @@ NAMES = {
     "unknown_structure": _("structure without a name"),
     "wrong_day": _("another day"),
     "wrong_imu_type": _("another type of IMU"),
+    "wrong_scale_factor": _("wrong count size or unit"),
 }
-GRAVITY = {3: _("spoils a result"), 2: _("weakens a result"), 1: _("good to know")}
 
 
 def in_words(cause: str) -> str:
     """The name of a cause or an effect as it is read."""
     return NAMES.get(cause) or shortened(cause.replace("_", " "), 60)
-
-
-def how_grave(severity: int) -> str:
-    """What a severity means."""
-    return GRAVITY.get(severity, GRAVITY[1])
-
-
-def tally(severities: Sequence[int]) -> str:
-    """How many findings there are, and how many of them are how grave, in one sentence."""
-    said = []
-    result = "a result"
-    for severity, one, many in (
-        (3, "spoils {}", "spoil {}"),
-        (2, "weakens {}", "weaken {}"),
-        (1, _("is good to know"), _("are good to know")),
-    ):
-        if count := sum(each == severity for each in severities):
-            said.append(f"{whole(count)} {(one if count == 1 else many).format(result)}")
-            result = "one"
-    return f"{counted(len(severities), 'finding')}: {', '.join(said)}."

@@ -18,6 +18,7 @@ from tests.report import synthetic_estimates as estimates
 from tests.report import synthetic_model as model
 from tests.report import synthetic_plan as plan
 from tests.report import synthetic_recording as recording
+from tests.report.synthetic_diagnosis import counted, diagnosed
 from tests.report.synthetic_studies import studies
 from tests.report.synthetic_values import Held, rows_as
 
@@ -108,7 +109,8 @@ def campaign(logs: Collection[str] | None = None) -> dict[str, Any]:
     made["checks"] = rows_as(tables.CHECKS, estimates.checks(manoeuvres))
     made["compensated_traces"] = estimates.compensated(made["traces"])
     made["differences"] = rows_as(tables.DIFFERENCES, estimates.differences())
-    made["result"] = estimates.counted(made)
+    made["result"] = counted(made)
+    made |= diagnosed(made)
     made["published_differences"] = rows_as(tables.DIFFERENCES, estimates.published())
     made["archived"] = rows_as(tables.ARCHIVED, [estimates.archived()])
     made["earlier"] = rows_as(tables.EARLIER, estimates.earlier(made, generator))

@@ -166,13 +166,6 @@ def published() -> Rows:
     return [row | told | {"sentence": "bias: this one and the published value agree."}]
 
 
-def counted(made: dict[str, Any]) -> pd.DataFrame:
-    """The result that counts: the joint one of both sensors."""
-    both = [made[f"{stage}_parameters"] for stage in ("accelerometer", "gyroscope")]
-    joint = pd.concat(both).query("method == 'joint'")
-    return joint[joint["parameter"].str.match("bias|scale|cross")].assign(stage="diagnosis")
-
-
 def checks(manoeuvres: Rows) -> Rows:
     rows: Rows = []
     for row in manoeuvres:

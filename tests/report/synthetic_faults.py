@@ -11,6 +11,7 @@ import pandas as pd
 
 from inertial import tables
 from tests.report.synthetic import brief
+from tests.report.synthetic_diagnosis import diagnosed
 from tests.report.synthetic_recording import close_up
 from tests.report.synthetic_values import INTERVAL, rows_as
 
@@ -121,7 +122,7 @@ def faulty() -> dict[str, Any]:
     shown = [_close_up(fault, generator) for fault in FAULTS]
     made["quality_close_ups"] = pd.concat([made["quality_close_ups"], *shown])
     made["masks"] = rows_as(tables.MASKS, [_mask(fault) for fault in FAULTS if fault.masks])
-    return made
+    return made | diagnosed(made)
 
 
 LOGS = ("x-forward.asc", "z-forward.asc", "z-backward.asc")  # those of further findings

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from inertial import tables
-from tests.report import synthetic_causes
+from tests.report import synthetic_causes, synthetic_diagnosis
 from tests.report import synthetic_estimates as estimates
 from tests.report.synthetic_recording import rate_of
 from tests.report.synthetic_values import (
@@ -40,7 +40,7 @@ def of_the_model(
         "worth": rows_as(tables.WORTH, _worth()),
         "gain_effects": rows_as(tables.GAIN_EFFECTS, _gain_effects()),
         "held_out": tables.HELD_OUT.empty(),
-        "verdict": rows_as(tables.VERDICTS, _verdict()),
+        "verdict": rows_as(tables.VERDICTS, synthetic_diagnosis.verdicts()),
         "candidate_effects": rows_as(
             tables.CANDIDATE_EFFECTS, [OF_GYRO | {"method": "extended", "finding": ""}]
         ),
@@ -224,24 +224,6 @@ OF_GYRO = {"mount": "", "sensor": "gyro", "effect": "gyro_g_sensitivity"}
 def _gain_effects() -> Rows:
     of_line = {"model": "oscillation", "effect": "oscillation"}
     return [OF_GYRO | {"model": "blocks"}, OF_GYRO | of_line]
-
-
-def _verdict() -> Rows:
-    told = {
-        "gyro": "The extended result of the gyros counts, with gyro g-sensitivity.",
-        "accel": "The joint result of the accelerometers counts: they show no effect.",
-    }
-    return [
-        {
-            "sensor": sensor,
-            "mount": "",
-            "verdict": "usable",
-            "sentence": "",
-            "method": "extended" if sensor == "gyro" else "joint",
-            "reason": sentence,
-        }
-        for sensor, sentence in told.items()
-    ]
 
 
 def _worth() -> Rows:

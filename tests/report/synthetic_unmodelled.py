@@ -8,6 +8,7 @@ import pandas as pd
 
 from inertial import tables
 from tests.report import synthetic, synthetic_causes
+from tests.report.synthetic_diagnosis import diagnosed
 from tests.report.synthetic_values import rows_as
 
 
@@ -18,14 +19,16 @@ def without_effects() -> dict[str, Any]:
     made["scores"]["finding"] = None
     for name in ("gain", "extended_parameters", "extended_fit", "worth", "verdict"):
         made[name] = made[name].iloc[:0]
-    return made | synthetic_causes.cause_tables([])
+    made |= synthetic_causes.cause_tables([])
+    return made | diagnosed(made)
 
 
 def with_findings(*rows: dict[str, Any]) -> dict[str, Any]:
     """The same with these findings of criticism alone."""
     made = without_effects()
     made["effects"]["finding"] = None
-    return made | synthetic_causes.cause_tables(list(rows))
+    made |= synthetic_causes.cause_tables(list(rows))
+    return made | diagnosed(made)
 
 
 def with_parameters(made: dict[str, Any], finding: str, *numbers: tuple[Any, ...]) -> None:

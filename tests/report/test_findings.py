@@ -1,4 +1,4 @@
-"""The page of findings: each with what shows it, and what it costs in numbers."""
+"""What shows each cause: its pictures, numbers beside what was expected, the findings behind it."""
 
 from __future__ import annotations
 
@@ -11,27 +11,23 @@ import pytest
 
 from stages.report.sections import evidence
 from tests.report import synthetic, synthetic_faults
+from tests.report.synthetic_diagnosis import diagnosed
 from tests.report.synthetic_values import GAP_FINDING, RINGING_FINDING
 
-FINDING = re.compile(r'<article class="finding[^"]*" id="finding/([^"]+)">(.*?)</article>', re.S)
+TURN = "segment/incomplete/z-backward"
 
 
-def articles(made: dict[str, Any]) -> dict[str, str]:
-    """Each finding of a report by its identifier, as HTML, in the order of the page."""
-    return dict(FINDING.findall(synthetic.report_on(made)["html"]))
+def shown(made: dict[str, Any]) -> dict[str, str]:
+    """What shows each cause of a report, by the finding that names it, as HTML in its order."""
+    html = synthetic.report_on(made)["html"]
+    section = html[html.index('<section id="findings">') :]
+    parts = section[: section.index("</section>")].split('<h3 id="evidence/diagnosis/')[1:]
+    return {name: own for name, _, own in (part.partition('">') for part in parts)}
 
 
 @cache
 def faulty() -> dict[str, str]:
-    return articles(synthetic_faults.faulty())
-
-
-def test_the_worst_comes_first_and_says_so() -> None:
-    grades = re.compile(r'class="grade">([^<]+)<')
-    found = [grade for html in faulty().values() for grade in grades.findall(html)]
-    order = ("spoils a result", "weakens a result", "good to know")
-    assert len(found) == len(faulty())
-    assert found == sorted(found, key=order.index)
+    return shown(synthetic_faults.faulty())
 
 
 @pytest.mark.parametrize("fault", synthetic_faults.FAULTS, ids=lambda fault: fault.cause)
@@ -57,9 +53,8 @@ def test_what_has_no_place_has_no_close_up() -> None:
         ("quality/rate_off", "50.00 Hz measured, 100.0 Hz expected"),
         # 0.10197 is 1 m/s² in units of 9.80665 m/s²
         ("quality/wrong_scale_factor", "0.9987 m/s² measured, 9.794 m/s² expected"),
-        # Normal gravity of WGS 84 at 30.5278° and 24 m, and 1300 mGal more.
         ("quality/gravity_error", "9.806588 m/s² stated, 9.793588 m/s² expected"),
-        ("segment/incomplete/z-backward", "−240.2° measured, −360.0° expected"),
+        (GAP_FINDING, "−240.2° measured, −360.0° expected"),
     ],
 )
 def test_a_number_stands_beside_what_was_expected(identifier: str, said: str) -> None:
@@ -77,34 +72,25 @@ def test_a_gap_is_shown_by_its_two_lines() -> None:
     assert "Hatched: not recorded" in html
 
 
-def test_a_gap_and_the_turn_it_is_in_lead_to_each_other() -> None:
-    turn = "segment/incomplete/z-backward"
-    assert f'href="#finding/{turn}"' in faulty()[GAP_FINDING]
-    assert f'href="#finding/{GAP_FINDING}"' in faulty()[turn]
+def test_what_a_cause_explains_stands_with_it_and_nowhere_else() -> None:
+    behind = {
+        name: re.findall(r"<code>([^<]+)</code>", html)
+        for name, html in shown(synthetic.brief()).items()
+    }
+    assert behind == {
+        "criticism/gyro_g_sensitivity": ["criticism/gyro_g_sensitivity"],
+        GAP_FINDING: [GAP_FINDING, TURN],
+        "criticism/oscillation": ["criticism/oscillation", RINGING_FINDING],
+    }
 
 
-def test_samples_that_a_worse_finding_has_shown_are_not_shown_again() -> None:
+def test_samples_that_one_finding_has_shown_are_not_shown_again() -> None:
     made = synthetic.brief("z-backward.asc")
-    turn = made["segment_findings"]["id"].iloc[0]
     close_ups = made["quality_close_ups"].query("finding == @GAP_FINDING")
-    made["segment_close_ups"] = close_ups.assign(finding=turn)
-    found = articles(made)
-    assert "11.980 s apart" in found[turn]
-    assert "The record before the gap" in found[turn]
-    assert "<svg" not in found[GAP_FINDING]
-    assert f'href="#finding/{turn}"' in found[GAP_FINDING]
-
-
-def test_an_oscillation_of_recording_and_model_leads_to_both_and_to_unmodelled_effects() -> None:
-    found = articles(synthetic.brief())
-    model, recording = (found[name] for name in ("criticism/oscillation", RINGING))
-    assert f'href="#finding/{RINGING}"' in model
-    assert 'href="#finding/criticism/oscillation"' in recording
-    assert 'href="#effect/criticism/oscillation"' in model
-    assert "<svg" not in model
-
-
-RINGING = RINGING_FINDING
+    made["segment_close_ups"] = close_ups.assign(finding=TURN)
+    html = shown(made)[GAP_FINDING]
+    assert html.count("lines 2\u202f192 and 2\u202f193, 11.980 s apart") <= 1
+    assert html.count("The record before the gap") == 1
 
 
 def test_every_link_leads_somewhere() -> None:
@@ -126,7 +112,7 @@ def test_a_storm_of_findings_keeps_the_page_light() -> None:
         close_up.assign(finding=name, record=close_up["record"] + number)
         for number, name in enumerate(many)
     )
-    found = articles(made)
+    found = shown(made | diagnosed(made))
     pictures = sum(html.count("<svg") for html in found.values())
     assert pictures == evidence.MOST_PICTURES
     assert max(len(html.encode()) for html in found.values()) < 40_000
@@ -137,7 +123,7 @@ def test_samples_without_time_are_drawn_over_their_lines() -> None:
     for name in ("traces", "segments", "clocks", "quality_findings"):
         made[name][["from_s", "to_s"]] = float("nan")
     made["quality_close_ups"]["time"] = float("nan")
-    html = articles(made)["quality/spike/x-up.asc/accel_x"]
+    html = shown(made)["quality/spike/x-up.asc/accel_x"]
     assert html.count("<svg") == 1
     assert ">Record<" in html
     assert ">Line<" in html

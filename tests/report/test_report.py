@@ -14,15 +14,18 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from stages.report.outline import Heading, Paragraph, Part, Section, Table
+from stages.report.sections.parameters import PARAMETERS
 from stages.report.stage import SECTIONS, STAGE
 from tests.report import synthetic, synthetic_unmodelled
+from tests.report.synthetic_diagnosis import diagnosed
 from tests.report.synthetic_values import Held
 
 TITLES = [
     "Verdict",
     "Parameters",
     "Unmodelled effects",
-    "Findings",
+    "What shows each cause",
     "Undetermined parameters",
     "Residuals",
     "Comparisons",
@@ -121,81 +124,86 @@ def test_what_is_not_determined_has_its_reason_and_no_value() -> None:
     assert "rests in six positions would help" in page.text
 
 
-def test_the_verdict_says_plainly_that_the_model_does_not_fit() -> None:
-    tables = synthetic.brief()
-    tables["verdict"] = tables["verdict"].iloc[:0]  # the joint result counts
-    text = " ".join(synthetic.report_on(tables)["txt"].split())
-    assert "Verdict: calibrated in part" in text
-    assert (
-        "Gyroscope: the model does not describe the data within the noise; the σ include noise only"
-        in text
-    )
-    assert "SIMULATED" in text
-    assert "not complete: z-backward" in text
-    assert "Findings: 5;" in text
+def parameters_of(made: dict[str, Any], section: Section = PARAMETERS) -> list[Part]:
+    """The section of parameters, built from the tables that it declares."""
+    own = {name: made[name] for name in (*section.reads, "provenance")}
+    return list(section.parts(synthetic.tables_of(own)))
 
 
-def test_where_the_extended_result_is_final_its_sigmas_and_its_fit_are_stated() -> None:
-    tables = synthetic.brief()
-    tables["extended_parameters"]["sigma"] /= 10
-    text = " ".join(synthetic.report_on(tables)["txt"].split())
-    assert "Verdict: calibrated All 24 parameters" in text
-    said = "Gyroscope: all 12 parameters are determined, with gyro g-sensitivity in the model."
-    # 2.1e-8 rad/s are 0.0043 °/h, 2.2e-6 are 2.2 ppm
-    assert f"{said} Largest σ: bias 0.00043 °/h; scale error 0.22 ppm" in text
-    assert "Gyroscope: the model describes the data within the noise (p = 0.54)" in text
+def words_of(parts: Sequence[Part]) -> str:
+    return " ".join(part.text for part in parts if isinstance(part, Paragraph | Heading))
+
+
+def test_the_result_that_counts_stands_first_and_once() -> None:
+    made = synthetic.brief()
+    made["result"]["value"] += made["result"]["sigma"]  # by no method: a mixture
+    made["result"]["method"] = "mixture"
+    page = Page(synthetic.report_on(made)["html"])
+    first = [row for row in page.rows if row.count("/") == 2 and "bias_x" in row]
+    assert first[:2] == ["diagnosis/accelerometer/bias_x", "diagnosis/gyroscope/bias_x"]
+    # 1.30e-6 rad/s and five sigma of 2.1e-8 (the extended fit moved it by four) are 0.2898 °/h
+    assert number(page.rows["diagnosis/gyroscope/bias_x"][1]) == pytest.approx(0.2898, abs=1e-4)
+    assert page.text.count("Result: Gyroscope, mean over the members of a class") == 1
+    assert page.text.index("Result: Gyroscope") < page.text.index("By method")
+
+
+def test_a_result_that_is_spoilt_has_its_reason_in_place_of_numbers() -> None:
+    made = synthetic.brief()
+    own = made["result"]["sensor"] == "gyro"
+    made["result"].loc[own, ["value", "sigma"]] = np.nan
+    made["result"].loc[own, "reason"] = "Gyros: saturation. Not usable."
+    tables = [part for part in parameters_of(made) if isinstance(part, Table)]
+    assert tables[1].empty == "Gyros: saturation. Not usable."
+    assert not tables[1].rows
+
+
+def test_effects_of_the_result_stand_below_its_parameters() -> None:
+    made = synthetic.brief()
+    effect = made["result"].query("sensor == 'gyro'").iloc[:1].assign(
+        id="diagnosis/gyroscope/gyro_g_sensitivity.g_xx",
+        parameter="gyro_g_sensitivity.g_xx",
+        effect="gyro_g_sensitivity",
+        value=6.92e-7,
+        sigma=1.38e-8,
+        unit="(rad/s)/(m/s²)",
+    )  # fmt: skip
+    made["result"] = pd.concat([made["result"], effect], ignore_index=True)
+    page = Page(synthetic.report_on(made)["html"])
+    cells = page.rows["diagnosis/gyroscope/gyro_g_sensitivity.g_xx"]
+    # 6.92e-7 (rad/s)/(m/s²) is 6.92e-7 · 9.80665 m/s² · 3600 s · 180°/π = 1.3998 °/h/g
+    assert cells[0] == "gxx"
+    assert number(cells[1]) == pytest.approx(1.3998, abs=0.002)
+    assert cells[3] == "°/h/g"
+
+
+def test_a_model_that_does_not_fit_says_so_plainly() -> None:
+    said = words_of(parameters_of(synthetic.brief()))
+    assert "χ² = 590.0 with 594 degrees of freedom: the model describes the data within" in said
+    assert "the model does not describe the data within the noise; the σ include noise only" in said
 
 
 def test_a_scatter_that_the_sigmas_include_is_stated() -> None:
-    tables = synthetic.brief()
-    tables["verdict"] = tables["verdict"].iloc[:0]
-    tables["gyroscope_fit"]["scatter"] = 0.5 * np.pi / 180 / 3600
+    made = synthetic.brief()
+    made["gyroscope_fit"]["scatter"] = 0.5 * np.pi / 180 / 3600
     words = "manoeuvres scatter by 0.50 °/h beyond it, which the σ include"
-    assert words in " ".join(synthetic.report_on(tables)["txt"].split())
+    assert words in words_of(parameters_of(made))
 
 
 def test_mounts_stand_apart() -> None:
-    tables = synthetic.brief()
-    for name in ("parameters", "fit", "fit_manoeuvres"):
-        upright = tables[f"accelerometer_{name}"].query("method == 'joint'")
-        lying = upright.assign(mount="lying")
-        if name == "parameters":
-            lying = lying.assign(id=lying["id"].str.replace("joint", "joint@lying"), value=np.nan)
-        tables[f"accelerometer_{name}"] = pd.concat([upright, lying], ignore_index=True)
-    verdict = synthetic.report_on(tables)["txt"]
-    assert "Accelerometer: all 12 parameters are determined." in verdict
-    assert "Accelerometer (mount lying): nothing is determined." in verdict
-
-
-def test_all_determined_and_a_good_fit_is_calibrated() -> None:
-    tables = synthetic.brief()
-    tables["gyroscope_fit"]["p_value"] = 0.2
-    tables["campaign"]["simulated"] = False
-    verdict = synthetic.report_on(tables)["txt"]
-    assert "Verdict: calibrated\n" in verdict
-    assert "SIMULATED" not in verdict
-
-
-def test_findings_come_worst_first() -> None:
-    text = Page(synthetic.documents()["html"]).text
-    places = [
-        text.index(sentence)
-        for sentence in (
-            "Of z-backward 240.2° of 360° were recorded.",
-            "Between lines 2192 and 2193 of z-backward.asc",
-            "The x gyro oscillates at 20.0 Hz",
-        )
-    ]
-    assert places[0] < min(places[1:])  # the turn that is lost before what is good to know
+    made = synthetic.brief()
+    upright = made["result"].query("sensor == 'accel'")
+    lying = upright.assign(mount="lying", value=np.nan, id=upright["id"] + "@lying")
+    made["result"] = pd.concat([made["result"], lying], ignore_index=True)
+    said = words_of(parameters_of(made))
+    assert "Result: Accelerometer, joint fit of all manoeuvres" in said
+    assert "Result: Accelerometer (mount lying), joint fit of all manoeuvres" in said
+    page = Page(synthetic.report_on(made)["html"])
+    assert "Accelerometer (mount lying)joint0 of 12" in page.text.replace("\n", "")
 
 
 def test_an_unmodelled_effect_is_named_with_its_numbers() -> None:
-    documents = synthetic.documents()
-    page = Page(documents["html"])
+    page = Page(synthetic.documents()["html"])
     assert "Detected: gyro g-sensitivity and oscillation." in page.text
-    assert "Detected: gyro g-sensitivity and oscillation. “Unmodelled effects”" in (
-        " ".join(documents["txt"].split())
-    )
     # 6.92e-7 (rad/s)/(m/s²) is 6.92e-7 · 9.80665 m/s² · 3600 s · 180°/π = 1.3998 °/h/g
     cells = page.rows["criticism/gyro_g_sensitivity/g_xx"]
     assert number(cells[1]) == pytest.approx(1.3998, abs=0.002)
@@ -220,10 +228,9 @@ def test_a_shift_of_the_extended_model_is_in_sigmas_of_the_joint_fit() -> None:
     assert number(page.rows["extension/gyroscope/bias_y"][6]) == 0.0
 
 
-def test_which_result_is_final_is_stated_beside_the_effects_and_the_joint_parameters() -> None:
+def test_which_result_counts_is_stated_beside_the_effects() -> None:
     text = Page(synthetic.documents()["html"]).text
     assert "The extended result of the gyros counts, with gyro g-sensitivity." in text
-    assert text.count("These are not the final parameters") == 1
     assert "The joint result of the accelerometers counts" not in text  # they show no effect
 
 
@@ -249,7 +256,7 @@ def test_an_effect_of_two_mounts_stands_twice() -> None:
         for key in {"id", "finding"} & set(both[1].columns):
             both[1][key] += " of lying"
         tables[name] = pd.concat(both, ignore_index=True)
-    page = Page(synthetic.report_on(tables)["html"])
+    page = Page(synthetic.report_on(tables | diagnosed(tables))["html"])
     assert "Oscillation (mount lying)" in page.text
     twice = [page.rows[f"limit/lever_arm{mount}/r_y"][1:] for mount in ("/lying", "")]
     assert twice[0] == twice[1]
@@ -303,7 +310,11 @@ def test_texts_from_outside_are_harmless() -> None:
     tables["lines"]["manoeuvre"] = HOSTILE
     tables["gain_effects"]["effect"] = HOSTILE
     tables["detection_limits"][["sentence", "explanation", "remark", "parameter"]] = HOSTILE
-    tables["verdict"]["reason"] = HOSTILE
+    tables["verdict"][["reason", "sentence"]] = HOSTILE
+    tables["causes"][["sentence", "log", "manoeuvre", "gain", "condition", "done"]] = HOSTILE
+    tables["causes"][["consequence", "action"]] = HOSTILE
+    tables["cause_members"]["member"] = HOSTILE
+    tables["result"][["meaning", "frame"]] = HOSTILE
     tables["structures"][["kind", "sensor", "axis"]] = HOSTILE
     tables["members"]["effect"] = HOSTILE
     told = ["sentence", "consequence", "action", "manoeuvre"]
@@ -344,7 +355,8 @@ def test_a_campaign_that_gave_nothing_says_so_in_words() -> None:
     documents = synthetic.report_on(synthetic.poor())
     page = Page(documents["html"])
     assert [heading.lstrip("0123456789 ") for heading in page.headings] == TITLES
-    assert "Verdict: not calibrated" in documents["txt"]
+    assert "Verdict: not usable" in documents["txt"]
+    assert "Nothing was estimated of any sensor." in page.text
     assert "None: no method estimated a parameter." in page.text
     assert "None: no log gave samples that could be drawn." in page.text
     assert "No effect was tested" in page.text
@@ -366,9 +378,10 @@ def test_one_sensor_without_time_stamps_or_turns() -> None:
     tables["manoeuvres"] = tables["manoeuvres"].query("do == 'rest'")
     for table in ("parameters", "fit", "averaging"):
         tables[f"gyroscope_{table}"] = tables[f"gyroscope_{table}"].iloc[:0]
+    tables["result"] = tables["result"].query("sensor == 'accel'")
     tables["campaign"]["serial"] = "unknown"
     documents = synthetic.report_on(tables)
-    assert "Gyroscope: nothing is determined." in documents["txt"]
+    assert "Gyroscopejoint0 of 12" in Page(documents["html"]).text.replace("\n", "")
     assert "without time stamps" in documents["html"]
     assert "not recorded" in documents["html"]
 
@@ -394,7 +407,7 @@ def test_the_command_writes_page_and_verdict(tmp_path: Path) -> None:
     STAGE.command_line([str(tmp_path / "derived"), "--documents", str(tmp_path / "reports/a")])
     page, verdict = tmp_path / "reports/a.html", tmp_path / "reports/a.txt"
     assert page.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
-    assert "Verdict: calibrated\n" in verdict.read_text(encoding="utf-8")
+    assert "Verdict: usable within limits\n" in verdict.read_text(encoding="utf-8")
     assert sorted(path.name for path in page.parent.iterdir()) == ["a.html", "a.txt"]
 
 

@@ -50,6 +50,8 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
         for quantity, checked in CHECKED.items()
         if (own := [row for row in rows if row["quantity"] == quantity])
     }
+    for row in tables.rows("compensation_findings"):
+        yield outline.Paragraph(numbers.shortened(row["sentence"], 900), "fair")
     yield _summary(by_quantity)
     for row in rows:
         if row["quantity"] not in CHECKED:
@@ -79,7 +81,10 @@ SECTION = outline.Section(
         "and the causes on page one may say why. In the figures grey is before, "
         "colour after."
     ),
-    ("checks", "traces", "compensated_traces", "segments", "manoeuvres"),
+    (
+        *("checks", "traces", "compensated_traces", "compensation_findings"),
+        *("segments", "manoeuvres"),
+    ),
     parts,
 )
 

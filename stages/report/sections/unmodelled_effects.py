@@ -44,7 +44,11 @@ IDENTIFIED = frozenset({"found", "class"})
 def effect_findings(tables: Tables) -> list[Record]:
     """The findings of criticism that are causes of their own, the clearest first."""
     causes = cause_of_finding(tables)
-    own = [row for row in effect_causes(tables) if causes[row["id"]]["cause"] == row["cause"]]
+    own = [
+        row
+        for row in effect_causes(tables)
+        if row["id"] in causes and causes[row["id"]]["cause"] == row["cause"]
+    ]
     return clearest_first(own)
 
 

@@ -1,0 +1,184 @@
+"""Page one: a sentence for each sensor, and every cause once, on a card that answers everything."""
+
+from __future__ import annotations
+
+import re
+from html import unescape
+from typing import Any
+
+import pandas as pd
+import pytest
+
+from inertial import tables
+from stages.report.sections import verdict
+from stages.report.sizes import size_in_words
+from tests.report import synthetic, synthetic_faults, synthetic_unmodelled
+from tests.report.synthetic_diagnosis import SENTENCES
+from tests.report.synthetic_values import GAP_FINDING, rows_as
+
+CARD = re.compile(
+    r'<article class="finding[^"]*" id="cause/diagnosis/([^"]+)">(.*?)</article>', re.S
+)
+QUESTIONS = ["How sure", "How large", "What it does", "What was done", "In the laboratory"]
+
+
+def page_one(made: dict[str, Any]) -> str:
+    """The section of the verdict, as HTML."""
+    html = synthetic.report_on(made)["html"]
+    return html[html.index('<section id="verdict">') : html.index("</section>")]
+
+
+def cards(made: dict[str, Any]) -> dict[str, str]:
+    """The cards by the finding that names the cause, in their order."""
+    return dict(CARD.findall(page_one(made)))
+
+
+def answers(card: str) -> dict[str, str]:
+    found = re.findall(r"<dt>([^<]+)</dt><dd>(.*?)</dd>", card, re.S)
+    return {name: unescape(text) for name, text in found}
+
+
+def as_text(made: dict[str, Any]) -> str:
+    """The verdict as plain text in one line, built from the tables that page one declares."""
+    own = {name: made[name] for name in (*verdict.SECTION.reads, "provenance")}
+    return " ".join(verdict.as_text(synthetic.tables_of(own)).split())
+
+
+def test_each_sensor_has_its_sentence_on_the_page_and_in_the_text() -> None:
+    made = synthetic.brief()
+    listed = re.findall(r"<li>([^<]*)</li>", page_one(made))
+    assert listed == [*SENTENCES.values()]
+    for sentence in SENTENCES.values():
+        assert as_text(made).count(sentence) == 1
+
+
+def test_each_cause_has_one_card_that_answers_every_question() -> None:
+    made = synthetic.brief()
+    found = cards(made)
+    assert [*found] == [  # what is in the model, what is interpolated, what is harmless
+        "criticism/gyro_g_sensitivity",
+        GAP_FINDING,
+        "criticism/oscillation",
+    ]
+    for card in found.values():
+        assert [name for name in answers(card) if name in QUESTIONS][:1] == ["How sure"]
+    told = answers(found["criticism/gyro_g_sensitivity"])
+    assert [*told] == [*QUESTIONS[:4], "Gain", "In the laboratory"]
+    assert "SNR 77" in told["How sure"]
+    # 6.9e-7 (rad/s)/(m/s²) · 9.80665 m/s² · 3600 s · 180°/π = 1.396 °/h/g
+    assert told["How large"] == "1.396 ± 0.028 °/h/g"
+    assert "up to 4.0 σ" in told["What it does"]
+    assert told["Gain"] == "χ² of held-out manoeuvres is lower by 12070."
+
+
+def test_consequences_stand_on_the_card_of_their_cause_and_have_none_of_their_own() -> None:
+    made = synthetic.brief()
+    found = cards(made)
+    assert answers(found[GAP_FINDING])["Therefore"] == "Incomplete turn (1)."
+    assert "Therefore" not in answers(found["criticism/oscillation"])  # the same, heard twice
+    assert "Of z-backward 240.2°" not in page_one(made)
+    assert len(found) == 3 < sum(len(made[f"{of}_findings"]) for of in ("quality", "criticism")) + 1
+
+
+def test_what_was_set_right_states_its_gain_and_its_condition() -> None:
+    told = answers(cards(synthetic_faults.faulty())["quality/gravity_error"])
+    assert told["Valid if"] == "Gravity is that of the formula."
+    assert told["Gain"].startswith("With it 6 of 6")
+    assert "Not set right, it would shift a parameter by up to 240 σ." in told["What it does"]
+
+
+def test_a_class_names_its_members_in_title_and_certainty() -> None:
+    made = synthetic_unmodelled.of_a_class()
+    card = cards(made)["criticism/accel_quadratic"]
+    assert "<strong>Accelerometer quadratic term or lever arm</strong>" in card
+    assert "accelerometer quadratic term, lever arm (SNR 12" in answers(card)["How sure"]
+    made["cause_members"]["probability"] = [0.75, 0.25]
+    shares = answers(cards(made)["criticism/accel_quadratic"])["How sure"]
+    assert "accelerometer quadratic term (0.75), lever arm (0.25)" in shares
+
+
+def test_the_worst_comes_first_and_what_is_harmless_last() -> None:
+    made = synthetic_faults.faulty()
+    grades = [re.findall(r'class="grade">([^<]+)<', card)[0] for card in cards(made).values()]
+    order = ["not removed", "set right", "in the model", "interpolated", "harmless"]
+    assert [*dict.fromkeys(grades)] == order
+
+
+def test_the_text_says_what_the_cards_say() -> None:
+    made = synthetic_faults.faulty()
+    text = as_text(made)
+    for row in made["causes"].itertuples():
+        assert text.count(row.sentence) >= 1
+    for card in cards(made).values():
+        for name, answer in answers(card).items():
+            assert f"{name}: {' '.join(answer.split())}" in text
+
+
+@pytest.mark.parametrize(
+    ("given", "word"),
+    [
+        (("usable", "usable"), "Usable"),
+        (("usable", "usable_within_limits"), "Usable within limits"),
+        (("on_condition", "usable_within_limits"), "Usable on condition"),
+        (("on_condition", "not_usable"), "Not usable"),
+    ],
+)
+def test_the_verdict_is_that_of_the_worst_sensor(given: tuple[str, str], word: str) -> None:
+    made = synthetic.brief()
+    made["verdict"]["verdict"] = given
+    assert f"<strong>{word}</strong>" in page_one(made)
+    assert f"Verdict: {word.lower()}" in as_text(made)
+
+
+def test_a_clean_campaign_has_no_card() -> None:
+    made = synthetic.brief()
+    for name in ("causes", "cause_members", "consequences"):
+        made[name] = made[name].iloc[:0]
+    assert not cards(made)
+    assert "How sure" not in as_text(made)
+
+
+def test_the_result_in_short_is_the_one_that_counts() -> None:
+    made = synthetic.brief()
+    made["extended_parameters"]["value"] = float("nan")  # not read again
+    made["result"].loc[made["result"]["parameter"] == "bias_z", "value"] = float("nan")
+    rows = re.findall(r"<tr>(<td.*?)</tr>", page_one(made))
+    cells = [re.findall(r"<td[^>]*>([^<]*)</td>", row) for row in rows]
+    # 1.1e-5 m/s² are 1.12 µg, 2.1e-8 rad/s are 0.0043 °/h
+    assert cells == [
+        ["Accelerometer", "joint", "11 of 12", "1.1 µg", "2.2 ppm", "0.85 arcsec", "0.41"],
+        ["Gyroscope", "with effects", "11 of 12", "0.0043 °/h", "2.2 ppm", "0.85 arcsec", "0.54"],
+    ]
+
+
+@pytest.mark.parametrize(
+    ("cause", "size", "sigma", "unit", "words"),
+    [
+        ("spike", 0.6, None, "rad/s", "34.38 °/s"),  # 0.6 · 180/π
+        ("gyro_bias_jump", 9.7e-6, 1e-6, "rad/s", "2.00 ± 0.21 °/h"),  # · 180/π · 3600
+        ("gravity_error", 0.013, None, "m/s²", "1326 µg"),  # 0.013 / 9.80665e-6 = 1325.6
+        ("spike", 60.0, None, "m/s²", "60.00 m/s²"),
+        ("wrong_scale_factor", 0.017453, None, "1", "0.01745"),
+        ("gyro_scale_asymmetry", 2e-4, 1e-6, "1", "200.0 ± 1.0 ppm"),
+        ("incomplete_turn", 2.09, None, "rad", "119.7°"),
+        ("gap", 1197.0, None, "samples", "1\u202f197 samples"),
+        ("sign_flip", 1.0, None, "manoeuvres", "1 manoeuvre"),
+        ("unknown_structure", 9.835, None, "sigma", "9.84 σ"),
+    ],
+)
+def test_sizes_are_in_the_units_of_the_laboratory(
+    cause: str, size: float, sigma: float | None, unit: str, words: str
+) -> None:
+    row = {"cause": cause, "size": size, "sigma": sigma, "unit": unit}
+    assert size_in_words(row) == words
+
+
+def test_a_storm_of_equal_causes_of_one_card_stands_at_no_single_place() -> None:
+    made = synthetic.brief()
+    spike = {"id": "diagnosis/quality/spike", "cause": "spike", "verdict": "found", "count": 120}
+    spike |= {"log": "x-up.asc", "sensor": "gyro", "cure": "masked", "sentence": "120 spikes."}
+    spike |= {"unit": "rad/s", "consequence": "None.", "done": "Masked.", "action": "Look."}
+    made["causes"] = pd.concat([made["causes"], rows_as(tables.CAUSES, [spike])])
+    card = cards(made)["quality/spike"]
+    assert "<strong>Spike · gyro</strong>" in card
+    assert "<b>times</b> 120" in card
