@@ -90,6 +90,15 @@ PERFORMANCE = (
     "table_moving",
 )
 MIN_SPOILING = 2  # severity of a fault that leaves a mark on what is estimated
+# Faults that change all that a sensor reads: from what they spoil no effect is named.
+SPOILING = (
+    "clock_scale",
+    "wrong_scale_factor",
+    "wrong_imu_type",
+    "wrong_direction",
+    "axis_swap",
+    "sign_flip",
+)
 LOST_RECORDS = ("gap", "duplicate", "held_record", "time_backwards", "time_stands_still")
 
 
@@ -154,7 +163,9 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
         return cause.sensor == other.sensor
     if _uncertain(other):
         return _explains_uncertain(cause, other)
-    return not other.named and any(
+    if other.named:
+        return cause.cause in SPOILING and _unresolved(cause) and same_sensor(cause, other)
+    return any(
         cause.cause in rule.causes and rule.which(cause, other) and rule.where(cause, other)
         for rule in EXPLANATIONS
     )
@@ -214,8 +225,13 @@ def _explains_uncertain(cause: Hypothesis, other: Hypothesis) -> bool:
         return cause.sensor == other.sensor and _unsaid(cause) < _unsaid(other)
     if cause.stage in (MODEL, POSITIONS):
         return False
-    spoils = int(cause.row["severity"]) >= MIN_SPOILING and not cause.masked
-    return spoils and cause.repair is None and same_axis(cause, other)
+    return _unresolved(cause) and same_axis(cause, other)
+
+
+def _unresolved(fault: Hypothesis) -> bool:
+    """Whether a fault of the recording leaves a mark, and is neither masked nor set right."""
+    spoils = int(fault.row["severity"]) >= MIN_SPOILING and fault.stage != MODEL
+    return spoils and not fault.masked and (fault.repair is None or bool(fault.rivals))
 
 
 # ---- The competition.

@@ -12,9 +12,6 @@ NOT_YET = {
     "latitude-of-the-other-hemisphere",
     "count-size-beyond-the-range",
     "one-brief-rest-off",
-    "bias-of-each-log",
-    "quadratic-accelerometer",
-    "spikes-and-quadratic",
 }
 
 
