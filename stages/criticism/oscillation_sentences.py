@@ -34,7 +34,6 @@ VIBRATION = _(
     "{amplitude} °/s ({arc:.1f}″), in {manoeuvres}."
 )
 IN_ANGLE = _(" It is periodic in the table's angle: {order} per revolution.")
-NO_NET_ANGLE = _(" Over a whole turn it adds no angle.")
 RIPPLE = _("The table's rate has a ripple {order} per revolution, of {size} of its angle, {turns}.")
 ECCENTRIC = _("The angle of the table has an error once per revolution, of {size}, {turns}.")
 SAME_IN_TURNS = _("the same in {count} turns against the table's angle")
@@ -59,10 +58,10 @@ VERY_LARGE_ODDS = "more than 10¹⁷ times"
 COUPLED_UNKNOWN = _(" Through their cross terms the other axes contain it too.")
 COUPLED = _(" Through their cross terms {each}.")
 COUPLED_HIDDEN = _("{axis} contains {expected} °/s, less than its noise shows")
-COUPLED_READ = _("{axis} contains {expected} °/s and reads {read} °/s")
+COUPLED_READ = _("{axis} contains {expected} °/s and reads {read} °/s{more}")
 COUPLED_MORE = (
-    " In {axis} {excess} °/s is more than coupling; the case tips into the table's rate, which"
-    " brings {tipping} °/s."
+    ", {excess} °/s more than coupling; the case tips into the table's rate, which brings"
+    " {tipping} °/s"
 )
 
 CONSEQUENCE = _(
@@ -117,7 +116,6 @@ def of_oscillation(oscillation: Oscillation) -> str:
         + _multiples(oscillation)
         + _coupling(oscillation.coupled)
         + _other_explanation(oscillation)
-        + NO_NET_ANGLE
     )
 
 
@@ -278,18 +276,15 @@ def _coupling(coupled: Sequence[Coupled]) -> str:
     """The oscillation in the other axes by coupling."""
     if not coupled:
         return COUPLED_UNKNOWN
-    sentence = COUPLED.format(each=" and ".join(_coupled(axis) for axis in coupled))
-    for axis in coupled:
-        if axis.exceeds:
-            excess, tipping = (significant(degrees(of), 2) for of in (axis.residual, axis.tipping))
-            sentence += COUPLED_MORE.format(axis=axis.axis, excess=excess, tipping=tipping)
-    return sentence
+    return COUPLED.format(each=" and ".join(_coupled(axis) for axis in coupled))
 
 
 def _coupled(axis: Coupled) -> str:
     hidden = axis.read < MIN_EXCESS_SIGMA * axis.residual_sigma
+    excess, tipping = (significant(degrees(of), 2) for of in (axis.residual, axis.tipping))
     return (COUPLED_HIDDEN if hidden else COUPLED_READ).format(
         axis=axis.axis,
         expected=significant(degrees(axis.expected), 2),
         read=significant(degrees(axis.read), 2),
+        more=COUPLED_MORE.format(excess=excess, tipping=tipping) if axis.exceeds else "",
     )

@@ -202,7 +202,7 @@ class Finding(Part):
 
 @dataclass(frozen=True)
 class Section:
-    """One numbered section: what it shows, how to read it, which tables it reads, its parts."""
+    """One numbered section: what it shows, how to read it if that needs words, tables, parts."""
 
     key: str
     title: str

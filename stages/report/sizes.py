@@ -10,7 +10,7 @@ from inertial.text.numbers import counted, decimals_of, significant, with_sigma
 from stages.report.tables import Record
 
 COUNTS = frozenset({"samples", "records", "readings", "days", "manoeuvres", "positions"})
-RATIO = units.Unit("", 1.0)
+RATIO = units.Unit("(ratio)", 1.0)
 # From these sizes on the larger unit is read more easily.
 LARGE = {
     "rad/s": (100 * units.DEGREES_PER_HOUR.size, units.DEGREES_PER_SECOND),

@@ -100,8 +100,19 @@ def test_a_class_names_its_members_in_title_and_certainty() -> None:
 def test_the_worst_comes_first_and_what_is_harmless_last() -> None:
     made = synthetic_faults.faulty()
     grades = [re.findall(r'class="grade">([^<]+)<', card)[0] for card in cards(made).values()]
-    order = ["not removed", "set right", "in the model", "interpolated", "harmless"]
+    order = ["set right", "in the model", "interpolated", "not removed", "harmless"]
     assert [*dict.fromkeys(grades)] == order
+
+
+def test_what_spoils_a_result_is_red_and_comes_before_all_else() -> None:
+    made = synthetic_faults.faulty()
+    made["verdict"]["verdict"] = ["not_usable", "usable"]  # of gyros, of accelerometers
+    page = page_one(made)
+    tones = re.findall(r'<article class="finding ([a-z]*)" id="cause/diagnosis/([^"]+)"', page)
+    red = [name for tone, name in tones if tone == "poor"]
+    assert red == [name for _, name in tones][: len(red)]
+    assert "quality/saturation/y-forward.asc/gyro_y" in red
+    assert "quality/spike/x-up.asc/accel_x" not in red
 
 
 def test_the_text_says_what_the_cards_say() -> None:
@@ -158,7 +169,7 @@ def test_the_result_in_short_is_the_one_that_counts() -> None:
         ("gyro_bias_jump", 9.7e-6, 1e-6, "rad/s", "2.00 ± 0.21 °/h"),  # · 180/π · 3600
         ("gravity_error", 0.013, None, "m/s²", "1326 µg"),  # 0.013 / 9.80665e-6 = 1325.6
         ("spike", 60.0, None, "m/s²", "60.00 m/s²"),
-        ("wrong_scale_factor", 0.017453, None, "1", "0.01745"),
+        ("wrong_scale_factor", 0.017453, None, "1", "0.01745 (ratio)"),
         ("gyro_scale_asymmetry", 2e-4, 1e-6, "1", "200.0 ± 1.0 ppm"),
         ("incomplete_turn", 2.09, None, "rad", "119.7°"),
         ("gap", 1197.0, None, "samples", "1\u202f197 samples"),

@@ -32,28 +32,40 @@ FINDING_TABLES = (
     "causes",
     "cause_members",
     "consequences",
+    "verdict",
 )
 MODEL = "criticism"  # the stage whose findings are about the model, not about the recording
 MOST_ROWS = 30  # findings of a cause that are listed
 MOST_SHOWN = 4  # findings of a cause that have a picture
 MOST_NAMES = 3  # members of a class in a title
-MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter
-# Cures, that which leaves most to be done first.
-CURES = ("none", "left_out", "repaired", "modelled", "interpolated", "masked")
+MAX_HARMLESS_MOVE, MAX_MOVE = 0.5, 1.0  # sigma of a parameter
+# Cures, that which asks most of the reader first.
+CURES = ("repaired", "left_out", "modelled", "interpolated", "masked", "none")
 
 
 @once
 def causes(tables: Tables) -> list[Record]:
-    """The causes, the worst first: not removed, then by their cures, and what is harmless last."""
+    """The causes: what spoils a result first, then by their cures, and what is harmless last."""
     return sorted(
         tables.rows("causes"),
         key=lambda row: (
+            not spoils(tables, row),
             harmless(row),
             CURES.index(row["cure"]),
             -(row["moves"] or 0.0),
             row["id"],
         ),
     )
+
+
+def spoils(tables: Tables, row: Record) -> bool:
+    """Whether a cause that is not removed makes a result not usable."""
+    if row["cure"] != "none":
+        return False
+    if row["moves"] is not None:
+        return bool(row["moves"] > MAX_MOVE)
+    lost = {each["sensor"] for each in tables.rows("verdict") if each["verdict"] == "not_usable"}
+    return bool(lost) and row["sensor"] in (*lost, None)
 
 
 def harmless(row: Record) -> bool:

@@ -33,6 +33,7 @@ from stages.report.sections.findings import (
     findings_of,
     harmless,
     members,
+    spoils,
     title_of,
 )
 from stages.report.sizes import size_in_words
@@ -123,19 +124,13 @@ def _card(tables: Tables, row: Record) -> outline.Finding:
         answers=tuple(_answers(tables, row)),
         facts=(*facts, (_("identifier"), row["id"])),
         links=tuple(_links(tables, row)),
-        tone=_tone(row),
+        tone="poor" if spoils(tables, row) else "" if harmless(row) else "fair",
     )
 
 
 def _grade(row: Record) -> str:
     """What became of it, in two words."""
     return HARMLESS if harmless(row) else CURED[row["cure"]]
-
-
-def _tone(row: Record) -> outline.Tone:
-    if row["cure"] != "none":
-        return "fair"
-    return "" if harmless(row) else "poor"
 
 
 def _answers(tables: Tables, row: Record) -> outline.Pairs:
@@ -188,14 +183,14 @@ def _effect_on_result(row: Record) -> str:
 def _moves(cure: str, moves: float) -> str:
     if moves < MIN_MOVE:
         return _("It shifts no parameter by more than 0.01 σ.")
-    size = significant(moves, 2)
+    size = _("up to {size} σ", size=significant(moves, 2))
     if moves > MAX_MOVE:
-        size = _("more than {most}", most=whole(MAX_MOVE))
+        size = _("more than {most} σ", most=whole(MAX_MOVE))
     if cure == "none":
-        return _("It shifts a parameter by up to {size} σ.", size=size)
+        return _("It shifts a parameter by {size}.", size=size)
     if cure == "repaired":
-        return _("Not set right, it would shift a parameter by up to {size} σ.", size=size)
-    return _("Left out of the model, it would shift a parameter by up to {size} σ.", size=size)
+        return _("Not set right, it would shift a parameter by {size}.", size=size)
+    return _("Left out of the model, it would shift a parameter by {size}.", size=size)
 
 
 def _therefore(tables: Tables, row: Record) -> str:
@@ -289,10 +284,7 @@ SECTION = outline.Section(
     "verdict",
     "Verdict",
     _("Whether this calibration can be used, and why: each cause once."),
-    _(
-        "A cause is what, set right or modelled, makes other findings vanish; these are its "
-        "consequences and stand on its card. Shifts of parameters are in σ of the result."
-    ),
+    "",
     (
         *RESULT_TABLES,
         *FINDING_TABLES,
