@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 from inertial.signal.detector import (
     Array,
@@ -17,6 +18,7 @@ from inertial.signal.detector import (
 from inertial.signal.runs import joined
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
+from inertial.text.units import STANDARD_GRAVITY
 
 MIN_ROUGH_SIGMA = 8.0  # sigma of noise, by which a second difference is none
 MIN_CHANNELS = 4  # that are shaken at once; a table that turns up moves one axis
@@ -29,6 +31,10 @@ MAX_QUIET_ROUGH = 3.0  # times the noise of the log: the median of them
 # Of the peak, that may remain in a channel afterwards: a turn or a ramp goes on meanwhile
 MAX_LEFT_SHARE = 0.3
 TAIL_SHARE = 0.5  # of its length, in which what rings below the noise of a record dies away
+MIN_LEAP = 3 * STANDARD_GRAVITY  # m/s², of |f| by a blow of a record or two
+MIN_LEAP_OF_CHANNEL = STANDARD_GRAVITY  # m/s², in more than one channel
+MAX_LEAP_RECORDS = 3
+MAX_RATE = 0.5  # rad/s, by which a gyro may differ then from what it reads beside it
 
 
 @dataclass(frozen=True)
@@ -78,6 +84,8 @@ class Impact(Detector):
                     start, end, peak, facts=Blow((end - start) * log.interval, channels)
                 )
 
+        yield from _single(piece, log)
+
     def describe(self, event: Event, name: str) -> Description:
         blow: Blow = event.facts
         return Description(
@@ -93,6 +101,32 @@ class Impact(Detector):
             _("Its records say nothing of the rest or the turn; what follows reads as before."),
             _("They are masked: left out of a rest, interpolated in a turn at steady rate."),
         )
+
+
+def _single(piece: Piece, log: Log) -> Iterator[Event]:
+    """Blows of a record or two: the case is struck while a hand moves it, or sets it down.
+
+    The specific force leaps by several g in more than one channel, and the gyros do not leap: so
+    it is no spoilt record.
+    """
+    values = piece.values
+    if len(values) < SIDE_RECORDS or not np.isfinite(log.interval):
+        return
+    force = np.linalg.norm(values[:, :3], axis=1)
+    usual = median_filter(force, SIDE_RECORDS // 2 + 1)
+    for start, end in joined(np.flatnonzero(force - usual > MIN_LEAP), 1):
+        around = values[[max(start - 2, 0), min(end + 1, len(values) - 1)]]
+        leap = np.abs(values[start:end] - np.median(around, axis=0)).max(axis=0)
+        turned = np.abs(np.diff(around, axis=0)[0])
+        several = np.count_nonzero(leap[:3] > MIN_LEAP_OF_CHANNEL) > 1
+        if (
+            end - start <= MAX_LEAP_RECORDS
+            and several
+            and (leap[3:] <= turned[3:] + MAX_RATE).all()
+        ):
+            size = float((force - usual)[start:end].max())
+            first, after = max(start - 1, 0), min(end + 2, len(values))
+            yield piece.event(first, after, size, facts=Blow((after - first) * log.interval, 3))
 
 
 def _short_and_dense(shaken: Booleans, start: int, end: int, interval: float) -> bool:

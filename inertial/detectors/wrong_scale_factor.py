@@ -5,7 +5,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from inertial.signal.detector import Description, Detector, Event, Log
-from inertial.signal.scale_factor import MAX_SCALE_ERROR, explanation_of, force_at_rest
+from inertial.signal.scale_factor import (
+    MAX_SCALE_ERROR,
+    explanation_of,
+    force_at_rest,
+    radius_at_rest,
+)
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 
@@ -25,7 +30,8 @@ class WrongScaleFactor(Detector):
     everywhere = True
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:
-        force = force_at_rest(log)
+        radius = radius_at_rest(log)
+        force = radius if np.isfinite(radius) else force_at_rest(log)
         ratio = force / log.given.gravity
         if np.isfinite(ratio) and abs(ratio - 1) > MAX_SCALE_ERROR["accel"]:
             # A count of a receiver is an increment, which its interval has made a rate.

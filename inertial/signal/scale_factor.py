@@ -16,6 +16,8 @@ MAX_RATIO_SPREAD = 0.05  # of the ratios of turns to their plan: a gyro of a pho
 MAX_FACTOR_DIFFERENCE = 0.01  # relative: factors that differ by less explain the same
 MIN_RAW_COUNT_RATIO = 50.0  # a multiple that no sensor reads in any unit
 FULL_SCALE_FACTORS = (2, 4, 8, 16)
+MIN_SPHERE_WINDOWS = 12  # at rest, from which bias and radius are determined together
+MIN_SPHERE_SPREAD = 0.2  # of gravity: rms of f across its least direction
 QUIET_VARIANCE_RATIO = 4.0  # over the lower quartile: a window of 1 s in which the IMU is at rest
 UNIT_FACTORS = {
     "accel": {
@@ -38,6 +40,28 @@ def force_at_rest(log: Log) -> float:
     variance = np.nansum(log.windows.variance[recorded], axis=1)
     quiet = variance <= QUIET_VARIANCE_RATIO * np.quantile(variance, 0.25)
     return float(np.median(force[recorded][quiet]))
+
+
+def radius_at_rest(log: Log) -> float:
+    """The radius of the sphere about the bias on which f lies at rest, m/s².
+
+    A large bias moves the centre of that sphere, not its radius. NaN where the log has too few
+    attitudes to determine both.
+    """
+    force, variance = log.windows.mean[:, :3], log.windows.variance[:, :3].sum(axis=1)
+    known = np.isfinite(force).all(axis=1) & np.isfinite(variance)
+    if np.count_nonzero(known) < MIN_SPHERE_WINDOWS:
+        return np.nan
+    force, variance = force[known], variance[known]
+    force = force[variance <= QUIET_VARIANCE_RATIO * np.quantile(variance, 0.25)]
+    # |f − b|² = r²  ⇔  2 f·b + (r² − b²) = f², linear in b and r² − b².
+    design = np.column_stack([2 * force, np.ones(len(force))])
+    size = np.sqrt(np.mean(np.sum(force**2, axis=1)))
+    shares = np.linalg.svd((force - force.mean(axis=0)) / size, compute_uv=False)
+    if len(force) < MIN_SPHERE_WINDOWS or shares[-1] < MIN_SPHERE_SPREAD * np.sqrt(len(force)):
+        return np.nan
+    solution = np.linalg.lstsq(design, np.sum(force**2, axis=1), rcond=None)[0]
+    return float(np.sqrt(max(solution[3] + solution[:3] @ solution[:3], 0.0)))
 
 
 def explanation_of(ratio: float, sensor: str, given: Given, count: float = np.nan) -> str | None:
