@@ -141,6 +141,21 @@ def test_the_verdict_is_that_of_the_worst_sensor(given: tuple[str, str], word: s
     assert f"Verdict: {word.lower()}" in as_text(made)
 
 
+def test_a_card_leads_to_what_shows_its_cause() -> None:
+    leads = {
+        name: re.findall(r'<a href="#([^"]+)"', card)
+        for name, card in cards(synthetic.brief()).items()
+    }
+    assert leads == {
+        "criticism/gyro_g_sensitivity": ["effect/criticism/gyro_g_sensitivity"],
+        GAP_FINDING: [f"evidence/diagnosis/{GAP_FINDING}"],
+        "criticism/oscillation": [
+            "effect/criticism/oscillation",
+            "evidence/diagnosis/criticism/oscillation",
+        ],
+    }
+
+
 def test_a_clean_campaign_has_no_card() -> None:
     made = synthetic.brief()
     for name in ("causes", "cause_members", "consequences"):

@@ -94,6 +94,11 @@ def findings_of(tables: Tables, cause: Record) -> list[Record]:
     )
 
 
+def in_recording(tables: Tables, cause: Record) -> bool:
+    """Whether a finding of the recording shows a cause, so that it stands in this section."""
+    return any(row["stage"] != MODEL for row in findings_of(tables, cause))
+
+
 @once
 def cause_of_finding(tables: Tables) -> dict[str, Record]:
     """By the identifier of a finding the cause that explains it."""
@@ -137,14 +142,11 @@ def members(tables: Tables, row: Record) -> list[Record]:
 def parts(tables: Tables) -> Iterator[Part]:
     """For each cause what shows it, and the findings behind it."""
     rows = causes(tables)
-    if not rows:
-        yield Paragraph(
-            _("None: neither in the recording, nor in its segments, nor in the model."), "good"
-        )
-        return
-    own = {row["id"]: findings_of(tables, row) for row in rows}
+    own = {row["id"]: findings_of(tables, row) for row in rows if in_recording(tables, row)}
+    if not own:
+        yield Paragraph(_("None: nothing is wrong in the recording and its segments."), "good")
     shown = evidence(tables, [each for found in own.values() for each in found[:MOST_SHOWN]])
-    for row in rows:
+    for row in (row for row in rows if row["id"] in own):
         yield Heading(title_of(tables, row), f"evidence/{row['id']}")
         for finding in own[row["id"]][:MOST_SHOWN]:
             yield from _shown(finding, shown)
@@ -184,7 +186,7 @@ SECTION = Section(
     _("The pictures and the findings behind each cause of page one."),
     _(
         "Left, the whole log, where a wedge marks the place; right, the samples there. p is the "
-        "probability of such a size if nothing is wrong. What concerns the model has its figures "
+        "probability of such a size if nothing is wrong. What concerns the model alone stands "
         "in “Unmodelled effects”."
     ),
     (

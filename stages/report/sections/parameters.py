@@ -98,7 +98,8 @@ PARAMETERS = Section(
 def _estimate(estimate: Estimate) -> Iterator[Part]:
     if estimate.fit is not None:
         yield _fit(estimate, estimate.fit)
-    long = any(len(row["id"]) > MAX_LETTERS for row in estimate.determined)
+    every = (*estimate.determined, *estimate.effects)
+    long = any(len(row["id"]) > MAX_LETTERS for row in every)
     yield Table(
         f"Determined: {counted(len(estimate.determined), 'parameter')}.",
         (

@@ -29,9 +29,11 @@ from stages.report.results import (
 )
 from stages.report.sections.findings import (
     FINDING_TABLES,
+    MODEL,
     causes,
     findings_of,
     harmless,
+    in_recording,
     members,
     spoils,
     title_of,
@@ -204,8 +206,11 @@ def _therefore(tables: Tables, row: Record) -> str:
 
 
 def _links(tables: Tables, row: Record) -> Iterator[outline.Link]:
-    if findings_of(tables, row):
-        yield outline.Link(_("What shows it"), f"evidence/{row['id']}")
+    for own in findings_of(tables, row)[:1]:
+        if own["stage"] == MODEL and own["cause"] == row["cause"]:
+            yield outline.Link(_("What shows it in the model"), f"effect/{own['id']}")
+    if in_recording(tables, row):
+        yield outline.Link(_("What shows it in the recording"), f"evidence/{row['id']}")
 
 
 # ---- The plate, the section, and the text.
