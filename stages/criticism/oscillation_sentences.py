@@ -10,7 +10,7 @@ from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.periodic_in_angle import Ripple
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import decimals_of, fixed, significant, with_sigma
+from inertial.text.numbers import counted, decimals_of, fixed, significant, with_sigma
 from inertial.text.units import ARC_SECOND
 from stages.criticism.oscillation_fits import MIN_EXCESS_SIGMA, TABLE, Coupled
 from stages.criticism.oscillation_hypotheses import ANGLE, IN_TIME
@@ -19,6 +19,7 @@ from stages.criticism.oscillation_search import Oscillation
 MAX_LOG_ODDS = 40.0  # beyond which the number of the odds says nothing
 MIN_PERIODS_IN_TURN = 1.5  # below which a turn determines little of an eccentricity
 MAX_INTEGER_SIGMAS = 3.0  # within which an order is a whole number
+MAX_TURNS = 3  # that a sentence names
 MAX_RATES = 3  # of the table that a sentence lists
 
 NO_TURN = _("no whole turn at a steady rate was recorded")
@@ -107,7 +108,7 @@ def of_oscillation(oscillation: Oscillation) -> str:
         frequency=_with_sigma(mean.frequency, mean.frequency_sigma),
         amplitude=_with_sigma(degrees(mean.amplitude), degrees(mean.amplitude_sigma)),
         arc=degrees(mean.amplitude / (2 * pi * mean.frequency)) * 3600,
-        manoeuvres=", ".join(mean.manoeuvres),
+        manoeuvres=_in_turns(mean.manoeuvres),
     )
     if oscillation.likeliest.bound_to == ANGLE and oscillation.ripple is not None:
         sentence += IN_ANGLE.format(order=_order(oscillation.ripple))
@@ -117,6 +118,10 @@ def of_oscillation(oscillation: Oscillation) -> str:
         + _coupling(oscillation.coupled)
         + _other_explanation(oscillation)
     )
+
+
+def _in_turns(names: Sequence[str]) -> str:
+    return counted(len(names), "turn") if len(names) > MAX_TURNS else ", ".join(names)
 
 
 def of_ripple(oscillation: Oscillation, ripple: Ripple, turns: Sequence[SteadyTurn]) -> str:

@@ -63,7 +63,7 @@ def test_it_holds_text(tmp_path: Path) -> None:
     file.write_bytes(printed())
     done = subprocess.run(["pdftotext", "-layout", file, "-"], capture_output=True, check=True)
     text = " ".join(done.stdout.decode().split())
-    assert "Usable within limits" in text
+    assert "Not usable" in text
     assert "accelerometer/joint/bias_x" in text
     assert "z-backward.asc" in text
     assert "made-up · NovAtel SPAN-CPT · serial SIM-001 · simulated" in text  # on every page

@@ -71,7 +71,7 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
     "usable_within_limits": (
         _("usable within limits"),
         "fair",
-        _("Causes were found; each is in the model, masked, or harmless, as its card states."),
+        _("Causes were found; each is in the model, masked, bridged or small, as its card states."),
     ),
     "usable": (
         _("usable"),
