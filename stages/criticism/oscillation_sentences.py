@@ -19,7 +19,7 @@ from stages.criticism.oscillation_search import Oscillation
 MAX_LOG_ODDS = 40.0  # beyond which the number of the odds says nothing
 MIN_PERIODS_IN_TURN = 1.5  # below which a turn determines little of an eccentricity
 MAX_INTEGER_SIGMAS = 3.0  # within which an order is a whole number
-MAX_TURNS = 3  # that a sentence names
+MAX_TURNS = 4  # that a sentence names
 MAX_RATES = 3  # of the table that a sentence lists
 
 NO_TURN = _("no whole turn at a steady rate was recorded")
