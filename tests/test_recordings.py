@@ -64,7 +64,7 @@ def test_imucal_runs_through_all_of_it_and_nothing_is_named_that_the_data_do_not
         assert (gravity["before"] - gravity["expected"]).abs().max() > 0.1
         assert len(results["history/archived"]) == 1
     labelled = recorded["imucal-labelled"]["criticism/findings"]
-    assert set(labelled["cause"]) == {"unknown_structure", "unexplained"}
+    assert set(labelled["cause"]) == {"unknown_structure"}
     assert set(labelled["sensor"]) == {"gyro"} and not labelled["verdict"].eq("found").any()
     assert labelled["sentence"].str.contains("about z they drift").any()
     assert recorded["imucal-continuous"]["criticism/findings"].empty
@@ -158,9 +158,9 @@ def test_whu_has_six_turns_cut_out_and_no_fault_of_time_or_scale(recorded):
 
 def test_cuyo_clips_its_gyros_at_the_last_count(recorded):
     clipped = found(recorded["cuyo"], "saturation")
-    assert list(clipped["axis"]) == ["x", "x", "z"]
-    assert list(clipped["size"]) == [2, 10, 6]  # twelve of x, six of z, by the file
-    np.testing.assert_allclose(clipped["from_s"], [39.10, 66.62, 87.66], atol=1e-6)
+    assert list(clipped["count"]) == [3]  # visits: two of x, one of z
+    assert "18 readings" in clipped["sentence"].iloc[0]  # twelve of x, six of z, by the file
+    np.testing.assert_allclose(clipped["from_s"], [39.10], atol=1e-6)
     # The accelerometers' counts are all multiples of four.
     steps = found(recorded["cuyo"], "quantisation")
     assert list(steps["size"]) == pytest.approx([4 * 9.80665 / 16384])
@@ -287,7 +287,7 @@ def test_every_report_says_what_it_could_not_determine(recorded):
         parameters = [results[f"{stage}/parameters"] for stage in ("accelerometer", "gyroscope")]
         told = pd.concat(parameters)
         determined = told[told["method"].str.match("joint|free")]["value"].notna().any()
-        assert ("not calibrated" in verdict) == (not determined), name
+        assert "not usable" in " ".join(verdict.split()) or determined, name
         assert "SIMULATED" not in verdict
 
 

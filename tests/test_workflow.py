@@ -41,7 +41,8 @@ COPIED = (
 PAGE = "reports/short.html"
 EXPORT = "reports/short.calibration.json"
 PUBLISHED = "data/raw/short/published.yaml"
-USING = {"comparison", "compensation", "simulation", "criticism", "extension", "history", "report"}
+DIAGNOSED = {"diagnosis", "compensation", "history", "report"}
+USING = {"comparison", "simulation", "criticism", "extension", *DIAGNOSED}
 ESTIMATION = {"accelerometer", "gyroscope", "studies", *USING}
 AFTER_DECODE = {"quality", "segment", "noise", *ESTIMATION}
 PATIENCE = 60  # s, until a stage must have begun
@@ -166,7 +167,7 @@ def test_a_changed_setting_reruns_its_stage_and_what_follows(
         ("inertial/estimation/spectrum.py", {"noise", *ESTIMATION}),
         ("inertial/estimation/least_squares.py", ESTIMATION),
         ("inertial/text/numbers.py", AFTER_DECODE),
-        ("inertial/text/cause_names.py", {"criticism", "extension", "history", "report"}),
+        ("inertial/text/cause_names.py", {"criticism", "extension", *DIAGNOSED}),
         ("stages/report/report.css", {"report"}),
         ("laboratory/counts.py", {"laboratory_short", "plan", "decode", *AFTER_DECODE}),
     ],

@@ -30,6 +30,8 @@ SIDE_RECORDS = 32  # before and after, which are quiet
 MAX_QUIET_ROUGH = 3.0  # times the noise of the log: the median of them
 # Of the peak, that may remain in a channel afterwards: a turn or a ramp goes on meanwhile
 MAX_LEFT_SHARE = 0.3
+# Of the way there and back, that may remain of the angle of a gyro: a hand that turns leaves it
+MAX_NET_SHARE = 0.5
 TAIL_SHARE = 0.5  # of its length, in which what rings below the noise of a record dies away
 MIN_LEAP = 3 * STANDARD_GRAVITY  # m/s², of |f| by a blow of a record or two
 MIN_LEAP_OF_CHANNEL = STANDARD_GRAVITY  # m/s², in more than one channel
@@ -170,6 +172,10 @@ def _blow(values: Array, start: int, end: int, noise: Array) -> tuple[float, int
     with np.errstate(invalid="ignore"):
         changed = np.abs(behind - before) > np.fmax(MAX_LEFT_SHARE * peak, least)
     force = np.linalg.norm(values[start:end, :3], axis=1) - np.linalg.norm(before[:3])
+    swings = values[start:end, 3:] - before[3:]
+    net, way = np.abs(np.nansum(swings, axis=0)), np.nansum(np.abs(swings), axis=0)
+    if (net[peak[3:] > least[3:]] > MAX_NET_SHARE * way[peak[3:] > least[3:]]).any():
+        return None
     if changed.any() or not np.isfinite(force).any():
         return None
     largest = float(np.nanmax(np.abs(force)))

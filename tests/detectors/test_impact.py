@@ -61,3 +61,14 @@ def test_a_hand_that_lifts_the_imu_is_none():
     lift = 0.1 * (2 * np.pi / 1.0) ** 2 * np.cos(phase)
     values[2000:2100] += counted(np.outer(lift, [0.3, 0.5, 1, 0.2, 0.3, 0.2]))
     assert found(values) == []
+
+
+def test_a_hand_that_turns_the_imu_in_a_moment_is_none():
+    """Half a turn in 0.4 s with a jolt at either end: the angle remains, so it was a motion."""
+    values = rest(4000)
+    number = round(0.4 / INTERVAL)
+    rate = np.pi / 0.4 * 2 * np.sin(np.linspace(0, np.pi, number)) ** 2
+    shaken = np.random.default_rng(4).normal(0, 300, (number, 6)) * NOISE
+    values[2000 : 2000 + number] += counted(shaken)
+    values[2000 : 2000 + number, 4] += counted(np.tile(rate[:, None], 6))[:, 4]
+    assert found(values) == []
