@@ -14,6 +14,7 @@ DECLARED = Declared(
         "accounts": From("decode", tables.ACCOUNTS),
         "refused": From("decode", tables.REFUSED),
         "clocks": From("decode", tables.CLOCKS),
+        "plan_repairs": From("plan", tables.REPAIRS),
         "quality_findings": From("quality", tables.FINDINGS),
         "masks": From("quality", tables.MASKS),
         "gaps": From("quality", tables.GAPS),

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from math import pi
 
-from inertial.effects import CATALOGUE
 from inertial.text import units
 from inertial.text.numbers import counted, decimals_of, significant, with_sigma
 from stages.report.tables import Record
 
 COUNTS = frozenset({"samples", "records", "readings", "days", "manoeuvres", "positions"})
 RATIO = units.Unit("(ratio)", 1.0)
+# Faults whose size is a factor; other sizes without a dimension are small, in ppm.
+FACTORS = frozenset({"wrong_scale_factor", "wrong_scale_of_turns", "rate_off", "wrong_rate"})
 # From these sizes on the larger unit is read more easily.
 LARGE = {
     "rad/s": (100 * units.DEGREES_PER_HOUR.size, units.DEGREES_PER_SECOND),
@@ -37,9 +38,9 @@ def size_in_words(row: Record) -> str | None:
 
 
 def _unit(cause: str, unit: str, size: float) -> units.Unit:
-    """The unit of a size; that of a fault without a dimension is a ratio, of an effect in ppm."""
+    """The unit of a size; a factor is a ratio, what is small beside 1 in ppm."""
     if unit in LARGE and abs(size) >= LARGE[unit][0]:
         return LARGE[unit][1]
-    if unit == "1" and cause not in CATALOGUE:
+    if unit == "1" and cause in FACTORS:
         return RATIO
     return units.quantity(cause, unit).laboratory

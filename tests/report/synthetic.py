@@ -78,6 +78,7 @@ def campaign(logs: Collection[str] | None = None) -> dict[str, Any]:
         "accounts": rows_as(tables.ACCOUNTS, plan.accounts(manoeuvres)),
         "refused": rows_as(tables.REFUSED, plan.refused()),
         "clocks": rows_as(tables.CLOCKS, plan.clocks(manoeuvres)),
+        "plan_repairs": tables.REPAIRS.empty(),
         "quality_findings": rows_as(tables.FINDINGS, recording.quality_findings()),
         "masks": tables.MASKS.empty(),
         "gaps": rows_as(tables.GAPS, [recording.gap()]),

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from inertial.physics.site import normal_gravity
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant, whole
@@ -181,11 +180,16 @@ def _by_size(tables: Tables, entry: Record, size: float) -> Compared | None:
         return Compared(_("samples per second"), "Hz", rate, rate * size)
     if entry["cause"] == "wrong_scale_factor" and entry["sensor"] == "accel" and gravity:
         return Compared(_("specific force at rest"), "m/s²", gravity, gravity * size)
-    if entry["cause"] == "gravity_error" and campaign["latitude"] is not None:
-        # What is known may be either of the two.
-        normal = normal_gravity(campaign["latitude"], campaign["height"] or 0.0)
+    if entry["cause"] == "gravity_error" and gravity:
+        normal = gravity if _gravity_set_right(tables) else gravity - size
         return Compared("gravity", "m/s²", normal, normal + size, origin="stated")
     return None
+
+
+def _gravity_set_right(tables: Tables) -> bool:
+    """Whether normal gravity is used in place of the stated one."""
+    states = {row["state"] for row in tables.rows("plan_repairs") if row["repair"] == "gravity"}
+    return not states.isdisjoint(("applied", "confirmed"))
 
 
 def _of_manoeuvre(tables: Tables, table: str, row: Record) -> Mapping[str, Any]:

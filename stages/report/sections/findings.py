@@ -192,7 +192,7 @@ SECTION = Section(
     (
         *FINDING_TABLES,
         *("campaign", "known", "manoeuvres", "performed", "clocks", "segments", "traces"),
-        *("gaps", "masks", "quality_close_ups", "segment_close_ups"),
+        *("plan_repairs", "gaps", "masks", "quality_close_ups", "segment_close_ups"),
     ),
     parts,
 )
