@@ -22,11 +22,11 @@ MIN_SNR_SQUARED = 9.0  # of the effects in held-out manoeuvres: 3 sigma
 
 NO_JOINT = _("There is no joint result of the {sensors}.")
 DOUBTFUL = _(
-    "The joint result of the {sensors} is final, and its sigmas are doubtful: some "
+    "The joint result of the {sensors} counts, and its sigmas are doubtful: some "
     "findings are not explained ({causes})."
 )
-NO_EFFECT = _("The joint result of the {sensors} is final: they show no effect that was named.")
-KEPT = _("The joint result of the {sensors} is final, though {effects} was named: {reason}.")
+NO_EFFECT = _("The joint result of the {sensors} counts: they show no effect that was named.")
+KEPT = _("The joint result of the {sensors} counts, though {effects} was named: {reason}.")
 NOT_EXPLAINED = _("beside it some findings are not explained ({causes})")
 CARRIED = _("{manoeuvre} alone carries {effect}, for without it the others do not show it")
 NOT_VALIDATED = _(
@@ -40,13 +40,13 @@ NO_BETTER = _(
 ONE_NOT_DETERMINED = _("beside it one parameter would not be determined")
 NOT_DETERMINED = _("beside it {count} parameters would not be determined")
 REPLACED = _(
-    "The extended result of the {sensors} is final, with {effects}: χ² of "
+    "The extended result of the {sensors} counts, with {effects}: χ² of "
     "manoeuvres that the fit has not seen is reduced by {drop:.1f}, of "
     "{expected:.1f} that exactly known effects would bring, and no finding remains "
     "unexplained."
 )
 FREED = _(
-    "The extended result of the {sensors} is final, with {effects}: that is the own error of "
+    "The extended result of the {sensors} counts, with {effects}: that is the own error of "
     "{manoeuvres}, which no other manoeuvre shows, and no finding remains unexplained."
 )
 OTHER_MEMBERS = _(

@@ -1,13 +1,12 @@
 """What the laboratory added to the gyros, as an effect whose course is known but for its size."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.physics.effect import Effect, Parameter, Reading, Truth
+from inertial.physics.effect import Effect, Parameter, Reading
 from inertial.physics.motion import Motion
 from laboratory import Recording
 
@@ -29,14 +28,15 @@ class Course(Effect):
     def __init__(self, time: Array, integral: Array) -> None:
         self.time, self.integral = time, integral
 
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+    def signature(self, motion: Motion) -> Reading:
+        """Of its own: two courses are two effects, though they have one name."""
         half = motion.seconds / 2
         ends = [
             np.column_stack([np.interp(at, self.time, one) for one in self.integral.T])
             for at in (motion.time - half, motion.time + half)
         ]
         mean = (ends[1] - ends[0]) / motion.seconds[:, None]
-        return replace(reading, gyro=reading.gyro + values[0] * mean)
+        return Reading(mean[:, :, None], np.zeros((*mean.shape, 1)))
 
 
 def known_course(one: Recording, other: Recording) -> Course:
