@@ -50,10 +50,6 @@ def _is(*causes: str) -> Where:
     return lambda _, other: other.cause in causes
 
 
-def _ends(*endings: str) -> Where:
-    return lambda _, other: other.cause.endswith(endings)
-
-
 def _same_cause(cause: Hypothesis, other: Hypothesis) -> bool:
     """Another stage has the same cause, or the same physics by its own name for it."""
     kind = {_KIND.get(name, name) for name in cause.causes}

@@ -1,0 +1,108 @@
+"""Which finding is the cause of which: a few findings at a time, as the stages write them."""
+
+from typing import Any
+
+import pytest
+
+from inertial.campaign.explanations import compete
+from inertial.campaign.hypotheses import Hypothesis
+
+APPLIED = {"state": "applied", "axis": None}
+RIVAL = {"state": "rival", "axis": None}
+
+
+def finding(
+    stage: str, cause: str, sensor: str | None = None, severity: int = 2, **more: Any
+) -> Hypothesis:
+    """A finding without a place; `more`: of the hypothesis."""
+    row = dict.fromkeys(("axis", "mount", "log", "manoeuvre", "size", "p_value"))
+    row |= {"sensor": sensor, "severity": severity, "count": 1}
+    return Hypothesis(f"{stage}/{cause}/{sensor}", stage, cause, row, **more)
+
+
+def causes(*findings: Hypothesis) -> dict[str, set[str]]:
+    """By cause the findings that it explains, its own left out."""
+    return {
+        each.cause.cause: {other.cause for other in each.consequences} - {each.cause.cause}
+        for each in compete(findings)
+    }
+
+
+def effect(cause: str, sensor: str, verdict: str = "found", *members: str) -> Hypothesis:
+    return finding("criticism", cause, sensor, verdict=verdict, members=members)
+
+
+def of(*manoeuvres: str) -> dict[str, Any]:
+    return {"manoeuvres": frozenset(manoeuvres)}
+
+
+def test_a_gap_explains_the_turn_that_it_cuts_and_no_other():
+    gap = finding("quality", "gap", severity=1, **of("z-back"))
+    cut = finding("segment", "incomplete_turn", "gyro", **of("z-back"))
+    other = finding("segment", "incomplete_turn", "accel", **of("x-back"))
+    assert causes(gap, cut) == {"gap": {"incomplete_turn"}}
+    assert causes(gap, other) == {"gap": set(), "incomplete_turn": set()}
+
+
+def test_an_effect_explains_the_position_that_it_looks_like():
+    off = finding("accelerometer", "table_position_error", "accel")
+    quadratic = effect("accel_quadratic", "accel", "one_of_class", "accel_scale_asymmetry")
+    assert causes(off, quadratic) == {"accel_quadratic": {"table_position_error"}}
+    assert set(causes(off, effect("gyro_g_sensitivity", "gyro"))) == {
+        "table_position_error",
+        "gyro_g_sensitivity",
+    }
+
+
+def test_the_model_speaks_for_what_the_recording_shows_of_the_same_physics():
+    line = finding("quality", "oscillation", "gyro", 1)
+    assert causes(line, effect("table_ripple", "gyro")) == {"table_ripple": {"oscillation"}}
+
+
+def test_what_has_no_law_is_one_cause_of_a_sensor():
+    walk = effect("gyro_random_walk", "gyro", "unknown_structure")
+    structure = effect("unknown_structure", "gyro", "unknown_structure")
+    demoted = effect("gyro_bias_ramp", "gyro", "unknown_structure")
+    rest = finding("criticism", "unexplained", "gyro")
+    assert causes(rest, demoted, walk, structure) == {
+        "unknown_structure": {"gyro_random_walk", "gyro_bias_ramp", "unexplained"}
+    }
+    accel = finding("criticism", "unexplained", "accel")
+    assert len(list(compete([walk, accel]))) == 2
+
+
+def test_a_named_effect_explains_no_remaining_misfit():
+    rest = finding("criticism", "unexplained", "gyro")
+    assert causes(effect("gyro_g_sensitivity", "gyro"), rest) == {
+        "gyro_g_sensitivity": set(),
+        "unexplained": set(),
+    }
+
+
+@pytest.mark.parametrize(
+    ("more", "named"),
+    [({}, False), ({"repair": APPLIED}, True), ({"repair": RIVAL, "rivals": (RIVAL,)}, False)],
+)
+def test_from_what_a_fault_spoils_no_effect_is_named_until_it_is_set_right(more, named):
+    fault = finding("segment", "sign_flip", "gyro", 3, **more)
+    found = causes(fault, effect("gyro_g_sensitivity", "gyro"))
+    assert ("gyro_g_sensitivity" in found) == named
+    assert "gyro_g_sensitivity" in causes(
+        finding("segment", "sign_flip", "accel", 3), effect("gyro_g_sensitivity", "gyro")
+    )
+
+
+def test_a_temperature_that_changes_is_no_fault():
+    assert causes(finding("quality", "temperature_drift")) == {}
+
+
+def test_every_finding_is_told_once():
+    many = [
+        finding("quality", "saturation", "gyro", 3, **of("x", "y")),
+        finding("segment", "incomplete_turn", "gyro", **of("x")),
+        finding("segment", "wrong_rate", "gyro", **of("y")),
+        finding("quality", "oscillation", "gyro", 1),
+        effect("oscillation", "gyro"),
+    ]
+    told = [other.id for each in compete(many) for other in each.consequences]
+    assert sorted(told) == sorted(one.id for one in many)
