@@ -116,6 +116,9 @@ def faulty() -> dict[str, Any]:
         }
         for row in OF_THE_LOG
     ]
+    gravity = {"id": "gravity", "repair": "gravity", "state": "applied", "unit": "m/s²"}
+    gravity |= {"condition": "gravity is that of the formula", "sentence": "It is used."}
+    made["plan_repairs"] = rows_as(tables.REPAIRS, [gravity])
     made["quality_findings"] = pd.concat(
         [made["quality_findings"], rows_as(tables.FINDINGS, found)], ignore_index=True
     )
