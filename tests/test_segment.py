@@ -6,9 +6,9 @@ import chain
 import numpy as np
 import pytest
 
+from inertial.signal.rests_and_motions import Stretch
 from stages.segment import windows
 from stages.segment.matching import rest_part
-from stages.segment.motion import Stretch
 
 
 def performed(results: chain.Results):

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.signal.detector import channel_name
+from inertial.signal.rests_and_motions import Stretch
 from inertial.tables import CHANNELS
 from inertial.text.messages import _
 from stages.segment.explanations import Explained
 from stages.segment.matching import motion
-from stages.segment.motion import Stretch
 from stages.segment.windows import Binned
 
 Array = NDArray[np.float64]

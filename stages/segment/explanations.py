@@ -14,6 +14,7 @@ from inertial.signal.axis_permutations import (
     read_as_other_axes,
     simplicity,
 )
+from inertial.signal.rests_and_motions import MIN_HAND_RATE, MIN_MOTION_SIGMA, rest_level
 from stages.segment.locating import (
     AS_NAMED,
     AS_PLANNED,
@@ -23,14 +24,11 @@ from stages.segment.locating import (
     divide,
     locate,
 )
-from stages.segment.motion import rest_level
 from stages.segment.windows import Binned
 
 Array = NDArray[np.float64]
 
 MIN_RATE_SHARE = 0.05  # of the slowest planned rate: what counts as motion
-MIN_MOTION_SIGMA = 6.0  # scatters of the gyros at rest: what cannot be noise
-MIN_HAND_RATE = np.radians(2.0)  # rad/s: what counts as motion where no rate is planned
 MIN_GAIN = 2  # observations more that agree with the plan, in place of as many that do not
 MIN_UPRIGHT_SHARE = 0.9  # share of the vertical in an axis that points up
 MIN_EARTH_SIGMA = 4.0  # sigmas to which the earth's rate must be seen to half of itself

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.axis_permutations import Permutation
+from inertial.signal.rests_and_motions import Stretch, moving, stretches, with_slow_ends
 from stages.segment.matching import Observation, match, observe, points
-from stages.segment.motion import Stretch, moving, stretches, with_slow_ends
 from stages.segment.windows import Binned
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.records import Manoeuvre
-from stages.segment.motion import Stretch, steady_part
+from inertial.signal.rests_and_motions import Stretch, steady_part
 from stages.segment.windows import Binned
 
 Array = NDArray[np.float64]

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.detector import Given
+from inertial.signal.rests_and_motions import steady_part
 from inertial.signal.scale_factor import (
     FULL_SCALE_FACTORS,
     MAX_RATIO_SPREAD,
@@ -17,7 +18,6 @@ from inertial.signal.scale_factor import (
 from stages.segment.explanations import Explained
 from stages.segment.locating import Located
 from stages.segment.matching import motion
-from stages.segment.motion import steady_part
 
 Array = NDArray[np.float64]
 

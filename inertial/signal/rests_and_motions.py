@@ -11,6 +11,8 @@ from inertial.signal.scatter import MAD_TO_SIGMA
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
+MIN_MOTION_SIGMA = 6.0  # scatters of the gyros at rest: what cannot be noise
+MIN_HAND_RATE = np.radians(2.0)  # rad/s: what counts as motion where no rate is planned
 MIN_STRETCH_S = 0.3  # s, a motion or a rest shorter than this is none, or a tenth of the stretch
 MAX_SLOW_END_S = 3.0  # s, at most, in which a motion begins or ends below what counts as motion
 # In m/s², change of the specific force that counts as motion where no gyro is recorded
