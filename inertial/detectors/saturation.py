@@ -38,6 +38,7 @@ SIDE_READINGS = 8
 # Scatters of those readings: so far away from the limit it must have been
 MIN_DISTANCE_SCATTER = 8.0
 MIN_LEAP_RATIO = 10.0  # times the changes beside a visit, by which readings leap to it and back
+MAX_BEYOND = 1.25  # times the stated range, which is nominal: what readings of it may reach
 MIN_FILLED_SHARE = 0.7  # of the counts from the median to the extreme: what noise fills of them
 
 
@@ -311,12 +312,16 @@ def _leapt(values: Array, start: int, end: int, noise: float) -> bool:
 
 
 def _known(sign: float, log: Log, i: int) -> float:
-    """What the channel reads at its upper end, by the campaign or as a full count."""
+    """What the channel reads at its upper end, by the campaign or as a full count.
+
+    A stated range that readings go well beyond is not theirs: another count size is theirs.
+    """
     most = float(log.most[i] if sign > 0 else -log.least[i])
     count = float(log.count[i] if np.isfinite(log.count[i]) else log.quantum[i])
     if np.isfinite(count) and np.isclose(most / count, CONVERTER_COUNTS, rtol=1e-7).any():
         return most
-    return float(log.limit[i])
+    limit = float(log.limit[i])
+    return limit if most <= MAX_BEYOND * limit else np.inf
 
 
 def _lost(values: Array, start: int, end: int, step: float) -> float:

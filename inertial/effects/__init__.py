@@ -38,6 +38,7 @@ from inertial.effects.gyro_scale_temperature import GyroScaleTemperature
 from inertial.effects.gyro_warm_up import GyroWarmUp
 from inertial.effects.heading_error import HeadingError
 from inertial.effects.latitude_error import LatitudeError
+from inertial.effects.latitude_sign import LatitudeSign
 from inertial.effects.lever_arm import LeverArm
 from inertial.effects.oscillation import Oscillation
 from inertial.effects.size_effect import SizeEffect
@@ -103,6 +104,7 @@ CATALOGUE: dict[str, Effect] = {
         # site and clock
         GravityError(),
         LatitudeError(),
+        LatitudeSign(),
         HeadingError(),
         EarthRateOmitted(),
         ClockScale(),

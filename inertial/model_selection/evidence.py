@@ -22,21 +22,27 @@ class SearchedEffect:
     `candidates`: the columns of each candidate; an effect without a scan has one. `free`: no
     physical effect but an arbitrary function, such as a drift without a law; it replaces several
     effects that together imitate it, but never a single effect that suffices.
-    `between`: whether the true value of a scan may lie between two candidates.
+    `between`: whether the true value of a scan may lie between two candidates. `only`: the value
+    of its single column, where it is there with that value or not at all.
     """
 
     name: str
     candidates: tuple[tuple[int, ...], ...]
     free: bool = False
     between: bool = True
+    only: float | None = None
 
 
 def searched_effect(
-    name: str, *candidates: Sequence[int], free: bool = False, between: bool = True
+    name: str,
+    *candidates: Sequence[int],
+    free: bool = False,
+    between: bool = True,
+    only: float | None = None,
 ) -> SearchedEffect:
     """An effect by the columns of its candidates."""
     columns = tuple(tuple(int(i) for i in candidate) for candidate in candidates)
-    return SearchedEffect(name, columns, free, between)
+    return SearchedEffect(name, columns, free, between, only)
 
 
 # ---- The information of the equations of all sensors about the effects.

@@ -39,6 +39,8 @@ class Candidates:
         self.columns = [columns for _, _, columns in listed]
         self.effect = np.array([number for number, _, _ in listed], dtype=np.int64)
         self.value = np.array([value for _, value, _ in listed], dtype=np.int64)
+        only = np.array([np.nan if e.only is None else e.only for e in effects], np.float64)
+        self.only = only[self.effect]
         widths = np.array([len(columns) for columns in self.columns], dtype=np.int64)
         self.widths = [
             Width(
@@ -94,9 +96,19 @@ class Candidates:
             white = (vectors * _inverse(values)[:, None, :]).transpose(0, 2, 1)
             for batch in _batches(len(c), many.shape[1]):
                 along = white[batch] @ many[c[batch]]
-                drop[width.places[batch]] = np.einsum("gij,gij->gj", along, along)
+                misfit = self._misfit(width.places[batch], values[batch], vectors[batch], along)
+                drop[width.places[batch]] = np.einsum("gij,gij->gj", along, along) - misfit
             degrees[width.places] = np.sum(values > 0, axis=1)
-        return drop.reshape(len(self), *right.shape[1:]), degrees
+        return np.maximum(drop, 0.0).reshape(len(self), *right.shape[1:]), degrees
+
+    def _misfit(self, places: Integers, values: Array, vectors: Array, along: Array) -> Array:
+        """What chi-squared grows by as a column has the only value that it can have, (g, n)."""
+        only = self.only[places]
+        fixed = ~np.isnan(only)
+        misfit = np.zeros((len(places), along.shape[2]))
+        root = np.sqrt(values[fixed, 0]) / vectors[fixed, 0, 0]
+        misfit[fixed] = (along[fixed, 0] - (only[fixed] * root)[:, None]) ** 2
+        return misfit
 
 
 def _batches(groups: int, draws: int) -> list[slice]:

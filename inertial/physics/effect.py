@@ -128,7 +128,8 @@ class Effect(ABC):
     `sizes`: typical sizes, in the unit of the last parameter: of a sensor by its grade, fog (a
     fibre-optic gyro and its accelerometers), tactical (MEMS of the STIM300 class), mti (of the
     MTi-100 class), consumer; of a table: good table, poor table; of a site: usual. Sizes of more
-    than `thinkable` times the largest of them are excluded.
+    than `thinkable` times the largest of them are excluded. `only`: the value of its parameter
+    if it is there, where no other is possible.
 
     `sought_in`: where it is detected: in the "blocks" of means on which all equations rest; in the
     "spectrum" of the full-rate residuals, for it is faster than a block or periodic in the angle of
@@ -154,6 +155,7 @@ class Effect(ABC):
     parameters: ClassVar[tuple[Parameter, ...]]
     sizes: ClassVar[Mapping[str, float]]
     thinkable: ClassVar[float] = 100.0
+    only: ClassVar[float | None] = None
     sought_in: ClassVar[str] = "blocks"
     finding: ClassVar[str] = ""
     absorbed_by: ClassVar[str] = ""

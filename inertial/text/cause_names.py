@@ -45,6 +45,7 @@ NAMES = {
     "heading_error": _("wrong heading"),
     "impact": _("impact on the IMU"),
     "latitude_error": _("wrong latitude"),
+    "latitude_sign": _("latitude of the other hemisphere"),
     "manoeuvre_missing": _("missing manoeuvre"),
     "manoeuvre_swapped": _("exchanged manoeuvres"),
     "rate_off": _("another sample rate"),

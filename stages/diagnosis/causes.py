@@ -14,10 +14,11 @@ from inertial.campaign.hypotheses import (
     UNKNOWN_STRUCTURE,
     Hypothesis,
 )
-from inertial.campaign.records import Performed, Row
+from inertial.campaign.records import Clock, Performed, Row
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _, plural
 from inertial.text.numbers import significant
+from inertial.text.units import STANDARD_GRAVITY
 from stages.diagnosis.sensor_results import SensorResult
 
 REPAIRED, MODELLED, MASKED, INTERPOLATED, LEFT_OUT, NONE = (
@@ -33,6 +34,7 @@ MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter: what a cause may move and be ha
 MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed spoils the result
 SPOILS = 3  # severity of a finding
 MOST_MEMBERS = 3  # of a class in its name
+CLOCK = "clock_scale"
 DIFFERENT_THINGS = ("manoeuvre_missing", "manoeuvre_swapped")  # each is one of its own
 
 DONE = {
@@ -168,12 +170,13 @@ class Evidence:
     """What the cures and gains of causes are read from.
 
     `results`: by sensor and mount; `walks`: ids of findings about random walks, which the
-    covariance includes; `performed`: by the name of the manoeuvre.
+    covariance includes; `performed`: by the name of the manoeuvre; `clocks`: by log.
     """
 
     results: Mapping[tuple[str, str], SensorResult]
     walks: frozenset[str]
     performed: Mapping[str, Performed]
+    clocks: Mapping[str, Clock]
 
     def causes(self, explained: Sequence[Explained]) -> list[Cause]:
         """Every cause once: equal faults of one sensor are one."""
@@ -202,8 +205,23 @@ class Evidence:
         for (sensor, mount), result in self.results.items():
             if cause.mount and mount and cause.mount != mount:
                 continue
+            if self._of_increments(cause) and sensor == "gyro" and not self._steady:
+                continue  # angles are sums of increments: no interval is in them
             if cause.sensor in (None, sensor) or cause.causes & result.effects.keys():
                 yield result
+
+    def _of_increments(self, cause: Hypothesis) -> bool:
+        """Whether it is the clock of most of a log by which increments become rates."""
+        clock = self.clocks.get(cause.row["log"] or "")
+        if cause.cause != CLOCK or cause.stage == MODEL or clock is None:
+            return False
+        seconds = cause.row["to_s"] - cause.row["from_s"]
+        return clock.averaged and 2 * seconds > clock.seconds
+
+    @property
+    def _steady(self) -> bool:
+        """Whether gyros are compared with a rate somewhere."""
+        return any(each.rate and each.angle is None for each in self.performed.values())
 
     def _cure(
         self, cause: Hypothesis, own: Sequence[SensorResult], members: Sequence[Explained]
@@ -214,6 +232,8 @@ class Evidence:
             return REPAIRED if applied else NONE, _moved_by(cause.repair, own), None
         if cause.stage == MODEL:
             return self._cure_of_effect(cause, own)
+        if self._of_increments(cause):
+            return NONE, _moved_by_clock(1e-6 * abs(cause.row["size"]), own), None
         touched = frozenset().union(*(member.cause.manoeuvres for member in members))
         done = [self.performed[name] for name in touched if name in self.performed]
         if cause.cause == "gap":
@@ -253,6 +273,21 @@ def _moved_by(repair: Row, own: Sequence[SensorResult]) -> float | None:
     relative = abs(repair["stated"] / repair["value"] - 1)
     sigmas = [sigma for result in own if (sigma := result.scale_sigma) is not None]
     return relative / min(sigmas) if sigmas else None
+
+
+def _moved_by_clock(error: float, own: Sequence[SensorResult]) -> float | None:
+    """By how many sigma rates that are off by a share move the parameters of three axes.
+
+    One of two opposite rests reads g (1 + error): half of that goes into the scale factor, half of
+    g times it into the bias. Two errors that differ by it are possible: stamps, or sampling.
+    """
+    shifts = [
+        error / 2 * size / sigma
+        for result in own
+        for size, sigma in ((1.0, result.scale_sigma), (STANDARD_GRAVITY, result.bias_sigma))
+        if sigma and not (size != 1.0 and result.sensor == "gyro")
+    ]
+    return max(shifts, default=None)
 
 
 def _gain(cause: Hypothesis, drop: float | None) -> str | None:

@@ -13,7 +13,7 @@ from inertial.campaign.hypotheses import MODEL
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.triad import linear_names
 from inertial.text.messages import _
-from inertial.text.parameters import JOINT, SCALE
+from inertial.text.parameters import BIAS, JOINT, SCALE
 from stages.diagnosis.decision import Decision, alarms_of, decided
 from stages.diagnosis.result import Result, covariance_by_ids, covariance_of, ordered, result_of
 
@@ -63,7 +63,15 @@ class SensorResult:
     @property
     def scale_sigma(self) -> float | None:
         """The smallest sigma of a scale factor of the result."""
-        rows = [row for row in self.chosen.rows if row["parameter"] in SCALE and row["sigma"]]
+        return self._smallest(SCALE)
+
+    @property
+    def bias_sigma(self) -> float | None:
+        """The smallest sigma of a bias of the result."""
+        return self._smallest(BIAS)
+
+    def _smallest(self, names: Collection[str]) -> float | None:
+        rows = [row for row in self.chosen.rows if row["parameter"] in names and row["sigma"]]
         return min((row["sigma"] for row in rows), default=None)
 
     def models(self, effects: Collection[str]) -> bool:

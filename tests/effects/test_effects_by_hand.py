@@ -226,6 +226,9 @@ def test_sites_that_are_wrong_by_their_own_formulas():
     there = truth_of(moved, Site(GRAVITY, *earth_rate(30 * DEGREE + wrong)))
     gyro, _ = acted("latitude_error", [wrong], moved, SITE)
     np.testing.assert_allclose(gyro, there.rate - truth.rate, atol=1e-10)
+    south = truth_of(moved, Site(GRAVITY, *earth_rate(-30 * DEGREE)))
+    gyro, _ = acted("latitude_sign", [1.0], moved, SITE)
+    np.testing.assert_allclose(gyro, south.rate - truth.rate, atol=1e-18)
     # North lies further counter-clockwise, seen from above.
     north = Rotation.from_rotvec(wrong * UP).apply(moved.north)
     gyro, _ = acted("heading_error", [wrong], moved, SITE)
@@ -270,6 +273,7 @@ def test_triads_that_are_mounted_askew_see_the_rate_in_other_axes():
     [
         ("latitude_error", [1e-3]),
         ("earth_rate_omitted", [1.0]),
+        ("latitude_sign", [1.0]),
         ("clock_scale", [1e-3]),
         ("gyro_dead_band", [1.0, 1.0, 1.0]),
     ],
