@@ -25,6 +25,7 @@ from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Rows, Writer, provenance
 from inertial.tables.table import Table
 from inertial.tables.whole_files import room_for, write_whole
+from inertial.text.numbers import visible
 
 # What a stage returns: its tables by name, or, where one is too long for memory, pieces of them
 # one after another.
@@ -153,7 +154,7 @@ class Stage:
         try:
             self.run(given["derived"], files, given["settings"], given.get("documents"))
         except Refusal as refusal:
-            sys.exit(f"{self.name}: {refusal}")
+            sys.exit(visible(f"{self.name}: {refusal}"))
 
 
 def _hashes(files: Sequence[Path]) -> dict[str, str]:

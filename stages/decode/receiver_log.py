@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.formats.file_type import FileType, file_type_of, refuse_compressed
+from inertial.formats.file_type import FileType, file_type_of, refuse_no_log
 from inertial.formats.gps_time import NANOSECONDS, utc
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
@@ -95,7 +95,7 @@ def _messages(path: Path) -> "Iterator[novatel_reader.Reading]":
 
 
 def _refuse_other_than_messages(path: Path) -> None:
-    refuse_compressed(path)
+    refuse_no_log(path)
     if (file_type := file_type_of(path)) is not FileType.TEXT:
         raise Refusal(
             path.name,

@@ -27,6 +27,7 @@ from stages.decode.decoded import (
     refused_rows,
     sample_rows,
 )
+from stages.decode.no_samples import no_samples
 from stages.decode.receiver_log import ReceiverLog
 from stages.decode.table_angle import TableAngle
 
@@ -41,16 +42,16 @@ def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
     Raises
     ------
     Refusal
-        where a log is missing, or has not the columns that its layout names
+        where a log is missing, has not the columns that its layout names, or gives no sample
     """
     rows = [row for batch in logs for row in batch.to_pylist()]
     opened = [_open(row, raw) for row in rows]
     table = TableAngle.of_logs(rows, raw)
     stamps = [log.first for log in opened if isinstance(log, ReceiverLog) and log.first is not None]
     origin = min(stamps, default=0)
-    for log in opened:
+    for log, row in zip(opened, rows, strict=True):
         size = log.path.stat().st_size
-        yield from _pieces_of(log, origin, table)
+        yield from _pieces_of(log, row, origin, table)
         refuse_grown(log.path, size)
     if table is not None:
         yield from account_of(table.file, table.encoder.account, table.encoder.refused)
@@ -63,15 +64,18 @@ def _open(row: Mapping[str, str], raw: list[Path]) -> ReceiverLog | ColumnLog:
     return kind(row["log"], path_of(row["file"], raw), layout)
 
 
-def _pieces_of(log: ReceiverLog | ColumnLog, origin: int, table: TableAngle | None) -> Pieces:
+def _pieces_of(
+    log: ReceiverLog | ColumnLog, row: Mapping[str, str], origin: int, table: TableAngle | None
+) -> Pieces:
     """All tables of one log."""
-    account = Account()
+    account, first_refused = Account(), None
     records, to_record = 0, 0
     ends: list[float | None] = []
     imu_types: frozenset[int] = frozenset()
     for decoded, samples in prefetched(_decoded(log, origin, table)):
         account.add_account(decoded.account)
         imu_types |= decoded.imu_types
+        first_refused = first_refused or next(iter(decoded.refused), None)
         yield from refused_rows(log.name, decoded.refused)
         for start in range(0, len(samples), BATCH_ROWS):
             yield "samples", samples.slice(start, BATCH_ROWS)
@@ -79,6 +83,8 @@ def _pieces_of(log: ReceiverLog | ColumnLog, origin: int, table: TableAngle | No
             records += len(samples)
             to_record = samples["record"][-1].as_py() + 1
             ends = [*ends[:1], samples["time"][0].as_py(), samples["time"][-1].as_py()]
+    if not records:
+        raise no_samples(row["file"], json.loads(row["layout"]), account, first_refused)
     yield from account_of(log.name, account, [])
     clock = {
         "log": log.name,

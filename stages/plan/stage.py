@@ -68,6 +68,13 @@ def plan(
     named = [(row["key"], row["file"]) for row in manoeuvres]
     named += [] if table is None else [(["encoder", "log"], table["file"])]
     for key, log in named:
+        if (campaign[0].parent / log).is_dir():
+            raise file.refuse_text(
+                key,
+                _("'{log}', a folder", log=log),
+                _("a log, which is one file"),
+                _("name a file; of a bag that is a folder, the .db3 or .mcap in it"),
+            )
         if log not in present:
             raise file.refuse(
                 key,

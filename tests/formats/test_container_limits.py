@@ -1,9 +1,11 @@
 """A few bytes that unpack to more than the memory limit are refused, and nothing else fails."""
 
+import io
 import resource
 import struct
 import subprocess
 import sys
+import zipfile
 import zlib
 from pathlib import Path
 
@@ -17,7 +19,7 @@ from rosbags.typesys import Stores, get_typestore
 from scipy.io import savemat
 
 from inertial.formats.columns import column_reader
-from inertial.formats.containers import container
+from inertial.formats.containers import container, ulog_file
 from inertial.tables.errors import Refusal
 from tests.formats import written
 
@@ -206,3 +208,83 @@ def test_columns_of_different_length_are_refused(tmp_path):
     savemat(log, {"x": np.zeros(5), "gyro": np.zeros((6, 3))}, appendmat=False)
     layout = LAYOUT | {"gyro": {"columns": ["gyro.1", "gyro.2", "gyro.3"], "unit": "g"}}
     assert refused(log, layout).found == "5 samples of x, 6 samples of gyro.3"
+
+
+# ---- NumPy
+
+
+def claimed(shape: tuple[int, ...], dtype: str = "<f8") -> bytes:
+    """An .npy whose header states this shape, and 80 bytes of data."""
+    file = io.BytesIO()
+    np.lib.format.write_array_header_1_0(
+        file, {"descr": dtype, "fortran_order": False, "shape": shape}
+    )
+    return file.getvalue() + bytes(80)
+
+
+def test_an_array_of_numpy_that_claims_too_much(tmp_path, limit):
+    log = tmp_path / "log"
+    log.write_bytes(claimed((1 << 40, 7)))
+    refusal = refused(log, LAYOUT | {"time": {"column": 1, "unit": "s"}})
+    assert refusal.cure.startswith("copy the log anew")
+    with zipfile.ZipFile(log, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("x.npy", claimed((MANY,)) + bytes(8 * MANY - 80))
+    assert_a_bomb(log, refused(log))
+
+
+def test_no_pickled_object_is_loaded(tmp_path):
+    log = tmp_path / "log"
+    with log.open("wb") as file:
+        np.save(file, np.array([{"x": 1}], object), allow_pickle=True)
+    assert refused(log).found.startswith("a file that cannot be read: Array can't be memory-mapped")
+    with log.open("wb") as file:
+        np.savez(file, x=np.array([{"x": 1}], object), y=np.zeros(3))
+    assert refused(log).expected == "one of y"
+
+
+# ---- ULog
+
+
+def ulog(log: Path, *messages: bytes) -> None:
+    log.write_bytes(b"ULog\x01\x12\x35\x01" + bytes(8) + b"".join(messages))
+
+
+def test_formats_of_ulog_within_each_other_define_no_endless_message(tmp_path):
+    """Four lines would be 65535³ fields, of no bytes at all."""
+    log = tmp_path / "log"
+    ulog(
+        log,
+        written.ulog_message("F", b"sensor_combined:a[65535] x;"),
+        written.ulog_message("F", b"a:b[65535] x;"),
+        written.ulog_message("F", b"b:c[65535] x;"),
+        written.ulog_message("F", b"c:"),
+        written.ulog_message("A", struct.pack("<BH", 0, 7) + b"sensor_combined"),
+    )
+    refusal = refused(log)
+    assert f"{65535**3} fields in a message of sensor_combined" in refusal.found
+    ulog(
+        log,
+        written.ulog_message("F", b"sensor_combined:uint64_t timestamp;sensor_combined[2] x;"),
+        written.ulog_message("A", struct.pack("<BH", 0, 7) + b"sensor_combined"),
+    )
+    assert "recursion" in refused(log).found
+
+
+def test_a_ulog_is_not_read_for_ever(tmp_path, monkeypatch):
+    """Each of 2000 messages of 10 bytes subscribes to a topic of 65000 fields."""
+    log = tmp_path / "log"
+    again = written.ulog_message("A", struct.pack("<BH", 0, 7) + b"cpuload")
+    ulog(log, written.ulog_message("F", b"cpuload:uint64_t timestamp;bool[65000] x;"), again * 2000)
+    monkeypatch.setattr(ulog_file, "MAX_SECONDS", 0.5)
+    assert refused(log).found.endswith("takes longer than any whole log of its size")
+
+
+def test_what_the_reader_of_ulogs_prints_is_not_printed(tmp_path, capsys):
+    log = tmp_path / "log"
+    layout = written.ulog(log, written.rows(50))
+    log.write_bytes(log.read_bytes() + written.ulog_message("D", struct.pack("<HQ", 99, 0)))
+    readings = list(column_reader.read(log, layout))
+    assert [line.reason for reading in readings for line in reading.refused] == [
+        "the log is damaged: messages may be missing, and numbers may be wrong"
+    ]
+    assert capsys.readouterr() == ("", "")

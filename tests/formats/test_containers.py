@@ -1,6 +1,7 @@
 """Logs that are no text: the same rows whatever they are written in, told by content alone."""
 
 import json
+import struct
 import subprocess
 import sys
 from pathlib import Path
@@ -140,7 +141,7 @@ def test_integers_of_any_width_labels_selection_and_missing(tmp_path):
     assert account == [("decoded", "", 3, log.stat().st_size), ("not selected", "", 1, 0)]
 
 
-@pytest.mark.parametrize("name", ["parquet", "arrow stream", "matlab 5", "matlab 7.3", "mcap"])
+@pytest.mark.parametrize("name", ["parquet", "matlab 5", "matlab 7.3", "mcap", "numpy", "ulog"])
 def test_reading_needs_no_pandas(tmp_path, name):
     log = tmp_path / "log"
     layout = written.WRITERS[name](log, written.rows(20))
@@ -190,11 +191,93 @@ def test_a_large_table_comes_in_portions_whatever_it_is_stored_in(tmp_path):
     savemat(tmp_path / "matlab", {"x": numbers}, appendmat=False)
     with h5py.File(tmp_path / "hdf5", "w") as file:
         file.create_dataset("x", data=numbers, chunks=(1000,), compression="gzip")
+    np.savez(tmp_path / "numpy", x=numbers)
+    (tmp_path / "numpy.npz").rename(tmp_path / "numpy")
     layout = {"kind": "columns", "gyro": {"columns": ["x", None, "x"], "unit": "rad/s"}}
-    for name in ("parquet", "arrow", "matlab", "hdf5"):
+    for name in ("parquet", "arrow", "matlab", "hdf5", "numpy"):
         readings = list(columns.read(tmp_path / name, layout))
         assert max(len(reading.records.record) for reading in readings) <= 1 << 16
         found = np.concatenate([reading.records.gyro for reading in readings])
         np.testing.assert_array_equal(found[:, 2], numbers)
         record = np.concatenate([reading.records.record for reading in readings])
         np.testing.assert_array_equal(record, np.arange(count))
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+@pytest.mark.parametrize("dtype", ["<f4", ">i2"])
+def test_the_columns_of_a_plain_array_go_by_number(tmp_path, order, dtype):
+    numbers = np.arange(700).reshape(100, 7).astype(dtype)
+    np.save(tmp_path / "log.npy", np.asarray(numbers, order=order))
+    np.save(tmp_path / "turned.npy", np.asarray(numbers.T, order=order))
+    layout = {
+        "kind": "columns",
+        "time": {"column": 1, "unit": "s"},
+        "gyro": {"columns": [2, 3, 4], "unit": "deg/s"},
+    }
+    for name in ("log.npy", "turned.npy"):  # samples lie along the longer side
+        found, *_ = everything(tmp_path / name, layout)
+        np.testing.assert_array_equal(found["ticks"], numbers[:, 0])
+        np.testing.assert_array_equal(found["gyro"], numbers[:, 1:4])
+
+
+ULOG_LAYOUT = {
+    "kind": "columns",
+    "time": {"column": "timestamp", "unit": "us"},
+    "gyro": {"columns": [f"gyro_rad[{axis}]" for axis in range(3)], "unit": "rad/s"},
+    "accelerometer": {
+        "columns": [f"accelerometer_m_s2[{axis}]" for axis in range(3)],
+        "unit": "m/s2",
+    },
+}
+
+
+def test_a_real_log_of_px4(recordings):
+    """On its wheels at first, −z up; each row integrates 4888 µs by its own gyro_integral_dt."""
+    log = recordings / "formats/flight.ulg"
+    found, refused, _ = everything(log, ULOG_LAYOUT)
+    assert not refused
+    assert len(found["ticks"]) == 1298
+    assert np.median(np.diff(found["ticks"])) == pytest.approx(4888, abs=2)
+    assert found["accelerometer"][:50].mean(0) == pytest.approx([0, 0, -9.7], abs=0.3)
+    assert np.abs(found["gyro"][:50]).max() < 0.05
+
+
+@pytest.mark.parametrize(("topic", "mean"), [("sensor_accel", -9.7), ("sensor_accel_2", -9.7)])
+def test_a_topic_of_px4_and_its_instances_go_by_name(recordings, topic, mean):
+    log = recordings / "formats/flight.ulg"
+    layout = {
+        "kind": "columns",
+        "topic": topic,
+        "time": {"column": "timestamp_sample", "unit": "us"},
+        "accelerometer": {"columns": ["x", "y", "z"], "unit": "m/s2"},
+    }
+    found, *_ = everything(log, layout)
+    assert len(found["ticks"]) == 6
+    assert found["accelerometer"][0, 2] == pytest.approx(mean, abs=0.3)
+    with pytest.raises(Refusal) as refusal:
+        everything(log, layout | {"topic": "sensor_accel_3"})
+    assert refusal.value.found == "no messages of the topic 'sensor_accel_3'"
+    assert "sensor_accel_2, sensor_baro_0" in refusal.value.expected
+
+
+def test_a_row_of_px4_without_an_accelerometer_s_sample_is_refused(tmp_path):
+    """What PX4 repeats where its accelerometers are slower is marked by the largest integer."""
+    fields = "uint64_t timestamp;float[3] gyro_rad;"
+    fields += "int32_t accelerometer_timestamp_relative;float[3] accelerometer_m_s2;"
+    messages = [
+        written.ulog_message("F", f"sensor_combined:{fields}".encode()),
+        written.ulog_message("A", struct.pack("<BH", 0, 7) + b"sensor_combined"),
+    ]
+    for number in range(4):
+        relative = 2**31 - 1 if number == 2 else -100
+        data = struct.pack("<HQ3fi3f", 7, number * 5000, 0, 0, number, relative, 0, 0, -number)
+        messages.append(written.ulog_message("D", data))
+    log = tmp_path / "log"
+    log.write_bytes(b"ULog\x01\x12\x35\x01" + bytes(8) + b"".join(messages))
+    found, refused, _ = everything(log, ULOG_LAYOUT)
+    np.testing.assert_array_equal(found["accelerometer"][:, 2], [0, -1, -3])
+    assert [line.line for line in refused] == [3]
+    gyros = {name: ULOG_LAYOUT[name] for name in ("kind", "time", "gyro")}
+    found, refused, _ = everything(log, gyros)
+    np.testing.assert_array_equal(found["gyro"][:, 2], [0, 1, 2, 3])
+    assert not refused

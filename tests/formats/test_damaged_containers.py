@@ -100,3 +100,18 @@ def test_a_damaged_chunk_of_a_bag_costs_its_messages_alone(tmp_path):
     assert refused[0].reason.startswith("a chunk of messages is damaged")
     assert 4000 < len(times) < 8000
     assert (np.diff(times) > 0.0015).sum() <= 1  # one gap, or the beginning or the end is lost
+
+
+def test_a_ulog_that_breaks_off_in_a_message_gives_what_there_is_and_says_where(tmp_path):
+    """As where the power was cut."""
+    log = tmp_path / "log"
+    layout = written.ulog(log, written.rows(1000))
+    content = log.read_bytes()[:-7]
+    log.write_bytes(content)
+    readings = list(columns.read(log, layout))
+    assert sum(len(reading.records.record) for reading in readings) == 999
+    refused = [line for reading in readings for line in reading.refused]
+    last = len(content) + 7 - 69 + 3  # a message of 69 bytes, 3 of them its head
+    assert [(line.line, line.reason) for line in refused] == [
+        (1000, f"the log breaks off in the message at byte {last} of {len(content)}")
+    ]

@@ -12,7 +12,7 @@ import pyarrow as pa
 import pytest
 
 from inertial.formats.columns import column_reader as columns
-from inertial.formats.file_type import FileType, file_type_of, refuse_compressed
+from inertial.formats.file_type import FileType, file_type_of, refuse_no_log
 from inertial.tables.errors import Refusal
 from tests.formats import written
 
@@ -53,7 +53,7 @@ def test_a_compressed_log_is_refused_by_name(tmp_path, kind):
     log = tmp_path / "log.csv"
     log.write_bytes(PACKED[kind])
     with pytest.raises(Refusal) as refusal:
-        refuse_compressed(log)
+        refuse_no_log(log)
     assert str(refusal.value) == (
         "log.csv\n"
         f"  found:    a file that is packed with {kind}\n"
@@ -65,11 +65,11 @@ def test_a_compressed_log_is_refused_by_name(tmp_path, kind):
         list(columns.read(log, {"kind": "columns"}))
 
 
-@pytest.mark.parametrize("text", [b"", b"\n", b"BZh9 is a name\n", b"PAR2\n", b"MATLAB\n", LINE])
+@pytest.mark.parametrize("text", [b"\n", b"BZh9 is a name\n", b"PAR2\n", b"MATLAB\n", LINE])
 def test_text_is_text(tmp_path, text):
     log = tmp_path / "log.parquet"
     log.write_bytes(text)
-    refuse_compressed(log)
+    refuse_no_log(log)
     assert file_type_of(log) is FileType.TEXT
 
 
@@ -85,6 +85,9 @@ def test_text_is_text(tmp_path, text):
         "ros 1": FileType.ROS_1,
         "ros 2": FileType.ROS_2,
         "mcap": FileType.MCAP,
+        "numpy": FileType.NUMPY,
+        "numpy archive": FileType.NUMPY_ARCHIVE,
+        "ulog": FileType.ULOG,
     }.items(),
 )
 def test_a_container_is_told_whatever_its_name(tmp_path, name, content):

@@ -1,5 +1,6 @@
 """The same rows written in every format that is read, by libraries that other people wrote."""
 
+import struct
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
@@ -169,6 +170,56 @@ def _fill(bag, store, serialize, values, topics):
             bag.write(chat, received, serialize(word(data="hello"), "std_msgs/msg/String"))
 
 
+def numpy_array(path: Path, values: NDArray[np.float64]) -> dict[str, object]:
+    table = np.rec.fromarrays(values.T, dtype=[(name, "f8") for name in NAMES])
+    with path.open("wb") as file:  # a name would get the ending .npy
+        np.save(file, table)
+    return layout()
+
+
+def numpy_archive(path: Path, values: NDArray[np.float64]) -> dict[str, object]:
+    imu = np.zeros(len(values), [("time", "f8"), ("force", ">f8", (3,)), ("name", "U3")])
+    imu["time"], imu["force"] = values[:, 0], values[:, 4:]
+    notes = np.array([{"an object": "is no column"}], object)
+    with path.open("wb") as file:
+        np.savez_compressed(file, gyro=np.asfortranarray(values[:, 1:4]), imu=imu, notes=notes)
+    return matrix_layout("gyro", "imu.force", "imu.time")
+
+
+ULOG_FIELDS = "uint64_t timestamp;double stamp;double[3] gyro_rad;double[3] accelerometer_m_s2;"
+
+
+def ulog(path: Path, values: NDArray[np.float64]) -> dict[str, object]:
+    """By the description of the format: definitions, and messages of two topics."""
+    head = b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 1_000_000)
+    definitions = [
+        ulog_message("B", bytes(40)),
+        ulog_message("F", f"sensor_combined:{ULOG_FIELDS}".encode()),
+        ulog_message("F", b"cpuload:uint64_t timestamp;float load;"),
+        ulog_message("A", struct.pack("<BH", 0, 7) + b"sensor_combined"),
+        ulog_message("A", struct.pack("<BH", 0, 8) + b"cpuload"),
+    ]
+    data = []
+    for number, row in enumerate(values.tolist()):
+        stamp = round(row[0] * 1e6)
+        data.append(ulog_message("D", struct.pack("<HQ7d", 7, stamp, *row)))
+        if number % 10 == 0:
+            data.append(ulog_message("D", struct.pack("<HQf", 8, stamp, 0.5)))
+    path.write_bytes(head + b"".join(definitions + data))
+    names = {
+        "gyro": {"columns": [f"gyro_rad[{axis}]" for axis in range(3)], "unit": "rad/s"},
+        "accelerometer": {
+            "columns": [f"accelerometer_m_s2[{axis}]" for axis in range(3)],
+            "unit": "m/s2",
+        },
+    }
+    return layout() | names
+
+
+def ulog_message(kind: str, content: bytes) -> bytes:
+    return struct.pack("<HB", len(content), ord(kind)) + content
+
+
 WRITERS: dict[str, Callable[..., dict[str, object]]] = {
     "text": text,
     "parquet": as_parquet,
@@ -179,5 +230,8 @@ WRITERS: dict[str, Callable[..., dict[str, object]]] = {
     "ros 1": ros_1,
     "ros 2": ros_2,
     "mcap": mcap,
+    "numpy": numpy_array,
+    "numpy archive": numpy_archive,
+    "ulog": ulog,
 }
 CONTAINERS = [name for name in WRITERS if name != "text"]

@@ -12,7 +12,7 @@ from inertial.formats.columns import text_reader
 from inertial.formats.columns.data_rows import Reading, Rows
 from inertial.formats.columns.text_reader import CHUNK_BYTES
 from inertial.formats.containers import container
-from inertial.formats.file_type import FileType, file_type_of, refuse_compressed
+from inertial.formats.file_type import FileType, file_type_of, refuse_no_log
 
 __all__ = ["Reading", "Rows", "read"]
 
@@ -26,18 +26,17 @@ def read(
     ------
     Refusal
         where the layout names a column that is missing, or is there twice; where the file is
-        compressed; where a container is damaged or needs too much memory
+        no log; where a container is damaged or needs too much memory
     """
-    refuse_compressed(path)
-    open_container = _opening(file_type_of(path))
-    if open_container is None:
+    refuse_no_log(path)
+    if (file_type := file_type_of(path)) is FileType.TEXT:
         yield from text_reader.read(path, layout, chunk_bytes)
     else:
-        yield from container.read(path, layout, open_container)
+        yield from container.read(path, layout, _opening(file_type))
 
 
-def _opening(file_type: FileType) -> container.Opening | None:
-    """The function that opens a container; None for text.
+def _opening(file_type: FileType) -> container.Opening:
+    """The function that opens a container.
 
     Its library is imported only where a log needs it: importing all of them takes longer than
     reading most logs.
@@ -57,6 +56,8 @@ def _opening(file_type: FileType) -> container.Opening | None:
             from inertial.formats.containers.ros2_bag import opened
         case FileType.MCAP:
             from inertial.formats.containers.mcap_bag import opened
-        case FileType.TEXT:
-            return None
+        case FileType.ULOG:
+            from inertial.formats.containers.ulog_file import opened
+        case FileType.NUMPY | FileType.NUMPY_ARCHIVE:
+            from inertial.formats.containers.numpy_file import opened
     return opened

@@ -1,1 +1,1 @@
-"""Containers of logs that are not text: Parquet, Arrow, MATLAB 5 and 7.3/HDF5, ROS 1/2, MCAP."""
+"""Containers of logs that are not text: Parquet, Arrow, MATLAB, HDF5, NumPy, ROS bags, ULog."""

@@ -87,9 +87,7 @@ def _batches(
         values: dict[int, ColumnValues] = {}
         for index, column in required.items():
             some = slice(first, min(first + step, samples))
-            where = (some, column.place) if column.along == 0 else (column.place, some)
-            matrix = matrices[column.matrix]
-            values[index] = NumberValues(np.asarray(matrix[where[: matrix.ndim]]))
+            values[index] = NumberValues(np.asarray(matrices[column.matrix][column.where(some)]))
         yield Batch(min(step, samples - first), values)
 
 

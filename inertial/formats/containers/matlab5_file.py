@@ -61,7 +61,7 @@ def _batches(
     variables = {column.matrix for column in required.values()} - set(fields)
     matrices = fields | (_load(path, sorted(variables)) if variables else {})
     values = {
-        index: np.take(matrices[column.matrix], column.place, 1 - column.along)
+        index: matrices[column.matrix][column.where(slice(None))]
         for index, column in required.items()
     }
     for first in range(0, samples, BATCH_ROWS):

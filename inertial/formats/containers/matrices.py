@@ -25,14 +25,20 @@ class MatrixColumn:
     matrix: str  # the name of the matrix in the file
     samples: int  # how many values it has
     along: int  # the side along which the samples lie, from 0
-    place: int  # which line along this side it is, from 0
+    place: int | None  # which line along this side it is, from 0; none in a vector
+
+    def where(self, some: slice) -> tuple[int | slice, ...]:
+        """The index of some of its samples in the matrix."""
+        if self.place is None:
+            return (some,)
+        return (some, self.place) if self.along == 0 else (self.place, some)
 
 
 def columns_of(matrix: str, shape: Sequence[int], name: str = "") -> Iterator[MatrixColumn]:
     """The columns of a matrix of this shape, called `name`; a cube has none."""
     name = name or matrix
     if len(shape) == 1:
-        yield MatrixColumn(name, matrix, shape[0], 0, 0)
+        yield MatrixColumn(name, matrix, shape[0], 0, None)
     elif len(shape) == 2:
         along = int(shape[1] > shape[0])
         samples, width = shape[along], shape[1 - along]
