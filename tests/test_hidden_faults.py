@@ -130,6 +130,23 @@ def test_a_hidden_fault_is_named_with_its_place_and_nothing_else(cause, fault, t
     assert set(found["cause"]) == {cause}
 
 
+@pytest.mark.parametrize("sigma", [100.0, 4.0, 0.6])
+def test_a_reading_off_once_a_second_is_named_with_its_phase(sigma, tmp_path):
+    """One sample of a hundred in twelve logs; at 0.6 sigma none of them can be seen by itself."""
+    size = sigma * GYRO
+    place = {"log": "all", "channel": "gyro_y", "period_s": 1, "phase_s": 0.31}
+    results, recording = hide([{"glitch": place | {"size_rad_s": size}}], tmp_path)
+    (found,) = findings(results).itertuples()
+    assert (found.cause, found.sensor, found.axis) == ("periodic_glitch", "gyro", "y")
+    assert found.sentence.startswith("At 0.310 s of every 1 s the gyro y")
+    # It is hidden in whole counts of 1.1e-5 rad/s.
+    assert found.size == pytest.approx(size, abs=3 * GYRO / np.sqrt(found.count) + 0.55e-5)
+    spoilt = sum(one.after - one.first for one in recording.spoiled)
+    assert abs(found.count - spoilt) <= 12  # one more or less where a log begins or ends
+    masks = results["quality/masks"]
+    assert set(masks["finding"]) == {found.id} and len(masks) == found.count
+
+
 COMBINATIONS = [
     (["gap", "spike", "dead_axis"], [lost(20), spikes(0.1), dead(100)]),
     (["bias_jump", "duplicate", "oscillation"], [step(10 * GYRO), repeated(5), oscillation(0.01)]),

@@ -110,7 +110,15 @@ class Explanation:
 EXPLANATIONS = (
     # Readings that are no readings of this motion: the manoeuvre looks other than planned.
     Explanation(
-        ("saturation", "spike", "impact", *LOST_RECORDS, "status_invalid", "clock_step"),
+        (
+            "saturation",
+            "spike",
+            "periodic_glitch",
+            "impact",
+            *LOST_RECORDS,
+            "status_invalid",
+            "clock_step",
+        ),
         _is(*PERFORMANCE),
         same_manoeuvre,
     ),
@@ -119,6 +127,8 @@ EXPLANATIONS = (
         _is(*PERFORMANCE, "bias_jump", "oscillation", "quantisation", *MISFITS),
         same_axis,
     ),
+    # Once in every period a reading is off: beside it that makes spikes, and lines of a spectrum.
+    Explanation(("periodic_glitch",), _is("spike", "oscillation"), same_axis),
     # Axes, signs, units: they change everything that their sensor reads.
     Explanation(
         ("axis_swap", "sign_flip", "wrong_scale_factor", "wrong_imu_type", "wrong_direction"),

@@ -20,6 +20,7 @@ from inertial.detectors.incomplete_turn import IncompleteTurn
 from inertial.detectors.manoeuvre_missing import ManoeuvreMissing
 from inertial.detectors.manoeuvre_swapped import ManoeuvreSwapped
 from inertial.detectors.oscillation import Oscillation
+from inertial.detectors.periodic_glitch import PeriodicGlitch
 from inertial.detectors.quantisation import Quantisation
 from inertial.detectors.rate_off import RateOff
 from inertial.detectors.saturation import Saturation
@@ -56,10 +57,11 @@ OF_RECORDS: tuple[Detector, ...] = (
     RateOff(),
     WrongDay(),
     WrongImuType(),
-    # readings: a blow, a channel at its limit or one that repeats would resemble a spike
+    # readings: a blow, a channel at its limit, one that repeats, or a glitch would resemble spikes
     Impact(),
     Saturation(),
     DeadAxis(),
+    PeriodicGlitch(),
     Spikes(),
     AxisSwap(),
     AxisSwapOfGyros(),

@@ -3,12 +3,15 @@
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inertial.text.messages import _
+
+if TYPE_CHECKING:
+    from inertial.signal.phase_folding import Glitch
 
 SENSOR_NAMES = {"accel": "accelerometer", "gyro": "gyro"}
 
@@ -89,6 +92,7 @@ class Log:
     count: (6,), what one count is by the campaign, m/s² and rad/s, NaN where not stated.
     records: how many. increments: readings are increments over `step`, and what a count leaves
     over goes into the next. imu: the types of IMU in its messages, by NovAtel's list.
+    glitches: what is off at one phase of a period.
     """
 
     name: str
@@ -107,6 +111,7 @@ class Log:
     step: float = np.nan
     increments: bool = False
     imu: tuple[int, ...] = ()
+    glitches: tuple["Glitch", ...] = ()
 
     def event(self, size: float, **more: Any) -> "Event":
         """An event that concerns the log as a whole."""

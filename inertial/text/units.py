@@ -93,6 +93,11 @@ _DIMENSIONLESS = {
 }
 
 
+def in_degrees(value: float, unit: str) -> tuple[float, str]:
+    """A rate or an angle in degrees, as people think of a turn; any other unit as it is."""
+    return (value / DEGREE, unit.replace("rad", "°")) if unit in ("rad", "rad/s") else (value, unit)
+
+
 def quantity(parameter: str, unit: str) -> Quantity:
     """How `parameter`, which is tabled in `unit`, is written.
 

@@ -12,6 +12,7 @@ from laboratory.faults.drop import Drop
 from laboratory.faults.exchange import Exchange
 from laboratory.faults.fault import Fault
 from laboratory.faults.flip import Flip
+from laboratory.faults.glitch import Glitch
 from laboratory.faults.jitter import Jitter
 from laboratory.faults.kill import Kill
 from laboratory.faults.knock import Knock
@@ -32,6 +33,7 @@ FAULTS: Final[dict[str, type[Fault]]] = {
         Repeat,
         # readings
         Spikes,
+        Glitch,
         Clip,
         Kill,
         Step,

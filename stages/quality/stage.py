@@ -1,11 +1,14 @@
 """What a recording shows without the plan: faults of its time, its readings, its scale."""
 
+from dataclasses import replace
+
 import pandas as pd
 
 from inertial import tables
 from inertial.campaign.close_ups import close_ups
 from inertial.campaign.detection import Examination, ExaminationOfLogs
 from inertial.campaign.findings import Detection, detections_of, masks_of, table_of
+from inertial.campaign.folded_clocks import FoldedClocks
 from inertial.campaign.log_properties import ChannelStatistics, Stated, stated_by, windows_of
 from inertial.campaign.masked_samples import RecordIndex, read_once
 from inertial.detectors import OF_RECORDS
@@ -26,13 +29,18 @@ def quality(
     the whole log, which are known only after it was read once.
     """
     statistics, sums = ChannelStatistics(), windows_of(stated.clocks)
-    read_once(samples, [statistics, sums])
+    folded = FoldedClocks(stated.clocks)
+    read_once(samples, [statistics, sums, folded])
     windows = {
         log: Windows(total.mean, total.variance, total.time, total.temperature)
         for log, total in sums.result().items()
     }
     channel_statistics = statistics.table()
-    by_name = stated.logs(channel_statistics, windows)
+    glitches = folded.glitches()
+    by_name = {
+        name: replace(log, glitches=glitches.get(name, ()))
+        for name, log in stated.logs(channel_statistics, windows).items()
+    }
 
     examination = ExaminationOfLogs(Examination(OF_RECORDS, by_name, stated.given))
     index = RecordIndex()

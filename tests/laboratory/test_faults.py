@@ -169,6 +169,20 @@ def test_spikes(
     assert spans == [(9, 11), (89, 90)]
 
 
+@pytest.mark.parametrize(("period", "phase"), [(1.0, 0.25), (0.1, 0.03)])
+def test_glitch(strike: Strike, clean: dict[str, Written], period: float, phase: float) -> None:
+    """Every record whose GPS time is `phase` after a whole period, whatever the log's beginning."""
+    wrong = {"period_s": period, "phase_s": phase, "size_rad_s": 0.01}
+    found, spans = strike("glitch", channel="gyro_y", **wrong)
+    before = clean["turn.asc"]
+    at = (before.stamps - round(phase * 1e9)) % round(period * 1e9)
+    away = np.minimum(at, round(period * 1e9) - at)
+    rows = np.flatnonzero(away < DT // 2)  # the record nearest to that instant
+    assert abs(len(rows) - 2.5 / period) <= 1  # in 2.5 s
+    assert found == with_counts(before, rows, GYRO_Y, before.counts[rows, GYRO_Y] + 922)
+    assert spans == [(row, row + 1) for row in rows]
+
+
 @pytest.mark.parametrize("degrees", [90, -90])
 def test_clip(campaign: dict[str, Any], degrees: float) -> None:
     """A gyro that ends at 1 rad/s, on a turn at 1.57 rad/s, both ways round."""

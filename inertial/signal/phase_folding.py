@@ -1,0 +1,272 @@
+"""Readings that are off at one phase of a period, found by folding their stamps."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import norm
+
+from inertial.signal.detector import CHANNELS, SENSORS, Array, Booleans, Integers
+from inertial.signal.scatter import MAD_TO_SIGMA, median
+
+PERIODS = (60.0, 30.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)  # s, each divides the first
+FINEST = 600  # phases of 0.1 s in the longest
+MAX_PHASE_MISFIT = 0.02  # of an interval: how far that may be from a whole fraction of 0.1 s
+MIN_INTERVAL = 1e-4  # s: the number of phases bounds the memory
+MIN_PERIOD_SAMPLES = 10  # of which a single one can stand out
+WIDTHS = (1, 2)  # phases that are judged together: an instant may lie at the border of two
+SIDE = 2  # readings on either side that a reading is compared with
+BLOCK = 256  # readings of which the scatter is taken
+MIN_BLOCK = 16
+MAX_OFF_SIGMA = 3.0  # what is farther off counts no more, so that no single reading decides
+MAX_SLOPE_SIGMA = 4.0  # from the readings before to those after: more is a ramp or a motion
+MIN_LEVEL_SIGMA = 10.0  # of a reading of which a share can be off: less is in part its own noise
+MAX_INTERVALS = 1.5  # intervals between neighbours
+MIN_OCCURRENCES = 4.0  # records at the phase
+FALSE_ALARM_LEVEL = 1e-4  # for all phases, periods and channels of a campaign
+COMPARABLE_SHARE = 0.5  # of its significance, by which other phases are off as well
+MIN_COMPARABLE_SIGMA = 3.0
+MAX_COMPARABLE = 0.1  # of the phases of a period; where more are, it oscillates
+LIKELIER = 9.0  # chi-squared by which a period must be better, for another to be excluded
+# What may be off: a channel by a constant, or all of a sensor by a share of what they read.
+SIGNATURES: tuple[tuple[str, int | None], ...] = (
+    *((channel.partition("_")[0], i) for i, channel in enumerate(CHANNELS)),
+    *((sensor, None) for sensor in SENSORS),
+)
+
+
+@dataclass(frozen=True)
+class Glitch:
+    """What is off at one phase of a period.
+
+    channel: that reads `size` more, m/s² or rad/s; where it is None all of `sensor` read
+    (1 + size) times what they should. period: s, the longest that fits; others: s, which fit
+    as well. phase, width: s, of stamps modulo the period, where the records are. occurrences: how
+    many records show it, as many as if all were equally sure; p_value: the search paid for.
+    places: how many phases the longest period is divided into; origin: s, added to the stamps.
+    """
+
+    sensor: str
+    channel: int | None
+    period: float
+    others: tuple[float, ...]
+    phase: float
+    width: float
+    size: float
+    occurrences: float
+    p_value: float
+    places: int
+    origin: float
+
+    def falls_on(self, time: Array) -> Booleans:
+        """Which stamps, (n,), s, have this phase."""
+        step = PERIODS[0] / self.places
+        away = phases(time + self.origin, self.places) - round(self.phase / step)
+        inside = np.mod(away, round(self.period / step)) < round(self.width / step)
+        return np.asarray(inside & np.isfinite(time))
+
+
+def places_of(interval: float) -> int:
+    """Into how many phases the longest period is divided, none longer than the interval, s.
+
+    None where that is so short, or so long, that no period can be examined.
+    """
+    if not MIN_INTERVAL <= interval <= PERIODS[0] / MIN_PERIOD_SAMPLES:
+        return 0
+    each = PERIODS[0] / interval / FINEST
+    return FINEST * max(int(np.ceil(each - MAX_PHASE_MISFIT)), 1)
+
+
+def phases(time: Array, places: int) -> Integers:
+    """The phase of each stamp, (n,), s, in the longest period: 0 … places − 1."""
+    share = np.mod(np.nan_to_num(time), PERIODS[0]) / PERIODS[0]
+    return np.rint(share * places).astype(np.int64) % places
+
+
+class Folded:
+    """Sums over the records of one clock, by the phase of their stamps.
+
+    A reading is compared with the mean of the middle two of the four beside it, in which neither a
+    single wrong one nor a ramp leaves a trace. It is off by y sigma, of which no more than 3
+    count. By a share of 1 it would be off by s = reading/σ: there y has the sign and the weight
+    √|s|, so that it is not a few quiet records alone that decide, and the three channels of a
+    record are one observation.
+    """
+
+    def __init__(self, interval: float, origin: float = 0.0) -> None:
+        self.interval, self.places, self.origin = interval, places_of(interval), origin
+        # Of each signature and phase: Σ w·y of what counts, Σ w², Σ w⁴, and the fraction by which
+        # what is off is estimated from all of y.
+        self.sums = np.zeros((5, len(SIGNATURES), self.places))
+        self.squares = np.zeros((2, len(SIGNATURES)))  # Σ (w·y)² of what counts, and Σ w²
+
+    def add(self, time: Array, values: Array) -> None:
+        """Consecutive records: stamps, (n,), s, NaN where there is none; readings, (n, 6)."""
+        if len(time) < MIN_BLOCK or not self.places:
+            return
+        off, level, sigma = _compared(np.ascontiguousarray(values.T))
+        near = np.abs(np.diff(time)) < MAX_INTERVALS * self.interval
+        beside = np.all(np.lib.stride_tricks.sliding_window_view(near, 2 * SIDE), axis=1)
+        known = beside & np.isfinite(off) & (sigma > 0)
+        off[~known], sigma[~known] = 0.0, np.inf
+        y = off / sigma
+        phase = phases(time[SIDE:-SIDE] + self.origin, self.places)
+        for i in range(len(CHANNELS)):
+            there = known[i].astype(np.float64)
+            counted = np.clip(y[i], -MAX_OFF_SIGMA, MAX_OFF_SIGMA)
+            self._take(i, phase, counted, there, there, off[i], there)
+        for number, own in enumerate(SENSORS.values(), len(CHANNELS)):
+            s = np.where(known[own], level[own], 0.0) / sigma[own]
+            s[np.abs(s) < MIN_LEVEL_SIGMA] = 0.0
+            square, w2 = s**2, np.sum(np.abs(s), axis=0)
+            most = MAX_OFF_SIGMA * np.sqrt(w2)
+            along = np.sum(np.copysign(np.sqrt(np.abs(s)), s) * y[own], axis=0)
+            fraction = np.sum(s * y[own], axis=0), np.sum(square, axis=0)
+            self._take(number, phase, np.clip(along, -most, most), w2, w2**2, *fraction)
+
+    def _take(self, number: int, phase: Integers, counted: Array, w2: Array, *more: Array) -> None:
+        self.squares[:, number] += counted @ counted, w2.sum()
+        for k, column in enumerate((counted, w2, *more)):
+            self.sums[k, number] += np.bincount(phase, column, self.places)
+
+
+def _compared(values: Array) -> tuple[Array, Array, Array]:
+    """By how much each reading but the outer ones is off, what those beside it read, and σ, (6, n).
+
+    σ is the scatter of the first around, 0 where it is not known, or the readings go up or down.
+    """
+    n = values.shape[1] - 2 * SIDE
+    a, b, c, d = (values[:, k : k + n] for k in (0, 1, 3, 4))
+    most = np.maximum(np.maximum(a, b), np.maximum(c, d))
+    least = np.minimum(np.minimum(a, b), np.minimum(c, d))
+    level = (a + b + c + d - most - least) / 2
+    off = values[:, SIDE:-SIDE] - level
+    number, length = max(n // BLOCK, 1), min(BLOCK, n)
+    blocks = np.nan_to_num(np.abs(off[:, : number * length])).reshape(len(values), number, length)
+    scatter = MAD_TO_SIGMA * median(blocks)
+    sigma = scatter[:, np.minimum(np.arange(n) // length, number - 1)]
+    steep = np.abs(c + d - a - b) / 2 > MAX_SLOPE_SIGMA * sigma
+    sigma[steep] = 0.0
+    return off, level, sigma
+
+
+@dataclass(frozen=True, eq=False)
+class _Scan:
+    """All phases of one period, (k, signatures): by how many sigma they are off, and how far."""
+
+    period: float
+    width: int
+    sigmas: Array
+    size: Array
+    occurrences: Array
+
+    @property
+    def tried(self) -> Booleans:
+        return np.asarray(self.occurrences >= MIN_OCCURRENCES)
+
+
+def glitches(clocks: Mapping[str, Folded]) -> dict[str, tuple[Glitch, ...]]:
+    """What is off at one phase of a period, by the name of the clock."""
+    scans = {name: list(_scans(folded)) for name, folded in clocks.items() if folded.places}
+    tests = sum(int(np.count_nonzero(scan.tried)) for own in scans.values() for scan in own)
+    return {name: tuple(_of_clock(clocks[name], own, max(tests, 1))) for name, own in scans.items()}
+
+
+def _scans(folded: Folded) -> Iterator[_Scan]:
+    # Where readings scatter more than by their median they are less sure.
+    squares, weights = folded.squares
+    excess = np.sqrt(np.fmax(squares / np.where(weights > 0, weights, 1.0), 1.0))
+    for period in PERIODS:
+        if period / folded.interval < MIN_PERIOD_SAMPLES:
+            continue
+        turns = round(PERIODS[0] / period)
+        sums = folded.sums.reshape(5, len(SIGNATURES), turns, -1).sum(axis=2)
+        for width in WIDTHS:
+            together = np.sum([np.roll(sums, -shift, axis=2) for shift in range(width)], axis=0)
+            counted, w2, w4, above, below = np.swapaxes(together, 1, 2)
+            with np.errstate(invalid="ignore", divide="ignore"):
+                yield _Scan(
+                    period,
+                    width,
+                    np.nan_to_num(counted / np.sqrt(w2)) / excess,
+                    np.nan_to_num(above / below),
+                    np.nan_to_num(w2**2 / w4),
+                )
+
+
+def _of_clock(folded: Folded, scans: list[_Scan], tests: int) -> Iterator[Glitch]:
+    if not scans:
+        return
+    least = float(norm.isf(FALSE_ALARM_LEVEL / tests / 2))
+    best = [_best(scans, signature) for signature in range(len(SIGNATURES))]
+    for number, (sensor, channel) in enumerate(SIGNATURES):
+        sigmas, scan, phase = best[number]
+        rivals = [
+            best[other][0]
+            for other, (of, one) in enumerate(SIGNATURES)
+            if of == sensor and (one is None) != (channel is None)
+        ]
+        if sigmas < least or sigmas < max(rivals) or not _stands_alone(scan, number, phase):
+            continue
+        step = PERIODS[0] / folded.places
+        for peak in _peaks(scan, number, least):
+            fitting = sorted(_fitting(scans, scan, number, peak), key=lambda one: -one[0].period)
+            (longest, k), others = fitting[0], fitting[1:]
+            yield Glitch(
+                sensor,
+                channel,
+                longest.period,
+                tuple(other.period for other, _ in others),
+                k * step,
+                scan.width * step,
+                float(longest.size[k, number]),
+                float(longest.occurrences[k, number]),
+                float(min(2 * norm.sf(abs(scan.sigmas[peak, number])) * tests, 1.0)),
+                folded.places,
+                folded.origin,
+            )
+
+
+def _best(scans: list[_Scan], number: int) -> tuple[float, _Scan, int]:
+    """The phase that is off most clearly."""
+    found = []
+    for scan in scans:
+        sigmas = np.where(scan.tried[:, number], np.abs(scan.sigmas[:, number]), 0.0)
+        found.append((float(sigmas.max()), scan, int(np.argmax(sigmas))))
+    return max(found, key=lambda each: each[0])
+
+
+def _apart(number: int, k: int, width: int) -> Booleans:
+    """Which of so many phases are compared with none of phase k, (number,)."""
+    away = np.mod(np.arange(number) - k, number)
+    return np.asarray(np.minimum(away, number - away) > SIDE + width - 1)
+
+
+def _stands_alone(scan: _Scan, number: int, k: int) -> bool:
+    """Whether few other phases are as far off: of an oscillation most are."""
+    sigmas = np.abs(scan.sigmas[:, number])
+    others = scan.tried[:, number] & _apart(len(sigmas), k, scan.width)
+    least = max(COMPARABLE_SHARE * sigmas[k], MIN_COMPARABLE_SIGMA)
+    comparable = np.count_nonzero(others & (sigmas > least))
+    return bool(comparable <= MAX_COMPARABLE * np.count_nonzero(others))
+
+
+def _peaks(scan: _Scan, number: int, least: float) -> Iterator[int]:
+    """The phases that are off, each further off than those beside it."""
+    left = np.where(scan.tried[:, number], np.abs(scan.sigmas[:, number]), 0.0)
+    while left.max() >= least:
+        k = int(np.argmax(left))
+        yield k
+        left = left * _apart(len(left), k, scan.width)
+
+
+def _fitting(scans: list[_Scan], best: _Scan, number: int, k: int) -> Iterator[tuple[_Scan, int]]:
+    """The periods by which the records of phase k of the best are as far off, with their phase."""
+    chi2 = best.sigmas[k, number] ** 2
+    for scan in scans:
+        if scan.width == best.width:
+            n, of_best = len(scan.sigmas), len(best.sigmas)
+            own = np.unique(np.arange(k, max(n, of_best), of_best) % n)
+            sigmas = np.where(scan.tried[own, number], np.abs(scan.sigmas[own, number]), 0.0)
+            if chi2 - sigmas.max() ** 2 < LIKELIER:
+                yield scan, int(own[np.argmax(sigmas)])

@@ -1,0 +1,146 @@
+"""A reading that is off at one phase of a period is found with phase and period, weak or not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from on_a_table import carried, recorded, rest, tumble, turn
+from recorded_by_hand import COUNT, GRAVITY, INTERVAL, NOISE, assert_told, stamps
+
+from inertial.detectors.periodic_glitch import PeriodicGlitch
+from inertial.detectors.spike import Spikes
+from inertial.signal.phase_folding import Folded, Glitch, glitches
+
+
+def folded(*stretches, interval=INTERVAL):
+    """What is found in stretches of one clock, each with its stamps."""
+    sums = Folded(interval)
+    for time, values in stretches:
+        sums.add(time, values)
+    return glitches({"clock": sums})["clock"]
+
+
+def spoilt(values, time, period, phase, channel, size):
+    """The record at this phase of every period reads `size` too much."""
+    at = np.mod(time - phase + INTERVAL / 2, period) < INTERVAL - 1e-9
+    values = values.copy()
+    values[at, channel] += np.rint(size / COUNT[channel]) * COUNT[channel]
+    return values, at
+
+
+@pytest.mark.parametrize(
+    ("period", "phase", "seconds"),
+    [(1.0, 0.010, 60), (0.5, 0.37, 60), (0.1, 0.05, 30), (10.0, 3.3, 600), (60.0, 31.4, 900)],
+)
+@pytest.mark.parametrize("sigma", [4.0, 400.0])
+def test_period_and_phase_are_found_and_nothing_else(period, phase, seconds, sigma):
+    """Of four sigma each is no spike; all of a minute are 31 sigma, of which three count: 18."""
+    values, time = rest(round(seconds / INTERVAL)), stamps(round(seconds / INTERVAL))
+    values, at = spoilt(values, time, period, phase, 4, sigma * NOISE[4])
+    (found,) = folded((time, values))
+    assert (found.sensor, found.channel, found.period) == ("gyro", 4, period)
+    assert found.phase == pytest.approx(phase, abs=1e-6) and found.width == pytest.approx(INTERVAL)
+    assert found.size == pytest.approx(sigma * NOISE[4], abs=4 * NOISE[4] / np.sqrt(at.sum()))
+    assert np.array_equal(found.falls_on(time), at)
+    assert found.p_value < 1e-4
+
+
+def of_a_third_of_a_second(number, share, begin):
+    """Excerpts of turns at 10 °/s about x, y, z, both ways, each across a whole second."""
+    excerpts = []
+    for k in range(number):
+        time = begin + 37.0 * k - 0.02 + stamps(33)
+        truth = np.tile([0.07, 0.0, 0.0, 1e-6, -2e-6, 1e-6], (33, 1))
+        truth[:, 2] += GRAVITY
+        truth[:, 3 + k // 2 % 3] += np.radians(10) * (-1) ** k
+        values = carried(truth, k)
+        at = np.mod(time + INTERVAL / 2, 1.0) < INTERVAL
+        at = np.roll(at, 1)  # stamped .010
+        values[at, 3:] *= 1 + share
+        excerpts.append((time, values))
+    return excerpts
+
+
+@pytest.mark.parametrize("begin", [100.0, 558_350.0000236])
+def test_six_excerpts_of_turns_show_the_share_by_which_their_gyros_are_off(begin):
+    """As WHU's: 0.15 % of 10 °/s is seven times the noise of a reading, once in each log."""
+    excerpts = of_a_third_of_a_second(6, 0.0015, begin)
+    (found,) = folded(*excerpts)
+    assert (found.sensor, found.channel) == ("gyro", None)
+    assert (found.period, found.others) == (1.0, (0.5,))  # half a second later nothing is recorded
+    assert found.phase == pytest.approx(0.010, abs=1e-6)
+    assert found.size == pytest.approx(0.0015, abs=4 * NOISE[3] / np.radians(10) / np.sqrt(6))
+    assert found.p_value < 1e-4
+    assert folded(*of_a_third_of_a_second(6, 0.0, begin)) == ()
+
+
+def test_its_readings_are_masked_and_no_spikes_any_more():
+    time = stamps(6000)
+    values, at = spoilt(rest(6000), time, 1.0, 0.25, 3, 40 * NOISE[3])
+    one, log = recorded(values)
+    assert len(list(Spikes().detect(one, log))) == at.sum() == 60
+    log = replace(log, glitches=folded((time, values)))
+    events = list(PeriodicGlitch().detect(one, log))
+    assert [event.first for event in events] == np.flatnonzero(at).tolist()
+    assert list(Spikes().detect(one.without(events), log)) == []
+    for event in events[:2]:
+        assert_told(PeriodicGlitch(), event, "log")
+
+
+def test_its_words_state_what_it_does_to_a_mean():
+    glitch = Glitch("gyro", 3, 1.0, (), 0.25, INTERVAL, 1e-3, 60.0, 1e-9, 6000, 0.0)
+    one, log = recorded(rest(6000))
+    event = next(PeriodicGlitch().detect(one, replace(log, glitches=(glitch,))))
+    words = PeriodicGlitch().describe(event, "log")
+    # 1e-3 rad/s is 0.0573 °/s; one sample of a hundred: 1e-5 rad/s, of 3.49e-5/√6000: 22 sigma.
+    assert "At 0.250 s of every 1 s the gyro x read" in words.sentence
+    assert "0.0573 °/s" in words.sentence
+    assert "0.00057 °/s: 22 times the noise" in words.consequence
+
+
+@pytest.mark.parametrize("frequency", [20.0, 10.0, 1.0, 37.0])
+@pytest.mark.parametrize("times", [0.3, 3.0, 30.0])
+def test_an_oscillation_in_step_with_the_clock_is_none(frequency, times):
+    time = stamps(12_000)
+    values = rest(12_000)
+    values[:, 3] += times * NOISE[3] * np.sin(2 * np.pi * frequency * time + 0.3)
+    assert folded((time, values)) == ()
+
+
+def test_ramps_at_whole_seconds_are_none():
+    """Thirty turns begin and end at whole seconds, each a corner at the same phase."""
+    values = turn()
+    values = values[: len(values) // 100 * 100]
+    stretches = [(stamps(len(values)) + 100.0 * k, turn(k)[: len(values)]) for k in range(30)]
+    assert folded(*stretches) == ()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_clean_readings_are_silent(seed):
+    readings = [rest(200_000, seed), turn(seed), tumble(seed)]
+    assert folded(*((1000.0 * k + stamps(len(v)), v) for k, v in enumerate(readings))) == ()
+
+
+def test_a_few_spikes_in_step_are_no_period():
+    """Three large ones at one phase by chance: no one reading may decide."""
+    time = stamps(60_000)
+    values = rest(60_000)
+    values[[1234, 7234, 31_234], 0] += 1000 * NOISE[0]
+    assert folded((time, values)) == ()
+
+
+@pytest.mark.parametrize("rate", [102.4, 204.8, 250.0])
+def test_a_rate_that_does_not_divide_the_second(rate):
+    n = round(120 * rate)
+    time = np.arange(n) / rate
+    values = rest(n)
+    at = np.diff(np.floor(time - 0.3), prepend=-1.0) > 0  # the first sample after .300
+    values[at, 1] += 20 * NOISE[1]
+    (found,) = folded((time, values), interval=1 / rate)
+    assert (found.channel, found.period) == (1, 1.0)
+    assert 0.3 - 1 / rate <= found.phase <= 0.3 + 2 / rate
+    assert (at & found.falls_on(time)).sum() > 0.7 * at.sum()
+
+
+def test_without_stamps_nothing_is_judged():
+    assert folded((np.full(1000, np.nan), rest(1000))) == ()
