@@ -4,6 +4,8 @@
 #   make report CAMPAIGN=<name>   the campaign in data/raw/<name>/
 #   make check                    faults of the recording within seconds, before the set-up is
 #                                 dismantled; also with CAMPAIGN=<name>
+#   make draft LOG="<logs>"       a first campaign file from the logs alone, data/raw/<name>/; also with
+#                                 NAME=<name>, and RATE=<Hz> where no log has a clock
 #   make trace ID=<number>        from a number of the report, such as gyroscope/joint/bias_x, back to
 #                                 the lines of the logs; also with CAMPAIGN=<name>
 #   make test                     every test; the same as CI with `make style`
@@ -23,7 +25,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check trace test style bench challenge docs clean setup pango campaign
+.PHONY: report check draft trace test style bench challenge docs clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -31,11 +33,17 @@ CAMPAIGN ?= demo
 ID ?=
 ONLY ?=
 DRAWS ?= 1200
+LOG ?=
+NAME ?=
+RATE ?=
 override CAMPAIGN := $(value CAMPAIGN)
 override ID := $(value ID)
 override ONLY := $(value ONLY)
 override DRAWS := $(value DRAWS)
-export CAMPAIGN ID ONLY DRAWS
+override LOG := $(value LOG)
+override NAME := $(value NAME)
+override RATE := $(value RATE)
+export CAMPAIGN ID ONLY DRAWS LOG NAME RATE
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -61,6 +69,13 @@ check: campaign .venv/complete
 	$(SNAKEMAKE) data/derived/$$CAMPAIGN/{quality,segment}/findings.parquet
 	echo
 	$(BIN)/python -m commands.check "--campaign=$$CAMPAIGN"
+
+# A name with a blank is quoted: LOG="'my log.csv' other.csv".
+draft: .venv/complete
+	mapfile -t logs < <(xargs --no-run-if-empty printf '%s\n' <<< "$$LOG")
+	options=()
+	if [[ $$RATE ]]; then options+=("--rate=$$RATE"); fi
+	$(BIN)/python -m commands.draft "$${options[@]}" "--name=$$NAME" -- "$${logs[@]}"
 
 trace: campaign setup
 	$(BIN)/python -m commands.trace "--campaign=$$CAMPAIGN" "--id=$$ID"

@@ -35,6 +35,14 @@ def read(
         yield from container.read(path, layout, _opening(file_type))
 
 
+def names_in(path: Path) -> list[str] | None:
+    """The names of the columns of a container; None of a text, whose header only a layout tells."""
+    refuse_no_log(path)
+    if (file_type := file_type_of(path)) is FileType.TEXT:
+        return None
+    return container.names_in(path, _opening(file_type))
+
+
 def _opening(file_type: FileType) -> container.Opening:
     """The function that opens a container.
 

@@ -120,6 +120,12 @@ def read(path: Path, layout: Mapping[str, Any], opened: Opening) -> Iterator[Rea
         yield reading
 
 
+def names_in(path: Path, opened: Opening) -> list[str]:
+    """The names of the columns of the container at `path`."""
+    with ExitStack() as stack:
+        return list(_guarded(path, lambda: stack.enter_context(opened(path, {}))).names)
+
+
 def _reading(batch: Batch, columns: ColumnLayout, records: int) -> Reading:
     """The samples of `batch`, with `records` rows before it."""
     record = np.arange(records, records + batch.count, dtype=np.int64)

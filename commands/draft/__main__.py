@@ -1,0 +1,121 @@
+"""A first campaign file from the logs alone.
+
+    python -m commands.draft --name june session.csv
+
+It writes data/raw/<name>/campaign.yaml and links or copies the logs beside it. It ends with 0, or
+with 2 where a log cannot be used or the name is taken.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from commands.draft.campaign_file import campaign_file
+from commands.draft.manoeuvres import plan_of
+from commands.draft.raw_log import raw_log
+from commands.draft.sensors import kinds_of
+from inertial.tables.errors import Refusal
+from inertial.text.messages import _
+from inertial.text.numbers import visible
+
+NAME = re.compile(r"[a-z0-9][a-z0-9-]*")
+LOG = re.compile(r"[\w+][\w+. -]*")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write the campaign file; the exit code."""
+    parser = argparse.ArgumentParser(prog="draft", description="a first campaign file")
+    parser.add_argument("logs", nargs="*", type=Path, help="the logs of one recording session")
+    parser.add_argument("--name", default="", help="of the campaign; left out: of the first log")
+    parser.add_argument("--rate", type=float, help="samples per second, where no log states it")
+    parser.add_argument("--data", type=Path, default=Path("data"), help="holds raw/")
+    options = parser.parse_args(arguments)
+    try:
+        folder = draft(options.logs, options.name, options.data, options.rate)
+    except Refusal as refusal:
+        sys.stderr.write(visible(f"draft: {refusal}\n"))
+        return 2
+    text = (folder / "campaign.yaml").read_text(encoding="utf-8")
+    sys.stdout.write(visible("".join(f"{line}\n" for line in text.splitlines() if line[:1] == "#")))
+    sys.stdout.write(_("\nWritten: {path}\n", path=folder / "campaign.yaml"))
+    return 0
+
+
+def draft(logs: Sequence[Path], name: str, data: Path, rate: float | None = None) -> Path:
+    """Write the campaign file of these logs into its folder, which is returned.
+
+    Raises
+    ------
+    Refusal
+        where a log is missing or cannot be used, or the name is taken
+    """
+    if not logs:
+        raise Refusal("LOG", "", _("no log"), _("the logs of one session"), _('name them: LOG="…"'))
+    name = name or re.sub(r"[^a-z0-9]+", "-", logs[0].stem.lower()).strip("-")
+    folder = data / "raw" / name
+    _check(logs, name, folder)
+    kinds = kinds_of([raw_log(path) for path in logs], rate)
+    plan = plan_of(kinds)
+    if not plan:
+        raise Refusal(
+            ", ".join(path.name for path in logs),
+            "",
+            _("neither a static position nor a turn"),
+            _("a rest of at least a second, or a turn about one axis"),
+            _("record one of the plans of `make new`"),
+        )
+    text = campaign_file(kinds, plan, name)
+    folder.mkdir(parents=True)
+    for path in logs:
+        try:
+            os.link(path.resolve(), folder / path.name)
+        except OSError:  # another file system
+            shutil.copy(path, folder / path.name)
+    (folder / "campaign.yaml").write_text(text, encoding="utf-8")
+    return folder
+
+
+def _check(logs: Sequence[Path], name: str, folder: Path) -> None:
+    """Whether the names can be used and the files are there."""
+    if not NAME.fullmatch(name):
+        raise Refusal(
+            "NAME",
+            "",
+            repr(name),
+            _("small letters a-z, digits and hyphens, a letter or digit first"),
+            _("name the campaign: NAME=june"),
+        )
+    if folder.exists():
+        raise Refusal(
+            str(folder),
+            "",
+            _("there is a campaign of this name"),
+            _("a name that is free; nothing is overwritten"),
+            _("give another: NAME=…"),
+        )
+    for path in logs:
+        if not path.is_file():
+            raise Refusal(
+                str(path), "", _("no such file"), _("a log"), _("correct its name: LOG=…")
+            )
+        same = [other for other in logs if other.name == path.name]
+        if len(same) > 1 or not LOG.fullmatch(path.name) or path.name == "campaign.yaml":
+            raise Refusal(
+                str(path),
+                "",
+                _("a name that is there twice")
+                if len(same) > 1
+                else _("a name that the plan cannot hold"),
+                _("names of their own, of letters, digits, blanks and + - . _"),
+                _("rename it"),
+            )
+
+
+if __name__ == "__main__":
+    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
+    sys.stderr.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
+    sys.exit(main())

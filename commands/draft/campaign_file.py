@@ -1,0 +1,326 @@
+"""The campaign file as text: what the logs show, each guess marked, questions at the top."""
+
+import json
+import re
+import textwrap
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from commands.draft.manoeuvres import Manoeuvre
+from commands.draft.missing import missing
+from commands.draft.scales import are_counts
+from commands.draft.sensors import Kind
+from inertial.text.messages import _
+from inertial.text.numbers import significant, whole
+
+HAND_POSITION, TABLE_SIGMA = 3600, 180  # arc seconds, of what a person or an unknown table sets
+HAND_TURN = 10.0  # degrees, sigma of the angle of a turn by hand
+TABLE_RATE = 1000  # ppm, of a table of which nothing is known
+GRAVITY, GRAVITY_SIGMA = 9.80665, 0.03  # m/s², anywhere on earth
+LINE_WIDTH = 100
+LARGEST_COUNT = 32767
+PLAIN = re.compile(r"^[A-Za-z][\w-]*$")
+WORDS = {"true", "false", "null", "yes", "no", "on", "off", "y", "n"}
+
+
+def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -> str:
+    """The text of campaign.yaml."""
+    formats = {id(kind): f"format-{k + 1}" for k, kind in enumerate(kinds)}
+    by_hand = not any(m.by_table for m in plan)
+    lines = [*_head(kinds, plan, name, by_hand), "campaign: 1", "instrument:"]
+    lines += [f"  name: {_scalar(name)} # guessed: the name of the campaign"]
+    single = len(kinds) == 1
+    if single:
+        lines += ["  format:", *_format(kinds[0], "    ")]
+    lines += ["serial: unknown", "date: unknown"]
+    lines += [
+        f"site: {_flow(latitude_deg=None, gravity_m_s2=GRAVITY, gravity_sigma_m_s2=GRAVITY_SIGMA)}"
+        + _guess(_("gravity anywhere on earth; the latitude or a gravity map makes it better")),
+        *_table(by_hand),
+    ]
+    if not single:
+        lines.append("formats:")
+        for kind in kinds:
+            lines += [f"  {formats[id(kind)]}:", *_format(kind, "    ")]
+    names = {m.part.logs[0].path.name for m in plan}
+    if len(names) == 1:
+        lines.append(f"log: {_scalar(names.pop())}")
+        names = set()
+    lines.append("plan:")
+    kind_of = {id(part): kind for kind in kinds for part in kind.parts}
+    for m, own in zip(plan, _ids(plan), strict=True):
+        kind = kind_of[id(m.part)]
+        keys: dict[str, Any] = {"id": own, **_keys(m, by_hand)}
+        if m.part.label is not None:
+            keys["where"] = {kind.columns.label: m.part.label}
+        elif m.rows is not None:
+            keys["rows"] = list(m.rows)
+        if not single:
+            keys["format"] = formats[id(kind)]
+        if names:
+            keys["log"] = m.part.logs[0].path.name
+        lines.append(f"  - {_flow(**keys)}{_seen(m)}")
+    return "\n".join(lines) + "\n"
+
+
+# ---- the comments at the top
+
+
+def _head(
+    kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str, by_hand: bool
+) -> Iterator[str]:
+    yield from _comment(
+        _(
+            "{name}, drafted from its logs. What is marked `guessed:` is a guess with a sigma that "
+            "fits one; whoever knows better writes it here. Then: make check CAMPAIGN={name}, "
+            "make report CAMPAIGN={name}",
+            name=name,
+        )
+    )
+    yield "#"
+    yield from _comment(_("Questions that only a person can answer:"))
+    for number, question in enumerate(_questions(kinds, plan, by_hand), 1):
+        yield from _comment(question, f"#   {number}. ")
+    yield "#"
+    yield from _comment(_("What the logs are:"))
+    for kind in kinds:
+        for text in _evidence(kind):
+            yield from _comment(text, "#   - ")
+    yield "#"
+    lacking = list(missing(plan))
+    yield from _comment(
+        _("What is missing for a calibration of both sensors:")
+        if lacking
+        else _("Nothing is missing for a calibration of both sensors.")
+    )
+    for text in lacking:
+        yield from _comment(text, "#   - ")
+
+
+def _questions(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
+    yield _("instrument, serial, date: which IMU is it, and when was it recorded?")
+    yield (
+        _("table: no turn has the steady rate of a table, so it was moved by hand; is that so?")
+        if by_hand
+        else _("table: which one, and how well are its positions, angles and rates known?")
+    )
+    yield _(
+        "site: at which latitude and height, or with which gravity? Until then scale factors of "
+        "accelerometers are known to {percent:.1f} % only.",
+        percent=100 * GRAVITY_SIGMA / GRAVITY,
+    )
+    for kind in kinds:
+        if kind.timing.guessed and kind.timing.unit in (None, "sample"):
+            yield _(
+                "rate_hz: {log} has no clock; how many samples a second are there? Gyros are as "
+                "wrong as this rate.",
+                log=_logs(kind),
+            )
+        if kind.gyro is not None and kind.gyro.axes.moved:
+            yield _(
+                "axes: in {log} the gyros turn gravity's direction as if {axes}; which sensor is "
+                "wired otherwise than the axes are named?",
+                log=_logs(kind),
+                axes=kind.gyro.axes.in_words,
+            )
+    if any(m.do == "turn" for m in plan):
+        yield _("degrees: were the turns as large as the round angles in the plan?")
+    if any(m.up for m in plan):
+        yield _(
+            "up: is the axis named in the plan the one that pointed up? A log that reads −g there "
+            "has the other sign."
+        )
+
+
+def _evidence(kind: Kind) -> Iterator[str]:
+    columns, timing = kind.columns, kind.timing
+    rows = sum(logs[0].rows for logs in {id(p.logs): p.logs for p in kind.parts}.values())
+    seconds = sum(part.series.seconds for part in kind.parts)
+    yield _(
+        "{logs}: {rows} rows, {seconds:.0f} s at {rate} Hz; {why}",
+        logs=_logs(kind),
+        rows=whole(rows),
+        seconds=seconds,
+        rate=significant(timing.rate),
+        why=timing.evidence,
+    )
+    which = []
+    for word, triad in ((_("accelerometers"), columns.accel), (_("gyros"), columns.gyro)):
+        if triad is not None:
+            which.append(f"{word} {', '.join(map(str, triad.columns))}")
+    yield _("{which}: {why}", which="; ".join(which), why=columns.evidence)
+    for word, scale in ((_("accelerometers"), kind.accel), (_("gyros"), kind.gyro)):
+        if scale is not None:
+            yield f"{word}: {scale.evidence}"
+    if columns.unused:
+        yield _("not used: {columns}", columns=", ".join(map(str, columns.unused)))
+
+
+def _logs(kind: Kind) -> str:
+    names = list(dict.fromkeys(log.path.name for part in kind.parts for log in part.logs))
+    return ", ".join(names[:4]) + (_(" and {more} more", more=len(names) - 4) if names[4:] else "")
+
+
+def _comment(text: str, first: str = "# ") -> list[str]:
+    indent = "#" + " " * (len(first) - 1)
+    return textwrap.wrap(
+        text, LINE_WIDTH, initial_indent=first, subsequent_indent=indent, break_on_hyphens=False
+    )
+
+
+# ---- formats
+
+
+def _format(kind: Kind, indent: str) -> Iterator[str]:
+    first = kind.parts[0].logs[0]
+    for key, value in first.layout.items():
+        yield f"{indent}{key}: {_scalar(value)}"
+    timing = kind.timing
+    time: dict[str, Any] = {}
+    if timing.column is not None:
+        time |= {"column": timing.column, "unit": timing.unit}
+    if timing.unit in (None, "sample"):
+        time["rate_hz"] = timing.rate
+    yield f"{indent}time: {_flow(**time)}" + (_guess(timing.evidence) if timing.guessed else "")
+    for key, triad, scale in (
+        ("accelerometer", kind.columns.accel, kind.accel),
+        ("gyro", kind.columns.gyro, kind.gyro),
+    ):
+        if triad is None or scale is None:
+            continue
+        keys: dict[str, Any] = {"columns": list(triad.columns), "unit": scale.unit}
+        if scale.counts is not None:
+            keys["counts_per_unit"] = scale.counts
+        if _clips(kind, key):
+            keys["limit_counts"] = LARGEST_COUNT
+        if triad.rows is not None:
+            keys["rows"] = {triad.rows[0]: triad.rows[1]}
+        guessed = scale.guessed or kind.columns.guessed
+        yield f"{indent}{key}: {_flow(**keys)}" + (_guess(scale.evidence) if guessed else "")
+
+
+def _clips(kind: Kind, key: str) -> bool:
+    """Whether a sensor reaches the last count of 16 bits."""
+    triad = kind.columns.accel if key == "accelerometer" else kind.columns.gyro
+    if triad is None:
+        return False
+    values = np.concatenate([triad.of(part.logs) for part in kind.parts])
+    return are_counts(values) and float(np.abs(values).max()) in (LARGEST_COUNT, LARGEST_COUNT + 1)
+
+
+def _table(by_hand: bool) -> Iterator[str]:
+    if by_hand:
+        yield f"table: {_flow(name='by hand', position_sigma_arcsec=HAND_POSITION)}" + _guess(
+            _("a case on its faces stands to within 1°")
+        )
+    else:
+        keys = {
+            "name": "not known",
+            "position_sigma_arcsec": TABLE_SIGMA,
+            "angle_sigma_arcsec": TABLE_SIGMA,
+            "rate_sigma_ppm": TABLE_RATE,
+        }
+        yield f"table: {_flow(**keys)}" + _guess(_("steady rates are those of a table"))
+
+
+# ---- the plan
+
+
+def _keys(m: Manoeuvre, by_hand: bool) -> dict[str, Any]:
+    """What the plan states of a manoeuvre."""
+    if m.do == "positions":
+        return {"do": "positions", "seconds": m.seconds}
+    keys: dict[str, Any] = {"do": m.do, "up": m.up or "unknown"}
+    if m.do == "turn":
+        if m.about != m.up:
+            keys["about"] = m.about
+        if m.degrees is not None:
+            keys["degrees"] = m.degrees
+            if by_hand or not m.by_table:
+                keys["degrees_sigma"] = HAND_TURN
+        if m.rate is not None:
+            keys["rate_deg_s"] = m.rate
+        if m.steady:
+            keys["recorded"] = "steady"
+    elif m.part.label is None and m.rows is None and m.seconds is not None:
+        keys["seconds"] = float(f"{m.seconds:.2g}")
+    return keys
+
+
+def _seen(m: Manoeuvre) -> str:
+    """What the log shows of a manoeuvre, as a comment behind it."""
+    if m.do == "positions":
+        return "  # " + _(
+            "{count} static positions of at least {seconds:g} s", count=m.count, seconds=m.seconds
+        )
+    if m.do == "turn" and m.seen is not None:
+        return _guess(
+            _(
+                "the gyros have {seen}° in {seconds:.1f} s",
+                seen=significant(m.seen),
+                seconds=m.seconds,
+            )
+        )
+    if m.up is None:
+        return _guess(_("no axis points up"))
+    return "  # " + _("{seconds:.1f} s", seconds=m.seconds)
+
+
+def _ids(plan: Sequence[Manoeuvre]) -> Iterator[str]:
+    """A name for each manoeuvre: its label, or what it is, numbered where there are several."""
+    names = [_name(m) for m in plan]
+    several, used = Counter(names), Counter[str]()
+    for name in names:
+        used[name] += 1
+        yield f"{name}-{used[name]}" if several[name] > 1 else name
+
+
+def _name(m: Manoeuvre) -> str:
+    if m.part.label is not None:
+        slug = re.sub(r"[^a-z0-9+-]+", "-", m.part.label.lower()).strip("-")
+        if slug:
+            return slug
+    if m.do == "rest":
+        return f"{m.up[1]}-{'up' if m.up[0] == '+' else 'down'}" if m.up else "rest"
+    if m.do == "turn" and m.about:
+        backward = (m.degrees or m.rate or 1) < 0
+        return f"{m.about[1]}-turn{'-back' if backward else ''}"
+    return m.do
+
+
+# ---- YAML
+
+
+def _guess(why: str) -> str:
+    return f"  # guessed: {why}"
+
+
+def _flow(**keys: Any) -> str:
+    return "{" + ", ".join(f"{key}: {_value(value)}" for key, value in keys.items()) + "}"
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_scalar(k)}: {_value(v)}" for k, v in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_scalar, value)) + "]"
+    return _scalar(value)
+
+
+def _scalar(value: Any) -> str:
+    if value is None:
+        return "null"
+    if isinstance(value, float):
+        return f"{value:.10g}"
+    if (
+        isinstance(value, str)
+        and not (
+            (PLAIN.match(value) or re.fullmatch(r"[+-][xyz]", value)) and value.lower() not in WORDS
+        )
+        and value not in ("m/s2", "rad/s", "deg/s", "by hand", "not known")
+    ):
+        return json.dumps(value, ensure_ascii=False)
+    return str(value)

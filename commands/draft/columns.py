@@ -1,0 +1,342 @@
+"""Which columns of the logs are time, accelerometers and gyros, and what says so.
+
+Names decide where they name both sensors. Otherwise the motion does: a direction fixed in the
+laboratory changes in body axes only as the gyros turn,
+
+    dv/dt = −ω × v,
+
+so the change of the accelerometers is a linear function of the products of both readings and of
+each, and of no other three columns. A magnetometer obeys it too, and better: it does not feel how
+the hand accelerates.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from commands.draft.raw_log import RawLog
+from commands.draft.scales import sphere
+from inertial.tables.errors import Refusal
+from inertial.text.messages import _
+
+Array = NDArray[np.float64]
+Name = str | int
+
+BIN_ROWS = 10  # of a short mean
+MIN_BINS = 60  # of them for the motion to say anything: three times its unknowns
+MIN_EXPLAINED = 0.4  # share of the change of a direction that the gyros must explain
+MAX_RESETS = 0.01  # share of steps in which a clock may stand or go back
+CLOCK_PARTS = 20  # of a log, in each of which a clock advances alike
+INTERLEAVED_ROWS = 3  # mean length of runs of one word, up to which rows alternate
+NAMED = {
+    "accel": re.compile(r"acc|^[af][ _.]?[xyz]\b|^[af]_|specific force"),
+    "gyro": re.compile(r"gyr|^[gw][ _.]?[xyz]\b|^[gw]_|omega|ang.*(vel|rate)|rotation|turn ?rate"),
+    "other": re.compile(r"mag|^[mqb][ _.]?[xyzw]\b|quat|euler|roll|pitch|yaw|pos|vel|gps|temp"),
+}
+TIME = re.compile(r"time|stamp|^t$|sample|epoch|clock|^n$|^t[ _(\[]", re.IGNORECASE)
+AXIS = re.compile(r"^(.*?)([xyz123456789])([^xyz0-9]*)$")
+
+
+@dataclass(frozen=True)
+class Triad:
+    """Three columns of one log, and the word in a column of the rows that hold them, if any do."""
+
+    file: int  # which log of those recorded together
+    columns: tuple[Name, ...]
+    rows: tuple[Name, str] | None = None
+
+    def of(self, together: Sequence[RawLog]) -> Array:
+        """The readings, (n, 3), of rows without a gap."""
+        log = together[self.file]
+        values = np.column_stack([log.columns[column] for column in self.columns])
+        if self.rows is not None:
+            column, word = self.rows
+            values = values[np.array(log.words[column])[: len(values)] == word]
+        return np.asarray(values[np.isfinite(values).all(axis=1)])
+
+
+@dataclass(frozen=True)
+class Columns:
+    """What the columns of logs of one kind are, and what says so."""
+
+    time: tuple[Name | None, ...]  # of each log recorded together
+    accel: Triad | None
+    gyro: Triad | None
+    label: Name | None  # the column whose words name manoeuvres
+    evidence: str
+    guessed: bool
+    unused: tuple[Name, ...]  # columns of the first log
+
+
+def time_of(log: RawLog) -> Name | None:
+    """The column that grows steadily, a named one before others; None where none does."""
+    growing = [name for name, values in log.columns.items() if _grows(values)]
+    named = [name for name in growing if TIME.search(str(name))]
+    return next(iter(named + growing), None)
+
+
+def _grows(values: Array) -> bool:
+    """Whether values grow as a clock does: hardly ever back, as much in each part of the log."""
+    values = values[np.isfinite(values)]
+    if len(values) < 2 * CLOCK_PARTS:
+        return False
+    steps = np.diff(values)
+    if np.median(steps) > 0 and np.mean(steps == np.median(steps)) >= 1 - MAX_RESETS:
+        return True  # it counts, though it begin again at times
+    growth = np.diff(values[np.linspace(0, len(values) - 1, CLOCK_PARTS + 1).astype(int)])
+    usual = float(np.median(growth))
+    alike = np.abs(growth - usual) < usual / 2
+    return bool(usual > 0 and np.mean(steps < 0) <= MAX_RESETS and alike.mean() >= 0.7)
+
+
+def recorded_together(logs: Sequence[RawLog]) -> list[tuple[RawLog, ...]]:
+    """Logs of the same stamps are one recording of two sensors, each in a file of its own."""
+    groups: list[list[RawLog]] = []
+    for log in logs:
+        name = time_of(log)
+        for group in groups:
+            other = time_of(group[0])
+            if name is not None and other is not None and len(group) == 1:
+                ours, theirs = log.columns[name], group[0].columns[other]
+                if len(ours) == len(theirs) and np.array_equal(ours, theirs, equal_nan=True):
+                    group.append(log)
+                    break
+        else:
+            groups.append([log])
+    return [tuple(group) for group in groups]
+
+
+def columns_of(group: Sequence[Sequence[RawLog]]) -> Columns:
+    """What the columns of these logs are, which have the same; each may be of several files.
+
+    Raises
+    ------
+    Refusal
+        where nothing says which columns are sensors
+    """
+    first = group[0]
+    times = tuple(time_of(log) for log in first)
+    label: Name | None = None
+    candidates: list[Triad] = []
+    for file, log in enumerate(first):
+        interleaved, own_label = _words_of(log)
+        label = label if own_label is None else own_label
+        constant = {
+            name
+            for name in log.columns
+            if all(np.ptp(_finite(together[file].columns[name])) == 0 for together in group)
+        }
+        free = [n for n in log.columns if n != times[file] and n not in constant]
+        for rows in interleaved or (None,):
+            candidates += [Triad(file, three, rows) for three in _threes(free)]
+    accel, gyro, evidence, guessed = _sensors(group, candidates)
+    used = {name for triad in (accel, gyro) if triad and not triad.file for name in triad.columns}
+    unused = tuple(n for n in first[0].columns if n not in used | {times[0]})
+    return Columns(times, accel, gyro, label, evidence, guessed, unused)
+
+
+def _finite(values: Array) -> Array:
+    finite = values[np.isfinite(values)]
+    return finite if len(finite) else np.zeros(1)
+
+
+def _words_of(log: RawLog) -> tuple[list[tuple[Name, str]], Name | None]:
+    """The words that select the rows of a sensor, and the column whose words label stretches."""
+    rows: list[tuple[Name, str]] = []
+    label = None
+    for name, words in log.words.items():
+        runs = 1 + sum(a != b for a, b in pairwise(words))
+        different = sorted(set(words))
+        if len(different) > 1 and len(words) <= INTERLEAVED_ROWS * runs:
+            rows += [(name, word) for word in different]
+        elif len(different) > 1:
+            label = name
+        elif _kind(different[0]):
+            rows.append((name, different[0]))
+    return rows, label
+
+
+def _kind(name: str) -> str | None:
+    """The sensor that a name names: accel, gyro, other, or None."""
+    plain = re.sub(r"[\[(].*", "", str(name)).strip().lower()
+    return next((kind for kind, pattern in NAMED.items() if pattern.search(plain)), None)
+
+
+def _threes(names: Sequence[Name]) -> Iterator[tuple[Name, ...]]:
+    """Three neighbours that may be the axes of a sensor: by their names, else all that could."""
+    windows = [tuple(names[i : i + 3]) for i in range(len(names) - 2)]
+    named = [three for three in windows if _axes_named(three)]
+    if named:
+        yield from named
+    elif len(names) % 3 == 0:
+        yield from windows[::3]
+    else:
+        yield from windows
+
+
+def _axes_named(three: Sequence[Name]) -> bool:
+    parts = [
+        AXIS.match(re.sub(r"[\[(].*", "", name).strip().lower())
+        for name in three
+        if isinstance(name, str)
+    ]
+    found = [part for part in parts if part]
+    if len(found) < 3 or len({(p[1], p[3]) for p in found}) > 1:
+        return False
+    axes = "".join(p[2] for p in found)
+    return axes in ("xyz", *("".join(map(str, range(i, i + 3))) for i in range(1, 8)))
+
+
+def _sensors(
+    group: Sequence[Sequence[RawLog]], candidates: Sequence[Triad]
+) -> tuple[Triad | None, Triad | None, str, bool]:
+    """Accelerometers and gyros among the candidates, what says so, and whether it is a guess."""
+    by_name = _by_name(group[0], candidates)
+    if {"accel", "gyro"} <= set(by_name):
+        return by_name["accel"], by_name["gyro"], _("by their names"), False
+    if len(candidates) > 1 and (moved := _by_motion(group, candidates)) is not None:
+        accel, gyro, explained = moved
+        return (
+            accel,
+            gyro,
+            _(
+                "by the motion: the gyros explain {percent:.0f} % of the change of gravity's "
+                "direction, and no other columns do",
+                percent=100 * explained,
+            ),
+            False,
+        )
+    if by_name:
+        return by_name.get("accel"), by_name.get("gyro"), _("by their names"), False
+    if not candidates:
+        raise Refusal(
+            group[0][0].path.name,
+            "",
+            _("no three columns that could be the axes of a sensor"),
+            _("three columns of accelerometers or gyros"),
+            _("name the log itself"),
+        )
+    return _by_size(group, candidates)
+
+
+def _by_name(together: Sequence[RawLog], candidates: Sequence[Triad]) -> dict[str, Triad]:
+    found: dict[str, Triad] = {}
+    for triad in candidates:
+        kind = _kind(triad.rows[1]) if triad.rows else None
+        if kind is None and isinstance(triad.columns[0], str):
+            kind = _kind(triad.columns[0])
+        if kind is None and len(candidates) <= len(together):  # the log holds nothing else
+            kind = _kind(together[triad.file].path.stem)
+        if kind in ("accel", "gyro"):
+            found.setdefault(str(kind), triad)
+    return found
+
+
+def _by_motion(
+    group: Sequence[Sequence[RawLog]], candidates: Sequence[Triad]
+) -> tuple[Triad, Triad, float] | None:
+    """The pair of which one explains how the other changes direction, and the share explained."""
+    binned = {
+        triad: [short_means(triad.of(together)) for together in group] for triad in candidates
+    }
+    explained = {
+        (accel, gyro): share
+        for accel in candidates
+        for gyro in candidates
+        if not (accel.file == gyro.file and accel.rows == gyro.rows)
+        or not set(accel.columns) & set(gyro.columns)
+        for share in [explained_share(binned[accel], binned[gyro])]
+        if share > MIN_EXPLAINED
+    }
+    if not explained:
+        return None
+    gyro = max(candidates, key=lambda g: max(explained.get((a, g), 0.0) for a in candidates))
+    pairs = {a: share for (a, g), share in explained.items() if g == gyro}
+    whole = {a: share for a, share in pairs.items() if _on_sphere(binned[a], binned[gyro])}
+    # Of gravity and another direction, gravity is the one that the hand disturbs.
+    accel = min(whole or pairs, key=lambda a: pairs[a])
+    return accel, gyro, pairs[accel]
+
+
+def short_means(values: Array, rows: int = BIN_ROWS) -> Array:
+    """Means of so many rows each, (k, 3)."""
+    k = len(values) // rows
+    return np.asarray(values[: k * rows].reshape(k, rows, 3).mean(axis=1))
+
+
+def explained_share(accel: Sequence[Array], gyro: Sequence[Array]) -> float:
+    """The share of the change of one triad that products with another explain, over all logs."""
+    changes, designs = [], []
+    for a, w in zip(accel, gyro, strict=True):
+        k = min(len(a), len(w))
+        if k >= 3:
+            a, w = a[:k], w[:k]
+            changes.append((a[2:] - a[:-2]) / 2)
+            rate = (w[:-2] + 2 * w[1:-1] + w[2:]) / 4
+            designs.append(np.hstack([rate, a[1:-1]]))
+    if not changes or sum(map(len, changes)) < MIN_BINS:
+        return 0.0
+    change, both = np.concatenate(changes), np.concatenate(designs)
+    spread = both.std(axis=0)
+    if not (spread > 0).all():
+        return 0.0
+    both = (both - np.median(both, axis=0)) / spread
+    rate, place = both[:, :3], both[:, 3:]
+    products = (rate[:, :, None] * place[:, None, :]).reshape(len(both), 9)
+    design = np.hstack([products, both, np.ones((len(both), 1))])
+    rest = change - design @ np.linalg.lstsq(design, change, rcond=None)[0]
+    return float(1 - np.sum(rest**2) / max(np.sum(change**2), 1e-300))
+
+
+def _on_sphere(accel: Sequence[Array], gyro: Sequence[Array]) -> bool:
+    """Whether the slow part of a triad keeps its distance from some centre."""
+    points = []
+    for a, w in zip(accel, gyro, strict=True):
+        k = min(len(a), len(w))
+        speed = np.linalg.norm(w[:k] - np.median(w[:k], axis=0), axis=1)
+        points.append(a[:k][speed <= np.quantile(speed, 0.3)])
+    _centre, radius, scatter = sphere(np.concatenate(points))
+    return scatter < 0.1 * radius
+
+
+def _by_size(
+    group: Sequence[Sequence[RawLog]], candidates: Sequence[Triad]
+) -> tuple[Triad | None, Triad | None, str, bool]:
+    """Without names or motion: gravity is the one that is long, wherever it points."""
+    sizes: dict[Triad, float] = {}
+    for triad in candidates:
+        means = np.array([triad.of(together).mean(axis=0) for together in group])
+        lengths = np.linalg.norm(means, axis=1)
+        spread = np.concatenate([triad.of(together).std(axis=0) for together in group])
+        sizes[triad] = float(np.median(lengths) / (np.std(lengths) + np.median(spread) + 1e-300))
+    accel = max(candidates, key=lambda triad: sizes[triad])
+    others = [t for t in candidates if not set(t.columns) & set(accel.columns)]
+    if len(candidates) == 1 and sizes[accel] < 3:
+        return None, accel, _("by their size: no gravity is in them"), True
+    return (
+        accel,
+        next(iter(others), None),
+        _("by their size: the length of the first hardly changes, as that of gravity"),
+        True,
+    )
+
+
+def alike(tables: Sequence[Sequence[RawLog]]) -> list[list[Sequence[RawLog]]]:
+    """The recordings by the columns that they have."""
+    groups: dict[object, list[Sequence[RawLog]]] = {}
+    for together in tables:
+        key = tuple(_signature(log) for log in together)
+        groups.setdefault(key, []).append(together)
+    return list(groups.values())
+
+
+def _signature(log: RawLog) -> object:
+    layout: Mapping[str, object] = log.layout
+    words = tuple(
+        (n, tuple(sorted(set(w)))) for n, w in log.words.items() if _kind(w[0] if w else "")
+    )
+    return tuple(sorted(layout.items())), tuple(log.columns), words

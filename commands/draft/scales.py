@@ -1,0 +1,296 @@
+"""Units and count sizes: accelerometers by gravity, gyros by how gravity's direction turns."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import permutations, product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from commands.draft.series import Divided, Still
+from inertial.estimation.attitude import integrate
+from inertial.signal.axis_permutations import Permutation, simplicity
+from inertial.text.messages import _
+from inertial.text.numbers import significant
+from inertial.text.units import STANDARD_GRAVITY
+
+Array = NDArray[np.float64]
+
+MIN_POINTS = 4  # static positions that show a centre
+MIN_SPREAD = 0.3  # of their directions, the least one to the largest
+MAX_UNIT_ERROR = 0.1  # of a reading in a unit: bias and scale factor
+MAX_COUNT_ERROR = 0.05  # of a usual count size
+MIN_TILT = np.radians(20)  # between two static positions, that shows the scale of the gyros
+MAX_TILT = np.radians(160)
+MIN_STRAIGHT = 0.9  # share of a rotation about one axis
+MAX_OFF_WHOLE = 0.06  # of a turn by hand, and of its gyro, to the whole multiples
+MAX_WHOLE = 3.5  # of these multiples in one turn
+MIN_EXPLAINED = 0.4  # share of the change of gravity's direction that the gyros must explain
+FIRST_SIGMA = 0.1  # relative, of a factor by the change of gravity's direction alone
+MAX_WAYS = 20  # motions by which the factor is refined, the shortest of all
+RANGE, STEP = 0.4, 0.02  # about the first factor, relative
+MAX_DISTURBED = 0.15  # of gravity: more than that is the hand
+USUAL_GYRO_COUNTS = (131.0, 65.5, 32.8, 16.4, 228.6, 114.3, 57.1, 28.6, 14.3)  # in 1 °/s
+MAX_RAD_S = 40.0  # rad/s: gyros that read more read °/s
+DEGREE = np.pi / 180
+PERMUTATIONS = sorted(
+    (
+        Permutation(sources, signs)
+        for sources in permutations(range(3))
+        for signs in product((1, -1), repeat=3)
+    ),
+    key=simplicity,
+)
+GYRO_UNIT = {
+    "deg/s": re.compile(r"deg|dps|°", re.IGNORECASE),
+    "rad/s": re.compile(r"rad", re.IGNORECASE),
+}
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Unit of a sensor, counts in it or none, their zero, (3,), and what says so.
+
+    `axes`: what takes the readings to the axes of the other sensor.
+    """
+
+    unit: str
+    counts: float | None
+    zero: float
+    evidence: str
+    guessed: bool
+    axes: Permutation = PERMUTATIONS[0]
+
+    @property
+    def size(self) -> float:
+        """One count, or one of the unit, in SI."""
+        units = {"m/s2": 1.0, "g": STANDARD_GRAVITY, "rad/s": 1.0, "deg/s": DEGREE}
+        return units[self.unit] / (self.counts or 1.0)
+
+    def in_si(self, values: Array) -> Array:
+        """Readings (n, 3) in SI, along the axes of the other sensor."""
+        if not len(values):
+            return values
+        values = (values - self.zero) * self.size
+        return np.asarray(values[:, list(self.axes.sources)] * np.array(self.axes.signs))
+
+
+def sphere(points: Array) -> tuple[Array, float, float]:
+    """Centre, (3,), radius and scatter of the sphere through points (n, 3).
+
+    About zero where the points do not show a centre.
+    """
+    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+    centre = np.zeros(3)
+    if len(points) >= MIN_POINTS and spread[-1] > MIN_SPREAD * spread[0]:
+        design = np.column_stack([2 * points, np.ones(len(points))])
+        centre = np.linalg.lstsq(design, np.sum(points**2, axis=1), rcond=None)[0][:3]
+    lengths = np.linalg.norm(points - centre, axis=1)
+    return centre, float(np.sqrt(np.mean(lengths**2))), float(np.std(lengths))
+
+
+def are_counts(values: Array) -> bool:
+    """Whether readings are whole numbers."""
+    return bool(np.all(values == np.round(values)) and np.ptp(values) > 20)
+
+
+def zero_of(values: Array) -> float:
+    """The count of nothing: half of the range of unsigned counts, else 0."""
+    if not (are_counts(values) and values.min() >= 0 and np.median(values) > 100):
+        return 0.0
+    bits = np.round(np.log2(np.median(values)))
+    return float(2**bits) if abs(np.median(values) / 2**bits - 1) < 0.3 else 0.0
+
+
+def accel_scale(recordings: Sequence[Divided]) -> Scale:
+    """The unit of accelerometers, by their length at rest."""
+    values = np.concatenate([own.series.accel for own in recordings])
+    zero = zero_of(values)
+    rests = np.array([rest.accel for own in recordings for rest in own.rests])
+    if not len(rests):
+        rests = np.array([own.forces.mean(axis=0) for own in recordings])
+    _centre, length, _scatter = sphere(rests - zero)
+    seen = _("|f| at rest is {length}", length=significant(length))
+    for of_gravity, unit, counts in (
+        (STANDARD_GRAVITY, "m/s2", None),
+        (1.0, "g", None),
+        (1000.0, "g", 1000.0),
+        (100 * STANDARD_GRAVITY, "m/s2", 100.0),
+    ):
+        if abs(length / of_gravity - 1) < MAX_UNIT_ERROR and not (
+            counts is None and are_counts(values)
+        ):
+            return Scale(unit, counts, zero, seen, False)
+    power = float(2.0 ** np.round(np.log2(length)))
+    usual = abs(length / power - 1) < MAX_COUNT_ERROR
+    counts = power if usual else float(f"{length:.4g}")
+    what = _("{seen}: counts, {counts} in 1 g", seen=seen, counts=significant(counts, 6))
+    return Scale("g", counts, zero, what, True)
+
+
+@dataclass(frozen=True)
+class Turning:
+    """What takes raw gyros to rad/s: a factor with its relative sigma, and the axes they read."""
+
+    factor: float
+    sigma: float
+    axes: Permutation
+
+
+def turning(recordings: Sequence[Divided], force: Scale) -> Turning | None:
+    """The factor of raw gyros by gravity's direction in motion; None where it hardly turns."""
+    directions, changes, rates = [], [], []
+    centre, length, _scatter = sphere(
+        np.array([rest.accel for own in recordings for rest in own.rests] or [np.zeros(3)])
+        - force.zero
+    )
+    if length == 0:
+        return None
+    for own in recordings:
+        if not len(own.series.gyro) or not len(own.series.accel) or own.series.bins < 5:
+            continue
+        up = (own.forces - force.zero - centre) / length
+        undisturbed = np.abs(np.linalg.norm(up, axis=1) - 1) < MAX_DISTURBED
+        good = undisturbed[:-2] & undisturbed[1:-1] & undisturbed[2:]
+        change = (up[2:] - up[:-2]) / (2 * own.series.bin_seconds())
+        rate = own.rates - own.level
+        rate = (rate[:-2] + 2 * rate[1:-1] + rate[2:]) / 4
+        directions.append(up[1:-1][good])
+        changes.append(change[good])
+        rates.append(rate[good])
+    if not directions:
+        return None
+    axes, factor = _axes(*map(np.concatenate, (directions, changes, rates)))
+    ways = [way for own in recordings for way in _ways(own, force, centre, length, axes)]
+    if factor is None:
+        return None
+    return _refined(factor, axes, ways) if ways else Turning(factor, FIRST_SIGMA, axes)
+
+
+def _axes(up: Array, change: Array, rate: Array) -> tuple[Permutation, float | None]:
+    """The axes of the gyros by which dv/dt = −ω × v fits best, and their factor."""
+    best: tuple[float, Permutation, float | None] = (0.0, PERMUTATIONS[0], None)
+    for axes in PERMUTATIONS:  # the simplest first
+        turned = np.cross(up, rate[:, list(axes.sources)] * np.array(axes.signs))
+        along, square = float(np.sum(turned * change)), float(np.sum(turned**2))
+        if along > 0 and along**2 / square > 1.05 * best[0]:
+            best = (along**2 / square, axes, along / square)
+    if best[0] < MIN_EXPLAINED * float(np.sum(change**2)):
+        return PERMUTATIONS[0], None
+    return best[1], best[2]
+
+
+Way = tuple[Array, Array, Array, float]  # direction before and after, raw rates (k, 3), their step
+
+
+def _ways(own: Divided, force: Scale, centre: Array, length: float, axes: Permutation) -> list[Way]:
+    """What carries gravity's direction from one static position to the next."""
+    if not len(own.series.gyro) or not len(own.series.accel):
+        return []
+
+    def up(rest: Still) -> Array:
+        return np.asarray((rest.accel - force.zero - centre) / length)
+
+    edges = own.series.edges(own.series.gyro)
+    ways: list[Way] = []
+    for before, after in own.passages():
+        first, second = up(before), up(after)
+        first, second = first / np.linalg.norm(first), second / np.linalg.norm(second)
+        if not MIN_TILT < np.arccos(np.clip(first @ second, -1, 1)) < MAX_TILT:
+            continue
+        inside = slice(
+            edges[max(before.after - 2, 0)], edges[min(after.first + 2, own.series.bins)]
+        )
+        rates = own.series.gyro[inside] - (before.gyro + after.gyro) / 2
+        rates = rates[:, list(axes.sources)] * np.array(axes.signs)
+        if len(rates) > 2:
+            ways.append((first, second, rates, 1 / own.series.gyro_hz))
+    return ways
+
+
+def _refined(factor: float, axes: Permutation, ways: Sequence[Way]) -> Turning:
+    """The factor that carries the directions from rest to rest."""
+    ways = sorted(ways, key=lambda way: len(way[2]))[:MAX_WAYS]
+    factors = factor * np.arange(1 - RANGE, 1 + RANGE, STEP)
+    misses = np.array([[_miss(way, each) for each in factors] for way in ways])
+    total = np.sum(np.minimum(misses, np.radians(30) ** 2), axis=0)
+    best = int(np.argmin(total))
+    around = slice(max(best - 2, 0), best + 3)
+    curve = np.polyfit(factors[around], total[around], 2)
+    value = -curve[1] / (2 * curve[0]) if curve[0] > 0 else factors[best]
+    residual = float(total[best]) / max(2 * len(ways) - 1, 1)
+    sigma = float(np.sqrt(residual / curve[0])) if curve[0] > 0 else RANGE * factor
+    return Turning(float(value), max(sigma / factor, STEP), axes)
+
+
+def _miss(way: Way, factor: float) -> float:
+    """The square of the angle by which a motion misses the direction after it, rad²."""
+    before, after, rates, step = way
+    there = integrate(factor * rates, np.full(len(rates), step)).whole @ before
+    return float(np.arccos(np.clip(there @ after, -1, 1)) ** 2)
+
+
+def _by_turns(recordings: Sequence[Divided], counts: bool) -> tuple[str, float | None, str] | None:
+    """What makes the motions whole turns: a sentence, counts in 1 °/s or none, and the unit."""
+    turns = []
+    for own in recordings:
+        for stretch in own.stretches:
+            if stretch.moves and len(own.series.gyro):
+                rates = own.rates[stretch.first : stretch.after] - own.level
+                net, path = np.linalg.norm(rates.sum(axis=0)), np.linalg.norm(rates, axis=1).sum()
+                if net > MIN_STRAIGHT * path:
+                    turns.append(float(net * own.series.bin_seconds()))
+    sizes = (
+        {("deg/s", each): DEGREE / each for each in USUAL_GYRO_COUNTS}
+        if counts
+        else {("deg/s", None): DEGREE, ("rad/s", None): 1.0}
+    )
+    large = [turn for turn in turns if turn > max(turns) / 2]
+    for whole in (2 * np.pi, np.pi, np.pi / 2):
+        for (unit, own_counts), size in sizes.items():
+            ratios = np.array(large) * size / whole
+            off = np.abs(ratios / np.maximum(np.round(ratios), 1) - 1)
+            if len(large) and off.max() < MAX_OFF_WHOLE and ratios.max() < MAX_WHOLE:
+                what = _(
+                    "so that {turns} turns are whole multiples of {degrees:.0f}°",
+                    turns=len(large),
+                    degrees=np.degrees(whole),
+                )
+                return what, own_counts, unit
+    return None
+
+
+def gyro_scale(
+    recordings: Sequence[Divided], turned: Turning | None, names: Sequence[object]
+) -> Scale:
+    """The unit of gyros: by their names, by the motion, else by how much they read."""
+    values = np.concatenate([own.series.gyro for own in recordings])
+    zero = zero_of(values)
+    named = next(
+        (u for u, p in GYRO_UNIT.items() if any(isinstance(n, str) and p.search(n) for n in names)),
+        None,
+    )
+    axes = PERMUTATIONS[0] if turned is None else turned.axes
+    if turned is None:
+        if named is not None:
+            return Scale(named, None, zero, _("by their names"), False)
+        if (found := _by_turns(recordings, are_counts(values))) is not None:
+            return Scale("deg/s" if found[1] else found[2], found[1], zero, found[0], True)
+        unit = "deg/s" if np.abs(values - zero).max() > MAX_RAD_S else "rad/s"
+        return Scale(unit, None, zero, _("guessed from the largest reading"), True)
+    seen = _(
+        "gravity's direction turns by {factor} rad for each unit of reading and second, "
+        "± {percent:.0f} %",
+        factor=significant(turned.factor),
+        percent=100 * turned.sigma,
+    )
+    for unit, size in (("rad/s", 1.0), ("deg/s", DEGREE)):
+        if abs(turned.factor / size - 1) < 2 * MAX_UNIT_ERROR and not are_counts(values):
+            return Scale(unit, None, zero, seen, False, axes)
+    per_degree = DEGREE / turned.factor
+    usual = min(USUAL_GYRO_COUNTS, key=lambda each: abs(np.log(each / per_degree)))
+    near = abs(usual / per_degree - 1) < max(MAX_COUNT_ERROR, turned.sigma)
+    counts = usual if near else float(f"{per_degree:.3g}")
+    what = _("{seen}: counts, {counts} in 1 °/s", seen=seen, counts=significant(counts))
+    return Scale("deg/s", counts, zero, what, True, axes)

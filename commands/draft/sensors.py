@@ -1,0 +1,168 @@
+"""What the logs are: those of one kind with their columns, clock, units and motion."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from commands.draft.columns import Columns, alike, columns_of, recorded_together
+from commands.draft.raw_log import RawLog
+from commands.draft.scales import (
+    Scale,
+    Turning,
+    accel_scale,
+    are_counts,
+    gyro_scale,
+    turning,
+)
+from commands.draft.series import Divided, Series, divided
+from commands.draft.timing import Timing, common_rate, timing_of
+from inertial.signal.rests_and_motions import rest_level
+from inertial.text.messages import _
+from inertial.text.numbers import significant
+
+Array = NDArray[np.float64]
+MAX_MISFIT = 0.3  # of the gyros' factor against their stated unit: more is another rate
+
+
+@dataclass(frozen=True)
+class Part:
+    """A recording, or the rows of it that one label names: (first, after), of each file."""
+
+    logs: Sequence[RawLog]
+    label: str | None
+    rows: tuple[int, int]
+    series: Series
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Recordings with the same columns: what these are, their clock, units and parts."""
+
+    columns: Columns
+    timing: Timing
+    accel: Scale | None
+    gyro: Scale | None
+    parts: Sequence[Part]
+    divided: Sequence[Divided]  # of each part, in SI
+
+    @property
+    def interleaved(self) -> bool:
+        """Whether rows of the two sensors alternate."""
+        accel, gyro = self.columns.accel, self.columns.gyro
+        return bool(accel and gyro and accel.rows and gyro.rows)
+
+
+def kinds_of(logs: Sequence[RawLog], rate: float | None = None) -> list[Kind]:
+    """The logs, those with the same columns together; `rate`, Hz, where no log has a clock."""
+    found = [_kind(group, rate) for group in alike(recorded_together(logs))]
+    return [_in_si(kind, found) for kind in found]
+
+
+def _kind(group: Sequence[Sequence[RawLog]], rate: float | None) -> Kind:
+    """Logs of one kind, their readings as they stand in the files."""
+    columns = columns_of(group)
+    timing = timing_of([together[0] for together in group], columns.time[0])
+    if rate is not None and timing.unit in (None, "sample"):
+        timing = Timing(timing.column, timing.unit, rate, False, _("the rate is stated"))
+    kind = Kind(columns, timing, None, None, [], [])
+    parts = [part for together in group for part in _parts(kind, together)]
+    own = _divided(parts, known_units=False)
+    accel = accel_scale(own) if columns.accel else None
+    turned = turning(own, accel) if accel and columns.gyro else None
+    gyro = None
+    if columns.gyro:
+        gyro = gyro_scale(own, turned, columns.gyro.columns)
+        if turned is not None:
+            gyro, timing = _rate_by_motion(gyro, timing, turned, own)
+    return Kind(columns, timing, accel, gyro, parts, own)
+
+
+def _parts(kind: Kind, together: Sequence[RawLog]) -> list[Part]:
+    """A recording, or one for each label."""
+    columns = kind.columns
+    rate = kind.timing.rate / (2 if kind.interleaved else 1)
+
+    def values(triad: object, rows: slice) -> Array:
+        return np.empty((0, 3)) if triad is None else triad.of(together)[rows]  # type: ignore[attr-defined]
+
+    def series(rows: slice) -> Series:
+        return Series(values(columns.accel, rows), values(columns.gyro, rows), rate, rate)
+
+    if columns.label is None:
+        return [Part(together, None, (0, together[0].rows), series(slice(None)))]
+    words = np.array(together[0].words[columns.label])
+    parts = []
+    for word in dict.fromkeys(words.tolist()):
+        places = np.flatnonzero(words == word)
+        rows = (int(places[0]), int(places[-1]) + 1)
+        if rows[1] - rows[0] == len(places):
+            parts.append(Part(together, word, rows, series(slice(*rows))))
+    return parts
+
+
+def _divided(parts: Sequence[Part], *, known_units: bool) -> list[Divided]:
+    """Where each part rests and moves; the gyros at rest by itself or by all, the steadier."""
+    rates = [part.series.means(part.series.gyro) for part in parts if len(part.series.gyro)]
+    level = rest_level(np.concatenate(rates)) if rates else None
+    found = []
+    for part in parts:
+        own = level
+        if level is not None and len(part.series.gyro):
+            own = min(
+                level, rest_level(part.series.means(part.series.gyro)), key=lambda each: each[1]
+            )
+        found.append(divided(part.series, own, known_units=known_units))
+    return found
+
+
+def _rate_by_motion(
+    gyro: Scale, timing: Timing, turned: Turning, own: Sequence[Divided]
+) -> tuple[Scale, Timing]:
+    """Without a clock the motion shows the rate, where the gyros read a unit and no counts."""
+    values = np.concatenate([each.series.gyro for each in own])
+    if not timing.guessed or timing.unit not in (None, "sample") or are_counts(values):
+        return gyro, timing
+    # The factor is that of the readings times that of the assumed interval.
+    rates = {
+        unit: timing.rate * Scale(unit, None, 0, "", False).size / turned.factor
+        for unit in ("rad/s", "deg/s")
+    }
+    unit = min(rates, key=lambda each: abs(np.log(rates[each] / timing.rate)))
+    rate = common_rate(rates[unit]) or rates[unit]
+    evidence = _(
+        "the gyros in {unit} carry gravity's direction from rest to rest with {rate} Hz, "
+        "± {percent:.0f} % and their scale factor error",
+        unit=unit,
+        rate=significant(rates[unit]),
+        percent=100 * turned.sigma,
+    )
+    return replace(gyro, unit=unit, counts=None), timing.with_rate(rate, evidence)
+
+
+def _in_si(kind: Kind, others: Sequence[Kind]) -> Kind:
+    """The same in SI; units that its own motion does not show are those of other logs."""
+    accel, gyro = kind.accel, kind.gyro
+    if gyro is not None and gyro.guessed and kind.columns.gyro:
+        same = [
+            other.gyro
+            for other in others
+            if other.gyro and not other.gyro.guessed and other is not kind
+        ]
+        if same:
+            gyro = replace(same[0], evidence=_("as the gyros of the other logs"))
+    rate = kind.timing.rate / (2 if kind.interleaved else 1)
+    parts = [
+        replace(
+            part,
+            series=Series(
+                accel.in_si(part.series.accel) if accel else part.series.accel,
+                gyro.in_si(part.series.gyro) if gyro else part.series.gyro,
+                rate,
+                rate,
+            ),
+        )
+        for part in kind.parts
+    ]
+    return replace(kind, gyro=gyro, parts=parts, divided=_divided(parts, known_units=True))

@@ -1,0 +1,148 @@
+"""The readings of both sensors of one recording in short means, and where they rest and move."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.signal.rests_and_motions import (
+    MIN_HAND_RATE,
+    MIN_MOTION_SIGMA,
+    Stretch,
+    moving,
+    rest_level,
+    stretches,
+    with_slow_ends,
+)
+
+Array = NDArray[np.float64]
+
+BIN_S = 0.1  # s
+MIN_REST_S = 1.0  # s, of a static position
+MIN_MOVED_SHARE = 0.02  # of the largest readings of gyros whose unit is not known, to be a motion
+
+
+@dataclass(frozen=True)
+class Series:
+    """Accelerometers (n, 3) and gyros (m, 3) over the same time, at their own rates, Hz.
+
+    Empty where a sensor is not recorded.
+    """
+
+    accel: Array
+    gyro: Array
+    accel_hz: float
+    gyro_hz: float
+
+    @property
+    def seconds(self) -> float:
+        """How long it lasts, s."""
+        return max(len(self.accel) / self.accel_hz, len(self.gyro) / self.gyro_hz)
+
+    @property
+    def bins(self) -> int:
+        """How many short means: of a short recording shorter ones."""
+        return max(min(round(self.seconds / BIN_S), max(len(self.accel), len(self.gyro))), 1)
+
+    def bin_seconds(self) -> float:
+        """The length of a mean, s."""
+        return self.seconds / self.bins
+
+    def means(self, values: Array) -> Array:
+        """Short means of a sensor, (k, 3); NaN where it is not recorded."""
+        if not len(values):
+            return np.full((self.bins, 3), np.nan)
+        edges = self.edges(values)
+        counts = np.maximum(np.diff(edges), 1)[:, None]
+        sums = np.add.reduceat(values, np.minimum(edges[:-1], len(values) - 1))
+        return np.asarray(sums / counts)
+
+    def edges(self, values: Array) -> NDArray[np.int64]:
+        """The rows of a sensor at which the bins begin and end, (k + 1,)."""
+        return np.round(np.linspace(0, len(values), self.bins + 1)).astype(np.int64)
+
+    def part(self, first: float, after: float) -> "Series":
+        """From one share of its length to another."""
+
+        def cut(values: Array) -> Array:
+            return values[round(first * len(values)) : round(after * len(values))]
+
+        return replace(self, accel=cut(self.accel), gyro=cut(self.gyro))
+
+
+@dataclass(frozen=True)
+class Still:
+    """A static position: bins [first, after), mean readings of both sensors, (3,), and seconds."""
+
+    first: int
+    after: int
+    seconds: float
+    accel: Array
+    gyro: Array
+
+
+@dataclass(frozen=True)
+class Divided:
+    """A recording cut into stretches that rest or move; `level`: (3,), the gyros at rest."""
+
+    series: Series
+    forces: Array
+    rates: Array
+    level: Array
+    stretches: Sequence[Stretch]
+
+    @property
+    def rests(self) -> list[Still]:
+        """The static positions that are long enough."""
+        return list(self._rests())
+
+    def _rests(self) -> Iterator[Still]:
+        step = self.series.bin_seconds()
+        for stretch in self.stretches:
+            seconds = (stretch.after - stretch.first) * step
+            if stretch.moves or seconds < min(MIN_REST_S, self.series.seconds / 2):
+                continue
+            # Half a second beside a motion still moves.
+            room = min(round(0.5 / step), (stretch.after - stretch.first) // 4)
+            first = stretch.first + (room if stretch.first else 0)
+            after = stretch.after - (room if stretch.after < self.series.bins else 0)
+            yield Still(
+                stretch.first,
+                stretch.after,
+                seconds,
+                self.forces[first:after].mean(axis=0),
+                self.rates[first:after].mean(axis=0),
+            )
+
+    def passages(self) -> Iterator[tuple[Still, Still]]:
+        """Each static position and the next."""
+        yield from pairwise(self.rests)
+
+
+def divided(
+    series: Series, level: tuple[Array, float] | None = None, *, known_units: bool = True
+) -> Divided:
+    """The recording in stretches; `level`: what gyros read at rest, and its scatter.
+
+    Where units are not known, the share of the largest reading decides what is a motion.
+    """
+    forces, rates = series.means(series.accel), series.means(series.gyro)
+    step = series.bin_seconds()
+    if len(series.gyro):
+        rest, scatter = rest_level(rates) if level is None else level
+        noise = MIN_MOTION_SIGMA * scatter
+        if known_units:
+            lowest = MIN_HAND_RATE
+        else:
+            away = np.linalg.norm(rates - rest, axis=1)
+            lowest = MIN_MOVED_SHARE * float(np.quantile(away, 0.95))
+        moves = moving(rates, forces, rest, max(lowest, noise))
+        above = moving(rates, forces, rest, noise)
+    else:
+        rest = np.full(3, np.nan)
+        size = 1.0 if known_units else 9.8 / float(np.median(np.linalg.norm(forces, axis=1)))
+        moves = above = moving(rates, forces * size, rest, 0.0)
+    found = with_slow_ends(stretches(moves, step), above, step)
+    return Divided(series, forces, rates, rest, found)

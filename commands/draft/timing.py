@@ -1,0 +1,98 @@
+"""The clock of a log: the unit of its time column, and how many samples a second it has."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from commands.draft.columns import CLOCK_PARTS, Name
+from commands.draft.raw_log import RawLog
+from inertial.text.messages import _
+from inertial.text.numbers import significant
+
+Array = NDArray[np.float64]
+
+UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}  # ticks in a second
+USUAL_RATE = 100.0  # Hz: of the units that a time may have, that with the rate nearest to it
+COMMON_RATES = np.array(
+    "10 20 25 50 60 75 80 100 102.4 104 120 125 128 200 204.8 208 250 256 400 416 500 512 800 833 "
+    "1000 1600 1666 2000 4000 8000".split(),
+    np.float64,
+)  # Hz
+MAX_RATE_ERROR = 0.05  # of a rate that is taken to be a common one
+STATED = re.compile(
+    r"(?:\bfs|\brate|\bfreq\w*|\bodr|\bhz)\b[^0-9\n]{0,20}([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE
+)
+IN_NAME = re.compile(r"(?:[\[(_ ])(ns|us|µs|ms|s|sec|seconds)(?:[\])]|$)", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Timing:
+    """A time column and its unit, none where rows are the clock; the rate in Hz, and why."""
+
+    column: Name | None
+    unit: str | None
+    rate: float
+    guessed: bool
+    evidence: str
+
+    def with_rate(self, rate: float, evidence: str) -> "Timing":
+        """The same with a rate that something else says."""
+        return Timing(self.column, self.unit, rate, True, evidence)
+
+
+def timing_of(logs: Sequence[RawLog], column: Name | None) -> Timing:
+    """The clock of logs of one kind; `column` holds the time, None where rows are counted."""
+    stated = next(
+        (float(m[1]) for log in logs for line in log.header if (m := STATED.search(line))), None
+    )
+    if column is None:
+        return _without_time(None, None, stated, _("no column is a time"))
+    steps = [np.diff(_finite(log.columns[column])) for log in logs]
+    ticks = float(np.median([_step(log.columns[column]) for log in logs]))
+    if ticks == 1 and all(np.mean(own == 1) > 0.95 for own in steps):
+        return _without_time(column, "sample", stated, _("it counts samples"))
+    named = IN_NAME.search(str(column))
+    units = {"us": "us", "µs": "us", "sec": "s", "seconds": "s"}
+    if named is not None:
+        unit = units.get(named[1].lower(), named[1].lower())
+        why = _("by its name")
+    else:
+        unit = min(UNITS, key=lambda u: abs(np.log(UNITS[u] / ticks / USUAL_RATE)))
+        why = _(
+            "a step of {ticks} is a plausible rate in {unit} only",
+            ticks=significant(ticks),
+            unit=unit,
+        )
+    rate = UNITS[unit] / ticks
+    positive = np.concatenate([own[own > 0] for own in steps])
+    if np.median(positive) < 0.5 * ticks:
+        why += _("; stamps come in bursts: the rate is their number in the whole time")
+    return Timing(column, unit, rate, named is None, why)
+
+
+def _without_time(column: Name | None, unit: str | None, stated: float | None, why: str) -> Timing:
+    if stated is not None:
+        return Timing(column, unit, stated, False, _("{why}; the header states the rate", why=why))
+    return Timing(column, unit, USUAL_RATE, True, why)
+
+
+def _finite(values: Array) -> Array:
+    return values[np.isfinite(values)]
+
+
+def _step(values: Array) -> float:
+    """Ticks from row to row: of most parts of the log, so that gaps do not count."""
+    values = _finite(values)
+    places = np.linspace(0, len(values) - 1, CLOCK_PARTS + 1).astype(int)
+    step = float(np.median(np.diff(values[places]) / np.diff(places)))
+    whole = float(np.median(np.diff(values)))
+    return whole if abs(whole - step) < 1e-3 * step else step
+
+
+def common_rate(rate: float) -> float | None:
+    """The common rate that this one may be; None where it is near none."""
+    nearest = float(COMMON_RATES[np.argmin(np.abs(np.log(COMMON_RATES / rate)))])
+    return nearest if abs(nearest / rate - 1) < MAX_RATE_ERROR else None
