@@ -39,10 +39,6 @@ def test_every_example_of_the_grammar_is_understood(example, tmp_path):
     assert len(made["manoeuvres"]) >= 2
 
 
-def test_there_are_ten_examples():
-    assert len(EXAMPLES) == 10
-
-
 def test_a_turn_is_made_explicit(tmp_path):
     turn = manoeuvres_of(planned(tmp_path, BY_TABLE)["manoeuvres"])[1]
     assert turn.angle == pytest.approx(2 * np.pi)
@@ -134,6 +130,23 @@ MISTAKES = {
         "seconds: 300, rows: [0, 9], span: [0, 9]",
         ["plan[0]", "span and rows"],
     ),
+    "a zero beyond the largest count": (
+        "span-cpt",
+        "{name: a, format: {kind: columns, time: {column: 1, unit: s}, gyro: {columns: [1, 2, 3], "
+        "unit: deg/s, zero_counts: 32768, limit_counts: 32767}}}",
+        ["instrument.format.gyro.limit_counts", "65535 for unsigned counts"],
+    ),
+    "two zeros for three channels": (
+        "span-cpt",
+        "{name: a, format: {kind: columns, gyro: {columns: [1, 2, 3], unit: deg/s, "
+        "zero_counts: [1, 2]}}}",
+        ["zero_counts", "correct the value"],
+    ),
+    "a log of gyros beside messages of a receiver": (
+        "log: session.asc",
+        "log: session.asc\ngyro: {log: gyro.asc}",
+        ["format", "remove gyro: the messages of a receiver hold both sensors"],
+    ),
     "broken YAML": ("serial: ", "serial: [", ["line", "YAML 1.2"]),
 }
 
@@ -176,6 +189,45 @@ def test_the_schemas_give_a_description_with_every_number():
     for name in ("campaign", "config", "published"):
         missing = [path for path, rule in numbers(schema_of(name), "") if "description" not in rule]
         assert missing == []
+
+
+APART = """\
+formats:
+  a: {kind: columns, time: {column: 1, unit: s}, accelerometer: {columns: [2, 3, 4], unit: g}}
+  g: {kind: columns, time: {column: 1, unit: ms}, gyro: {columns: [2, 3, 4], unit: deg/s}}
+gyro: {log: gyro.txt, format: g}
+"""
+BESIDE = BY_TABLE.replace("seconds: 300", "seconds: 300, format: a")
+BESIDE = BESIDE.replace("accel_deg_s2: 5", "accel_deg_s2: 5, format: a")
+
+
+def test_a_log_of_the_gyros_goes_with_the_log_of_the_campaign(tmp_path):
+    made = planned(tmp_path, BESIDE + APART)
+    assert list(made["logs"]["log"]) == ["session.asc"]
+    assert set(made["inputs"]["file"]) == {"campaign.yaml", "session.asc", "gyro.txt"}
+    own = "format: a, log: other.asc, gyro: {log: g2.txt, format: g}}"
+    made = planned(tmp_path, BESIDE.replace("format: a}", own, 1) + APART)
+    assert {"other.asc", "g2.txt"} < set(made["inputs"]["file"])
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        ("time: {column: 1, unit: ms}, ", "", ["formats.g", "no 'time'", "add time"]),
+        (", gyro: {columns", ", accelerometer: {columns", ["formats.g", "no 'gyro'"]),
+        ("format: g}", "format: h}", ["gyro.format", "'h'", "one of a, g"]),
+        ("log: gyro.txt", "log: ../gyro.txt", ["gyro.log", "plain file name"]),
+        ("seconds: 300", "seconds: 300, where: {a: 1}", ["plan[0].where", "select by time"]),
+        ("accel_deg_s2: 5", "accel_deg_s2: 5, gyro: {log: b.txt, format: g}", ["plan[1].gyro"]),
+    ],
+)
+def test_a_mistake_about_the_log_of_the_gyros_is_refused(tmp_path, before, after, said):
+    text = BESIDE + APART
+    assert before in text
+    with pytest.raises(Refusal) as refused:
+        planned(tmp_path, text.replace(before, after, 1))
+    for part in [*said, "cure:"]:
+        assert part in str(refused.value)
 
 
 ENCODER = """\

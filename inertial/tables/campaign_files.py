@@ -26,8 +26,8 @@ def logs_of(path: Path) -> list[str]:
         content = content["campaign"]
     if not isinstance(content, dict) or not isinstance(content.get("plan"), list):
         return []
-    named = [item.get("log") for item in content["plan"] if isinstance(item, dict)]
-    logs = [content.get("log") if log is None else log for log in named]
-    if isinstance(content.get("encoder"), dict):
-        logs.append(content["encoder"].get("log"))
+    manoeuvres = [item for item in content["plan"] if isinstance(item, dict)]
+    logs = [item.get("log") or content.get("log") for item in manoeuvres]
+    apart = [content.get("encoder"), content.get("gyro"), *(m.get("gyro") for m in manoeuvres)]
+    logs += [other.get("log") for other in apart if isinstance(other, dict)]
     return sorted({log for log in logs if isinstance(log, str) and Path(log).name == log})

@@ -12,6 +12,7 @@ from inertial.tables import AXES
 from inertial.text.campaign_units import CHANNEL_UNITS
 from stages.decode.decoded import Decoded, Reals, look_ahead
 from stages.decode.table_angle import ANGLE_UNITS
+from stages.decode.unsigned_counts import refuse_unsigned
 
 ICE_POINT = 273.15  # K
 
@@ -51,8 +52,10 @@ class ColumnLog:
 
     def decoded(self, origin: int) -> Iterator[Decoded]:
         """The log, piece by piece; `origin` is none of its business."""
-        for reading in column_reader.read(self.path, self._layout):
+        for number, reading in enumerate(column_reader.read(self.path, self._layout)):
             rows = reading.records
+            if number == 0:
+                self._refuse_unsigned(rows)
             samples = {
                 "record": rows.record,
                 "offset": rows.offset,
@@ -76,8 +79,14 @@ class ColumnLog:
         triad = self._layout.get(key)
         if triad is None:
             return {}
-        size = CHANNEL_UNITS[triad["unit"]] / (triad.get("counts_per_unit") or 1)
-        return {f"{sensor}_{axis}": values[:, place] * size for place, axis in enumerate(AXES)}
+        size = CHANNEL_UNITS[triad["unit"]] / np.asarray(triad.get("counts_per_unit", 1.0))
+        in_units = (values - np.asarray(triad.get("zero_counts", 0.0))) * size
+        return {f"{sensor}_{axis}": in_units[:, place] for place, axis in enumerate(AXES)}
+
+    def _refuse_unsigned(self, rows: column_reader.Rows) -> None:
+        for sensor, values in (("accelerometer", rows.accelerometer), ("gyro", rows.gyro)):
+            if triad := self._layout.get(sensor):
+                refuse_unsigned(self.path.name, sensor, triad, values)
 
     def began(self, origin: int, *, absolute: bool) -> float:
         """What its samples' time 0 is by its own clock, which is the encoder's too, s."""

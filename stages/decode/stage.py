@@ -27,9 +27,12 @@ from stages.decode.decoded import (
     refused_rows,
     sample_rows,
 )
+from stages.decode.joined_log import JoinedLog
 from stages.decode.no_samples import no_samples
 from stages.decode.receiver_log import ReceiverLog
 from stages.decode.table_angle import TableAngle
+
+AnyLog = ReceiverLog | ColumnLog | JoinedLog
 
 
 def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
@@ -38,6 +41,8 @@ def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
     Time is GPS time since the first sample of the campaign for the logs of a receiver; for a log of
     columns it is the time since its own first sample. Increments become rates with the log's own
     median sample interval; a log that has too few samples for one has no rates.
+
+    Accelerometers and gyros with a log each are joined: `joined_log` says how.
 
     Raises
     ------
@@ -49,23 +54,29 @@ def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
     table = TableAngle.of_logs(rows, raw)
     stamps = [log.first for log in opened if isinstance(log, ReceiverLog) and log.first is not None]
     origin = min(stamps, default=0)
+    of_gyros: dict[str, JoinedLog] = {}
     for log, row in zip(opened, rows, strict=True):
         size = log.path.stat().st_size
         yield from _pieces_of(log, row, origin, table)
         refuse_grown(log.path, size)
+        if isinstance(log, JoinedLog):
+            of_gyros[log.gyro_path.name] = log
+    for name, joined in of_gyros.items():
+        yield from account_of(name, joined.gyros.account, joined.gyros.refused)
     if table is not None:
         yield from account_of(table.file, table.encoder.account, table.encoder.refused)
 
 
-def _open(row: Mapping[str, str], raw: list[Path]) -> ReceiverLog | ColumnLog:
+def _open(row: Mapping[str, str], raw: list[Path]) -> AnyLog:
     """The log of one row of the table logs."""
-    layout = json.loads(row["layout"])
-    kind = ReceiverLog if layout["kind"] == "rawimus" else ColumnLog
-    return kind(row["log"], path_of(row["file"], raw), layout)
+    layout, path = json.loads(row["layout"]), path_of(row["file"], raw)
+    if "gyro_log" in layout:
+        return JoinedLog(row["log"], path, layout, path_of(layout["gyro_log"]["file"], raw))
+    return (ReceiverLog if layout["kind"] == "rawimus" else ColumnLog)(row["log"], path, layout)
 
 
 def _pieces_of(
-    log: ReceiverLog | ColumnLog, row: Mapping[str, str], origin: int, table: TableAngle | None
+    log: AnyLog, row: Mapping[str, str], origin: int, table: TableAngle | None
 ) -> Pieces:
     """All tables of one log."""
     account, first_refused = Account(), None
@@ -103,7 +114,7 @@ def _pieces_of(
 
 
 def _decoded(
-    log: ReceiverLog | ColumnLog, origin: int, table: TableAngle | None
+    log: AnyLog, origin: int, table: TableAngle | None
 ) -> Iterator[tuple[Decoded, pa.RecordBatch]]:
     """A log, piece by piece, and the rows of the table samples."""
     for decoded in log.decoded(origin):

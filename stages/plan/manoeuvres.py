@@ -17,7 +17,7 @@ AXES = np.eye(3)
 Row = dict[str, Any]
 
 
-_ALWAYS = {"id", "do", "log", "format", "span", "rows", "where", "mount", "position"}
+_ALWAYS = {"id", "do", "log", "format", "span", "rows", "where", "mount", "position", "gyro"}
 _ALLOWED = {
     "rest": {"up", "mark", "seconds"},
     "positions": {"seconds"},

@@ -6,6 +6,8 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from inertial import tables
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.campaign_units import CHANNEL_UNITS, DEGREE, PER_ROOT_HOUR, in_si
@@ -98,12 +100,18 @@ def ranges(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
     for log, rows in by_log(manoeuvres).items():
         layout = rows[0]["layout"]
         increments = layout["kind"] == "rawimus"
-        for (sensor, (key, increment)), axis in product(keys.items(), tables.AXES):
-            triad, full = layout.get(key) or {}, scales[sensor]
+        for (sensor, (key, increment)), (place, axis) in product(
+            keys.items(), enumerate(tables.AXES)
+        ):
+            own = layout["gyro_log"]["layout"] if key == "gyro" and "gyro_log" in layout else layout
+            triad, full = own.get(key) or {}, scales[sensor]
             count, limit = entry.get(key, {}).get(increment) if increments else None, None
             if "counts_per_unit" in triad:
-                count = CHANNEL_UNITS[triad["unit"]] / triad["counts_per_unit"]
-                limit = triad["limit_counts"] * count if "limit_counts" in triad else None
+                count = CHANNEL_UNITS[triad["unit"]] / _each(triad["counts_per_unit"])[place]
+                zero = _each(triad.get("zero_counts", 0))[place]
+                if "limit_counts" in triad:
+                    # Of unsigned counts the farther end: nothing within the range is cut off.
+                    limit = max(triad["limit_counts"] - zero, zero) * count
             yield {
                 "log": log,
                 "sensor": sensor,
@@ -112,6 +120,11 @@ def ranges(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
                 "increments": increments,
                 "limit": full if limit is None else limit,
             }
+
+
+def _each(stated: float | list[float]) -> list[float]:
+    """One number for each column."""
+    return stated if isinstance(stated, list) else [stated] * 3
 
 
 def count_sizes(instruments: Path) -> Iterator[Row]:
@@ -136,7 +149,6 @@ def recording(file: YamlFile, key: Key, item: dict[str, Any], entry: dict[str, A
             _("add log: its file name"),
         )
     layout, layout_key = _layout(file, key, item, entry)
-    _check_layout(file, layout_key, layout, entry)
     ways = [way for way in ("span", "rows", "where") if way in item]
     if len(ways) > 1:
         raise file.refuse_text(
@@ -147,11 +159,25 @@ def recording(file: YamlFile, key: Key, item: dict[str, Any], entry: dict[str, A
             raise file.refuse(
                 [*key, way], item[way], _("[from, to] with from < to"), "swap the two"
             )
+    gyros = _gyro_log(file, key, item)
+    if gyros is None:
+        _check_layout(file, layout_key, layout, entry)
+    else:
+        layout = _with_gyro_log(file, layout_key, layout, entry, *gyros)
+        if "where" in item:
+            raise file.refuse_text(
+                [*key, "where"],
+                _("where, with a log of the gyros of its own"),
+                _("span or rows"),
+                _("select by time: span"),
+            )
     where = item.get("where", {})
     span, rows = item.get("span", [None, None]), item.get("rows", [None, None])
     return {
         "key": [*key, "log"] if "log" in item else key,
         "file": name,
+        "gyro_key": None if gyros is None else [*gyros[0], "log"],
+        "gyro_file": None if gyros is None else gyros[1]["log"],
         "format": item.get("format", ""),
         "layout": layout,
         "label_columns": sorted(where),
@@ -161,6 +187,58 @@ def recording(file: YamlFile, key: Key, item: dict[str, Any], entry: dict[str, A
         "from_row": rows[0],
         "to_row": rows[1],
     }
+
+
+def _gyro_log(file: YamlFile, key: Key, item: dict[str, Any]) -> tuple[Key, dict[str, Any]] | None:
+    """What is stated of the gyros' own log, and where; the campaign's goes with its log."""
+    if "gyro" in item:
+        return [*key, "gyro"], item["gyro"]
+    if "gyro" in file.content and "log" not in item:
+        return ["gyro"], file.content["gyro"]
+    return None
+
+
+def _with_gyro_log(
+    file: YamlFile,
+    layout_key: Key,
+    layout: dict[str, Any],
+    entry: dict[str, Any],
+    key: Key,
+    stated: dict[str, Any],
+) -> dict[str, Any]:
+    """The layout of the accelerometers' log, with the file and layout of the gyros' log in it."""
+    gyro_layout, gyro_key = layout, layout_key
+    if "format" in stated:
+        gyro_layout, gyro_key = _layout(file, key, stated, entry)
+    for own_key, own, sensor in (
+        (layout_key, layout, "accelerometer"),
+        (gyro_key, gyro_layout, "gyro"),
+    ):
+        if own["kind"] != "columns":
+            raise file.refuse(
+                [*own_key, "kind"],
+                own["kind"],
+                _("columns, for accelerometers and gyros with a log each"),
+                _("remove gyro: the messages of a receiver hold both sensors"),
+            )
+        for needed in (sensor, "time"):
+            if needed not in own:
+                raise file.refuse_text(
+                    own_key,
+                    _("no {key!r}", key=needed),
+                    _(
+                        "time and {sensor}, for accelerometers and gyros have a log each",
+                        sensor=sensor,
+                    ),
+                    _("add {key}", key=needed),
+                )
+        _check_layout(file, own_key, own, entry)
+    own, others = (
+        {key: value for key, value in one.items() if key != other}
+        for one, other in ((layout, "gyro"), (gyro_layout, "accelerometer"))
+    )
+    gyros = {"file": stated["log"], "layout": others, "offset": stated.get("offset_s", 0.0)}
+    return own | {"gyro_log": gyros}
 
 
 def _layout(
@@ -209,6 +287,15 @@ def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[
                 layout[sensor]["unit"],
                 _("one of {units}", units=", ".join(units)),
                 "correct the unit",
+            )
+        triad = layout.get(sensor, {})
+        zeros = _each(triad.get("zero_counts", 0))
+        if max(zeros) > triad.get("limit_counts", np.inf):
+            raise file.refuse(
+                [*key, sensor, "limit_counts"],
+                triad["limit_counts"],
+                _("the largest count, above zero_counts {zero:g}", zero=max(zeros)),
+                _("correct it: 65535 for unsigned counts of 16 bits"),
             )
 
 

@@ -66,6 +66,7 @@ def plan(
     manoeuvres, table = _manoeuvres(file, entry), encoder(file)
     present = {path.name: path for path in raw}
     named = [(row["key"], row["file"]) for row in manoeuvres]
+    named += [(row["gyro_key"], row["gyro_file"]) for row in manoeuvres if row["gyro_file"]]
     named += [] if table is None else [(["encoder", "log"], table["file"])]
     for key, log in named:
         if (campaign[0].parent / log).is_dir():
@@ -148,8 +149,20 @@ def _manoeuvres(file: YamlFile, entry: dict[str, Any]) -> list[Row]:
                     _("rename one of the two"),
                 )
             where = recording(file, ["plan", number], item, entry)
-            rows[row["manoeuvre"]] = row | where
-    by_log(list(rows.values()))
+            rows[row["manoeuvre"]] = row | where | {"number": number}
+    for first, *others in by_log(list(rows.values())).values():
+        for row in others:
+            if row["layout"] != first["layout"]:
+                raise file.refuse_text(
+                    row["gyro_key"] or ["plan", row["number"]],
+                    _(
+                        "{log} with other gyros than in plan[{number}]",
+                        log=first["log"],
+                        number=first["number"],
+                    ),
+                    _("one log of the gyros for each log"),
+                    _("state the same log and format of the gyros for both"),
+                )
     return list(rows.values())
 
 

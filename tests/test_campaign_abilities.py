@@ -1,0 +1,237 @@
+"""What a campaign file can say, through the real chain, on logs whose truth the laboratory knows.
+
+The campaign is that of `chain.short`, written as columns of counts; each test states the same
+recording in another way.
+"""
+
+import copy
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import chain
+import numpy as np
+import pytest
+from ruamel.yaml import YAML
+
+from inertial.estimation.triad import linear_names
+from inertial.tables.errors import Refusal
+
+Document = dict[str, Any]
+MAX_SIGMA = 4.5  # of 24 parameters with Gaussian errors, in 1 of 6000 campaigns
+HEADERS = {
+    8: "time,gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z,temperature",
+    4: "columns of one sensor",
+}
+STAGES = {"accelerometer": "accel", "gyroscope": "gyro"}
+
+
+def in_columns(rate_hz: float = 100, seed: int = 5) -> Document:
+    """The short campaign as columns of counts."""
+    document = copy.deepcopy(chain.short(seed=seed))
+    document["receiver"] |= {"message": "columns", "rate_hz": rate_hz, "line_end": "lf"}
+    document["campaign"]["instrument"] = {"name": "made up"}
+    return document
+
+
+@pytest.fixture(scope="session")
+def simple(tmp_path_factory) -> Path:
+    """Its folder, whose campaign file says what any could say before."""
+    return chain.simulate(in_columns(), tmp_path_factory.mktemp("simple") / "raw")
+
+
+@pytest.fixture(scope="session")
+def simple_results(simple, tmp_path_factory) -> chain.Results:
+    return chain.run(simple, tmp_path_factory.mktemp("simple") / "derived")
+
+
+def told(folder: Path) -> Document:
+    """A campaign file as a plain dict."""
+    return YAML(typ="safe").load(folder / "campaign.yaml")
+
+
+def tell(folder: Path, campaign: Document) -> None:
+    folder.mkdir(exist_ok=True)
+    with (folder / "campaign.yaml").open("w", encoding="utf-8") as file:
+        YAML(typ="safe").dump(campaign, file)
+
+
+@cache
+def numbers(log: Path) -> np.ndarray:
+    """Time, gyros, accelerometers, temperature."""
+    return np.loadtxt(log, delimiter=",", skiprows=1)
+
+
+def write(log: Path, rows: np.ndarray) -> None:
+    whole = ",".join(["%.6f", *["%.6g"] * (rows.shape[1] - 1)])
+    np.savetxt(log, rows, fmt=whole, header=HEADERS[rows.shape[1]], comments="")
+
+
+def off_truth(results: chain.Results) -> np.ndarray:
+    """The errors of the 24 parameters in their sigmas."""
+    truth = in_columns()["truth"]
+    errors = []
+    for stage, key, bias in (
+        ("accelerometer", "accelerometer", "bias_m_s2"),
+        ("gyroscope", "gyro", "bias_rad_s"),
+    ):
+        joint = results.parameters(stage).loc[list(linear_names())]
+        matrix = np.array(truth[key]["matrix"]) - np.eye(3)
+        right = np.append(matrix.ravel(), truth[key][bias])
+        errors.append((joint["value"] - right) / joint["sigma"])
+    return np.concatenate(errors)
+
+
+def values(results: chain.Results, column: str = "value") -> np.ndarray:
+    return np.concatenate([results.parameters(stage)[column].to_numpy() for stage in STAGES])
+
+
+def test_the_campaign_itself_is_calibrated(simple_results):
+    assert np.abs(off_truth(simple_results)).max() < MAX_SIGMA
+
+
+# ---- unsigned counts
+
+
+def rewritten(simple: Path, folder: Path, change: Callable[[np.ndarray], np.ndarray]) -> Document:
+    """The same logs with other numbers in them, and the campaign, of which nothing is written."""
+    folder.mkdir()
+    for log in simple.glob("*.asc"):
+        write(folder / log.name, change(numbers(log)))
+    return told(simple)
+
+
+def test_counts_with_a_zero_of_their_own_are_the_same_campaign(simple, simple_results, tmp_path):
+    zeros, sizes = np.array([70000, 65536, 70001]), np.array([1, 2, 4])
+
+    def unsigned(rows):
+        rows = rows.copy()
+        rows[:, 1:4] += 32768
+        rows[:, 4:7] = rows[:, 4:7] * sizes + zeros
+        return rows
+
+    campaign = rewritten(simple, tmp_path / "raw", unsigned)
+    layout = campaign["instrument"]["format"]
+    layout["gyro"]["zero_counts"] = 32768
+    layout["accelerometer"]["zero_counts"] = zeros.tolist()
+    per_unit = layout["accelerometer"]["counts_per_unit"]
+    layout["accelerometer"]["counts_per_unit"] = (per_unit * sizes).tolist()
+    tell(tmp_path / "raw", campaign)
+    results = chain.run(tmp_path / "raw", tmp_path / "derived")
+    np.testing.assert_allclose(values(results), values(simple_results), atol=1e-12, rtol=1e-9)
+
+
+def test_unsigned_counts_that_are_not_said_to_be_are_refused_with_their_zero(simple, tmp_path):
+    def unsigned(rows):
+        rows = rows.copy()
+        rows[:, 4:7] = np.rint(rows[:, 4:7] / 16) + 32768  # 1 g: 4010 counts
+        return rows
+
+    campaign = rewritten(simple, tmp_path / "raw", unsigned)
+    campaign["instrument"]["format"]["accelerometer"]["counts_per_unit"] /= 16
+    tell(tmp_path / "raw", campaign)
+    with pytest.raises(Refusal, match=r"accelerometer[\s\S]*add zero_counts: 32768"):
+        chain.run(tmp_path / "raw", tmp_path / "derived", "decode")
+    campaign["instrument"]["format"]["accelerometer"]["zero_counts"] = 32768
+    tell(tmp_path / "raw", campaign)
+    results = chain.run(tmp_path / "raw", tmp_path / "derived", "quality")
+    assert results["quality/findings"].empty
+
+
+# ---- accelerometers and gyros in a log each
+
+
+def apart(
+    simple: Path,
+    folder: Path,
+    gyros: Callable[[np.ndarray], np.ndarray],
+    accelerometers: Callable[[np.ndarray], np.ndarray] = lambda rows: rows,
+    gyros_of: Path | None = None,
+) -> Document:
+    """The same campaign with the two sensors in logs of their own."""
+    folder.mkdir()
+    campaign = told(simple)
+    for manoeuvre in campaign["plan"]:
+        log = manoeuvre["log"]
+        rows = accelerometers(numbers(simple / log))
+        write(folder / log, rows[:, [0, 4, 5, 6]])
+        rows = gyros(numbers((gyros_of or simple) / log))
+        write(folder / f"gyro-{log}", rows[:, :4])
+        manoeuvre["gyro"] = {"log": f"gyro-{log}"}
+    layout = campaign["instrument"]["format"]
+    del layout["temperature"]
+    layout["time"]["column"] = 1
+    layout["gyro"]["columns"] = layout["accelerometer"]["columns"] = [2, 3, 4]
+    tell(folder, campaign)
+    return campaign
+
+
+def test_two_logs_with_the_same_stamps_are_the_same_campaign(simple, simple_results, tmp_path):
+    apart(simple, tmp_path / "raw", gyros=lambda rows: rows)
+    results = chain.run(tmp_path / "raw", tmp_path / "derived")
+    np.testing.assert_array_equal(values(results), values(simple_results))
+    np.testing.assert_array_equal(values(results, "sigma"), values(simple_results, "sigma"))
+    sizes = {log.name: log.stat().st_size for log in (tmp_path / "raw").glob("*.asc")}
+    assert results["decode/accounts"].groupby("log")["bytes"].sum().to_dict() == sizes
+
+
+@pytest.mark.parametrize(("gyro_hz", "late_s"), [(100, 0.0037), (73, 0.0), (400, 0.0)])
+def test_two_logs_with_stamps_of_their_own_are_joined(simple, gyro_hz, late_s, tmp_path):
+    """The motion is the same; stamps, rates and noise of the gyros are others."""
+    document = in_columns(gyro_hz, seed=6)
+    other = chain.simulate(document, tmp_path / "other")
+
+    def shifted(rows):
+        rows = rows.copy()
+        rows[:, 0] += late_s  # of which a turn from rest to rest knows nothing
+        return rows[5:]
+
+    campaign = apart(simple, tmp_path / "raw", shifted, gyros_of=other)
+    counts = told(other)["instrument"]["format"]["gyro"]["counts_per_unit"]
+    campaign["formats"] = {"gyros": copy.deepcopy(campaign["instrument"]["format"])}
+    campaign["formats"]["gyros"]["gyro"]["counts_per_unit"] = counts
+    for manoeuvre in campaign["plan"]:
+        manoeuvre["gyro"]["format"] = "gyros"
+    tell(tmp_path / "raw", campaign)
+    results = chain.run(tmp_path / "raw", tmp_path / "derived")
+    assert np.abs(off_truth(results)).max() < MAX_SIGMA
+    assert results["quality/findings"].empty and results["segment/findings"].empty
+    # The noise of a mean is that of the readings, whatever the rate, to a tenth.
+    levels = results["noise/levels"].query("manoeuvre.isna()").set_index("channel")["white_noise"]
+    noise = document["noise"]
+    for sensor, level in (
+        ("gyro", np.radians(noise["angle_random_walk_deg_sqrt_h"]) / 60),
+        ("accel", noise["velocity_random_walk_m_s_sqrt_h"] / 60),
+    ):
+        found = levels[[f"{sensor}_{axis}" for axis in "xyz"]]
+        np.testing.assert_allclose(found, level, rtol=0.1)
+    rate = 1 / results["decode/clocks"]["integration_step"]
+    np.testing.assert_allclose(rate, min(gyro_hz, 100), rtol=1e-5)
+
+
+def test_what_one_log_lacks_is_a_gap_of_both(simple, tmp_path):
+    """1 s of the gyros are lost: nothing is made up in between."""
+
+    def lost(rows):
+        return rows[(rows[:, 0] < rows[0, 0] + 5) | (rows[:, 0] > rows[0, 0] + 6)]
+
+    apart(simple, tmp_path / "raw", lost)
+    results = chain.run(tmp_path / "raw", tmp_path / "derived", "segment")
+    gaps = results["quality/gaps"]
+    assert len(gaps) == 12 and gaps["missing"].between(99, 101).all()
+    kinds = results["decode/accounts"].groupby("kind")["lines"].sum()
+    assert kinds["not selected"] == gaps["missing"].sum()
+
+
+def test_logs_without_common_time_are_refused(simple, tmp_path):
+    def later(rows):
+        return rows + np.eye(1, rows.shape[1]) * 1e4
+
+    campaign = apart(simple, tmp_path / "raw", later)
+    with pytest.raises(Refusal, match=r"gyro-x-up.asc, gyro.log[\s\S]*add offset_s to gyro"):
+        chain.run(tmp_path / "raw", tmp_path / "derived", "decode")
+    for manoeuvre in campaign["plan"]:
+        manoeuvre["gyro"]["offset_s"] = -1e4
+    tell(tmp_path / "raw", campaign)
+    chain.run(tmp_path / "raw", tmp_path / "derived", "decode")
