@@ -17,9 +17,10 @@ Array = NDArray[np.float64]
 UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}  # ticks in a second
 USUAL_RATE = 100.0  # Hz: of the units that a time may have, that with the rate nearest to it
 COMMON_RATES = np.array(
-    "10 20 25 50 60 75 80 100 102.4 104 120 125 128 200 204.8 208 250 256 400 416 500 512 800 833 "
-    "1000 1600 1666 2000 4000 8000".split(),
-    np.float64,
+    [
+        *(10, 20, 25, 50, 60, 75, 80, 100, 102.4, 104, 120, 125, 128, 200, 204.8, 208, 250, 256),
+        *(400, 416, 500, 512, 800, 833, 1000, 1600, 1666, 2000, 4000, 8000),
+    ]
 )  # Hz
 MAX_RATE_ERROR = 0.05  # of a rate that is taken to be a common one
 STATED = re.compile(
