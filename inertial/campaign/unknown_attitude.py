@@ -7,20 +7,21 @@ result does not depend on the table.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import NAMES as LINEAR
 from inertial.campaign.estimates import Estimates
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Manoeuvre, Part, omissions
 from inertial.campaign.static_positions import NO_NOISE, StaticPosition
+from inertial.estimation.between_positions import Stop
 from inertial.estimation.least_squares import Estimate
+from inertial.estimation.multi_position import FREE as UNKNOWNS
 from inertial.estimation.multi_position import (
-    FREE,
     NAMES,
     PRIOR,
     FreeRest,
@@ -31,11 +32,13 @@ from inertial.estimation.multi_position import (
 from inertial.estimation.variance_components import ScatterFit, with_scatter
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 from inertial.text.messages import _
-from inertial.text.parameters import CROSS, MOUNTING, PARTS, SYMMETRIC
+from inertial.text.parameters import CROSS, FREE, MOUNTING, PARTS, SYMMETRIC
+
+if TYPE_CHECKING:
+    from inertial.campaign.campaign_data import CampaignData
 
 Array = NDArray[np.float64]
 
-METHOD = "free_positions"
 SCATTER_RANGE = (1e-7, 1.0)  # m/s², scatter between static positions beyond the noise
 UNKNOWN = np.full(3, np.nan)  # an attitude
 MOUNTING_UNDETERMINED = _(
@@ -65,8 +68,13 @@ class FreeStaticPosition:
         """The input of `free_positions`."""
         return FreeRest(self.label, *self.force.over())
 
+    @property
+    def stop(self) -> Stop:
+        """The input of the gyros' equations."""
+        return Stop(self.rest, *self.rate.over(), float(self.rate.seconds.sum()))
 
-def free_static_positions(data: CampaignData) -> tuple[list[FreeStaticPosition], list[Part]]:
+
+def free_static_positions(data: "CampaignData") -> tuple[list[FreeStaticPosition], list[Part]]:
     """All static positions of one mount in the order of the logs; those left out, with reasons.
 
     None where the plan states every attitude: there the other methods apply.
@@ -122,22 +130,22 @@ def _static_position(
     )
 
 
-def fitted_to(data: CampaignData, positions: Sequence[FreeStaticPosition]) -> ScatterFit:
+def fitted_to(data: "CampaignData", positions: Sequence[FreeStaticPosition]) -> ScatterFit:
     """P and bias of the accelerometers, with a scatter between positions beyond the noise."""
     gravity, rests = data.gravity, [position.rest for position in positions]
     fit = partial(free_positions, rests, gravity.number, gravity.scatter)
     return with_scatter(fit, between=SCATTER_RANGE, noise_degrees=data.noise.degrees)
 
 
-def add_free_accelerometers(estimates: Estimates, data: CampaignData) -> None:
+def add_free_accelerometers(estimates: Estimates, data: "CampaignData") -> None:
     """The rows of the method; none where the plan states every attitude."""
     positions, left_out = free_static_positions(data)
     if positions:
         fitted = fitted_to(data, positions)
-        add_symmetric(estimates, METHOD, fitted.estimate)
-        estimates.add_fit(METHOD, fitted, [position.force.part for position in positions], left_out)
+        add_symmetric(estimates, FREE, fitted.estimate)
+        estimates.add_fit(FREE, fitted, [position.force.part for position in positions], left_out)
     elif left_out:
-        estimates.add_nothing(METHOD, omissions(left_out))
+        estimates.add_nothing(FREE, omissions(left_out))
 
 
 def add_symmetric(estimates: Estimates, method: str, estimate: Estimate) -> None:
@@ -146,9 +154,11 @@ def add_symmetric(estimates: Estimates, method: str, estimate: Estimate) -> None
     parameters |= {f"scale_{axis}": f"symmetric_{axis}{axis}" for axis in AXES}
     parameters |= {name: "symmetric_" + "".join(sorted(name[-2:])) for name in CROSS}
     names = (*LINEAR, *MOUNTING, *SYMMETRIC)
-    unit = dict(zip(NAMES, np.eye(FREE), strict=True))
-    jacobian = np.array([unit[parameters[n]] if n in parameters else np.zeros(FREE) for n in names])
-    values = jacobian @ (estimate.values[:FREE] - PRIOR)  # P − I
+    unit = dict(zip(NAMES, np.eye(UNKNOWNS), strict=True))
+    jacobian = np.array(
+        [unit[parameters[n]] if n in parameters else np.zeros(UNKNOWNS) for n in names]
+    )
+    values = jacobian @ (estimate.values[:UNKNOWNS] - PRIOR)  # P − I
     reasons = dict.fromkeys(MOUNTING, MOUNTING_UNDETERMINED)
     unobservable_directions = unobservable(estimate)
     for name, parameter in parameters.items():
@@ -156,7 +166,11 @@ def add_symmetric(estimates: Estimates, method: str, estimate: Estimate) -> None
         if not estimate.determined[i]:
             reasons[name] = in_words(max(unobservable_directions, key=partial(_share, i)))
     estimates.add(
-        method, names, values, jacobian @ estimate.covariance[:FREE, :FREE] @ jacobian.T, reasons
+        method,
+        names,
+        values,
+        jacobian @ estimate.covariance[:UNKNOWNS, :UNKNOWNS] @ jacobian.T,
+        reasons,
     )
 
 

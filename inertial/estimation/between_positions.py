@@ -18,25 +18,46 @@ hand, an angle: the IMU sways, so its mean rate is the smaller the longer it res
 does not begin and end exactly where the accelerometers determined the directions.
 """
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from inertial.estimation import multi_position as forces
 from inertial.estimation.attitude import integrate
+from inertial.estimation.carried_attitude import IntegratedMotion, Passage, integrated_motion
+from inertial.estimation.drifting_equations import DriftingEquations
+from inertial.estimation.elimination import whitened
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.gyroscopes import PRIOR, PRIOR_SIGMA
 from inertial.estimation.least_squares import Estimate, System, solve_iterated
 from inertial.estimation.multi_position import FreeRest, Upward, upward_of
+from inertial.estimation.random_walk import Stretch
+from inertial.estimation.sensitivities import Sensitivities
 from inertial.estimation.triad import UNKNOWNS, design_of
+from inertial.estimation.variance_components import ScatterFit, with_scatter
 from inertial.physics.motion import cross
 
 Array = NDArray[np.float64]
-Rows = tuple[Array, Array, Array]  # coefficients (m, p), residuals (m,), their sigma (m,)
+
+SCATTER_RANGE = (1e-11, 0.1)  # rad/s: how much rests and motions may differ beyond the noise
+ROUNDS = 2  # of the scatter, about the last result
+SCALES = np.geomspace(0.5, 2.0, 29)  # of the gyros, where the search for M begins: 5 % apart
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Coefficients (m, p), residuals (m,) and their sigma (m,) of a rest or a motion.
+
+    `response`: (m, s, 3), of the residuals to errors of the mean rates in s stretches of it.
+    """
+
+    design: Array
+    rest: Array
+    sigma: Array
+    response: Array
 
 
 @dataclass(frozen=True)
@@ -47,19 +68,6 @@ class Stop:
     mean: Array
     sigma: Array
     seconds: float
-
-
-@dataclass(frozen=True)
-class Passage:
-    """The readings of the gyros from stop `first` to the next.
-
-    `rates`: (k, 3), rad/s, means of short stretches; `seconds`: (k,); `density`: (3,), rad/√s.
-    """
-
-    first: int
-    rates: Array
-    seconds: Array
-    density: Array
 
 
 @dataclass(frozen=True)
@@ -89,11 +97,35 @@ def between_rests(
     Where the IMU `sways`, it is so for a rest of the usual length T only: all rotate by an angle of
     scatter · T.
     """
-    up = upward_of(np.array([stop.forces.mean for stop in stops]))
-    data = _Data(stops, passages, known, scatter, sways, up)
-    start = data.prior
-    start[UNKNOWNS - 3 : UNKNOWNS] = np.nanmedian([stop.mean for stop in stops], axis=0)
-    return solve_iterated(partial(equations, data), start)
+    data = _data(stops, passages, known)
+    data = replace(data, scatter=scatter, sways=sways)
+    return solve_iterated(partial(equations, data), data.start)
+
+
+def fit(
+    stops: Sequence[Stop], passages: Sequence[Passage], known: Prior, noise_degrees: float = np.inf
+) -> ScatterFit:
+    """The same with the scatter of largest restricted likelihood, of a rate or of an angle.
+
+    The likelihood is that of the equations linear about the last result.
+    """
+    data = _data(stops, passages, known)
+    found = ScatterFit(solve_iterated(partial(equations, data), data.start), 0.0, 1.0)
+    for _ in range(ROUNDS):
+        about = found.estimate.values
+        both = []
+        for sways in (False, True):
+
+            def fit_with(scatter: float, sways: bool = sways, about: Array = about) -> Estimate:
+                return equations(replace(data, scatter=scatter, sways=sways), about).solve()
+
+            both.append((with_scatter(fit_with, SCATTER_RANGE, noise_degrees), sways))
+        found, sways = min(both, key=lambda each: each[0].estimate.deviance)
+        if not found.scatter:
+            break
+        best = replace(data, scatter=found.scatter, sways=sways)
+        found = replace(found, estimate=solve_iterated(partial(equations, best), about))
+    return found
 
 
 @dataclass(frozen=True)
@@ -107,9 +139,41 @@ class _Data:
     stops: Sequence[Stop]
     passages: Sequence[Passage]
     known: Prior
-    scatter: float
-    sways: bool
     up: Upward
+    scatter: float = 0.0
+    sways: bool = False
+    _integrated: dict[bytes, list[IntegratedMotion]] = field(default_factory=dict, repr=False)
+
+    @property
+    def start(self) -> Array:
+        """First values of the unknowns.
+
+        One scale for all gyros, for with one that is far off a turn ends anywhere: that by which
+        the upward directions, carried on, come nearest to those of the accelerometers.
+        """
+        start = self.prior
+        start[UNKNOWNS - 3 : UNKNOWNS] = np.nanmedian([stop.mean for stop in self.stops], axis=0)
+
+        def miss(scale: float) -> float:
+            return sum(
+                1 - float(self.up.first[p.first + 1] @ whole @ self.up.first[p.first])
+                for p in self.passages
+                for rates in [(p.rates - start[UNKNOWNS - 3 : UNKNOWNS]) / scale]
+                for whole in [integrate(rates, p.seconds).whole]
+            )
+
+        if self.passages:
+            start[:9] *= min(SCALES.tolist(), key=miss)
+        return start
+
+    def integrated(self, around: Array) -> list[IntegratedMotion]:
+        """The motions by the gyros with the M and bias of `around`; those of the last are kept."""
+        key = around[:UNKNOWNS].tobytes()
+        if key not in self._integrated:
+            self._integrated.clear()
+            matrix, bias = around[:9].reshape(3, 3), around[9:UNKNOWNS]
+            self._integrated[key] = [integrated_motion(p, matrix, bias) for p in self.passages]
+        return self._integrated[key]
 
     @property
     def swayed(self) -> float:
@@ -181,8 +245,11 @@ class _Data:
 
 def equations(data: _Data, around: Array) -> System:
     """The equations of all stops and of the motions between them, linear about `around`."""
-    parts = [_of_forces(data, around), *_of_rates(data, around)]
-    design, rest, sigma = (np.concatenate(column) for column in zip(*parts, strict=True))
+    parts = [rows for _, rows in _parts(data, around)]
+    design, rest, sigma = (
+        np.concatenate([getattr(rows, name) for rows in parts])
+        for name in ("design", "rest", "sigma")
+    )
     finite = np.isfinite(rest) & np.isfinite(sigma)  # a gyro may be missing
     design = design[finite]
     return System(
@@ -196,6 +263,77 @@ def equations(data: _Data, around: Array) -> System:
     )
 
 
+@dataclass(frozen=True)
+class Carried:
+    """What effects do to each stop and to the motion after it, and when these were.
+
+    `at_stops`: (3, k) of each stop; `moving`: (s, 3, k) of each passage in its stretches;
+    `stretches`: of time, of the stops, then of the passages.
+    """
+
+    at_stops: Sequence[Sensitivities]
+    moving: Sequence[Sensitivities]
+    stretches: Sequence[Stretch]
+
+
+def drifting(
+    stops: Sequence[Stop],
+    passages: Sequence[Passage],
+    known: Prior,
+    about: tuple[Array, Array, Array, Array],
+    carried: Carried,
+    effect_sigma: Mapping[str, float],
+    scatter: float,
+    *,
+    sways: bool,
+    used: Sequence[bool],
+) -> DriftingEquations:
+    """The equations with parameters of effects as further unknowns, in blocks.
+
+    `about`: M and bias of the gyros, then P and bias of the accelerometers, about which they are
+    linear; `used`: of each stop, then of each passage, whether its gyros are.
+    """
+    matrix, bias, symmetric, force_bias = about
+    means = np.array([stop.forces.mean for stop in stops])
+    up = upward_of((means - force_bias) @ np.linalg.inv(symmetric).T)
+    data = _Data(stops, passages, known, up, scatter, sways)
+    around = data.prior
+    pairs = [symmetric[i, j] for i, j in forces.PAIRS]
+    around[: UNKNOWNS + forces.FREE] = [*matrix.ravel(), *bias, *pairs, *force_bias]
+    shared, effects = data.size + len(effect_sigma), list(effect_sigma)
+    prior = np.append(data.prior, np.zeros(len(effects)))
+    answers = [each.of(effects)[None] for each in carried.at_stops]
+    answers += [each.of(effects) for each in carried.moving]
+    stretches = [Stretch("forces"), *carried.stretches]
+    blocks = []
+    for number, rows in _parts(data, around):
+        if number is not None and not used[number]:
+            continue
+        stacked = np.zeros((len(rows.rest), shared + 1))
+        stacked[:, : data.size] = rows.design
+        if number is not None:
+            stacked[:, data.size : -1] = np.einsum("msi,sik->mk", rows.response, answers[number])
+        stacked[:, -1] = rows.rest + rows.design @ (around - data.prior)
+        stretch = stretches[0 if number is None else number + 1]
+        blocks.append((whitened(stacked, rows.sigma, ()), stretch))
+    return DriftingEquations(
+        blocks,
+        [stretch.name for _, stretch in blocks],
+        {},
+        prior,
+        np.append(data.prior_sigma, list(effect_sigma.values())),
+        (*data.names, *(("effect", name) for name in effects)),
+        UNKNOWNS - 3,
+        data.parameters,
+    )
+
+
+def _parts(data: _Data, around: Array) -> Iterator[tuple[int | None, Rows]]:
+    """The equations in parts: those of the forces, None; of each stop; of each passage after."""
+    yield None, _of_forces(data, around)
+    yield from _of_rates(data, around)
+
+
 def _of_forces(data: _Data, around: Array) -> Rows:
     """The accelerometers at every stop."""
     place = data.of_forces
@@ -204,27 +342,31 @@ def _of_forces(data: _Data, around: Array) -> Rows:
     own = own.reshape(-1, len(place))
     design = np.zeros((len(own), data.size))
     design[:, place] = own
-    return design, observed.ravel() - own @ around[place], sigma.ravel()
+    rest = observed.ravel() - own @ around[place]
+    return Rows(design, rest, sigma.ravel(), np.zeros((len(own), 0, 3)))
 
 
-def _of_rates(data: _Data, around: Array) -> Iterator[Rows]:
+def _of_rates(data: _Data, around: Array) -> Iterator[tuple[int, Rows]]:
     """The gyros at every stop, and in the motion to the next."""
     places = around[data.directions].reshape(-1, 2)
     ups, changes = data.up.at(places)
-    passages = {passage.first: passage for passage in data.passages}
+    passages = {passage.first: number for number, passage in enumerate(data.passages)}
+    motions = data.integrated(around)
     for number, chain in enumerate(data.chains):
         first = _level(ups[chain[0]], data.up.across[chain[0], 0])
         at_stop = _AtStop(data, around, ups, changes, data.level(number), first)
         for i in chain:
-            yield at_stop.at_rest(i)
+            yield i, at_stop.at_rest(i)
             if i in passages:
-                rate = 0.0 if data.sways else data.scatter
-                motion = integrated_motion(
-                    passages[i], at_stop.matrix, at_stop.bias, (rate, data.swayed)
-                )
+                motion = motions[passages[i]]
                 turned = motion.relative_to_earth(at_stop.earth(i))
-                yield at_stop.motion(i, motion, turned)
+                yield len(data.stops) + passages[i], at_stop.motion(i, motion, turned)
                 at_stop = at_stop.at_next(turned)
+
+
+def _data(stops: Sequence[Stop], passages: Sequence[Passage], known: Prior) -> "_Data":
+    """About the directions of the readings."""
+    return _Data(stops, passages, known, upward_of(np.array([stop.forces.mean for stop in stops])))
 
 
 def _level(up: Array, about: Array) -> Array:
@@ -232,46 +374,6 @@ def _level(up: Array, about: Array) -> Array:
     first = about - (about @ up) * up
     first = first / np.linalg.norm(first)
     return np.array([first, cross(up, first)])
-
-
-@dataclass(frozen=True)
-class IntegratedMotion:
-    """A motion by the gyros, before correction for the earth's rate.
-
-    `whole`: (3, 3), from body axes at its start to those at its end; `slope`: (3, 12), the rotation
-    per unit of each unknown of the gyros, rad, in axes at the end; `covariance`: (3, 3), of that
-    rotation, rad².
-    """
-
-    whole: Array
-    slope: Array
-    covariance: Array
-    seconds: float
-
-    def relative_to_earth(self, earth: Array) -> Array:
-        """The same for directions fixed to the earth; its rate at the start, (3,)."""
-        turned = self.seconds * (self.whole @ earth)
-        return np.asarray(Rotation.from_rotvec(turned).as_matrix() @ self.whole)
-
-
-def integrated_motion(
-    passage: Passage, matrix: Array, bias: Array, scatter: tuple[float, float]
-) -> IntegratedMotion:
-    """Integrate the attitude over a motion, with its dependence on M, bias and noise.
-
-    `scatter`: beyond noise, of the readings, rad/s, and of the attitude at the end, rad.
-    """
-    inverse = np.linalg.inv(matrix)
-    rates = (passage.rates - bias) @ inverse.T
-    attitude = integrate(rates, passage.seconds)
-    weighted = (attitude.to_end @ inverse) * passage.seconds[:, None, None]
-    by_matrix = -np.einsum("kir,kc->irc", weighted, rates).reshape(3, 9)
-    by_bias = -weighted.sum(axis=0)
-    noise = weighted * passage.density / np.sqrt(passage.seconds)[:, None, None]
-    covariance = np.einsum("kir,kjr->ij", noise, noise)
-    covariance = covariance + scatter[0] ** 2 * by_bias @ by_bias.T + scatter[1] ** 2 * np.eye(3)
-    slope = np.hstack([by_matrix, by_bias])
-    return IntegratedMotion(attitude.whole, slope, covariance, float(passage.seconds.sum()))
 
 
 @dataclass(frozen=True)
@@ -315,7 +417,8 @@ class _AtStop:
         design[:, self.place] = self.matrix @ self.level.T
         design[:, -1] = self.matrix @ self.ups[i]
         rest = stop.mean - self.matrix @ self.earth(i) - self.bias
-        return design, rest, np.hypot(stop.sigma, self.data.between(stop))
+        sigma = np.hypot(stop.sigma, self.data.between(stop))
+        return Rows(design, rest, sigma, np.eye(3)[:, None])
 
     def motion(self, i: int, motion: IntegratedMotion, turned: Array) -> Rows:
         """The next upward direction against this one rotated there, along two horizontal axes."""
@@ -331,5 +434,8 @@ class _AtStop:
         design[:, self.place] = motion.seconds * lever @ turned @ self.level.T
         design[:, -1] = motion.seconds * lever @ turned @ self.ups[i]
         rest = across @ (rotated - self.ups[i + 1])
-        variance, axes = np.linalg.eigh(lever @ motion.covariance @ lever.T)
-        return axes.T @ design, axes.T @ rest, np.sqrt(variance)
+        data = self.data
+        spread = motion.covariance(0.0 if data.sways else data.scatter, data.swayed)
+        variance, axes = np.linalg.eigh(lever @ spread @ lever.T)
+        response = np.einsum("mi,sij->msj", axes.T @ lever, motion.response)
+        return Rows(axes.T @ design, axes.T @ rest, np.sqrt(variance), response)

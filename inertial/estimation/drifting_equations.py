@@ -33,7 +33,7 @@ class DriftingEquations:
 
     `blocks`: in the order of their elimination, with the stretch of each; `positions`: of each;
     `sigma`: of the errors; `prior`, `prior_sigma`, `names`: of the shared unknowns; `bias`: the
-    first of the three biases in them.
+    first of the three biases in them; `parameters`: how many of the first have vague priors.
     """
 
     blocks: Sequence[tuple[EquationBlock, Stretch]]
@@ -43,6 +43,7 @@ class DriftingEquations:
     prior_sigma: Array
     names: tuple[tuple[str, str], ...]
     bias: int
+    parameters: int = UNKNOWNS
 
     def system(self, scatter: float = 0.0, walk: float = 0.0) -> System:
         """All equations, the errors eliminated; unit of the readings, and the same per √s."""
@@ -55,7 +56,7 @@ class DriftingEquations:
             np.ones(len(rows)),
             self.prior,
             self.prior_sigma,
-            UNKNOWNS,
+            self.parameters,
             self.names,
             eliminated,
         )
@@ -76,7 +77,7 @@ class DriftingEquations:
         rows, eliminated = eliminate(blocks, every, self.sigma)
         design, observed = rows[:, :shared], rows[:, -1] + rows[:, :shared] @ self.prior
         constant = solve(
-            design, observed, np.ones(len(rows)), self.prior, self.prior_sigma, UNKNOWNS
+            design, observed, np.ones(len(rows)), self.prior, self.prior_sigma, self.parameters
         )
         stacked = np.vstack([rows, np.eye(shared, every + 1)])
         stacked[: len(rows), :shared] *= self.prior_sigma

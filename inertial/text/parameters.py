@@ -39,5 +39,6 @@ BIAS, SCALE, CROSS, MOUNTING, SYMMETRIC = (
 )
 
 JOINT, EXTENDED = "joint", "extended"  # results: of the joint fit, with the unmodelled effects
+FREE = "free_positions"  # of static positions of unknown attitude
 STAGES = {"gyro": "gyroscope", "accel": "accelerometer"}  # by the sensor as columns call it
 SENSOR_OF = {"accelerometer": "accel", "gyroscope": "gyro"}

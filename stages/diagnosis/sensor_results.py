@@ -13,12 +13,11 @@ from inertial.campaign.hypotheses import MODEL
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.triad import linear_names
 from inertial.text.messages import _
-from inertial.text.parameters import BIAS, JOINT, SCALE
+from inertial.text.parameters import BIAS, FREE, JOINT, SCALE
 from stages.diagnosis.decision import Decision, alarms_of, decided
 from stages.diagnosis.result import Result, covariance_by_ids, covariance_of, ordered, result_of
 
 TWELVE = frozenset(linear_names())
-FREE = "free_positions"  # method
 BY_FREE_POSITIONS = _(
     "No attitude is known, so the result is that of static positions of unknown attitude."
 )

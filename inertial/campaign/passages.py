@@ -1,0 +1,86 @@
+"""The motions from each static position of unknown attitude to the next.
+
+A motion is the blocks of phase `between`, one for each record, from the end of a rest to the
+beginning of the next one in the same log; where one of them is missing, no attitude can be carried
+through.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import Part
+from inertial.campaign.unknown_attitude import FreeStaticPosition
+from inertial.estimation.between_positions import Passage
+from inertial.tables import GYRO
+from inertial.text.messages import _
+
+Array = NDArray[np.float64]
+
+BETWEEN = "between"  # phase of the blocks from one rest to the next
+
+
+@dataclass(frozen=True)
+class RecordedPassage:
+    """A motion, its place in the tables, and the time, s, and temperature, K, of each record."""
+
+    part: Part
+    log: str
+    passage: Passage
+    time: Array
+    temperature: Array
+
+
+def passages_of(
+    positions: Sequence[FreeStaticPosition], blocks: pd.DataFrame, noise: NoiseLevels
+) -> tuple[list[RecordedPassage], list[Part]]:
+    """The motions from each rest to the next, and those left out with the reason."""
+    moving = blocks[blocks["phase"] == BETWEEN].sort_values(["log", "from_record"])
+    passages: list[RecordedPassage] = []
+    left_out: list[Part] = []
+    for i, (before, behind) in enumerate(pairwise(positions)):
+        if before.log != behind.log:
+            continue
+        name = f"{before.label} to {behind.label}"
+        inside = (moving["from_record"] >= before.after) & (moving["to_record"] <= behind.first)
+        part = moving[inside & (moving["log"] == before.log)]
+        density = noise.of(name, "rest", GYRO)
+        if refusal := refusal_of(part, before, behind, density):
+            left_out.append(Part(name, BETWEEN, refusal))
+            continue
+        seconds, time, temperature = (
+            part[column].to_numpy(np.float64) for column in ("seconds", "time", "temperature")
+        )
+        passage = Passage(i, part[GYRO].to_numpy(np.float64), seconds, density)
+        own = Part(name, BETWEEN)
+        passages.append(RecordedPassage(own, before.log, passage, time, temperature))
+    return passages, left_out
+
+
+def refusal_of(
+    part: pd.DataFrame, before: FreeStaticPosition, behind: FreeStaticPosition, density: Array
+) -> str:
+    """Why no attitude can be carried from one rest to the next; empty where it can."""
+    if part.empty:
+        return _("the motion between them is not recorded")
+    ends = np.append(before.after, part["to_record"].to_numpy(np.int64))
+    starts = np.append(part["from_record"].to_numpy(np.int64), behind.first)
+    masked = int((starts - ends).sum())
+    if masked:
+        return _(
+            "{masked} records are masked while it moves, so no attitude is carried through",
+            masked=masked,
+        )
+    lost = float(part["missing_s"].sum())
+    if lost:
+        return _(
+            "{lost:.2f} s are lost while it moves, so no attitude is carried through", lost=lost
+        )
+    if not np.isfinite(density).all() or part[[*GYRO, "seconds"]].isna().any(axis=None):
+        return _("all three gyros and the time are needed to carry an attitude through")
+    return ""
