@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from inertial.formats.account import Integers
 from inertial.formats.columns import column_reader
 from inertial.formats.columns.column_layout import ticks_per_second
 from inertial.tables import AXES
@@ -42,7 +43,9 @@ class ColumnLog:
             return first or 0.0, None, None
         return first or 0.0, median / self._ticks, mean / self._ticks
 
-    def _ticks_of_one_sensor(self, readings: Iterable[column_reader.Reading]) -> Iterator[Reals]:
+    def _ticks_of_one_sensor(
+        self, readings: Iterable[column_reader.Reading]
+    ) -> Iterator[Reals | Integers]:
         """The times of one sensor, for two may come in rows of their own."""
         for reading in readings:
             rows = reading.records
@@ -56,7 +59,7 @@ class ColumnLog:
             rows = reading.records
             if number == 0:
                 self._refuse_unsigned(rows)
-            samples = {
+            samples: dict[str, Any] = {
                 "record": rows.record,
                 "offset": rows.offset,
                 "line": rows.line,

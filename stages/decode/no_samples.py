@@ -50,6 +50,17 @@ def no_samples(
                 "receiver has corrected, such as CORRIMU and INSPVA, cannot be calibrated"
             ),
         )
+    if "message" in layout and names:
+        return Refusal(
+            file,
+            "",
+            _("no ${name}, but {messages}", name=layout["message"], messages=_listed(names)),
+            f"${layout['message']}",
+            _(
+                "record anew with $VNWRG,06,19*XX; what the sensor has compensated, such as "
+                "VNYMR, cannot be calibrated"
+            ),
+        )
     if first is not None:
         return _all_refused(file, layout, count[REFUSED], first)
     if names or count[NOT_SELECTED]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from inertial import tables
+from inertial.formats.columns import vectornav_lines
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.campaign_units import CHANNEL_UNITS, DEGREE, PER_ROOT_HOUR, in_si
 from inertial.text.messages import _
@@ -253,7 +254,7 @@ def _layout(
                 _("one of {value}", value=", ".join(formats) or "formats, of which there are none"),
                 _("correct the name or add it to formats"),
             )
-        return formats[item["format"]], ["formats", item["format"]]
+        return _written_out(formats[item["format"]]), ["formats", item["format"]]
     if "format" not in entry:
         raise file.refuse_text(
             key,
@@ -261,7 +262,12 @@ def _layout(
             _("format, for the instrument {name} has none of its own", name=entry["name"]),
             _("name one of formats"),
         )
-    return entry["format"], ["instrument", "format"]
+    return _written_out(entry["format"]), ["instrument", "format"]
+
+
+def _written_out(layout: dict[str, Any]) -> dict[str, Any]:
+    """The layout with the columns that its kind implies."""
+    return vectornav_lines.layout_of(layout) if layout["kind"] == "vectornav" else layout
 
 
 def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[str, Any]) -> None:
@@ -276,6 +282,7 @@ def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[
                     _("add them to the instrument"),
                 )
         return
+    _check_text(file, key, layout)
     if "gyro" not in layout and "accelerometer" not in layout:
         raise file.refuse_text(
             key, _("neither gyro nor accelerometer"), _("at least one of them"), "add its columns"
@@ -297,6 +304,33 @@ def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[
                 _("the largest count, above zero_counts {zero:g}", zero=max(zeros)),
                 _("correct it: 65535 for unsigned counts of 16 bits"),
             )
+
+
+RATES = {"sample": "rate_hz", "tick": "ticks_per_s"}  # what a time in this unit requires
+
+
+def _check_text(file: YamlFile, key: Key, layout: dict[str, Any]) -> None:
+    """Its time must have a unit, and a number must not hold what separates two of them."""
+    time = layout.get("time") or {}
+    rate = RATES.get(time.get("unit", ""))
+    if time.get("column") is None:
+        missing = [] if not time or "rate_hz" in time else ["rate_hz"]
+    else:
+        missing = [each for each in ("unit", rate) if each and each not in time]
+    if missing:
+        raise file.refuse_text(
+            [*key, "time"],
+            _("no key {missing!r}", missing=missing[0]),
+            _("column with unit, or rate_hz; rate_hz with sample, ticks_per_s with tick"),
+            f"add {missing[0]}",
+        )
+    if layout.get("decimal") == "," == layout.get("delimiter"):
+        raise file.refuse(
+            [*key, "decimal"],
+            ",",
+            _("another character than the delimiter"),
+            _("correct decimal or delimiter"),
+        )
 
 
 def logs(

@@ -5,8 +5,8 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
-from inertial.formats.columns import text_reader as cutting
-from inertial.formats.columns.text_reader import text_chunks
+from inertial.formats.columns import text_lines as cutting
+from inertial.formats.columns.text_lines import text_chunks
 
 PARTS = st.lists(
     st.sampled_from([b"one", b"", b"\r", b"\x00", b"a\rb", b"\n", b"\r\n"]), max_size=40

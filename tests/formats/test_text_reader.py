@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from inertial.formats.columns import text_reader
-from inertial.formats.columns.text_reader import MAX_LINE_BYTES
+from inertial.formats.columns.text_lines import MAX_LINE_BYTES
 
 LAYOUT = {
     "time": {"column": 1, "unit": "s"},

@@ -13,7 +13,9 @@ from typing import Any
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 
-_TICKS = {"s": 1.0, "ms": 1e3, "us": 1e6}  # in a second
+ISO_8601 = "iso8601"  # dates with the time of the day, which are read as nanoseconds
+EXACT = ("ns", ISO_8601)  # stamps that a floating-point number does not hold to the last digit
+_TICKS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9, ISO_8601: 1e9}  # in a second
 _NAMES_SHOWN = 60  # of a container, that may have thousands
 
 
@@ -47,6 +49,8 @@ class ColumnLayout:
     temperature: Column | None
     label: tuple[Column, ...]  # the plan selects rows by their texts
     by_name: bool  # some column goes by name, so the header has their number
+    time_unit: str = "s"
+    decimal: str = "."  # between the digits of a number in a text
 
     @property
     def triads(self) -> tuple[Triad, Triad]:
@@ -60,9 +64,15 @@ class ColumnLayout:
         return [column for column in columns if column]
 
     @property
+    def exact_time(self) -> Column | None:
+        """The time, where a floating-point number would not hold all its digits."""
+        return self.time if self.time_unit in EXACT else None
+
+    @property
     def texts(self) -> list[Column]:
         """The columns whose text is required."""
-        return [*self.label, *(column for triad in self.triads for column, _ in triad.rows)]
+        rows = [column for triad in self.triads for column, _ in triad.rows]
+        return [*self.label, *rows, *([self.exact_time] if self.exact_time else [])]
 
     @property
     def number_indices(self) -> list[int]:
@@ -86,11 +96,18 @@ class ColumnLayout:
         return [*self.of_every_row, *self.texts, *self.axes]
 
 
+def without_comment_mark(header: str) -> str:
+    """A line of a header, or its first name, without what marks it as a comment."""
+    return header.strip().lstrip("#%/").lstrip()
+
+
 def ticks_per_second(layout: Mapping[str, Any]) -> float:
     """How many ticks of the log's time make a second; a tick is a sample where it counts these."""
     time = layout["time"]
     if time.get("column") is None or time["unit"] == "sample":
         return float(time["rate_hz"])
+    if time["unit"] == "tick":
+        return float(time["ticks_per_s"])
     return _TICKS[time["unit"]]
 
 
@@ -118,6 +135,8 @@ def column_layout(
         temperature=finder.column_of("temperature", layout.get("temperature")),
         label=tuple(finder.known("label", name) for name in layout.get("label") or ()),
         by_name=finder.by_name,
+        time_unit=(time or {}).get("unit", "s"),
+        decimal=layout.get("decimal", "."),
     )
 
 
@@ -149,6 +168,8 @@ class _Finder:
         return None if name is None else self.known(key, name)
 
     def known(self, key: str, name: str | int) -> Column:
+        if isinstance(name, str) and name not in self._names:
+            name = without_comment_mark(name)
         if isinstance(name, str) and (times := Counter(self._names)[name]):
             if times > 1:
                 holder = "file" if self._container else "header"

@@ -4,13 +4,17 @@ The content decides which, never the name of the file. Numbers have the units of
 `text_reader` and `container` say which rows are refused.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from inertial.formats.columns import text_reader
+from inertial.formats.columns.column_values import Reals
 from inertial.formats.columns.data_rows import Reading, Rows
-from inertial.formats.columns.text_reader import CHUNK_BYTES
+from inertial.formats.columns.text_lines import CHUNK_BYTES
 from inertial.formats.containers import container
 from inertial.formats.file_type import FileType, file_type_of, refuse_no_log
 
@@ -30,9 +34,22 @@ def read(
     """
     refuse_no_log(path)
     if (file_type := file_type_of(path)) is FileType.TEXT:
-        yield from text_reader.read(path, layout, chunk_bytes)
+        readings = text_reader.read(path, layout, chunk_bytes)
     else:
-        yield from container.read(path, layout, _opening(file_type))
+        readings = container.read(path, layout, _opening(file_type))
+    wraps_at = (layout.get("time") or {}).get("wraps_at")
+    yield from readings if wraps_at is None else _unwrapped(readings, wraps_at)
+
+
+def _unwrapped(readings: Iterable[Reading], wraps_at: int) -> Iterator[Reading]:
+    """The same with ticks that go on where a counter began again after `wraps_at` ticks."""
+    last: Reals = np.zeros(0)
+    for reading in readings:
+        if (ticks := reading.records.ticks) is not None and len(ticks):
+            last = np.unwrap(np.append(last, ticks), period=wraps_at)[len(last) :]
+            reading = replace(reading, records=replace(reading.records, ticks=last))
+            last = last[-1:]
+        yield reading
 
 
 def names_in(path: Path) -> list[str] | None:

@@ -1,7 +1,10 @@
-"""The values of one column over some rows of a log, as numbers and as texts."""
+"""The values of one column over some rows of a log, as numbers, as times and as texts."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from datetime import UTC, datetime
+from decimal import Decimal
 from typing import Any, Protocol
 
 import numpy as np
@@ -9,11 +12,16 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
-from inertial.formats.arrow_arrays import numbers_of
+from inertial.formats.account import Integers
+from inertial.formats.arrow_arrays import array_of_texts, numbers_of
 
 Reals = NDArray[np.float64]
+Truths = NDArray[np.bool_]
 
+_DECIMAL = pa.decimal128(38, 9)  # holds every number of nanoseconds since 1970 to its last digit
+_TO_WHOLE = pc.CastOptions(target_type=pa.int64(), allow_decimal_truncate=True)
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_WITH_ZONE = r"[T ].*(Z|[+-]\d\d(:?\d\d)?)$"
 # Of a buffer, for to make a scalar of a number the library imports pandas.
 _NAN = pa.Array.from_buffers(pa.float64(), 1, [None, pa.py_buffer(np.array([np.nan]))])[0]
 
@@ -24,27 +32,62 @@ class ColumnValues(Protocol):
     def numbers(self) -> Reals:
         """The numbers; NaN or infinite where there is none, (n,)."""
 
+    def nanoseconds(self, *, iso: bool) -> tuple[Integers, Truths]:
+        """Whole nanoseconds, of dates and times in ISO 8601 those since 1970; and which are known.
+
+        (n,) each. A stamp of 19 digits is not rounded, as a floating-point number would be.
+        """
+
     def texts(self) -> list[str]:
         """The texts that the plan selects rows by, (n,)."""
+
+    def blank(self) -> Truths:
+        """Where nothing stands, (n,)."""
 
     def text(self, row: int) -> str:
         """What stands in one row, for whoever has to correct it."""
 
 
 class TextValues:
-    """A column of a log of text: its numbers are what the texts say."""
+    """A column of a log of text: its numbers are what the texts say.
 
-    def __init__(self, texts: pa.ChunkedArray) -> None:
+    `decimal`: what stands between the whole and the fraction of a number, a point or a comma.
+    """
+
+    def __init__(self, texts: pa.ChunkedArray, decimal: str = ".") -> None:
         self._texts = texts
+        self._decimal = decimal
+
+    def _in_digits(self) -> pa.ChunkedArray:
+        """The texts as numbers are written everywhere; a point where a comma is due is none."""
+        if self._decimal == ".":
+            return self._texts
+        return pc.replace_substring(pc.replace_substring(self._texts, ".", "_"), ",", ".")
 
     def numbers(self) -> Reals:
         """The numbers that the texts are, NaN where one is none, (n,)."""
+        texts = self._in_digits()
         try:
-            return numbers_of(pc.cast(self._texts, pa.float64()))
+            return numbers_of(pc.cast(pc.replace_substring_regex(texts, "^$", "nan"), pa.float64()))
         except pa.ArrowInvalid:  # some are none: one by one
             return np.array(
-                [float(text) if _NUMBER.fullmatch(text) else np.nan for text in self.texts()]
+                [float(text) if _NUMBER.fullmatch(text) else np.nan for text in texts.to_pylist()]
             )
+
+    def nanoseconds(self, *, iso: bool) -> tuple[Integers, Truths]:
+        """What the texts say, also as 1.40363657975856E+018, (n,) each."""
+        if iso:
+            return _times(self._texts)
+        texts = self._in_digits()
+        for kind in (pa.int64(), _DECIMAL):
+            with suppress(pa.ArrowInvalid):
+                whole = pc.cast(pc.cast(texts, kind), options=_TO_WHOLE)
+                return numbers_of(whole), np.ones(len(whole), bool)
+        return _one_by_one(texts, _whole)
+
+    def blank(self) -> Truths:
+        """Which texts are empty, (n,)."""
+        return np.asarray(numbers_of(pc.utf8_length(self._texts)) == 0)
 
     def texts(self) -> list[str]:
         """The texts as they stand in the file, (n,)."""
@@ -66,6 +109,15 @@ class NumberValues:
         """The numbers, (n,)."""
         return self._values.astype(np.float64)
 
+    def nanoseconds(self, *, iso: bool) -> tuple[Integers, Truths]:
+        """The numbers, if they are not to be dates, (n,) each."""
+        known = np.isfinite(self._values) & (not iso)
+        return np.where(known, self._values, 0).astype(np.int64), known
+
+    def blank(self) -> Truths:
+        """Nowhere: what is no number is damaged, (n,)."""
+        return np.zeros(len(self._values), bool)
+
     def texts(self) -> list[str]:
         """The numbers in digits, whole ones without a point: 3, not 3.0, (n,)."""
         return [_digits(value) for value in self._values.tolist()]
@@ -85,6 +137,16 @@ class WordValues:
         """None: all NaN, (n,)."""
         return np.full(len(self._words), np.nan)
 
+    def nanoseconds(self, *, iso: bool) -> tuple[Integers, Truths]:
+        """The dates among the words, (n,) each."""
+        if iso:
+            return _times(pa.chunked_array([array_of_texts(self.texts())]))
+        return np.zeros(len(self._words), np.int64), np.zeros(len(self._words), bool)
+
+    def blank(self) -> Truths:
+        """Where there is no word, (n,)."""
+        return np.array([not text for text in self.texts()], bool)
+
     def texts(self) -> list[str]:
         """The words, empty where there is none, (n,)."""
         return [self.text(row) for row in range(len(self._words))]
@@ -98,6 +160,8 @@ class WordValues:
 def arrow_values(column: pa.ChunkedArray) -> ColumnValues:
     """The values of an Arrow column of any type; null is no number, and no text."""
     kind = column.type
+    if pa.types.is_timestamp(kind):
+        return WordValues(pc.cast(column, pa.string()).to_pylist())
     if pa.types.is_integer(kind) and not column.null_count:
         return NumberValues(numbers_of(column))
     if pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_decimal(kind):
@@ -108,3 +172,38 @@ def arrow_values(column: pa.ChunkedArray) -> ColumnValues:
 
 def _digits(value: float) -> str:
     return str(int(value)) if isinstance(value, int) or value.is_integer() else repr(value)
+
+
+def _times(texts: pa.ChunkedArray) -> tuple[Integers, Truths]:
+    """Dates and times in ISO 8601, one without a zone in UTC, as ns since 1970; which are known."""
+    texts = pc.replace_substring(texts, ",", ".")
+    zoned = pc.match_substring_regex(texts, _WITH_ZONE)
+    with suppress(pa.ArrowInvalid):
+        whole = pc.if_else(zoned, texts, pc.replace_substring_regex(texts, "$", "Z"))
+        times = pc.cast(pc.cast(whole, pa.timestamp("ns", "UTC")), pa.int64())
+        return numbers_of(times), np.ones(len(times), bool)
+    return _one_by_one(texts, _time)
+
+
+def _time(text: str) -> int:
+    """One of them, in any notation of ISO 8601, to the microsecond."""
+    time = datetime.fromisoformat(text)
+    elapsed = (time if time.tzinfo else time.replace(tzinfo=UTC)) - datetime(1970, 1, 1, tzinfo=UTC)
+    return ((elapsed.days * 86400 + elapsed.seconds) * 10**6 + elapsed.microseconds) * 1000
+
+
+def _whole(text: str) -> int:
+    """The whole part of a number."""
+    if not _NUMBER.fullmatch(text):
+        raise ValueError
+    return int(Decimal(text))
+
+
+def _one_by_one(texts: pa.ChunkedArray, converted: Callable[[str], int]) -> tuple[Integers, Truths]:
+    """The whole numbers that texts mean, 0 where one means none; and which these are."""
+    found = np.zeros(len(texts), np.int64)
+    known = np.zeros(len(texts), bool)
+    for row, text in enumerate(texts.to_pylist()):
+        with suppress(ValueError, ArithmeticError):
+            found[row], known[row] = converted(text), True
+    return found, known

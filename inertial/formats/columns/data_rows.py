@@ -4,14 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inertial.formats.account import Account, Integers, RefusedLine, quoted
-from inertial.formats.columns.column_layout import Column, ColumnLayout, Triad
-from inertial.formats.columns.column_values import ColumnValues, Reals
+from inertial.formats.columns.column_layout import ISO_8601, Column, ColumnLayout, Triad
+from inertial.formats.columns.column_values import ColumnValues, Reals, Truths
 from inertial.text.messages import _
-
-Truths = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -21,7 +18,7 @@ class Rows:
     record: Integers  # number among the data rows of the log, refused ones counted, (n,)
     offset: Integers  # byte in the file where the line begins; 0 where rows are no lines, (n,)
     line: Integers  # number of the line, or of the row where rows are no lines, from 1, (n,)
-    ticks: Reals | None  # time; unit by `ticks_per_second` of the layout, (n,)
+    ticks: Reals | Integers | None  # time; unit by `ticks_per_second` of the layout, (n,)
     mean_of: Reals | None  # number of samples that the row is the mean of, (n,)
     accelerometer: Reals  # x, y, z, as they stand in the file, (n, 3)
     gyro: Reals  # likewise
@@ -66,29 +63,45 @@ def sort_rows(
 ) -> SortedRows:
     """The rows whose wanted columns, by index, are `fields`; `unreadable` ones are refused anyway.
 
-    A row is refused where the layout wants a number and there is no finite one.
+    A row is refused where the layout wants a number and there is no finite one. A sensor all of
+    whose columns are blank in a row is not recorded in it.
     """
     count = len(place.record)
     reasons = dict(unreadable or {})
     intact = np.ones(count, bool)
     intact[list(reasons)] = False
-    held = [_held(triad, fields, count) for triad in columns.triads]
+    exact = columns.exact_time
+    required = dict.fromkeys([*columns.of_every_row, *columns.axes])
+    numbers = {each: fields[each.index].numbers() for each in required if each != exact}
+    held = [_held(triad, fields, numbers, count) for triad in columns.triads]
     selected = _selected(columns, held)
-    wanted = [(column, selected) for column in columns.of_every_row]
+    wanted = [(column, selected) for column in columns.of_every_row if column != exact]
     for triad, holds in zip(columns.triads, held, strict=True):
         wanted += [(column, holds) for column in triad.columns if column]
-    numbers = {column: fields[column.index].numbers() for column, _unused in wanted}
 
-    for column, needed in wanted:
-        for row in np.flatnonzero(intact & needed & ~np.isfinite(numbers[column])).tolist():
-            value = quoted(fields[column.index].text(row).encode())
+    def refuse(column: Column, where: Truths, expected: str) -> None:
+        for row in np.flatnonzero(intact & where).tolist():
             reasons[row] = _(
-                "column {name} is '{value}', expected a finite number",
+                "column {name} is '{value}', expected {expected}",
                 name=column.name,
-                value=value,
+                value=quoted(fields[column.index].text(row).encode()),
+                expected=expected,
             )
             intact[row] = False
+
+    if exact is not None:
+        iso = columns.time_unit == ISO_8601
+        stamps, known = fields[exact.index].nanoseconds(iso=iso)
+        whole = _("a time such as 2026-11-02T09:30:00.005Z") if iso else _("nanoseconds")
+        refuse(exact, selected & ~known, whole)
+    for column, needed in wanted:
+        refuse(column, needed & ~np.isfinite(numbers[column]), _("a finite number"))
     taken = intact & selected
+
+    def ticks() -> Reals | Integers | None:
+        if columns.counts_rows:
+            return record.astype(np.float64)
+        return stamps[taken] if exact is not None else of(columns.time)
 
     def of(column: Column | None) -> Reals | None:
         return None if column is None else numbers[column][taken]
@@ -102,7 +115,7 @@ def sort_rows(
         record=record,
         offset=place.offset[taken],
         line=place.line[taken],
-        ticks=record.astype(np.float64) if columns.counts_rows else of(columns.time),
+        ticks=ticks(),
         mean_of=of(columns.mean_of),
         accelerometer=accelerometer,
         gyro=gyro,
@@ -113,9 +126,17 @@ def sort_rows(
     return SortedRows(rows, taken, intact & ~selected, reasons)
 
 
-def _held(triad: Triad, fields: Mapping[int, ColumnValues], count: int) -> Truths:
+def _held(
+    triad: Triad,
+    fields: Mapping[int, ColumnValues],
+    numbers: Mapping[Column, Reals],
+    count: int,
+) -> Truths:
     """Which rows hold the triad, (n,)."""
+    there = [column for column in triad.columns if column]
     holds = np.ones(count, bool)
+    if there and all(np.isnan(numbers[column]).any() for column in there):
+        holds = ~np.logical_and.reduce([fields[column.index].blank() for column in there])
     for column, value in triad.rows:
         holds &= np.array([text == value for text in fields[column.index].texts()], bool)
     return holds

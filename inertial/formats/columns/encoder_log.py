@@ -42,7 +42,7 @@ class Encoder:
             self.refused += reading.refused
             rows = reading.records
             if rows.ticks is not None and rows.table_angle is not None:
-                ticks.append(rows.ticks)
+                ticks.append(rows.ticks.astype(np.float64))
                 angles.append(rows.table_angle)
                 count += len(rows.ticks)
             if count > MAX_READINGS:

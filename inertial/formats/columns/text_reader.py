@@ -1,11 +1,19 @@
-"""Columns of text: whole chunks by pyarrow, lines that it refuses one by one."""
+"""Reader of a text log of columns: one data row per sample.
+
+The fields of a row stand between delimiters, by default any white space; blanks around a value
+do not count. Numbers have the units of the file. A row is refused that has another number of
+fields than the others, or no finite number where the layout requires one. Where every row ends
+with a delimiter the nothing after it is no field.
+
+pyarrow parses a chunk of lines at once. Lines with another number of fields, and chunks that it
+cannot parse as the layout requires, are examined line by line.
+"""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from io import BufferedReader
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import pyarrow as pa
@@ -15,128 +23,46 @@ from pyarrow import csv
 from inertial.formats.account import (
     BLANK,
     DECODED,
-    HEADER,
     NOT_SELECTED,
     REFUSED,
-    Account,
     Integers,
-    RefusedLine,
     quoted,
 )
 from inertial.formats.arrow_arrays import numbers_of
-from inertial.formats.columns.column_layout import ColumnLayout, column_layout
+from inertial.formats.columns import vectornav_lines
+from inertial.formats.columns.column_layout import (
+    ColumnLayout,
+    column_layout,
+    without_comment_mark,
+)
 from inertial.formats.columns.column_values import ColumnValues, NumberValues, TextValues
 from inertial.formats.columns.data_rows import Place, Reading, sort_rows
+from inertial.formats.columns.text_lines import (
+    CHUNK_BYTES,
+    MAX_LINE_BYTES,
+    Chunk,
+    HeaderLines,
+    RowLines,
+    text_chunks,
+)
 from inertial.text.messages import _
-
-# ---- A text log in chunks of whole lines, so that a log of any length passes through memory.
-#
-# A line ends with LF or CRLF, also mixed in one file; the last one may have no end. A lone CR ends
-# nothing: it is part of the text.
-
-CHUNK_BYTES = 7 << 19
-MAX_LINE_BYTES = 1 << 20  # longer is no line of a log, such as the zeros after a crash
-
-
-@dataclass(frozen=True)
-class Chunk:
-    """Some consecutive lines of a log; the arrays have one entry per line, (n,).
-
-    Of a line longer than `MAX_LINE_BYTES`, `data` may hold only the beginning; `lengths` has
-    its true length. The reader refuses it.
-    """
-
-    data: bytes
-    starts: Integers  # byte in `data` where a line begins
-    ends: Integers  # byte in `data` after its text, the line end left out
-    lengths: Integers  # byte in the file, with the line end
-    offset: int  # byte in the file where `data` begins
-    first_line: int  # number of the first line, from 1
-
-    @property
-    def offsets(self) -> Integers:
-        """Where each line begins in the file, byte."""
-        return self.offset + self.starts
-
-    @property
-    def lines(self) -> Integers:
-        """Number of each line in the file, from 1."""
-        return self.first_line + np.arange(len(self.starts))
-
-    def text(self, index: int) -> bytes:
-        """The line `index` of the chunk without its line end."""
-        return self.data[self.starts[index] : self.ends[index]]
-
-
-def text_chunks(path: Path, size: int = CHUNK_BYTES) -> Iterator[Chunk]:
-    """The lines of the file at `path`, about `size` bytes at a time.
-
-    No more than the rest of a line and one reading of `size` bytes are held.
-    """
-    offset, line = 0, 1
-    with path.open("rb") as file:
-        rest = b""
-        while read := file.read(size):
-            data = rest + read
-            end = data.rfind(b"\n") + 1
-            if end == 0 and len(data) > MAX_LINE_BYTES:
-                length = len(data) + _skip_to_line_end(file, size)
-                yield _overlong(data[:MAX_LINE_BYTES], length, offset, line)
-                offset, line, rest = offset + length, line + 1, b""
-                continue
-            if end:
-                chunk = _cut(data[:end], offset, line)
-                yield chunk
-                offset, line = offset + end, line + len(chunk.starts)
-            rest = data[end:]
-        if rest:
-            yield _cut(rest, offset, line)
-
-
-def _cut(data: bytes, offset: int, line: int) -> Chunk:
-    characters = np.frombuffer(data, np.uint8)
-    feeds = np.flatnonzero(characters == ord("\n"))
-    stops, ends = feeds + 1, feeds
-    if not data.endswith(b"\n"):
-        stops, ends = np.append(stops, len(data)), np.append(ends, len(data))
-    starts = np.concatenate([[0], stops[:-1]])
-    before_the_end = characters[np.maximum(ends - 1, 0)]
-    returns = (before_the_end == ord("\r")) & (ends > starts)
-    return Chunk(data, starts, ends - returns, stops - starts, offset, line)
-
-
-def _skip_to_line_end(file: BufferedReader, size: int) -> int:
-    """Read on past the next line end; the number of bytes read."""
-    skipped = 0
-    while read := file.readline(size):
-        skipped += len(read)
-        if read.endswith(b"\n"):
-            break
-    return skipped
-
-
-def _overlong(beginning: bytes, length: int, offset: int, line: int) -> Chunk:
-    return Chunk(
-        beginning,
-        np.array([0]),
-        np.array([len(beginning)]),
-        np.array([length]),
-        offset,
-        line,
-    )
-
-
-# ---- Reader of a text log of columns: some header lines, then one data row per sample.
-#
-# The fields of a row stand between delimiters, by default any white space; blanks around a value
-# do not count. Numbers have the units of the file. A row is refused that has another number of
-# fields than the others, or no finite number where the layout requires one.
-#
-# pyarrow parses a chunk of lines at once. Lines with another number of fields, and chunks that it
-# cannot parse as the layout requires, are examined line by line.
 
 FIRST_ROWS = 1000  # that determine the number of fields
 SEPARATOR = b"\x1f"  # between the fields of rows that are examined one by one
+
+
+class _Sorter(Protocol):
+    """Separates the lines that may be rows from the others, chunk after chunk."""
+
+    names: bytes
+
+    def rows_of(self, chunk: Chunk) -> RowLines: ...
+
+
+def _sorter(layout: Mapping[str, Any]) -> _Sorter:
+    if "message" in layout:
+        return vectornav_lines.MessageLines(layout)
+    return HeaderLines(layout)
 
 
 def read(
@@ -151,39 +77,52 @@ def read(
     """
     text = layout.get("delimiter")
     delimiter = None if text is None else str(text).encode()
-    header_lines = int(layout.get("header_lines") or 0)
-    names, lengths = _beginning(path, delimiter, header_lines, chunk_bytes)
+    names, lengths, closed = _beginning(path, layout, delimiter, chunk_bytes)
     # A file without data rows lacks no columns.
     columns = column_layout(layout if lengths else {}, names, path.name)
-    fields = len(names) if columns.by_name else _usual_length(columns, lengths)
+    fields = _usual_length(columns, lengths)
+    if columns.by_name and not (fields == len(names) + 1 and closed[fields] == lengths[fields]):
+        fields = len(names)
 
     records = 0
+    sorter = _sorter(layout)
     for chunk in text_chunks(path, chunk_bytes):
-        header = min(max(header_lines + 1 - chunk.first_line, 0), len(chunk.starts))
-        rows = _rows(chunk, header, delimiter, columns, fields)
-        yield _reading(chunk, header, rows, columns, records)
-        records += len(rows.lines) + len(rows.reasons)
+        lines = sorter.rows_of(chunk)
+        rows = _rows(lines.chunk, delimiter, columns, fields)
+        yield _reading(lines, rows, columns, records)
+        records += len(rows.lines) + len(rows.reasons) + lines.all_lost
 
 
 def _beginning(
-    path: Path, delimiter: bytes | None, header_lines: int, chunk_bytes: int
-) -> tuple[list[str], Counter[int]]:
-    """The names in the last header line, and how many of the first rows have how many fields."""
-    names: list[str] = []
+    path: Path, layout: Mapping[str, Any], delimiter: bytes | None, chunk_bytes: int
+) -> tuple[list[str], Counter[int], Counter[int]]:
+    """The names of the columns, how many of the first rows have how many fields, the last empty."""
     lengths: Counter[int] = Counter()
+    closed: Counter[int] = Counter()
+    sorter = _sorter(layout)
     for chunk in text_chunks(path, chunk_bytes):
-        for index, line in enumerate(chunk.lines.tolist()):
-            text = chunk.text(index)
-            if line == header_lines:
-                header = _separated(text, delimiter).decode("utf-8-sig", "backslashreplace")
-                names = [name.strip() for name in header.split(SEPARATOR.decode())]
-            elif line > header_lines and text.strip():
-                lengths[_length(_separated(text, delimiter))] += 1
-                if lengths.total() == FIRST_ROWS:
-                    return names, lengths
+        rows = sorter.rows_of(chunk).chunk
+        for index in range(min(len(rows), FIRST_ROWS)):
+            if rows.text(index).strip():
+                row = _separated(rows.text(index), delimiter)
+                lengths[_length(row)] += 1
+                closed[_length(row)] += not row.rpartition(SEPARATOR)[2].strip()
         if lengths:
             break
-    return names, lengths
+    return _names(sorter.names, delimiter), lengths, closed
+
+
+def _names(header: bytes, delimiter: bytes | None) -> list[str]:
+    """The names of the columns in a line of the header, which may be marked as a comment."""
+    if not header:
+        return []
+    try:
+        text = header.decode("utf-8-sig")
+    except UnicodeDecodeError:  # of a program for Windows
+        text = header.decode("cp1252", "backslashreplace")
+    row = _separated(without_comment_mark(text).encode(), delimiter)
+    names = [name.strip() for name in row.decode().split(SEPARATOR.decode())]
+    return names[:-1] if len(names) > 1 and not names[-1] else names
 
 
 def _usual_length(columns: ColumnLayout, lengths: Mapping[int, int]) -> int:
@@ -203,59 +142,47 @@ class _Rows:
     blank: list[int]  # lines of the chunk
 
 
-def _reading(
-    chunk: Chunk, header: int, rows: _Rows, columns: ColumnLayout, records: int
-) -> Reading:
-    """The samples in the rows of `chunk`, with `records` rows before it."""
-    is_row = np.zeros(len(chunk.starts), bool)
+def _reading(lines: RowLines, rows: _Rows, columns: ColumnLayout, records: int) -> Reading:
+    """The samples in the rows of a chunk, with `records` rows before it."""
+    chunk, account = lines.chunk, lines.account
+    is_row = np.zeros(len(chunk), bool)
     is_row[rows.lines] = True
     is_row[list(rows.reasons)] = True
-    numbers = records - 1 + np.cumsum(is_row)[rows.lines]
+    row_numbers: Integers = np.cumsum(is_row, dtype=np.int64) + lines.lost
+    numbers = records - 1 + row_numbers[rows.lines]
     place = Place(numbers, chunk.offsets[rows.lines], chunk.lines[rows.lines])
     rows_sorted = sort_rows(columns, rows.columns, place)
     invalid = {int(rows.lines[row]): reason for row, reason in rows_sorted.reasons.items()}
     reasons = rows.reasons | invalid
-    account = Account()
-    account.add_all(HEADER, "", chunk.lengths[:header])
     account.add_all(BLANK, "", chunk.lengths[rows.blank])
     account.add_all(DECODED, "", chunk.lengths[rows.lines[rows_sorted.taken]])
     account.add_all(NOT_SELECTED, "", chunk.lengths[rows.lines[rows_sorted.not_selected]])
     account.add_all(REFUSED, "", chunk.lengths[sorted(reasons)])
-    refused = [
-        RefusedLine(
-            line=chunk.first_line + index,
-            offset=chunk.offset + int(chunk.starts[index]),
-            bytes=int(chunk.lengths[index]),
-            reason=reasons[index],
-            text=quoted(chunk.text(index)),
-        )
-        for index in sorted(reasons)
-    ]
+    refused = [chunk.refused(index, reason) for index, reason in reasons.items()]
+    refused = sorted(lines.refused + refused, key=lambda line: line.line)
     return Reading(rows_sorted.samples, refused, account)
 
 
-def _rows(
-    chunk: Chunk, header: int, delimiter: bytes | None, columns: ColumnLayout, fields: int
-) -> _Rows:
-    """The rows of `chunk` behind `header` lines."""
-    if columns.all and header < len(chunk.starts) and _is_regular(chunk, header):
-        rows = _parsed(chunk, header, delimiter, columns, fields)
+def _rows(chunk: Chunk, delimiter: bytes | None, columns: ColumnLayout, fields: int) -> _Rows:
+    """The rows of `chunk`."""
+    if columns.all and len(chunk) and _is_regular(chunk):
+        rows = _parsed(chunk, delimiter, columns, fields)
         if rows is not None:
             return rows
-    return _examined(chunk, range(header, len(chunk.starts)), delimiter, columns, fields)
+    return _examined(chunk, range(len(chunk)), delimiter, columns, fields)
 
 
 # ---- chunk by chunk
 
 
-def _is_regular(chunk: Chunk, header: int) -> bool:
+def _is_regular(chunk: Chunk) -> bool:
     """Whether lines and fields are to pyarrow what they are to this format."""
     data = chunk.data
     if SEPARATOR in data:
         return False
     if b"\r" in data and data.count(b"\r") != data.count(b"\r\n"):
         return False
-    if chunk.lengths[header:].max() > MAX_LINE_BYTES:
+    if chunk.lengths.max() > MAX_LINE_BYTES:
         return False
     try:
         return data.isascii() or bool(data.decode())
@@ -264,12 +191,12 @@ def _is_regular(chunk: Chunk, header: int) -> bool:
 
 
 def _parsed(
-    chunk: Chunk, header: int, delimiter: bytes | None, columns: ColumnLayout, fields: int
+    chunk: Chunk, delimiter: bytes | None, columns: ColumnLayout, fields: int
 ) -> _Rows | None:
     """The rows as pyarrow parses them; None where they must be examined line by line."""
-    data, between = _delimited(chunk.data[chunk.starts[header] :], delimiter)
+    data, between = _delimited(chunk.data, delimiter)
     feeds = np.append(np.flatnonzero(np.frombuffer(data, np.uint8) == ord("\n")), len(data))
-    filled = header + np.flatnonzero(np.diff(feeds, prepend=-1) > 1)
+    filled = np.flatnonzero(np.diff(feeds, prepend=-1) > 1)
     found = None
     if columns.number_indices:
         found = _table(data, between, fields, columns, pa.float64())
@@ -280,8 +207,8 @@ def _parsed(
         return None
     values, count, others = found
     lines = np.delete(filled, others)
-    is_other = np.ones(len(chunk.starts), bool)
-    is_other[:header] = is_other[lines] = False
+    is_other = np.ones(len(chunk), bool)
+    is_other[lines] = False
     others = np.flatnonzero(is_other).tolist()
     examined = _examined(chunk, others, delimiter, columns, fields)
     if len(lines) != count or len(examined.lines):
@@ -336,6 +263,7 @@ def _table(
                 include_columns=[str(index) for index in types],
                 column_types={str(index): kind for index, kind in types.items()},
                 null_values=[],
+                decimal_point=columns.decimal,
             ),
         )
     except pa.ArrowInvalid:
@@ -344,7 +272,7 @@ def _table(
     for index, kind in types.items():
         column = table[str(index)]
         if kind == pa.string():
-            values[index] = TextValues(pc.utf8_trim_whitespace(column))
+            values[index] = TextValues(pc.utf8_trim_whitespace(column), columns.decimal)
         else:
             values[index] = NumberValues(numbers_of(column))
             if not np.isfinite(values[index].numbers()).all():
