@@ -139,6 +139,62 @@ def test_unsigned_counts_that_are_not_said_to_be_are_refused_with_their_zero(sim
     assert results["quality/findings"].empty
 
 
+# ---- axes, signs, conventions
+
+
+def test_axes_and_signs_of_each_sensor_undo_those_of_the_log(simple, simple_results, tmp_path):
+    """Columns z, −x, y of the gyros; accelerometers that read −g on the axis that points up."""
+
+    def turned(rows):
+        rows = rows.copy()
+        rows[:, 1:4] = rows[:, [3, 1, 2]] * [1, -1, 1]
+        rows[:, 4:7] = -rows[:, [5, 4, 6]]
+        return rows
+
+    campaign = rewritten(simple, tmp_path / "raw", turned)
+    campaign["instrument"]["gyro"] = {"axes": ["z", "-x", "y"]}
+    campaign["instrument"]["accelerometer"] = {"axes": ["y", "x", "z"], "reads": "gravity"}
+    tell(tmp_path / "raw", campaign)
+    results = chain.run(tmp_path / "raw", tmp_path / "derived")
+    assert results["segment/repairs"].empty
+    np.testing.assert_allclose(values(results), values(simple_results), atol=1e-12, rtol=1e-9)
+
+
+@pytest.mark.parametrize("message", ["columns", "RAWIMUSA"])
+def test_one_reversed_gyro_that_is_stated_needs_no_repair(message, tmp_path):
+    document = in_columns()
+    document["faults"] = [{"flip": {"log": "all", "sensor": "gyro", "axis": "x"}}]
+    if message != "columns":
+        document["receiver"]["message"] = message
+        document["campaign"]["instrument"] = "span-cpt"
+    folder = chain.simulate(document, tmp_path / "raw")
+    campaign = told(folder)
+    repaired = chain.run(folder, tmp_path / "derived")
+    assert list(repaired["segment/repairs"]["repair"]) == ["signs"]
+    if message == "columns":
+        campaign["instrument"]["gyro"] = {"axes": ["-x", "y", "z"]}
+    else:
+        listed = YAML(typ="safe").load(chain.ROOT / "data/instruments.yaml")["span-cpt"]
+        # Its fields are z, −y, x.
+        campaign["instrument"] = listed | {"gyro": listed["gyro"] | {"axes": ["z", "-y", "-x"]}}
+    tell(folder, campaign)
+    results = chain.run(folder, tmp_path / "stated")
+    assert results["segment/repairs"].empty and results["segment/findings"].empty
+    np.testing.assert_allclose(values(results), values(repaired), atol=1e-12, rtol=1e-9)
+
+
+def test_a_table_that_counts_clockwise(simple, simple_results, tmp_path):
+    campaign = rewritten(simple, tmp_path / "raw", lambda rows: rows)
+    for manoeuvre in campaign["plan"]:
+        if "degrees" in manoeuvre:
+            manoeuvre["degrees"] *= -1
+    campaign["table"]["counts"] = "clockwise"
+    tell(tmp_path / "raw", campaign)
+    results = chain.run(tmp_path / "raw", tmp_path / "derived")
+    assert results["segment/repairs"].empty
+    np.testing.assert_array_equal(values(results), values(simple_results))
+
+
 # ---- accelerometers and gyros in a log each
 
 

@@ -1,5 +1,6 @@
 """The campaign file: every grammar example is understood, every mistake is refused by name."""
 
+import json
 import shutil
 from math import radians
 from pathlib import Path
@@ -147,6 +148,16 @@ MISTAKES = {
         "log: session.asc\ngyro: {log: gyro.asc}",
         ["format", "remove gyro: the messages of a receiver hold both sensors"],
     ),
+    "an axis twice": (
+        "span-cpt",
+        "{name: a, gyro: {axes: [x, -x, z]}}",
+        ["instrument.gyro.axes", "each once"],
+    ),
+    "a gyro that reads gravity": (
+        "span-cpt",
+        "{name: a, gyro: {reads: gravity}}",
+        ["instrument.gyro.reads", "axes: [-x, -y, -z]"],
+    ),
     "broken YAML": ("serial: ", "serial: [", ["line", "YAML 1.2"]),
 }
 
@@ -189,6 +200,37 @@ def test_the_schemas_give_a_description_with_every_number():
     for name in ("campaign", "config", "published"):
         missing = [path for path, rule in numbers(schema_of(name), "") if "description" not in rule]
         assert missing == []
+
+
+COUNTS = """{name: a, axes: [z, -x, y], accelerometer: {axes: [x, y, z], reads: gravity}, format: {
+    kind: columns, time: {rate_hz: 100},
+    gyro: {columns: [1, 2, 3], unit: rad/s, counts_per_unit: [1, 2, 4], limit_counts: 10},
+    accelerometer: {columns: [4, 5, 6], unit: m/s2, counts_per_unit: 2, zero_counts: [5, 6, 7],
+      limit_counts: 12}}}
+"""
+
+
+def test_counts_and_limits_go_with_the_axes_of_their_columns(tmp_path):
+    made = planned(tmp_path, BY_TABLE.replace("span-cpt", COUNTS))
+    ranges = made["ranges"].set_index(["sensor", "axis"])
+    assert ranges["count"].loc["gyro"].to_dict() == {"x": 1 / 2, "y": 1 / 4, "z": 1}
+    assert ranges["limit"].loc["gyro"].to_dict() == {"x": 5, "y": 2.5, "z": 10}
+    # The farther end: 12 − 5 counts up, 6 and 7 down.
+    assert ranges["limit"].loc["accel"].to_dict() == {"x": 3.5, "y": 3, "z": 3.5}
+    axes = json.loads(made["logs"]["layout"].iloc[0])["axes"]
+    assert axes == {"accel": ["-x", "-y", "-z"], "gyro": ["z", "-x", "y"]}
+
+
+def test_a_table_that_counts_clockwise_turns_the_other_way(tmp_path):
+    clockwise = BY_TABLE.replace("{name: three-axis", "{name: three-axis, counts: clockwise")
+    clockwise += "  - {id: t, do: tumble, about: +x, up: +z, step_degrees: 90, steps: 2}\n"
+    planned_way = planned(tmp_path, clockwise)["manoeuvres"].set_index("manoeuvre")
+    turn = planned_way.loc["x-forward"]
+    assert turn["angle"] == pytest.approx(-2 * np.pi) and turn["rate"] == pytest.approx(
+        -radians(10)
+    )
+    # The right-hand rule about x would bring y up.
+    assert planned_way.loc["t-01", "up_y"] == pytest.approx(-1)
 
 
 APART = """\

@@ -11,7 +11,7 @@ from inertial.formats.columns import column_reader
 from inertial.formats.columns.column_layout import ticks_per_second
 from inertial.tables import AXES
 from inertial.text.campaign_units import CHANNEL_UNITS
-from stages.decode.decoded import Decoded, Reals, look_ahead
+from stages.decode.decoded import Decoded, Reals, look_ahead, on_axis
 from stages.decode.table_angle import ANGLE_UNITS
 from stages.decode.unsigned_counts import refuse_unsigned
 
@@ -84,7 +84,8 @@ class ColumnLog:
             return {}
         size = CHANNEL_UNITS[triad["unit"]] / np.asarray(triad.get("counts_per_unit", 1.0))
         in_units = (values - np.asarray(triad.get("zero_counts", 0.0))) * size
-        return {f"{sensor}_{axis}": in_units[:, place] for place, axis in enumerate(AXES)}
+        axes = self._layout.get("axes", {}).get(sensor, AXES)
+        return dict(on_axis(sensor, axis, in_units[:, i]) for i, axis in enumerate(axes))
 
     def _refuse_unsigned(self, rows: column_reader.Rows) -> None:
         for sensor, values in (("accelerometer", rows.accelerometer), ("gyro", rows.gyro)):

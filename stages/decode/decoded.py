@@ -110,6 +110,11 @@ def look_ahead(
     return together[0].item(), median, float(np.mean(forward[forward < 1.5 * median]))
 
 
+def on_axis(sensor: str, axis: str, values: Reals) -> tuple[str, Reals]:
+    """The channel of a field, (n,), whose body axis and sign are such as -y."""
+    return f"{sensor}_{axis[-1]}", -values if axis.startswith("-") else values
+
+
 # ---- What was decoded as rows of the tables.
 
 Pieces = Iterator[tuple[str, pa.RecordBatch]]

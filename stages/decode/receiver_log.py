@@ -11,7 +11,7 @@ from inertial.formats.file_type import FileType, file_type_of, refuse_no_log
 from inertial.formats.gps_time import NANOSECONDS, utc
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
-from stages.decode.decoded import Decoded, Reals, look_ahead
+from stages.decode.decoded import Decoded, Reals, look_ahead, on_axis
 
 if TYPE_CHECKING:
     from inertial.formats.novatel import novatel_reader
@@ -32,7 +32,7 @@ class ReceiverLog:
         _refuse_other_than_messages(path)
         self.name = name
         self.path = path
-        self._axes: list[str] = layout["axes"]  # such as z, -y, x: the order and sign of the fields
+        self._axes: dict[str, list[str]] = layout["axes"]  # of a sensor's fields, such as z, -y, x
         self._counts = {
             "accel": float(layout["accelerometer_count"]),  # m/s
             "gyro": float(layout["gyro_count"]),  # rad
@@ -65,13 +65,12 @@ class ReceiverLog:
     def _rates(self, counts: NDArray[np.int32]) -> dict[str, Reals]:
         if self.interval is None:
             return {}
-        rates: dict[str, Reals] = {}
-        fields = [(sensor, axis) for sensor in ("accel", "gyro") for axis in self._axes]
-        for field, (sensor, axis) in enumerate(fields):
-            sign = -1 if axis.startswith("-") else 1
-            rate_of_count = sign * self._counts[sensor] / self.interval
-            rates[f"{sensor}_{axis[-1]}"] = counts[:, field].astype(np.float64) * rate_of_count
-        return rates
+        fields = [(sensor, axis) for sensor in ("accel", "gyro") for axis in self._axes[sensor]]
+        size = {sensor: count / self.interval for sensor, count in self._counts.items()}
+        return dict(
+            on_axis(sensor, axis, counts[:, i].astype(np.float64) * size[sensor])
+            for i, (sensor, axis) in enumerate(fields)
+        )
 
     def began(self, origin: int, *, absolute: bool) -> float:
         """What its samples' time 0 is by the encoder's clock, s: GPS time, or 0."""

@@ -137,7 +137,18 @@ def _turn(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:
             _("add what the table was set to"),
         )
     sigma = None if angle is None else _angle_sigma(file, key, item)
-    return {"angle": angle, "angle_sigma": sigma, "rate": rate, "seconds": seconds}
+    sense = _sense(file)
+    return {
+        "angle": None if angle is None else sense * angle,
+        "angle_sigma": sigma,
+        "rate": None if rate is None else sense * rate,
+        "seconds": seconds,
+    }
+
+
+def _sense(file: YamlFile) -> int:
+    """The sign of a turn by the right-hand rule whose degrees on the table are positive."""
+    return -1 if file.content.get("table", {}).get("counts") == "clockwise" else 1
 
 
 def _check_signs(file: YamlFile, key: Key, item: dict[str, Any]) -> None:
@@ -194,7 +205,7 @@ def _tumble(
     there = list(range(item["steps"]))
     for way, numbers in (("", there), ("-back", there[::-1] if item.get("and_back") else [])):
         for number in numbers:
-            angle = radians(number * item["step_degrees"])
+            angle = _sense(file) * radians(number * item["step_degrees"])
             ups = turned(up, about, angle)
             marks = None if mark is None else turned(mark, about, angle)
             name = f"{item['id']}{way}-{number:02d}"

@@ -55,6 +55,7 @@ def instrument(file: YamlFile, instruments: Path) -> dict[str, Any]:
     """The instrument of a campaign, written out in it or one of the listed."""
     stated = file.content["instrument"]
     if isinstance(stated, dict):
+        _check_axes(file, ["instrument"], stated)
         return stated
     listed = YamlFile(instruments)
     listed.check("campaign", entries="instrument")
@@ -68,7 +69,28 @@ def instrument(file: YamlFile, instruments: Path) -> dict[str, Any]:
                 name=instruments.name,
             ),
         )
+    _check_axes(listed, [stated], listed.content[stated])
     return dict(listed.content[stated])
+
+
+def _check_axes(file: YamlFile, key: Key, entry: dict[str, Any]) -> None:
+    """Each body axis once; only accelerometers read gravity."""
+    for inside in ([], ["gyro"], ["accelerometer"]):
+        part = entry.get(inside[0], {}) if inside else entry
+        if "axes" in part and {axis[-1] for axis in part["axes"]} != set(tables.AXES):
+            raise file.refuse(
+                [*key, *inside, "axes"],
+                part["axes"],
+                _("x, y and z, each once, with or without a minus sign"),
+                _("correct the axes"),
+            )
+    if "reads" in entry.get("gyro", {}):
+        raise file.refuse_text(
+            [*key, "gyro", "reads"],
+            _("the key 'reads'"),
+            _("reads of the accelerometer"),
+            _("remove it; a gyro that reads the other way is stated by axes: [-x, -y, -z]"),
+        )
 
 
 def sensors(entry: dict[str, Any]) -> Iterator[Row]:
@@ -101,9 +123,9 @@ def ranges(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
     for log, rows in by_log(manoeuvres).items():
         layout = rows[0]["layout"]
         increments = layout["kind"] == "rawimus"
-        for (sensor, (key, increment)), (place, axis) in product(
-            keys.items(), enumerate(tables.AXES)
-        ):
+        axes = _axes(entry)
+        for (sensor, (key, increment)), axis in product(keys.items(), tables.AXES):
+            place = [field[-1] for field in axes[sensor]].index(axis)
             own = layout["gyro_log"]["layout"] if key == "gyro" and "gyro_log" in layout else layout
             triad, full = own.get(key) or {}, scales[sensor]
             count, limit = entry.get(key, {}).get(increment) if increments else None, None
@@ -126,6 +148,22 @@ def ranges(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
 def _each(stated: float | list[float]) -> list[float]:
     """One number for each column."""
     return stated if isinstance(stated, list) else [stated] * 3
+
+
+def _stated_axes(entry: dict[str, Any], sensor: str) -> list[str] | None:
+    own: list[str] | None = entry.get(sensor, {}).get("axes", entry.get("axes"))
+    return own
+
+
+def _axes(entry: dict[str, Any]) -> dict[str, list[str]]:
+    """Body axis and sign of the three fields of each sensor, such as z, -y, x."""
+    axes = {
+        name: _stated_axes(entry, sensor) or list(tables.AXES)
+        for name, sensor in (("accel", "accelerometer"), ("gyro", "gyro"))
+    }
+    if entry.get("accelerometer", {}).get("reads") == "gravity":
+        axes["accel"] = [f[1:] if f.startswith("-") else f"-{f}" for f in axes["accel"]]
+    return axes
 
 
 def count_sizes(instruments: Path) -> Iterator[Row]:
@@ -274,7 +312,7 @@ def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[
     """A layout must hold at least one sensor, in units of that sensor, or counts of known size."""
     if layout["kind"] == "rawimus":
         for sensor, count in (("gyro", "count_rad"), ("accelerometer", "count_m_s")):
-            if count not in entry.get(sensor, {}) or "axes" not in entry:
+            if count not in entry.get(sensor, {}) or not _stated_axes(entry, sensor):
                 raise file.refuse_text(
                     ["instrument"],
                     _("no {sensor}.{count} or no axes", sensor=sensor, count=count),
@@ -341,10 +379,12 @@ def logs(
     `encoder`: the log of the table's encoder, if there is one.
     """
     for log, rows in by_log(manoeuvres).items():
-        layout = dict(rows[0]["layout"])
+        layout = rows[0]["layout"] | {"axes": _axes(entry)}
+        if "gyro_log" in layout:
+            gyros = layout["gyro_log"]
+            layout["gyro_log"] = gyros | {"layout": gyros["layout"] | {"axes": _axes(entry)}}
         if layout["kind"] == "rawimus":
             layout |= {
-                "axes": entry["axes"],
                 "gyro_count": entry["gyro"]["count_rad"],
                 "accelerometer_count": entry["accelerometer"]["count_m_s"],
             }

@@ -54,7 +54,8 @@ def test_the_axes_of_the_fields_are_those_of_the_layout(tmp_path):
         (["z", "-y", "x"], [6, -4, 2, 12, -10, 8]),
         (["-x", "y", "z"], [-2, 4, 6, -8, 10, 12]),
     ):
-        assert channels(one(path, units | {"axes": axes})["samples"], 0) == expected
+        of_both = {"axes": {"accel": axes, "gyro": axes}}
+        assert channels(one(path, units | of_both)["samples"], 0) == expected
 
 
 def test_logs_of_a_receiver_share_a_clock_from_the_earliest_first_sample(tmp_path):
