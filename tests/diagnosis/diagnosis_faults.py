@@ -179,10 +179,9 @@ def _angle(setting: Setting, random: Random, sigma: float) -> Told:
     )
     turns = sum(o.turns and o.up[1] == axis for o in setting.places)
     off = sigma * turns * setting.sigmas["gyro"][f"scale_{axis}"] * written["degrees"]
-    wrong = {place.manoeuvre: {"degrees": written["degrees"] - off}}
-    right = {place.manoeuvre: {"degrees": written["degrees"]}}
+    stated = {place.manoeuvre: {"degrees": written["degrees"] - off}}
     return Told(
-        {"campaign": {"plan": wrong}, "misstated": {"plan": right}},
+        {"misstated": {"plan": stated}},
         cause(cases.ANGLE, "gyro"),
         (place.manoeuvre,),
     )
