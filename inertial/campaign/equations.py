@@ -274,7 +274,7 @@ class Campaign:
             self.gravity.number,
             self.gravity.scatter,
             self.position_sigma,
-            self.solution.accelerometer.matrix,
+            self.solution.accelerometer,
             prior_sigmas,
             walking=walking,
         )

@@ -3,7 +3,8 @@
     mean reading = M · (g u + δ × g u) + bias + noise
 
 u is the upward direction in body axes; δ the tilt of the position, two unknowns with the sigma of
-the table; g one unknown with the sigma of gravity.
+the table; g one unknown with the sigma of gravity. Of a large tilt δ is the sine, and what its
+cosine takes from g u follows from the reading itself (`_versed`).
 """
 
 from collections.abc import Hashable, Mapping, Sequence
@@ -24,6 +25,7 @@ from inertial.estimation.variance_components import (
     walk_search,
     with_random_walk,
 )
+from inertial.physics.forward import Triad
 from inertial.physics.motion import all_level_axes, cross
 
 Array = NDArray[np.float64]
@@ -68,10 +70,10 @@ def weighted(
     too.
     """
     known = (gravity, gravity_sigma, position_sigma)
-    matrix = np.eye(3)
+    about = Triad(np.eye(3), np.full(3, np.nan))
     for _ in range(ITERATIONS):  # M multiplies the tilts and gravity
-        estimate = equations(statics, *known, scatter, matrix, effect_sigma, walk).solve()
-        matrix = estimate.values[:9].reshape(3, 3)
+        estimate = equations(statics, *known, scatter, about, effect_sigma, walk).solve()
+        about = triad_of(estimate)
     return estimate
 
 
@@ -86,13 +88,13 @@ def fit(
     """The estimate with the scatter and random walk of largest restricted likelihood."""
     known = (gravity, gravity_sigma, position_sigma)
     estimate = weighted(statics, *known, effect_sigma=effect_sigma)
-    matrix = estimate.values[:9].reshape(3, 3)
+    about = triad_of(estimate)
 
     def fit_with(scatter: float, walk: float) -> Estimate:
-        return equations(statics, *known, scatter, matrix, effect_sigma, walk).solve_shared()
+        return equations(statics, *known, scatter, about, effect_sigma, walk).solve_shared()
 
     each = list(range(len(statics)))  # has a block of its own, and so a scatter of its own
-    likelihood = _drifting(statics, *known, matrix, effect_sigma, each).likelihood
+    likelihood = _drifting(statics, *known, about, effect_sigma, each).likelihood
     stretches = [static.stretch for static in statics if static.stretch is not None]
     alternatives = [
         likelihood.of_scatter([static.position for static in statics]),
@@ -117,15 +119,17 @@ def equations(
     gravity_sigma: float,
     position_sigma: float,
     scatter: float,
-    matrix: Array,
+    about: Triad,
     effect_sigma: Mapping[str, float] | None = None,
     walk: float = 0.0,
 ) -> System:
-    """All equations, linear about M = `matrix`; `scatter`, `walk` as in `weighted`.
+    """All equations; `scatter`, `walk` as in `weighted`.
+
+    They are linear `about` M and a bias, which is NaN where it is not known yet.
 
     Unknowns: M by rows, bias, gravity, effects; eliminated: the tilts.
     """
-    known = (gravity, gravity_sigma, position_sigma, matrix, effect_sigma)
+    known = (gravity, gravity_sigma, position_sigma, about, effect_sigma)
     if walk:  # else each static position has a scatter of its own
         return drifting(statics, *known, walking=True).system(scatter, walk)
     return drifting(statics, *known, scatter, walking=False).system()
@@ -136,7 +140,7 @@ def drifting(
     gravity: float,
     gravity_sigma: float,
     position_sigma: float,
-    matrix: Array,
+    about: Triad,
     effect_sigma: Mapping[str, float] | None = None,
     scatter: float = 0.0,
     *,
@@ -147,7 +151,7 @@ def drifting(
     `walking`: a random walk may be added, so that only what is of one stretch is one block.
     """
     keys: list[Hashable] = [(s.position, s.stretch if walking else None) for s in statics]
-    known = (gravity, gravity_sigma, position_sigma, matrix, effect_sigma)
+    known = (gravity, gravity_sigma, position_sigma, about, effect_sigma)
     return _drifting(statics, *known, keys, scatter)
 
 
@@ -156,7 +160,7 @@ def _drifting(
     gravity: float,
     gravity_sigma: float,
     position_sigma: float,
-    matrix: Array,
+    about: Triad,
     effect_sigma: Mapping[str, float] | None,
     keys: Sequence[Hashable],
     scatter: float = 0.0,
@@ -166,7 +170,7 @@ def _drifting(
     names = [("parameter", str(i)) for i in range(UNKNOWNS)] + [("gravity", "")]
     names += [("effect", name) for name in effect_sigma]
     prior = np.concatenate([PRIOR, [gravity], np.zeros(len(effect_sigma))])
-    rows = _rows(statics, gravity, matrix, prior, list(effect_sigma))
+    rows = _rows(statics, gravity, about, prior, list(effect_sigma))
     noise = np.hypot([static.sigma for static in statics], scatter)
     same: dict[Hashable, list[int]] = {}
     for i, key in enumerate(keys):
@@ -196,14 +200,14 @@ def _drifting(
 def _rows(
     statics: Sequence[StaticForce],
     gravity: float,
-    matrix: Array,
+    about: Triad,
     prior: Array,
     effects: Sequence[str],
 ) -> Array:
     """Coefficients of the s shared unknowns and of two tilts, and the observed, (n, 3, s + 3)."""
     s = len(prior)
     ups = np.array([static.up for static in statics])
-    along = ups @ matrix.T
+    along = ups @ about.matrix.T
     rows = np.zeros((len(statics), 3, s + 3))
     for row in range(3):
         rows[:, row, 3 * row : 3 * row + 3] = gravity * ups
@@ -212,10 +216,27 @@ def _rows(
     rows[:, :, UNKNOWNS + 1 : s] = [static.sensitivities.of(effects) for static in statics]
     horizontal = all_level_axes(ups)
     for axis in (0, 1):
-        rows[:, :, s + axis] = cross(horizontal[:, axis], gravity * ups) @ matrix.T
-    rows[:, :, -1] = np.array([static.mean for static in statics]) + gravity * along
+        rows[:, :, s + axis] = cross(horizontal[:, axis], gravity * ups) @ about.matrix.T
+    means = np.array([static.mean for static in statics])
+    rows[:, :, -1] = means + gravity * (1 + _versed(means, ups, about))[:, None] * along
     rows[:, :, -1] -= rows[:, :, :s] @ prior
     return rows
+
+
+def _versed(means: Array, ups: Array, about: Triad) -> Array:
+    """1 − cos of the angle from the planned upward direction to the one that is read, (n,).
+
+    0 where it cannot be told yet.
+    """
+    force = np.linalg.solve(about.matrix, (means - about.bias).T).T
+    cosine = np.sum(force * ups, axis=1) / np.linalg.norm(force, axis=1)
+    versed = np.clip(1 - cosine / np.linalg.norm(ups, axis=1), 0.0, 1.0)
+    return np.asarray(np.nan_to_num(versed))
+
+
+def triad_of(estimate: Estimate) -> Triad:
+    """M and bias of an estimate."""
+    return Triad(estimate.values[:9].reshape(3, 3), estimate.values[9:12])
 
 
 def six_position_formula(

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from inertial.estimation.accelerometers import StaticForce, equations
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.triad import UNKNOWNS
+from inertial.physics.forward import Triad
 from inertial.physics.motion import cross, level_axes
 
 Array = NDArray[np.float64]
@@ -47,17 +48,17 @@ def off_position(
     gravity: float,
     gravity_sigma: float,
     position_sigma: float,
-    matrix: Array,
+    about: Triad,
     effect_sigma: Mapping[str, float] | None = None,
 ) -> OffPosition | None:
-    """The position in error, if there is one; `matrix`: M of the estimate, (3, 3).
+    """The position in error, if there is one; `about`: M and bias of the estimate.
 
     `effect_sigma`: of parameters of effects as in `weighted`; they are fitted as well.
     """
     positions = list(dict.fromkeys(static.position for static in statics))
-    setup = (gravity, gravity_sigma, position_sigma, 0.0, matrix)
+    setup = (gravity, gravity_sigma, position_sigma, 0.0, about)
     columns = [f"{position}/{i}" for position in positions for i in (0, 1)]
-    with_tilts, known = _with_tilts(statics, gravity, matrix), dict(effect_sigma or {})
+    with_tilts, known = _with_tilts(statics, gravity, about.matrix), dict(effect_sigma or {})
     information = equations(
         with_tilts, *setup, known | dict.fromkeys(columns, FREE_TILT_SIGMA)
     ).effect_information()

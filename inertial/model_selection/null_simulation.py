@@ -27,7 +27,7 @@ from inertial.model_selection.scan import Candidates
 
 Array = NDArray[np.float64]
 
-DRAWS = 10000
+DRAWS = 5000
 TAIL_SHARE = 0.1  # of the draws, the largest, from which the tail is extrapolated
 LEVEL_RATIO = 3.0  # of the level at which the draws are counted to the accepted level
 RELATIVE_JITTER = 1e-9  # of the information of a column, so that F of equal columns is definite

@@ -263,7 +263,8 @@ def _test(equations: ScoreEquations, seed: int) -> Structure | None:
     drop, count = float(drops[best]), int(degrees[best])
     alone = _alone(drop, count, equations)
     searched = min(alone * int(np.sum(degrees > 0)), 1.0)
-    if len(tested.groups) > 1 and not tested.independent:
+    # With a larger chance it is no structure, however few the trials of a scan are.
+    if len(tested.groups) > 1 and not tested.independent and alone < LEVEL:
         law = chance(equations.information, [effect], LEVEL, DRAWS, seed).tails[0]
         searched = float(law(chi2_isf(alone, law.degrees)))
     scan_value = float(tested.scan_values[best])

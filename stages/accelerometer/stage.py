@@ -12,9 +12,10 @@ from inertial.campaign.records import omissions
 from inertial.campaign.static_positions import StaticPosition, averaging_times
 from inertial.campaign.unknown_attitude import add_free_accelerometers
 from inertial.estimation import accelerometers, triad
-from inertial.estimation.accelerometers import StaticForce, equations, weighted
+from inertial.estimation.accelerometers import StaticForce, equations, triad_of, weighted
 from inertial.estimation.position_outlier import off_position
 from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
+from inertial.physics.forward import Triad
 from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
 from stages.accelerometer.declared import DECLARED
@@ -67,16 +68,16 @@ def accelerometer(
             dict.fromkeys(part for part, _ in turns)
         )
         estimates.add_fit("joint", fitted, used, left_out)
-        matrix = fitted.estimate.values[:9].reshape(3, 3)
+        result = triad_of(fitted.estimate)
         weighed = bool(
             np.all(fitted.estimate.determined[: triad.UNKNOWNS])
         )  # by criticism, against effects
         if not weighed and fitted.p_value < MIN_CONSISTENT_P_VALUE:
-            raised += _position_findings(rests, about, matrix, effect_sigma, data.mount)
+            raised += _position_findings(rests, about, result, effect_sigma, data.mount)
         for seconds in averaging_times(positions, averaging_steps):
             part = [*(_static_force(position, seconds) for position in positions), *moving]
             shorter = equations(
-                part, *about, fitted.scatter, matrix, effect_sigma, fitted.random_walk
+                part, *about, fitted.scatter, result, effect_sigma, fitted.random_walk
             )
             estimates.add_averaging("joint", seconds, shorter.solve_shared())
         stops = [_static_force(position) for position in positions]
@@ -92,12 +93,12 @@ def accelerometer(
 def _position_findings(
     rests: list[StaticForce],
     about: tuple[float, float, float],
-    matrix: Array,
+    result: Triad,
     effect_sigma: Mapping[str, float] | None,
     mount: str,
 ) -> Iterator[Finding]:
     """The position in error, where a single one explains the misfit of the model."""
-    off = off_position(rests, *about, matrix, effect_sigma)
+    off = off_position(rests, *about, result, effect_sigma)
     if off is not None:
         sigma = weighted(rests, *about, effect_sigma=effect_sigma).sigma[: triad.UNKNOWNS]
         yield from findings(off, sigma, mount)
