@@ -26,6 +26,7 @@ from laboratory.records import Records
 SENT, SIGNS = [2, 1, 0, 5, 4, 3], [1, -1, 1, 1, -1, 1]
 LINE_BYTES = 90  # of a line that was never written: only sizes of files follow from it
 ICE_POINT = 273.15  # K
+PLACEHOLDER = b"counts in memory\n"  # of a log: an empty file is refused
 
 
 @dataclass(frozen=True)
@@ -48,11 +49,11 @@ class MemoryStream:
 
 @contextmanager
 def recorded(recording: Recording, folder: Path) -> Iterator[Path]:
-    """The folder of a campaign whose logs are empty files, while the readers know their counts."""
+    """The folder of a campaign whose logs hold nothing, while the readers know their counts."""
     folder.mkdir(parents=True)
     (folder / "campaign.yaml").write_bytes(campaign_yaml(recording.campaign))
     for log in recording.records:
-        (folder / log).touch()
+        (folder / log).write_bytes(PLACEHOLDER)
     kept = novatel_reader.read, column_reader.read
     novatel_reader.read = _reader(recording, kept[0], _rawimusa)
     column_reader.read = _reader(recording, kept[1], _of_columns)
@@ -66,7 +67,7 @@ def _reader(
     recording: Recording, otherwise: Callable[..., Any], told: Callable[..., Any]
 ) -> Callable[..., Any]:
     def read(path: Path, *layout: Any) -> Iterator[Any]:
-        if path.name not in recording.records or path.stat().st_size:
+        if path.name not in recording.records or path.read_bytes() != PLACEHOLDER:
             yield from otherwise(path, *layout)
         else:
             yield told(recording, recording.records[path.name])
