@@ -110,6 +110,28 @@ MISTAKES = {
         "{name: by hand}",
         ["line 6, table", "position_sigma_arcsec: 3600"],
     ),
+    "set positions without a table": (
+        "table: {name: three-axis, position_sigma_arcsec: 2, angle_sigma_arcsec: 2}\n",
+        "",
+        ["table", "position_sigma_arcsec: 3600"],
+    ),
+    "two rates": (
+        "instrument: span-cpt",
+        "instrument:\n  name: a\n  rate_hz: 100\n  format:\n    kind: columns\n"
+        "    time: {rate_hz: 102.4}\n    gyro: {columns: [1, 2, 3], unit: deg/s}",
+        ["line 7, instrument.format.time.rate_hz", "102.4", "100", "line 4, instrument.rate_hz"],
+    ),
+    "a rate that the list of instruments contradicts": (
+        "plan:\n  - {id: x-up,",
+        "formats: {f: {kind: columns, time: {rate_hz: 200}, "
+        "gyro: {columns: [1, 2, 3], unit: deg/s}}}\nplan:\n  - {id: x-up, format: f,",
+        ["formats.f.time.rate_hz", "instruments.yaml, line", "span-cpt.rate_hz"],
+    ),
+    "neither time nor a rate": (
+        "span-cpt",
+        "{name: a, format: {kind: columns, gyro: {columns: [1, 2, 3], unit: deg/s}}}",
+        ["instrument.format", "neither time nor a rate", "rate_hz to the instrument"],
+    ),
     "hand turn without a sigma": (
         "{name: three-axis, position_sigma_arcsec: 2, angle_sigma_arcsec: 2}",
         "{name: by hand, position_sigma_arcsec: 3600}",
@@ -233,6 +255,36 @@ def test_a_table_that_counts_clockwise_turns_the_other_way(tmp_path):
     assert planned_way.loc["t-01", "up_y"] == pytest.approx(-1)
 
 
+BY_HAND = """\
+campaign: 1
+instrument:
+  {name: a, rate_hz: 50, format: {kind: columns, accelerometer: {columns: [1, 2, 3], unit: g}}}
+serial: unknown
+date: unknown
+site: {latitude_deg: null, gravity_m_s2: 9.81}
+log: log.txt
+plan: [{id: by-hand, do: positions, seconds: 1}]
+"""
+
+
+def test_by_hand_the_table_may_be_left_out_where_no_position_is_set(tmp_path):
+    made = planned(tmp_path, BY_HAND)
+    assert made["campaign"]["table"].item() == "by hand"
+    position = made["known"].set_index("quantity").loc["position"]
+    assert not position["assumed"] and "no position is set" in position["origin"]
+
+
+def test_the_rate_of_the_instrument_counts_rows_without_time(tmp_path):
+    (layout,) = planned(tmp_path, BY_HAND)["logs"]["layout"]
+    assert json.loads(layout)["time"] == {"rate_hz": 50}
+    one_place = BY_HAND.replace("rate_hz: 50, ", "").replace(
+        "columns,", "columns, time: {rate_hz: 50},"
+    )
+    made = planned(tmp_path, one_place)
+    assert json.loads(made["logs"]["layout"].item())["time"] == {"rate_hz": 50}
+    assert made["campaign"]["rate"].item() == 50
+
+
 APART = """\
 formats:
   a: {kind: columns, time: {column: 1, unit: s}, accelerometer: {columns: [2, 3, 4], unit: g}}
@@ -255,7 +307,7 @@ def test_a_log_of_the_gyros_goes_with_the_log_of_the_campaign(tmp_path):
 @pytest.mark.parametrize(
     ("before", "after", "said"),
     [
-        ("time: {column: 1, unit: ms}, ", "", ["formats.g", "no 'time'", "add time"]),
+        ("time: {column: 1, unit: ms}", "mean_of: 1", ["formats.g", "no 'time'", "add time"]),
         (", gyro: {columns", ", accelerometer: {columns", ["formats.g", "no 'gyro'"]),
         ("format: g}", "format: h}", ["gyro.format", "'h'", "one of a, g"]),
         ("log: gyro.txt", "log: ../gyro.txt", ["gyro.log", "plain file name"]),

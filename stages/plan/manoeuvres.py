@@ -11,7 +11,7 @@ from inertial.physics.motion import Array, Profile, turned
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.campaign_units import ARC_SECOND, DEGREE, in_si
 from inertial.text.messages import _
-from stages.plan.taken_as_known import ASSUMED_ANGLE
+from stages.plan.taken_as_known import ASSUMED_ANGLE, by_hand
 
 AXES = np.eye(3)
 Row = dict[str, Any]
@@ -129,7 +129,7 @@ def _turn(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:
         angle = rate * (seconds - (abs(rate) / acceleration if acceleration else 0.0))
     elif angle is not None and seconds is not None:
         rate = angle / seconds
-    elif not _by_hand(file) and not (rate is not None and item.get("recorded") == "steady"):
+    elif not by_hand(file.content) and not (rate is not None and item.get("recorded") == "steady"):
         raise file.refuse_text(
             key,
             _("fewer than two of degrees, rate_deg_s and seconds"),
@@ -165,10 +165,6 @@ def _check_signs(file: YamlFile, key: Key, item: dict[str, Any]) -> None:
         )
 
 
-def _by_hand(file: YamlFile) -> bool:
-    return bool(file.content.get("table", {}).get("name") == "by hand")
-
-
 def _angle_sigma(file: YamlFile, key: Key, item: dict[str, Any]) -> float:
     """How well the angle of a turn is known, rad."""
     table = file.content.get("table", {})
@@ -176,7 +172,7 @@ def _angle_sigma(file: YamlFile, key: Key, item: dict[str, Any]) -> float:
         return float(item["degrees_sigma"] * DEGREE)
     if "angle_sigma_arcsec" in table:
         return float(table["angle_sigma_arcsec"] * ARC_SECOND)
-    if _by_hand(file):
+    if by_hand(file.content):
         raise file.refuse_text(
             key,
             _("a turn by hand without degrees_sigma"),

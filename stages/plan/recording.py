@@ -14,6 +14,7 @@ from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.campaign_units import CHANNEL_UNITS, DEGREE, PER_ROOT_HOUR, in_si
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
+from stages.plan.rate import StatedRate, with_rate
 
 KEY = "encoder"
 
@@ -40,6 +41,7 @@ def encoder(file: YamlFile) -> dict[str, Any] | None:
                 _("time and table_angle, the columns of the encoder's log"),
                 f"add {key}",
             )
+    _check_text(file, ["formats", stated["format"]], layout)
     return {
         "file": stated["log"],
         "layout": {key: layout[key] for key in layout if key not in ("gyro", "accelerometer")},
@@ -177,7 +179,9 @@ def count_sizes(instruments: Path) -> Iterator[Row]:
                 yield {"instrument": name, "sensor": sensor, "count_size": entry[key][size]}
 
 
-def recording(file: YamlFile, key: Key, item: dict[str, Any], entry: dict[str, Any]) -> Row:
+def recording(
+    file: YamlFile, key: Key, item: dict[str, Any], entry: dict[str, Any], rate: StatedRate
+) -> Row:
     """Where a manoeuvre is recorded: log, layout, and the stretch of it."""
     name = item.get("log", file.content.get("log"))
     if name is None:
@@ -187,7 +191,7 @@ def recording(file: YamlFile, key: Key, item: dict[str, Any], entry: dict[str, A
             _("log here, or a default log of the campaign"),
             _("add log: its file name"),
         )
-    layout, layout_key = _layout(file, key, item, entry)
+    layout, layout_key = _layout(file, key, item, entry, rate)
     ways = [way for way in ("span", "rows", "where") if way in item]
     if len(ways) > 1:
         raise file.refuse_text(
@@ -202,7 +206,7 @@ def recording(file: YamlFile, key: Key, item: dict[str, Any], entry: dict[str, A
     if gyros is None:
         _check_layout(file, layout_key, layout, entry)
     else:
-        layout = _with_gyro_log(file, layout_key, layout, entry, *gyros)
+        layout = _with_gyro_log(file, layout_key, layout, entry, rate, *gyros)
         if "where" in item:
             raise file.refuse_text(
                 [*key, "where"],
@@ -242,13 +246,14 @@ def _with_gyro_log(
     layout_key: Key,
     layout: dict[str, Any],
     entry: dict[str, Any],
+    rate: StatedRate,
     key: Key,
     stated: dict[str, Any],
 ) -> dict[str, Any]:
     """The layout of the accelerometers' log, with the file and layout of the gyros' log in it."""
     gyro_layout, gyro_key = layout, layout_key
     if "format" in stated:
-        gyro_layout, gyro_key = _layout(file, key, stated, entry)
+        gyro_layout, gyro_key = _layout(file, key, stated, entry, rate)
     for own_key, own, sensor in (
         (layout_key, layout, "accelerometer"),
         (gyro_key, gyro_layout, "gyro"),
@@ -281,8 +286,9 @@ def _with_gyro_log(
 
 
 def _layout(
-    file: YamlFile, key: Key, item: dict[str, Any], entry: dict[str, Any]
+    file: YamlFile, key: Key, item: dict[str, Any], entry: dict[str, Any], rate: StatedRate
 ) -> tuple[dict[str, Any], Key]:
+    """The layout of a log, and where it is stated."""
     formats = file.content.get("formats", {})
     if "format" in item:
         if item["format"] not in formats:
@@ -292,7 +298,8 @@ def _layout(
                 _("one of {value}", value=", ".join(formats) or "formats, of which there are none"),
                 _("correct the name or add it to formats"),
             )
-        return _written_out(formats[item["format"]]), ["formats", item["format"]]
+        layout, layout_key = formats[item["format"]], ["formats", item["format"]]
+        return _written_out(file, layout_key, layout, rate), layout_key
     if "format" not in entry:
         raise file.refuse_text(
             key,
@@ -300,12 +307,17 @@ def _layout(
             _("format, for the instrument {name} has none of its own", name=entry["name"]),
             _("name one of formats"),
         )
-    return _written_out(entry["format"]), ["instrument", "format"]
+    layout_key = ["instrument", "format"]
+    return _written_out(file, layout_key, entry["format"], rate), layout_key
 
 
-def _written_out(layout: dict[str, Any]) -> dict[str, Any]:
-    """The layout with the columns that its kind implies."""
-    return vectornav_lines.layout_of(layout) if layout["kind"] == "vectornav" else layout
+def _written_out(
+    file: YamlFile, key: Key, layout: dict[str, Any], rate: StatedRate
+) -> dict[str, Any]:
+    """The layout with the columns that its kind implies, and the rate that counts its rows."""
+    if layout["kind"] == "vectornav":
+        layout = vectornav_lines.layout_of(layout)
+    return layout if layout["kind"] == "rawimus" else with_rate(file, key, layout, rate)
 
 
 def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[str, Any]) -> None:

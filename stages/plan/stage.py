@@ -18,6 +18,7 @@ from inertial.text.messages import _
 from stages.plan.declared import DECLARED
 from stages.plan.manoeuvres import expanded
 from stages.plan.published import published_values
+from stages.plan.rate import SAMPLE_RATE, StatedRate
 from stages.plan.recording import (
     by_log,
     count_sizes,
@@ -28,7 +29,7 @@ from stages.plan.recording import (
     recording,
     sensors,
 )
-from stages.plan.taken_as_known import gravity_repairs, known
+from stages.plan.taken_as_known import BY_HAND, by_hand, gravity_repairs, known
 
 Row = dict[str, Any]
 
@@ -63,7 +64,7 @@ def plan(
     entry = instrument(file, instruments[0])
     set_right = list(gravity_repairs(file, repairs))
     taken_as_known = list(known(file, set_right))
-    manoeuvres, table = _manoeuvres(file, entry), encoder(file)
+    manoeuvres, table = _manoeuvres(file, entry, instruments[0]), encoder(file)
     present = {path.name: path for path in raw}
     named = [(row["key"], row["file"]) for row in manoeuvres]
     named += [(row["gyro_key"], row["gyro_file"]) for row in manoeuvres if row["gyro_file"]]
@@ -87,7 +88,7 @@ def plan(
     others = [row for path in published for row in published_values(YamlFile(path))]
     used = sorted({present[log] for _unused, log in named})
     return {
-        "campaign": pd.DataFrame([_campaign(file, campaign[0].parent.name, entry)]),
+        "campaign": pd.DataFrame([_campaign(file, entry, manoeuvres)]),
         "known": pd.DataFrame(taken_as_known),
         "sensors": pd.DataFrame(sensors(entry)),
         "logs": pd.DataFrame(logs(manoeuvres, entry, table)),
@@ -118,27 +119,34 @@ def _stays_inside(file: YamlFile, key: Key, log: Path) -> None:
         )
 
 
-def _campaign(file: YamlFile, folder: str, entry: dict[str, Any]) -> Row:
+def _campaign(file: YamlFile, entry: dict[str, Any], manoeuvres: list[Row]) -> Row:
     content, site = file.content, file.content["site"]
     return {
-        "campaign": folder,
+        "campaign": file.path.parent.name,
         "simulated": content.get("simulated", False),
         "compensated": content.get("compensated", False),
         "instrument": entry["name"],
         "serial": content["serial"],
         "date": content["date"],
         **{key: content.get(key) for key in ("laboratory", "operator", "notes")},
-        "table": content.get("table", {}).get("name", "not named"),
-        "rate": entry.get("rate_hz"),
+        "table": BY_HAND if by_hand(content) else content["table"].get("name", "not named"),
+        "rate": entry.get(SAMPLE_RATE, _common_rate(manoeuvres)),
         "latitude": None if site["latitude_deg"] is None else radians(site["latitude_deg"]),
         "height": site.get("height_m"),
         **{bits: entry.get("status", {}).get(bits, 0) for bits in ("must_be_set", "must_be_clear")},
     }
 
 
-def _manoeuvres(file: YamlFile, entry: dict[str, Any]) -> list[Row]:
+def _common_rate(manoeuvres: list[Row]) -> float | None:
+    """The rate that the formats of all manoeuvres state, if it is one."""
+    rates = {(row["layout"].get("time") or {}).get(SAMPLE_RATE) for row in manoeuvres}
+    return rates.pop() if len(rates) == 1 else None
+
+
+def _manoeuvres(file: YamlFile, entry: dict[str, Any], instruments: Path) -> list[Row]:
     """The plan with every shorthand expanded, in its order, each with its log."""
     rows: dict[str, Row] = {}
+    rate = StatedRate.of(file, instruments)
     for number, item in enumerate(file.content["plan"]):
         for row in expanded(file, ["plan", number], item):
             if row["manoeuvre"] in rows:
@@ -148,7 +156,7 @@ def _manoeuvres(file: YamlFile, entry: dict[str, Any]) -> list[Row]:
                     _("an id of its own"),
                     _("rename one of the two"),
                 )
-            where = recording(file, ["plan", number], item, entry)
+            where = recording(file, ["plan", number], item, entry, rate)
             rows[row["manoeuvre"]] = row | where | {"number": number}
     for first, *others in by_log(list(rows.values())).values():
         for row in others:

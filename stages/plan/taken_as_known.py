@@ -18,6 +18,17 @@ ASSUMED_GRAVITY = 5e-5  # m/s² of a stated value: 5 mGal
 ASSUMED_LATITUDE = radians(0.01)
 
 Row = dict[str, Any]
+BY_HAND = "by hand"
+
+
+def by_hand(campaign: dict[str, Any]) -> bool:
+    """Whether there is no table: none is stated, or it is said."""
+    return bool(campaign.get("table", {"name": BY_HAND}).get("name") == BY_HAND)
+
+
+def _sets_positions(file: YamlFile) -> bool:
+    """Whether any manoeuvre begins in a position that is known."""
+    return any(item.get("up", "unknown") != "unknown" for item in file.content["plan"])
 
 
 def known(file: YamlFile, repairs: Sequence[Row] = ()) -> Iterator[Row]:
@@ -53,12 +64,15 @@ def known(file: YamlFile, repairs: Sequence[Row] = ()) -> Iterator[Row]:
         origin = _("assumed, for table.{key} is not stated", key=key)
         return row(quantity, 0.0, assumed, unit, origin, assumed=True)
 
-    if table.get("name") == "by hand" and "position_sigma_arcsec" not in table:
+    if by_hand(file.content) and _sets_positions(file) and "position_sigma_arcsec" not in table:
         raise file.refuse_text(
             ["table"],
             _("no position_sigma_arcsec"),
             _("position_sigma_arcsec for positions set by hand"),
-            _("state how well the faces were set, for example position_sigma_arcsec: 3600 for 1°"),
+            _(
+                "state how well the faces were set, for example table: {example} for 1°",
+                example="{name: by hand, position_sigma_arcsec: 3600}",
+            ),
         )
     gravity, origin = _gravity(file), _gravity_origin(site)
     for repair in repairs:
@@ -86,7 +100,10 @@ def known(file: YamlFile, repairs: Sequence[Row] = ()) -> Iterator[Row]:
         "rad",
         "not known" if heading is None else _("stated: table.heading_deg"),
     )
-    yield table_row("position", "position_sigma_arcsec", ARC_SECOND, ASSUMED_POSITION, "rad")
+    if _sets_positions(file) or "position_sigma_arcsec" in table:
+        yield table_row("position", "position_sigma_arcsec", ARC_SECOND, ASSUMED_POSITION, "rad")
+    else:
+        yield row("position", 0.0, ASSUMED_POSITION, "rad", _("not used, for no position is set"))
     yield table_row("turn_angle", "angle_sigma_arcsec", ARC_SECOND, ASSUMED_ANGLE, "rad")
     yield table_row("turn_rate", "rate_sigma_ppm", 1e-6, ASSUMED_RATE, "1")
 
