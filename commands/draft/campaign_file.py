@@ -17,7 +17,8 @@ from inertial.text.messages import _
 from inertial.text.numbers import significant, whole
 
 HAND_POSITION, TABLE_SIGMA = 3600, 180  # arc seconds, of what a person or an unknown table sets
-HAND_TURN = 10.0  # degrees, sigma of the angle of a turn by hand
+HAND_TURN, FEW_TURNS = 10.0, 3  # degrees, sigma of the angle of a turn by hand; turns that show it
+BEST_HAND_TURN = 5.0  # degrees, sigma of an angle by hand that the gyros confirm
 TABLE_RATE = 1000  # ppm, of a table of which nothing is known
 GRAVITY, GRAVITY_SIGMA = 9.80665, 0.03  # m/s², anywhere on earth
 LINE_WIDTH = 100
@@ -50,10 +51,11 @@ def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -
         lines.append(f"log: {_scalar(names.pop())}")
         names = set()
     lines.append("plan:")
+    sigma = _angle_sigma(plan)
     kind_of = {id(part): kind for kind in kinds for part in kind.parts}
     for m, own in zip(plan, _ids(plan), strict=True):
         kind = kind_of[id(m.part)]
-        keys: dict[str, Any] = {"id": own, **_keys(m, by_hand)}
+        keys: dict[str, Any] = {"id": own, **_keys(m, None if m.by_table else sigma)}
         if m.part.label is not None:
             keys["where"] = {kind.columns.label: m.part.label}
         elif m.rows is not None:
@@ -229,7 +231,16 @@ def _table(by_hand: bool) -> Iterator[str]:
 # ---- the plan
 
 
-def _keys(m: Manoeuvre, by_hand: bool) -> dict[str, Any]:
+def _angle_sigma(plan: Sequence[Manoeuvre]) -> float:
+    """The sigma of the turns by hand, °: how far the gyros have them from round angles."""
+    by_hand = [m for m in plan if m.degrees and m.seen and not m.by_table]
+    if len(by_hand) < FEW_TURNS:
+        return HAND_TURN
+    off = [m.seen - m.degrees for m in by_hand if m.seen and m.degrees]
+    return float(np.clip(np.ceil(np.sqrt(np.mean(np.square(off)))), BEST_HAND_TURN, HAND_TURN))
+
+
+def _keys(m: Manoeuvre, angle_sigma: float | None) -> dict[str, Any]:
     """What the plan states of a manoeuvre."""
     if m.do == "positions":
         return {"do": "positions", "seconds": m.seconds}
@@ -239,8 +250,8 @@ def _keys(m: Manoeuvre, by_hand: bool) -> dict[str, Any]:
             keys["about"] = m.about
         if m.degrees is not None:
             keys["degrees"] = m.degrees
-            if by_hand or not m.by_table:
-                keys["degrees_sigma"] = HAND_TURN
+            if angle_sigma is not None:
+                keys["degrees_sigma"] = angle_sigma
         if m.rate is not None:
             keys["rate_deg_s"] = m.rate
         if m.steady:
@@ -287,7 +298,7 @@ def _name(m: Manoeuvre) -> str:
         return f"{m.up[1]}-{'up' if m.up[0] == '+' else 'down'}" if m.up else "rest"
     if m.do == "turn" and m.about:
         backward = (m.degrees or m.rate or 1) < 0
-        return f"{m.about[1]}-turn{'-back' if backward else ''}"
+        return f"{m.about[1]}-{'backward' if backward else 'forward'}"
     return m.do
 
 
