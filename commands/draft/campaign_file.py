@@ -9,15 +9,16 @@ from typing import Any
 
 import numpy as np
 
+from commands.draft.columns import Triad
 from commands.draft.manoeuvres import Manoeuvre
 from commands.draft.missing import missing
-from commands.draft.scales import are_counts
+from commands.draft.scales import Scale, are_counts
 from commands.draft.sensors import Kind
 from inertial.text.messages import _
 from inertial.text.numbers import significant, whole
 
 HAND_POSITION, TABLE_SIGMA = 3600, 180  # arc seconds, of what a person or an unknown table sets
-HAND_TURN, FEW_TURNS = 10.0, 3  # degrees, sigma of the angle of a turn by hand; turns that show it
+HAND_TURN, FEW_TURNS = 10.0, 3  # °, sigma of an angle by hand; turns that show it
 BEST_HAND_TURN = 5.0  # degrees, sigma of an angle by hand that the gyros confirm
 TABLE_RATE = 1000  # ppm, of a table of which nothing is known
 GRAVITY, GRAVITY_SIGMA = 9.80665, 0.03  # m/s², anywhere on earth
@@ -29,43 +30,61 @@ WORDS = {"true", "false", "null", "yes", "no", "on", "off", "y", "n"}
 
 def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -> str:
     """The text of campaign.yaml."""
-    formats = {id(kind): f"format-{k + 1}" for k, kind in enumerate(kinds)}
     by_hand = not any(m.by_table for m in plan)
-    lines = [*_head(kinds, plan, name, by_hand), "campaign: 1", "instrument:"]
-    lines += [f"  name: {_scalar(name)} # guessed: the name of the campaign"]
-    single = len(kinds) == 1
-    if single:
-        lines += ["  format:", *_format(kinds[0], "    ")]
-    lines += ["serial: unknown", "date: unknown"]
-    lines += [
-        f"site: {_flow(latitude_deg=None, gravity_m_s2=GRAVITY, gravity_sigma_m_s2=GRAVITY_SIGMA)}"
-        + _guess(_("gravity anywhere on earth; the latitude or a gravity map makes it better")),
+    site = {"latitude_deg": None, "gravity_m_s2": GRAVITY, "gravity_sigma_m_s2": GRAVITY_SIGMA}
+    anywhere = _("gravity anywhere on earth; a latitude and height make it better")
+    formats = _formats(kinds)
+    logs = {m.part.logs[0].path.name for m in plan}
+    lines = [
+        *_head(kinds, plan, name, by_hand),
+        "campaign: 1",
+        *_instrument(kinds, name),
+        "serial: unknown",
+        "date: unknown",
+        f"site: {_flow(**site)}{_guess(anywhere)}",
         *_table(by_hand),
+        *(["formats:"] if formats else []),
+        *(line for lines in formats.values() for line in lines),
     ]
-    if not single:
-        lines.append("formats:")
-        for kind in kinds:
-            lines += [f"  {formats[id(kind)]}:", *_format(kind, "    ")]
-    names = {m.part.logs[0].path.name for m in plan}
-    if len(names) == 1:
-        lines.append(f"log: {_scalar(names.pop())}")
-        names = set()
+    if len(logs) == 1:
+        lines += [f"{key}: {_value(value)}" for key, value in _logs_of(plan[0], kinds).items()]
     lines.append("plan:")
     sigma = _angle_sigma(plan)
-    kind_of = {id(part): kind for kind in kinds for part in kind.parts}
     for m, own in zip(plan, _ids(plan), strict=True):
-        kind = kind_of[id(m.part)]
-        keys: dict[str, Any] = {"id": own, **_keys(m, None if m.by_table else sigma)}
-        if m.part.label is not None:
-            keys["where"] = {kind.columns.label: m.part.label}
-        elif m.rows is not None:
-            keys["rows"] = list(m.rows)
-        if not single:
-            keys["format"] = formats[id(kind)]
-        if names:
-            keys["log"] = m.part.logs[0].path.name
+        keys = {"id": own, **_keys(m, None if m.by_table else sigma), **_where(m, kinds)}
+        if len(kinds) > 1:
+            keys["format"] = f"format-{_place(m, kinds)}"
+        if len(logs) > 1:
+            keys |= _logs_of(m, kinds)
         lines.append(f"  - {_flow(**keys)}{_seen(m)}")
     return "\n".join(lines) + "\n"
+
+
+def _place(m: Manoeuvre, kinds: Sequence[Kind]) -> int:
+    """The number of the kind of log that a manoeuvre is in, from 1."""
+    return next(n for n, k in enumerate(kinds, 1) if any(part is m.part for part in k.parts))
+
+
+def _logs_of(m: Manoeuvre, kinds: Sequence[Kind]) -> dict[str, Any]:
+    """The log of a manoeuvre, and that of the gyros where they have one of their own."""
+    files = [log.path.name for log in m.part.logs]
+    columns = kinds[_place(m, kinds) - 1].columns
+    if len(files) == 1 or columns.accel is None or columns.gyro is None:
+        return {"log": files[0]}
+    gyro = {"log": files[columns.gyro.file], "format": f"gyros-{_place(m, kinds)}"}
+    return {"log": files[columns.accel.file], "gyro": gyro}
+
+
+def _where(m: Manoeuvre, kinds: Sequence[Kind]) -> dict[str, Any]:
+    """Where in its log a manoeuvre is."""
+    if m.part.label is not None:
+        return {"where": {kinds[_place(m, kinds) - 1].columns.label: m.part.label}}
+    if m.rows is None:
+        return {}
+    if len(m.part.logs) > 1:
+        rate = m.part.series.accel_hz
+        return {"span": [round(row / rate, 2) for row in m.rows]}
+    return {"rows": list(m.rows)}
 
 
 # ---- the comments at the top
@@ -123,8 +142,8 @@ def _questions(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], by_hand: bool) 
             )
         if kind.gyro is not None and kind.gyro.axes.moved:
             yield _(
-                "axes: in {log} the gyros turn gravity's direction as if {axes}; which sensor is "
-                "wired otherwise than the axes are named?",
+                "gyro.axes: in {log} the gyros turn gravity's direction as if {axes}; which sensor "
+                "is wired otherwise than the axes are named?",
                 log=_logs(kind),
                 axes=kind.gyro.axes.in_words,
             )
@@ -173,43 +192,92 @@ def _comment(text: str, first: str = "# ") -> list[str]:
     )
 
 
-# ---- formats
+# ---- instrument and formats
 
 
-def _format(kind: Kind, indent: str) -> Iterator[str]:
-    first = kind.parts[0].logs[0]
-    for key, value in first.layout.items():
+def _instrument(kinds: Sequence[Kind], name: str) -> Iterator[str]:
+    receiver = next((kind.receiver for kind in kinds if kind.receiver), None)
+    if receiver is not None and isinstance(receiver.instrument, str):
+        yield f"instrument: {receiver.instrument}{_guess(receiver.accel.evidence)}"
+        return
+    yield "instrument:"
+    yield f"  name: {_scalar(name)}" + _guess(_("the name of the campaign"))
+    if receiver is not None and not isinstance(receiver.instrument, str):
+        for key, value in receiver.instrument.items():
+            yield f"  {key}: {_value(value)}" + _guess(receiver.accel.evidence)
+    elif (axes := _axes(kinds)) is not None:
+        yield f"  gyro: {_flow(axes=axes)}" + _guess(_("gravity turns as if so"))
+    if len(kinds) == 1:
+        yield "  format:"
+        yield from _format(kinds[0], ("accelerometer", "gyro"), "    ")
+
+
+def _axes(kinds: Sequence[Kind]) -> list[str] | None:
+    """Body axis and sign of each column of the gyros, where it is not x, y, z."""
+    moved = [kind.gyro.axes for kind in kinds if kind.gyro and kind.gyro.axes.moved]
+    if not moved:
+        return None
+    back = moved[0].inverse  # column j is the body axis that reads it
+    return [f"{'-' if back.signs[j] < 0 else ''}{'xyz'[back.sources[j]]}" for j in range(3)]
+
+
+def _formats(kinds: Sequence[Kind]) -> dict[str, list[str]]:
+    """The named formats, line by line: of each kind of log, and of gyros in a log of their own."""
+    both, found = ("accelerometer", "gyro"), {}
+    for number, kind in enumerate(kinds, 1):
+        if len(kinds) > 1:
+            found[f"format-{number}"] = list(_format(kind, both, "    "))
+        if len(kind.columns.time) > 1:
+            found[f"gyros-{number}"] = list(_format(kind, ("gyro",), "    "))
+    return {name: [f"  {name}:", *lines] for name, lines in found.items()}
+
+
+def _format(kind: Kind, sensors: Sequence[str], indent: str) -> Iterator[str]:
+    """The format of a log that holds these sensors, as far as they are in one file."""
+    columns, timing = kind.columns, kind.timing
+    triads = {"accelerometer": columns.accel, "gyro": columns.gyro}
+    file = next((triad.file for key in sensors if (triad := triads[key]) is not None), 0)
+    log = kind.parts[0].logs[file]
+    for key, value in log.layout.items():
         yield f"{indent}{key}: {_scalar(value)}"
-    timing = kind.timing
-    time: dict[str, Any] = {}
-    if timing.column is not None:
-        time |= {"column": timing.column, "unit": timing.unit}
+    if log.kind == "rawimus":
+        return
+    guess = _guess(timing.evidence) if timing.guessed else ""
+    yield f"{indent}time: {_flow(**_time(kind, file))}{guess}"
+    for key, scale in (("accelerometer", kind.accel), ("gyro", kind.gyro)):
+        triad = triads[key]
+        if log.kind == "columns" and triad and scale and triad.file == file:
+            guess = _guess(scale.evidence) if scale.guessed or columns.guessed else ""
+            yield f"{indent}{key}: {_flow(**_triad(kind, triad, scale))}{guess}"
+
+
+def _time(kind: Kind, file: int) -> dict[str, Any]:
+    column, timing = kind.columns.time[file], kind.timing
+    time: dict[str, Any] = {} if column is None else {"column": column, "unit": timing.unit}
     if timing.unit in (None, "sample"):
         time["rate_hz"] = timing.rate
-    yield f"{indent}time: {_flow(**time)}" + (_guess(timing.evidence) if timing.guessed else "")
-    for key, triad, scale in (
-        ("accelerometer", kind.columns.accel, kind.accel),
-        ("gyro", kind.columns.gyro, kind.gyro),
-    ):
-        if triad is None or scale is None:
-            continue
-        keys: dict[str, Any] = {"columns": list(triad.columns), "unit": scale.unit}
-        if scale.counts is not None:
-            keys["counts_per_unit"] = scale.counts
-        if _clips(kind, key):
-            keys["limit_counts"] = LARGEST_COUNT
-        if triad.rows is not None:
-            keys["rows"] = {triad.rows[0]: triad.rows[1]}
-        guessed = scale.guessed or kind.columns.guessed
-        yield f"{indent}{key}: {_flow(**keys)}" + (_guess(scale.evidence) if guessed else "")
+    if timing.wraps_at:
+        time["wraps_at"] = timing.wraps_at
+    return time
 
 
-def _clips(kind: Kind, key: str) -> bool:
+def _triad(kind: Kind, triad: Triad, scale: Scale) -> dict[str, Any]:
+    keys: dict[str, Any] = {"columns": list(triad.columns), "unit": scale.unit}
+    if scale.counts is not None:
+        keys["counts_per_unit"] = scale.counts
+    if scale.zero:
+        keys["zero_counts"] = scale.zero
+    if _clips(kind, triad):
+        keys["limit_counts"] = LARGEST_COUNT
+    if triad.rows is not None:
+        keys["rows"] = {triad.rows[0]: triad.rows[1]}
+    return keys
+
+
+def _clips(kind: Kind, triad: Triad) -> bool:
     """Whether a sensor reaches the last count of 16 bits."""
-    triad = kind.columns.accel if key == "accelerometer" else kind.columns.gyro
-    if triad is None:
-        return False
-    values = np.concatenate([triad.of(part.logs) for part in kind.parts])
+    logs = {id(part.logs): part.logs for part in kind.parts}.values()
+    values = np.concatenate([triad.of(together) for together in logs])
     return are_counts(values) and float(np.abs(values).max()) in (LARGEST_COUNT, LARGEST_COUNT + 1)
 
 

@@ -18,14 +18,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from commands.draft.raw_log import RawLog
+from commands.draft.raw_log import Name, RawLog
 from commands.draft.scales import sphere
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 
 Array = NDArray[np.float64]
-Name = str | int
-
 BIN_ROWS = 10  # of a short mean
 MIN_BINS = 60  # of them for the motion to say anything: three times its unknowns
 MIN_EXPLAINED = 0.4  # share of the change of a direction that the gyros must explain
@@ -38,7 +36,7 @@ NAMED = {
     "other": re.compile(r"mag|^[mqb][ _.]?[xyzw]\b|quat|euler|roll|pitch|yaw|pos|vel|gps|temp"),
 }
 TIME = re.compile(r"time|stamp|^t$|sample|epoch|clock|^n$|^t[ _(\[]", re.IGNORECASE)
-AXIS = re.compile(r"^(.*?)([xyz123456789])([^xyz0-9]*)$")
+AXIS = re.compile(r"^(.*?)([xyz0-9])([^xyz0-9]*)$")
 
 
 @dataclass(frozen=True)
@@ -162,8 +160,14 @@ def _words_of(log: RawLog) -> tuple[list[tuple[Name, str]], Name | None]:
 
 def _kind(name: str) -> str | None:
     """The sensor that a name names: accel, gyro, other, or None."""
-    plain = re.sub(r"[\[(].*", "", str(name)).strip().lower()
+    plain = _plain(str(name))
     return next((kind for kind, pattern in NAMED.items() if pattern.search(plain)), None)
+
+
+def _plain(name: str) -> str:
+    """A name without its unit, in small letters; gyro[0] is gyro0."""
+    name = re.sub(r"\[(\d)\]", r"\1", name)
+    return re.sub(r"[\[(].*", "", name).strip().lower()
 
 
 def _threes(names: Sequence[Name]) -> Iterator[tuple[Name, ...]]:
@@ -179,16 +183,12 @@ def _threes(names: Sequence[Name]) -> Iterator[tuple[Name, ...]]:
 
 
 def _axes_named(three: Sequence[Name]) -> bool:
-    parts = [
-        AXIS.match(re.sub(r"[\[(].*", "", name).strip().lower())
-        for name in three
-        if isinstance(name, str)
-    ]
+    parts = [AXIS.match(_plain(name)) for name in three if isinstance(name, str)]
     found = [part for part in parts if part]
     if len(found) < 3 or len({(p[1], p[3]) for p in found}) > 1:
         return False
     axes = "".join(p[2] for p in found)
-    return axes in ("xyz", *("".join(map(str, range(i, i + 3))) for i in range(1, 8)))
+    return axes in ("xyz", *("".join(map(str, range(i, i + 3))) for i in range(8)))
 
 
 def _sensors(

@@ -231,8 +231,8 @@ def _miss(way: Way, factor: float) -> float:
     return float(np.arccos(np.clip(there @ after, -1, 1)) ** 2)
 
 
-def _by_turns(recordings: Sequence[Divided], counts: bool) -> tuple[str, float | None, str] | None:
-    """What makes the motions whole turns: a sentence, counts in 1 °/s or none, and the unit."""
+def _straight_turns(recordings: Sequence[Divided]) -> Array:
+    """The largest rotations about one axis, in the unit of the gyros times s."""
     turns = []
     for own in recordings:
         for stretch in own.stretches:
@@ -241,22 +241,29 @@ def _by_turns(recordings: Sequence[Divided], counts: bool) -> tuple[str, float |
                 net, path = np.linalg.norm(rates.sum(axis=0)), np.linalg.norm(rates, axis=1).sum()
                 if net > MIN_STRAIGHT * path:
                     turns.append(float(net * own.series.bin_seconds()))
-    sizes = (
-        {("deg/s", each): DEGREE / each for each in USUAL_GYRO_COUNTS}
-        if counts
-        else {("deg/s", None): DEGREE, ("rad/s", None): 1.0}
-    )
-    large = [turn for turn in turns if turn > max(turns) / 2]
+    return np.array([turn for turn in turns if turn > max(turns) / 2])
+
+
+def turn_misfit(recordings: Sequence[Divided], size: float, whole: float = 2 * np.pi) -> float:
+    """How far turns are from whole multiples, relative; infinite where they are too many.
+
+    `size`: rad/s of one of the unit of the gyros; `whole`: rad, of which they are multiples.
+    """
+    ratios = _straight_turns(recordings) * size / whole
+    if not len(ratios) or ratios.max() >= MAX_WHOLE:
+        return np.inf
+    return float(np.abs(ratios / np.maximum(np.round(ratios), 1) - 1).max())
+
+
+def _by_turns(recordings: Sequence[Divided], counts: bool) -> tuple[str, float | None, str] | None:
+    """What makes the motions whole turns: a sentence, counts in 1 °/s or none, and the unit."""
+    sizes: dict[tuple[str, float | None], float] = {("deg/s", None): DEGREE, ("rad/s", None): 1.0}
+    if counts:
+        sizes = {("deg/s", each): DEGREE / each for each in USUAL_GYRO_COUNTS}
     for whole in (2 * np.pi, np.pi, np.pi / 2):
         for (unit, own_counts), size in sizes.items():
-            ratios = np.array(large) * size / whole
-            off = np.abs(ratios / np.maximum(np.round(ratios), 1) - 1)
-            if len(large) and off.max() < MAX_OFF_WHOLE and ratios.max() < MAX_WHOLE:
-                what = _(
-                    "so that {turns} turns are whole multiples of {degrees:.0f}°",
-                    turns=len(large),
-                    degrees=np.degrees(whole),
-                )
+            if turn_misfit(recordings, size, whole) < MAX_OFF_WHOLE:
+                what = _("so that turns are multiples of {degrees:.0f}°", degrees=np.degrees(whole))
                 return what, own_counts, unit
     return None
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from commands.draft.columns import Columns, alike, columns_of, recorded_together
 from commands.draft.raw_log import RawLog
+from commands.draft.receivers import Receiver, receiver_of
 from commands.draft.scales import (
     Scale,
     Turning,
@@ -46,6 +47,7 @@ class Kind:
     gyro: Scale | None
     parts: Sequence[Part]
     divided: Sequence[Divided]  # of each part, in SI
+    receiver: Receiver | None = None
 
     @property
     def interleaved(self) -> bool:
@@ -65,10 +67,13 @@ def _kind(group: Sequence[Sequence[RawLog]], rate: float | None) -> Kind:
     columns = columns_of(group)
     timing = timing_of([together[0] for together in group], columns.time[0])
     if rate is not None and timing.unit in (None, "sample"):
-        timing = Timing(timing.column, timing.unit, rate, False, _("the rate is stated"))
+        timing = replace(timing, rate=rate, guessed=False, evidence=_("the rate is stated"))
     kind = Kind(columns, timing, None, None, [], [])
     parts = [part for together in group for part in _parts(kind, together)]
     own = _divided(parts, known_units=False)
+    if group[0][0].kind == "rawimus":
+        receiver = receiver_of(own, timing.rate)
+        return Kind(columns, timing, receiver.accel, receiver.gyro, parts, own, receiver)
     accel = accel_scale(own) if columns.accel else None
     turned = turning(own, accel) if accel and columns.gyro else None
     gyro = None
@@ -103,18 +108,10 @@ def _parts(kind: Kind, together: Sequence[RawLog]) -> list[Part]:
 
 
 def _divided(parts: Sequence[Part], *, known_units: bool) -> list[Divided]:
-    """Where each part rests and moves; the gyros at rest by itself or by all, the steadier."""
+    """Where each part rests and moves, by what the gyros read at rest in all of them."""
     rates = [part.series.means(part.series.gyro) for part in parts if len(part.series.gyro)]
     level = rest_level(np.concatenate(rates)) if rates else None
-    found = []
-    for part in parts:
-        own = level
-        if level is not None and len(part.series.gyro):
-            own = min(
-                level, rest_level(part.series.means(part.series.gyro)), key=lambda each: each[1]
-            )
-        found.append(divided(part.series, own, known_units=known_units))
-    return found
+    return [divided(part.series, level, known_units=known_units) for part in parts]
 
 
 def _rate_by_motion(
@@ -152,6 +149,9 @@ def _in_si(kind: Kind, others: Sequence[Kind]) -> Kind:
         ]
         if same:
             gyro = replace(same[0], evidence=_("as the gyros of the other logs"))
+    moved = [other.gyro.axes for other in others if other.gyro and other.gyro.axes.moved]
+    if gyro is not None and moved and not gyro.axes.moved:
+        gyro = replace(gyro, axes=moved[0])  # all logs are of one instrument
     rate = kind.timing.rate / (2 if kind.interleaved else 1)
     parts = [
         replace(

@@ -19,7 +19,7 @@ from inertial.signal.rests_and_motions import (
 
 Array = NDArray[np.float64]
 
-BIN_S = 0.1  # s
+BIN_S, MIN_BINS = 0.1, 20  # s; of a short recording shorter ones
 MIN_REST_S = 1.0  # s, of a static position
 MIN_MOVED_SHARE = 0.02  # of the largest readings of gyros whose unit is not known, to be a motion
 
@@ -43,8 +43,9 @@ class Series:
 
     @property
     def bins(self) -> int:
-        """How many short means: of a short recording shorter ones."""
-        return max(min(round(self.seconds / BIN_S), max(len(self.accel), len(self.gyro))), 1)
+        """How many short means."""
+        most = max(len(self.accel), len(self.gyro), 1)
+        return min(max(round(self.seconds / BIN_S), MIN_BINS), most)
 
     def bin_seconds(self) -> float:
         """The length of a mean, s."""

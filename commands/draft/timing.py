@@ -2,19 +2,19 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from commands.draft.columns import CLOCK_PARTS, Name
-from commands.draft.raw_log import RawLog
+from commands.draft.columns import CLOCK_PARTS
+from commands.draft.raw_log import Name, RawLog
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 
 Array = NDArray[np.float64]
 
-UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}  # ticks in a second
+UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9, "iso8601": 1.0}  # ticks in a second
 USUAL_RATE = 100.0  # Hz: of the units that a time may have, that with the rate nearest to it
 COMMON_RATES = np.array(
     [
@@ -38,10 +38,11 @@ class Timing:
     rate: float
     guessed: bool
     evidence: str
+    wraps_at: int | None = None  # the counter begins again after as many
 
     def with_rate(self, rate: float, evidence: str) -> "Timing":
         """The same with a rate that something else says."""
-        return Timing(self.column, self.unit, rate, True, evidence)
+        return replace(self, rate=rate, guessed=True, evidence=evidence)
 
 
 def timing_of(logs: Sequence[RawLog], column: Name | None) -> Timing:
@@ -54,30 +55,43 @@ def timing_of(logs: Sequence[RawLog], column: Name | None) -> Timing:
     steps = [np.diff(_finite(log.columns[column])) for log in logs]
     ticks = float(np.median([_step(log.columns[column]) for log in logs]))
     if ticks == 1 and all(np.mean(own == 1) > 0.95 for own in steps):
-        return _without_time(column, "sample", stated, _("it counts samples"))
+        timing = _without_time(column, "sample", stated, _("it counts samples"))
+        return replace(timing, wraps_at=_wraps_at([log.columns[column] for log in logs]))
     named = IN_NAME.search(str(column))
     units = {"us": "us", "µs": "us", "sec": "s", "seconds": "s"}
-    if named is not None:
+    if column in logs[0].dates:
+        unit, why = "iso8601", _("it holds dates")
+    elif named is not None:
         unit = units.get(named[1].lower(), named[1].lower())
         why = _("by its name")
     else:
-        unit = min(UNITS, key=lambda u: abs(np.log(UNITS[u] / ticks / USUAL_RATE)))
+        unit = min(list(UNITS)[:4], key=lambda u: abs(np.log(UNITS[u] / ticks / USUAL_RATE)))
         why = _(
             "a step of {ticks} is a plausible rate in {unit} only",
             ticks=significant(ticks),
             unit=unit,
         )
     rate = UNITS[unit] / ticks
+    if logs[0].kind == "rawimus":
+        why = _("GPS time")
     positive = np.concatenate([own[own > 0] for own in steps])
     if np.median(positive) < 0.5 * ticks:
         why += _("; stamps come in bursts: the rate is their number in the whole time")
-    return Timing(column, unit, rate, named is None, why)
+    return Timing(column, unit, rate, named is None and unit != "iso8601", why)
 
 
 def _without_time(column: Name | None, unit: str | None, stated: float | None, why: str) -> Timing:
     if stated is not None:
         return Timing(column, unit, stated, False, _("{why}; the header states the rate", why=why))
     return Timing(column, unit, USUAL_RATE, True, why)
+
+
+def _wraps_at(counters: Sequence[Array]) -> int | None:
+    """The power of two at which a counter begins again; None where it does not."""
+    last = {
+        int(c[n]) + 1 for c in counters for n in np.flatnonzero((np.diff(c) < 0) & (c[1:] == 0))
+    }
+    return last.pop() if len(last) == 1 and np.log2(min(last)).is_integer() else None
 
 
 def _finite(values: Array) -> Array:
