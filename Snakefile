@@ -7,6 +7,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
+from snakemake.logging import logger
 from snakemake.utils import min_version, validate
 
 min_version("9.0")
@@ -18,12 +19,20 @@ shell.prefix(f"export PATH={Path(sys.executable).parent}:$PATH PYTHONPATH={HOME}
 
 from inertial.tables.campaign_files import campaigns, logs_of
 from inertial.tables.code import code_of, hash_of
+from inertial.tables.failed_run import FailedRun
 
 
 configfile: HOME / "config.yaml"
 
 
 validate(config, str(HOME / "inertial/tables/config.schema.yaml"))
+
+FAILED = FailedRun(logger)
+
+
+onerror:
+    sys.stderr.write(FAILED.shown())
+
 
 DERIVED = "data/derived/{campaign}"
 RAW = "data/raw/{campaign}"

@@ -254,6 +254,23 @@ def test_a_bad_campaign_is_refused_by_name_and_a_good_one_beside_it_is_finished(
     assert f"data/raw/bad/campaign.yaml, line {line}" in said
     assert "sreial" in said
     assert re.search(r"cure: .*serial", said)
+    assert_it_is_the_last_on_the_screen(done.stderr)
+
+
+def assert_it_is_the_last_on_the_screen(said: str) -> None:
+    """A refusal in its box, after it the place of the full log, which has how it was called."""
+    before, _, log = said.rpartition("Complete log(s): ")
+    assert before.endswith(f"{'=' * 80}\n")
+    refusal = before.split("=" * 80)[-2]
+    assert [line.split()[0] for line in refusal.strip().splitlines()[1:]] == [
+        "found:",
+        "expected:",
+        "cure:",
+    ]
+    assert "CalledProcessError" not in said
+    full, *after = log.strip().splitlines()
+    assert "CalledProcessError" in Path(full).read_text()
+    assert not [line for line in after if not line.startswith("make: *** ")]
 
 
 def test_an_unknown_setting_is_refused_by_name(workflow: Workflow, tmp_path: Path) -> None:
@@ -322,6 +339,14 @@ def test_make_report_in_a_clean_clone(tmp_path: Path) -> None:
     verdict, _, _ = (clone / "reports/demo.txt").read_text().partition("\nCampaign:")
     assert verdict.startswith("SIMULATED")
     assert f"{verdict}\n{exported}\n{path}\n" in first.stdout
+
+    shutil.copytree(clone / "data/raw/demo", clone / "data/raw/page")
+    (clone / "data/raw/page/x-up.asc").write_bytes(b"<!DOCTYPE html>\n<html>\n")
+    for target in ("report", "check"):
+        refused = make(clone, target, "CAMPAIGN=page")
+        assert refused.returncode == 2
+        assert "decode: x-up.asc\n  found:    a page of HTML" in refused.stderr
+        assert_it_is_the_last_on_the_screen(refused.stderr)
 
     second = make(clone, "report")
     assert "Nothing to be done" in second.stderr

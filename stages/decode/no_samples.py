@@ -85,7 +85,7 @@ def no_samples(
 
 def _all_refused(file: str, layout: Mapping[str, Any], count: int, first: RefusedLine) -> Refusal:
     """Not one line fits the format; the first one shows why."""
-    text = f": {first.text}" if first.text else ""
+    text = f" ('{first.text}')" if first.text else ""
     if layout["kind"] == "rawimus":
         expected = _("messages of a NovAtel receiver, as the format of the instrument says")
         cure = _("name the right log, or give its manoeuvres a format of kind columns")
@@ -96,7 +96,7 @@ def _all_refused(file: str, layout: Mapping[str, Any], count: int, first: Refuse
         file,
         _("line {line}", line=first.line),
         _(
-            "{reason}{text}; all {count} are refused",
+            "all {count} are refused, this one because: {reason}{text}",
             reason=first.reason,
             text=text,
             count=counted(count, "line"),
@@ -117,7 +117,8 @@ def _described(layout: Mapping[str, Any]) -> str:
 
 
 def _plain(value: object) -> str:
-    return json.dumps(value, ensure_ascii=False).replace('"', "")
+    text = json.dumps(value, ensure_ascii=False)
+    return text if isinstance(value, str) else text.replace('"', "")
 
 
 def _listed(names: Mapping[str, int]) -> str:

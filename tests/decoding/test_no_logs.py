@@ -95,7 +95,7 @@ def test_messages_of_which_none_has_a_right_checksum(tmp_path):
     log.write_bytes(b"".join(lines))
     refusal = refused(log, SPAN_CPT)
     assert refusal.place == "line 1"
-    assert "; all 3 lines are refused" in refusal.found
+    assert refusal.found.startswith("all 3 lines are refused, this one because: ")
     assert "checksum" in refusal.found
 
 
@@ -108,9 +108,9 @@ def test_columns_in_a_format_of_messages_and_the_reverse(tmp_path):
     log.write_bytes(HEADER + at(2283, 100.0) * 20)
     refusal = refused(log, COLUMNS)
     assert refusal.place == "line 2"
-    assert refusal.found.endswith("; all 20 lines are refused")
+    assert refusal.found.startswith("all 20 lines are refused, this one because: ")
     assert "%RAWIMUSA" in refusal.found
-    assert "delimiter ," in refusal.expected
+    assert 'delimiter ","' in refusal.expected
     assert "gyro [x, y, z]" in refusal.expected
 
 
