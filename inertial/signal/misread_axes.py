@@ -51,15 +51,28 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
     )
     number = len(misread.explains)
     agree = f"{counted(number, 'manoeuvre')} {'agrees' if number == 1 else 'agree'}"
-    sentence = _(
-        "Of the {sensor}, {where}, {axes}: only so {agree} with the plan ({names}). {misread}",
-        sensor=sensor,
-        where=where,
-        axes=reads_in_words(misread.axes),
-        agree=agree,
-        names=names,
-        misread=_handed(misread, recorded),
-    )
+    if misread.spans:
+        sentence = _(
+            "Of the {sensor}, {where}, {axes}: only so do the gyros turn gravity as the "
+            "accelerometers see it turn, in {spans} of half a second.{handed}",
+            sensor=sensor,
+            where=where,
+            axes=reads_in_words(misread.axes),
+            spans=counted(misread.spans, "span"),
+            handed=""
+            if determinant(misread.axes) > 0
+            else _(" So their triad is left-handed, which no mounting does."),
+        )
+    else:
+        sentence = _(
+            "Of the {sensor}, {where}, {axes}: only so {agree} with the plan ({names}). {misread}",
+            sensor=sensor,
+            where=where,
+            axes=reads_in_words(misread.axes),
+            agree=agree,
+            names=names,
+            misread=_handed(misread, recorded),
+        )
     sentence += rivals_in_words(misread.rivals)
     if not misread.log:
         consequence = _(

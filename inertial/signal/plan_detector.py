@@ -18,7 +18,8 @@ class Misread:
 
     axes: takes its readings to the axes of the plan; explains: manoeuvres that fit only so.
     repair: id of its repair; undone: whether that is applied. rivals: the ids of others that
-    explain as much, each with what would have to be true, in words.
+    explain as much, each with what would have to be true, in words. spans: of half a second, in
+    which the gyros turn gravity as the accelerometers see it only so; 0: the plan shows it.
     """
 
     sensor: str
@@ -28,6 +29,7 @@ class Misread:
     repair: str = ""
     undone: bool = False
     rivals: Sequence[tuple[str, str]] = ()
+    spans: int = 0
 
 
 @dataclass(frozen=True)

@@ -8,14 +8,13 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.records import Manoeuvre, Row
 from inertial.signal.axis_permutations import Permutation, composed
-from inertial.signal.detector import Given, Log
+from inertial.signal.detector import Given
 from inertial.signal.misread_axes import SENSOR_NAMES, determinant, reads_in_words
 from inertial.signal.plan_detector import Misread, Rescaled, Swapped
 from inertial.text.messages import _
@@ -33,6 +32,7 @@ from stages.segment.explanations import (
 )
 from stages.segment.locating import AS_NAMED, AS_PLANNED
 from stages.segment.recorded import Undone, in_order, misread_in, swapped_in
+from stages.segment.repair_by_gravity import misread_by_gravity, step_of
 from stages.segment.repair_scales import Scale, rates_of, scales_of
 from stages.segment.windows import Binned
 
@@ -89,6 +89,7 @@ def set_right(binned: Sequence[Binned], plan: Sequence[Manoeuvre], stated: State
     campaign = _Campaign(list(binned), list(plan), stated)
     campaign.set_counts()
     campaign.set_axes_and_names()
+    campaign.set_axes_by_gravity()
     campaign.set_rates()
     return campaign.result()
 
@@ -302,6 +303,28 @@ class _Campaign:
                 plan = [turned_back(m) for m in plan]
         return plan
 
+    def set_axes_by_gravity(self) -> None:
+        """Axes of one sensor that the other one contradicts, whatever the plan says."""
+        if any(row["state"] not in APPLIED for row in self._rows if row["repair"] != "count_size"):
+            return
+        found = misread_by_gravity(self._binned, self._level)
+        words = {each.repair: _axes_in_words(each) for each in found}
+        chosen = [each for each in found if each.repair in self._stated.accepted] or found
+        channels: list[Row] = []
+        for each in chosen:
+            step = step_of(each)
+            state = self._stated.state(step, rival=len(chosen) > 1)
+            row = _row(step, state, words[step.id], log="")
+            self._rows.append(row | {"finding": chosen[0].repair})
+            if state in APPLIED:
+                channels += self._axes(step, each, each.axes)
+        if chosen:
+            rivals = [(other.repair, words[other.repair]) for other in chosen[1:]]
+            self._misread.append(replace(chosen[0], undone=bool(channels), rivals=rivals))
+        if channels:
+            self._read_again(channels)
+            self._explain()
+
     # ---- rates of the plan
 
     def set_rates(self) -> None:
@@ -472,32 +495,3 @@ def _exchanged_back(plan: Sequence[Manoeuvre], exchanged: Exchanged) -> list[Man
 def _at(m: Manoeuvre, ratio: float, names: Sequence[str]) -> Manoeuvre:
     """A turn at the rate at which it was recorded."""
     return replace(m, rate=m.rate * ratio) if m.rate and m.name in names else m
-
-
-# ---- The plan as a table, and the properties of a log.
-
-
-def plan_as_taken(stated: pd.DataFrame, plan: Sequence[Manoeuvre]) -> pd.DataFrame:
-    """The table of the manoeuvres with what the repairs have changed."""
-    table = stated.set_index("manoeuvre").loc[[m.name for m in plan]].reset_index()
-    for name in ("log", "from_s", "to_s", "from_row", "to_row", "label", "angle", "rate"):
-        values = pd.Series([getattr(m, name) for m in plan], dtype=object)
-        table[name] = values.where(values.notna(), None)
-    return table[list(stated.columns)]
-
-
-def log_as_read(log: Log, repairs: Repairs) -> Log:
-    """A log whose channels are set right: their steps, noise and limits go with them."""
-    source, factor = repairs.channels(log.name)
-    size = np.abs(factor)
-    ends = np.sort([factor * log.least[source], factor * log.most[source]], axis=0)
-    return replace(
-        log,
-        quantum=size * log.quantum[source],
-        noise=size * log.noise[source],
-        equal=log.equal[source],
-        least=ends[0],
-        most=ends[1],
-        limit=size * log.limit[source],
-        count=size * log.count[source],
-    )

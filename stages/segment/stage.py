@@ -19,7 +19,7 @@ from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
-from stages.segment import completeness, reduction, repair
+from stages.segment import completeness, reduction, repair, repaired
 from stages.segment.declared import DECLARED
 from stages.segment.detection import ExaminationOfRests, compare
 from stages.segment.explanations import Explained
@@ -84,7 +84,7 @@ def segment(
     plan, level, explained = list(made.plan), made.level, made.explained
     read_as = Repairs(CHANNEL_REPAIRS.frame(made.channels))
     masked = Masks(masks, read_as)
-    by_name = {name: repair.log_as_read(log, read_as) for name, log in logs.items()}
+    by_name = {name: repaired.log_as_read(log, read_as) for name, log in logs.items()}
     parts, performed, turns = _parts(explained, plan, level, margin)
 
     block_sums = reduction.Blocks(
@@ -125,7 +125,7 @@ def segment(
     of_plan = compare("segment", OF_PLAN, recorded)
     detections = [*(each for each, _by in of_plan), *rests.detections("segment")]
     return {
-        "manoeuvres": repair.plan_as_taken(manoeuvres, plan),
+        "manoeuvres": repaired.plan_as_taken(manoeuvres, plan),
         "repairs": list(_with_findings(made.rows, of_plan, quality_findings)),
         "channel_repairs": list(made.channels),
         "segments": segments,

@@ -1,0 +1,110 @@
+"""Whether the gyros turn gravity as the accelerometers see it turn: axes and signs without a plan.
+
+Of the upward direction v in body axes dv/dt = v × ω. With f = g v + b, and ω = G w − c where the
+gyros read w, over a time T
+
+    f(T) − f(0) = ∫ f × G w dt − H ∫ w dt − ∫ f dt × c + d T,    H = [b]× G,  d = b × c,
+
+which is linear in the 24 unknowns G, H, c, d, so neither a bias nor a scale factor of
+either sensor matters. Where an IMU is moved by hand its acceleration is noise. G is near the unit
+matrix, or near that signed permutation by which the axes of the sensors differ. A turn about the
+vertical says nothing. Accelerometers that all read their negative turn in the same way.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from inertial.signal.axis_permutations import Permutation
+from inertial.signal.detector import Array
+from inertial.signal.scatter import MAD_TO_SIGMA
+
+SPAN_S = 0.5  # over which a change of the force is compared with the gyros
+MIN_TURNED = 0.05  # rad, within it: less tells nothing
+MIN_SPANS, MAX_SPANS = 20, 20_000
+MIN_ENTRY_SIGMA = 10.0  # sigmas of the entries of G that decide
+MAX_ENTRY_SIGMA = 0.15  # of any entry
+MAX_OFF_DIAGONAL = 0.5  # of the largest entry of its row and column
+REWEIGHTINGS = 10
+ROBUST_SIGMA = 3.0  # sigmas from which on a span counts less: Cauchy's weights
+UNKNOWNS = 24
+PRIOR = 1e-6  # of the normal matrix: what nothing determines stays 0
+
+
+@dataclass(frozen=True)
+class Turned:
+    """G, (3, 3), with its sigma, and from how many spans of half a second."""
+
+    matrix: Array
+    sigma: Array
+    spans: int
+
+    @property
+    def axes(self) -> Permutation | None:
+        """What takes the readings of the gyros to the axes of the accelerometers, if it is sure."""
+        size = np.abs(self.matrix)
+        sources = np.argmax(size, axis=1)
+        if sorted(sources) != [0, 1, 2] or (self.sigma > MAX_ENTRY_SIGMA).any():
+            return None
+        own = size[np.arange(3), sources]
+        others = size.copy()
+        others[np.arange(3), sources] = 0.0
+        if (others > MAX_OFF_DIAGONAL * own[:, None]).any():
+            return None
+        if (own < MIN_ENTRY_SIGMA * self.sigma[np.arange(3), sources]).any():
+            return None
+        signs = np.sign(self.matrix[np.arange(3), sources]).astype(int)
+        return Permutation(tuple(sources.tolist()), tuple(signs.tolist()))
+
+
+def turned(stretches: Sequence[tuple[Array, Array, float]]) -> Turned | None:
+    """How the gyros turn gravity; None where too little is turned.
+
+    Parameters
+    ----------
+    stretches : of consecutive short means: forces, (k, 3), m/s²; rates less their level at rest,
+        (k, 3), rad/s; the time from one to the next, s
+    """
+    spans = [_spans(*stretch) for stretch in stretches]
+    design = np.concatenate([np.empty((0, 3, UNKNOWNS)), *(part for part, _ in spans)])
+    change = np.concatenate([np.empty((0, 3)), *(part for _, part in spans)])
+    if len(change) < MIN_SPANS:
+        return None
+    every = -(-len(change) // MAX_SPANS)
+    design, change = design[::every].reshape(-1, UNKNOWNS), change[::every].ravel()
+    weight = np.ones(len(change))
+    for _ in range(REWEIGHTINGS):
+        weighted = design * weight[:, None]
+        normal = weighted.T @ design
+        inverse = np.linalg.inv(normal + PRIOR * np.eye(UNKNOWNS))
+        left = change - design @ (inverse @ (weighted.T @ change))
+        scatter = MAD_TO_SIGMA * float(np.median(np.abs(left))) or 1.0
+        weight = 1 / (1 + (left / (ROBUST_SIGMA * scatter)) ** 2)
+    of_each = design * (weight * left)[:, None]
+    covariance = inverse @ (of_each.T @ of_each) @ inverse  # whatever the scatter of each
+    # What is not determined at all stays at 0: its sigma is that of the prior.
+    sigma = np.sqrt(np.diag(covariance) + PRIOR * np.diag(inverse))
+    matrix = inverse @ (weighted.T @ change)
+    return Turned(matrix[:9].reshape(3, 3), sigma[:9].reshape(3, 3), len(change) // 3)
+
+
+def _spans(forces: Array, rates: Array, step: float) -> tuple[Array, Array]:
+    """The equations of all spans: ∂/∂(G, H, c, d), (n, 3, 24), and the change of f, (n, 3)."""
+    steps = max(round(SPAN_S / step), 1)
+    starts = np.arange(0, len(forces) - steps, steps)
+    inside = starts[:, None] + np.arange(steps + 1)
+    f, rate = forces[inside], rates[inside]  # (n, steps + 1, 3)
+    share = np.full(steps + 1, step)
+    share[[0, -1]] /= 2  # the trapezoidal rule
+    across = np.zeros((*f.shape, 3))  # [f]×
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        across[..., i, j], across[..., j, i] = -f[..., k], f[..., k]
+    of_matrix = np.einsum("s,nsir,nsc->nirc", share, across, rate).reshape(-1, 3, 9)
+    whole = np.einsum("s,nsc->nc", share, rate)
+    of_bias = -np.einsum("ir,nc->nirc", np.eye(3), whole).reshape(-1, 3, 9)
+    of_level = -np.einsum("s,nsir->nir", share, across)
+    of_both = np.broadcast_to(steps * step * np.eye(3), of_level.shape)
+    change = f[:, -1] - f[:, 0]
+    there = np.isfinite(of_matrix).all(axis=(1, 2)) & (np.linalg.norm(whole, axis=1) > MIN_TURNED)
+    return np.concatenate([of_matrix, of_bias, of_level, of_both], axis=2)[there], change[there]
