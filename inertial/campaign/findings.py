@@ -141,7 +141,7 @@ def _finding(
     return Finding(
         id=identifier,
         cause=detector.name,
-        sensor=channel["sensor"] or detector.sensor,
+        sensor=channel["sensor"] or event.sensor or detector.sensor,
         axis=channel["axis"],
         log=log.name if log else None,
         from_s=_number(event.from_s),

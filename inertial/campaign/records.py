@@ -191,11 +191,6 @@ class Clock:
     end: float = np.nan
 
     @property
-    def seconds(self) -> float:
-        """From the first sample to the last, s, where both have GPS time, else NaN."""
-        return self.end - self.begin
-
-    @property
     def step(self) -> float:
         """The duration of a sample; 1 where there is no time, so that records stand for seconds."""
         return self.duration or 1.0

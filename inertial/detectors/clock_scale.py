@@ -101,6 +101,8 @@ class ClockScale(Detector):
                 start,
                 end,
                 away / (1 + reference) * 1e6,
+                # Forces are increments by the interval; angles are sums, in which it is not.
+                sensor="accel" if whole and log.recorded_on is not None else None,
                 facts=_Facts(
                     here=log.interval * (1 + part.mean),
                     usual=log.interval * (1 + reference),

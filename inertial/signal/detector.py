@@ -176,7 +176,8 @@ class Event:
     from_s, to_s: time of its first and last record, NaN where there is none; size: in the
     detector's unit, or in that of the channel; p_value: chance of it if nothing is wrong, the
     search paid for; count: how many equal things it stands for; facts: what its description needs;
-    severity: where it is not that of the detector.
+    severity: where it is not that of the detector; sensor: accel or gyro, where it concerns one of
+    them though no channel alone.
     """
 
     first: int
@@ -190,6 +191,7 @@ class Event:
     count: int = 1
     facts: Any = None
     severity: int | None = None
+    sensor: str | None = None
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,11 @@ from inertial.campaign.hypotheses import (
     FOUND,
     MODEL,
     ONE_OF_CLASS,
+    RECORDING,
     UNKNOWN_STRUCTURE,
     Hypothesis,
 )
-from inertial.campaign.records import Clock, Performed, Row
+from inertial.campaign.records import Performed, Row
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _, plural
 from inertial.text.numbers import significant
@@ -170,13 +171,12 @@ class Evidence:
     """What the cures and gains of causes are read from.
 
     `results`: by sensor and mount; `walks`: ids of findings about random walks, which the
-    covariance includes; `performed`: by the name of the manoeuvre; `clocks`: by log.
+    covariance includes; `performed`: by the name of the manoeuvre.
     """
 
     results: Mapping[tuple[str, str], SensorResult]
     walks: frozenset[str]
     performed: Mapping[str, Performed]
-    clocks: Mapping[str, Clock]
 
     def causes(self, explained: Sequence[Explained]) -> list[Cause]:
         """Every cause once: equal faults of one sensor are one."""
@@ -205,23 +205,15 @@ class Evidence:
         for (sensor, mount), result in self.results.items():
             if cause.mount and mount and cause.mount != mount:
                 continue
-            if self._of_increments(cause) and sensor == "gyro" and not self._steady:
-                continue  # angles are sums of increments: no interval is in them
+            if self._in_turns(cause) and sensor == "accel":
+                continue  # no mean of theirs is of a turn
             if cause.sensor in (None, sensor) or cause.causes & result.effects.keys():
                 yield result
 
-    def _of_increments(self, cause: Hypothesis) -> bool:
-        """Whether it is the clock of most of a log by which increments become rates."""
-        clock = self.clocks.get(cause.row["log"] or "")
-        if cause.cause != CLOCK or cause.stage == MODEL or clock is None:
-            return False
-        seconds = cause.row["to_s"] - cause.row["from_s"]
-        return clock.averaged and 2 * seconds > clock.seconds
-
-    @property
-    def _steady(self) -> bool:
-        """Whether gyros are compared with a rate somewhere."""
-        return any(each.rate and each.angle is None for each in self.performed.values())
+    def _in_turns(self, cause: Hypothesis) -> bool:
+        """Whether it is a fault of the recording that touches turns alone."""
+        done = [self.performed[name] for name in cause.manoeuvres if name in self.performed]
+        return cause.stage == RECORDING and bool(done) and all(each.rate for each in done)
 
     def _cure(
         self, cause: Hypothesis, own: Sequence[SensorResult], members: Sequence[Explained]
@@ -232,7 +224,7 @@ class Evidence:
             return REPAIRED if applied else NONE, _moved_by(cause.repair, own), None
         if cause.stage == MODEL:
             return self._cure_of_effect(cause, own)
-        if self._of_increments(cause):
+        if cause.cause == CLOCK and cause.sensor == "accel":
             return NONE, _moved_by_clock(1e-6 * abs(cause.row["size"]), own), None
         touched = frozenset().union(*(member.cause.manoeuvres for member in members))
         done = [self.performed[name] for name in touched if name in self.performed]
@@ -276,16 +268,17 @@ def _moved_by(repair: Row, own: Sequence[SensorResult]) -> float | None:
 
 
 def _moved_by_clock(error: float, own: Sequence[SensorResult]) -> float | None:
-    """By how many sigma rates that are off by a share move the parameters of three axes.
+    """By how many sigma specific forces that are off by a share move the parameters.
 
     One of two opposite rests reads g (1 + error): half of that goes into the scale factor, half of
-    g times it into the bias. Two errors that differ by it are possible: stamps, or sampling.
+    g times it into the bias. So far apart are the results of stamps that are wrong and of a
+    sampling that is.
     """
     shifts = [
         error / 2 * size / sigma
         for result in own
         for size, sigma in ((1.0, result.scale_sigma), (STANDARD_GRAVITY, result.bias_sigma))
-        if sigma and not (size != 1.0 and result.sensor == "gyro")
+        if sigma
     ]
     return max(shifts, default=None)
 

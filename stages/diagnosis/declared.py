@@ -20,7 +20,6 @@ DECLARED = Declared(
         "gaps": From("quality", tables.GAPS),
         "segments": From("segment", tables.SEGMENTS),
         "performed": From("segment", tables.PERFORMED),
-        "clocks": From("decode", tables.CLOCKS),
         **{
             f"{stage}_{table.name}": From(stage, table)
             for stage in ("accelerometer", "gyroscope", "extension")

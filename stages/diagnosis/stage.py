@@ -6,7 +6,7 @@ import pandas as pd
 
 from inertial.campaign.explanations import compete
 from inertial.campaign.hypotheses import Findings, findings_of, hypotheses
-from inertial.campaign.records import Row, clocks_of, performed_of, rows_of
+from inertial.campaign.records import Row, performed_of, rows_of
 from inertial.effects import CATALOGUE
 from inertial.tables.stage import Stage, Tables
 from inertial.text.parameters import AXES
@@ -26,7 +26,6 @@ def diagnosis(
     effects: pd.DataFrame,
     random_walks: pd.DataFrame,
     performed: pd.DataFrame,
-    clocks: pd.DataFrame,
 ) -> Tables:
     """Causes, consequences, members of classes, the result with its covariance, the verdict.
 
@@ -41,7 +40,6 @@ def diagnosis(
         {(result.sensor, result.mount): result for result in results},
         frozenset(random_walks["finding"]),
         performed_of(performed),
-        clocks_of(clocks),
     )
     causes = evidence.causes(explained)
     verdicts = [verdict(result, causes) for result in results]
