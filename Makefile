@@ -6,6 +6,8 @@
 #                                 dismantled; also with CAMPAIGN=<name>
 #   make draft LOG="<logs>"       a first campaign file from the logs alone, data/raw/<name>/; also with
 #                                 NAME=<name>, and RATE=<Hz> where no log has a clock
+#   make new PLAN=<plan> NAME=<name>   a plan to record by: six-position, turn-stop, rate-table,
+#                                 by-hand
 #   make trace ID=<number>        from a number of the report, such as gyroscope/joint/bias_x, back to
 #                                 the lines of the logs; also with CAMPAIGN=<name>
 #   make test                     every test; the same as CI with `make style`
@@ -25,7 +27,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft trace test style bench challenge docs clean setup pango campaign
+.PHONY: report check draft new trace test style bench challenge docs clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -36,6 +38,7 @@ DRAWS ?= 1200
 LOG ?=
 NAME ?=
 RATE ?=
+PLAN ?=
 override CAMPAIGN := $(value CAMPAIGN)
 override ID := $(value ID)
 override ONLY := $(value ONLY)
@@ -43,7 +46,8 @@ override DRAWS := $(value DRAWS)
 override LOG := $(value LOG)
 override NAME := $(value NAME)
 override RATE := $(value RATE)
-export CAMPAIGN ID ONLY DRAWS LOG NAME RATE
+override PLAN := $(value PLAN)
+export CAMPAIGN ID ONLY DRAWS LOG NAME RATE PLAN
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -76,6 +80,9 @@ draft: .venv/complete
 	options=()
 	if [[ $$RATE ]]; then options+=("--rate=$$RATE"); fi
 	$(BIN)/python -m commands.draft "$${options[@]}" "--name=$$NAME" -- "$${logs[@]}"
+
+new: .venv/complete
+	$(BIN)/python -m commands.new "--plan=$$PLAN" "--name=$$NAME"
 
 trace: campaign setup
 	$(BIN)/python -m commands.trace "--campaign=$$CAMPAIGN" "--id=$$ID"

@@ -14,6 +14,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from commands.campaign_folder import free_folder
 from commands.draft.campaign_file import campaign_file
 from commands.draft.manoeuvres import plan_of
 from commands.draft.raw_log import raw_log
@@ -22,7 +23,6 @@ from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.numbers import visible
 
-NAME = re.compile(r"[a-z0-9][a-z0-9-]*")
 LOG = re.compile(r"[\w+][\w+. -]*")
 
 
@@ -56,8 +56,8 @@ def draft(logs: Sequence[Path], name: str, data: Path, rate: float | None = None
     if not logs:
         raise Refusal("LOG", "", _("no log"), _("the logs of one session"), _('name them: LOG="…"'))
     name = name or re.sub(r"[^a-z0-9]+", "-", logs[0].stem.lower()).strip("-")
-    folder = data / "raw" / name
-    _check(logs, name, folder)
+    folder = free_folder(name, data)
+    _check(logs)
     kinds = kinds_of([raw_log(path) for path in logs], rate)
     plan = plan_of(kinds)
     if not plan:
@@ -79,24 +79,8 @@ def draft(logs: Sequence[Path], name: str, data: Path, rate: float | None = None
     return folder
 
 
-def _check(logs: Sequence[Path], name: str, folder: Path) -> None:
-    """Whether the names can be used and the files are there."""
-    if not NAME.fullmatch(name):
-        raise Refusal(
-            "NAME",
-            "",
-            repr(name),
-            _("small letters a-z, digits and hyphens, a letter or digit first"),
-            _("name the campaign: NAME=june"),
-        )
-    if folder.exists():
-        raise Refusal(
-            str(folder),
-            "",
-            _("there is a campaign of this name"),
-            _("a name that is free; nothing is overwritten"),
-            _("give another: NAME=…"),
-        )
+def _check(logs: Sequence[Path]) -> None:
+    """Whether the logs are there, with names that a plan can hold."""
     for path in logs:
         if not path.is_file():
             raise Refusal(

@@ -42,7 +42,7 @@ def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -
         "serial: unknown",
         "date: unknown",
         f"site: {_flow(**site)}{_guess(anywhere)}",
-        *_table(by_hand),
+        *_table(plan, by_hand),
         *(["formats:"] if formats else []),
         *(line for lines in formats.values() for line in lines),
     ]
@@ -281,7 +281,10 @@ def _clips(kind: Kind, triad: Triad) -> bool:
     return are_counts(values) and float(np.abs(values).max()) in (LARGEST_COUNT, LARGEST_COUNT + 1)
 
 
-def _table(by_hand: bool) -> Iterator[str]:
+def _table(plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
+    """The table; by hand only where positions are set."""
+    if by_hand and not any(m.up for m in plan):
+        return
     if by_hand:
         yield f"table: {_flow(name='by hand', position_sigma_arcsec=HAND_POSITION)}" + _guess(
             _("a case on its faces stands to within 1°")
