@@ -8,7 +8,7 @@ from typing import Any
 import chain
 from campaigns import BESIDE, diagnosed
 from diagnosis_draws import Drawn, drawn
-from judge import judge, parameters_of
+from judge import at_reference, judge, parameters_of
 
 from inertial.tables.code import code_of, hash_of
 
@@ -55,7 +55,9 @@ def outcome(name: str) -> Outcome:
 
 def _said(told: Drawn) -> Outcome:
     tables = diagnosed(told.document)
-    truth = None if told.part in UNKNOWN_TRUTH else parameters_of(told.document)
+    truth = None
+    if told.part not in UNKNOWN_TRUTH:
+        truth = at_reference(parameters_of(told.document), told.document, tables["result"])
     found = judge(tables, told.causes, None, truth)
     return {
         "rows": len(tables["causes"]),

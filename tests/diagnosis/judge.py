@@ -10,6 +10,14 @@ from cases import NOT, Cause
 
 Row = Mapping[str, Any]
 Array = np.ndarray[Any, np.dtype[np.float64]]
+ICE_POINT = 273.15  # K
+# Of the laboratory: sensor, what changes with temperature, key, unit of the key.
+PER_KELVIN = (
+    ("gyro", "bias", "k_deg_h_k", np.radians(1 / 3600)),
+    ("accel", "bias", "k_micro_g_k", 9.80665e-6),
+    ("gyro", "scale", "k_ppm_k", 1e-6),
+    ("accel", "scale", "k_ppm_k", 1e-6),
+)
 STATED = {"gyro": ("gyro", "bias_rad_s"), "accel": ("accelerometer", "bias_m_s2")}
 
 
@@ -114,6 +122,24 @@ def parameters_of(document: Mapping[str, Any]) -> dict[str, dict[str, float]]:
             for b, j in enumerate("xyz")
         } | {f"bias_{axis}": float(b) for axis, b in zip("xyz", truth[bias], strict=True)}
     return told
+
+
+def at_reference(
+    truth: Mapping[str, Mapping[str, float]], document: Mapping[str, Any], result: pd.DataFrame
+) -> dict[str, dict[str, float]]:
+    """The same at the temperature to which a result with an effect of temperature refers."""
+    moved = {sensor: dict(values) for sensor, values in truth.items()}
+    course = document.get("temperature", {})
+    start = course.get("reference_deg_c", course.get("start_deg_c", np.nan)) + ICE_POINT
+    for sensor, stem, key, unit in PER_KELVIN:
+        name = f"{sensor}_{stem}_temperature"
+        slopes = document.get("effects", {}).get(name, {}).get(key)
+        reference = result.loc[result["parameter"] == f"{name}.T0", "value"]
+        if slopes is None or reference.empty:
+            continue
+        for axis, slope in zip("xyz", slopes, strict=True):
+            moved[sensor][f"{stem}_{axis}"] += slope * unit * (float(reference.iloc[0]) - start)
+    return moved
 
 
 def pulls(
