@@ -195,6 +195,45 @@ def test_a_table_that_counts_clockwise(simple, simple_results, tmp_path):
     np.testing.assert_array_equal(values(results), values(simple_results))
 
 
+# ---- what is not known: attitude, time
+
+
+@pytest.mark.parametrize("recorded", ["whole", "steady"])
+def test_a_turn_whose_attitude_is_not_known_gives_its_scale_up_to_the_earth_s_rate(
+    recorded, simple, tmp_path
+):
+    campaign = rewritten(simple, tmp_path / "raw", lambda rows: rows)
+    for manoeuvre in campaign["plan"]:
+        if manoeuvre["do"] == "turn":
+            manoeuvre |= {"about": manoeuvre["up"], "up": "unknown", "recorded": recorded}
+            if recorded == "steady":
+                manoeuvre["rate_deg_s"] *= -1 if manoeuvre.pop("degrees") < 0 else 1
+    tell(tmp_path / "raw", campaign)
+    results = chain.run(tmp_path / "raw", tmp_path / "derived", "diagnosis")
+    assert np.abs(off_truth(results)).max() < MAX_SIGMA
+    assert results["diagnosis/causes"].empty
+    # Two turns, in each of which the earth's rate has any direction: ω_e/√3 along the axis.
+    scale = results.parameters("gyroscope").loc["scale_x", "sigma"]
+    earth = 7.292115e-5 / np.sqrt(3) / np.sqrt(2)  # rad/s
+    if recorded == "steady":
+        expected = np.hypot(earth / np.radians(60), 100e-6 / np.sqrt(2))  # and the table's rate
+    else:
+        expected = earth * 7 / (2 * np.pi)  # 7 s from start to stop
+    assert scale == pytest.approx(expected, rel=0.2)
+
+
+def test_rows_without_a_time_are_counted_at_the_rate_of_the_instrument(
+    simple, simple_results, tmp_path
+):
+    campaign = rewritten(simple, tmp_path / "raw", lambda rows: rows)
+    del campaign["instrument"]["format"]["time"]
+    campaign["instrument"]["rate_hz"] = 100
+    tell(tmp_path / "raw", campaign)
+    results = chain.run(tmp_path / "raw", tmp_path / "derived")
+    away = values(results) - values(simple_results)
+    assert np.abs(away / values(results, "sigma")).max() < 0.01
+
+
 # ---- accelerometers and gyros in a log each
 
 

@@ -320,9 +320,8 @@ def campaign_of(data: CampaignData) -> Campaign:
 
     Without a shared clock the times of different logs are not comparable and are omitted.
     """
-    inputs = replace(
-        data.gyro_inputs, static_positions=_in_pieces(data.gyro_inputs.static_positions)
-    )
+    known = data.gyro_inputs.of_known_attitude
+    inputs = replace(known, static_positions=_in_pieces(known.static_positions))
     motions, solution = CampaignMotions(data), data.result
     static_motions = [motions.at_rest(position) for position in inputs.static_positions]
     turns: list[Motion] = []

@@ -115,6 +115,7 @@ def _add_known_angle(estimates: Estimates, data: CampaignData, scatter: float) -
 
 def add_turn_and_stop(estimates: Estimates, inputs: GyroInputs, scatter: float) -> None:
     """S3's formulas, for plans with rotations both ways and stops at common positions."""
+    inputs = inputs.of_known_attitude
     result = turn_and_stop(
         inputs.turns, inputs.static_rates, inputs.earth, inputs.position_sigma, scatter
     )

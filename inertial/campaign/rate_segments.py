@@ -173,6 +173,16 @@ class GyroInputs:
         return [rotation for rotation in self.recorded if not rotation.refusal]
 
     @property
+    def of_known_attitude(self) -> "GyroInputs":
+        """The same without turns of which only the axis is known, which cannot be simulated."""
+        return replace(
+            self,
+            recorded=[r for r in self.recorded if r.plan.up is not None],
+            turns=[turn for turn in self.turns if turn.position.is_known],
+            steady_rates=[steady for steady in self.steady_rates if steady.position.is_known],
+        )
+
+    @property
     def used(self) -> list[Part]:
         """The manoeuvres of the equations."""
         return [s.part for s in self.static_positions] + [
@@ -236,8 +246,6 @@ def refusal_of(m: Manoeuvre, done: Performed, part: Blocks) -> str:
     """Why a turn cannot be used; empty where it can."""
     if not done.found:
         return _("not found in its log")
-    if m.up is None:
-        return _("which way is up is not known")
     if not len(part) or np.isnan(part.seconds).any() or bool((part.counts == 0).any()):
         return _("it has no time, so no angle can be summed")
     if m.recorded == "steady":
@@ -256,7 +264,8 @@ def refusal_of(m: Manoeuvre, done: Performed, part: Blocks) -> str:
 def position_of(m: Manoeuvre, heading: float | None) -> Position:
     """The set position of a manoeuvre; north is known where mark and heading are."""
     up = m.up
-    assert up is not None  # otherwise refused
+    if up is None:
+        return Position(m.position, np.zeros(3))
     if m.mark is None:
         return Position(m.position, up)
     mark = m.mark - up * (up @ m.mark)

@@ -20,7 +20,8 @@ same for all, T_missing/T_steady; by the sums S of one gyro that is a recorded a
 
 The earth's rate has an upward component, known from the latitude, and a horizontal component of
 known size whose direction is known only with `mark` and the table's heading. Else it is an unknown
-of each position, with the size as its sigma.
+of each position, with the size as its sigma. Of a turn in an unknown attitude all three components
+are unknowns.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -47,18 +48,32 @@ MAX_BLOCKS_PER_PASS = 4000  # so that the memory does not grow with the length o
 
 
 def horizontal_names(position: Position) -> tuple[Name, ...]:
-    """The unknown horizontal components of the earth's rate; none where north is known."""
+    """The unknown components of the earth's rate; none where north is known."""
     if position.north is not None:
         return ()
+    if not position.is_known:
+        return tuple((f"earth {i}", position.name) for i in (0, 1, 2))
     name = "the table" if position.mark is not None else position.name
     return tuple((f"level {i}", name) for i in (0, 1))
 
 
 def horizontal_axes(position: Position) -> Array:
-    """The directions of the unknown horizontal components of the earth's rate, (2, 3)."""
+    """The directions of the unknown components of the earth's rate, (2, 3) or (3, 3)."""
+    if not position.is_known:
+        return np.eye(3)
     if position.mark is not None:
         return np.array([position.mark, cross(position.up, position.mark)])
     return np.array(level_axes(position.up))
+
+
+def horizontal_sigma(position: Position, earth: Earth) -> float:
+    """The sigma of each of these components, rad/s: that of a direction of which nothing is known.
+
+    Without a latitude the upward component is one of unknown sign, with its size as its sigma.
+    """
+    if position.is_known:
+        return float(earth.level / np.sqrt(2))
+    return float(np.linalg.norm([earth.up, earth.up_sigma, earth.level]) / np.sqrt(3))
 
 
 @dataclass(frozen=True)
@@ -118,7 +133,7 @@ def static_equations(
     result = []
     for i, static in enumerate(statics):
         names = horizontal_names(static.position)
-        sigma |= dict.fromkeys(names, earth.level / np.sqrt(2))
+        sigma |= dict.fromkeys(names, horizontal_sigma(static.position, earth))
         columns = slice(None) if names else np.r_[:s, s + 2]
         block = whitened(rows[i][:, columns], static.sigma, names)
         result.append((static.position.name, block, static.stretch or Stretch(f"rest {i}")))
@@ -145,7 +160,7 @@ def steady_equations(
     up = matrix @ steady.position.up
     truth = steady.rate * steady.about + known + earth.up * steady.position.up
     columns = [design_of(truth), up[:, None], steady.sensitivities.of(effects)]
-    sigma |= dict.fromkeys(names, earth.level / np.sqrt(2))
+    sigma |= dict.fromkeys(names, horizontal_sigma(steady.position, earth))
     if names:
         axes = horizontal_axes(steady.position)
         means = [shares @ turned_all(axis, steady.about, angles) for axis in axes]
@@ -185,7 +200,8 @@ def segment_equations(
     along = weight * (point.matrix @ segment.about)
     if not np.any(along):
         return None
-    own = {name: earth.level / np.sqrt(2) for name in horizontal_names(segment.position)}
+    vague = horizontal_sigma(segment.position, earth)
+    own = dict.fromkeys(horizontal_names(segment.position), vague)
     own |= {(f"tilt {i}", segment.position.name): position_sigma for i in (0, 1)}
     own[("angle", name)] = segment.angle_sigma
     if segment.gaps:

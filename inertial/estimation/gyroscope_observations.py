@@ -26,13 +26,19 @@ class Position:
     """A set position: the upward direction, and what is known of north, in body axes.
 
     `north` where mark and heading are given; `mark` where only the mark is; else
-    the azimuth is an unknown of this position.
+    the azimuth is an unknown of this position. Where nothing is known of the attitude, `up` is zero
+    and all three components of the earth's rate are unknowns.
     """
 
     name: str
     up: Array
     mark: Array | None = None
     north: Array | None = None
+
+    @property
+    def is_known(self) -> bool:
+        """Whether it is known which way is up."""
+        return bool(self.up.any())
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from inertial.estimation.gyroscope_equations import (
     Linearisation,
     horizontal_axes,
     horizontal_names,
+    horizontal_sigma,
 )
 from inertial.estimation.gyroscope_observations import Earth, Position
 from inertial.physics.motion import turned_all
@@ -127,6 +128,6 @@ def summed_earth_rate(
     up = summed(position.up)
     if position.north is not None:
         return SummedEarthRate(earth.up * up + earth.level * summed(position.north), up, {})
-    sigma = earth.level / np.sqrt(2)
+    sigma = horizontal_sigma(position, earth)
     axes = zip(horizontal_names(position), horizontal_axes(position), strict=True)
     return SummedEarthRate(earth.up * up, up, {key: sigma * summed(axis) for key, axis in axes})

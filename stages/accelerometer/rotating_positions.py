@@ -36,7 +36,7 @@ def turning_rests(data: CampaignData) -> list[tuple[Part, StaticForce]]:
     quiet = by_manoeuvre(blocks[blocks["phase"].isin(["rest-before", "rest-after"])])
     forces: list[tuple[Part, StaticForce]] = []
     for m in data.plan:
-        if m.do != "turn" or m.recorded != "whole" or m.name not in moving:
+        if m.do != "turn" or m.recorded != "whole" or m.up is None or m.name not in moving:
             continue
         part = moving[m.name]
         usable = performed[m.name].complete and not refusal_of(m, performed[m.name], part)
@@ -52,7 +52,7 @@ def turning_rests(data: CampaignData) -> list[tuple[Part, StaticForce]]:
 
 def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[StaticForce]:
     """Means of blocks of the steady part, over which the attitude is nearly constant."""
-    assert m.up is not None and m.angle is not None  # else the turn is refused
+    assert m.up is not None and m.angle is not None  # else it is left out
     readings, seconds = part.accel, part.seconds
     angle = _angles(m, part, quiet)
     steady = np.flatnonzero(part.steady)
@@ -83,7 +83,7 @@ def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[S
 
 def _angles(m: Manoeuvre, part: Blocks, quiet: Blocks) -> Array:
     """The angle of each block, (k,), rad: the known whole in proportion to the gyro readings."""
-    assert m.angle is not None  # else the turn is refused
+    assert m.angle is not None  # else it is left out
     along = np.nan_to_num(part.gyro) @ m.axis
     offset = float(np.nan_to_num(quiet.gyro @ m.axis).mean())
     increments = (along - offset) * part.seconds

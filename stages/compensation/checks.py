@@ -18,6 +18,7 @@ from inertial.campaign.measurement import Measurement, SensorResult
 from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Row, with_mount
 from inertial.campaign.static_positions import StaticPosition
+from inertial.estimation.gyroscope_equations import horizontal_sigma
 from inertial.estimation.gyroscope_observations import Earth, Position
 from inertial.physics.forward import Triad
 from inertial.physics.motion import Motion, stretches
@@ -287,6 +288,8 @@ def _angle(
 
 def _earth_along(axis: Array, position: Position, earth: Earth) -> tuple[float, float]:
     """The earth's rate along the axis of a turn, and its sigma, rad/s."""
+    if not position.is_known:
+        return 0.0, horizontal_sigma(position, earth)
     lean = float(position.up @ axis)
     upward, spread = earth.up * lean, earth.up_sigma * lean
     if position.north is not None:

@@ -27,8 +27,9 @@ def by_hand(campaign: dict[str, Any]) -> bool:
 
 
 def _sets_positions(file: YamlFile) -> bool:
-    """Whether any manoeuvre begins in a position that is known."""
-    return any(item.get("up", "unknown") != "unknown" for item in file.content["plan"])
+    """Whether any manoeuvre begins in a position that is known, or turns about a known axis."""
+    plan = file.content["plan"]
+    return any(item.get("up", "unknown") != "unknown" or item["do"] == "turn" for item in plan)
 
 
 def known(file: YamlFile, repairs: Sequence[Row] = ()) -> Iterator[Row]:

@@ -197,6 +197,8 @@ def exclusion_reason(rotation: Recorded) -> str:
     """Why a turn is not studied; empty where it is."""
     if rotation.refusal:
         return rotation.refusal
+    if rotation.plan.up is None:
+        return _("which way is up is not known")
     if rotation.plan.recorded != "whole":
         return _("only its steady part was planned, so no whole angle ties it")
     if not rotation.done.complete:
