@@ -45,8 +45,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     sys.stdout.write(
         visible(
             _(
-                "Written: {path}\nFill in what it asks for, record by it, and put the logs beside it; "
-                "then make check CAMPAIGN={name}\n",
+                "Written: {path}\nFill in what it asks for, record by it, put the logs beside "
+                "it; then make check CAMPAIGN={name}\n",
                 path=folder / "campaign.yaml",
                 name=options.name,
             )

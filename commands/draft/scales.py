@@ -3,14 +3,14 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import permutations, product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from commands.draft.series import Divided, Still
 from inertial.estimation.attitude import integrate
-from inertial.signal.axis_permutations import Permutation, simplicity
+from inertial.signal.axis_permutations import Permutation
+from inertial.signal.gravity_turned import turned
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.units import STANDARD_GRAVITY
@@ -26,22 +26,16 @@ MAX_TILT = np.radians(160)
 MIN_STRAIGHT = 0.9  # share of a rotation about one axis
 MAX_OFF_WHOLE = 0.06  # of a turn by hand, and of its gyro, to the whole multiples
 MAX_WHOLE = 3.5  # of these multiples in one turn
-MIN_EXPLAINED = 0.4  # share of the change of gravity's direction that the gyros must explain
+LARGE = 0.95  # quantile of the rates that is about 1 rad/s
+MIN_FACTOR_SIGMA = 10.0  # of the factor by the change of gravity's direction, to be one
 FIRST_SIGMA = 0.1  # relative, of a factor by the change of gravity's direction alone
+MAX_MISS = np.radians(30)  # of a direction: a motion that misses by more says no more
 MAX_WAYS = 20  # motions by which the factor is refined, the shortest of all
 RANGE, STEP = 0.4, 0.02  # about the first factor, relative
-MAX_DISTURBED = 0.15  # of gravity: more than that is the hand
 USUAL_GYRO_COUNTS = (131.0, 65.5, 32.8, 16.4, 228.6, 114.3, 57.1, 28.6, 14.3)  # in 1 °/s
 MAX_RAD_S = 40.0  # rad/s: gyros that read more read °/s
 DEGREE = np.pi / 180
-PERMUTATIONS = sorted(
-    (
-        Permutation(sources, signs)
-        for sources in permutations(range(3))
-        for signs in product((1, -1), repeat=3)
-    ),
-    key=simplicity,
-)
+AS_NAMED = Permutation((0, 1, 2), (1, 1, 1))
 GYRO_UNIT = {
     "deg/s": re.compile(r"deg|dps|°", re.IGNORECASE),
     "rad/s": re.compile(r"rad", re.IGNORECASE),
@@ -60,7 +54,7 @@ class Scale:
     zero: float
     evidence: str
     guessed: bool
-    axes: Permutation = PERMUTATIONS[0]
+    axes: Permutation = AS_NAMED
 
     @property
     def size(self) -> float:
@@ -140,45 +134,35 @@ class Turning:
 
 def turning(recordings: Sequence[Divided], force: Scale) -> Turning | None:
     """The factor of raw gyros by gravity's direction in motion; None where it hardly turns."""
-    directions, changes, rates = [], [], []
-    centre, length, _scatter = sphere(
-        np.array([rest.accel for own in recordings for rest in own.rests] or [np.zeros(3)])
-        - force.zero
+    both = [own for own in recordings if len(own.series.gyro) and len(own.series.accel)]
+    rests = [rest.accel - force.zero for own in both for rest in own.rests]
+    if not rests:
+        return None
+    centre, length, _scatter = sphere(np.array(rests))
+    # Of rates in any unit the largest are made 1 rad/s, about as they are.
+    speed = np.concatenate([np.linalg.norm(own.rates - own.level, axis=1) for own in both])
+    one = float(np.quantile(speed, LARGE))
+    found = turned(
+        [
+            ((own.forces - force.zero) / length, (own.rates - own.level) / one, step)
+            for own in both
+            for step in [own.series.bin_seconds()]
+        ]
     )
-    if length == 0:
+    if found is None:
+        return _usual(
+            [way for each in both for way in _ways(each, force, centre, length, AS_NAMED)]
+        )
+    axes = found.axes or AS_NAMED
+    place = (np.arange(3), np.array(axes.sources))
+    own, weight = found.matrix[place] * np.array(axes.signs), found.sigma[place] ** -2
+    factor = float(np.sum(own * weight) / np.sum(weight))
+    if factor < MIN_FACTOR_SIGMA / np.sqrt(np.sum(weight)):
         return None
-    for own in recordings:
-        if not len(own.series.gyro) or not len(own.series.accel) or own.series.bins < 5:
-            continue
-        up = (own.forces - force.zero - centre) / length
-        undisturbed = np.abs(np.linalg.norm(up, axis=1) - 1) < MAX_DISTURBED
-        good = undisturbed[:-2] & undisturbed[1:-1] & undisturbed[2:]
-        change = (up[2:] - up[:-2]) / (2 * own.series.bin_seconds())
-        rate = own.rates - own.level
-        rate = (rate[:-2] + 2 * rate[1:-1] + rate[2:]) / 4
-        directions.append(up[1:-1][good])
-        changes.append(change[good])
-        rates.append(rate[good])
-    if not directions:
-        return None
-    axes, factor = _axes(*map(np.concatenate, (directions, changes, rates)))
-    ways = [way for own in recordings for way in _ways(own, force, centre, length, axes)]
-    if factor is None:
-        return None
-    return _refined(factor, axes, ways) if ways else Turning(factor, FIRST_SIGMA, axes)
-
-
-def _axes(up: Array, change: Array, rate: Array) -> tuple[Permutation, float | None]:
-    """The axes of the gyros by which dv/dt = −ω × v fits best, and their factor."""
-    best: tuple[float, Permutation, float | None] = (0.0, PERMUTATIONS[0], None)
-    for axes in PERMUTATIONS:  # the simplest first
-        turned = np.cross(up, rate[:, list(axes.sources)] * np.array(axes.signs))
-        along, square = float(np.sum(turned * change)), float(np.sum(turned**2))
-        if along > 0 and along**2 / square > 1.05 * best[0]:
-            best = (along**2 / square, axes, along / square)
-    if best[0] < MIN_EXPLAINED * float(np.sum(change**2)):
-        return PERMUTATIONS[0], None
-    return best[1], best[2]
+    ways = [way for each in both for way in _ways(each, force, centre, length, axes)]
+    first = Turning(factor / one, FIRST_SIGMA, axes)
+    # Without a centre the directions at rest are off by the bias.
+    return _refined(first, ways) if ways and centre.any() else first
 
 
 Way = tuple[Array, Array, Array, float]  # direction before and after, raw rates (k, 3), their step
@@ -209,19 +193,31 @@ def _ways(own: Divided, force: Scale, centre: Array, length: float, axes: Permut
     return ways
 
 
-def _refined(factor: float, axes: Permutation, ways: Sequence[Way]) -> Turning:
-    """The factor that carries the directions from rest to rest."""
+def _usual(ways: Sequence[Way]) -> Turning | None:
+    """Of the usual units and count sizes that which carries the directions from rest to rest."""
+    sizes = [1.0, DEGREE, *(DEGREE / counts for counts in USUAL_GYRO_COUNTS)]
+    misses = [sum(_miss(way, size) for way in ways) for size in sizes]
+    best = int(np.argmin(misses))
+    if not ways or misses[best] > len(ways) * MAX_MISS**2:
+        return None
+    return Turning(sizes[best], FIRST_SIGMA, AS_NAMED)
+
+
+def _refined(first: Turning, ways: Sequence[Way]) -> Turning:
+    """The factor that carries the directions from rest to rest, where that is the surer one."""
     ways = sorted(ways, key=lambda way: len(way[2]))[:MAX_WAYS]
-    factors = factor * np.arange(1 - RANGE, 1 + RANGE, STEP)
+    factors = first.factor * np.arange(1 - RANGE, 1 + RANGE, STEP)
     misses = np.array([[_miss(way, each) for each in factors] for way in ways])
-    total = np.sum(np.minimum(misses, np.radians(30) ** 2), axis=0)
+    total = np.sum(np.minimum(misses, MAX_MISS**2), axis=0)
     best = int(np.argmin(total))
-    around = slice(max(best - 2, 0), best + 3)
-    curve = np.polyfit(factors[around], total[around], 2)
-    value = -curve[1] / (2 * curve[0]) if curve[0] > 0 else factors[best]
+    curve = np.polyfit(factors[max(best - 2, 0) : best + 3], total[max(best - 2, 0) : best + 3], 2)
+    if curve[0] <= 0:
+        return first
     residual = float(total[best]) / max(2 * len(ways) - 1, 1)
-    sigma = float(np.sqrt(residual / curve[0])) if curve[0] > 0 else RANGE * factor
-    return Turning(float(value), max(sigma / factor, STEP), axes)
+    sigma = float(np.sqrt(residual / curve[0]))
+    value = float(np.clip(-curve[1] / (2 * curve[0]), factors[0], factors[-1]))
+    refined = Turning(value, max(sigma / value, STEP), first.axes)
+    return min(first, refined, key=lambda each: each.sigma)
 
 
 def _miss(way: Way, factor: float) -> float:
@@ -269,7 +265,7 @@ def _by_turns(recordings: Sequence[Divided], counts: bool) -> tuple[str, float |
 
 
 def gyro_scale(
-    recordings: Sequence[Divided], turned: Turning | None, names: Sequence[object]
+    recordings: Sequence[Divided], turns: Turning | None, names: Sequence[object]
 ) -> Scale:
     """The unit of gyros: by their names, by the motion, else by how much they read."""
     values = np.concatenate([own.series.gyro for own in recordings])
@@ -278,8 +274,8 @@ def gyro_scale(
         (u for u, p in GYRO_UNIT.items() if any(isinstance(n, str) and p.search(n) for n in names)),
         None,
     )
-    axes = PERMUTATIONS[0] if turned is None else turned.axes
-    if turned is None:
+    axes = AS_NAMED if turns is None else turns.axes
+    if turns is None:
         if named is not None:
             return Scale(named, None, zero, _("by their names"), False)
         if (found := _by_turns(recordings, are_counts(values))) is not None:
@@ -289,15 +285,15 @@ def gyro_scale(
     seen = _(
         "gravity's direction turns by {factor} rad for each unit of reading and second, "
         "± {percent:.0f} %",
-        factor=significant(turned.factor),
-        percent=100 * turned.sigma,
+        factor=significant(turns.factor),
+        percent=100 * turns.sigma,
     )
     for unit, size in (("rad/s", 1.0), ("deg/s", DEGREE)):
-        if abs(turned.factor / size - 1) < 2 * MAX_UNIT_ERROR and not are_counts(values):
+        if abs(turns.factor / size - 1) < 2 * MAX_UNIT_ERROR and not are_counts(values):
             return Scale(unit, None, zero, seen, False, axes)
-    per_degree = DEGREE / turned.factor
+    per_degree = DEGREE / turns.factor
     usual = min(USUAL_GYRO_COUNTS, key=lambda each: abs(np.log(each / per_degree)))
-    near = abs(usual / per_degree - 1) < max(MAX_COUNT_ERROR, turned.sigma)
+    near = abs(usual / per_degree - 1) < max(MAX_COUNT_ERROR, turns.sigma)
     counts = usual if near else float(f"{per_degree:.3g}")
     what = _("{seen}: counts, {counts} in 1 °/s", seen=seen, counts=significant(counts))
     return Scale("deg/s", counts, zero, what, True, axes)
