@@ -66,11 +66,11 @@ report: campaign setup
 	echo "For other programs:" reports/$$CAMPAIGN.{calibration.json,calibration.yaml,kalibr.yaml,px4.params,ardupilot.param}
 	echo "The report:" "$${kinds[@]/#/reports/$$CAMPAIGN.}"
 
-# By hand `python -m commands.check --campaign=<name>` ends with 1 where something spoils a result;
-# make turns that into its own 2.
+# By hand `python -m commands.check --campaign=<name>` ends with 1 where something spoils a result or
+# a sensor gets none; make turns that into its own 2.
 check: campaign .venv/complete
 	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
-	$(SNAKEMAKE) data/derived/$$CAMPAIGN/{quality,segment}/findings.parquet
+	$(SNAKEMAKE) data/derived/$$CAMPAIGN/{accelerometer,gyroscope}/parameters.parquet
 	echo
 	$(BIN)/python -m commands.check "--campaign=$$CAMPAIGN"
 

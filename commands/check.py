@@ -2,9 +2,10 @@
 
     python -m commands.check --campaign demo
 
-It reads the findings of quality and segment, which `make check` lets the workflow make first, and
-states each cause with what follows from it. It ends with 0 where nothing spoils a result, with 1
-where something does, and with 2 where the tables are missing.
+It reads the findings of quality and segment, and which parameters accelerometer and gyroscope
+determine, all of which `make check` lets the workflow make first. It states what gets no result,
+and each cause with what follows from it. It ends with 0 where nothing spoils a result, with 1 where
+something does or a sensor gets none, and with 2 where the tables are missing.
 """
 
 import argparse
@@ -15,6 +16,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from commands.no_result import NoResult, no_results
 from inertial import tables
 from inertial.campaign.explanations import Explained, compete
 from inertial.campaign.hypotheses import findings_of, hypotheses
@@ -39,16 +41,19 @@ INDENT = " " * 4
 
 @dataclass(frozen=True)
 class Recording:
-    """Causes, the worst first; what was performed of each manoeuvre; refused lines by log."""
+    """What gets no result; causes, the worst first; what was performed of each manoeuvre; refused
+    lines by log.
+    """
 
+    without: Sequence[NoResult]
     causes: Sequence[Explained]
     performed: Sequence[Performed]
     refused: dict[str, int]
 
     @property
     def spoiled(self) -> bool:
-        """Whether a cause spoils a result and nothing undoes it."""
-        return any(_grade(each) == SPOILS for each in self.causes)
+        """Whether there is no result, or a cause spoils one and nothing undoes it."""
+        return bool(self.without) or any(_grade(each) == SPOILS for each in self.causes)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -95,7 +100,7 @@ def recording_of(derived: Path) -> Recording:
         if row["kind"] == "refused"
     }
     causes = sorted(compete(list(hypotheses(findings))), key=_worst_first)
-    return Recording(causes, list(performed.values()), refused)
+    return Recording(list(no_results(derived)), causes, list(performed.values()), refused)
 
 
 def _worst_first(each: Explained) -> tuple[int, float, int, str]:
@@ -114,8 +119,9 @@ def _grade(each: Explained) -> int:
 
 
 def as_text(recording: Recording, campaign: str) -> str:
-    """What was recorded, the causes, and their number in one line at the end."""
+    """What was recorded, what gets no result, the causes, and their number at the end."""
     paragraphs = [_recorded(recording, campaign)]
+    paragraphs += [_without(each) for each in recording.without]
     paragraphs += [_cause(each) for each in recording.causes[:MAX_FULL_CAUSES]]
     if others := recording.causes[MAX_FULL_CAUSES:]:
         named = Counter(in_words(each.cause.cause) for each in others)
@@ -152,6 +158,13 @@ def _recorded(recording: Recording, campaign: str) -> str:
     return "\n".join(_wrapped(shortened(sentence, 300)) for sentence in sentences)
 
 
+def _without(each: NoResult) -> str:
+    """Whose result is missing, why, and what to do."""
+    answers = each.sentence, _("Why, and what helps: {action}", action=each.action)
+    title = _wrapped(" · ".join([_("NO RESULT"), each.subject]))
+    return "\n".join([title, *(_wrapped(shortened(text, 600), INDENT) for text in answers)])
+
+
 def _cause(each: Explained) -> str:
     """Grade, cause and place, the sentence, and what page one of the report answers as well."""
     row = each.cause.row
@@ -179,13 +192,18 @@ def _answers(each: Explained) -> Iterator[tuple[str, str]]:
 
 
 def _summary(recording: Recording) -> str:
+    sentences = []
+    if recording.without:
+        subjects = ", ".join(each.subject for each in recording.without)
+        sentences.append(_("No result: {subjects}.", subjects=subjects))
     if recording.causes:
         grades = Counter(_grade(each) for each in recording.causes)
         each = [f"{n} {GRADES[grade][n > 1]}" for grade, n in sorted(grades.items())]
-        return f"{counted(len(recording.causes), 'cause')}: {', '.join(each)}."
-    if refused := sum(recording.refused.values()):
-        return _("No cause, but {refused} cannot be read.", refused=counted(refused, "line"))
-    return _("Nothing is wrong with this recording.")
+        sentences.append(f"{counted(len(recording.causes), 'cause')}: {', '.join(each)}.")
+    elif refused := sum(recording.refused.values()):
+        lines = counted(refused, "line")
+        sentences.append(_("No cause, but {refused} cannot be read.", refused=lines))
+    return " ".join(sentences) or _("Nothing is wrong with this recording.")
 
 
 def _wrapped(text: str, indent: str = "") -> str:

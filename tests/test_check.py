@@ -17,12 +17,14 @@ from commands.check import LINE_WIDTH, main
 from inertial import tables
 
 NAME = "demo"
+SENSORS = ("accelerometer", "gyroscope")
 FINDINGS = ("quality/findings", "segment/findings")
 READ = (
     *FINDINGS,
     *("plan/repairs", "segment/repairs", "segment/channel_repairs"),
     *("quality/masks", "quality/gaps", "segment/segments", "segment/performed"),
-    "decode/accounts",
+    *("segment/blocks", "plan/manoeuvres", "decode/accounts"),
+    *("accelerometer/parameters", "gyroscope/parameters"),
 )
 
 
@@ -81,7 +83,7 @@ def reversed_gyro(tmp_path_factory: pytest.TempPathFactory) -> Results:
     folder = tmp_path_factory.mktemp("reversed")
     fault = {"flip": {"log": "all", "sensor": "gyro", "axis": "y"}}
     chain.simulate(chain.short(faults=[fault]), folder / NAME)
-    return chain.run(folder / NAME, folder / "derived", "segment")
+    return chain.run(folder / NAME, folder / "derived", "gyroscope")
 
 
 def test_what_is_set_right_spoils_nothing_and_states_its_condition(
@@ -103,6 +105,77 @@ def test_what_nobody_set_right_spoils_a_result(
     change(data, "segment/repairs", state="refused")
     assert check(data) == 1
     assert "SPOILS A RESULT · reversed sign" in capsys.readouterr().out
+
+
+# ---- no result
+
+
+def without(plan: list[str], tmp_path: Path) -> Path:
+    """The data of a short campaign of which only these manoeuvres were planned."""
+    document = chain.short()
+    document["campaign"]["plan"] = [
+        item for item in document["campaign"]["plan"] if item["id"] in plan
+    ]
+    chain.simulate(document, tmp_path / NAME)
+    results = chain.run(tmp_path / NAME, tmp_path / "derived", "gyroscope")
+    return copied(results, tmp_path / "data")
+
+
+def test_a_sensor_that_lacks_a_manoeuvre_has_no_result(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rests = [f"{axis}-{way}" for axis in "xyz" for way in ("up", "down")]
+    data = without([*rests, "x-forward", "x-backward", "z-forward", "z-backward"], tmp_path)
+    assert check(data) == 1
+    said = " ".join(capsys.readouterr().out.split())
+    # The scale of the y gyro is known from the earth's rate, up and down.
+    assert "NO RESULT · gyros 2 of 12 parameters are not determined: cross_xy, cross_zy." in said
+    assert "add one of 360° about y" in said
+    assert "NO RESULT · accelerometers" not in said
+    assert said.endswith("No result: gyros.")
+
+
+def by_hand(recordings: Path, folder: Path, time: str) -> Results:
+    """A real MPU-9150 in 22 positions by hand, without stamps, 100 Hz, the format having `time`."""
+    (folder / NAME).mkdir()
+    shutil.copy(recordings / "mikoff_mpu9150/imu0.log", folder / NAME)
+    (folder / NAME / "campaign.yaml").write_text(
+        f"""\
+campaign: 1
+instrument:
+  name: MPU-9150
+  format:
+    kind: columns
+    {time}
+    accelerometer: {{columns: [1, 2, 3], unit: m/s2}}
+    gyro: {{columns: [4, 5, 6], unit: rad/s}}
+serial: unknown
+date: unknown
+site: {{latitude_deg: 55, gravity_m_s2: 9.81, gravity_sigma_m_s2: 0.005}}
+table: {{name: by hand, position_sigma_arcsec: 3600}}
+log: imu0.log
+plan:
+  - {{id: positions, do: positions, seconds: 1}}
+"""
+    )
+    return chain.run(folder / NAME, folder / "derived", "gyroscope")
+
+
+def test_a_rate_stated_ten_times_too_low_cuts_rests_to_pieces(
+    recordings: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    results = by_hand(recordings, tmp_path, "time: {rate_hz: 10}")
+    assert check(copied(results, tmp_path / "data")) == 1
+    said = " ".join(capsys.readouterr().out.split())
+    assert "NO RESULT · positions 48 rests were found, and 26 stand as the one before" in said
+
+
+def test_positions_by_hand_have_their_result(
+    recordings: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    results = by_hand(recordings, tmp_path, "time: {rate_hz: 100}")
+    check(copied(results, tmp_path / "data"))
+    assert "NO RESULT" not in capsys.readouterr().out
 
 
 def test_it_fits_into_a_terminal(data: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -181,7 +254,7 @@ def test_a_campaign_that_names_no_log_is_refused_as_by_make_report(tmp_path: Pat
     document = chain.short()
     chain.simulate(document, raw)
     (raw / "x-up.asc").rename(raw / "x_up.asc")
-    goals = [f"data/derived/{NAME}/{name}.parquet" for name in FINDINGS]
+    goals = [f"data/derived/{NAME}/{stage}/parameters.parquet" for stage in SENSORS]
     command = [sys.executable, "-m", "snakemake", "--cores", "2", "--directory", str(tmp_path)]
     done = subprocess.run(
         [*command, "--snakefile", str(ROOT / "Snakefile"), "--", *goals],
@@ -199,15 +272,15 @@ def test_a_campaign_that_names_no_log_is_refused_as_by_make_report(tmp_path: Pat
 
 @pytest.mark.workflow
 def test_a_check_makes_what_a_report_begins_with(tmp_path: Path) -> None:
-    """From nothing but the logs: the first four stages, and no other."""
+    """From nothing but the logs: the first seven stages, and no other."""
     raw = tmp_path / "data/raw" / NAME
     chain.simulate(chain.short(), raw)
     recipe = (ROOT / "Makefile").read_text().partition("\ncheck:")[2].partition("\n\n")[0]
-    assert "data/derived/$$CAMPAIGN/{quality,segment}/findings.parquet" in recipe
-    goals = [f"data/derived/{NAME}/{name}.parquet" for name in FINDINGS]
+    assert "data/derived/$$CAMPAIGN/{accelerometer,gyroscope}/parameters.parquet" in recipe
+    goals = [f"data/derived/{NAME}/{stage}/parameters.parquet" for stage in SENSORS]
     command = [sys.executable, "-m", "snakemake", "--cores", "2", "--directory", str(tmp_path)]
     command += ["--snakefile", str(ROOT / "Snakefile"), "--", *goals]
     subprocess.run(command, capture_output=True, check=True)
     made = {path.name for path in (tmp_path / "data/derived" / NAME).iterdir()}
-    assert made == {"plan", "decode", "quality", "segment"}
+    assert made == {"plan", "decode", "quality", "segment", "noise", *SENSORS}
     assert check(tmp_path / "data") == 0

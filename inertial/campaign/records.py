@@ -9,6 +9,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.tables import AXES
+from inertial.text.messages import _
+
+MAX_NAMED = 5  # manoeuvres that are left out for the same reason
 
 Array = NDArray[np.float64]
 Row = dict[str, Any]
@@ -147,8 +150,25 @@ def labels(parts: Iterable[Part]) -> str:
 
 
 def omissions(parts: Iterable[Part]) -> str:
-    """In words: what is left out, each with the reason."""
-    return "; ".join(part.omission for part in parts if part.reason)
+    """In words: what is left out, and why; of many for one reason the first and their number."""
+    alike: dict[str, list[Part]] = {}
+    for part in parts:
+        if part.reason:
+            alike.setdefault(part.reason, []).append(part)
+    return "; ".join(_omission(left_out) for left_out in alike.values())
+
+
+def _omission(alike: Sequence[Part]) -> str:
+    """What is left out for one reason."""
+    first, *others = alike
+    if len(others) < MAX_NAMED:
+        return "; ".join(part.omission for part in alike)
+    return _(
+        "{label} and {others} others: {reason}",
+        label=first.label,
+        others=len(others),
+        reason=first.reason,
+    )
 
 
 @dataclass(frozen=True)
