@@ -231,6 +231,8 @@ def logs(
             step=clock[log].duration or np.nan,
             increments=any(row.get("increments") for row in channels),
             imu=tuple(types.get(log, ())),
+            stamp_scatter=_number(rows[log].get("stamp_scatter"), np.nan),
+            shortest_gap=_number(rows[log].get("shortest_gap"), np.nan),
         )
     return made
 

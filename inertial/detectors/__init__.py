@@ -4,6 +4,7 @@ To add a detector, write its file beside this one and add it here; quality, segm
 and the tests take it from these lists. A detector masks what it detects for those after it.
 """
 
+from inertial.detectors.arrival_stamps import ArrivalStamps
 from inertial.detectors.axis_swap import AxisSwap, AxisSwapOfGyros
 from inertial.detectors.axis_swap_against_plan import AxisSwapAgainstPlan
 from inertial.detectors.bias_jump import BiasJump
@@ -51,6 +52,7 @@ OF_RECORDS: tuple[Detector, ...] = (
     HeldRecord(),
     StatusInvalid(),
     TimeStandsStill(),
+    ArrivalStamps(),
     ClockJitter(),
     ClockStep(),
     ClockScale(),

@@ -92,6 +92,8 @@ class Log:
     count: (6,), what one count is by the campaign, m/s² and rad/s, NaN where not stated.
     records: how many. increments: readings are increments over `step`, and what a count leaves
     over goes into the next. imu: the types of IMU in its messages, by NovAtel's list.
+    stamp_scatter: s, rms of the stamps about the regular clock that is used instead, NaN where the
+    stamps are used; shortest_gap: s, that such stamps show.
     glitches: what is off at one phase of a period.
     """
 
@@ -111,6 +113,8 @@ class Log:
     step: float = np.nan
     increments: bool = False
     imu: tuple[int, ...] = ()
+    stamp_scatter: float = np.nan
+    shortest_gap: float = np.nan
     glitches: tuple["Glitch", ...] = ()
 
     def event(self, size: float, **more: Any) -> "Event":

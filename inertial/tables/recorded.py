@@ -51,7 +51,7 @@ ACCOUNTS = Table(
 )
 CLOCKS = Table(
     "clocks",
-    3,
+    4,
     (
         LOG,
         Column(
@@ -69,6 +69,20 @@ CLOCKS = Table(
             DOUBLE,
             "s",
             "mean sample interval: what a sample counts for in a sum over time",
+            nullable=True,
+        ),
+        Column(
+            "stamp_scatter",
+            DOUBLE,
+            "s",
+            "rms of the stamps about the regular clock that is used instead; null: they are used",
+            nullable=True,
+        ),
+        Column(
+            "shortest_gap",
+            DOUBLE,
+            "s",
+            "shortest gap that stamps which scatter show",
             nullable=True,
         ),
     ),

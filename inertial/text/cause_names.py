@@ -24,6 +24,7 @@ NAMES = {
     "accel_quadratic": _("accelerometer quadratic term"),
     "already_compensated": _("compensated already"),
     "axis_swap": _("exchanged axes"),
+    "arrival_stamps": _("stamps of arrival"),
     "clock_jitter": _("jitter of the clock"),
     "clock_step": _("clock that was set"),
     "clock_scale": _("clock too fast or too slow"),

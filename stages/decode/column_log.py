@@ -1,17 +1,17 @@
 """A log of columns."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from inertial.formats.account import Integers
 from inertial.formats.columns import column_reader
 from inertial.formats.columns.column_layout import ticks_per_second
 from inertial.tables import AXES
 from inertial.text.campaign_units import CHANNEL_UNITS
-from stages.decode.decoded import Decoded, Reals, look_ahead, on_axis
+from stages.decode.arrival_times import ArrivalTimes, Stamped, arrival_times
+from stages.decode.decoded import Decoded, Reals, first_of, intervals_of, on_axis
 from stages.decode.table_angle import ANGLE_UNITS
 from stages.decode.unsigned_counts import refuse_unsigned
 
@@ -19,7 +19,10 @@ ICE_POINT = 273.15  # K
 
 
 class ColumnLog:
-    """A log of columns, text or not: its own time or none, and values in units or counts."""
+    """A log of columns, text or not: its own time or none, and values in units or counts.
+
+    `arrival`: the times of its samples, where its stamps are those of arrival.
+    """
 
     def __init__(self, name: str, path: Path, layout: Mapping[str, Any]) -> None:
         self.name = name
@@ -28,6 +31,7 @@ class ColumnLog:
         time = layout.get("time")
         self.clock = "none" if time is None else "own"
         self._ticks = 1.0 if time is None else ticks_per_second(layout)
+        self.arrival: ArrivalTimes | None = None
         self._first, self.interval, self.step = self._beginning()
 
     def _beginning(self) -> tuple[float, float | None, float | None]:
@@ -37,21 +41,23 @@ class ColumnLog:
             return 0.0, None, None
         if time.get("column") is None:  # rows are counted from the first, though it be refused
             return 0.0, 1 / self._ticks, 1 / self._ticks
-        readings = column_reader.read(self.path, self._layout)
-        first, median, mean = look_ahead(self._ticks_of_one_sensor(readings))
+        first = first_of(each.ticks[~each.repeated] for each in self._stamps())
+        if not len(first):
+            return 0.0, None, None
+        if "mean_of" not in self._layout:
+            self.arrival = arrival_times(first, self._stamps, self._ticks)
+        if self.arrival is not None:
+            interval = self.arrival.clock.interval
+            return self.arrival.first, interval, interval
+        median, mean = intervals_of(first)
         if median is None or mean is None:
-            return first or 0.0, None, None
-        return first or 0.0, median / self._ticks, mean / self._ticks
+            return first[0].item(), None, None
+        return first[0].item(), median / self._ticks, mean / self._ticks
 
-    def _ticks_of_one_sensor(
-        self, readings: Iterable[column_reader.Reading]
-    ) -> Iterator[Reals | Integers]:
-        """The times of one sensor, for two may come in rows of their own."""
-        for reading in readings:
-            rows = reading.records
-            sensor = rows.accelerometer if "accelerometer" in self._layout else rows.gyro
-            if rows.ticks is not None:
-                yield rows.ticks[np.isfinite(sensor).any(axis=1)]
+    def _stamps(self) -> Iterator[Stamped]:
+        sensor = "accelerometer" if "accelerometer" in self._layout else "gyro"
+        for reading in column_reader.read(self.path, self._layout):
+            yield Stamped.of(reading.records, sensor)
 
     def decoded(self, origin: int) -> Iterator[Decoded]:
         """The log, piece by piece; `origin` is none of its business."""
@@ -68,7 +74,9 @@ class ColumnLog:
                 **self._triad("accel", "accelerometer", rows.accelerometer),
                 **self._triad("gyro", "gyro", rows.gyro),
             }
-            if rows.ticks is not None:
+            if self.arrival is not None:
+                samples["time"] = self.arrival.of(rows.record)
+            elif rows.ticks is not None:
                 samples["time"] = (rows.ticks - self._first) / self._ticks
             if rows.table_angle is not None:
                 unit = ANGLE_UNITS[self._layout["table_angle"]["unit"]]

@@ -88,26 +88,28 @@ class Decoded:
     imu_types: frozenset[int] = frozenset()  # in the messages, by NovAtel's list
 
 
-def look_ahead(
-    times: Iterable[NDArray[np.int64] | Reals],
-) -> tuple[float | None, float | None, float | None]:
-    """The first time of a log, and the time from sample to sample, by its first pieces.
+def first_of(times: Iterable[NDArray[np.int64] | Reals]) -> NDArray[Any]:
+    """The first times of a log, at least `LOOK_AHEAD` where there are as many."""
+    so_far: list[NDArray[Any]] = []
+    for some in times:
+        so_far.append(some)
+        if sum(len(part) for part in so_far) > LOOK_AHEAD:
+            break
+    return np.concatenate(so_far) if so_far else np.array([])
+
+
+def intervals_of(times: NDArray[Any]) -> tuple[float | None, float | None]:
+    """The interval from sample to sample by the first times of a log.
 
     That is the median, and the mean of those steps that are no gaps: stamps of a
     millisecond make the median jump, not the mean.
     """
-    times_so_far: list[NDArray[Any]] = []
-    for some in times:
-        times_so_far.append(some)
-        if sum(len(part) for part in times_so_far) > LOOK_AHEAD:
-            break
-    together = np.concatenate(times_so_far) if times_so_far else np.array([])
-    steps = np.diff(together)
+    steps = np.diff(times)
     forward = steps[steps > 0]
     if not len(forward):
-        return (together[0].item() if len(together) else None, None, None)
+        return None, None
     median = float(np.median(forward))
-    return together[0].item(), median, float(np.mean(forward[forward < 1.5 * median]))
+    return median, float(np.mean(forward[forward < 1.5 * median]))
 
 
 def on_axis(sensor: str, axis: str, values: Reals) -> tuple[str, Reals]:

@@ -111,6 +111,7 @@ class JoinedLog:
             both[slower].account.add(DECODED, "", -left, 0)
             both[slower].account.add(NOT_SELECTED, "", left, 0)
         self.interval, self.step = self._log.interval, self._log.step
+        self.arrival = self._log.arrival
         if len(self._kept) and not self._kept.any():
             raise Refusal(
                 gyro_path.name,

@@ -11,7 +11,7 @@ from inertial.formats.file_type import FileType, file_type_of, refuse_no_log
 from inertial.formats.gps_time import NANOSECONDS, utc
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
-from stages.decode.decoded import Decoded, Reals, look_ahead, on_axis
+from stages.decode.decoded import Decoded, Reals, first_of, intervals_of, on_axis
 
 if TYPE_CHECKING:
     from inertial.formats.novatel import novatel_reader
@@ -27,6 +27,7 @@ class ReceiverLog:
     """
 
     clock = "GPS"
+    arrival = None  # a receiver stamps a sample when it is taken
 
     def __init__(self, name: str, path: Path, layout: Mapping[str, Any]) -> None:
         _refuse_other_than_messages(path)
@@ -38,9 +39,10 @@ class ReceiverLog:
             "gyro": float(layout["gyro_count"]),  # rad
         }
         stamps = (reading.records.stamp for reading in _messages(path))
-        first, median, _ = look_ahead(stamps)
+        first = first_of(stamps)
+        median, _mean = intervals_of(first)
         # ns since the start of GPS time
-        self.first = None if first is None else int(first)
+        self.first = int(first[0]) if len(first) else None
         self.interval = None if median is None else median / NANOSECONDS  # s
         # Increments become rates with this interval, so it turns them back into increments.
         self.step = self.interval

@@ -39,7 +39,8 @@ def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
     """The tables samples, refused, accounts, clocks and imu_types in pieces, log after log.
 
     Time is GPS time since the first sample of the campaign for the logs of a receiver; for a log of
-    columns it is the time since its own first sample. Increments become rates with the log's own
+    columns it is the time since its own first sample, by a regular clock where the stamps are those
+    of arrival. Increments become rates with the log's own
     median sample interval; a log that has too few samples for one has no rates.
 
     Accelerometers and gyros with a log each are joined: `joined_log` says how.
@@ -107,6 +108,8 @@ def _pieces_of(
         "to_record": to_record,
         "interval": log.interval,
         "integration_step": log.step,
+        "stamp_scatter": log.arrival and log.arrival.clock.scatter,
+        "shortest_gap": log.arrival and log.arrival.clock.shortest_gap,
     }
     yield "clocks", batch_of_rows([clock], CLOCKS.schema)
     types = [{"log": log.name, "imu_type": number} for number in sorted(imu_types)]

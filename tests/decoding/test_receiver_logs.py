@@ -33,6 +33,8 @@ def test_the_printed_lines_in_metres_degrees_and_seconds(tmp_path):  # T2
         "to_record": [7],
         "interval": [pytest.approx(0.01, abs=1e-9)],
         "integration_step": [pytest.approx(0.01, abs=1e-9)],
+        "stamp_scatter": [None],
+        "shortest_gap": [None],
     }
     assert tables["imu_types"]["imu_type"] == []
 

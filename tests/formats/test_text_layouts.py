@@ -173,7 +173,7 @@ def test_a_decimal_comma(decoded, name, between):
 
 
 def test_a_comma_for_both_is_refused(decoded):
-    layout = f"{{kind: columns, delimiter: ',', decimal: ',', {NUMBERED}}}"
+    layout = f"{{kind: columns, delimiter: ',', decimal: ',', {NUMBERED}, time: {{rate_hz: 100}}}}"
     with pytest.raises(Refusal, match=r"formats\.log\.decimal") as refusal:
         decoded(rows(["0"]), layout)
     assert "another character than the delimiter" in str(refusal.value)

@@ -56,6 +56,7 @@ OF_TIME = frozenset(
 # What no sample shows: it is about the log as a whole, or about what the campaign says.
 OF_NO_SAMPLE = frozenset(
     {
+        "arrival_stamps",
         "clock_scale",
         "gravity_error",
         "rate_off",

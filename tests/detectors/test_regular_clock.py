@@ -1,0 +1,149 @@
+"""The clock of samples that a host stamps late, in bursts, or coarsely; gaps in them."""
+
+import numpy as np
+import pytest
+
+from inertial.signal.regular_clock import RegularClock, are_regular, regular_clock
+
+INTERVAL = 0.01  # s
+
+
+def clock_of(time: np.ndarray) -> RegularClock:
+    found = regular_clock(time)
+    assert found is not None
+    return found
+
+
+def packets(
+    taken: np.ndarray, seed: int, period: float = 0.04, stall: tuple[float, float] | None = None
+) -> np.ndarray:
+    """Stamps of samples taken at these times: a host fetches all that wait, 1 ms for each.
+
+    It looks about every `period`, s; not at all during `stall`, from and to, s.
+    """
+    generator = np.random.default_rng(seed)
+    looks = np.cumsum(period * generator.uniform(0.5, 1.5, int(2 * taken[-1] / period) + 10))
+    if stall:
+        looks = looks[(looks < stall[0]) | (looks > stall[1])]
+    stamps, free = np.empty(len(taken)), 0.0
+    for k, look in enumerate(looks[np.searchsorted(looks, taken)].tolist()):
+        free = max(free, look) + 1e-3
+        stamps[k] = free
+    return stamps
+
+
+def taken(count: int, lost: tuple[int, ...] = ()) -> np.ndarray:
+    return np.delete(np.arange(count), lost) * INTERVAL
+
+
+# ---- regular or not
+
+
+@pytest.mark.parametrize(
+    "time",
+    [
+        np.arange(5000) * INTERVAL,
+        np.round(np.arange(5000) * 11.88e-3, 3),  # 84 Hz in whole ms
+        np.flatnonzero(np.random.default_rng(1).random(5000) > 0.3) * INTERVAL,  # 30 % are lost
+        np.arange(5000) * INTERVAL + 10 * (np.arange(5000) > 2000),  # a pause of 10 s
+        np.r_[np.arange(3000), np.arange(2000, 5000)] * INTERVAL,  # 1000 come again
+        np.maximum.accumulate(np.where(np.arange(5000) % 700 < 8, 0, np.arange(5000))) * INTERVAL,
+        np.arange(4000) * INTERVAL + 3e-4 * np.random.default_rng(1).standard_normal(4000),
+        np.ones(100),
+        np.array([0.0, 1.0, 5.0]),
+        np.array([]),
+    ],
+    ids=["even", "ms", "lost", "pause", "replay", "hangs", "jitter 3 %", "no clock", "few", "none"],
+)
+def test_stamps_that_are_used_as_they_are(time):
+    assert are_regular(time)
+
+
+@pytest.mark.parametrize(
+    "time",
+    [
+        packets(taken(5000), 1),
+        np.floor(taken(5000)),  # whole seconds
+        np.repeat(np.arange(2500) * 0.02, 2),  # two samples share a stamp
+        np.round(np.arange(5000) / 400, 3),  # 400 Hz in whole ms
+        taken(5000) + 1e-3 * np.random.default_rng(1).standard_normal(5000),
+    ],
+    ids=["packets", "seconds", "pairs", "400 Hz in ms", "jitter 10 %"],
+)
+def test_stamps_that_are_not(time):
+    assert not are_regular(time)
+
+
+# ---- the clock
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_packets_are_a_regular_clock_without_gaps(seed):
+    clock = clock_of(packets(taken(6000), seed))
+    assert clock.interval == pytest.approx(INTERVAL, rel=1e-4)
+    np.testing.assert_array_equal(clock.number, np.arange(6000))
+    assert 0.01 < clock.scatter < 0.03  # of a packet's 0 to 60 ms
+
+
+@pytest.mark.parametrize("seconds", [0.1, 0.3, 0.7])
+def test_a_host_that_is_busy_makes_no_gap(seconds):
+    clock = clock_of(packets(taken(6000), 1, stall=(20, 20 + seconds)))
+    np.testing.assert_array_equal(clock.number, np.arange(6000))
+
+
+@pytest.mark.parametrize("missing", [4, 20, 300])
+@pytest.mark.parametrize("seed", range(5))
+def test_a_gap_is_as_many_as_are_missing(missing, seed):
+    lost = tuple(range(2000, 2000 + missing))
+    clock = clock_of(packets(taken(6000, lost), seed))
+    jumps = np.flatnonzero(np.diff(clock.number) > 1)
+    assert len(jumps) == 1
+    # Two packets; where the gap is no longer than the packets, a second.
+    assert jumps[0] + 1 == pytest.approx(2000, abs=10 if missing > 6 else 100)
+    assert clock.number[-1] == pytest.approx(5999, abs=1)
+    assert clock.interval == pytest.approx(INTERVAL, rel=2e-4)
+
+
+def test_gaps_are_found_though_there_are_many():
+    lost = [place + k for place in range(1000, 59_000, 1000) for k in range(30)]
+    clock = clock_of(packets(taken(60_000, tuple(lost)), 3))
+    missing = np.diff(clock.number) - 1
+    assert np.count_nonzero(missing) == 58
+    np.testing.assert_allclose(missing[missing > 0], 30, atol=1)
+    assert clock.interval == pytest.approx(INTERVAL, rel=1e-4)
+
+
+def test_single_stamps_that_are_late_still_show_a_single_lost_sample():
+    """As by a driver that polls: stamps are up to 5 ms late, and never early."""
+    time = taken(6000, (3000,)) + np.random.default_rng(1).uniform(0, 5e-3, 5999)
+    clock = clock_of(time)
+    assert np.flatnonzero(np.diff(clock.number) > 1).tolist() == [2999]
+    assert clock.number[-1] == 5999
+    assert clock.scatter == pytest.approx(5e-3 / np.sqrt(12), rel=0.03)
+
+
+def test_whole_seconds():
+    clock = clock_of(np.floor(taken(6000, tuple(range(1234, 1534)))))
+    assert clock.interval == pytest.approx(INTERVAL, rel=1e-4)
+    assert clock.number[-1] == pytest.approx(5999, abs=1)
+    np.testing.assert_array_equal(clock.number[:1200], np.arange(1200))
+    np.testing.assert_allclose(np.diff(clock.number[1400:]), 1)
+
+
+def test_a_clock_that_is_set_back_stays_so():
+    time = packets(taken(6000), 1)
+    time[3000:] -= 20
+    clock = clock_of(time)
+    assert np.diff(clock.number)[2999] == pytest.approx(1 - 20 / INTERVAL, abs=1)
+    assert np.count_nonzero(np.diff(clock.number) != 1) == 1
+
+
+def test_one_absurd_stamp_does_not_matter():
+    time = packets(taken(6000), 1)
+    time[3000] = 1e6
+    np.testing.assert_array_equal(clock_of(time).number, np.arange(6000))
+
+
+def test_stamps_that_do_not_advance_are_no_clock():
+    assert regular_clock(np.ones(100)) is None
+    assert regular_clock(-np.arange(100.0)) is None
