@@ -6,6 +6,7 @@ from functools import cached_property
 
 import pandas as pd
 
+from inertial.campaign.attitudes_by_hand import Handled, with_attitudes
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.rate_segments import GyroInputs, gyro_inputs
 from inertial.campaign.records import (
@@ -38,6 +39,7 @@ class CampaignData:
     mount : its name; empty where the campaign has a single one
     shared_clock : whether times of different logs are comparable
     solution : None until there is one
+    by_hand : the positions of unknown attitude, where these give the solution
     """
 
     plan: Sequence[Manoeuvre]
@@ -49,6 +51,7 @@ class CampaignData:
     clocks: Mapping[str, Clock] = field(default_factory=dict)
     shared_clock: bool = False
     solution: Solution | None = None
+    by_hand: Handled | None = None
 
     def named(self, name: str) -> str:
         """A method or an effect as identifiers call it, with the mount where there are several."""
@@ -133,7 +136,8 @@ def campaigns_of(
                 Estimated(accelerometer_parameters, accelerometer_positions, accelerometer_fit),
                 Estimated(gyroscope_parameters, gyroscope_positions, gyroscope_fit),
             )
-        result.append(
-            CampaignData(plan, done, blocks, noise, given, mount, times, shared, solution)
-        )
+        data = CampaignData(plan, done, blocks, noise, given, mount, times, shared, solution)
+        if solution is not None and solution.free and solution.accelerometer is not None:
+            data = with_attitudes(data, solution.accelerometer)
+        result.append(data)
     return result

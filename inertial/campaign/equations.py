@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.equations_by_hand import NO_TABLE, ByHand, motion_of, of_a_table
 from inertial.campaign.motions import CampaignMotions, Merged, mean_motions, positions_of
 from inertial.campaign.rate_segments import GyroInputs, Recorded
 from inertial.campaign.records import Known, Manoeuvre
@@ -20,9 +21,8 @@ from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.gyroscope_equations import Linearisation
 from inertial.estimation.gyroscopes import LinearisedEquations
 from inertial.estimation.horizontal_earth_rate import constrained_positions
-from inertial.estimation.least_squares import EffectInformation, System
+from inertial.estimation.least_squares import System
 from inertial.estimation.sensitivities import Sensitivities
-from inertial.model_selection.evidence import Evidence
 from inertial.physics.effect import Effect, Reading
 from inertial.physics.forward import Triad, signatures
 from inertial.physics.motion import Motion, joined, mean_turned
@@ -33,7 +33,6 @@ Array = NDArray[np.float64]
 
 PRIOR_SIZE = 10.0  # prior sigma of an effect, in its typical sizes
 NOT_SIMULATED = _("Nothing is simulated, for the joint estimate determines no sensor wholly.")
-MIN_OBSERVABLE_SIGMAS = 5.0  # sigmas of an effect at its largest size; less is not observable
 MIN_PIECE_S = 30.0  # s, duration of a piece of a static position
 MAX_PIECES = 100  # pieces of all static positions together
 SENSORS = ("gyro", "accel")
@@ -64,7 +63,8 @@ def _prior_sigmas(effects: Sequence[Effect], prior_sigma: float) -> dict[str, fl
 class Campaign:
     """One mount of a campaign with its joint result, from which systems with effects are formed.
 
-    `positions`, `planned`: positions and manoeuvres of the plan, in its order.
+    `positions`, `planned`: positions and manoeuvres of the plan, in its order; `by_hand`: where the
+    result is that of positions of unknown attitude.
     """
 
     inputs: GyroInputs
@@ -76,6 +76,7 @@ class Campaign:
     position_sigma: float
     positions: Sequence[str]
     planned: Sequence[str] = ()
+    by_hand: ByHand | None = None
     _known: dict[EffectKey, Reading] = field(
         default_factory=dict, repr=False, compare=False
     )  # responses to effects, which random walks do not change
@@ -88,7 +89,8 @@ class Campaign:
         """The manoeuvres in the equations, in the order of the plan."""
         names = [position.manoeuvre.name for position in self.inputs.static_positions]
         names += [recorded.plan.name for recorded in self._whole]
-        return list(dict.fromkeys([*names, *(name for name, _, _ in self.static_forces)]))
+        names += [name for name, _, _ in self.static_forces]
+        return list(dict.fromkeys([*names, *(self.by_hand.moving if self.by_hand else ())]))
 
     @property
     def _whole(self) -> list[Recorded]:
@@ -102,10 +104,15 @@ class Campaign:
     @property
     def _motions(self) -> list[Motion]:
         return [
-            *self.static_motions,
-            *self.turn_motions,
+            *self.gyro_motions,
             *(motion for _, _, motion in self.static_forces),
         ]
+
+    @property
+    def gyro_motions(self) -> list[Motion]:
+        """Those of the gyros: static positions, rotations, passages by hand."""
+        passages = self.by_hand.motions if self.by_hand else ()
+        return [*self.static_motions, *self.turn_motions, *passages]
 
     @property
     def recorded(self) -> bool:
@@ -114,17 +121,28 @@ class Campaign:
 
     def stretches(self, sensor: str) -> slice:
         """Which stretches of `motion` are those of a sensor, `gyro` or `accel`."""
-        gyros = sum(len(motion.rate) for motion in [*self.static_motions, *self.turn_motions])
+        gyros = sum(len(motion.rate) for motion in self.gyro_motions)
         return slice(0, gyros) if sensor == "gyro" else slice(gyros, len(self.motion.rate))
 
     def candidates(self, effects: Sequence[Effect]) -> dict[str, list[Effect]]:
         """Each effect by its name, once for every value of its scanned parameter."""
         if not self._motions:
             return {effect.name: [effect] for effect in effects}
-        return {effect.name: list(effect.candidates(self.motion)) or [effect] for effect in effects}
+        return {
+            effect.name: [effect]
+            if self.excludes(effect)
+            else list(effect.candidates(self.motion)) or [effect]
+            for effect in effects
+        }
+
+    def excludes(self, effect: Effect) -> bool:
+        """Whether an effect is none of this campaign: of a table, where there is none."""
+        return self.by_hand is not None and of_a_table(effect)
 
     def blind(self, effect: Effect) -> str:
         """Why an effect is not observable in this campaign; empty where it may be."""
+        if self.excludes(effect):
+            return NO_TABLE
         return effect.blind(self.motion) if self._motions else NOT_SIMULATED
 
     def with_random_walks(self, random_walks: tuple[float, float]) -> "Campaign":
@@ -134,6 +152,11 @@ class Campaign:
     def without_random_walks(self) -> "Campaign":
         """The same with constant biases."""
         return self.with_random_walks((0.0, 0.0))
+
+    def noise_degrees(self, sensor: str, of_noise: float) -> float:
+        """Degrees of freedom of the noise of a sensor, a scatter by hand included."""
+        own = self.by_hand.degrees.get(sensor, np.inf) if self.by_hand else np.inf
+        return float(min(of_noise, own))
 
     def deviance(self, effects: Sequence[Effect], sizes: Sequence[float]) -> float:
         """−2 log of the likelihood; `sizes`: prior sigma of each effect, in its typical sizes."""
@@ -160,6 +183,14 @@ class Campaign:
     def system(self, sensor: str, effects: Sequence[Effect], prior_sigma: float) -> System | None:
         """The equations of one sensor, `gyro` or `accel`; arguments as in `systems`."""
         return self._system(sensor, effects, _prior_sigmas(effects, prior_sigma), None)
+
+    def equations(
+        self, sensor: str, effects: Sequence[Effect], prior_sigma: float
+    ) -> DriftingEquations | None:
+        """The same before errors are eliminated."""
+        return self._drifting(
+            sensor, effects, _prior_sigmas(effects, prior_sigma), None, walking=False
+        )
 
     def deviance_of_random_walk(
         self, sensor: str, effects: Sequence[Effect], prior_sigma: float
@@ -202,6 +233,8 @@ class Campaign:
     ) -> DriftingEquations | None:
         if self.solution.gyro is None:
             return None
+        if self.by_hand and "gyro" in self.solution.free:
+            return self._gyro_by_hand(self.by_hand, effects, prior_sigmas, only)
         names = [position.manoeuvre.name for position in self.inputs.static_positions]
         names += [recorded.plan.name for recorded in self._whole]
         used = [only is None or name in only for name in names]
@@ -209,6 +242,21 @@ class Campaign:
             return None
         equations = replace(self._linearised(effects), effect_sigma=prior_sigmas)
         return equations.only(used).drifting()
+
+    def _gyro_by_hand(
+        self,
+        by_hand: ByHand,
+        effects: Sequence[Effect],
+        prior_sigmas: Mapping[str, float],
+        only: set[str] | None,
+    ) -> DriftingEquations:
+        answers = self._sensitivities("gyro", effects, self._responses(effects))
+        at_rest = {
+            position.label: (_first(response), position.stretch)
+            for position, response in zip(self.inputs.static_positions, answers, strict=False)
+        }
+        moving = answers[len(answers) - len(by_hand.motions) :]
+        return by_hand.gyro(self.solution, at_rest, moving, prior_sigmas, only)
 
     def _linearised(self, effects: Sequence[Effect]) -> LinearisedEquations:
         """The equations of all static positions and rate segments, with no prior of the effects."""
@@ -226,14 +274,14 @@ class Campaign:
         sensitivities = self._sensitivities("gyro", effects, self._responses(effects))
         static = len(self.static_motions)
         rests = [
-            replace(rest, sensitivities=Sensitivities(responses.names, responses.values[0]))
+            replace(rest, sensitivities=_first(responses))
             for rest, responses in zip(
                 self.inputs.static_rates, sensitivities[:static], strict=True
             )
         ]
         turns = [
             replace(turn, sensitivities=responses)
-            for turn, responses in zip(self.inputs.turns, sensitivities[static:], strict=True)
+            for turn, responses in zip(self.inputs.turns, sensitivities[static:], strict=False)
         ]
         gyro = self.solution.gyro
         assert gyro is not None  # else it has no equations
@@ -263,12 +311,14 @@ class Campaign:
             return None
         sensitivities = self._sensitivities("accel", effects, self._responses(effects))
         rests = [
-            replace(rest, sensitivities=Sensitivities(responses.names, responses.values[0]))
+            replace(rest, sensitivities=_first(responses))
             for (name, rest, _), responses in zip(self.static_forces, sensitivities, strict=True)
             if only is None or name in only
         ]
         if not rests:
             return None
+        if self.by_hand:
+            return self.by_hand.accelerometer(rests, self.solution.accelerometer, prior_sigmas)
         return accelerometers.drifting(
             rests,
             self.gravity.number,
@@ -315,18 +365,25 @@ class Campaign:
         return [Sensitivities(names, stacked[part]) for part in of_sensor]
 
 
+def _first(responses: Sensitivities) -> Sensitivities:
+    """Those of a single stretch."""
+    return Sensitivities(responses.names, responses.values[0])
+
+
 def campaign_of(data: CampaignData) -> Campaign:
     """The inputs of the equations of one mount.
 
     Without a shared clock the times of different logs are not comparable and are omitted.
     """
-    known = data.gyro_inputs.of_known_attitude
-    inputs = replace(known, static_positions=_in_pieces(known.static_positions))
+    inputs, statics = data.gyro_inputs.of_known_attitude, data.accelerometer_positions[0]
+    if data.by_hand is None:
+        inputs = replace(inputs, static_positions=_in_pieces(inputs.static_positions))
+        statics = _in_pieces(statics)
     motions, solution = CampaignMotions(data), data.result
     static_motions = [motions.at_rest(position) for position in inputs.static_positions]
     turns: list[Motion] = []
     static_forces: list[tuple[str, StaticForce, Motion]] = []
-    for position in _in_pieces(data.accelerometer_positions[0]):
+    for position in statics:
         force = (position.manoeuvre.name, _static_force(position), motions.at_rest(position))
         static_forces.append(force)
     whole = [r for r in inputs.usable if r.plan.recorded == "whole"]
@@ -350,7 +407,25 @@ def campaign_of(data: CampaignData) -> Campaign:
         data.position_sigma,
         positions_of(data.plan),
         [m.name for m in data.plan],
+        _by_hand(data, motions),
     )
+
+
+def _by_hand(data: CampaignData, motions: CampaignMotions) -> ByHand | None:
+    """The positions of unknown attitude, and the passages where they give the gyros' result."""
+    handled, gyro = data.by_hand, data.result.gyro
+    if handled is None:
+        return None
+    if gyro is None or "gyro" not in data.result.free:
+        handled = replace(handled, passages=[])
+    rests = {position.label: position for position in data.accelerometer_positions[0]}
+    passing = []
+    for each in handled.passages:
+        assert gyro is not None  # else there are none
+        place = each.passage.first
+        before = motions.at_rest(rests[handled.stops[place].forces.name])
+        passing.append(motion_of(each, before, gyro, place, shared_clock=data.shared_clock))
+    return ByHand(handled, passing, data.gravity, data.earth, data.shared_clock)
 
 
 def _in_pieces(positions: Sequence[StaticPosition]) -> list[StaticPosition]:
@@ -385,42 +460,3 @@ def _turning(
     return [
         (m.name, rest, at) for rest, at in zip(rests, mean_motions(motion, merged), strict=True)
     ]
-
-
-def evidence(
-    campaign: Campaign, effects: Sequence[Effect], noise_degrees: float = np.inf
-) -> Evidence:
-    """The information of gyros and accelerometers on the effects, other unknowns eliminated.
-
-    The two are independent but for the tilts of the positions, which each estimates separately.
-    The columns are named by label and parameter of an effect. The information is zero for an
-    effect that is sought elsewhere, and where it is not observable at its largest size: there it
-    could only absorb rounding errors. `noise_degrees`: of freedom of the noise estimate.
-    """
-    pairs = zip(("gyro", "accel"), campaign.systems(effects, 1.0), strict=True)
-    systems = [(sensor, system) for sensor, system in pairs if system is not None]
-    informative = [(sensor, system.effect_information()) for sensor, system in systems]
-    largest = np.array(
-        [
-            effect.largest if effect.sought_in == "blocks" else 0.0
-            for effect in effects
-            for _ in effect.parameters
-        ]
-    )
-    information = sum((np.diag(reduced.information) for _, reduced in informative), np.zeros(1))
-    observable = (largest * np.sqrt(information) > MIN_OBSERVABLE_SIGMAS).astype(np.float64)
-    return Evidence(
-        tuple(_restricted(reduced, observable) for _, reduced in informative),
-        tuple(sensor for sensor, _ in informative),
-        (noise_degrees,) * len(informative),
-        sum((system.raw_information() for _, system in systems), np.zeros(1)),
-    )
-
-
-def _restricted(reduced: EffectInformation, observable: Array) -> EffectInformation:
-    """The same with zeros in the columns that are not observable, (k,)."""
-    return replace(
-        reduced,
-        information=reduced.information * np.outer(observable, observable),
-        right=reduced.right * observable,
-    )

@@ -86,7 +86,8 @@ PERFORMANCE = (
     "table_moving",
 )
 MIN_SPOILING = 2  # severity of a fault that leaves a mark on what is estimated
-# Faults that change all that a sensor reads: from what they spoil no effect is named.
+# Faults that change all that a sensor reads: from what they spoil no effect is named. A wrong clock
+# changes it in proportion, so only effects in proportion to a rate, a force, or the earth's rate.
 SPOILING = (
     "clock_scale",
     "wrong_scale_factor",
@@ -95,6 +96,7 @@ SPOILING = (
     "axis_swap",
     "sign_flip",
 )
+IN_PROPORTION = ("scale", "earth", "latitude", "gravity", "table")  # in names of effects
 LOST_RECORDS = ("gap", "duplicate", "held_record", "time_backwards", "time_stands_still")
 
 
@@ -170,11 +172,16 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
     if _uncertain(other):
         return _explains_uncertain(cause, other)
     if other.named:
-        return cause.cause in SPOILING and _unresolved(cause) and same_sensor(cause, other)
+        spoils = cause.cause in SPOILING and _unresolved(cause) and same_sensor(cause, other)
+        return spoils and (cause.cause != "clock_scale" or _in_proportion(other))
     return any(
         cause.cause in rule.causes and rule.which(cause, other) and rule.where(cause, other)
         for rule in EXPLANATIONS
     )
+
+
+def _in_proportion(effect: Hypothesis) -> bool:
+    return any(part in name for name in effect.causes for part in IN_PROPORTION)
 
 
 def _rank(hypothesis: Hypothesis) -> int:

@@ -13,7 +13,7 @@ from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import cross, level_axes
 from inertial.tables import AXES
-from inertial.text.parameters import BIAS, JOINT
+from inertial.text.parameters import BIAS, FREE, JOINT
 
 Array = NDArray[np.float64]
 
@@ -23,7 +23,8 @@ class Solution:
     """M and bias of both triads, the site, and the parameters of the positions.
 
     A triad that is not wholly determined is None. `random_walks`: of the biases of gyros and
-    accelerometers, rad/s/√s and m/s²/√s.
+    accelerometers, rad/s/√s and m/s²/√s. `free`: the sensors, gyro or accel, whose triad is that of
+    static positions of unknown attitude.
     """
 
     gyro: Triad | None
@@ -31,6 +32,7 @@ class Solution:
     site: Site
     position_parameters: Mapping[tuple[str, str, int], float]  # position, quantity, component; SI
     random_walks: tuple[float, float] = (0.0, 0.0)
+    free: frozenset[str] = frozenset()
 
     def upright(self, m: Manoeuvre) -> Array:
         """The direction that points up at the start of a manoeuvre, its tilt included, (3,)."""
@@ -84,23 +86,35 @@ def solution_of(
 ) -> Solution:
     """The joint result of a mount, tilts from the accelerometers, azimuths from the gyros.
 
-    An azimuth counts as determined where its horizontal earth rate is known to a third.
+    An azimuth counts as determined where its horizontal earth rate is known to a third. Where the
+    joint fit does not determine the accelerometers, positions of unknown attitude may, and then the
+    gyros too, in the same axes.
     """
     level = known["earth_rate_level"].number
     tilts = accelerometer.position_parameters(mount, "tilt", np.inf)
     levels = gyro.position_parameters(mount, "horizontal", level / 3)
+    triads = {
+        "accel": triad_of(accelerometer.parameters, mount),
+        "gyro": triad_of(gyro.parameters, mount),
+    }
+    free: set[str] = set()
+    for sensor, tables in (("accel", accelerometer), ("gyro", gyro)):
+        if triads[sensor] is None and (sensor == "accel" or "accel" in free):
+            triads[sensor] = free_triad_of(tables.parameters, mount)
+            free |= {sensor} if triads[sensor] is not None else set()
     return Solution(
-        triad_of(gyro.parameters, mount),
-        triad_of(accelerometer.parameters, mount),
+        triads["gyro"],
+        triads["accel"],
         Site(known["gravity"].number, known["earth_rate_up"].number, level),
         tilts | levels,
         (gyro.random_walk(mount), accelerometer.random_walk(mount)),
+        frozenset(free),
     )
 
 
-def joint_rows(table: pd.DataFrame, mount: str) -> list[Row]:
-    """The rows of the joint method of a mount, whose name is empty where there is a single one."""
-    return [row for row in rows_of(table) if (row["method"], row["mount"]) == (JOINT, mount)]
+def joint_rows(table: pd.DataFrame, mount: str, method: str = JOINT) -> list[Row]:
+    """The rows of a method of a mount, whose name is empty where there is a single one."""
+    return [row for row in rows_of(table) if (row["method"], row["mount"]) == (method, mount)]
 
 
 def scatter_by_mount(fit: pd.DataFrame) -> dict[str, float]:
@@ -111,9 +125,22 @@ def scatter_by_mount(fit: pd.DataFrame) -> dict[str, float]:
 def triad_of(parameters: pd.DataFrame, mount: str = "") -> Triad | None:
     """M and bias of the joint result; none where they are not wholly determined."""
     values = {row["parameter"]: row["value"] for row in joint_rows(parameters, mount)}
-    names = linear_names()
-    if any(values.get(name) is None for name in names):
+    return _triad(values) if all(values.get(n) is not None for n in linear_names()) else None
+
+
+def free_triad_of(parameters: pd.DataFrame, mount: str = "") -> Triad | None:
+    """The same of static positions of unknown attitude; M is that of ideal sensors where not known.
+
+    None where a bias is not determined.
+    """
+    values = {row["parameter"]: row["value"] for row in joint_rows(parameters, mount, FREE)}
+    if any(values.get(name) is None for name in BIAS):
         return None
+    return _triad({name: values.get(name) or 0.0 for name in linear_names()})
+
+
+def _triad(values: Mapping[str, float]) -> Triad:
+    names = linear_names()
     errors = np.array([values[name] for name in names[:-3]], dtype=np.float64).reshape(3, 3)
     bias = np.array([values[name] for name in BIAS], dtype=np.float64)
     assert len(bias) == len(AXES)

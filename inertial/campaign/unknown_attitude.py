@@ -24,6 +24,7 @@ from inertial.estimation.multi_position import FREE as UNKNOWNS
 from inertial.estimation.multi_position import (
     NAMES,
     PRIOR,
+    SCATTER_RANGE,
     FreeRest,
     Unobservable,
     free_positions,
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-SCATTER_RANGE = (1e-7, 1.0)  # m/s², scatter between static positions beyond the noise
 UNKNOWN = np.full(3, np.nan)  # an attitude
 MOUNTING_UNDETERMINED = _(
     "a rotation of the triad against the case changes no length, so |f| = g cannot "

@@ -170,7 +170,7 @@ def _drifting(
     names = [("parameter", str(i)) for i in range(UNKNOWNS)] + [("gravity", "")]
     names += [("effect", name) for name in effect_sigma]
     prior = np.concatenate([PRIOR, [gravity], np.zeros(len(effect_sigma))])
-    rows = _rows(statics, gravity, about, prior, list(effect_sigma))
+    rows = linear_rows(statics, gravity, about, prior, list(effect_sigma))
     noise = np.hypot([static.sigma for static in statics], scatter)
     same: dict[Hashable, list[int]] = {}
     for i, key in enumerate(keys):
@@ -197,7 +197,7 @@ def _drifting(
     )
 
 
-def _rows(
+def linear_rows(
     statics: Sequence[StaticForce],
     gravity: float,
     about: Triad,

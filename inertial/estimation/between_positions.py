@@ -13,9 +13,7 @@ in the motion before it and in the one after, and one of their parameters in all
 and unknown direction, is two unknowns for all rests that uninterrupted motions join, for the gyros
 propagate it. The noise of a motion rotates all later directions, so its covariance is integrated.
 
-Differences between rests beyond noise may be a rate, such as the g-sensitivity of a gyro; or, by
-hand, an angle: the IMU sways, so its mean rate is the smaller the longer it rests, and a motion
-does not begin and end exactly where the accelerometers determined the directions.
+Rests and motions differ beyond noise by what `scatter_by_hand` describes.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -35,15 +33,16 @@ from inertial.estimation.gyroscopes import PRIOR, PRIOR_SIGMA
 from inertial.estimation.least_squares import Estimate, System, solve_iterated
 from inertial.estimation.multi_position import FreeRest, Upward, upward_of
 from inertial.estimation.random_walk import Stretch
+from inertial.estimation.scatter_by_hand import Scatter, contradicting, likeliest
 from inertial.estimation.sensitivities import Sensitivities
 from inertial.estimation.triad import UNKNOWNS, design_of
-from inertial.estimation.variance_components import ScatterFit, with_scatter
+from inertial.estimation.variance_components import ScatterFit
 from inertial.physics.motion import cross
 
 Array = NDArray[np.float64]
 
-SCATTER_RANGE = (1e-11, 0.1)  # rad/s: how much rests and motions may differ beyond the noise
 ROUNDS = 2  # of the scatter, about the last result
+NONE = Scatter()
 SCALES = np.geomspace(0.5, 2.0, 29)  # of the gyros, where the search for M begins: 5 % apart
 
 
@@ -87,45 +86,54 @@ def between_rests(
     stops: Sequence[Stop],
     passages: Sequence[Passage],
     known: Prior,
-    scatter: float = 0.0,
-    *,
-    sways: bool = False,
+    scatter: Scatter = NONE,
 ) -> Estimate:
     """M by rows and bias of the gyros, in the order of `triad`, and all other unknowns.
 
-    `stops` in the order of time. `scatter`, rad/s: between rests and between motions, beyond noise.
-    Where the IMU `sways`, it is so for a rest of the usual length T only: all rotate by an angle of
-    scatter · T.
+    `stops` in the order of time.
     """
-    data = _data(stops, passages, known)
-    data = replace(data, scatter=scatter, sways=sways)
+    data = replace(_data(stops, passages, known), scatter=scatter)
     return solve_iterated(partial(equations, data), data.start)
 
 
 def fit(
     stops: Sequence[Stop], passages: Sequence[Passage], known: Prior, noise_degrees: float = np.inf
-) -> ScatterFit:
-    """The same with the scatter of largest restricted likelihood, of a rate or of an angle.
+) -> tuple[ScatterFit, list[int]]:
+    """The same with the scatters of largest restricted likelihood, and what is left out.
 
-    The likelihood is that of the equations linear about the last result.
+    The likelihood is that of the equations linear about the last result. Left out are stops, then
+    passages, by number; of a stop the gyros alone.
     """
-    data = _data(stops, passages, known)
-    found = ScatterFit(solve_iterated(partial(equations, data), data.start), 0.0, 1.0)
-    for _ in range(ROUNDS):
-        about = found.estimate.values
-        both = []
-        for sways in (False, True):
+    stops, places, left_out = list(stops), list(range(len(passages))), list[int]()
+    while True:
+        data = _data(stops, [passages[i] for i in places], known)
+        about = solve_iterated(partial(equations, data), data.start).values
+        for _ in range(ROUNDS):
+            found, scatter = likeliest(partial(_linear, data, about), noise_degrees)
+            if scatter == NONE:
+                break
+            best = replace(data, scatter=scatter)
+            found = replace(found, estimate=solve_iterated(partial(equations, best), about))
+            about = found.estimate.values
+        parts = dict(_of_rates(replace(data, scatter=scatter), about))
+        residuals = [_whitened(parts[i]) for i in range(len(parts))]
+        worst = contradicting(residuals, len(stops))
+        if worst is None:
+            return found, sorted(left_out)
+        if worst < len(stops):
+            stops[worst] = replace(stops[worst], mean=np.full(3, np.nan))
+            left_out.append(worst)
+        else:
+            left_out.append(len(stops) + places.pop(worst - len(stops)))
 
-            def fit_with(scatter: float, sways: bool = sways, about: Array = about) -> Estimate:
-                return equations(replace(data, scatter=scatter, sways=sways), about).solve()
 
-            both.append((with_scatter(fit_with, SCATTER_RANGE, noise_degrees), sways))
-        found, sways = min(both, key=lambda each: each[0].estimate.deviance)
-        if not found.scatter:
-            break
-        best = replace(data, scatter=found.scatter, sways=sways)
-        found = replace(found, estimate=solve_iterated(partial(equations, best), about))
-    return found
+def _whitened(rows: Rows) -> Array:
+    there = np.isfinite(rows.rest) & np.isfinite(rows.sigma)
+    return rows.rest[there] / rows.sigma[there]
+
+
+def _linear(data: "_Data", about: Array, scatter: Scatter) -> Estimate:
+    return equations(replace(data, scatter=scatter), about).solve()
 
 
 @dataclass(frozen=True)
@@ -140,8 +148,7 @@ class _Data:
     passages: Sequence[Passage]
     known: Prior
     up: Upward
-    scatter: float = 0.0
-    sways: bool = False
+    scatter: Scatter = NONE
     _integrated: dict[bytes, list[IntegratedMotion]] = field(default_factory=dict, repr=False)
 
     @property
@@ -175,15 +182,12 @@ class _Data:
             self._integrated[key] = [integrated_motion(p, matrix, bias) for p in self.passages]
         return self._integrated[key]
 
-    @property
-    def swayed(self) -> float:
-        """The angle by which the IMU sways at every rest, rad."""
-        usual = float(np.median([stop.seconds for stop in self.stops]))
-        return self.scatter * usual if self.sways else 0.0
-
     def between(self, stop: Stop) -> float:
         """Scatter of the mean rates of a rest, rad/s."""
-        return self.swayed / stop.seconds if self.sways else self.scatter
+        if not self.scatter.sways:
+            return self.scatter.rate
+        usual = float(np.median([each.seconds for each in self.stops]))
+        return self.scatter.rate * usual / stop.seconds
 
     @property
     def chains(self) -> list[list[int]]:
@@ -283,9 +287,7 @@ def drifting(
     about: tuple[Array, Array, Array, Array],
     carried: Carried,
     effect_sigma: Mapping[str, float],
-    scatter: float,
-    *,
-    sways: bool,
+    scatter: Scatter,
     used: Sequence[bool],
 ) -> DriftingEquations:
     """The equations with parameters of effects as further unknowns, in blocks.
@@ -296,7 +298,7 @@ def drifting(
     matrix, bias, symmetric, force_bias = about
     means = np.array([stop.forces.mean for stop in stops])
     up = upward_of((means - force_bias) @ np.linalg.inv(symmetric).T)
-    data = _Data(stops, passages, known, up, scatter, sways)
+    data = _Data(stops, passages, known, up, scatter)
     around = data.prior
     pairs = [symmetric[i, j] for i, j in forces.PAIRS]
     around[: UNKNOWNS + forces.FREE] = [*matrix.ravel(), *bias, *pairs, *force_bias]
@@ -434,8 +436,7 @@ class _AtStop:
         design[:, self.place] = motion.seconds * lever @ turned @ self.level.T
         design[:, -1] = motion.seconds * lever @ turned @ self.ups[i]
         rest = across @ (rotated - self.ups[i + 1])
-        data = self.data
-        spread = motion.covariance(0.0 if data.sways else data.scatter, data.swayed)
+        spread = motion.white + self.data.scatter.swing**2 * np.eye(3)
         variance, axes = np.linalg.eigh(lever @ spread @ lever.T)
         response = np.einsum("mi,sij->msj", axes.T @ lever, motion.response)
         return Rows(axes.T @ design, axes.T @ rest, np.sqrt(variance), response)

@@ -47,11 +47,6 @@ class IntegratedMotion:
     response: Array
     seconds: float
 
-    def covariance(self, rate: float, angle: float) -> Array:
-        """With a scatter of the readings, rad/s, and of the attitude at the end, rad."""
-        by_bias = self.slope[:, 9:]
-        return np.asarray(self.white + rate**2 * by_bias @ by_bias.T + angle**2 * np.eye(3))
-
     def relative_to_earth(self, earth: Array) -> Array:
         """The same for directions fixed to the earth; its rate at the start, (3,)."""
         turned = self.seconds * (self.whole @ earth)

@@ -24,6 +24,7 @@ PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # elements of P in the
 # rotates the readings by σ/g, must not seem to determine it.
 PRIOR = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 PRIOR_SIGMA = np.array([1.0, 1.0, 1.0, 0.05, 0.05, 0.05, 10.0, 10.0, 10.0])
+SCATTER_RANGE = (1e-7, 1.0)  # m/s², between static positions beyond the noise
 DIRECTION_SIGMA = 1.0  # rad, prior of a direction about that of the readings
 MIN_COMPONENT = 0.3  # of an unobservable combination: a parameter with less is not listed
 MIN_RELATIVE_EFFECT = 0.9  # of the largest change: an attitude that reaches it is as good

@@ -6,17 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from inertial.campaign.equations import PRIOR_SIZE, Campaign
-from inertial.estimation.accelerometers import MAX_RANDOM_WALK as MAX_OF_ACCELEROMETERS
-from inertial.estimation.accelerometers import StaticForce
-from inertial.estimation.gyroscope_observations import RateSegment, StaticRate
-from inertial.estimation.gyroscopes import MAX_RANDOM_WALK as MAX_OF_GYROS
-from inertial.estimation.variance_components import (
-    MIN_DEVIANCE_DROP,
-    WalkSearch,
-    most_likely,
-    sigma_of,
-    walk_search,
-)
+from inertial.campaign.scatter_of_positions import likely_walk
+from inertial.estimation.variance_components import sigma_of
 from inertial.model_selection.walk_odds import LOG_RANGE
 from inertial.physics.drift import without_clock
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
@@ -36,13 +27,7 @@ def likely_random_walks(campaign: Campaign, effects: Sequence[Effect]) -> tuple[
 
 def likely_random_walk(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> float:
     """The most likely random walk of one sensor; 0 where none is significant."""
-    search = _walk_search(campaign, sensor)
-    if search is None:
-        return 0.0
-    deviance = campaign.deviance_of_random_walk(sensor, effects, PRIOR_SIZE)
-    alone = deviance(0.0)
-    size, smallest = most_likely(deviance, search.bounds, alone)
-    return size if alone - smallest >= MIN_DEVIANCE_DROP else 0.0
+    return likely_walk(campaign, sensor, effects, PRIOR_SIZE)
 
 
 @dataclass(frozen=True)
@@ -74,22 +59,6 @@ def walk_evidence(campaign: Campaign, sensor: str, size: float, effects: Sequenc
     return (deviance(0.0) - deviance(size)) / 2 + float(
         np.log(np.sqrt(2 * np.pi) * width / LOG_RANGE)
     )
-
-
-def _walk_search(campaign: Campaign, sensor: str) -> WalkSearch | None:
-    """The range of random walks that the times of a sensor's stretches allow; None: none."""
-    parts: Sequence[StaticRate | RateSegment | StaticForce]
-    if sensor == "gyro":
-        solved, largest = campaign.solution.gyro, MAX_OF_GYROS
-        rests: Sequence[StaticRate | StaticForce] = campaign.inputs.static_rates
-        parts = [*rests, *campaign.inputs.turns]
-    else:
-        solved, largest = campaign.solution.accelerometer, MAX_OF_ACCELEROMETERS
-        parts = rests = [rest for _, rest, _ in campaign.static_forces]
-    if solved is None or not rests:
-        return None
-    stretches = [part.stretch for part in parts if part.stretch is not None]
-    return walk_search(stretches, float(np.nanmedian([rest.sigma for rest in rests])), largest)
 
 
 # ---- Drift without a law: half waves over the campaign, of one sensor.

@@ -9,7 +9,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.equations import Campaign, evidence
+from inertial.campaign.effect_evidence import evidence
+from inertial.campaign.equations import Campaign
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.splitting import MIN_SEPARATION, split

@@ -95,7 +95,8 @@ def structure_tests(campaign: Campaign, named: Sequence[Effect], noise_degrees: 
         equation
         for sensor in SOLVED
         for axis in range(3)
-        for equation in _equations(campaign, named, sensor, axis, noise_degrees)
+        for degrees in [campaign.noise_degrees(sensor, noise_degrees)]
+        for equation in _equations(campaign, named, sensor, axis, degrees)
     ]
     return Tested(campaign, named, structures(equations))
 

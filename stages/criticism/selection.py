@@ -13,7 +13,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from inertial.campaign.equations import Campaign, evidence
+from inertial.campaign.effect_evidence import evidence
+from inertial.campaign.equations import Campaign
+from inertial.campaign.scatter_of_positions import scattered
 from inertial.model_selection import walk_odds
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause, Named
 from inertial.model_selection.detection_limits import Visible, visible
@@ -36,6 +38,7 @@ FINER_STEPS = 4  # of the second search in each interval of the first
 MIN_THIRD_SEARCH_SNR = 20.0  # from which a third search is finer still
 MAX_WALK_SHARE = 0.2  # of the information of an effect that remains with a random walk
 SENSORS = ("gyro", "accel")
+MAX_ROUNDS = 3  # of the scatter of positions by hand and the effects
 
 
 @dataclass(frozen=True)
@@ -130,6 +133,20 @@ class Selection:
             if cause.verdict == UNKNOWN_STRUCTURE and cause.effect in self.families:
                 members[self.sensor(cause)] += cause.members
         return members
+
+
+def select_with_scatter(
+    campaign: Campaign, effects: Sequence[Effect], level: float, noise_degrees: float
+) -> Selection:
+    """The same with the scatter of positions by hand, which is smaller once effects are named."""
+    fitted: list[Effect] = []
+    for _round in range(MAX_ROUNDS):
+        quiet = scattered(campaign, fitted, noise_degrees)
+        selection = select_effects(quiet, effects, level, noise_degrees)
+        before, fitted = fitted, selection.fitted
+        if not campaign.by_hand or [e.label for e in fitted] in ([], [e.label for e in before]):
+            break
+    return selection
 
 
 def select_effects(

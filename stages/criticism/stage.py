@@ -26,7 +26,7 @@ from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations, without_lines
 from stages.criticism.oscillation_shifts import shifts
 from stages.criticism.residual_structure import structure_rows, structure_tests
-from stages.criticism.selection import SENSORS, select_effects
+from stages.criticism.selection import SENSORS, select_with_scatter
 from stages.criticism.temperature_findings import temperature_rows
 from stages.criticism.without_law import without_law
 
@@ -66,14 +66,12 @@ def _of_mount(
     quiet = without_lines(data.blocks, turns, spectrum.oscillations)
     campaign = campaign_of(replace(data, blocks=quiet))
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
-    selection = select_effects(campaign, in_blocks, level * BLOCKS_SHARE, degrees)
+    selection = select_with_scatter(campaign, in_blocks, level * BLOCKS_SHARE, degrees)
     tested = structure_tests(selection.campaign, selection.fitted, degrees)
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
     random_walks = random_walks_with_sigmas(selection.campaign, selection.fitted)
-    extended = {
-        name: partial(_with, plan, data)
-        for name, plan in extended_plans(data.plan, data.performed, quiet).items()
-    }
+    plans = {} if data.by_hand else extended_plans(data.plan, data.performed, quiet)
+    extended = {name: partial(_with, plan, data) for name, plan in plans.items()}
     lawless = without_law(selection, random_walks, tested)
     for sensor, walk in random_walks.items():
         yield from random_walk_rows(sensor, walk, selection.alternatives, lawless, mount)

@@ -150,11 +150,14 @@ class Estimated:
             chosen = result_of(
                 decision.method, by_method, self.covariance, _competing(candidates, decision)
             )
-            if (mount, sensor) in self.free:
+            if (mount, sensor) in self.free and decision.method == JOINT:
                 chosen = replace(
                     chosen, method=FREE, rows=[row | {"method": FREE} for row in chosen.rows]
                 )
-                decision = Decision(JOINT, BY_FREE_POSITIONS)
+                reason = BY_FREE_POSITIONS
+                if len(candidates) > 1:
+                    reason = f"{reason} {decision.reason}"
+                decision = Decision(JOINT, reason)
             yield SensorResult(
                 sensor,
                 mount,

@@ -87,7 +87,9 @@ class Channels:
         return stretches
 
     def means(self, sensor: str) -> list[Mean]:
-        """The means of the three channels of a sensor."""
+        """The means of the three channels of a sensor; by hand no channel stands alone."""
+        if self.campaign.by_hand:
+            return []
         if sensor == "accel":
             return [] if self.campaign.solution.accelerometer is None else self._of_accelerometers()
         return [] if self.campaign.solution.gyro is None else self._of_gyros()

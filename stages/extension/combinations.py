@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import logsumexp
 
-from inertial.campaign.equations import Campaign, evidence
+from inertial.campaign.effect_evidence import evidence
+from inertial.campaign.equations import Campaign
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.effect_classes import log_evidence
 from inertial.physics.effect import Effect

@@ -77,8 +77,8 @@ class Solved:
             columns=[column.name for column in tables.COVARIANCE.columns],
         )
 
-    def fit_row(self, noise_degrees: float) -> Row:
-        """How well the model describes the data."""
+    def fit_row(self, noise_degrees: float, scatter: float) -> Row:
+        """How well the model describes the data, with a scatter beyond noise."""
         return {
             "mount": self.mount,
             "sensor": self.sensor,
@@ -86,7 +86,7 @@ class Solved:
             "chi_squared": self.estimate.chi_squared,
             "degrees": self.estimate.degrees,
             "p_value": self.estimate.p_value(noise_degrees),
-            "scatter": 0.0,
+            "scatter": scatter,
             "unit": UNIT[self.stage],
             "random_walk": self.random_walk,
             "random_walk_sigma": None,

@@ -7,7 +7,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.campaign.equations import MIN_OBSERVABLE_SIGMAS, Campaign
+from inertial.campaign.effect_evidence import MIN_OBSERVABLE_SIGMAS
+from inertial.campaign.equations import Campaign
 from inertial.estimation.least_squares import (
     MIN_INFORMATION_SHARE,
     EffectInformation,

@@ -10,6 +10,7 @@ import pandas as pd
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.equations import campaign_of
 from inertial.campaign.records import rows_of
+from inertial.campaign.scatter_of_positions import scattered
 from inertial.campaign.solution import joint_rows
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.estimation.least_squares import System
@@ -17,7 +18,7 @@ from inertial.estimation.triad import linear_names
 from inertial.physics.motion import Motion
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
-from inertial.text.parameters import EXTENDED, JOINT
+from inertial.text.parameters import EXTENDED, FREE, JOINT
 from stages.extension.candidates import Candidate, candidates_of, carriers_of, normalised
 from stages.extension.combinations import combinations_of, compared
 from stages.extension.cross_validation import CrossValidation, Trainings, cross_validate
@@ -59,7 +60,11 @@ def extension(
         extended = Extension(
             data,
             named_of(*causes, data.mount),
-            {s: Joint(*(joint_rows(t, data.mount) for t in of)) for s, of in joint.items()},
+            {
+                sensor: Joint(*(joint_rows(table, data.mount, method) for table in of))
+                for sensor, of in joint.items()
+                for method in [FREE if sensor in data.result.free else JOINT]
+            },
             (walk_of[data.mount, "gyro"], walk_of[data.mount, "accel"]),
         )
         for table, row in extended.rows(simulated):
@@ -129,6 +134,7 @@ class Extension:
     ) -> None:
         self.data, self.named, self.joint = data, named, joint
         self.random_walks = random_walks
+        self.scatters: dict[str, float] = {}
 
     def rows(self, simulated: Stream) -> Iterator[tuple[str, Any]]:
         """The rows of all tables; of `covariance` tables."""
@@ -143,6 +149,12 @@ class Extension:
     def _of_blocks(self) -> Iterator[tuple[str, Any]]:
         data, mount = self.data, self.data.mount
         campaign = campaign_of(data)
+        if campaign.by_hand:
+            named = [c.members[0].effect for c in self.named.classes]
+            known = [effect for effect in named if effect.scan is None or effect.at is not None]
+            campaign = scattered(campaign, known, data.noise.degrees)
+        if by_hand := campaign.by_hand:
+            self.scatters = {"gyro": by_hand.scatter.rate, "accel": by_hand.force_scatter}
         classes = compared(campaign.with_random_walks(self.random_walks), self.named.classes)
         combinations = combinations_of(classes)
         every = {e.label: e for c in combinations for e in c.effects if e.sought_in == "blocks"}
@@ -185,7 +197,7 @@ class Extension:
         sensor, mount = solution.sensor, self.data.mount
         yield "covariance", solution.covariance_rows()
         yield from (("parameters", row) for row in (*solution.rows, *solution.constants))
-        yield "fit", solution.fit_row(self.data.noise.degrees)
+        yield "fit", solution.fit_row(self.data.noise.degrees, self.scatters.get(sensor, 0.0))
         for row in self.joint[sensor].manoeuvres:
             yield "fit_manoeuvres", {**row, "method": solution.method}
         if solution.method == EXTENDED:

@@ -3,6 +3,8 @@
 The method is `free_positions`, as that of the accelerometers, in whose axes its result is.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from inertial.campaign.campaign_data import CampaignData
@@ -14,6 +16,10 @@ from inertial.estimation.between_positions import Prior, fit
 from inertial.text.messages import _
 from inertial.text.parameters import FREE
 
+NOT_AT_REST = _("its gyros read otherwise than in all other rests: it moved, or it was shaken")
+SLIPPED = _(
+    "it ends elsewhere than by the gyros, farther off than all others: it slipped, or was struck"
+)
 CURES = {
     "bias": _("no rest shows it: add a rest"),
     "matrix": _(
@@ -36,8 +42,11 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> None:
     between = fitted_to(data, positions).scatter
     prior = Prior(data.gravity.number, data.gravity.scatter, between, data.earth)
     passages = [recorded.passage for recorded in moving]
-    fitted = fit(stops, passages, prior, data.noise.degrees)
+    fitted, off = fit(stops, passages, prior, data.noise.degrees)
     why = reasons(fitted.estimate.determined, recorded, "gyro", CURES)
     estimates.add_triad(FREE, fitted.estimate, why)
-    used = [position.force.part for position in positions] + [each.part for each in moving]
+    parts = [*(position.force.part for position in positions), *(each.part for each in moving)]
+    reason = [NOT_AT_REST] * len(stops) + [SLIPPED] * len(moving)
+    broken += [replace(parts[i], reason=reason[i]) for i in off]
+    used = [part for i, part in enumerate(parts) if i not in off]
     estimates.add_fit(FREE, fitted, used, left_out + broken)

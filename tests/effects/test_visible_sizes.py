@@ -9,7 +9,7 @@ import numpy as np
 import plans
 import pytest
 
-from inertial.campaign.equations import evidence
+from inertial.campaign.effect_evidence import evidence
 from inertial.effects import CATALOGUE
 from inertial.physics.forward import signatures
 from inertial.physics.motion import joined

@@ -13,7 +13,8 @@ from hidden_plans import PLANS
 from hidden_ways import WAYS
 
 import laboratory
-from inertial.campaign.equations import Campaign, campaign_of, evidence
+from inertial.campaign.effect_evidence import evidence
+from inertial.campaign.equations import Campaign, campaign_of
 from inertial.effects import CATALOGUE
 from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.model_selection.naming import law_of

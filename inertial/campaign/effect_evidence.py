@@ -1,0 +1,57 @@
+"""The evidence of the equations of a campaign on the effects of the catalogue."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.campaign.equations import Campaign
+from inertial.estimation.least_squares import EffectInformation
+from inertial.model_selection.evidence import Evidence
+from inertial.physics.effect import Effect
+
+Array = NDArray[np.float64]
+
+MIN_OBSERVABLE_SIGMAS = 5.0  # sigmas of an effect at its largest size; less is not observable
+
+
+def evidence(
+    campaign: Campaign, effects: Sequence[Effect], noise_degrees: float = np.inf
+) -> Evidence:
+    """The information of gyros and accelerometers on the effects, other unknowns eliminated.
+
+    The two are independent but for the tilts of the positions, which each estimates separately.
+    The columns are named by label and parameter of an effect. The information is zero for an
+    effect that is sought elsewhere, and where it is not observable at its largest size: there it
+    could only absorb rounding errors. `noise_degrees`: of freedom of the noise estimate.
+    """
+    pairs = zip(("gyro", "accel"), campaign.systems(effects, 1.0), strict=True)
+    systems = [(sensor, system) for sensor, system in pairs if system is not None]
+    informative = [(sensor, system.effect_information()) for sensor, system in systems]
+    largest = np.array(
+        [
+            effect.largest
+            if effect.sought_in == "blocks" and not campaign.excludes(effect)
+            else 0.0
+            for effect in effects
+            for _ in effect.parameters
+        ]
+    )
+    information = sum((np.diag(reduced.information) for _, reduced in informative), np.zeros(1))
+    observable = (largest * np.sqrt(information) > MIN_OBSERVABLE_SIGMAS).astype(np.float64)
+    return Evidence(
+        tuple(_restricted(reduced, observable) for _, reduced in informative),
+        tuple(sensor for sensor, _ in informative),
+        tuple(campaign.noise_degrees(sensor, noise_degrees) for sensor, _ in informative),
+        sum((system.raw_information() for _, system in systems), np.zeros(1)),
+    )
+
+
+def _restricted(reduced: EffectInformation, observable: Array) -> EffectInformation:
+    """The same with zeros in the columns that are not observable, (k,)."""
+    return replace(
+        reduced,
+        information=reduced.information * np.outer(observable, observable),
+        right=reduced.right * observable,
+    )

@@ -1,0 +1,156 @@
+"""The equations of positions by hand, of unknown attitude, with effects as further unknowns.
+
+By hand positions differ by more than noise: the IMU is not quite at rest. That is a scatter in the
+equations of each sensor, re-estimated with each set of effects, for what is an effect of the
+catalogue is no scatter.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.campaign.attitudes_by_hand import Handled
+from inertial.campaign.passages import RecordedPassage
+from inertial.campaign.records import Known
+from inertial.campaign.solution import Solution
+from inertial.estimation import between_positions, force_magnitudes
+from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.attitude import integrate
+from inertial.estimation.between_positions import NONE, Carried, Prior
+from inertial.estimation.drifting_equations import DriftingEquations
+from inertial.estimation.gyroscope_observations import Earth
+from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
+from inertial.estimation.scatter_by_hand import Scatter
+from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
+from inertial.physics.effect import GOOD, POOR, Effect
+from inertial.physics.forward import Triad
+from inertial.physics.motion import Motion
+from inertial.text.messages import _
+
+Array = NDArray[np.float64]
+
+NO_TABLE = _("No table takes part in a session by hand.")
+
+
+def of_a_table(effect: Effect) -> bool:
+    """Whether a table causes an effect."""
+    return set(effect.sizes) <= {GOOD, POOR}
+
+
+@dataclass(frozen=True)
+class ByHand:
+    """The positions and motions of one mount, the motion in each, and the scatters.
+
+    `shared_clock`: as in `CampaignData`; `motions`: of each passage, in its stretches; `scatter`:
+    of the gyros; `force_scatter`: of the accelerometers, m/s²; `degrees`: from which these were
+    estimated, by sensor; `left_out`: by number, stops, then passages, whose gyros are not used.
+    """
+
+    handled: Handled
+    motions: Sequence[Motion]
+    gravity: Known
+    earth: Earth
+    shared_clock: bool
+    scatter: Scatter = NONE
+    force_scatter: float = 0.0
+    degrees: Mapping[str, float] = field(default_factory=dict)
+    left_out: frozenset[int] = frozenset()
+
+    @property
+    def moving(self) -> list[str]:
+        """The passages by name."""
+        return [each.part.manoeuvre for each in self.handled.passages]
+
+    @property
+    def names(self) -> list[str]:
+        """The stops, then the passages, by name."""
+        return [*(stop.forces.name for stop in self.handled.stops), *self.moving]
+
+    def accelerometer(
+        self, rests: Sequence[StaticForce], triad: Triad, prior_sigmas: Mapping[str, float]
+    ) -> DriftingEquations:
+        """The equations of the accelerometers at some of the rests."""
+        known = (self.gravity.number, self.gravity.scatter, triad)
+        return force_magnitudes.drifting(rests, *known, prior_sigmas, self.force_scatter)
+
+    def gyro(
+        self,
+        solution: Solution,
+        at_rest: Mapping[str, tuple[Sensitivities, Stretch]],
+        moving: Sequence[Sensitivities],
+        prior_sigmas: Mapping[str, float],
+        only: set[str] | None,
+    ) -> DriftingEquations:
+        """Those of the gyros; `at_rest`: by the name of a position with readings of them."""
+        gyro, accelerometer = solution.gyro, solution.accelerometer
+        assert gyro is not None and accelerometer is not None  # else the gyros are not free
+        names = self.names
+        unknown = (NO_SENSITIVITIES, Stretch("unread"))
+        rests = [at_rest.get(name, unknown) for name in names[: len(self.handled.stops)]]
+        return between_positions.drifting(
+            self.handled.stops,
+            [each.passage for each in self.handled.passages],
+            Prior(self.gravity.number, self.gravity.scatter, self.force_scatter, self.earth),
+            (gyro.matrix, gyro.bias, accelerometer.matrix, accelerometer.bias),
+            Carried([own for own, _ in rests], moving, [s for _, s in rests] + self._stretches),
+            prior_sigmas,
+            self.scatter,
+            used=[
+                i not in self.left_out and (only is None or name in only)
+                for i, name in enumerate(names)
+            ],
+        )
+
+    @cached_property
+    def _stretches(self) -> list[Stretch]:
+        return [_stretch(each, self.shared_clock) for each in self.handled.passages]
+
+
+def _stretch(recorded: RecordedPassage, shared_clock: bool) -> Stretch:
+    seconds = recorded.passage.seconds
+    start = float(recorded.time[0] - seconds[0] / 2)
+    clock = COMMON_CLOCK if shared_clock else recorded.log
+    return Stretch(recorded.part.manoeuvre, clock, start, float(seconds.sum()))
+
+
+def motion_of(
+    recorded: RecordedPassage, before: Motion, gyro: Triad, place: int, *, shared_clock: bool
+) -> Motion:
+    """A passage in its stretches, the attitude carried on by the gyros from the rest `before`.
+
+    The hand's acceleration is not in it: from rest to rest it sums up to nothing. Nor is there the
+    angle of a table.
+    """
+    passage = recorded.passage
+    rates = (passage.rates - gyro.bias) @ np.linalg.inv(gyro.matrix).T
+    ups = integrate(rates, passage.seconds).middles @ before.up[0]
+    starts = passage.starts
+    seconds = np.add.reduceat(passage.seconds, starts)
+
+    def mean(values: Array) -> Array:
+        weights = passage.seconds.reshape(-1, *(1,) * (values.ndim - 1))
+        sums = np.add.reduceat(values * weights, starts)
+        return np.asarray(sums / seconds.reshape(-1, *(1,) * (values.ndim - 1)))
+
+    omega, n = mean(rates), len(starts)
+    rate = np.linalg.norm(omega, axis=1)
+    unknown = np.full((n, 3), np.nan)
+    return Motion(
+        time=mean(recorded.time) if shared_clock else np.full(n, np.nan),
+        about=omega / np.maximum(rate, np.finfo(float).tiny)[:, None],
+        angle=np.full(n, np.nan),
+        rate=rate,
+        acceleration=np.zeros(n),
+        up=mean(ups),
+        north=unknown,
+        seconds=seconds,
+        visit=np.full(n, place + 0.5),
+        position=np.full(n, float(place)),
+        run=np.full(n, before.run[0]),
+        surveyed=np.zeros(n, bool),
+        temperature=mean(recorded.temperature),
+        vibration=np.zeros((n, 3)),
+    )
