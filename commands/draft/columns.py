@@ -26,7 +26,7 @@ from inertial.text.messages import _
 Array = NDArray[np.float64]
 BIN_ROWS = 10  # of a short mean
 MIN_BINS = 60  # of them for the motion to say anything: three times its unknowns
-MIN_EXPLAINED = 0.4  # share of the change of a direction that the gyros must explain
+MIN_EXPLAINED = 0.3  # share of the change of each axis of a direction that the gyros must explain
 MAX_RESETS = 0.01  # share of steps in which a clock may stand or go back
 CLOCK_PARTS = 20  # of a log, in each of which a clock advances alike
 INTERLEAVED_ROWS = 3  # mean length of runs of one word, up to which rows alternate
@@ -269,7 +269,7 @@ def short_means(values: Array, rows: int = BIN_ROWS) -> Array:
 
 
 def explained_share(accel: Sequence[Array], gyro: Sequence[Array]) -> float:
-    """The share of the change of one triad that products with another explain, over all logs."""
+    """The share of the change of a triad that products with another explain, of its worst axis."""
     changes, designs = [], []
     for a, w in zip(accel, gyro, strict=True):
         k = min(len(a), len(w))
@@ -289,7 +289,7 @@ def explained_share(accel: Sequence[Array], gyro: Sequence[Array]) -> float:
     products = (rate[:, :, None] * place[:, None, :]).reshape(len(both), 9)
     design = np.hstack([products, both, np.ones((len(both), 1))])
     rest = change - design @ np.linalg.lstsq(design, change, rcond=None)[0]
-    return float(1 - np.sum(rest**2) / max(np.sum(change**2), 1e-300))
+    return float(np.min(1 - np.sum(rest**2, axis=0) / np.sum(change**2, axis=0)))
 
 
 def _on_sphere(accel: Sequence[Array], gyro: Sequence[Array]) -> bool:

@@ -292,8 +292,11 @@ def gyro_scale(
         if abs(turns.factor / size - 1) < 2 * MAX_UNIT_ERROR and not are_counts(values):
             return Scale(unit, None, zero, seen, False, axes)
     per_degree = DEGREE / turns.factor
-    usual = min(USUAL_GYRO_COUNTS, key=lambda each: abs(np.log(each / per_degree)))
-    near = abs(usual / per_degree - 1) < max(MAX_COUNT_ERROR, turns.sigma)
-    counts = usual if near else float(f"{per_degree:.3g}")
+    most = max(MAX_COUNT_ERROR, 2 * turns.sigma)
+    near = [each for each in USUAL_GYRO_COUNTS if abs(each / per_degree - 1) < most]
+    off = {each: abs(np.log(each / per_degree)) for each in near}
+    if turns.sigma >= FIRST_SIGMA:  # round turns are surer
+        off = {each: turn_misfit(recordings, DEGREE / each, np.pi / 2) for each in near}
+    counts = min(near, key=lambda each: off[each]) if near else float(f"{per_degree:.3g}")
     what = _("{seen}: counts, {counts} in 1 °/s", seen=seen, counts=significant(counts))
     return Scale("deg/s", counts, zero, what, True, axes)

@@ -1,0 +1,232 @@
+"""`make draft`: what it says of logs whose truth is known, and what the chain makes of it."""
+
+from pathlib import Path
+from typing import Any
+
+import chain
+import numpy as np
+import pytest
+from logs_by_hand import by_hand_log
+from moved_by_hand import GRAVITY, RATE
+from ruamel.yaml import YAML
+
+from commands.draft.__main__ import draft, main
+from inertial.estimation.triad import linear_names
+from inertial.physics.site import EARTH_RATE
+
+MAX_SIGMA = 4.5  # of some twenty parameters with Gaussian errors, in 1 of 6000 campaigns
+Document = dict[str, Any]
+
+
+def told(folder: Path) -> Document:
+    return YAML(typ="safe").load(folder / "campaign.yaml")
+
+
+def drafted(logs: dict[str, str], tmp_path: Path, **options: Any) -> Path:
+    """The folder of a campaign drafted from logs with these contents."""
+    for name, text in logs.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    return draft([tmp_path / name for name in logs], "drafted", tmp_path / "data", **options)
+
+
+def written(columns: list[np.ndarray], between: str = ",", digits: int = 7) -> str:
+    """Rows of numbers as text."""
+    rows = np.column_stack(columns)
+    return "".join(between.join(f"{v:.{digits}g}" for v in row) + "\n" for row in rows)
+
+
+# ---- a table's campaign, in the messages of a receiver
+
+
+@pytest.fixture(scope="module")
+def on_a_table(tmp_path_factory) -> tuple[Path, chain.Results]:
+    place = tmp_path_factory.mktemp("table")
+    simulated = chain.simulate(chain.short(seed=3), place / "simulated")
+    logs = sorted(simulated.glob("*.asc"))
+    folder = draft(logs, "short", place / "data")
+    return folder, chain.run(folder, place / "derived")
+
+
+def test_the_plan_is_that_by_which_the_table_was_moved(on_a_table):
+    folder, _results = on_a_table
+    campaign = told(folder)
+    by_log = {m["log"]: m for m in campaign["plan"]}
+    assert campaign["instrument"] == "span-cpt"
+    keys = ("do", "up", "degrees", "rate_deg_s")
+    for planned in chain.short()["campaign"]["plan"]:
+        assert {key: by_log[planned["log"]].get(key) for key in keys} == {
+            key: planned.get(key) for key in keys
+        }
+
+
+def test_a_draft_of_a_table_is_calibrated_as_well_as_a_guess_allows(on_a_table):
+    _folder, results = on_a_table
+    truth = chain.short()["truth"]
+    for stage, key, bias in (
+        ("accelerometer", "accelerometer", "bias_m_s2"),
+        ("gyroscope", "gyro", "bias_rad_s"),
+    ):
+        joint = results.parameters(stage).loc[list(linear_names())]
+        matrix = np.array(truth[key]["matrix"]) - np.eye(3)
+        right = np.append(matrix.ravel(), truth[key][bias])
+        assert np.abs((joint["value"] - right) / joint["sigma"]).max() < MAX_SIGMA
+    # What the log alone fixes is as precise as with the table's own certificate.
+    gyro = results.parameters("gyroscope")["sigma"]
+    assert gyro[["bias_x", "bias_y", "bias_z"]].max() < 0.3 * EARTH_RATE
+    assert gyro[["scale_x", "scale_y", "scale_z"]].max() < 3e-4
+    # Gravity is a guess, 0.03 m/s².
+    scale = results.parameters("accelerometer").loc["scale_x", "sigma"]
+    assert scale == pytest.approx(0.03 / 9.80665, rel=0.2)
+
+
+# ---- by hand, in columns without a name
+
+
+UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_columns_without_a_name_are_known_by_what_they_do(seed, tmp_path):
+    """Temperature, magnetometer, gyros in counts, accelerometers in g, and ms, in this order."""
+    log = by_hand_log(seed)
+    n = len(log.force)
+    temperature = 25 + 0.1 * np.random.default_rng(0).standard_normal(n)
+    counts = np.rint(np.degrees(log.rate) * 65.5)
+    time = 1000 + np.arange(n) * 1e3 / RATE
+    text = written([temperature, log.field, counts, log.force / 9.80665, time])
+    folder = drafted({"log.txt": text}, tmp_path)
+    campaign = told(folder)
+    layout = campaign["instrument"]["format"]
+    assert layout["accelerometer"] == {"columns": [8, 9, 10], "unit": "g"}
+    assert layout["gyro"] == {"columns": [5, 6, 7], "unit": "deg/s", "counts_per_unit": 65.5}
+    assert layout["time"] == {"column": 11, "unit": "ms"}
+    (plan,) = campaign["plan"]
+    assert plan["do"] == "positions" and 1 <= plan["seconds"] < 4
+    assert f"# {log.positions} static positions" in (folder / "campaign.yaml").read_text()
+
+
+def test_a_draft_by_hand_is_calibrated_to_its_truth(tmp_path):
+    log = by_hand_log(5)
+    n = len(log.force)
+    text = written([np.arange(n) / RATE, log.force, log.rate])
+    folder = drafted({"log.txt": text}, tmp_path)
+    results = chain.run(folder, tmp_path / "derived")
+    accel = results.parameters("accelerometer", "free_positions")
+    symmetric = [f"symmetric_{pair}" for pair in ("xx", "yy", "zz", "xy", "xz", "yz")]
+    found = accel.loc[[*symmetric, "bias_x", "bias_y", "bias_z"]]
+    right = log.imu.free - np.array([1, 1, 1, 0, 0, 0, 0, 0, 0])
+    # Gravity at the site is 9.7936; the draft guesses 9.80665 with a sigma of 0.03.
+    assert abs(9.80665 - GRAVITY) < 0.03
+    assert np.abs((found["value"] - right) / found["sigma"]).max() < MAX_SIGMA
+    gyro = results.parameters("gyroscope", "free_positions")
+    matrix = gyro.loc[list(linear_names())]
+    right = log.imu.rates - np.append(np.eye(3).ravel(), np.zeros(3))
+    assert np.abs((matrix["value"] - right) / matrix["sigma"]).max() < MAX_SIGMA
+
+
+@pytest.mark.parametrize("unit", UNITS)
+def test_the_unit_of_a_time_follows_from_a_plausible_rate(unit, tmp_path):
+    log = by_hand_log(1)
+    time = np.arange(len(log.force)) / RATE * UNITS[unit]
+    text = written([time, log.force, log.rate], digits=15)
+    layout = told(drafted({"log.txt": text}, tmp_path))["instrument"]["format"]
+    assert layout["time"] == {"column": 1, "unit": unit}
+
+
+def test_without_a_clock_gravity_shows_the_rate(tmp_path):
+    """Gyros in rad/s carry gravity from rest to rest at the right rate only, to 1 % of scale."""
+    log = by_hand_log(2)
+    folder = drafted({"log.txt": written([log.rate[::2], log.force[::2]])}, tmp_path)
+    campaign = told(folder)
+    assert campaign["instrument"]["format"]["time"] == {"rate_hz": RATE / 2}
+    text = (folder / "campaign.yaml").read_text(encoding="utf-8")
+    assert "how many samples a second" in " ".join(text.replace("#", "").split())
+
+
+def test_unsigned_counts_of_sensors_with_a_log_each(tmp_path):
+    log = by_hand_log(3)
+    time = np.arange(len(log.force)) / RATE
+    force = np.rint(log.force / 9.80665 * 4096) + 32768
+    rate = np.rint(np.degrees(log.rate) * 80) + 32768
+    logs = {"first.txt": written([time, force]), "second.txt": written([time, rate])}
+    campaign = told(drafted(logs, tmp_path))
+    layout = campaign["instrument"]["format"]["accelerometer"]
+    assert layout | {"columns": 0} == {
+        "columns": 0,
+        "unit": "g",
+        "counts_per_unit": 4096,
+        "zero_counts": 32768,
+    }
+    assert campaign["log"] == "first.txt"
+    gyros = campaign["formats"][campaign["gyro"]["format"]]["gyro"]
+    assert campaign["gyro"]["log"] == "second.txt" and gyros["zero_counts"] == 32768
+    assert gyros["unit"] == "deg/s" and gyros["counts_per_unit"] == pytest.approx(80, rel=0.03)
+
+
+def test_gyros_wired_otherwise_are_seen(tmp_path):
+    log = by_hand_log(1)
+    rate = log.rate[:, [1, 0, 2]] * [1, -1, 1]  # columns: y, −x, z
+    time = np.arange(len(rate)) / RATE
+    folder = drafted({"log.txt": written([time, log.force, rate])}, tmp_path)
+    assert told(folder)["instrument"]["gyro"]["axes"] == ["y", "-x", "z"]
+    assert "gyro.axes" in (folder / "campaign.yaml").read_text(encoding="utf-8")
+
+
+def test_text_as_programs_of_other_countries_write_it(tmp_path):
+    """Dates, semicolons, decimal commas and a comment."""
+    log = by_hand_log(1)
+    head = "# some program\nwhen;ax;ay;az;gx;gy;gz\n"
+    numbers = written([log.force, log.rate], ";").replace(".", ",").splitlines()
+    stamps = np.datetime64("2026-03-01T10:00:00.000") + np.arange(len(numbers)) * np.timedelta64(
+        10, "ms"
+    )
+    rows = "".join(f"{t};{row}\n" for t, row in zip(stamps, numbers, strict=True))
+    folder = drafted({"log.csv": head + rows}, tmp_path)
+    layout = told(folder)["instrument"]["format"]
+    assert layout["time"] == {"column": "when", "unit": "iso8601"}
+    assert (layout["delimiter"], layout["decimal"], layout["comment"]) == (";", ",", "#")
+    results = chain.run(folder, tmp_path / "derived", "segment")
+    assert results["segment/segments"]["manoeuvre"].nunique() >= log.positions
+
+
+# ---- what cannot be drafted
+
+
+def refused(capsys: pytest.CaptureFixture[str], arguments: list[str]) -> str:
+    assert main(arguments) == 2
+    return capsys.readouterr().err
+
+
+def test_what_is_there_is_never_overwritten(tmp_path, capsys):
+    data = tmp_path / "data"
+    (data / "raw/june").mkdir(parents=True)
+    log = tmp_path / "log.txt"
+    log.write_text("1 2 3\n")
+    error = refused(capsys, [str(log), "--name", "june", "--data", str(data)])
+    assert "there is a campaign of this name" in error
+    assert not any((data / "raw/june").iterdir())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "found"),
+    [
+        (["nowhere.txt", "--name", "june"], "no such file"),
+        (["--name", "june"], "no log"),
+        (["nowhere.txt", "--name", "June 3"], "'June 3'"),
+    ],
+)
+def test_what_is_asked_wrongly_is_said(arguments, found, tmp_path, capsys):
+    error = refused(capsys, [*arguments, "--data", str(tmp_path / "data")])
+    assert found in error and "cure:" in error
+    assert not (tmp_path / "data").exists()
+
+
+@pytest.mark.parametrize(
+    "text", ["Dear all,\nthis is no log.\n", "1 2 3\n1 2 3\n", "", "1,2\n" * 100]
+)
+def test_what_is_no_log_is_refused_and_nothing_is_written(text, tmp_path, capsys):
+    log = tmp_path / "log.txt"
+    log.write_text(text)
+    error = refused(capsys, [str(log), "--name", "june", "--data", str(tmp_path / "data")])
+    assert "log.txt" in error and "cure:" in error
+    assert not (tmp_path / "data").exists()
