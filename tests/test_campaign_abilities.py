@@ -199,9 +199,10 @@ def test_a_table_that_counts_clockwise(simple, simple_results, tmp_path):
 
 
 @pytest.mark.parametrize("recorded", ["whole", "steady"])
-def test_a_turn_whose_attitude_is_not_known_gives_its_scale_up_to_the_earth_s_rate(
-    recorded, simple, tmp_path
+def test_a_turn_of_which_only_the_axis_is_known_gives_its_scale(
+    recorded, simple, simple_results, tmp_path
 ):
+    """Recorded whole, the rests beside it show the earth's rate along its axis; steady, nothing."""
     campaign = rewritten(simple, tmp_path / "raw", lambda rows: rows)
     for manoeuvre in campaign["plan"]:
         if manoeuvre["do"] == "turn":
@@ -212,14 +213,15 @@ def test_a_turn_whose_attitude_is_not_known_gives_its_scale_up_to_the_earth_s_ra
     results = chain.run(tmp_path / "raw", tmp_path / "derived", "diagnosis")
     assert np.abs(off_truth(results)).max() < MAX_SIGMA
     assert results["diagnosis/causes"].empty
-    # Two turns, in each of which the earth's rate has any direction: ω_e/√3 along the axis.
-    scale = results.parameters("gyroscope").loc["scale_x", "sigma"]
-    earth = 7.292115e-5 / np.sqrt(3) / np.sqrt(2)  # rad/s
-    if recorded == "steady":
-        expected = np.hypot(earth / np.radians(60), 100e-6 / np.sqrt(2))  # and the table's rate
+    scale, known = (
+        each.parameters("gyroscope").loc["scale_x", "sigma"] for each in (results, simple_results)
+    )
+    if recorded == "whole":
+        assert known < scale < 3 * known
     else:
-        expected = earth * 7 / (2 * np.pi)  # 7 s from start to stop
-    assert scale == pytest.approx(expected, rel=0.2)
+        # Two turns, in each of which the earth's rate has any direction, and the table's rate.
+        earth = 7.292115e-5 / np.sqrt(3) / np.radians(60)
+        assert scale == pytest.approx(np.hypot(earth, 100e-6) / np.sqrt(2), rel=0.2)
 
 
 def test_rows_without_a_time_are_counted_at_the_rate_of_the_instrument(
@@ -232,6 +234,82 @@ def test_rows_without_a_time_are_counted_at_the_rate_of_the_instrument(
     results = chain.run(tmp_path / "raw", tmp_path / "derived")
     away = values(results) - values(simple_results)
     assert np.abs(away / values(results, "sigma")).max() < 0.01
+
+
+# ---- means only
+
+
+NOISE = in_columns()["noise"]
+GYRO_SAMPLE = np.radians(NOISE["angle_random_walk_deg_sqrt_h"]) / 60 / np.sqrt(0.01)  # rad/s
+FORCE_SAMPLE = NOISE["velocity_random_walk_m_s_sqrt_h"] / 60 / np.sqrt(0.01)  # m/s²
+
+
+def means_of(simple: Path, folder: Path, pieces: int) -> Document:
+    """Each rest as some means, each turn as the mean of its steady part: one row each."""
+    campaign = told(simple)
+    layout, plan, rows = campaign["instrument"]["format"], [], []
+    sizes = np.repeat([layout[s]["counts_per_unit"] for s in ("gyro", "accelerometer")], 3)
+    for manoeuvre in campaign["plan"]:
+        samples = numbers(simple / manoeuvre.pop("log"))
+        rest = manoeuvre["do"] == "rest"
+        parts = np.array_split(samples, pieces) if rest else [samples[450:850]]
+        for number, part in enumerate(parts):
+            own = {"id": f"{manoeuvre['id']}-{number}", "rows": [len(rows), len(rows) + 1]}
+            own["position"] = manoeuvre["id"]
+            plan.append({key: manoeuvre[key] for key in ("do", "up")} | own)
+            if not rest:
+                sign = -1 if manoeuvre["degrees"] < 0 else 1
+                plan[-1] |= {"recorded": "steady", "rate_deg_s": sign * manoeuvre["rate_deg_s"]}
+            rows.append([*part[:, 1:7].mean(axis=0) / sizes, len(part)])
+    folder.mkdir()
+    np.savetxt(folder / "means.txt", np.array(rows), fmt="%.12g")
+    layout = {"kind": "columns", "gyro": {"columns": [1, 2, 3], "unit": "rad/s"}}
+    layout["accelerometer"] = {"columns": [4, 5, 6], "unit": "m/s2"}
+    campaign["instrument"] = {"name": "made up", "format": layout}
+    return campaign | {"log": "means.txt", "plan": plan}
+
+
+def test_means_with_the_sigma_of_a_sample_are_as_good_as_their_samples(
+    simple, simple_results, tmp_path
+):
+    campaign = means_of(simple, tmp_path / "raw", 1)
+    layout = campaign["instrument"]["format"] | {"mean_of": 7}
+    layout["gyro"]["sigma"] = float(GYRO_SAMPLE)
+    layout["accelerometer"]["sigma"] = [float(FORCE_SAMPLE)] * 3
+    campaign["instrument"]["format"] = layout
+    tell(tmp_path / "raw", campaign)
+    results = chain.run(tmp_path / "raw", tmp_path / "derived", "diagnosis")
+    assert results["diagnosis/causes"].empty
+    assert np.abs(off_truth(results)).max() < MAX_SIGMA
+    for stage, names in (("accelerometer", None), ("gyroscope", ["bias_x", "bias_y", "bias_z"])):
+        ratio = results.parameters(stage)["sigma"] / simple_results.parameters(stage)["sigma"]
+        ratio = ratio if names is None else ratio[names]
+        assert ratio.min() > 0.7 and ratio.max() < 1.4
+
+
+def test_of_enough_means_the_residuals_show_the_sigma(simple, tmp_path):
+    campaign = means_of(simple, tmp_path / "raw", 4)
+    campaign["instrument"]["format"]["mean_of"] = None
+    campaign["table"]["position_sigma_arcsec"] = 0.01
+    tell(tmp_path / "raw", campaign)
+    results = chain.run(tmp_path / "raw", tmp_path / "derived")
+    scatter = [results[f"{s}/fit"].query("method == 'joint'")["scatter"].item() for s in STAGES]
+    # 24 means of 5 s; the gyros' turns are 6 means of 4 s.
+    expected = np.array([FORCE_SAMPLE, GYRO_SAMPLE]) / np.sqrt(500)
+    assert scatter[0] == pytest.approx(
+        np.hypot(expected[0], 2 * np.radians(1 / 3600) * 9.8), rel=0.4
+    )
+    assert scatter[1] == pytest.approx(expected[1], rel=0.4)
+    assert np.abs(off_truth(results)).max() < MAX_SIGMA
+
+
+def test_few_means_of_unknown_sigma_give_nothing_and_say_what_is_missing(simple, tmp_path):
+    campaign = means_of(simple, tmp_path / "raw", 1)
+    campaign["instrument"]["format"]["mean_of"] = 7
+    tell(tmp_path / "raw", campaign)
+    results = chain.run(tmp_path / "raw", tmp_path / "derived")
+    joint = results.parameters("accelerometer")
+    assert joint["value"].isna().all() and joint["reason"].str.contains("state sigma").all()
 
 
 # ---- accelerometers and gyros in a log each

@@ -90,6 +90,9 @@ def test_two_formats_of_one_file_are_two_logs(tmp_path):
     assert list(planned(tmp_path, text)["logs"]["log"]) == ["test.log:still", "test.log:turning"]
 
 
+MEANS = """\
+formats: {m: {kind: columns, mean_of: null, gyro: {columns: [1, 2, 3], unit: deg/s, sigma: 0.1}}}
+"""
 MISTAKES = {
     # what is wrong: (what to write instead of what, what the error must say)
     "mistyped key": ("serial:", "seriall:", ["line 3", "'seriall'", "write serial"]),
@@ -180,6 +183,27 @@ MISTAKES = {
         "{name: a, gyro: {reads: gravity}}",
         ["instrument.gyro.reads", "axes: [-x, -y, -z]"],
     ),
+    "positions of means without rows": (
+        "plan:",
+        MEANS + "plan:\n  - {id: all, do: positions, format: m}",
+        ["plan[0]", "positions without rows", "add rows"],
+    ),
+    "a whole turn in means": (
+        "plan:",
+        MEANS + "plan:\n  - {id: t, do: turn, up: +x, degrees: 360, seconds: 9, format: m}",
+        ["plan[0]", "add recorded: steady"],
+    ),
+    "a sigma of samples": (
+        "plan:",
+        MEANS.replace("mean_of: null", "time: {rate_hz: 100}")
+        + "plan:\n  - {id: r, do: rest, up: +x, format: m}",
+        ["sigma of gyro, whose rows are no means", "mean_of, null"],
+    ),
+    "positions of no duration": (
+        "plan:",
+        "plan:\n  - {id: all, do: positions}",
+        ["plan[0]", "no key 'seconds'", "add seconds"],
+    ),
     "broken YAML": ("serial: ", "serial: [", ["line", "YAML 1.2"]),
 }
 
@@ -222,6 +246,18 @@ def test_the_schemas_give_a_description_with_every_number():
     for name in ("campaign", "config", "published"):
         missing = [path for path, rule in numbers(schema_of(name), "") if "description" not in rule]
         assert missing == []
+
+
+def test_positions_of_means_are_a_static_position_for_each_row(tmp_path):
+    positions = "plan:\n  - {id: all, do: positions, rows: [9, 12], format: m}"
+    made = planned(tmp_path, BY_TABLE.replace("plan:", MEANS + positions))
+    rests = made["manoeuvres"].head(3)
+    assert list(rests["manoeuvre"]) == ["all-09", "all-10", "all-11"]
+    assert list(rests["do"]) == ["rest"] * 3 and rests["up_x"].isna().all()
+    assert [*zip(rests["from_row"], rests["to_row"], strict=True)] == [(9, 10), (10, 11), (11, 12)]
+    sigma = made["ranges"].set_index(["log", "sensor"])["sigma"]
+    assert sigma["session.asc:m", "gyro"].to_list() == pytest.approx([radians(0.1)] * 3)
+    assert sigma["session.asc:m", "accel"].isna().all()
 
 
 COUNTS = """{name: a, axes: [z, -x, y], accelerometer: {axes: [x, y, z], reads: gravity}, format: {

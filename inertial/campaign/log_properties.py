@@ -43,6 +43,11 @@ class Stated:
         tables = self.clocks, self.ranges, self.imu_types
         return logs(statistics, *tables, self.given, windows or {})
 
+    @property
+    def means_of_known_noise(self) -> set[str]:
+        """The logs of means without time of which the noise is stated, or seen in residuals."""
+        return set(self.ranges.loc[self.ranges["sigma"].notna(), "log"])
+
 
 def stated_by(
     campaign: pd.DataFrame,

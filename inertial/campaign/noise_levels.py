@@ -21,6 +21,7 @@ Key = tuple[str | None, str | None, str]  # manoeuvre, phase, channel
 MIN_SCATTER_RATIO = 1.5  # of a rate segment to static positions, from which a channel oscillates
 MAX_COMMON_SIGMA = 3.0  # sigmas by which a level may differ from the common one and still be it
 OWN, COMMON = "own", "common"
+STATED, RESIDUALS = "stated", "residuals"  # of means without time
 
 
 def effective_levels(noise: pd.DataFrame) -> pd.DataFrame:

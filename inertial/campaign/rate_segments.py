@@ -177,6 +177,7 @@ class GyroInputs:
         """The same without turns of which only the axis is known, which cannot be simulated."""
         return replace(
             self,
+            static_positions=[p for p in self.static_positions if p.manoeuvre.up is not None],
             recorded=[r for r in self.recorded if r.plan.up is not None],
             turns=[turn for turn in self.turns if turn.position.is_known],
             steady_rates=[steady for steady in self.steady_rates if steady.position.is_known],

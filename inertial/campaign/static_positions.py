@@ -81,7 +81,10 @@ UNTIMED = Stretch("")
 NO_UP = _("which way is up is not known")
 NO_ATTITUDE = _("its attitude is not known, for the turn is not whole")
 NO_READING = _("none of its readings can be used")
-NO_NOISE = _("its noise is not known, for it has no time or is too short")
+NO_NOISE = _(
+    "its noise is not known, for it is too short, or has no time: state sigma with mean_of in its "
+    "format"
+)
 PER_BLOCK = ("means", "counts", "seconds", "time", "temperature")
 BLOCK_COLUMNS = ("count", "seconds", "time", "temperature")
 
@@ -166,6 +169,7 @@ def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosi
     """The static positions of known attitude, and those left out with the reason.
 
     The attitude after a rotation is known where the rotation was recorded from rest to rest.
+    Of the gyros also those beside turns of which only the axis is known, with zero `up`.
     `sensor` is accel or gyro.
     """
     blocks, performed = data.blocks, data.performed
@@ -195,7 +199,9 @@ def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosi
             density = data.noise.of(m.name, "rest", channels)
             after, part = phase == "rest-after", Part(m.name, phase)
             reason = _refusal(m, performed[m.name], phase, seconds, density)
-            if m.up is None:
+            up = np.zeros(3) if m.up is None else m.up
+            axis_alone = m.up is None and m.do == "turn" and sensor == "gyro"
+            if m.up is None and not axis_alone:
                 left_out.append(replace(part, reason=NO_UP))
             elif reason:
                 left_out.append(replace(part, reason=reason))
@@ -204,8 +210,8 @@ def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosi
                     StaticPosition(
                         part,
                         m,
-                        m.up,
-                        m.up if m.about is None else m.about,
+                        up,
+                        up if m.about is None else m.about,
                         (m.angle or 0.0) if after else 0.0,
                         readings[indices],
                         count,

@@ -44,6 +44,7 @@ from inertial.physics.motion import all_level_axes, cross, level_axes, turned_al
 
 Array = NDArray[np.float64]
 
+UPRIGHT = np.array([0.0, 0.0, 1.0])  # z, for want of a direction
 MAX_BLOCKS_PER_PASS = 4000  # so that the memory does not grow with the length of a segment
 
 
@@ -115,18 +116,20 @@ def static_equations(
     ups = turned_all(np.array([p.up for p in positions]), abouts, angles)
     norths = np.array([np.zeros(3) if p.north is None else p.north for p in positions])
     known = turned_all(earth.level * norths, abouts, angles)
-    axes = all_level_axes(np.array([p.up for p in positions]))
+    axes = np.zeros((n, 3, 3))
+    axes[:, :2] = all_level_axes(np.array([p.up if p.is_known else UPRIGHT for p in positions]))
     for i, position in enumerate(positions):
-        if position.mark is not None:
-            axes[i] = horizontal_axes(position)
+        if position.mark is not None or not position.is_known:
+            own = horizontal_axes(position)
+            axes[i, : len(own)] = own
     # The product M · earth is linear about the present M; the earth is small, so is the error.
-    rows = np.zeros((n, 3, s + 3))
+    rows = np.zeros((n, 3, s + 4))
     for row in range(3):
         rows[:, row, 3 * row : 3 * row + 3] = known + earth.up * ups
         rows[:, row, 9 + row] = 1.0
     rows[:, :, UNKNOWNS] = ups @ matrix.T
     rows[:, :, UNKNOWNS + 1 : s] = [static.sensitivities.of(effects) for static in statics]
-    for i in (0, 1):
+    for i in (0, 1, 2):
         rows[:, :, s + i] = turned_all(axes[:, i], abouts, angles) @ matrix.T
     rows[:, :, -1] = np.array([st.mean for st in statics]) + rows[:, :, UNKNOWNS] * earth.up
     rows[:, :, -1] -= rows[:, :, :s] @ prior
@@ -134,7 +137,7 @@ def static_equations(
     for i, static in enumerate(statics):
         names = horizontal_names(static.position)
         sigma |= dict.fromkeys(names, horizontal_sigma(static.position, earth))
-        columns = slice(None) if names else np.r_[:s, s + 2]
+        columns = np.r_[: s + len(names), s + 3]
         block = whitened(rows[i][:, columns], static.sigma, names)
         result.append((static.position.name, block, static.stretch or Stretch(f"rest {i}")))
     return result

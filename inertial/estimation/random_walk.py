@@ -49,8 +49,9 @@ class Stretch:
 
 def linear_trend(stretches: Sequence[Stretch]) -> Callable[[Stretch], Stretch]:
     """An alternative to a random walk: a drift in proportion to the time from the middle."""
-    start = float(np.nanmin([stretch.start for stretch in stretches]))
-    span = float(np.nanmax([stretch.end for stretch in stretches])) - start
+    timed = [stretch for stretch in stretches if np.isfinite(stretch.end)]
+    start = min((stretch.start for stretch in timed), default=np.nan)
+    span = max((stretch.end for stretch in timed), default=np.nan) - start
 
     def of(stretch: Stretch) -> Stretch:
         part = (stretch.start + stretch.seconds / 2 - start) / span - 0.5

@@ -21,14 +21,20 @@ NOISE = Table(
 )
 LEVELS = Table(
     "levels",
-    1,
+    2,
     (
         Column("manoeuvre", TEXT, "", "as in noise; none: all that have no row", nullable=True),
         Column("phase", TEXT, "", "rest or steady; none as manoeuvre", nullable=True),
         Column("channel", TEXT, "", "one of the six channels"),
         Column("white_noise", DOUBLE, "rad/√s, m/s/√s", "effective: what every sigma rests on"),
         Column("sigma", DOUBLE, "rad/√s, m/s/√s", "standard deviation of white_noise"),
-        Column("source", TEXT, "", "common: of the campaign; own: it differs by over 3 sigma"),
+        Column(
+            "source",
+            TEXT,
+            "",
+            "common: of the campaign; own: it differs by over 3 sigma; of means without time, of"
+            " which a sample counts as 1 s: stated; residuals: next to 0, for a scatter shows it",
+        ),
         Column("degrees", DOUBLE, "1", "degrees of freedom of white_noise"),
         Column("measured", DOUBLE, "rad/√s, m/s/√s", "as in noise", nullable=True),
         Column("per_sample", DOUBLE, "rad/s, m/s²", "as in noise", nullable=True),

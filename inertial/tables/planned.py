@@ -61,7 +61,7 @@ LOGS = Table(
 )
 RANGES = Table(
     "ranges",
-    2,
+    3,
     (
         LOG,
         SENSOR,
@@ -69,6 +69,14 @@ RANGES = Table(
         Column("count", DOUBLE, AS_CHANNEL, "what one count is, if stated", nullable=True),
         Column("increments", TRUTH, "", "a count is an increment: its unit is times s"),
         Column("limit", DOUBLE, AS_CHANNEL, "largest input, if stated", nullable=True),
+        Column(
+            "sigma",
+            DOUBLE,
+            AS_CHANNEL,
+            "where rows are means: standard deviation of one of their samples, or of the row; 0: by"
+            " the residuals; none: not known, or not of means",
+            nullable=True,
+        ),
     ),
 )
 COUNT_SIZES = Table(

@@ -109,7 +109,7 @@ def checks(data: CampaignData, measurement: Measurement) -> Iterator[Check]:
         for position in positions:
             yield from _forces(position, forces[position.label], triad, data)
     if (triad := measurement.gyro.triad) is not None:
-        for position in data.gyro_positions[0]:
+        for position in data.gyro_inputs.of_known_attitude.static_positions:
             force = forces.get(position.label, UNKNOWN)
             yield from _rate(position, measurement, triad, force, data)
         for rotation in data.gyro_inputs.usable:

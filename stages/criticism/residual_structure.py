@@ -152,6 +152,8 @@ def _equations(
         return
     conditions = conditions_of(campaign.motion, campaign.stretches(sensor), sensor, axis)
     tested = [(kind, groups) for kind, test in TESTS.items() for groups in test(conditions)]
+    if not tested:
+        return  # nothing of this sensor is simulated
     functions = [groups.functions for _, groups in tested]
     rest, columns, degrees = _residuals(campaign, named, sensor, axis, functions)
     first = 0

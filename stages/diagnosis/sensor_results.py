@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -207,9 +208,8 @@ def estimated_of(
         for row in rows_of(table)
         if row["method"] in (JOINT, FREE) and row["parameter"] in TWELVE
     ]
-    known = {_place(row) for row in joint if row["method"] == JOINT and row["value"] is not None}
-    free = {_place(row) for row in joint if row["method"] == FREE and row["value"] is not None}
-    free -= known
+    determined = Counter((r["method"], _place(r)) for r in joint if r["value"] is not None)
+    free = {place for _m, place in determined if determined[FREE, place] > determined[JOINT, place]}
     kept = [r for r in joint if r["method"] == (FREE if _place(r) in free else JOINT)]
     return Estimated(
         [*({**row, "method": JOINT} for row in kept), *rows_of(extension_parameters)],

@@ -12,6 +12,7 @@ DECLARED = Declared(
         "gaps": From("quality", tables.GAPS),
         "masks": From("quality", tables.MASKS),
         "sensors": From("plan", tables.SENSORS),
+        "ranges": From("plan", tables.RANGES),
     },
     writes={
         "noise": tables.NOISE,

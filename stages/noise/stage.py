@@ -1,7 +1,7 @@
 """White noise of every channel in every manoeuvre, with the value of the data sheet."""
 
-from collections.abc import Iterator
-from itertools import pairwise
+from collections.abc import Iterator, Sequence
+from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.campaign.masked_samples import Masks, Repairs, pieces
-from inertial.campaign.noise_levels import effective_levels
-from inertial.campaign.records import clocks_of, rows_of
+from inertial.campaign.noise_levels import RESIDUALS, STATED, effective_levels
+from inertial.campaign.records import Row, clocks_of, rows_of
 from inertial.estimation.spectrum import band_levels, white_level
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
@@ -23,6 +23,7 @@ MAX_SAMPLES = 32768  # of one periodogram: bounds the memory of a long log
 PHASES = {"rest": "rest", "rest-before": "rest", "rest-after": "rest", "steady": "steady"}
 _SENSORS = {"accel": slice(0, 3), "gyro": slice(3, 6)}
 MIN_SAMPLES = 16  # fewer give no level
+LEAST_SIGMA = {"accel": 1e-6, "gyro": 1e-8}  # m/s² and rad/s: no mean is known better
 
 
 def noise(
@@ -33,6 +34,7 @@ def noise(
     masks: pd.DataFrame,
     channel_repairs: pd.DataFrame,
     sensors: pd.DataFrame,
+    ranges: pd.DataFrame,
     *,
     from_hz: float,
     to_hz: float,
@@ -58,7 +60,32 @@ def noise(
         for row in collected.rows(manoeuvre, phase)
     ]
     measured = pd.DataFrame(rows) if rows else tables.NOISE.empty()
-    return {"noise": measured, "levels": effective_levels(measured)}
+    of_means = list(_levels_of_means(quiet, ranges))
+    levels = effective_levels(measured)
+    if of_means:
+        levels = pd.concat([levels, pd.DataFrame(of_means)]) if rows else pd.DataFrame(of_means)
+    return {"noise": measured, "levels": levels}
+
+
+def _levels_of_means(quiet: Sequence[Row], ranges: pd.DataFrame) -> Iterator[Row]:
+    """The levels of means without time, of which a sample counts as 1 s.
+
+    That of the stated standard deviation of a sample. Where the residuals of the fit must show it,
+    next to nothing: the fits estimate what is beyond that as a scatter between manoeuvres.
+    """
+    stated = rows_of(ranges[ranges["sigma"].notna()])
+    for row, of_log in product(quiet, stated):
+        if row["log"] == of_log["log"]:
+            level = of_log["sigma"] or LEAST_SIGMA[of_log["sensor"]]
+            yield {
+                "manoeuvre": row["manoeuvre"],
+                "phase": PHASES[row["phase"]],
+                "channel": f"{of_log['sensor']}_{of_log['axis']}",
+                **dict.fromkeys(("white_noise", "measured", "per_sample"), level),
+                "sigma": 0.0,
+                "source": STATED if of_log["sigma"] else RESIDUALS,
+                "degrees": np.inf,
+            }
 
 
 class _Spectra:

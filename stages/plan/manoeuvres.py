@@ -74,10 +74,6 @@ def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
     elif item["do"] == "tumble":
         yield from _tumble(file, key, item, row, up, mark)
     else:
-        if item["do"] == "positions" and "seconds" not in item:
-            raise file.refuse_text(
-                key, "no key 'seconds'", _("seconds: the shortest rest, s"), "add seconds"
-            )
         yield row | _vectors(up, mark, None)
 
 

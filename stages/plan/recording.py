@@ -14,6 +14,7 @@ from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.campaign_units import CHANNEL_UNITS, DEGREE, PER_ROOT_HOUR, in_si
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
+from stages.plan.means import MeanSigmas, each, refuse_without_time
 from stages.plan.rate import StatedRate, with_rate
 
 KEY = "encoder"
@@ -122,6 +123,7 @@ def ranges(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
     """What one count of each channel of each log is, and how far the channel reaches, in SI."""
     scales = {row["sensor"]: row["full_scale"] for row in sensors(entry)}
     keys = {"accel": ("accelerometer", "count_m_s"), "gyro": ("gyro", "count_rad")}
+    sigmas = MeanSigmas(manoeuvres, list(sensors(entry)), entry.get("rate_hz"))
     for log, rows in by_log(manoeuvres).items():
         layout = rows[0]["layout"]
         increments = layout["kind"] == "rawimus"
@@ -132,8 +134,8 @@ def ranges(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
             triad, full = own.get(key) or {}, scales[sensor]
             count, limit = entry.get(key, {}).get(increment) if increments else None, None
             if "counts_per_unit" in triad:
-                count = CHANNEL_UNITS[triad["unit"]] / _each(triad["counts_per_unit"])[place]
-                zero = _each(triad.get("zero_counts", 0))[place]
+                count = CHANNEL_UNITS[triad["unit"]] / each(triad["counts_per_unit"])[place]
+                zero = each(triad.get("zero_counts", 0))[place]
                 if "limit_counts" in triad:
                     # Of unsigned counts the farther end: nothing within the range is cut off.
                     limit = max(triad["limit_counts"] - zero, zero) * count
@@ -144,12 +146,8 @@ def ranges(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
                 "count": count,
                 "increments": increments,
                 "limit": full if limit is None else limit,
+                "sigma": sigmas.of(own, sensor, key, place),
             }
-
-
-def _each(stated: float | list[float]) -> list[float]:
-    """One number for each column."""
-    return stated if isinstance(stated, list) else [stated] * 3
 
 
 def _stated_axes(entry: dict[str, Any], sensor: str) -> list[str] | None:
@@ -192,6 +190,7 @@ def recording(
             _("add log: its file name"),
         )
     layout, layout_key = _layout(file, key, item, entry, rate)
+    refuse_without_time(file, key, item, layout)
     ways = [way for way in ("span", "rows", "where") if way in item]
     if len(ways) > 1:
         raise file.refuse_text(
@@ -346,7 +345,7 @@ def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[
                 "correct the unit",
             )
         triad = layout.get(sensor, {})
-        zeros = _each(triad.get("zero_counts", 0))
+        zeros = each(triad.get("zero_counts", 0))
         if max(zeros) > triad.get("limit_counts", np.inf):
             raise file.refuse(
                 [*key, sensor, "limit_counts"],

@@ -17,6 +17,7 @@ from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
 from stages.plan.declared import DECLARED
 from stages.plan.manoeuvres import expanded
+from stages.plan.means import one_by_one
 from stages.plan.published import published_values
 from stages.plan.rate import SAMPLE_RATE, StatedRate
 from stages.plan.recording import (
@@ -157,7 +158,8 @@ def _manoeuvres(file: YamlFile, entry: dict[str, Any], instruments: Path) -> lis
                     _("rename one of the two"),
                 )
             where = recording(file, ["plan", number], item, entry, rate)
-            rows[row["manoeuvre"]] = row | where | {"number": number}
+            for each in one_by_one(row | where):
+                rows[each["manoeuvre"]] = each | {"number": number}
     for first, *others in by_log(list(rows.values())).values():
         for row in others:
             if row["layout"] != first["layout"]:

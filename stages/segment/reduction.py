@@ -67,6 +67,7 @@ class Blocks(SumsOver):
     Parameters
     ----------
     of_means : logs whose records are means of many samples; each of these is a block
+    in_samples : those of them of which a sample stands for 1 s, for its noise is known so
     rest_block, turn_block : s, length of a block
     """
 
@@ -77,6 +78,7 @@ class Blocks(SumsOver):
         masks: Masks,
         clocks: Mapping[str, Clock],
         of_means: set[str],
+        in_samples: set[str],
         rest_block: float,
         turn_block: float,
     ) -> None:
@@ -84,6 +86,10 @@ class Blocks(SumsOver):
             str(log): rows["record"].to_numpy(np.int64) for log, rows in gaps.groupby("log")
         }
         self._clocks = clocks
+        self._seconds = {
+            log: clock.step if log in in_samples else clock.duration or np.nan
+            for log, clock in clocks.items()
+        }
         hidden = _hidden(parts, masks)
         self._clipped = _clipped(parts, masks)
         edges: list[tuple[Integers, Integers]] = []
@@ -127,13 +133,12 @@ class Blocks(SumsOver):
         def column(name: str) -> Floats:
             return self._spans.in_order({log: getattr(own, name) for log, own in sums.items()})
 
-        step = {log: clock.duration or np.nan for log, clock in self._clocks.items()}
         count, records = column("count"), column("records")
         means = column("mean")
         means[self._cut_off()] = np.nan
         table = table.assign(
             time=column("time"),
-            seconds=count * table["log"].map(step).to_numpy(np.float64),
+            seconds=count * table["log"].map(self._seconds).to_numpy(np.float64),
             count=count,
             missing_s=0.0,
             **dict(zip(tables.CHANNELS, means.T, strict=True)),

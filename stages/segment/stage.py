@@ -87,8 +87,16 @@ def segment(
     by_name = {name: repaired.log_as_read(log, read_as) for name, log in logs.items()}
     parts, performed, turns = _parts(explained, plan, level, margin)
 
+    in_samples = stated.means_of_known_noise
     block_sums = reduction.Blocks(
-        parts, gaps, masked, clock, of_means.names, rest_block, turn_block
+        parts,
+        gaps,
+        masked,
+        clock,
+        of_means.names | in_samples,
+        in_samples,
+        rest_block,
+        turn_block,
     )
     segment_times, traces = reduction.Segments(parts), reduction.Traces(ends)
     rests, index = ExaminationOfRests(OF_RESTS, parts, by_name, masked), RecordIndex()

@@ -82,7 +82,8 @@ class Simulated:
 
 def _rests(data: CampaignData) -> Iterator[tuple[Simulated, float]]:
     """Every static position in its blocks, with the median duration of a block, s."""
-    both = [*data.gyro_positions[0], *data.accelerometer_positions[0]]
+    gyros = data.gyro_inputs.of_known_attitude.static_positions
+    both = [*gyros, *data.accelerometer_positions[0]]
     positions = {static.part: static for static in both}
     blocks = data.blocks
     rows = blocks.groupby(["manoeuvre", "phase"]).indices
