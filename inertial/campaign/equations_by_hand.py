@@ -45,8 +45,10 @@ class ByHand:
     """The positions and motions of one mount, the motion in each, and the scatters.
 
     `shared_clock`: as in `CampaignData`; `motions`: of each passage, in its stretches; `scatter`:
-    of the gyros; `force_scatter`: of the accelerometers, m/s²; `degrees`: from which these were
-    estimated, by sensor; `left_out`: by number, stops, then passages, whose gyros are not used.
+    of the gyros; `force_scatter`: of the accelerometers given the effects, m/s²;
+    `direction_scatter`: without, of the directions that the gyros are compared with; `degrees`:
+    from which these were estimated, by sensor; `left_out`: by number, stops, then passages, whose
+    gyros are not used.
     """
 
     handled: Handled
@@ -56,6 +58,7 @@ class ByHand:
     shared_clock: bool
     scatter: Scatter = NONE
     force_scatter: float = 0.0
+    direction_scatter: float = 0.0
     degrees: Mapping[str, float] = field(default_factory=dict)
     left_out: frozenset[int] = frozenset()
 
@@ -93,7 +96,7 @@ class ByHand:
         return between_positions.drifting(
             self.handled.stops,
             [each.passage for each in self.handled.passages],
-            Prior(self.gravity.number, self.gravity.scatter, self.force_scatter, self.earth),
+            Prior(self.gravity.number, self.gravity.scatter, self.direction_scatter, self.earth),
             (gyro.matrix, gyro.bias, accelerometer.matrix, accelerometer.bias),
             Carried([own for own, _ in rests], moving, [s for _, s in rests] + self._stretches),
             prior_sigmas,

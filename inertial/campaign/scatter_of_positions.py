@@ -17,6 +17,7 @@ from inertial.estimation.multi_position import SCATTER_RANGE
 from inertial.estimation.scatter_by_hand import Scatter, contradicting, likeliest
 from inertial.estimation.variance_components import (
     MIN_DEVIANCE_DROP,
+    ScatterFit,
     WalkSearch,
     most_likely,
     walk_search,
@@ -56,13 +57,22 @@ def scattered(campaign: Campaign, effects: Sequence[Effect], noise_degrees: floa
 
 
 def _with_forces(campaign: Campaign, effects: Sequence[Effect], noise_degrees: float) -> Campaign:
-    forces = with_scatter(
+    given = _forces(campaign, effects, noise_degrees)
+    plain = _forces(campaign, [], noise_degrees) if effects else given
+    return _with(
+        campaign,
+        force_scatter=given.scatter,
+        direction_scatter=plain.scatter,
+        degrees={"accel": _degrees(given.estimate, effects)} if given.scatter else {},
+    )
+
+
+def _forces(campaign: Campaign, effects: Sequence[Effect], noise_degrees: float) -> ScatterFit:
+    return with_scatter(
         lambda size: _solved(_with(campaign, force_scatter=size), "accel", effects),
         SCATTER_RANGE,
         noise_degrees,
     )
-    degrees = {"accel": _degrees(forces.estimate, effects)} if forces.scatter else {}
-    return _with(campaign, force_scatter=forces.scatter, degrees=degrees)
 
 
 def _with_rates(campaign: Campaign, effects: Sequence[Effect], noise_degrees: float) -> Campaign:

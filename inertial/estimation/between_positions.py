@@ -182,12 +182,12 @@ class _Data:
             self._integrated[key] = [integrated_motion(p, matrix, bias) for p in self.passages]
         return self._integrated[key]
 
-    def between(self, stop: Stop) -> float:
-        """Scatter of the mean rates of a rest, rad/s."""
+    def between(self, seconds: float) -> float:
+        """Scatter of the mean rates of a rest or a motion of so many seconds, rad/s."""
         if not self.scatter.sways:
             return self.scatter.rate
-        usual = float(np.median([each.seconds for each in self.stops]))
-        return self.scatter.rate * usual / stop.seconds
+        usual = float(np.median([stop.seconds for stop in self.stops]))
+        return self.scatter.rate * usual / seconds
 
     @property
     def chains(self) -> list[list[int]]:
@@ -419,7 +419,7 @@ class _AtStop:
         design[:, self.place] = self.matrix @ self.level.T
         design[:, -1] = self.matrix @ self.ups[i]
         rest = stop.mean - self.matrix @ self.earth(i) - self.bias
-        sigma = np.hypot(stop.sigma, self.data.between(stop))
+        sigma = np.hypot(stop.sigma, self.data.between(stop.seconds))
         return Rows(design, rest, sigma, np.eye(3)[:, None])
 
     def motion(self, i: int, motion: IntegratedMotion, turned: Array) -> Rows:
@@ -436,7 +436,8 @@ class _AtStop:
         design[:, self.place] = motion.seconds * lever @ turned @ self.level.T
         design[:, -1] = motion.seconds * lever @ turned @ self.ups[i]
         rest = across @ (rotated - self.ups[i + 1])
-        spread = motion.white + self.data.scatter.swing**2 * np.eye(3)
+        angle = self.data.between(motion.seconds) * motion.seconds
+        spread = motion.white + (angle**2 + self.data.scatter.swing**2) * np.eye(3)
         variance, axes = np.linalg.eigh(lever @ spread @ lever.T)
         response = np.einsum("mi,sij->msj", axes.T @ lever, motion.response)
         return Rows(axes.T @ design, axes.T @ rest, np.sqrt(variance), response)

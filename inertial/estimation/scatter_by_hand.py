@@ -1,10 +1,10 @@
 """What rests and motions by hand differ by beyond noise.
 
 Rests differ by a rate, such as the g-sensitivity of a gyro, or by an angle: the IMU sways in the
-hand, so its mean rate is the smaller the longer it rests. A motion does not begin and end exactly
-where the accelerometers determined the directions: an angle of its own, its swing. Each is a
-variance component of the equations, by restricted likelihood. A rest, or a motion, that is far off
-all others was something else, such as a slip, a shock, or vibration: it is left out.
+hand, so its mean rate is the smaller the longer it rests. So does a motion; and it may not begin
+and end exactly where the accelerometers determined the directions: an angle besides, its swing.
+Each is a variance component of the equations, by restricted likelihood. A rest, or a motion, that
+is far off all others was something else, such as a slip, a shock, or vibration: it is left out.
 """
 
 from collections.abc import Callable, Sequence

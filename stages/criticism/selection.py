@@ -16,6 +16,7 @@ import numpy as np
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
 from inertial.campaign.scatter_of_positions import scattered
+from inertial.estimation.probability import f_sf
 from inertial.model_selection import walk_odds
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause, Named
 from inertial.model_selection.detection_limits import Visible, visible
@@ -138,15 +139,44 @@ class Selection:
 def select_with_scatter(
     campaign: Campaign, effects: Sequence[Effect], level: float, noise_degrees: float
 ) -> Selection:
-    """The same with the scatter of positions by hand, which is smaller once effects are named."""
-    fitted: list[Effect] = []
-    for _round in range(MAX_ROUNDS):
+    """The same with the scatter of positions by hand, which is smaller once effects are named.
+
+    A scatter may be all effect: so where none is named beside it, that which takes most of it away
+    is tested against it.
+    """
+    quiet = scattered(campaign, [], noise_degrees)
+    selection = first = select_effects(quiet, effects, level, noise_degrees)
+    fitted = selection.fitted or (instead_of_scatter(first, level) if campaign.by_hand else [])
+    for _round in range(MAX_ROUNDS if campaign.by_hand else 0):
+        if not fitted:
+            break
         quiet = scattered(campaign, fitted, noise_degrees)
         selection = select_effects(quiet, effects, level, noise_degrees)
         before, fitted = fitted, selection.fitted
-        if not campaign.by_hand or [e.label for e in fitted] in ([], [e.label for e in before]):
+        if [effect.label for effect in fitted] == [effect.label for effect in before]:
             break
-    return selection
+    return selection if selection.fitted else first
+
+
+def instead_of_scatter(selection: Selection, level: float) -> list[Effect]:
+    """The effect without which the residuals of a sensor are larger than by chance, if any.
+
+    By the F test, for the scatter is estimated from these residuals; `level`: accepted probability
+    of a false name, of all effects and all values of what is scanned together.
+    """
+    trials: list[tuple[float, Effect]] = []
+    for sensor in selection.evidence.observable().sensors:
+        for searched in selection.searched:
+            for value, columns in enumerate(searched.candidates):
+                drop, used = sensor.drop(columns)
+                left = sensor.degrees - used
+                if not used or left <= 0 or searched.name not in selection.families:
+                    continue
+                rest = max(sensor.chi_squared - drop, np.finfo(float).tiny)
+                p_value = float(f_sf(drop / used / rest * left, used, left))
+                trials.append((p_value, selection.effect(searched.name, value)))
+    p_value, effect = min(trials, key=lambda trial: trial[0], default=(1.0, None))
+    return [effect] if effect is not None and p_value * len(trials) < level else []
 
 
 def select_effects(

@@ -1,7 +1,6 @@
 """Gyros from the motions between rests of unknown attitude: closure, and a real recording."""
 
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
@@ -16,11 +15,11 @@ from moved_by_hand import (
 from scipy.spatial.transform import Rotation
 
 from inertial.estimation.attitude import integrate, running_product
-from inertial.estimation.between_positions import Passage, Prior, Stop, between_rests
+from inertial.estimation.between_positions import Prior, Stop, between_rests, fit
+from inertial.estimation.carried_attitude import Passage
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.multi_position import FREE, FreeRest
 from inertial.estimation.triad import UNKNOWNS
-from inertial.estimation.variance_components import with_scatter
 from inertial.physics.site import earth_rate
 
 # ---- an attitude carried on
@@ -150,18 +149,34 @@ def test_an_imu_that_sways_in_the_hand_is_known_by_it():
         stops[i] = replace(stops[i], mean=mean, seconds=seconds)
     for passage in passages:
         passage.rates[-1] += sway / passage.seconds[-1] * rng.standard_normal(3)
-    rates, angles = (
-        with_scatter(
-            partial(between_rests, stops, passages, GIVEN, sways=sways), (1e-11, 0.1), np.inf
-        )
-        for sways in (False, True)
-    )
-    assert angles.estimate.deviance < rates.estimate.deviance - 10
-    assert angles.scatter * 3 == pytest.approx(sway, rel=0.2)
-    assert angles.estimate.chi_squared == pytest.approx(angles.estimate.degrees, rel=0.2)
-    pulls = (angles.estimate.values[:UNKNOWNS] - imu.rates) / angles.estimate.sigma[:UNKNOWNS]
+    fitted, left_out = fit(stops, passages, GIVEN)
+    estimate = fitted.estimate
+    assert not left_out and fitted.p_value < 1e-10
+    assert fitted.scatter * 3 == pytest.approx(sway, rel=0.2)  # rad/s for the usual 3 s
+    assert estimate.chi_squared == pytest.approx(estimate.degrees, rel=0.2)
+    pulls = (estimate.values[:UNKNOWNS] - imu.rates) / estimate.sigma[:UNKNOWNS]
     assert np.abs(pulls).max() < 3.5
-    assert angles.estimate.sigma[9:UNKNOWNS].max() < 1.3 * sway / 30
+    assert estimate.sigma[9:UNKNOWNS].max() < 1.3 * sway / 30  # the long rest tells the bias
+
+
+def test_a_slip_and_a_shaken_rest_are_left_out_and_change_nothing():
+    imu = Imu(np.random.default_rng(7), noise=MPU6050, bias=(0.02, 1e-2))
+    stops, passages = handled(imu, TWENTY_FOUR, 5)
+    stops[9] = replace(stops[9], mean=stops[9].mean + np.array([0, 3e-3, 0]))
+    passages[14].rates[-1] += [0.02 / passages[14].seconds[-1], 0, 0]  # 20 mrad
+    fitted, left_out = fit(stops, passages, GIVEN)
+    assert left_out == [9, len(stops) + 14]
+    pulls = (fitted.estimate.values[:UNKNOWNS] - imu.rates) / fitted.estimate.sigma[:UNKNOWNS]
+    assert np.abs(pulls).max() < 3.5
+
+
+@pytest.mark.parametrize("scale", [0.6, 0.765, 1.4])
+def test_gyros_of_another_count_size_than_stated(scale):
+    imu = Imu(np.random.default_rng(8), noise=MPU6050, bias=(0.02, 1e-2))
+    imu.gyro *= scale
+    fitted, left_out = fit(*handled(imu, TWENTY_FOUR, 5), GIVEN)
+    pulls = (fitted.estimate.values[:UNKNOWNS] - imu.rates) / fitted.estimate.sigma[:UNKNOWNS]
+    assert not left_out and np.abs(pulls).max() < 3.5
 
 
 # ---- mpu6050_cuyo: nine motions by hand, three of them with clipped readings
@@ -202,8 +217,7 @@ def published(parameters):
 def gyros_of_cuyo(stops, passages):
     up, level = earth_rate(np.radians(-32.9))
     prior = Prior(9.80665, 5e-4, 0.0, Earth(up, 1e-8, level))
-    fit = partial(between_rests, stops, passages, prior, sways=True)
-    return with_scatter(fit, (1e-11, 0.1), np.inf)
+    return fit(stops, passages, prior)[0]
 
 
 def test_cuyo_without_its_clipped_motions(cuyo):
@@ -217,7 +231,7 @@ def test_cuyo_without_its_clipped_motions(cuyo):
     sway = fitted.scatter * np.median([stop.seconds for stop in stops])
     assert np.degrees(sway) == pytest.approx(0.22, abs=0.05)
     pulls = (published(theirs) - estimate.values[:UNKNOWNS]) / estimate.sigma[:UNKNOWNS]
-    assert np.abs(pulls[9:]).max() < 1 and estimate.sigma[9:12].max() < 2e-4  # 37 s at rest
+    assert np.abs(pulls[9:]).max() < 1.5 and estimate.sigma[9:12].max() < 2e-4  # 37 s at rest
     assert np.abs(pulls).max() < 3.5  # of the x gyro, which the clipped motions mislead
     # MPU-6050: scale factors within 3 %, and cross terms within 2 %.
     assert np.abs(estimate.values[:9] - np.eye(3).ravel()).max() < 0.03
@@ -233,5 +247,6 @@ def test_cuyo_with_all_motions_is_what_was_published_clipped_readings_and_all(cu
     # What is clipped is missing of the angle: the x gyro seems to read 3 % too little, not 1 %.
     assert estimate.values[0] - 1 == pytest.approx(-0.028, abs=0.004)
     assert without.estimate.values[0] - 1 > -0.02
-    # And these motions do not fit: what all differ by doubles.
-    assert fitted.scatter > 1.7 * without.scatter
+    # And these motions do not fit: what all differ by doubles, and so do the sigmas.
+    sigmas = fitted.estimate.sigma[:9] / without.estimate.sigma[:9]
+    assert np.median(sigmas) > 1.3
