@@ -243,7 +243,10 @@ def _format(kind: Kind, sensors: Sequence[str], indent: str) -> Iterator[str]:
     if log.kind == "rawimus":
         return
     guess = _guess(timing.evidence) if timing.guessed else ""
-    yield f"{indent}time: {_flow(**_time(kind, file))}{guess}"
+    if kind.means:
+        yield f"{indent}mean_of: null{_guess(timing.evidence)}"
+    else:
+        yield f"{indent}time: {_flow(**_time(kind, file))}{guess}"
     for key, scale in (("accelerometer", kind.accel), ("gyro", kind.gyro)):
         triad = triads[key]
         if log.kind == "columns" and triad and scale and triad.file == file:
@@ -282,8 +285,8 @@ def _clips(kind: Kind, triad: Triad) -> bool:
 
 
 def _table(plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
-    """The table; by hand only where positions are set."""
-    if by_hand and not any(m.up for m in plan):
+    """The table; by hand only where the plan says more than positions."""
+    if by_hand and all(m.do == "positions" for m in plan):
         return
     if by_hand:
         yield f"table: {_flow(name='by hand', position_sigma_arcsec=HAND_POSITION)}" + _guess(
@@ -314,7 +317,7 @@ def _angle_sigma(plan: Sequence[Manoeuvre]) -> float:
 def _keys(m: Manoeuvre, angle_sigma: float | None) -> dict[str, Any]:
     """What the plan states of a manoeuvre."""
     if m.do == "positions":
-        return {"do": "positions", "seconds": m.seconds}
+        return {"do": "positions"} | ({} if m.seconds is None else {"seconds": m.seconds})
     keys: dict[str, Any] = {"do": m.do, "up": m.up or "unknown"}
     if m.do == "turn":
         if m.about != m.up:
@@ -335,6 +338,8 @@ def _keys(m: Manoeuvre, angle_sigma: float | None) -> dict[str, Any]:
 def _seen(m: Manoeuvre) -> str:
     """What the log shows of a manoeuvre, as a comment behind it."""
     if m.do == "positions":
+        if m.seconds is None:
+            return "  # " + _("{count} means", count=m.count)
         return "  # " + _(
             "{count} static positions of at least {seconds:g} s", count=m.count, seconds=m.seconds
         )

@@ -12,7 +12,7 @@ the hand accelerates.
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -89,6 +89,18 @@ def _grows(values: Array) -> bool:
     usual = float(np.median(growth))
     alike = np.abs(growth - usual) < usual / 2
     return bool(usual > 0 and np.mean(steps < 0) <= MAX_RESETS and alike.mean() >= 0.7)
+
+
+def runs_of(log: RawLog) -> list[RawLog]:
+    """A container of several matrices of one sensor holds as many recordings."""
+    matrices: dict[str, dict[Name, Array]] = {}
+    for name, values in log.columns.items():
+        matrices.setdefault(str(name).rpartition(".")[0], {})[name] = values
+    kinds = {_kind(matrix) for matrix in matrices}
+    alone = all(len(columns) == 3 for columns in matrices.values())
+    if len(matrices) < 2 or not alone or len(kinds) > 1 or not kinds <= {"accel", "gyro"}:
+        return [log]
+    return [replace(log, columns=columns) for columns in matrices.values()]
 
 
 def recorded_together(logs: Sequence[RawLog]) -> list[tuple[RawLog, ...]]:

@@ -78,9 +78,17 @@ def face(vector: Array, most: float = MAX_FACE_ANGLE) -> str | None:
 
 def plan_of(kinds: Sequence[Kind]) -> list[Manoeuvre]:
     """The manoeuvres of all recordings in their order."""
+    return [m for kind in kinds for m in (_means(kind) if kind.means else _all(kind))]
+
+
+def _means(kind: Kind) -> list[Manoeuvre]:
+    """Each row is a static position."""
+    return [Manoeuvre("positions", part, count=part.logs[0].rows) for part in kind.parts]
+
+
+def _all(kind: Kind) -> list[Manoeuvre]:
     return [
         m
-        for kind in kinds
         for part, own in zip(kind.parts, kind.divided, strict=True)
         for m in _manoeuvres(part, own)
     ]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from commands.draft.columns import Columns, alike, columns_of, recorded_together
+from commands.draft.columns import Columns, alike, columns_of, recorded_together, runs_of
 from commands.draft.raw_log import RawLog
 from commands.draft.receivers import Receiver, receiver_of
 from commands.draft.scales import (
@@ -15,16 +15,19 @@ from commands.draft.scales import (
     accel_scale,
     are_counts,
     gyro_scale,
+    sphere,
     turning,
 )
 from commands.draft.series import Divided, Series, divided
 from commands.draft.timing import Timing, common_rate, timing_of
-from inertial.signal.rests_and_motions import rest_level
+from inertial.signal.rests_and_motions import Stretch, rest_level
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 
 Array = NDArray[np.float64]
-MAX_MISFIT = 0.3  # of the gyros' factor against their stated unit: more is another rate
+MAX_MEAN_SCATTER = 0.1  # of the length of means about their centre
+MIN_SPREAD = 0.2  # of their directions
+MIN_STEPS = 0.02  # of their variance, from row to row: a motion has many rows to the radian
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,7 @@ class Kind:
     parts: Sequence[Part]
     divided: Sequence[Divided]  # of each part, in SI
     receiver: Receiver | None = None
+    means: bool = False  # each row is a mean of its own
 
     @property
     def interleaved(self) -> bool:
@@ -58,7 +62,8 @@ class Kind:
 
 def kinds_of(logs: Sequence[RawLog], rate: float | None = None) -> list[Kind]:
     """The logs, those with the same columns together; `rate`, Hz, where no log has a clock."""
-    found = [_kind(group, rate) for group in alike(recorded_together(logs))]
+    recordings = recorded_together([run for log in logs for run in runs_of(log)])
+    found = [_kind(group, rate) for group in alike(recordings)]
     return [_in_si(kind, found) for kind in found]
 
 
@@ -68,6 +73,10 @@ def _kind(group: Sequence[Sequence[RawLog]], rate: float | None) -> Kind:
     timing = timing_of([together[0] for together in group], columns.time[0])
     if rate is not None and timing.unit in (None, "sample"):
         timing = replace(timing, rate=rate, guessed=False, evidence=_("the rate is stated"))
+    if columns.accel and columns.time[0] is None and columns.label is None:
+        readings = [columns.accel.of(together) for together in group]
+        if all(map(are_means, readings)):
+            return _kind_of_means(columns, timing, group)
     kind = Kind(columns, timing, None, None, [], [])
     parts = [part for together in group for part in _parts(kind, together)]
     own = _divided(parts, known_units=False)
@@ -82,6 +91,31 @@ def _kind(group: Sequence[Sequence[RawLog]], rate: float | None) -> Kind:
         if turned is not None:
             gyro, timing = _rate_by_motion(gyro, timing, turned, own)
     return Kind(columns, timing, accel, gyro, parts, own)
+
+
+def are_means(values: Array) -> bool:
+    """Whether readings (n, 3) change from row to row as far as only positions do."""
+    _centre, length, scatter = sphere(values)
+    spread = float(np.mean(np.var(values, axis=0)))
+    steps = float(np.mean(np.diff(values, axis=0) ** 2)) / 2 if len(values) > 1 else 0.0
+    on_sphere = scatter < MAX_MEAN_SCATTER * length
+    return on_sphere and spread > (MIN_SPREAD * length) ** 2 and steps > MIN_STEPS * spread
+
+
+def _kind_of_means(columns: Columns, timing: Timing, group: Sequence[Sequence[RawLog]]) -> Kind:
+    """Logs of which each row is the mean of a static position."""
+    timing = replace(timing, guessed=False, evidence=_("each row is a position, as it differs"))
+    parts, own = [], []
+    for together in group:
+        values = [t.of(together) if t else np.empty((0, 3)) for t in (columns.accel, columns.gyro)]
+        series = Series(values[0], values[1], 1.0, 1.0)
+        parts.append(Part(together, None, (0, together[0].rows), series))
+        rows = [Stretch(False, row, row + 1) for row in range(len(values[0]))]
+        forces, rates = series.means(values[0]), series.means(values[1])
+        own.append(Divided(series, forces, rates, np.full(3, np.nan), rows))
+    accel = accel_scale(own)
+    gyro = gyro_scale(own, None, columns.gyro.columns) if columns.gyro else None
+    return Kind(columns, timing, accel, gyro, parts, own, means=True)
 
 
 def _parts(kind: Kind, together: Sequence[RawLog]) -> list[Part]:
@@ -152,6 +186,8 @@ def _in_si(kind: Kind, others: Sequence[Kind]) -> Kind:
     moved = [other.gyro.axes for other in others if other.gyro and other.gyro.axes.moved]
     if gyro is not None and moved and not gyro.axes.moved:
         gyro = replace(gyro, axes=moved[0])  # all logs are of one instrument
+    if kind.means:
+        return kind
     rate = kind.timing.rate / (2 if kind.interleaved else 1)
     parts = [
         replace(
