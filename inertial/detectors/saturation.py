@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import bdtrc
+from scipy.stats import hypergeom
 
 from inertial.signal.detector import (
     Array,
@@ -109,13 +110,16 @@ def _steady(values: Array, most: float, count: float) -> bool:
 def _by_the_other_side(values: Array, most: float, count: float) -> float:
     """The chance that all readings above a level fall into one count, by those as far below.
 
-    Noise is as wide upwards as downwards: of the readings that are as far below the median as
-    the extreme is above it, or farther, only a share lies within that one count.
+    Noise is as wide upwards as downwards: of the N readings at the extreme, and of those that are
+    as far below the mean or farther, the same share lies within one count. What that share is
+    these few readings alone tell: that none of those beyond it is above has the hypergeometric
+    chance (Fisher's exact test).
     """
-    below = np.median(values) - (most - np.median(values))
-    beyond = np.count_nonzero(values < below + count / 2)
-    within = np.count_nonzero(np.abs(values - below) < count / 2)
-    return float(((within + 1) / (beyond + 1)) ** np.count_nonzero(values == most))
+    number = np.count_nonzero(values == most)
+    below = 2 * values.mean() - most
+    beyond = np.count_nonzero(values < below - count / 2)
+    within = np.count_nonzero(np.abs(values - below) <= count / 2)
+    return float(hypergeom.sf(number - 1, number + within + beyond, number + within, number))
 
 
 def _by_what_is_below(values: Array, most: float, count: float, number: int) -> float:

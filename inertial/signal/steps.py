@@ -5,8 +5,10 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
+from scipy.linalg import cho_solve_banded, cholesky_banded
 from scipy.ndimage import median_filter, uniform_filter1d
 from scipy.special import ndtri, stdtr
+from scipy.stats import chi2
 
 from inertial.signal.detector import Array, Integers
 from inertial.signal.scatter import MAD_TO_SIGMA, median
@@ -31,6 +33,8 @@ MAX_VARIANCE_RATIO = 3.0  # times the usual variance about the two levels: a mot
 MAX_CORRECTION_SHARE = 0.3  # of a step, what may be left of it at first
 MIN_STEP_SIGMA = 6.0  # sigmas that are left of a step once all others and the trend are taken off
 MAX_STEPS = 40  # steps of one record
+# Variance of a random walk from block to block, over that of a block mean
+WALKS = (0.0, *np.logspace(-5, 2, 22))
 FIT_POINTS = 500  # to which a window is reduced where smooth courses are fitted
 
 
@@ -104,7 +108,48 @@ def steps(readings: Array, interval: float, quantum: float, level: float) -> lis
     significant = np.array(
         [abs(step.size) > MIN_STEP_SIGMA * step.sigma for step in detected], bool
     )
-    return [step for step, kept in zip(detected, lasts & significant, strict=True) if kept]
+    kept = [step for step, kept in zip(detected, lasts & significant, strict=True) if kept]
+    chances = [
+        max(step.p_value, _chance_in_walk(clean - _course([*set(kept) - {step}], n), step.place))
+        for step in kept
+    ]
+    return [
+        replace(step, p_value=chance)
+        for step, chance in zip(kept, chances, strict=True)
+        if chance <= level
+    ]
+
+
+def _chance_in_walk(readings: Array, place: int) -> float:
+    """The chance of a step here or elsewhere in (n,) readings, if their bias is a random walk.
+
+    How large the walk is, is not known: it is what makes the readings likeliest, without the step
+    and with it. Of N block means the N − 1 differences have the variance 2σ² + 2q/3 and beside each
+    other the covariance q/6 − σ²; twice the gain in log likelihood by a step is chi-squared.
+    """
+    per = -(-len(readings) // FIT_POINTS)
+    before, after = readings[place % per : place], readings[place:]
+    means = [
+        part[: len(part) // per * per].reshape(-1, per).mean(axis=1) for part in (before, after)
+    ]
+    change = np.diff(np.concatenate(means))
+    count, drift = len(change), np.ones(len(change))
+    step = np.zeros(count)
+    step[len(means[0]) - 1] = 1.0
+    likelihoods = []
+    for walk in WALKS:
+        band = np.full((2, count), 2 + 2 * walk / 3)
+        band[0] = walk / 6 - 1
+        factor = cholesky_banded(band)
+        white = [cho_solve_banded((factor, False), x) for x in (change, drift, step)]
+        inner = np.array([[x @ y for y in white] for x in (change, drift, step)])
+        squares = inner[0, 0] - inner[0, 1] ** 2 / inner[1, 1]
+        own = inner[2, 2] - inner[1, 2] ** 2 / inner[1, 1]
+        gain = (inner[0, 2] - inner[0, 1] * inner[1, 2] / inner[1, 1]) ** 2 / own
+        spread = 2 * float(np.log(factor[1]).sum())
+        likelihoods.append([-count * np.log(left) - spread for left in (squares, squares - gain)])
+    without, with_it = np.max(likelihoods, axis=0)
+    return float(min(count * chi2.sf(with_it - without, 1), 1.0))
 
 
 def _corrects(step: Step, other: Step, shortest: int) -> bool:

@@ -75,6 +75,16 @@ def test_a_jump_of_one_sigma_is_found_with_an_uncertain_place():
     assert inside >= 0.85 * number  # 95 %
 
 
+@pytest.mark.parametrize("walk", [1.0, 2.0, 4.0])
+def test_a_bias_that_walks_does_not_jump(walk):
+    """By 1, 2 and 4 sigma of a reading in 20 s: of some it can hardly be seen that they walk."""
+    for seed in range(60):
+        values = rest(2000, seed)
+        steps = np.random.default_rng(seed).standard_normal(2000)
+        values[:, 3] += walk * NOISE[3] * np.cumsum(steps) / np.sqrt(2000)
+        assert "bias_jump" not in [name for name, _ in seen(values)]
+
+
 def test_a_jump_that_goes_back_is_one_event():
     ((name, event),) = seen(jumping(1, 10, until=K + 150))
     assert name == "bias_jump"

@@ -5,7 +5,7 @@ import pytest
 from on_a_table import RATE, recorded, rest, tumble, turn
 from recorded_by_hand import COUNT, INTERVAL, NOISE, assert_told
 
-from inertial.detectors.saturation import Saturation
+from inertial.detectors.saturation import Saturation, _by_the_other_side
 
 
 def found(values, **of_log):
@@ -112,3 +112,15 @@ def test_the_crests_of_an_oscillation_are_none():
 @pytest.mark.parametrize("seed", range(3))
 def test_clean_readings_are_silent(seed):
     assert [found(values) for values in (rest(200_000, seed), turn(seed), tumble(seed))] == [[]] * 3
+
+
+def test_the_chance_of_a_pile_is_no_smaller_than_it_happens():
+    """The largest of a steady reading's few counts often come twice or ten times, by chance."""
+    rng = np.random.default_rng(3)
+    chances = []
+    for _ in range(600):
+        scatter = rng.choice([1, 1.5, 2, 3, 5])
+        values = np.rint(scatter * rng.standard_normal(3000) + rng.uniform())
+        chances.append(_by_the_other_side(values, values.max(), 1.0))
+    for level in (0.1, 0.01, 0.001):
+        assert np.mean(np.array(chances) < level) <= level + 3 * np.sqrt(level / 600)
