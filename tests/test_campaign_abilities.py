@@ -383,6 +383,30 @@ def test_two_logs_with_stamps_of_their_own_are_joined(simple, gyro_hz, late_s, t
     np.testing.assert_allclose(rate, min(gyro_hz, 100), rtol=1e-5)
 
 
+def test_two_logs_that_arrive_in_packets_of_their_own_are_joined(simple, simple_results, tmp_path):
+    """5 accelerometer readings every 50 ms, 4 of the gyros every 40 ms, some ms late."""
+    rng = np.random.default_rng(3)
+
+    def arriving(size):
+        def stamped(rows):
+            row = np.arange(len(rows))
+            packet = row // size
+            last = np.minimum(size * (packet + 1), len(rows)) - 1
+            late = rng.exponential(0.004, packet[-1] + 1)[packet] + 1e-4 * (row % size)
+            rows = rows.copy()
+            rows[:, 0] = rows[last, 0] + late
+            return rows
+
+        return stamped
+
+    apart(simple, tmp_path / "raw", arriving(4), arriving(5))
+    results = chain.run(tmp_path / "raw", tmp_path / "derived")
+    assert set(results["quality/findings"]["cause"]) == {"arrival_stamps"}
+    assert results["segment/performed"]["complete"].all()
+    away = values(results) - values(simple_results)
+    assert np.abs(away).max() < 2e-4  # the clock of 13 s by stamps that are 4 ms late
+
+
 def test_what_one_log_lacks_is_a_gap_of_both(simple, tmp_path):
     """1 s of the gyros are lost: nothing is made up in between."""
 

@@ -10,9 +10,10 @@ so the noise of a mean over many samples is that of the readings, where interpol
 some. Only neighbours share readings: single samples scatter less than white noise of that level
 would.
 
-Intervals are those of a regular clock: stamps, which may be late or come in bursts, are a straight
-line against the sample number in each stretch without a gap. Samples of the slower sensor without
-readings of the other one are left out, as if they had not been recorded: a gap.
+Intervals are those of a regular clock: stamps, which may scatter, are a straight line against the
+sample number in each stretch without a gap; those of arrival were replaced before. Samples of the
+slower sensor without readings of the other one are left out, as if they had not been recorded: a
+gap.
 """
 
 from collections.abc import Iterator, Mapping
@@ -35,8 +36,6 @@ from stages.decode.no_samples import no_samples
 MAX_READINGS = 10_000_000  # of a log, held in memory: 320 MB
 SLOWER = 1.01  # times the interval of the accelerometers: the gyros are the slower sensor
 GAP_INTERVALS = 1.5  # median intervals between stamps of a regular clock that are a gap
-MIN_IRREGULAR_SHARE = 0.1  # of the intervals, off by more than half: the stamps come in bursts
-MAX_DELAY_S = 0.5  # s: a longer pause between bursts is a gap
 SAME_INTERVALS = 1e-3  # intervals: stamps that are closer together are the same
 MIN_COVERAGE = 0.5  # of a sample interval that the other sensor's readings cover
 
@@ -222,9 +221,7 @@ def _regular(time: Reals) -> tuple[Reals, Reals]:
     step = np.diff(time)
     if not len(step):
         return time, np.zeros(len(time))
-    middle = float(np.median(step))
-    irregular = np.mean(np.abs(step / middle - 1) > 0.5) > MIN_IRREGULAR_SHARE
-    longest = max(MAX_DELAY_S if irregular else 0.0, GAP_INTERVALS * middle)
+    longest = GAP_INTERVALS * float(np.median(step))
     edges = [0, *(np.flatnonzero(step > longest) + 1).tolist(), len(time)]
     regular, interval = time.copy(), np.full(len(time), np.nan)
     for first, after in pairwise(edges):
