@@ -12,6 +12,7 @@ from inertial.campaign.records import Row, rows_of
 
 FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE = "found", "one_of_class", "unknown_structure"
 RECORDING, PLAN, POSITIONS, MODEL = "quality", "segment", "accelerometer", "criticism"
+COUNTS = "gyroscope"  # the stage that finds counts of another size than stated
 RIVAL = "rival"  # state of a repair that others explain as well
 PLANNED = "plan"  # the stage that repairs what the campaign file states
 
@@ -200,6 +201,7 @@ def findings_of(
     quality_findings: pd.DataFrame,
     segment_findings: pd.DataFrame,
     accelerometer_findings: pd.DataFrame,
+    gyroscope_findings: pd.DataFrame,
     criticism_findings: pd.DataFrame,
     members: pd.DataFrame,
     cause_positions: pd.DataFrame,
@@ -215,6 +217,7 @@ def findings_of(
         (RECORDING, quality_findings),
         (PLAN, segment_findings),
         (POSITIONS, accelerometer_findings),
+        (COUNTS, gyroscope_findings),
         (MODEL, criticism_findings),
     )
     return Findings(

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.campaign.equations import Campaign
+from inertial.campaign.equations import SENSORS, Campaign
 from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.gyroscope_observations import RateSegment, StaticRate
@@ -27,33 +27,30 @@ from inertial.physics.effect import Effect
 
 Array = NDArray[np.float64]
 
-ROUNDS = 3  # of scatter and random walk
 PRIOR_SIZE = 1e4  # prior sigma of an effect that was named, in its typical sizes
 
 
 def scattered(campaign: Campaign, effects: Sequence[Effect], noise_degrees: float) -> Campaign:
     """The campaign with the scatter and random walk of each sensor that remain given some effects.
 
-    Those of the accelerometers first, for their scatter is in the directions that the gyros are
-    compared with. On a table nothing changes.
+    The scatter of the accelerometers first, for it is in the directions that the gyros are compared
+    with. A random walk must be likelier than scatter alone; the scatter stays the same beside it,
+    so that laws are weighed against it fairly. On a table nothing changes.
     """
     if campaign.by_hand is None:
         return campaign
     campaign = campaign.without_random_walks()
-    for sensor in ("accel", "gyro"):
-        if sensor not in campaign.solution.free:
-            continue
-        size = 0.0
-        for _round in range(ROUNDS):
-            find = _with_forces if sensor == "accel" else _with_rates
-            campaign = find(campaign, effects, noise_degrees)
-            before, size = size, likely_walk(campaign, sensor, effects, PRIOR_SIZE)
-            if not (before or size):
-                break
-            walks = campaign.solution.random_walks
-            own = (walks[0], size) if sensor == "accel" else (size, walks[1])
-            campaign = campaign.with_random_walks(own)
-    return campaign
+    if "accel" in campaign.solution.free:
+        campaign = _with_forces(campaign, effects, noise_degrees)
+    if "gyro" in campaign.solution.free:
+        campaign = _with_rates(campaign, effects, noise_degrees)
+    gyro, accel = (
+        likely_walk(campaign, sensor, effects, PRIOR_SIZE)
+        if sensor in campaign.solution.free
+        else 0.0
+        for sensor in SENSORS
+    )
+    return campaign.with_random_walks((gyro, accel))
 
 
 def _with_forces(campaign: Campaign, effects: Sequence[Effect], noise_degrees: float) -> Campaign:

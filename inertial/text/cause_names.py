@@ -31,6 +31,7 @@ NAMES = {
     "duplicate": _("repeated record"),
     "earth_rate_omitted": _("earth rate left out"),
     "gravity_error": _("wrong gravity"),
+    "gyro_count_size": _("count size of the gyros"),
     "gyro_accel_misalignment": _("gyros rotated against accelerometers"),
     "gyro_bias_temperature": _("gyro bias with temperature"),
     "gyro_bias_per_log": _("bias of the gyros after each switch-on"),

@@ -40,6 +40,7 @@ UNITS = {
 }
 SI = {"gravity": "m/s²", "force_up": "m/s²", "rate_up": "rad/s", "angle": "rad"}
 SENSORS = {"accel": "accelerometer", "gyro": "gyro"}
+NO_SCATTER = (0.0, 0.0)
 MAX_EXPECTED_SIGMAS = 3.0  # sigmas, above which the parameters do not explain the check
 
 
@@ -101,17 +102,22 @@ class Check:
         }
 
 
-def checks(data: CampaignData, measurement: Measurement) -> Iterator[Check]:
-    """Every static position and every whole rotation of one mount."""
+def checks(
+    data: CampaignData, measurement: Measurement, scatter: tuple[float, float] = NO_SCATTER
+) -> Iterator[Check]:
+    """Every static position and every whole rotation of one mount.
+
+    `scatter`: of accelerometers and gyros between positions by hand, m/s² and rad/s.
+    """
     positions = data.accelerometer_positions[0]
     forces = {position.label: _force(position, measurement) for position in positions}
     if (triad := measurement.accelerometer.triad) is not None:
         for position in positions:
-            yield from _forces(position, forces[position.label], triad, data)
+            yield from _forces(position, forces[position.label], triad, data, scatter[0])
     if (triad := measurement.gyro.triad) is not None:
         for position in data.gyro_inputs.of_known_attitude.static_positions:
             force = forces.get(position.label, UNKNOWN)
-            yield from _rate(position, measurement, triad, force, data)
+            yield from _rate(position, measurement, triad, force, data, scatter[1])
         for rotation in data.gyro_inputs.usable:
             if rotation.plan.recorded == "whole" and rotation.done.complete:
                 yield from _angle(rotation, measurement, triad, data)
@@ -190,10 +196,14 @@ def _force(position: StaticPosition, measurement: Measurement) -> Array:
 
 
 def _forces(
-    position: StaticPosition, force: Array, triad: Triad, data: CampaignData
+    position: StaticPosition, force: Array, triad: Triad, data: CampaignData, scatter: float
 ) -> Iterator[Check]:
-    """|f|, which no tilt changes, and the force along up, which tilt lessens by its square."""
+    """|f|, which no tilt changes, and the force along up, which tilt lessens by its square.
+
+    By hand up is where the force is, so they are the same.
+    """
     reading, noise = position.over()
+    noise = np.hypot(noise, scatter)
     gravity = data.gravity
     size = float(np.linalg.norm(force))
     if not np.isfinite(size):
@@ -207,6 +217,8 @@ def _forces(
         size,
         _noise_along(force / size, triad, noise),
     )
+    if data.by_hand:
+        return
     up = position.up_now
     tilted = gravity.number * data.position_sigma**2
     yield Check(
@@ -226,9 +238,11 @@ def _rate(
     triad: Triad,
     force: Array,
     data: CampaignData,
+    scatter: float,
 ) -> Iterator[Check]:
     """The rate along up; a tilt turns part of the level earth rate into it."""
     reading, noise = position.over()
+    noise = np.hypot(noise, scatter)
     up, earth = position.up_now, data.earth
     after = float(measurement.rate(reading[None], _motion(position), force[None])[0] @ up)
     if np.isfinite(after):

@@ -17,6 +17,8 @@ DECLARED = Declared(
         "levels": From("noise", tables.LEVELS),
         "known": From("plan", tables.KNOWN),
         "clocks": From("decode", tables.CLOCKS),
+        "accelerometer_fit": From("accelerometer", tables.FIT),
+        "gyroscope_fit": From("gyroscope", tables.FIT),
         "result": From("diagnosis", tables.PARAMETERS, "result"),
     },
     writes={

@@ -7,16 +7,18 @@ import pandas as pd
 
 from inertial import tables
 from inertial.campaign import findings as findings
+from inertial.campaign.attitudes_by_hand import with_attitudes
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.findings import Finding
 from inertial.campaign.masked_samples import Masks, Repairs
-from inertial.campaign.measurement import measurements_of
+from inertial.campaign.measurement import Measurement, measurements_of
 from inertial.campaign.records import Row, rows_of
 from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Pieces, Stage
 from inertial.text.messages import _
-from stages.compensation.checks import checks, not_compensated, table_of
+from inertial.text.parameters import FREE
+from stages.compensation.checks import NO_SCATTER, checks, not_compensated, table_of
 from stages.compensation.correction import NOTHING, CompensatedStream, envelope, mounted
 from stages.compensation.declared import DECLARED
 
@@ -46,6 +48,7 @@ def compensation(
     segments: pd.DataFrame,
     campaign: pd.DataFrame,
     result: pd.DataFrame,
+    fits: Sequence[Row],
     provenance: Mapping[str, Mapping[str, Any]],
 ) -> Pieces:
     """The tables compensated, checks, compensated_traces and findings, in pieces.
@@ -75,7 +78,9 @@ def compensation(
     measurements = measurements_of(result)
     for data in mounts:
         measurement = measurements.get(data.mount, NOTHING)
-        rows += [check.row(data.mount) for check in checks(data, measurement)]
+        by_hand = _by_hand(data, measurement)
+        scatter = _scatters(fits, data.mount) if by_hand.by_hand else NO_SCATTER
+        rows += [check.row(data.mount) for check in checks(by_hand, measurement, scatter)]
         for sensor in (measurement.accelerometer, measurement.gyro):
             rows += not_compensated(sensor, data.mount)
     yield "checks", table_of(rows)
@@ -87,4 +92,27 @@ def compensation(
     yield "compensated_traces", envelope(compensated, traces)
 
 
-STAGE = Stage(compensation, DECLARED, gathers={"mounts": campaigns_of})
+def _by_hand(data: CampaignData, measurement: Measurement) -> CampaignData:
+    """Positions of unknown attitude with the attitude by the result, where none is known."""
+    triad = measurement.accelerometer.triad
+    if triad is None or data.accelerometer_positions[0]:
+        return data
+    return with_attitudes(data, triad)
+
+
+def _scatters(fits: Sequence[Row], mount: str) -> tuple[float, float]:
+    """What positions by hand differ by beyond noise, of accelerometers and gyros."""
+    own = [r for r in fits if (r["mount"], r["method"]) == (mount, FREE)]
+    accel, gyro = (
+        max((r["scatter"] or 0.0 for r in own if r["sensor"] == sensor), default=0.0)
+        for sensor in ("accel", "gyro")
+    )
+    return accel, gyro
+
+
+def fits_of(accelerometer_fit: pd.DataFrame, gyroscope_fit: pd.DataFrame) -> Sequence[Row]:
+    """The fits of both sensors as rows."""
+    return [*rows_of(accelerometer_fit), *rows_of(gyroscope_fit)]
+
+
+STAGE = Stage(compensation, DECLARED, gathers={"mounts": campaigns_of, "fits": fits_of})

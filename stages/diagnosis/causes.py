@@ -8,6 +8,7 @@ from typing import Any
 
 from inertial.campaign.explanations import Explained
 from inertial.campaign.hypotheses import (
+    COUNTS,
     FOUND,
     MODEL,
     ONE_OF_CLASS,
@@ -226,6 +227,8 @@ class Evidence:
             return self._cure_of_effect(cause, own)
         if cause.cause == CLOCK and cause.sensor == "accel":
             return NONE, _moved_by_clock(1e-6 * abs(cause.row["size"]), own), None
+        if cause.stage == COUNTS:  # M holds it
+            return MODELLED, None, None
         touched = frozenset().union(*(member.cause.manoeuvres for member in members))
         done = [self.performed[name] for name in touched if name in self.performed]
         if cause.cause == "gap":

@@ -8,6 +8,7 @@ DECLARED = Declared(
         "quality_findings": From("quality", tables.FINDINGS),
         "segment_findings": From("segment", tables.FINDINGS),
         "accelerometer_findings": From("accelerometer", tables.FINDINGS),
+        "gyroscope_findings": From("gyroscope", tables.FINDINGS),
         "criticism_findings": From("criticism", tables.EFFECT_FINDINGS, "findings"),
         "members": From("criticism", tables.MEMBERS),
         "cause_positions": From("criticism", tables.CAUSE_POSITIONS),

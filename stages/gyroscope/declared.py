@@ -20,5 +20,6 @@ DECLARED = Declared(
         "averaging": tables.AVERAGING,
         "positions": tables.POSITIONS,
         "wanted": tables.WANTED,
+        "findings": tables.FINDINGS,
     },
 )

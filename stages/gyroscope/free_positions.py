@@ -9,12 +9,14 @@ import numpy as np
 
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import Estimates, reasons
+from inertial.campaign.findings import Finding
 from inertial.campaign.passages import passages_of
 from inertial.campaign.records import omissions
 from inertial.campaign.unknown_attitude import fitted_to, free_static_positions
 from inertial.estimation.between_positions import Prior, fit
 from inertial.text.messages import _
 from inertial.text.parameters import FREE
+from stages.gyroscope.count_size import findings
 
 NOT_AT_REST = _("its gyros read otherwise than in all other rests: it moved, or it was shaken")
 SLIPPED = _(
@@ -29,15 +31,15 @@ CURES = {
 }
 
 
-def add_free_gyros(estimates: Estimates, data: CampaignData) -> None:
-    """The rows of the method; none where the plan states every attitude."""
+def add_free_gyros(estimates: Estimates, data: CampaignData) -> list[Finding]:
+    """The rows of the method, none where the plan states every attitude; findings about them."""
     positions, left_out = free_static_positions(data)
     stops = [position.stop for position in positions]
     recorded = np.isfinite(np.array([stop.mean for stop in stops]).reshape(-1, 3)).any(axis=0)
     if not recorded.any():
         if left_out or positions:
             estimates.add_nothing(FREE, omissions(left_out) or _("no gyro is recorded"))
-        return
+        return []
     moving, broken = passages_of(positions, data.blocks, data.noise)
     between = fitted_to(data, positions).scatter
     prior = Prior(data.gravity.number, data.gravity.scatter, between, data.earth)
@@ -50,3 +52,4 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> None:
     broken += [replace(parts[i], reason=reason[i]) for i in off]
     used = [part for i, part in enumerate(parts) if i not in off]
     estimates.add_fit(FREE, fitted, used, left_out + broken)
+    return list(findings(fitted.estimate, data.mount))

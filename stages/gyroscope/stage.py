@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
+from inertial.campaign.findings import Finding, table_of
 from inertial.campaign.gyroscope_methods import add_formulas, add_turn_and_stop
 from inertial.campaign.rate_segments import GyroInputs
 from inertial.campaign.records import omissions
@@ -34,9 +35,10 @@ def gyroscope(
     Each mount has parameters of its own, for its mounting rotation is one of them.
     """
     collected = Estimates("gyroscope")
+    raised: list[Finding] = []
     for data in mounts:
         estimates, inputs = collected.on(data.mount), data.gyro_inputs
-        add_free_gyros(estimates, data)
+        raised += add_free_gyros(estimates, data)
         if inputs.is_empty:
             estimates.add_nothing("joint", omissions(inputs.left_out))
             continue
@@ -56,7 +58,7 @@ def gyroscope(
         add_formulas(estimates, data, fitted, wanted_bias)
         if stops_between_turns(data.plan):
             add_turn_and_stop(estimates, inputs, fitted.scatter)
-    return collected.tables()
+    return {**collected.tables(), "findings": table_of(raised)}
 
 
 def _channels(inputs: GyroInputs) -> NDArray[np.bool_]:

@@ -29,6 +29,7 @@ DECLARED = Declared(
         "accelerometer_fit": From("accelerometer", tables.FIT),
         "accelerometer_fit_manoeuvres": From("accelerometer", tables.FIT_MANOEUVRES),
         "accelerometer_findings": From("accelerometer", tables.FINDINGS),
+        "gyroscope_findings": From("gyroscope", tables.FINDINGS),
         "accelerometer_averaging": From("accelerometer", tables.AVERAGING),
         "accelerometer_wanted": From("accelerometer", tables.WANTED),
         "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),

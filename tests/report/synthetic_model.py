@@ -48,6 +48,7 @@ def of_the_model(
         "extended_fit": rows_as(tables.FIT, _extended_fit()),
         "extended_fit_manoeuvres": rows_as(tables.FIT_MANOEUVRES, _extended_manoeuvres()),
         "accelerometer_findings": tables.FINDINGS.empty(),
+        "gyroscope_findings": tables.FINDINGS.empty(),
         "compensation_findings": tables.FINDINGS.empty(),
     }
 

@@ -28,6 +28,7 @@ FINDING_TABLES = (
     "quality_findings",
     "segment_findings",
     "accelerometer_findings",
+    "gyroscope_findings",
     "criticism_findings",
     "causes",
     "cause_members",
