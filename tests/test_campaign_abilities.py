@@ -379,6 +379,11 @@ def test_two_logs_with_stamps_of_their_own_are_joined(simple, gyro_hz, late_s, t
     ):
         found = levels[[f"{sensor}_{axis}" for axis in "xyz"]]
         np.testing.assert_allclose(found, level, rtol=0.1)
+    samples = results["decode/samples"].query("log == 'x-up.asc'")
+    lines = (tmp_path / "raw/x-up.asc").read_bytes().split(b"\n")
+    told_time = [float(lines[line - 1].split(b",")[0]) for line in samples["line"]]
+    apart_by = np.array(told_time) - float(lines[1].split(b",")[0]) - samples["time"]
+    assert np.ptp(apart_by) < 0.011  # the line of the accelerometers nearest to the sample
     rate = 1 / results["decode/clocks"]["integration_step"]
     np.testing.assert_allclose(rate, min(gyro_hz, 100), rtol=1e-5)
 

@@ -5,6 +5,7 @@ and times, and the files of the laboratory.
 """
 
 import difflib
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -299,7 +300,9 @@ def _manoeuvres(fits: Sequence[Fit], content: _Tables, provenance: Provenance) -
         content.read("quality/masks", tables.MASKS),
     )
     lines = content.lines([phase.records for phase in phases])
-    logs = {row["log"]: row["file"] for row in content.rows("plan/logs", tables.LOGS)}
+    listed = content.rows("plan/logs", tables.LOGS)
+    logs = {row["log"]: row["file"] for row in listed}
+    gyros = {row["log"]: json.loads(row["layout"]).get("gyro_log") for row in listed}
     clocks = {row["log"]: row for row in content.rows("decode/clocks", tables.CLOCKS)}
     changed = {Path(file).name for file, (was, now) in provenance.files().items() if was != now}
     steps = []
@@ -312,6 +315,8 @@ def _manoeuvres(fits: Sequence[Fit], content: _Tables, provenance: Provenance) -
             if phase.records in lines:
                 where, path = lines[phase.records], content.campaign.raw / file
                 details += [_place(path, where), _time_span(where, clocks.get(log, {}))]
+                if other := gyros.get(log):
+                    details.append(_("  and the readings of {log} then", log=other["file"]))
                 details += [] if file in changed else _texts(path, where)
         steps.append(Step(f"used: {label}", details))
     return steps

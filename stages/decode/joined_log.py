@@ -23,9 +23,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from inertial.formats.account import DECODED, NOT_SELECTED, Account, RefusedLine
+from inertial.formats.account import DECODED, NOT_SELECTED, Account, Integers, RefusedLine
 from inertial.tables import AXES
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
@@ -33,7 +32,7 @@ from stages.decode.column_log import ColumnLog
 from stages.decode.decoded import Decoded, Reals
 from stages.decode.no_samples import no_samples
 
-MAX_READINGS = 10_000_000  # of a log, held in memory: 320 MB
+MAX_READINGS = 10_000_000  # of a log, held in memory: 480 MB
 SLOWER = 1.01  # times the interval of the accelerometers: the gyros are the slower sensor
 GAP_INTERVALS = 1.5  # median intervals between stamps of a regular clock that are a gap
 SAME_INTERVALS = 1e-3  # intervals: stamps that are closer together are the same
@@ -42,20 +41,29 @@ MIN_COVERAGE = 0.5  # of a sample interval that the other sensor's readings cove
 
 @dataclass(frozen=True)
 class _Readings:
-    """All readings of one sensor: time by the common clock, s, (n,); values, SI, (n, 3)."""
+    """All n readings of one sensor: time by the common clock, s; values, (n, 3), SI.
+
+    line, offset : (n,), of their lines in the file
+    """
 
     time: Reals
     values: Reals
+    line: Integers
+    offset: Integers
     refused: list[RefusedLine]
     account: Account
 
     @classmethod
     def of(cls, log: ColumnLog, sensor: str, offset: float) -> "_Readings":
+        none = np.zeros(0, np.int64)
         times, values = [np.zeros(0)], [np.zeros((0, 3))]
+        lines, offsets = [none], [none]
         refused, account, count = list[RefusedLine](), Account(), 0
         for piece in log.decoded(0):
             times.append(piece.samples["time"])
             values.append(np.column_stack([piece.samples[f"{sensor}_{axis}"] for axis in AXES]))
+            lines.append(piece.samples["line"])
+            offsets.append(piece.samples["offset"])
             refused += piece.refused
             account.add_account(piece.account)
             count += len(times[-1])
@@ -68,13 +76,15 @@ class _Readings:
                     _("write both sensors into one log, or cut the logs into several"),
                 )
         time = np.concatenate(times) + log.began(0, absolute=True) + offset
-        return cls(time, np.concatenate(values), refused, account)
+        places = np.concatenate(lines), np.concatenate(offsets)
+        return cls(time, np.concatenate(values), *places, refused, account)
 
 
 class JoinedLog:
     """The log of the accelerometers with that of the gyros; named after the former.
 
-    Records, lines and offsets are those of the slower sensor.
+    Records count the samples of the slower sensor; lines and offsets are those of the
+    accelerometers' log, in which the nearest reading stands.
 
     Raises
     ------
@@ -105,6 +115,7 @@ class JoinedLog:
         self._refused, self._account = both["accel"].refused, both["accel"].account
         self._offset = offsets[slower]
         self._values = _joined(both[slower].time, both[faster])
+        self._places = _nearest_lines(both[slower].time, both["accel"])
         self._kept = np.asarray(np.isfinite(self._values).any(axis=1))
         if left := int(np.count_nonzero(~self._kept)):
             both[slower].account.add(DECODED, "", -left, 0)
@@ -132,6 +143,7 @@ class JoinedLog:
                 for name, column in piece.samples.items()
             }
             samples |= {f"{self._faster}_{axis}": values[kept, i] for i, axis in enumerate(AXES)}
+            samples |= {name: place[rows][kept] for name, place in self._places.items()}
             yield Decoded(samples, refused, account)
             refused, account = [], Account()
 
@@ -171,13 +183,23 @@ def _joined(time: Reals, others: _Readings) -> Reals:
     return joined
 
 
-def _advancing(time: Reals) -> NDArray[np.int64]:
+def _nearest_lines(time: Reals, readings: _Readings) -> dict[str, Integers]:
+    """The lines of the readings that are nearest to these times, and their offsets, (n,) each."""
+    places = {"line": readings.line, "offset": readings.offset}
+    if time is readings.time:
+        return places
+    ascending = _advancing(readings.time)
+    of, _away = _nearest(time, readings.time[ascending])
+    return {name: place[ascending[of]] for name, place in places.items()}
+
+
+def _advancing(time: Reals) -> Integers:
     """Where time advances beyond all that came before, (m,)."""
     former = np.maximum.accumulate(np.append(-np.inf, time[:-1])) if len(time) else time
     return np.flatnonzero(time > former)
 
 
-def _nearest(time: Reals, others: Reals) -> tuple[NDArray[np.int64], Reals]:
+def _nearest(time: Reals, others: Reals) -> tuple[Integers, Reals]:
     """Which of the others, (m,), ascending, is nearest to each time, and how much later, (n,)."""
     of = np.searchsorted((others[1:] + others[:-1]) / 2, time)
     return of, others[of] - time
