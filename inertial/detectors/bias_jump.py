@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.signal.detector import CHANNELS, UNITS, Description, Detector, Event, Log, Piece
+from inertial.signal.detector import CHANNELS, Description, Detector, Event, Log, Piece, read_in
 from inertial.signal.level_jumps import Jump, jumps
 from inertial.signal.static_tilt import Resting
 from inertial.signal.steps import Step
@@ -62,7 +62,7 @@ class BiasJump(Detector):
         jumped: Jumped = event.facts
         i = event.channel
         assert i is not None  # it is one channel that jumps
-        unit, axis = UNITS[i], CHANNELS[i][-1]
+        (scale, unit), axis = read_in(i), CHANNELS[i][-1]
         sensor = "accelerometer" if i < 3 else "gyro"
         back = _(" and back at {to_s} s", to_s=fixed(event.to_s, 2)) if jumped.back else ""
         place = f"{fixed(event.from_s, 2)} s"
@@ -78,9 +78,9 @@ class BiasJump(Detector):
             name=name,
             axis=axis,
             sensor=sensor,
-            size=_signed(event.size),
+            size=_signed(scale * event.size),
             unit=unit,
-            sigma=significant(jumped.jump.step.sigma, 2),
+            sigma=significant(scale * jumped.jump.step.sigma, 2),
             place=place,
             back=back,
             significant=significant(abs(event.size) / jumped.noise, 2),
@@ -90,7 +90,7 @@ class BiasJump(Detector):
         off = event.size * jumped.share
         consequence = _(
             "The mean of this rest is off by {off} {unit} (the jump, over {share:.0%} of it)",
-            off=_signed(off),
+            off=_signed(scale * off),
             unit=unit,
             share=jumped.share,
         )

@@ -8,7 +8,6 @@ from scipy.special import erf
 
 from inertial.signal.detector import (
     SENSORS,
-    UNITS,
     Array,
     Booleans,
     Description,
@@ -18,6 +17,7 @@ from inertial.signal.detector import (
     Log,
     Piece,
     channel_name,
+    read_in,
 )
 from inertial.signal.scatter import BLOCK, MIN_NOISE_COUNTS, roughness, smallest_step
 from inertial.text.messages import _
@@ -100,13 +100,13 @@ class DeadAxis(Detector):
 
     def describe(self, event: Event, name: str) -> Description:
         assert event.channel is not None
-        facts, unit = event.facts, UNITS[event.channel]
-        level, number = f"{significant(facts.level, 6)} {unit}", whole(event.size)
+        facts, (scale, unit) = event.facts, read_in(event.channel)
+        level, number = f"{significant(scale * facts.level, 6)} {unit}", whole(event.size)
         means = _("Their mean is {level}, whatever the IMU did", level=level)
         if event.channel >= 3 and np.isfinite(facts.seconds):
-            angle = significant(facts.level * facts.seconds, 3)
+            angle = significant(scale * facts.level * facts.seconds, 3)
             means = _(
-                "They add {angle} rad in {seconds:.2f} s, whatever the IMU did",
+                "They add {angle}° in {seconds:.2f} s, whatever the IMU did",
                 angle=angle,
                 seconds=facts.seconds,
             )

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from inertial.signal.detector import (
-    UNITS,
     Array,
     Description,
     Detector,
@@ -14,6 +13,7 @@ from inertial.signal.detector import (
     Log,
     Piece,
     channel_name,
+    read_in,
 )
 from inertial.signal.tones import Tone, tones
 from inertial.text.messages import _
@@ -88,9 +88,10 @@ class Oscillation(Detector):
     def describe(self, event: Event, name: str) -> Description:
         ringing: Ringing = event.facts
         tone = ringing.tone
-        unit, rate = UNITS[tone.channel], tone.rate
+        (scale, unit), rate = read_in(tone.channel), tone.rate
         others = " and ".join(
-            f"{channel_name(i)} by {significant(size, 2)} {UNITS[i]}" for i, size in tone.others
+            f"{channel_name(i)} by {significant(read_in(i)[0] * size, 2)} {read_in(i)[1]}"
+            for i, size in tone.others
         )
         besides = " and ".join(f"{frequency:.2f} Hz" for frequency in ringing.besides)
         return Description(
@@ -100,7 +101,7 @@ class Oscillation(Detector):
                 name=name,
                 channel=channel_name(tone.channel),
                 frequency=tone.frequency,
-                size=significant(event.size, 2),
+                size=significant(scale * event.size, 2),
                 unit=unit,
                 from_s=event.from_s,
                 to_s=event.to_s,
@@ -141,22 +142,22 @@ def _when(ringing: Ringing) -> str:
 
 def _consequence(tone: Tone, only_turning: bool) -> str:
     """A sine of amplitude A has an integral of ±A / (2πf), and a mean over T of ±A / (πfT)."""
-    unit = UNITS[tone.channel]
+    scale, unit = read_in(tone.channel)
     swing = tone.amplitude / (2 * np.pi * tone.frequency)
     mean = _(
         "A mean over 1 s is off by up to {significant} {unit}, over 100 s by up to "
         "{significant_2}.",
-        significant=significant(2 * swing, 2),
+        significant=significant(2 * scale * swing, 2),
         unit=unit,
-        significant_2=significant(swing / 50, 2),
+        significant_2=significant(scale * swing / 50, 2),
     )
     if tone.channel < 3:
         return _("{mean} Bias and scale factor from long rests hardly notice.", mean=mean)
     parts = [significant(swing / turn * 1e6, 2) for turn in (2 * np.pi, np.pi)]
     return _(
-        "The angle swings by {swing} rad: at most {parts} ppm of a turn of 360°, "
+        "The angle swings by {swing}°: at most {parts} ppm of a turn of 360°, "
         "{parts_2} ppm of one of 180°.{value} {mean}",
-        swing=significant(swing, 3),
+        swing=significant(scale * swing, 3),
         parts=parts[0],
         parts_2=parts[1],
         value=" Summed from rest to rest it adds nothing." if only_turning else "",

@@ -7,7 +7,6 @@ import numpy as np
 
 from inertial.signal.detector import (
     SENSORS,
-    UNITS,
     Description,
     Detector,
     Event,
@@ -15,12 +14,12 @@ from inertial.signal.detector import (
     Piece,
     names_of_axes,
     names_of_logs,
+    read_in,
 )
 from inertial.signal.phase_folding import Glitch
 from inertial.signal.runs import joined
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant, whole
-from inertial.text.units import in_degrees
 
 
 @dataclass(frozen=True)
@@ -80,7 +79,7 @@ class PeriodicGlitch(Detector):
         assert largest.channel is not None
         hit: Hit = largest.facts
         glitch = hit.glitch
-        size, unit = in_degrees(largest.size, UNITS[largest.channel])
+        scale, unit = read_in(largest.channel)
         return Description(
             _(
                 "At {phase} s of every {period} s{others} the {axes} read {size} {unit} too "
@@ -89,7 +88,7 @@ class PeriodicGlitch(Detector):
                 period=f"{glitch.period:g}",
                 others=_or_shorter(glitch),
                 axes=names_of_axes(events),
-                size=significant(size, 3),
+                size=significant(scale * largest.size, 3),
                 unit=unit,
                 share=_share(glitch),
                 count=whole(len({(log, one.first) for log, one in events})),
@@ -127,11 +126,11 @@ def _moves(hit: Hit, event: Event) -> str:
         )
     assert event.channel is not None
     shift = glitch.size * hit.share
-    size, unit = in_degrees(shift, UNITS[event.channel])
+    scale, unit = read_in(event.channel)
     return _(
         "Used, they would move every mean by {size} {unit}: {sigmas} times the noise of the mean "
         "of this log.",
-        size=significant(size, 2),
+        size=significant(scale * shift, 2),
         unit=unit,
         sigmas=significant(abs(shift) / hit.noise * float(np.sqrt(hit.readings)), 2),
     )

@@ -7,13 +7,13 @@ import numpy as np
 
 from inertial.signal.detector import (
     CHANNELS,
-    UNITS,
     Array,
     Description,
     Detector,
     Event,
     Log,
     Piece,
+    read_in,
 )
 from inertial.signal.scatter import BLOCK, in_blocks, roughness, smallest_step
 from inertial.text.messages import _
@@ -77,9 +77,9 @@ class Quantisation(Detector):
 
     def describe(self, event: Event, name: str) -> Description:
         assert event.channel is not None
-        facts, unit = event.facts, UNITS[event.channel]
+        facts, (scale, unit) = event.facts, read_in(event.channel)
         sensor = "accelerometer" if event.channel < 3 else "gyro"
-        step, times = significant(event.size, 4), event.size / facts.stated
+        step, times = significant(scale * event.size, 4), event.size / facts.stated
         off = event.size / np.pi * float(np.exp(-2 * (np.pi * facts.noise) ** 2))
         of_stated = _(", {times:.0f} times the stated count", times=times) if times > 1.5 else ""
         if facts.increments:
@@ -100,7 +100,7 @@ class Quantisation(Detector):
                 "The noise is {noise} steps, so a mean of any length may be off by {off} "
                 "{unit}: so uncertain is the bias, whatever its sigma says.",
                 noise=significant(facts.noise, 2),
-                off=significant(off, 2),
+                off=significant(scale * off, 2),
                 unit=unit,
             )
         return Description(

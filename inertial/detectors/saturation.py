@@ -17,6 +17,7 @@ from inertial.signal.detector import (
     Piece,
     names_of_axes,
     names_of_logs,
+    read_in,
 )
 from inertial.signal.runs import joined
 from inertial.signal.scatter import MAD_TO_SIGMA
@@ -239,13 +240,14 @@ class Saturation(Detector):
         where = _("{name} from line {line} on", name=name, line=largest.line)
         if len({log for log, _ in events}) > 1:
             where = _("{logs}, most of them in {where}", logs=names_of_logs(events), where=where)
-        what, unit = ("velocity", "m/s") if largest.channel < 3 else ("angle", "rad")
+        what, unit = ("velocity", "m/s") if largest.channel < 3 else ("angle", "°")
+        scale, _unit = read_in(largest.channel)
         visit = largest.facts
-        percent = abs(visit.limit) * visit.seconds / 100
+        percent = scale * abs(visit.limit) * visit.seconds / 100
         lost = (
             _(
                 "about {lost} {unit}, if the readings beside are continued",
-                lost=significant(visit.lost, 2),
+                lost=significant(scale * visit.lost, 2),
                 unit=unit,
             )
             if np.isfinite(visit.lost)

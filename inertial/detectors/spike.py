@@ -7,7 +7,6 @@ import numpy as np
 from scipy.special import erfc
 
 from inertial.signal.detector import (
-    UNITS,
     Array,
     Booleans,
     Description,
@@ -19,6 +18,7 @@ from inertial.signal.detector import (
     channel_name,
     names_of_axes,
     names_of_logs,
+    read_in,
 )
 from inertial.signal.outliers import (
     MAX_SPIKE_READINGS,
@@ -104,9 +104,9 @@ class Spikes(Detector):
 
     def describe(self, event: Event, name: str) -> Description:
         assert event.channel is not None
-        unit, facts = UNITS[event.channel], event.facts
+        (scale, unit), facts = read_in(event.channel), event.facts
         many = facts.readings > 1
-        moves = event.size * facts.readings
+        moves = scale * event.size * facts.readings
         return Description(
             _(
                 "{name}: {readings} of {channel} {value} off the neighbours by {size} {unit}, "
@@ -115,7 +115,7 @@ class Spikes(Detector):
                 readings=counted(facts.readings, "reading"),
                 channel=channel_name(event.channel),
                 value="are" if many else "is",
-                size=_signed(event.size),
+                size=_signed(scale * event.size),
                 unit=unit,
                 line=event.line,
             ),
@@ -135,6 +135,7 @@ class Spikes(Detector):
         name, largest = max(events, key=lambda pair: abs(pair[1].size))
         one = self.describe(largest, name)
         assert largest.channel is not None
+        scale, unit = read_in(largest.channel)
         return Description(
             _(
                 "{count} spikes of the {axes} in {logs}, of up to {size} {unit}. The largest: "
@@ -142,8 +143,8 @@ class Spikes(Detector):
                 count=len(events),
                 axes=names_of_axes(events),
                 logs=names_of_logs(events),
-                size=significant(abs(largest.size), 3),
-                unit=UNITS[largest.channel],
+                size=significant(scale * abs(largest.size), 3),
+                unit=unit,
                 one=one.sentence,
             ),
             one.consequence,

@@ -14,6 +14,8 @@ from inertial.signal.scale_factor import (
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 
+UNSIGNED_ZEROS = tuple(2.0**bits for bits in (11, 13, 15, 23))  # of counts of 12, 14, 16, 24 bits
+MAX_FROM_ZERO = 0.25  # of the zero, by which the median of a channel may be away from it
 UNKNOWN_CAUSE = _("no known unit explains it; the bias may be large, or the IMU was not at rest")
 
 
@@ -34,14 +36,28 @@ class WrongScaleFactor(Detector):
         force = radius if np.isfinite(radius) else force_at_rest(log)
         ratio = force / log.given.gravity
         if np.isfinite(ratio) and abs(ratio - 1) > MAX_SCALE_ERROR["accel"]:
+            zero = unsigned_zero(log)
+            if zero:
+                cause = _("the counts are unsigned, with their zero at {zero}", zero=f"{zero:.0f}")
+                yield log.event(ratio, facts=(force, cause, zero))
+                return
             # A count of a receiver is an increment, which its interval has made a rate.
             increments = log.recorded_on is not None
             count = float(np.nanmedian(log.count[:3])) * log.step if increments else np.nan
             cause = explanation_of(ratio, "accel", log.given, count) or UNKNOWN_CAUSE
-            yield log.event(ratio, facts=(force, cause))
+            yield log.event(ratio, facts=(force, cause, 0.0))
 
     def describe(self, event: Event, name: str) -> Description:
-        force, cause = event.facts
+        force, cause, zero = event.facts
+        action = _(
+            "Correct the unit, counts_per_unit or count size, or the name of the instrument in "
+            "the campaign. Where all rests confirm a known factor, segment divides by it."
+        )
+        if zero:
+            action = _(
+                "State zero_counts: {zero} for accelerometer and gyro in the campaign file.",
+                zero=f"{zero:.0f}",
+            )
         return Description(
             _(
                 "{name}: at rest the specific force is {force} m/s², {size} times gravity: "
@@ -56,8 +72,19 @@ class WrongScaleFactor(Detector):
                 "times what they should be.",
                 size=significant(event.size),
             ),
-            _(
-                "Correct the unit, counts_per_unit or count size, or the name of the instrument in "
-                "the campaign. Where all rests confirm a known factor, segment divides by it."
-            ),
+            action,
         )
+
+
+def unsigned_zero(log: Log) -> float:
+    """The count in the middle of a converter's range about which all channels read; 0 if none.
+
+    By the medians of six signed channels one may be so large, but not all of them alike.
+    """
+    sizes = np.where(np.isfinite(log.count), log.count, log.quantum)
+    recorded = np.isfinite(log.windows.mean).any(axis=0) & (sizes > 0)
+    if np.count_nonzero(recorded) < 3:
+        return 0.0
+    counts = np.nanmedian(log.windows.mean[:, recorded], axis=0) / sizes[recorded]
+    alike = [z for z in UNSIGNED_ZEROS if (np.abs(counts / z - 1) < MAX_FROM_ZERO).all()]
+    return max(alike, default=0.0)

@@ -8,7 +8,17 @@ from itertools import permutations, product
 import numpy as np
 
 from inertial.physics.motion import cross
-from inertial.signal.detector import SENSORS, Array, Description, Event, Integers, Log, Piece
+from inertial.signal.detector import (
+    SENSOR_NAMES,
+    SENSORS,
+    Array,
+    Description,
+    Event,
+    Integers,
+    Log,
+    Piece,
+    read_in,
+)
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.text.messages import _
 from inertial.text.numbers import significant, whole
@@ -116,7 +126,8 @@ class Exchange:
 def describe_exchange(event: Event, name: str, sensor: str) -> Description:
     """An exchange in words."""
     exchange: Exchange = event.facts
-    unit, what = ("m/s²", "accelerometer") if sensor == "accel" else ("rad/s", "gyro")
+    what = SENSOR_NAMES[sensor]
+    scale, unit = read_in(SENSORS[sensor].start)
     other = (
         _(" So do those of the gyros: {in_words}.", in_words=exchange.with_it.in_words)
         if exchange.with_it
@@ -124,7 +135,7 @@ def describe_exchange(event: Event, name: str, sensor: str) -> Description:
     )
     worst = int(np.argmax(np.abs(exchange.after - exchange.before)))
     before, after = (
-        significant(float(part[worst]), 5) for part in (exchange.before, exchange.after)
+        significant(scale * float(part[worst]), 5) for part in (exchange.before, exchange.after)
     )
     return Description(
         _(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.text.messages import _
+from inertial.text.units import in_degrees
 
 if TYPE_CHECKING:
     from inertial.signal.phase_folding import Glitch
@@ -20,6 +21,11 @@ def channel_name(channel: int) -> str:
     """Its sensor and axis: accelerometer x, gyro z."""
     sensor, _, axis = CHANNELS[channel].partition("_")
     return f"{SENSOR_NAMES[sensor]} {axis}"
+
+
+def read_in(channel: int) -> tuple[float, str]:
+    """What a person reads it in, °/s or m/s²: how many of these are one SI unit, and its name."""
+    return in_degrees(1.0, UNITS[channel])
 
 
 Array = NDArray[np.float64]

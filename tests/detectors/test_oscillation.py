@@ -49,10 +49,10 @@ def test_what_it_does_to_an_angle_is_told_as_s0_has_it():
     values = ringing(turn(about=0), 3, 20.0, 0.01, 1300, 4300)
     (event,) = found(values)
     words = Oscillation().describe(event, "x.asc")
-    assert "gyro x oscillates at 20.00 Hz by 0.010 rad/s" in words.sentence
+    assert "gyro x oscillates at 20.00 Hz by 0.57 °/s" in words.sentence
     assert "while the IMU turns, and not at rest" in words.sentence
     assert "80.00 or 120.00 Hz cannot be distinguished" in words.sentence
-    assert "swings by 7.96 × 10⁻⁵ rad" in words.consequence
+    assert "swings by 0.00456°: at most" in words.consequence  # 7.96e-5 · 180/π
     assert "13 ppm of a turn of 360°, 25 ppm of one of 180°" in words.consequence
 
 

@@ -52,7 +52,7 @@ def test_what_is_lost_of_a_smooth_crest_is_told():
     assert event.facts.lost == pytest.approx(lost, rel=0.15)
     words = Saturation().describe(event, "log")
     assert "the end of the range" in words.sentence
-    assert f"about {event.facts.lost:.4f}"[:11] in words.consequence
+    assert f"about {np.degrees(event.facts.lost):.1f} °" in words.consequence
 
 
 def test_the_full_count_of_a_converter_needs_no_statement():

@@ -194,3 +194,24 @@ def test_logs_at_different_temperatures_are_one_finding():
     assert_told(TemperatureDrift(), event, "")
     assert event.size == pytest.approx(6.1, abs=0.2)
     assert not list(TemperatureDrift().detect_between_logs({"a": logs["a"]}))
+
+
+@pytest.mark.parametrize("zero", [2048, 32768])
+def test_unsigned_counts_are_named_and_no_full_scale(zero):
+    """Six channels whose zero stands in the middle of the converter, read as signed counts."""
+    count = np.array([GRAVITY / zero * 8] * 3 + [radians(500) / zero] * 3)
+    values = rest(1000) + zero * count
+    one = piece(values, stamps(1000))
+    (event,) = seen(WrongScaleFactor(), one, recorded_on=None, count=count, quantum=count)
+    words = WrongScaleFactor().describe(event, "log")
+    assert f"the counts are unsigned, with their zero at {zero}" in words.sentence
+    assert "full scale" not in words.sentence and f"zero_counts: {zero}" in words.action
+
+
+def test_an_imu_that_turns_and_falls_has_signed_counts():
+    """One channel near the middle of its range is no converter's zero."""
+    count = np.array([GRAVITY / 4096] * 3 + [radians(500) / 32768] * 3)
+    values = rest(1000)
+    values[:, 2] = 32768 * count[2]
+    (event,) = seen(WrongScaleFactor(), piece(values, stamps(1000)), recorded_on=None, count=count)
+    assert "unsigned" not in WrongScaleFactor().describe(event, "log").sentence
