@@ -83,7 +83,9 @@ def plan_of(kinds: Sequence[Kind]) -> list[Manoeuvre]:
 
 def _means(kind: Kind) -> list[Manoeuvre]:
     """Each row is a static position."""
-    return [Manoeuvre("positions", part, count=part.logs[0].rows) for part in kind.parts]
+    return [
+        Manoeuvre("positions", part, rows=part.rows, count=part.logs[0].rows) for part in kind.parts
+    ]
 
 
 def _all(kind: Kind) -> list[Manoeuvre]:
