@@ -20,6 +20,8 @@
 #                                 diagnosis says of 708 of them, in docs/diagnosis.md; with
 #                                 ONLY="diagnosis fault spikes" those that have these words
 #   make docs                     docs/tables.md and the catalogue of messages, from the code
+#   make recordings               docs/recordings.md: the real recordings, which are not part of the
+#                                 project, drafted and compared with what is known of them; 15 minutes
 #   make clean                    deletes what can be computed again from the raw logs; reports stay
 #   make setup                    only the environment, .venv, which every target above needs
 
@@ -27,7 +29,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new trace test style bench challenge docs clean setup pango campaign
+.PHONY: report check draft new trace test style bench challenge docs recordings clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -131,6 +133,9 @@ docs: .venv/complete
 	$(BIN)/python -m commands.tables
 	$(BIN)/pybabel -q extract --keywords _ --keywords plural:1,2 --no-wrap --omit-header \
 		--sort-by-file --add-location file --output inertial/text/messages.pot inertial stages commands
+
+recordings: .venv/complete
+	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m recordings
 
 clean:
 	rm -rf data/derived .snakemake

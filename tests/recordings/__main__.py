@@ -28,8 +28,8 @@ a sigma: each has a method, a gravity and rounding of its own. Ours has one sigm
 the guesses of the draft: gravity anywhere on earth is 0.3 % of a scale, an angle by hand 5 to 10°.
 Time is that of draft and chain together, s.
 
-| recording | quantity | known x, y, z | ours x, y, z | causes named | time |
-|---|---|---|---|---|---|
+| recording | quantity | known x, y, z | ours x, y, z | verdict | causes named | time |
+|---|---|---|---|---|---|---|
 """
 NAMES = {"accel": "accelerometer", "gyro": "gyro"}
 UNITS = {"m/s2": "m/s²", "deg/s": "°/s", "counts/(m/s2)": "counts per m/s²"}
@@ -60,17 +60,22 @@ def rows(recording: Recording, folder: Path) -> Iterator[str]:
         seconds = f"{time.monotonic() - start:.0f}"
         causes = Counter(map(in_words, results["diagnosis/causes"]["cause"]))
         named = ", ".join(f"{cause} ({n})" if n > 1 else cause for cause, n in causes.items())
-        first = (recording.name, named or "none", seconds)
+        verdicts = results["diagnosis/verdict"]
+        said = [
+            f"{NAMES[sensor]} {verdict.replace('_', ' ')}"
+            for sensor, verdict in zip(verdicts["sensor"], verdicts["verdict"], strict=True)
+        ]
+        first = (recording.name, "; ".join(said), named or "none", seconds)
         for known in recording.known or (None,):
-            name, named, seconds = first
+            name, verdict, named, seconds = first
             quantity, theirs, ours = "", "", ""
             if known is not None:
                 found = known.ours(results, told(campaign))
                 unit = UNITS.get(known.unit, known.unit)
                 quantity = f"{NAMES[known.sensor]} {known.quantity}, {unit}"
                 theirs, ours = both(known, found)
-            yield f"| {name} | {quantity} | {theirs} | {ours} | {named} | {seconds} |\n"
-            first = ("", "", "")
+            yield f"| {name} | {quantity} | {theirs} | {ours} | {verdict} | {named} | {seconds} |\n"
+            first = ("", "", "", "")
 
 
 def both(known: Known, found: np.ndarray) -> tuple[str, str]:

@@ -18,6 +18,7 @@ from commands.draft.__main__ import draft
 Three = tuple[float, float, float]
 STANDARD_GRAVITY = 9.80665
 UNITS = {"m/s2": 1.0, "g": STANDARD_GRAVITY, "rad/s": 1.0, "deg/s": np.radians(1)}
+STAGES = {"accel": "accelerometer", "gyro": "gyroscope"}
 SENSORS = {"accel": "accelerometer", "gyro": "gyro"}
 
 
@@ -36,11 +37,12 @@ class Known:
 
     def ours(self, results: chain.Results, campaign: Mapping[str, Any]) -> np.ndarray:
         """Value and sigma of the result, in the same unit, (3, 2)."""
-        table = results["diagnosis/result"]
-        table = table[(table["sensor"] == self.sensor) & table["effect"].isna()]
-        rows = table.drop_duplicates("parameter").set_index("parameter")
-        found = rows.loc[[f"{self.quantity}_{axis}" for axis in "xyz"], ["value", "sigma"]]
-        values = found.to_numpy(float)
+        names = [f"{self.quantity}_{axis}" for axis in "xyz"]
+        both = [
+            results.parameters(STAGES[self.sensor], method).reindex(names)[["value", "sigma"]]
+            for method in ("joint", "free_positions")
+        ]
+        values = both[0].fillna(both[1]).to_numpy(float)
         count = self._count(campaign)
         if self.quantity == "bias":
             return values / (count if self.unit == "counts" else UNITS[self.unit])
