@@ -80,7 +80,7 @@ def findings_by_id(tables: Tables) -> dict[str, Record]:
     """All findings by their identifiers, each with its stage."""
     return {
         row["id"]: row | {"stage": DECLARED.reads[name].stage}
-        for name in FINDING_TABLES[:4]
+        for name in FINDING_TABLES[:5]
         for row in tables.rows(name)
     }
 
