@@ -83,6 +83,7 @@ def recording_of(derived: Path) -> Recording:
         tables.FINDINGS.read(derived / "quality/findings.parquet"),
         tables.FINDINGS.read(derived / "segment/findings.parquet"),
         tables.FINDINGS.empty(),
+        tables.FINDINGS.empty(),
         tables.EFFECT_FINDINGS.empty(),
         tables.MEMBERS.empty(),
         tables.CAUSE_POSITIONS.empty(),
