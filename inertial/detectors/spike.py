@@ -36,6 +36,7 @@ MIN_SPIKE_SCATTER = 7.5  # scatters: see `chance`
 MIN_GROSS_SCATTER = 40.0  # scatters, where the IMU is moved by hand or rings
 MIN_CHANGE_RATIO = 4.0  # times the largest change between readings beside it, there
 MAX_FAINT_SHARE = 0.01  # of a spike: what is less beside it in other channels is none of a knock's
+MAX_HANDLED_SHARE = 0.1  # of the readings; where more are moved or ring, it is a session by hand
 SIDE_READINGS = 24  # readings on each side from which the scatter is taken where it changes
 MAX_OTHER_SPIKES = 4  # of them may be spikes as well
 FIFTH_LARGEST_SIGMA = 1.37  # sigma: the fifth largest of 24 Gaussian readings
@@ -61,8 +62,9 @@ class Spikes(Detector):
     ramp, a step or a steady turn. It is measured by the scatter of the 1024 readings around, or of
     the 24 on either side where that is larger, and at least by a count: so an oscillation or
     coarse counts are no spikes. A knock shakes several channels at once, and rings: it is none
-    either. Where the IMU is moved by hand, or rings, a spike must be a gross one. The first and
-    the last reading are not judged, nor those beside readings that are masked.
+    either. Where the IMU is moved by hand, or rings, a spike must be a gross one of one reading; in
+    a log of which a tenth is so, everywhere. The first and the last reading are not judged, nor
+    those beside readings that are masked.
     """
 
     name = "spike"
@@ -87,9 +89,13 @@ class Spikes(Detector):
         handled = np.zeros(len(piece), bool)
         for channel in channels.values():
             handled[channel.places] |= channel.handled
+        # Hands that move it knock against it while it rests as well.
+        handled |= np.mean(handled) > MAX_HANDLED_SHARE
         for i, channel in channels.items():
             for start, end, scatters in _spikes(channel, handled):
                 first, last = int(channel.places[start]), int(channel.places[end - 1])
+                if handled[first] and end - start > 1:
+                    continue  # a knock lasts
                 loud = max(MIN_DEVIATION_SCATTER, MAX_FAINT_SHARE * scatters)
                 if not _shaken(channels, (first, last), i, loud, bool(handled[first])):
                     k = start + int(np.argmax(np.abs(channel.off[start:end])))

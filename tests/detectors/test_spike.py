@@ -107,6 +107,21 @@ def test_motion_by_hand_is_silent():
     assert places(values) == []
 
 
+def test_taps_between_motions_by_hand_are_none_and_a_gross_reading_is_one():
+    """Put down and tapped: three readings of one gyro, or one reading of two accelerometers."""
+    values = rest(20_000)
+    phase = np.linspace(0, 2 * np.pi, 400)
+    for start in range(1000, 18_000, 3000):
+        values[start : start + 400, 3:] += 0.5 * np.outer(1 - np.cos(phase), [1, -0.5, 0.7])
+        jerks = np.random.default_rng(start).standard_normal((400, 6))
+        values[start : start + 400] += jerks * [0.5, 0.5, 0.5, 0.05, 0.05, 0.05]
+    values[2500:2503, 5] -= np.array([0.5, 1.0, 0.55]) * 70 * NOISE[5]
+    values[5500, [0, 2]] += [-8.5 * NOISE[0], -9 * NOISE[2]]
+    assert places(values) == []
+    values[8500, 1] += 30.0
+    assert places(values) == [(1, 8500, 8501)]
+
+
 def test_coarse_counts_are_silent():
     generator = np.random.default_rng(9)
     step = 8 * NOISE
