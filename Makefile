@@ -17,7 +17,7 @@
 #   make challenge                hides effects in many campaigns and reports what is detected, in
 #                                 docs/challenge.md; 90 minutes on two cores, can be resumed; with
 #                                 DRAWS=100 a tenth of them; with ONLY=diagnosis only what the
-#                                 diagnosis says of 708 of them, in docs/diagnosis.md; with
+#                                 diagnosis says of 690 of them, in docs/diagnosis.md; with
 #                                 ONLY="diagnosis fault spikes" those that have these words
 #   make docs                     docs/tables.md and the catalogue of messages, from the code
 #   make recordings               docs/recordings.md: the real recordings, which are not part of the

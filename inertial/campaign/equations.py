@@ -139,6 +139,11 @@ class Campaign:
         """Whether an effect is none of this campaign: of a table, where there is none."""
         return self.by_hand is not None and of_a_table(effect)
 
+    def places(self, effect: Effect) -> Sequence[str]:
+        """The names among which the scan of an effect of a single one is: turns or positions."""
+        turn = effect.scan is not None and effect.scan.name == "turn"
+        return self.planned if turn else self.positions
+
     def blind(self, effect: Effect) -> str:
         """Why an effect is not observable in this campaign; empty where it may be."""
         if self.excludes(effect):

@@ -219,8 +219,7 @@ class BlockResults:
         searched = next(s for s in self.selection.searched if s.name == effect.name)
         drops = [total.drop([*columns, *others])[0] for columns in searched.candidates]
         near = [i for i in np.argsort(drops)[::-1] if drops[i] > max(drops) - MAX_RIVAL_DROP]
-        turn = effect.scan.name == "turn"
-        names = self.campaign.planned if turn else self.campaign.positions
+        names = self.campaign.places(effect)
         return [(names[int(family[i].at or 0)], float(drops[i])) for i in near]
 
     def _same_rate(self, effect: Effect, parameter: str) -> str | None:

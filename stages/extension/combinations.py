@@ -82,7 +82,8 @@ def _placed(campaign: Campaign, own: NamedClass) -> NamedClass:
     probability = first.probability if others else 1.0
     if len(own.positions) < 2 or first.effect.at is None or probability is None:
         return own
-    at = [campaign.positions.index(position) for position, _ in own.positions]
+    places = campaign.places(first.effect)
+    at = [places.index(position) for position, _ in own.positions]
     likelihood = np.array([statistic / 2 for _, statistic in own.positions])
     shares = probability * np.exp(likelihood - logsumexp(likelihood))
     each = [

@@ -21,6 +21,7 @@ from hidden_plans import PLANS, sensors
 from hidden_sizes import KEPT, code, reference, size
 from hidden_ways import ABSORBED, WAYS
 
+from inertial.effects import CATALOGUE
 from inertial.text.parameters import STAGES
 from laboratory.site import normal_gravity
 
@@ -77,8 +78,13 @@ def _faults() -> Iterator[str]:
 
 def _absorbed() -> Iterator[str]:
     for number in range(SILENT):
-        for name in ABSORBED:
+        for name in filter(_absorbed_by_all, ABSORBED):
             yield from (f"absorbed|{plan}|{name}|{number}" for plan in PLANS)
+
+
+def _absorbed_by_all(name: str) -> bool:
+    """Whether every calibration takes it up; the rest of the decoys are known too little."""
+    return bool(CATALOGUE[name].absorbed_by)
 
 
 def _reported() -> Iterator[str]:
