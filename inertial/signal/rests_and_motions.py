@@ -14,6 +14,8 @@ Booleans = NDArray[np.bool_]
 MIN_MOTION_SIGMA = 6.0  # scatters of the gyros at rest: what cannot be noise
 MIN_HAND_RATE = np.radians(2.0)  # rad/s: what counts as motion where no rate is planned
 MIN_STRETCH_S = 0.3  # s, a motion or a rest shorter than this is none, or a tenth of the stretch
+MAX_KNOCK_TILT = np.radians(5.0)  # rad: an IMU that is knocked stands again as it stood
+BINS_BESIDE = 3  # whose mean is the direction of gravity before and after
 MAX_SLOW_END_S = 3.0  # s, at most, in which a motion begins or ends below what counts as motion
 # In m/s², change of the specific force that counts as motion where no gyro is recorded
 MIN_FORCE_CHANGE = 0.1
@@ -74,16 +76,30 @@ def _filled(values: Array) -> Array:
     return np.interp(np.arange(len(values)), there, values[there])
 
 
-def stretches(moves: Booleans, bin_seconds: float) -> list[Stretch]:
-    """The bins as stretches that move or rest, those shorter than a blip joined to their like."""
+def stretches(moves: Booleans, bin_seconds: float, forces: Array | None = None) -> list[Stretch]:
+    """The bins as stretches that move or rest, those shorter than a blip joined to their like.
+
+    Where `forces`, (k, 3), show that the IMU stands otherwise after a short motion, it fell over.
+    """
     shortest = min(MIN_STRETCH_S / bin_seconds, 0.1 * len(moves))
     moves = moves.copy()
     for kind in (False, True):  # a pause within a motion first, then a knock within a rest
         for stretch in _runs(moves):
             inner = stretch.first > 0 and stretch.after < len(moves)
-            if stretch.moves is kind and inner and stretch.after - stretch.first < shortest:
+            short = stretch.after - stretch.first < shortest
+            if stretch.moves is kind and inner and short and not (kind and _fell(stretch, forces)):
                 moves[stretch.first : stretch.after] = not kind
     return _runs(moves)
+
+
+def _fell(stretch: Stretch, forces: Array | None) -> bool:
+    """Whether gravity has another direction after a motion than before."""
+    if forces is None:
+        return False
+    before = forces[max(stretch.first - BINS_BESIDE, 0) : stretch.first].mean(axis=0)
+    after = forces[stretch.after : stretch.after + BINS_BESIDE].mean(axis=0)
+    cosine = before @ after / (np.linalg.norm(before) * np.linalg.norm(after))
+    return bool(cosine < np.cos(MAX_KNOCK_TILT))  # not where they are not recorded
 
 
 def with_slow_ends(

@@ -121,7 +121,7 @@ def divide(binned: Binned, level: Array, threshold: float, noise: float) -> Divi
     above_noise = moving(binned.rates, binned.forces, level, noise)
     for lowest in (threshold, noise):
         moves = moving(binned.rates, binned.forces, level, lowest)
-        divided = stretches(moves, binned.bin_seconds)
+        divided = stretches(moves, binned.bin_seconds, binned.forces)
         divided = with_slow_ends(divided, above_noise, binned.bin_seconds)
         ways.append((divided, observe(binned, divided, level)))
     return Division(binned, ways)
