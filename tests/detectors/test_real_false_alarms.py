@@ -135,3 +135,20 @@ def test_sunsided_has_its_x_gyro_reversed_by_turns_of_a_stated_angle(recordings,
     repairs = results["segment/repairs"].set_index("id")
     assert repairs.loc["signs/gyro", "state"] == "applied"
     assert repairs.loc["signs/gyro", "condition"].endswith("x reads −x")
+
+
+def test_sunsided_has_stamps_in_bursts_and_no_gaps(recordings, raw):
+    """There were 4,112 times "120 samples are missing"; its mean rate is right, SOURCE.md."""
+    place = recordings / "sunsided_mpu6050"
+    name = "unmoved-with-x-pointing-forward"
+    force = h5py.File(place / f"{name}-accelerometer.mat")["accelBuffer"][()].T
+    rate = h5py.File(place / f"{name}-gyroscope.mat")["gyroBuffer"][()].T[:, 1:]
+    np.savetxt(raw / "log.csv", np.hstack([force, rate]), fmt="%.7f", delimiter=",")
+    form = columns(
+        delimiter=",",
+        accelerometer={"columns": [2, 3, 4], "unit": "g"},
+        gyro={"columns": [5, 6, 7], "unit": "deg/s"},
+    ) | {"time": {"column": 1, "unit": "s"}}
+    campaign(raw, {"name": "mpu6050", "rate_hz": 100, "format": form}, BY_HAND, log="log.csv")
+    results = found(raw, "quality")
+    assert results["quality/gaps"].empty and "gap" not in causes(results)
