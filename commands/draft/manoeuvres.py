@@ -111,7 +111,7 @@ def _manoeuvres(part: Part, own: Divided) -> Iterator[Manoeuvre]:
         yield _turn(part, own, max(turns, key=lambda turn: turn.angle))
     elif rests:
         rest = max(rests, key=lambda rest: rest.seconds)
-        rows = None if len(rests) == 1 else _rows(part, own, rest.first, rest.after)
+        rows = None if len(rests) == 1 else _rows(part, own, *own.inside(rest))
         yield Manoeuvre("rest", part, up=face(rest.accel), seconds=rest.seconds, rows=rows)
 
 
@@ -166,8 +166,9 @@ def _in_order(part: Part, own: Divided) -> Iterator[Manoeuvre]:
     most = round(MAX_BESIDE_S / own.series.bin_seconds())
     for k, rest in enumerate(rests):
         # A rest beside a turn belongs to it; a longer one is a static position besides.
-        first = rest.first + (min(most, rest.after - rest.first) if k - 1 in turns else 0)
-        after = rest.after - (min(most, rest.after - rest.first) if k in turns else 0)
+        first, after = own.inside(rest)
+        first += min(most, after - first) if k - 1 in turns else 0
+        after -= min(most, after - first) if k in turns else 0
         seconds = (after - first) * own.series.bin_seconds()
         if seconds > MIN_REST_S and (up := face(rest.accel)):
             rows = _rows(part, own, first, after)

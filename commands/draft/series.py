@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 
 BIN_S, MIN_BINS = 0.1, 20  # s; of a short recording shorter ones
 MIN_REST_S = 1.0  # s, of a static position
+MARGIN_S = 0.5  # s, beside a motion, that belong to no static position
 MIN_MOVED_SHARE = 0.02  # of the largest readings of gyros whose unit is not known, to be a motion
 
 
@@ -105,10 +106,7 @@ class Divided:
             seconds = (stretch.after - stretch.first) * step
             if stretch.moves or seconds < min(MIN_REST_S, self.series.seconds / 2):
                 continue
-            # Half a second beside a motion still moves.
-            room = min(round(0.5 / step), (stretch.after - stretch.first) // 4)
-            first = stretch.first + (room if stretch.first else 0)
-            after = stretch.after - (room if stretch.after < self.series.bins else 0)
+            first, after = self.inside(stretch)
             yield Still(
                 stretch.first,
                 stretch.after,
@@ -116,6 +114,12 @@ class Divided:
                 self.forces[first:after].mean(axis=0),
                 self.rates[first:after].mean(axis=0),
             )
+
+    def inside(self, rest: "Stretch | Still") -> tuple[int, int]:
+        """The bins of a rest without half a second beside a motion, which still moves."""
+        room = min(round(MARGIN_S / self.series.bin_seconds()), (rest.after - rest.first) // 4)
+        first = rest.first + (room if rest.first else 0)
+        return first, rest.after - (room if rest.after < self.series.bins else 0)
 
     def passages(self) -> Iterator[tuple[Still, Still]]:
         """Each static position and the next."""
