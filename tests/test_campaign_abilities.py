@@ -5,6 +5,7 @@ recording in another way.
 """
 
 import copy
+import shutil
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -19,6 +20,7 @@ from inertial.estimation.triad import linear_names
 from inertial.tables.errors import Refusal
 
 Document = dict[str, Any]
+CAMPAIGNS = Path(__file__).parent / "campaigns"
 MAX_SIGMA = 4.5  # of 24 parameters with Gaussian errors, in 1 of 6000 campaigns
 HEADERS = {
     8: "time,gyro_x,gyro_y,gyro_z,accel_x,accel_y,accel_z,temperature",
@@ -437,3 +439,38 @@ def test_logs_without_common_time_are_refused(simple, tmp_path):
         manoeuvre["gyro"]["offset_s"] = -1e4
     tell(tmp_path / "raw", campaign)
     chain.run(tmp_path / "raw", tmp_path / "derived", "decode")
+
+
+# ---- real recordings that need them
+
+
+def recorded(recordings: Path, folder: str, campaign: str, tmp_path: Path) -> Path:
+    """The folder of a campaign with its logs."""
+    shutil.copytree(recordings / folder, tmp_path / "raw")
+    shutil.copy(CAMPAIGNS / f"{campaign}.yaml", tmp_path / "raw/campaign.yaml")
+    return tmp_path / "raw"
+
+
+def test_ctu_turns_of_unknown_attitude_and_means_alone(recordings, tmp_path):
+    raw = recorded(recordings, "ctu_prague", "ctu", tmp_path)
+    results = chain.run(raw, tmp_path / "derived", "diagnosis")
+    gyro = results.parameters("gyroscope").loc[["scale_x", "scale_y", "scale_z"]]
+    simple_integration = np.array([0.9950, 0.9998, 1.0055]) - 1  # SOURCE.md
+    assert np.abs((gyro["value"] - simple_integration) / gyro["sigma"]).max() < 2
+    assert gyro["sigma"].max() < 0.002
+    free = results.parameters("accelerometer", "free_positions")
+    assert len(free["value"].dropna()) == 18 and free["sigma"].max() < 0.01
+    fit = results["accelerometer/fit"].iloc[0]
+    assert 1e-3 < fit["scatter"] < 2e-2  # m/s², of means of a MEMS
+    verdict = results["diagnosis/verdict"].set_index("sensor")
+    assert verdict.loc["accel", "method"] == "free_positions"
+
+
+def test_sunsided_logs_apart_that_read_gravity(recordings, tmp_path):
+    raw = recorded(recordings, "sunsided_mpu6050", "sunsided", tmp_path)
+    results = chain.run(raw, tmp_path / "derived")
+    assert results["segment/repairs"].empty and results["segment/findings"].empty
+    turns = results["segment/performed"].set_index("manoeuvre")["angle"].dropna()
+    np.testing.assert_allclose(np.abs(np.degrees(turns)), 720, atol=20)  # by hand, twice round
+    lines = results["decode/accounts"].set_index("log")["lines"]
+    assert len(lines) == 14 and set(results["decode/accounts"]["kind"]) == {"decoded"}
