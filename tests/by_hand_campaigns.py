@@ -45,7 +45,9 @@ def session(seed: int, **changes: Any) -> dict[str, Any]:
     return {**document, **changes}
 
 
-def by_hand(document: Mapping[str, Any], folder: Path, until: str = "diagnosis") -> chain.Results:
+def by_hand(
+    document: Mapping[str, Any], folder: Path, until: str = "compensation"
+) -> chain.Results:
     """The session recorded and run, of which the campaign file states no attitude."""
     campaign = chain.simulate(document, folder / "campaign")
     yaml, path = YAML(), campaign / "campaign.yaml"
@@ -56,7 +58,7 @@ def by_hand(document: Mapping[str, Any], folder: Path, until: str = "diagnosis")
     return chain.run(campaign, folder / "derived", until)
 
 
-def truth(document: Mapping[str, Any], results: chain.Results) -> dict[str, np.ndarray]:
+def truth(document: Mapping[str, Any]) -> dict[str, np.ndarray]:
     """The twelve parameters of each sensor as the result has them, in axes in which P is symmetric.
 
     M = P R: the result of the accelerometers is P, that of the gyros M_g Rᵀ.

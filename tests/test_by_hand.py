@@ -1,0 +1,104 @@
+"""Sessions by hand from the simulated laboratory: what they hide is named, and nothing else."""
+
+import by_hand_campaigns as sessions
+import chain
+import numpy as np
+import pytest
+
+from inertial.estimation.triad import linear_names
+
+CLEAN = range(20)
+# Sizes of a consumer IMU, as data sheets and the table of the design study have them.
+HIDDEN = {
+    "gyro_g_sensitivity": {"matrix_deg_h_g": [[60, 0, 0], [-100, 0, 0], [0, 0, 80]]},
+    "gyro_bias_ramp": {"ramp_deg_h_h": [2000, 0, -1500]},
+    "gyro_bias_jump": {"size_deg_h": [0, 90, 0], "at_s": 100},
+    "accel_quadratic": {"k2_micro_g_g2": [3000, 0, -2000]},
+    "accel_cubic": {"k3_micro_g_g3": [3000, 0, -2000]},
+    "accel_bias_ramp": {"ramp_m_s2_h": [0.8, 0, 0]},
+    "accel_bias_jump": {"size_micro_g": [0, 3000, 0], "at_s": 110},
+}
+
+
+def pulls(document, results) -> dict[str, np.ndarray]:
+    """Errors of the twelve parameters of each sensor that counts, in their sigma."""
+    truth, table = sessions.truth(document), results["diagnosis/result"]
+    found = {}
+    for sensor, told in truth.items():
+        own = table[(table["sensor"] == sensor) & table["effect"].isna()]
+        own = own.set_index("parameter").reindex(linear_names())
+        found[sensor] = (own["value"].to_numpy(float) - told) / own["sigma"].to_numpy(float)
+    return found
+
+
+@pytest.fixture(scope="module")
+def clean(tmp_path_factory) -> list[tuple[dict, chain.Results]]:
+    drawn = []
+    for seed in CLEAN:
+        document = sessions.session(seed)
+        folder = tmp_path_factory.mktemp("clean")
+        drawn.append((document, sessions.by_hand(document, folder)))
+    return drawn
+
+
+def test_a_clean_session_is_silent(clean):
+    for _, results in clean:
+        assert results["criticism/findings"].empty
+        assert results["diagnosis/causes"].empty
+        assert set(results["diagnosis/verdict"]["verdict"]) == {"usable"}
+        assert results["criticism/scores"]["statistic"].notna().any()  # it was tested
+
+
+def test_the_sigmas_of_a_clean_session_are_honest(clean):
+    for sensor in ("accel", "gyro"):
+        every = np.array([pulls(*drawn)[sensor] for drawn in clean])
+        assert every.shape == (len(CLEAN), 12) and np.isfinite(every).all()
+        # The 240 are not independent: P is symmetric, and all share the directions.
+        assert np.sqrt(np.mean(every**2)) == pytest.approx(1, abs=0.2)
+        assert np.abs(every).max() < 4.5
+
+
+@pytest.mark.parametrize("effect", HIDDEN)
+def test_what_a_session_hides_is_named_and_no_longer_moves_the_result(effect, tmp_path):
+    document = sessions.session(1, effects={effect: HIDDEN[effect]})
+    results = sessions.by_hand(document, tmp_path)
+    (cause,) = results["criticism/findings"].to_dict("records")
+    members = results["criticism/members"]
+    assert cause["verdict"] in ("found", "one_of_class")
+    assert effect in {cause["cause"], *members["effect"]}
+    assert set(results["diagnosis/verdict"]["verdict"]) == {"usable", "usable_within_limits"}
+    for own in pulls(document, results).values():
+        assert np.abs(own).max() < 4.5
+
+
+def test_the_g_sensitivity_has_the_size_that_was_hidden(tmp_path):
+    hidden = HIDDEN["gyro_g_sensitivity"]
+    document = sessions.session(2, effects={"gyro_g_sensitivity": hidden})
+    results = sessions.by_hand(document, tmp_path)
+    table = results["diagnosis/result"]
+    own = table[table["effect"] == "gyro_g_sensitivity"]
+    g = np.radians(1 / 3600) / 9.80665  # rad/s per m/s² in °/h per g
+    truth = g * np.array(hidden["matrix_deg_h_g"]).ravel()
+    assert list(own["parameter"].str[-2:]) == [a + b for a in "xyz" for b in "xyz"]
+    assert np.abs((own["value"] - truth) / own["sigma"]).max() < 3.5
+    checks = results["compensation/checks"].query("quantity == 'gravity'")
+    assert len(checks) == 24 and checks["in_sigmas_after"].abs().max() < 4
+
+
+def test_gyros_of_another_count_size_are_a_finding_and_stay_usable(tmp_path):
+    document = sessions.session(3)
+    matrix = 0.765 * np.array(document["truth"]["gyro"]["matrix"])
+    document["truth"]["gyro"]["matrix"] = matrix.tolist()
+    results = sessions.by_hand(document, tmp_path)
+    (cause,) = results["diagnosis/causes"].to_dict("records")
+    assert cause["cause"] == "gyro_count_size" and cause["cure"] == "modelled"
+    assert cause["size"] == pytest.approx(np.mean(np.diag(matrix)), abs=1e-3)
+    verdicts = results["diagnosis/verdict"].set_index("sensor")["verdict"]
+    assert verdicts["gyro"] == "usable_within_limits" and verdicts["accel"] == "usable"
+    assert np.abs(pulls(document, results)["gyro"]).max() < 4
+
+
+def test_what_no_session_by_hand_can_show_has_one_reason(clean):
+    limits = clean[0][1]["criticism/detection_limits"]
+    of_tables = limits[limits["effect"].str.startswith(("table_tilt", "table_wobble"))]
+    assert set(of_tables["explanation"]) == {"no table takes part in a session by hand"}
