@@ -79,6 +79,41 @@ def test_a_draft_of_a_table_is_calibrated_as_well_as_a_guess_allows(on_a_table):
     assert scale == pytest.approx(0.03 / 9.80665, rel=0.2)
 
 
+def turn_and_stop() -> list[Document]:
+    """A rest, a turn and back, and a rest, in four positions."""
+    plan: list[Document] = []
+    for up, rate in (("+z", 30), ("-z", 60), ("+x", 30), ("-x", 60)):
+        turn = {"do": "turn", "up": up, "rate_deg_s": rate, "accel_deg_s2": rate, "position": up}
+        plan += [
+            {"id": f"{len(plan)}", "do": "rest", "up": up, "seconds": 20, "position": up},
+            {"id": f"{len(plan) + 1}", "degrees": 360} | turn,
+            {"id": f"{len(plan) + 2}", "degrees": -360} | turn,
+            {"id": f"{len(plan) + 3}", "do": "rest", "up": up, "seconds": 20, "position": up},
+        ]
+    return plan
+
+
+def test_rests_and_turns_of_one_log_come_in_their_order(tmp_path):
+    """In columns of counts; how the table gets from one position to the next is no manoeuvre."""
+    document = chain.demo(seed=4)
+    document["receiver"] |= {"message": "columns"}
+    document["handling"] = {"still_s": 5, "change_s": 8}
+    document["campaign"] |= {"instrument": {"name": "made up"}, "log": "session.csv"}
+    document["campaign"]["plan"] = turn_and_stop()
+    simulated = chain.simulate(document, tmp_path / "simulated")
+    campaign = told(draft([simulated / "session.csv"], "drafted", tmp_path / "data"))
+    keys = ("do", "up", "degrees", "rate_deg_s")
+    assert [[m.get(key) for key in keys] for m in campaign["plan"]] == [
+        [m.get(key) for key in keys] for m in turn_and_stop()
+    ]
+    assert campaign["table"]["name"] != "by hand"
+    layout = campaign["instrument"]["format"]
+    assert layout["temperature"] == {"column": "temperature", "unit": "degC"}
+    # The laboratory's counts are increments: so many in 1 °/s at 100 Hz.
+    right = np.radians(1) / 100 / document["receiver"]["gyro_count_rad"]
+    assert layout["gyro"]["counts_per_unit"] == pytest.approx(right, rel=0.01)
+
+
 # ---- by hand, in columns without a name
 
 

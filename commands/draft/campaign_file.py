@@ -247,6 +247,9 @@ def _format(kind: Kind, sensors: Sequence[str], indent: str) -> Iterator[str]:
         yield f"{indent}mean_of: null{_guess(timing.evidence)}"
     else:
         yield f"{indent}time: {_flow(**_time(kind, file))}{guess}"
+    if columns.temperature is not None and file == 0:
+        name, unit = columns.temperature
+        yield f"{indent}temperature: {_flow(column=name, unit=unit)}{_guess(_('by its name'))}"
     for key, scale in (("accelerometer", kind.accel), ("gyro", kind.gyro)):
         triad = triads[key]
         if log.kind == "columns" and triad and scale and triad.file == file:

@@ -36,6 +36,8 @@ NAMED = {
     "other": re.compile(r"mag|^[mqb][ _.]?[xyzw]\b|quat|euler|roll|pitch|yaw|pos|vel|gps|temp"),
 }
 TIME = re.compile(r"time|stamp|^t$|sample|epoch|clock|^n$|^t[ _(\[]", re.IGNORECASE)
+TEMPERATURE = re.compile(r"temp", re.IGNORECASE)
+PLAUSIBLE = {"degC": (-80.0, 150.0), "K": (190.0, 425.0)}  # of an IMU
 AXIS = re.compile(r"^(.*?)([xyz0-9])([^xyz0-9]*)$")
 
 
@@ -68,6 +70,7 @@ class Columns:
     evidence: str
     guessed: bool
     unused: tuple[Name, ...]  # columns of the first log
+    temperature: tuple[Name, str] | None = None  # a column of the first log, and its unit
 
 
 def time_of(log: RawLog) -> Name | None:
@@ -144,9 +147,24 @@ def columns_of(group: Sequence[Sequence[RawLog]]) -> Columns:
         for rows in interleaved or (None,):
             candidates += [Triad(file, three, rows) for three in _threes(free)]
     accel, gyro, evidence, guessed = _sensors(group, candidates)
-    used = {name for triad in (accel, gyro) if triad and not triad.file for name in triad.columns}
-    unused = tuple(n for n in first[0].columns if n not in used | {times[0]})
-    return Columns(times, accel, gyro, label, evidence, guessed, unused)
+    used: set[Name | None] = {
+        name for triad in (accel, gyro) if triad and not triad.file for name in triad.columns
+    }
+    warmth = _temperature_of(first[0])
+    used |= {times[0]} if warmth is None else {times[0], warmth[0]}
+    unused = tuple(n for n in first[0].columns if n not in used)
+    return Columns(times, accel, gyro, label, evidence, guessed, unused, warmth)
+
+
+def _temperature_of(log: RawLog) -> tuple[Name, str] | None:
+    """The column that is named a temperature and reads one, with its unit."""
+    for name, values in log.columns.items():
+        if isinstance(name, str) and TEMPERATURE.search(name):
+            finite = _finite(values)
+            for unit, (least, most) in PLAUSIBLE.items():
+                if least < finite.min() and finite.max() < most:
+                    return name, unit
+    return None
 
 
 def _finite(values: Array) -> Array:
