@@ -2,7 +2,7 @@
 
     python -m commands.check --campaign demo
 
-It reads the findings of quality and segment, and which parameters accelerometer and gyroscope
+It reads the findings of quality, segment, accelerometer and gyroscope, and which parameters these
 determine, all of which `make check` lets the workflow make first. It states what gets no result,
 and each cause with what follows from it. It ends with 0 where nothing spoils a result, with 1 where
 something does or a sensor gets none, and with 2 where the tables are missing.
@@ -82,8 +82,8 @@ def recording_of(derived: Path) -> Recording:
     findings = findings_of(
         tables.FINDINGS.read(derived / "quality/findings.parquet"),
         tables.FINDINGS.read(derived / "segment/findings.parquet"),
-        tables.FINDINGS.empty(),
-        tables.FINDINGS.empty(),
+        tables.FINDINGS.read(derived / "accelerometer/findings.parquet"),
+        tables.FINDINGS.read(derived / "gyroscope/findings.parquet"),
         tables.EFFECT_FINDINGS.empty(),
         tables.MEMBERS.empty(),
         tables.CAUSE_POSITIONS.empty(),

@@ -25,6 +25,7 @@ READ = (
     *("quality/masks", "quality/gaps", "segment/segments", "segment/performed"),
     *("segment/blocks", "plan/manoeuvres", "decode/accounts"),
     *("accelerometer/parameters", "gyroscope/parameters"),
+    *("accelerometer/findings", "gyroscope/findings"),
 )
 
 
