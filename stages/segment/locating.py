@@ -111,7 +111,7 @@ class Located:
             and m.up is not None
             and np.isfinite(self.observed[before].force).all()
         ):
-            agreements.append(points(self.observed[before].force, m.up))
+            agreements.append(bool(points(self.observed[before].force, m.up)))
         return agreements
 
 

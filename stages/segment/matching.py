@@ -12,6 +12,7 @@ from inertial.signal.rests_and_motions import Stretch, steady_part
 from stages.segment.windows import Binned
 
 Array = NDArray[np.float64]
+Booleans = NDArray[np.bool_]
 
 MAX_MOUNTING_ANGLE = np.radians(25)  # how far an IMU may be mounted from the planned direction
 MAX_AXIS_ANGLE = np.radians(45)  # and a turn about another axis than the planned one, as by hand
@@ -34,11 +35,8 @@ def align(scores: Array) -> list[int | None]:
     m, n = scores.shape
     best = np.zeros((m + 1, n + 1))
     for i in range(1, m + 1):
-        for j in range(1, n + 1):
-            together = (
-                best[i - 1, j - 1] + scores[i - 1, j - 1] if scores[i - 1, j - 1] > 0 else -1.0
-            )
-            best[i, j] = max(best[i - 1, j], best[i, j - 1], together)
+        together = np.where(scores[i - 1] > 0, best[i - 1, :-1] + scores[i - 1], -1.0)
+        best[i, 1:] = np.maximum.accumulate(np.maximum(best[i - 1, 1:], together))
     stretches_of: list[int | None] = [None] * m
     i, j = m, n
     while i and j:
@@ -52,50 +50,50 @@ def align(scores: Array) -> list[int | None]:
     return stretches_of
 
 
-def rest_score(seconds: float, planned: float | None, force: Array, up: Array | None) -> float:
-    """How well a stretch at rest fits a planned rest: by its duration and its direction.
+def rest_scores(seconds: Array, planned: float | None, forces: Array, up: Array | None) -> Array:
+    """How well stretches at rest fit a planned rest: by duration and direction, (n,).
 
     Parameters
     ----------
-    force : (3,), m/s², mean specific force, NaN where not recorded
+    forces : (n, 3), m/s², mean specific force, NaN where not recorded
     up : (3,), the planned direction, None where unknown
     """
-    if up is not None and not points(force, up):
-        return 0.0
-    return min(seconds / planned, 1.0) if planned else seconds / (seconds + 1.0)
+    scores = np.minimum(seconds / planned, 1.0) if planned else seconds / (seconds + 1.0)
+    return scores if up is None else np.where(points(forces, up), scores, 0.0)
 
 
-def points(force: Array, up: Array) -> bool:
-    """Whether a specific force, (3,), points up as planned, as far as its axes are recorded."""
-    there = np.isfinite(force)
-    recorded = float(np.linalg.norm(up[there]))
-    if recorded < MIN_RECORDED_SHARE:
-        return True  # the axis that would show it is not recorded
-    along = float(force[there] @ up[there]) / recorded
-    return bool(along >= np.cos(MAX_MOUNTING_ANGLE) * float(np.linalg.norm(force[there])))
+def points(forces: Array, up: Array) -> Booleans:
+    """Whether specific forces, (…, 3), point up as planned, as far as their axes are recorded."""
+    there = np.isfinite(forces)
+    known = np.where(there, forces, 0.0)
+    recorded = np.linalg.norm(there * up, axis=-1)
+    along = known @ up
+    near = along >= np.cos(MAX_MOUNTING_ANGLE) * np.linalg.norm(known, axis=-1) * recorded
+    # Else the axis that would show it is not recorded.
+    return np.asarray(near | (recorded < MIN_RECORDED_SHARE))
 
 
-def turn_score(turned: Array, about: Array, planned: float | None) -> float:
-    """How well a motion fits a planned turn: by its angle, rad, or its rate, rad/s.
+def turn_scores(turned: Array, about: Array, planned: float | None) -> Array:
+    """How well motions fit a planned turn: by angle, rad, or rate, rad/s, (n,).
 
     A turn in the wrong direction is still the turn, unless a better one is there; a turn about
     another axis is not.
 
     Parameters
     ----------
-    turned : (3,), angles or rates about the axes of the body, NaN where not recorded
+    turned : (n, 3), angles or rates about the axes of the body, NaN where not recorded
     about : (3,), the planned axis
     """
     own = np.nan_to_num(turned)
-    angle = float(own @ about)
-    if abs(angle) < np.cos(MAX_AXIS_ANGLE) * float(np.linalg.norm(own)):
-        return 0.0
+    angle = own @ about
     if planned is None:
-        return abs(angle) / (abs(angle) + 0.1)
-    ratio = angle / planned
-    if ratio < 0:
-        return WRONG_SENSE_SCORE if ratio < -0.5 else 0.0
-    return max(1.0 - abs(1.0 - ratio), 0.02) if ratio > 0.005 else 0.0
+        scores = np.abs(angle) / (np.abs(angle) + 0.1)
+    else:
+        ratio = angle / planned
+        forward = np.where(ratio > 0.005, np.maximum(1.0 - np.abs(1.0 - ratio), 0.02), 0.0)
+        scores = np.where(ratio < -0.5, WRONG_SENSE_SCORE, forward)
+    other_axis = np.abs(angle) < np.cos(MAX_AXIS_ANGLE) * np.linalg.norm(own, axis=1)
+    return np.where(other_axis, 0.0, scores)
 
 
 BETWEEN = "between"  # from a rest to the next, where attitudes are unknown: what carries them on
@@ -161,22 +159,23 @@ def match(
 ) -> dict[str, int | None]:
     """For each manoeuvre of a window its stretch, None where it is not found."""
     sought = [m for m in manoeuvres if m.do != "positions"]
-    scores = np.array(
-        [[_score(observation, m) for observation in observed] for m in sought], np.float64
+    moves = np.array([o.moves for o in observed], np.bool_)
+    seconds = np.array([o.seconds for o in observed], np.float64)
+    forces, rates, turned = (
+        np.array([getattr(o, name) for o in observed], np.float64).reshape(-1, 3)
+        for name in ("force", "rate", "turned")
     )
+
+    def scores_of(m: Manoeuvre) -> Array:
+        if m.do == "rest":
+            return np.where(moves, 0.0, rest_scores(seconds, m.seconds, forces, m.up))
+        steady = m.recorded == "steady"
+        own, planned = (rates, m.rate) if steady else (turned, m.angle)
+        return np.where(moves, turn_scores(own, m.axis, planned), 0.0)
+
+    scores = np.array([scores_of(m) for m in sought], np.float64)
     places = align(scores.reshape(len(sought), len(observed)))
     return {m.name: place for m, place in zip(sought, places, strict=True)}
-
-
-def _score(observed: Observation, m: Manoeuvre) -> float:
-    if observed.moves is (m.do == "rest"):
-        return 0.0
-    if m.do == "rest":
-        return rest_score(observed.seconds, m.seconds, observed.force, m.up)
-    steady = m.recorded == "steady"
-    return turn_score(
-        observed.rate if steady else observed.turned, m.axis, m.rate if steady else m.angle
-    )
 
 
 def motion(binned: Binned, stretches: Sequence[Stretch], place: int) -> tuple[int, int]:
