@@ -76,9 +76,15 @@ check: campaign .venv/complete
 	echo
 	$(BIN)/python -m commands.check "--campaign=$$CAMPAIGN"
 
-# A name with a blank is quoted: LOG="'my log.csv' other.csv".
+# A name with a blank is quoted: LOG="'my log.csv' other.csv"; a pattern is expanded: LOG="june/*.csv".
 draft: .venv/complete
-	mapfile -t logs < <(xargs --no-run-if-empty printf '%s\n' <<< "$$LOG")
+	mapfile -t words < <(xargs --no-run-if-empty printf '%s\n' <<< "$$LOG")
+	logs=()
+	for word in "$${words[@]}"; do
+		mapfile -t found < <(compgen -G "$$word" || true)
+		if [[ -e $$word || $${#found[@]} == 0 ]]; then found=("$$word"); fi
+		logs+=("$${found[@]}")
+	done
 	options=()
 	if [[ $$RATE ]]; then options+=("--rate=$$RATE"); fi
 	$(BIN)/python -m commands.draft "$${options[@]}" "--name=$$NAME" -- "$${logs[@]}"

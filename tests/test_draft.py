@@ -257,7 +257,7 @@ def test_what_is_asked_wrongly_is_said(arguments, found, tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    "text", ["Dear all,\nthis is no log.\n", "1 2 3\n1 2 3\n", "", "1,2\n" * 100]
+    "text", ["1,2,3\n" * 99, "Dear all,\nthis is no log.\n", "1 2 3\n1 2 3\n", "", "1,2\n" * 100]
 )
 def test_what_is_no_log_is_refused_and_nothing_is_written(text, tmp_path, capsys):
     log = tmp_path / "log.txt"

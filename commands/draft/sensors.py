@@ -21,10 +21,12 @@ from commands.draft.scales import (
 from commands.draft.series import Divided, Series, divided
 from commands.draft.timing import Timing, common_rate, timing_of
 from inertial.signal.rests_and_motions import Stretch, rest_level
-from inertial.text.messages import _
+from inertial.tables.errors import Refusal
+from inertial.text.messages import _, plural
 from inertial.text.numbers import significant
 
 Array = NDArray[np.float64]
+MIN_ROWS = 100  # of logs of one kind, to be samples
 MAX_MEAN_SCATTER = 0.1  # of the length of means about their centre
 MIN_SPREAD = 0.2  # of their directions
 MIN_STEPS = 0.02  # of their variance, from row to row: a motion has many rows to the radian
@@ -77,6 +79,7 @@ def _kind(group: Sequence[Sequence[RawLog]], rate: float | None) -> Kind:
         readings = [columns.accel.of(together) for together in group]
         if all(map(are_means, readings)):
             return _kind_of_means(columns, timing, group)
+    _refuse_few(group)
     kind = Kind(columns, timing, None, None, [], [])
     parts = [part for together in group for part in _parts(kind, together)]
     own = _divided(parts, known_units=False)
@@ -91,6 +94,19 @@ def _kind(group: Sequence[Sequence[RawLog]], rate: float | None) -> Kind:
         if turned is not None:
             gyro, timing = _rate_by_motion(gyro, timing, turned, own)
     return Kind(columns, timing, accel, gyro, parts, own)
+
+
+def _refuse_few(group: Sequence[Sequence[RawLog]]) -> None:
+    """Refuse a table of a few rows, which are no samples of a motion."""
+    rows, log = sum(together[0].rows for together in group), group[0][0]
+    if rows < MIN_ROWS and log.kind != "rawimus":
+        raise Refusal(
+            log.path.name,
+            "",
+            plural("{count} row of numbers", "{count} rows of numbers", rows),
+            _("samples, at least {rows}, or the means of positions", rows=MIN_ROWS),
+            _("name the log of the samples; means are stated by hand, with mean_of"),
+        )
 
 
 def are_means(values: Array) -> bool:
