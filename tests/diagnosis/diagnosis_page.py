@@ -21,6 +21,7 @@ def write(outcomes: Sequence[Outcome], page: Path = PAGE) -> str:
     told = list(bars(outcomes))
     figures = {
         "campaigns": len(outcomes),
+        "code": ", ".join(sorted({one["code"] for one in outcomes})),
         "hours": f"{sum(one['seconds'] for one in outcomes) / 3600:.1f}",
         "bars": [(bar.words, bar.wanted, bar.measured, bar.verdict) for bar in told],
         "effects": list(_by_size(of(outcomes, "effect"))),
