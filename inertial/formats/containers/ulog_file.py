@@ -126,15 +126,21 @@ class _File(BufferedReader):
         self._size = size
         self._until = monotonic() + MAX_SECONDS + size / LEAST_BYTES_PER_SECOND
         self.broken_at: int | None = None
+        self._last: tuple[int | None, int] = _HEAD_BYTES, 0  # requested and read
 
     def read(self, size: int | None = -1, /) -> bytes:
         """As any file; pyulog reads the head of each message, then the rest of it."""
         if monotonic() > self._until:
             raise TimeoutError(_("reading it takes longer than any whole log of its size"))
         data = super().read(size)
-        at_end = not data and size == _HEAD_BYTES
-        self.broken_at = None if at_end else self.tell() - len(data)
+        self._last = size, len(data)
         return data
+
+    def close(self) -> None:
+        """Where the last message begins, unless it was the head of one that is not there."""
+        if not self.closed and self._last != (_HEAD_BYTES, 0):
+            self.broken_at = self.tell() - self._last[1]
+        super().close()
 
 
 def _refuse_excessive_fields(formats: Mapping[str, Any]) -> None:
