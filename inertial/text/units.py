@@ -81,6 +81,10 @@ _BY_UNIT = {
         Unit("µg/g³", 1e-6 / STANDARD_GRAVITY**2), Unit("10⁻⁶ (m/s²)/(m/s²)³", 1e-6)
     ),
     "s": Quantity(Unit("s", 1.0), Unit("s", 1.0)),
+    "rad/s/√s": Quantity(
+        Unit("°/h/√h", DEGREE_PER_HOUR / 60), Unit("10⁻⁶ rad/s/√s", 1e-6)
+    ),  # K per √s is 60 K per √h
+    "m/s²/√s": Quantity(Unit("µg/√h", STANDARD_GRAVITY * 1e-6 / 60), Unit("10⁻⁶ m/s²/√s", 1e-6)),
     "s²/rad²": Quantity(Unit("ppm/(°/s)²", 1e-6 / DEGREE**2), Unit("s²/rad²", 1.0)),
 }
 _OF_OSCILLATION = Quantity(Unit("rad/s", 1.0), Unit("rad/s", 1.0))

@@ -12,8 +12,8 @@ from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.physics.effect import Effect
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import decimals_of, with_sigma
-from inertial.text.units import DEGREE_PER_HOUR, MICRO_G
+from inertial.text.numbers import decimals_of, significant, with_sigma
+from inertial.text.units import quantity
 from stages.criticism import block_sentences as sentences
 from stages.criticism.bias_drift import Walk, drift_name
 from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
@@ -347,10 +347,11 @@ def random_walk_rows(
 
 
 def _walk_size(sensor: str, walk: Walk) -> str:
-    # K per √s is 60 K per √h.
-    size, unit = (DEGREE_PER_HOUR, "°/h") if sensor == "gyro" else (MICRO_G.size, "µg")
-    value, sigma = (np.array([walk.size, walk.sigma]) / size * 60).tolist()
-    return f"{' ± '.join(with_sigma(value, sigma, decimals_of(sigma)))} {unit}/√h"
+    unit = quantity("", WALK_UNITS[sensor]).laboratory
+    value, sigma = walk.size / unit.size, walk.sigma / unit.size
+    if not np.isfinite(sigma):
+        return f"{significant(value, 2)} {unit.name}"
+    return f"{' ± '.join(with_sigma(value, sigma, decimals_of(sigma)))} {unit.name}"
 
 
 def unexplained_rows(selection: Selection, lawless: WithoutLaw, mount: str) -> Iterator[TableRow]:
