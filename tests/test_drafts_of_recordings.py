@@ -6,10 +6,11 @@ from pathlib import Path
 import chain
 import numpy as np
 import pytest
-from conftest import CAMPAIGNS
 from recordings.known import RECORDINGS, Known, Recording, told
 
 from inertial.tables.campaign_files import logs_of
+
+CAMPAIGNS = Path(__file__).parent / "campaigns"
 
 MAX_SIGMA = 3.0
 BY_NAME = {recording.name: recording for recording in RECORDINGS}

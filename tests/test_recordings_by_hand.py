@@ -1,16 +1,18 @@
 """Real sessions by hand, each through the draft of its campaign and the whole chain."""
 
 import shutil
+from pathlib import Path
 
 import chain
 import numpy as np
 import pytest
-from conftest import CAMPAIGNS
 from recordings.known import RECORDINGS
 from scipy.io import loadmat
 
 from inertial.estimation.triad import linear_names
 from inertial.tables.campaign_files import logs_of
+
+CAMPAIGNS = Path(__file__).parent / "campaigns"
 
 BY_NAME = {recording.name: recording for recording in RECORDINGS}
 EFFECTS = ("found", "one_of_class")

@@ -166,7 +166,7 @@ def test_a_changed_setting_reruns_its_stage_and_what_follows(
         ("inertial/formats/columns/text_reader.py", {"decode", *AFTER_DECODE}),
         ("inertial/estimation/spectrum.py", {"noise", *ESTIMATION}),
         ("inertial/estimation/least_squares.py", ESTIMATION),
-        ("inertial/text/numbers.py", AFTER_DECODE),
+        ("inertial/text/numbers.py", {"plan", "decode", *AFTER_DECODE}),
         ("inertial/text/cause_names.py", {"criticism", "extension", *DIAGNOSED}),
         ("stages/report/report.css", {"report"}),
         ("laboratory/counts.py", {"laboratory_short", "plan", "decode", *AFTER_DECODE}),

@@ -33,8 +33,12 @@ def moved(seed, positions=12, jerk=0.5):
             steps = (way[:-1].inv() * way[1:]).as_rotvec() * RATE * FINE
             rates.append(steps.reshape(-1, FINE, 3).mean(axis=1))
             up = way[FINE // 2 :: FINE].inv().apply([0, 0, 1])
-            shaken = np.repeat(rng.standard_normal((len(up) // 20 + 1, 3)), 20, axis=0)[: len(up)]
-            forces.append(GRAVITY * up + jerk * shaken)
+            # What a hand presses with changes within tenths of a second.
+            pressed = rng.standard_normal((len(up) // 20 + 2, 3))
+            pressed[[0, -1]] = 0.0
+            nodes = np.linspace(0, len(up), len(pressed))
+            shaken = [np.interp(np.arange(len(up)), nodes, column) for column in pressed.T]
+            forces.append(GRAVITY * up + jerk * np.transpose(shaken))
     noise = rng.standard_normal((2, sum(map(len, forces)), 3))
     return np.concatenate(forces) + 0.02 * noise[0], np.concatenate(rates) + 0.003 * noise[1]
 

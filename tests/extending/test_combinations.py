@@ -59,7 +59,7 @@ def test_members_that_a_sensor_does_not_show_are_one_model_for_it():
 
 
 def test_an_effect_of_one_position_is_a_member_for_each_that_may_be_it():
-    campaign: Any = SimpleNamespace(positions=["x-up", "y-up", "z-up"])
+    campaign: Any = SimpleNamespace(places=lambda effect: ["x-up", "y-up", "z-up"])
     # Reductions of 103 and 100: odds of e^1.5, 0.82 to 0.18.
     off = Member(CATALOGUE["table_position_error"].fixed(2.0), 0.5)
     tilt = Member(CATALOGUE["table_tilt"], 0.5)
