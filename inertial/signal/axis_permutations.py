@@ -1,6 +1,6 @@
 """Readings of a triad that are a signed permutation of themselves."""
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import permutations, product
@@ -28,6 +28,7 @@ SIDE_READINGS = 5  # readings on each side that are compared: the shortest excha
 SCATTER_READINGS = 32  # readings on each side by which their scatter is had
 # Times the largest change among those: what no motion does from reading to reading
 MIN_CHANGE_RATIO = 5.0
+MAX_OTHER_JUMPS = 3  # in a piece of a log, beside an exchange
 MIN_JUMP_SIGMA = 12.0  # sigma of the jump, by which it must be more than noise
 MAX_FIT_SIGMA = 5.0  # sigma by which the readings after it may differ from the permuted ones before
 MAX_INTERVALS = 1.5  # median intervals: readings farther apart are not compared
@@ -171,8 +172,8 @@ def exchanges_of(piece: Piece, log: Log, sensor: str) -> list[Exchange]:
 
     The records are masked as a whole, so that no later detector examines their gyros.
     """
-    own = list(_exchanges(piece, log, sensor))
-    others = list(_exchanges(piece, log, "gyro")) if own and sensor == "accel" else []
+    own = _exchanges(piece, log, sensor)
+    others = _exchanges(piece, log, "gyro") if own and sensor == "accel" else []
     made = []
     for exchange in own:
         alike = [o for o in others if o.start < exchange.end and exchange.start < o.end]
@@ -180,13 +181,18 @@ def exchanges_of(piece: Piece, log: Log, sensor: str) -> list[Exchange]:
     return made
 
 
-def _exchanges(piece: Piece, log: Log, sensor: str) -> Iterator[Exchange]:
-    """The exchanges in a piece of a log, in their order."""
+def _exchanges(piece: Piece, log: Log, sensor: str) -> Sequence[Exchange]:
+    """The exchanges in a piece of a log, in their order.
+
+    None where readings jump so at other places too, as by hand: one that fits is then by chance.
+    """
+    found: list[Exchange] = []
+    others = 0  # jumps that no exchange explains
     triad = piece.values[:, SENSORS[sensor]]
     places = np.flatnonzero(np.isfinite(triad).all(axis=1))
     values = triad[places]
     if len(values) < 2 * SIDE_READINGS:
-        return
+        return found
     smallest = np.nan_to_num(log.quantum[SENSORS[sensor]])
     open_: tuple[int, Array, Array, list[Permutation]] | None = None
     for k in _sudden(values, smallest):
@@ -194,6 +200,7 @@ def _exchanges(piece: Piece, log: Log, sensor: str) -> Iterator[Exchange]:
             continue
         before, after, sigma = _beside(values, k, smallest)
         fitting = [p for p in PERMUTATIONS if _fits(p, before, after, sigma)]
+        others += not fitting
         if not fitting or (sensor == "accel" and _turned(piece, log, places, k, before, after)):
             continue
         if _struck(piece, log, int(places[k]), "gyro" if sensor == "accel" else "accel"):
@@ -204,11 +211,14 @@ def _exchanges(piece: Piece, log: Log, sensor: str) -> Iterator[Exchange]:
         start, earlier, later, possible = open_
         back = [p for p in possible if p.inverse in fitting]
         if back:
-            yield Exchange(int(places[start]), int(places[k]), back[0], earlier, later, False)
+            until = int(places[k])
+            found.append(Exchange(int(places[start]), until, back[0], earlier, later, False))
             open_ = None
     if open_ is not None:
         start, earlier, later, possible = open_
-        yield Exchange(int(places[start]), len(piece), possible[0], earlier, later, True)
+        end = len(piece)
+        found.append(Exchange(int(places[start]), end, possible[0], earlier, later, True))
+    return found if others <= MAX_OTHER_JUMPS else []
 
 
 def _sudden(values: Array, smallest: Array) -> list[int]:

@@ -16,10 +16,10 @@ BIAS = np.array([4.0, -1.0, 6.0])  # m/s², 0.75 g
 AS_NAMED = Permutation((0, 1, 2), (1, 1, 1))
 
 
-def moved(seed, positions=12, jerk=0.5):
+def moved(seed, positions=12, jerk=0.5, *, sudden=False):
     """An IMU put down in one attitude after another: forces and rates at 100 Hz, (n, 3) each.
 
-    `jerk`: m/s², of the hand, while it moves.
+    `jerk`: m/s², of the hand, while it moves; `sudden`: it changes from record to record.
     """
     rng = np.random.default_rng(seed)
     stands = attitudes(rng, TWENTY_FOUR[rng.permutation(24)[:positions]], 0.1)
@@ -37,7 +37,8 @@ def moved(seed, positions=12, jerk=0.5):
             pressed = rng.standard_normal((len(up) // 20 + 2, 3))
             pressed[[0, -1]] = 0.0
             nodes = np.linspace(0, len(up), len(pressed))
-            shaken = [np.interp(np.arange(len(up)), nodes, column) for column in pressed.T]
+            at = np.arange(len(up)) // 20 * 20 if sudden else np.arange(len(up))
+            shaken = [np.interp(at, nodes, column) for column in pressed.T]
             forces.append(GRAVITY * up + jerk * np.transpose(shaken))
     noise = rng.standard_normal((2, sum(map(len, forces)), 3))
     return np.concatenate(forces) + 0.02 * noise[0], np.concatenate(rates) + 0.003 * noise[1]
@@ -112,6 +113,13 @@ def by_hand_campaign(tmp_path, forces, rates, **more):
     plan = [{"id": "by-hand", "do": "positions", "seconds": 1}]
     campaign(raw, {"name": "own", "rate_hz": 100, "format": form}, plan, log="log.csv", **more)
     return chain.run(raw, tmp_path / "derived", "segment")
+
+
+@pytest.mark.parametrize("seed", [11, 12, 16, 18, 19])
+def test_a_hand_that_jerks_exchanges_no_axes(tmp_path, seed):
+    results = by_hand_campaign(tmp_path, *moved(seed, jerk=1.0, sudden=True))
+    for stage in ("quality", "segment"):
+        assert not results[f"{stage}/findings"]["cause"].isin(["axis_swap", "sign_flip"]).any()
 
 
 def test_a_reversed_gyro_is_set_right_without_any_attitude(tmp_path):
