@@ -1,6 +1,6 @@
 """A clock that was set while a log was recorded: from one record on all stamps are off."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -13,6 +13,8 @@ MIN_STEP_SHARE = 0.02  # of an interval: smaller steps have no effect
 MIN_STEP_SIGMA = 10.0  # times what the stamps beside it scatter by, rms
 SIDE_STAMPS = 32  # stamps on either side
 MIN_SIDE_STAMPS = 8  # of them, where the log begins or ends
+MIN_EVEN_STEPS = 4  # steps alike and evenly apart, which are the rounding of stamps
+MAX_UNEVEN = 0.1  # of their size, and of the records from one to the next
 MAX_RETURN_SHARE = 0.5  # of the step, by which the stamps beside it may take it back
 
 
@@ -31,6 +33,11 @@ class ClockStep(Detector):
     severity = 1
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
+        events = list(self._steps(piece, log))
+        if not _of_rounding(events):
+            yield from events
+
+    def _steps(self, piece: Piece, log: Log) -> Iterator[Event]:
         stamps = stamps_of(piece, log)
         off = np.diff(stamps.time) - stamps.apart * log.interval
         off[stamps.apart != 1] = np.nan
@@ -69,3 +76,14 @@ class ClockStep(Detector):
             _("What is taken against time is off by that much; angles and means hardly change."),
             _("All samples are used. Let the clock settle before recording."),
         )
+
+
+def _of_rounding(events: Sequence[Event]) -> bool:
+    """Whether steps are alike and evenly apart: no multiple of the stamps' unit is the interval."""
+    if len(events) < MIN_EVEN_STEPS:
+        return False
+    sizes = np.array([event.size * (1 if event.facts else -1) for event in events])
+    apart = np.diff([event.first for event in events])
+    return bool(
+        np.ptp(sizes) < MAX_UNEVEN * abs(sizes[0]) and np.ptp(apart) < MAX_UNEVEN * apart[0]
+    )

@@ -438,6 +438,12 @@ def test_scattered_and_rounded_stamps_set_no_clock():
         assert "clock_step" not in causes(piece(rest(2000), np.sort(time)))
 
 
+def test_an_interval_that_whole_milliseconds_do_not_divide_sets_no_clock():
+    """9.999 ms, as of the Xsens MTi of imu_tk: every thousandth stamp is a millisecond early."""
+    time = np.round(np.arange(6000) * 9.999e-3, 3)
+    assert "clock_step" not in causes(piece(rest(6000), time))
+
+
 @pytest.mark.parametrize("first", [True, False], ids=["shorter part first", "longer part first"])
 def test_the_interval_of_most_of_a_log_is_the_reference(first):
     """Neither part has the stated rate; the one with fewer records is the one that differs."""
