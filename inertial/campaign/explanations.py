@@ -96,7 +96,30 @@ SPOILING = (
     "axis_swap",
     "sign_flip",
 )
-IN_PROPORTION = ("scale", "earth", "latitude", "gravity", "table")  # in names of effects
+IN_PROPORTION = frozenset(
+    {
+        "gyro_scale_asymmetry",
+        "gyro_scale_quadratic",
+        "gyro_scale_cubic",
+        "gyro_scale_g_dependence",
+        "gyro_scale_temperature",
+        "accel_scale_asymmetry",
+        "accel_scale_temperature",
+        "table_speed_error",
+        "table_tilt",
+        "table_axis_non_orthogonality",
+        "table_position_error",
+        "table_wobble",
+        "table_eccentricity",
+        "table_ripple",
+        "table_angle_scale",
+        "gravity_error",
+        "latitude_error",
+        "latitude_sign",
+        "earth_rate_omitted",
+        "clock_scale",
+    }
+)
 LOST_RECORDS = ("gap", "duplicate", "held_record", "time_backwards", "time_stands_still")
 
 
@@ -181,7 +204,7 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
 
 
 def _in_proportion(effect: Hypothesis) -> bool:
-    return any(part in name for name in effect.causes for part in IN_PROPORTION)
+    return not IN_PROPORTION.isdisjoint(effect.causes)
 
 
 def _rank(hypothesis: Hypothesis) -> int:
