@@ -1,6 +1,7 @@
 """The command line of `make bench`: all parts, or those that are named.
 
-    python -m benchmarks [bounds calibration faults cost campaigns noise decoding scale kills]
+    python -m benchmarks [bounds calibration faults cost campaigns noise temperature decoding scale
+        kills]
 
 Prints the tables; a run of all parts also writes them to benchmarks/results.md. BENCH_LOG_MB is the
 size of the log in `decoding`, in units of 10⁶ byte; BENCH_SAMPLES bounds the campaigns of `scale`.
@@ -20,6 +21,7 @@ PARTS = (
     "cost",
     "campaigns",
     "noise",
+    "temperature",
     "decoding",
     "scale",
     "kills",

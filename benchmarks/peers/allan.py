@@ -15,7 +15,7 @@ TAUS = 50
 
 
 def main(path, rate, runs):
-    """Answer with the deviation at 1 s, the number of averaging times, and the seconds."""
+    """Answer with the deviations and their averaging times, that at 1 s, and the seconds."""
     record, rate = np.load(path), float(rate)
     taus = np.geomspace(1 / rate, len(record) / rate / 10, TAUS)
     taus[np.argmin(np.abs(np.log(taus)))] = 1.0
@@ -27,7 +27,14 @@ def main(path, rate, runs):
     seconds = timed(deviation, int(runs))
     found, deviations = results[-1]
     at_one = float(deviations[np.argmin(np.abs(found - 1))])
-    answer(white=at_one, taus=len(found), seconds=seconds.runs, cpu=seconds.cpu)
+    answer(
+        white=at_one,
+        taus=len(found),
+        factors=np.rint(found * rate).astype(int).tolist(),
+        deviations=deviations.tolist(),
+        seconds=seconds.runs,
+        cpu=seconds.cpu,
+    )
 
 
 main(*sys.argv[1:])

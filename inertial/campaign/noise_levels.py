@@ -3,9 +3,12 @@
 A level is known to some per cent only, and a sensor alone has the same in every manoeuvre. So the
 level that is common to the campaign is taken, but for a manoeuvre and phase whose own level differs
 from it by more than three of its sigmas: there the table, or the air, adds to the noise.
+
+Beside the common level of a channel stand the bias instability and the random walk that the static
+stretches show. From here they enter the covariance of every estimate, and from nowhere else.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -14,18 +17,38 @@ from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.campaign.records import Row, rows_of
+from inertial.estimation.noise_terms import NoiseTerms
+from inertial.estimation.random_walk import MeasuredDrift
 
 Array = NDArray[np.float64]
 Key = tuple[str | None, str | None, str]  # manoeuvre, phase, channel
 
 MIN_SCATTER_RATIO = 1.5  # of a rate segment to static positions, from which a channel oscillates
 MAX_COMMON_SIGMA = 3.0  # sigmas by which a level may differ from the common one and still be it
+DRIFTS = ("bias_instability", "random_walk")  # terms of the noise
+MAX_P_VALUE = 1e-3  # of a drift that enters: of 12 that are absent, one in a campaign of a hundred
+LEVEL_COLUMNS = [column.name for column in tables.LEVELS.columns]
+MIN_NOISE_RECORDING_S = 1800.0  # s, of a rest that is recorded for its noise
 OWN, COMMON = "own", "common"
 STATED, RESIDUALS = "stated", "residuals"  # of means without time
 
 
-def effective_levels(noise: pd.DataFrame) -> pd.DataFrame:
+def drift_of(terms: NoiseTerms) -> dict[str, float]:
+    """What of the terms of a channel enters the covariance, by name.
+
+    Of drifts that the data do not tell from each other that is the likeliest.
+    """
+    sizes = {name: float(getattr(terms.model, name)) for name in DRIFTS}
+    certain = {name for name in DRIFTS if terms.terms[name].p_value < MAX_P_VALUE}
+    return {name: size for name, size in sizes.items() if size > 0 and name in certain}
+
+
+def effective_levels(
+    noise: pd.DataFrame, drifts: Mapping[str, Mapping[str, float]] | None = None
+) -> pd.DataFrame:
     """The table of effective levels, by the levels of all manoeuvres.
+
+    `drifts`: see `drift_of`, by channel.
 
     Weighted with w = (N/σ)², their relative precision, for else a level that came out low would
     weigh more for it. Then the common level has the relative sigma (Σw)^−½, and Σw/2 degrees of
@@ -45,7 +68,9 @@ def effective_levels(noise: pd.DataFrame) -> pd.DataFrame:
         common = {"white_noise": level, "sigma": level * total**-0.5, "source": COMMON}
         common["degrees"] = total / 2
         elsewhere = dict.fromkeys(("manoeuvre", "phase", "measured", "per_sample"))
-        rows.append(elsewhere | {"channel": channel} | common)
+        rows.append(
+            elsewhere | {"channel": channel} | common | dict((drifts or {}).get(channel, {}))
+        )
         for row, precision in zip(own, weight, strict=True):
             differs = abs(row["white_noise"] - level) > MAX_COMMON_SIGMA * row["sigma"]
             rows.append(
@@ -59,7 +84,17 @@ def effective_levels(noise: pd.DataFrame) -> pd.DataFrame:
                     else {}
                 )
             )
-    return pd.DataFrame(rows) if rows else tables.LEVELS.empty()
+    return pd.DataFrame(rows, columns=LEVEL_COLUMNS) if rows else tables.LEVELS.empty()
+
+
+def only_noise(manoeuvres: pd.DataFrame, terms: pd.DataFrame) -> bool:
+    """Whether a campaign is nothing but a long rest in one attitude: a recording of the noise."""
+    attitudes = manoeuvres[[f"up_{axis}" for axis in tables.AXES]]
+    alike = len(manoeuvres) == 1 or (
+        bool(attitudes.notna().all(axis=None)) and len(attitudes.drop_duplicates()) == 1
+    )
+    resting = bool((manoeuvres["do"] == "rest").all())
+    return alike and resting and bool((terms["seconds"] >= MIN_NOISE_RECORDING_S).any())
 
 
 class NoiseLevels:
@@ -84,6 +119,13 @@ class NoiseLevels:
         """The standard deviation of the samples of some channels; NaN where nothing is known."""
         rows = [self._rows.get((manoeuvre, phase, channel)) for channel in channels]
         return np.array([np.nan if row is None else row["per_sample"] for row in rows])
+
+    def drift(self, sensor: str) -> MeasuredDrift:
+        """The drift of the biases of a sensor, `gyro` or `accel`, by the noise at rest."""
+        rows = [self._rows.get((None, None, f"{sensor}_{axis}"), {}) for axis in tables.AXES]
+        sizes = np.array([[row.get(term) or 0.0 for term in DRIFTS] for row in rows], np.float64)
+        instability, walk = np.nan_to_num(sizes).T
+        return MeasuredDrift(instability, walk)
 
     def oscillates(self, manoeuvre: str, channels: Sequence[str]) -> bool:
         """Whether a channel oscillates in the steady part of a turn, and not at rest."""

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import EquationBlock, Name, compressed, whitened
 from inertial.estimation.least_squares import Estimate, System
-from inertial.estimation.random_walk import Stretch, linear_trend
+from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, linear_trend
 from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
 from inertial.estimation.triad import UNKNOWNS
 from inertial.estimation.variance_components import (
@@ -62,17 +62,18 @@ def weighted(
     scatter: float = 0.0,
     walk: float = 0.0,
     effect_sigma: Mapping[str, float] | None = None,
+    measured: MeasuredDrift = NO_DRIFT,
 ) -> Estimate:
     """The twelve parameters of smallest variance from any number of static positions.
 
     `scatter`, m/s²: between static positions, beyond noise and tilt; `walk`, m/s²/√s: random walk
-    of the bias, see `random_walk`; `effect_sigma`: of parameters of effects, which are unknowns
-    too.
+    of the bias, see `random_walk`; both beyond the `measured` drift; `effect_sigma`: of parameters
+    of effects, which are unknowns too.
     """
     known = (gravity, gravity_sigma, position_sigma)
     about = Triad(np.eye(3), np.full(3, np.nan))
     for _ in range(ITERATIONS):  # M multiplies the tilts and gravity
-        estimate = equations(statics, *known, scatter, about, effect_sigma, walk).solve()
+        estimate = equations(statics, *known, scatter, about, effect_sigma, walk, measured).solve()
         about = triad_of(estimate)
     return estimate
 
@@ -84,17 +85,20 @@ def fit(
     position_sigma: float,
     noise_degrees: float = np.inf,
     effect_sigma: Mapping[str, float] | None = None,
+    measured: MeasuredDrift = NO_DRIFT,
 ) -> ScatterFit:
     """The estimate with the scatter and random walk of largest restricted likelihood."""
     known = (gravity, gravity_sigma, position_sigma)
-    estimate = weighted(statics, *known, effect_sigma=effect_sigma)
+    estimate = weighted(statics, *known, effect_sigma=effect_sigma, measured=measured)
     about = triad_of(estimate)
 
     def fit_with(scatter: float, walk: float) -> Estimate:
-        return equations(statics, *known, scatter, about, effect_sigma, walk).solve_shared()
+        return equations(
+            statics, *known, scatter, about, effect_sigma, walk, measured
+        ).solve_shared()
 
     each = list(range(len(statics)))  # has a block of its own, and so a scatter of its own
-    likelihood = _drifting(statics, *known, about, effect_sigma, each).likelihood
+    likelihood = _drifting(statics, *known, about, effect_sigma, each, 0.0, measured).likelihood
     stretches = [static.stretch for static in statics if static.stretch is not None]
     alternatives = [
         likelihood.of_scatter([static.position for static in statics]),
@@ -109,7 +113,9 @@ def fit(
     likely = Deviances(likelihood.of_scatter(), likelihood.of_walk(), likelihood.of_both)
     result = with_random_walk(fit_with, likely, SCATTER_BOUNDS, search, alternatives, noise_degrees)
     if result.scatter or result.random_walk:
-        estimate = weighted(statics, *known, result.scatter, result.random_walk, effect_sigma)
+        estimate = weighted(
+            statics, *known, result.scatter, result.random_walk, effect_sigma, measured
+        )
     return replace(result, estimate=estimate)
 
 
@@ -122,16 +128,18 @@ def equations(
     about: Triad,
     effect_sigma: Mapping[str, float] | None = None,
     walk: float = 0.0,
+    measured: MeasuredDrift = NO_DRIFT,
 ) -> System:
-    """All equations; `scatter`, `walk` as in `weighted`.
+    """All equations; `scatter`, `walk`, `measured` as in `weighted`.
 
     They are linear `about` M and a bias, which is NaN where it is not known yet.
 
     Unknowns: M by rows, bias, gravity, effects; eliminated: the tilts.
     """
     known = (gravity, gravity_sigma, position_sigma, about, effect_sigma)
-    if walk:  # else each static position has a scatter of its own
-        return drifting(statics, *known, walking=True).system(scatter, walk)
+    if walk or measured:  # else each static position has a scatter of its own
+        drifts = drifting(statics, *known, walking=True, measured=measured)
+        return drifts.system(scatter, walk)
     return drifting(statics, *known, scatter, walking=False).system()
 
 
@@ -145,14 +153,16 @@ def drifting(
     scatter: float = 0.0,
     *,
     walking: bool,
+    measured: MeasuredDrift = NO_DRIFT,
 ) -> DriftingEquations:
     """All equations before the errors are eliminated, arguments as in `equations`.
 
     `walking`: a random walk may be added, so that only what is of one stretch is one block.
     """
-    keys: list[Hashable] = [(s.position, s.stretch if walking else None) for s in statics]
+    timed = walking or bool(measured)
+    keys: list[Hashable] = [(s.position, s.stretch if timed else None) for s in statics]
     known = (gravity, gravity_sigma, position_sigma, about, effect_sigma)
-    return _drifting(statics, *known, keys, scatter)
+    return _drifting(statics, *known, keys, scatter, measured)
 
 
 def _drifting(
@@ -164,6 +174,7 @@ def _drifting(
     effect_sigma: Mapping[str, float] | None,
     keys: Sequence[Hashable],
     scatter: float = 0.0,
+    measured: MeasuredDrift = NO_DRIFT,
 ) -> DriftingEquations:
     """The same, to which drifts may be added; `keys`: what has one key is one block."""
     effect_sigma = effect_sigma or {}
@@ -194,6 +205,7 @@ def _drifting(
         np.array([*PRIOR_SIGMA, gravity_sigma, *effect_sigma.values()]),
         tuple(names),
         BIAS,
+        measured=measured,
     )
 
 

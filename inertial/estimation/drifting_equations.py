@@ -8,19 +8,33 @@ unknowns, all others eliminated, the equations say N d = r, and before them d ~ 
 
 for every size by the eigenvalues of one matrix (Patterson & Thompson 1971; Kang et al. 2008,
 Efficient control of population structure in model organism association mapping).
+
+A drift that was measured is known before: its covariance C = L Lᵀ is the same for every size. Then
+the equations of what is beyond it are
+
+    N − N L S⁻¹ Lᵀ N,   r − N L S⁻¹ Lᵀ r,   S = I + Lᵀ N L,
+
+and −2 log of the likelihood without any is larger by log det S − rᵀ L S⁻¹ Lᵀ r.
 """
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag
+from scipy.linalg import block_diag, solve_triangular
 
 from inertial.estimation.elimination import EquationBlock, Name, eliminate, partial_r_factor
 from inertial.estimation.least_squares import System, solve
-from inertial.estimation.random_walk import Stretch, walk_covariance, with_drifts
+from inertial.estimation.random_walk import (
+    NO_DRIFT,
+    MeasuredDrift,
+    Stretch,
+    measured_covariance,
+    walk_covariance,
+    with_drifts,
+)
 from inertial.estimation.triad import UNKNOWNS
 
 Array = NDArray[np.float64]
@@ -33,7 +47,8 @@ class DriftingEquations:
 
     `blocks`: in the order of their elimination, with the stretch of each; `positions`: of each;
     `sigma`: of the errors; `prior`, `prior_sigma`, `names`: of the shared unknowns; `bias`: the
-    first of the three biases in them; `parameters`: how many of the first have vague priors.
+    first of the three biases in them; `parameters`: how many of the first have vague priors;
+    `measured`: the drift of the bias that is known from the noise.
     """
 
     blocks: Sequence[tuple[EquationBlock, Stretch]]
@@ -44,11 +59,13 @@ class DriftingEquations:
     names: tuple[tuple[str, str], ...]
     bias: int
     parameters: int = UNKNOWNS
+    measured: MeasuredDrift = NO_DRIFT
 
     def system(self, scatter: float = 0.0, walk: float = 0.0) -> System:
         """All equations, the errors eliminated; unit of the readings, and the same per √s."""
         shared = len(self.prior)
-        blocks, drift_sigma = with_drifts(self.blocks, shared, self.bias, scatter, walk)
+        drift = (scatter, walk, self.measured)
+        blocks, drift_sigma = with_drifts(self.blocks, shared, self.bias, *drift)
         rows, eliminated = eliminate(blocks, shared, {**self.sigma, **drift_sigma})
         return System(
             rows[:, :-1],
@@ -82,13 +99,14 @@ class DriftingEquations:
         stacked = np.vstack([rows, np.eye(shared, every + 1)])
         stacked[: len(rows), :shared] *= self.prior_sigma
         corner = partial_r_factor(stacked, shared)[shared:, shared:]
+        stretches = [stretch for _, stretch in self.blocks]
         return DriftLikelihood(
-            [stretch for _, stretch in self.blocks],
+            stretches,
             self.positions,
             corner[:, :-1].T @ corner[:, :-1],
             corner[:, :-1].T @ corner[:, -1],
             constant.deviance + eliminated.deviance,
-        )
+        ).beyond(self.measured)
 
 
 @dataclass(frozen=True)
@@ -104,6 +122,25 @@ class DriftLikelihood:
     information: Array
     right: Array
     constant: float
+
+    def beyond(self, measured: MeasuredDrift) -> "DriftLikelihood":
+        """The same of what is beyond a drift that was measured."""
+        if not measured:
+            return self
+        spread = np.zeros_like(self.information)
+        for axis, covariance in enumerate(measured_covariance(self.stretches, measured)):
+            spread[axis::3, axis::3] = _root(covariance)
+        carried = self.information @ spread
+        lower = np.linalg.cholesky(np.eye(spread.shape[1]) + spread.T @ carried)
+        half = solve_triangular(lower, carried.T, lower=True)
+        known = solve_triangular(lower, spread.T @ self.right, lower=True)
+        rise = 2 * float(np.sum(np.log(np.diag(lower)))) - float(known @ known)
+        return replace(
+            self,
+            information=self.information - half.T @ half,
+            right=self.right - half.T @ known,
+            constant=self.constant + rise,
+        )
 
     def of_scatter(
         self, names: Sequence[Hashable] | None = None, weights: Sequence[float] | None = None
@@ -153,6 +190,12 @@ class DriftLikelihood:
             return self.constant + float(np.sum(np.log1p(grown))) - drop
 
         return deviance
+
+
+def _root(covariance: Array) -> Array:
+    """L of a covariance L Lᵀ, which may be singular."""
+    values, vectors = np.linalg.eigh(covariance)
+    return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
 
 
 def _shared(names: Sequence[Hashable]) -> Array:

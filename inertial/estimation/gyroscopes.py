@@ -23,7 +23,7 @@ from inertial.estimation.gyroscope_observations import (
 )
 from inertial.estimation.horizontal_earth_rate import known_azimuths, size_constraint
 from inertial.estimation.least_squares import Estimate, System, solve
-from inertial.estimation.random_walk import Stretch, linear_trend
+from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, linear_trend
 from inertial.estimation.triad import UNKNOWNS
 from inertial.estimation.variance_components import (
     Deviances,
@@ -70,18 +70,19 @@ def joint(
     position_sigma: float,
     scatter: float = 0.0,
     walk: float = 0.0,
+    measured: MeasuredDrift = NO_DRIFT,
 ) -> Estimate:
     """Bias and M of the gyros from all static positions and rate segments at once.
 
     `scatter`, rad/s: of the readings between manoeuvres, beyond noise; `walk`, rad/s/√s: random
-    walk of the bias, see `random_walk`.
+    walk of the bias, see `random_walk`; both beyond the `measured` drift.
 
     The equations hold products of M with the errors, so they are solved `ITERATIONS` times, each
     time about the last result; so is the constraint on the horizontal earth rate.
     """
     point = Linearisation(np.eye(3), _median_rate(statics), {})
     for _ in range(ITERATIONS):
-        equations = linearised(point, segments, steadies, earth, position_sigma)
+        equations = linearised(point, segments, steadies, earth, position_sigma, None, measured)
         estimate = equations.system(statics, scatter, walk).solve()
         point = linearisation_at(estimate, earth)
     return estimate
@@ -94,11 +95,12 @@ def fit(
     earth: Earth,
     position_sigma: float,
     noise_degrees: float = np.inf,
+    measured: MeasuredDrift = NO_DRIFT,
 ) -> ScatterFit:
     """The joint estimate with the scatter and random walk of largest restricted likelihood."""
     others = (segments, steadies, earth, position_sigma)
-    estimate = joint(statics, *others)
-    equations = linearised(linearisation_at(estimate, earth), *others)
+    estimate = joint(statics, *others, measured=measured)
+    equations = linearised(linearisation_at(estimate, earth), *others, None, measured)
 
     drifting = equations.with_statics(statics).drifting()
     likelihood = drifting.likelihood
@@ -125,7 +127,7 @@ def fit(
     )
     result = with_random_walk(fit_with, likely, SCATTER_BOUNDS, search, alternatives, noise_degrees)
     if result.scatter or result.random_walk:
-        estimate = joint(statics, *others, result.scatter, result.random_walk)
+        estimate = joint(statics, *others, result.scatter, result.random_walk, measured)
     return replace(result, estimate=estimate)
 
 
@@ -151,7 +153,8 @@ class LinearisedEquations:
     """The equations of rate segments, to which those of static positions are added.
 
     `blocks`: with the position and the stretch of each, None of a segment that no gyro senses;
-    `sigma`: of the errors; `effect_sigma`: prior sigmas of the parameters of effects.
+    `sigma`: of the errors; `effect_sigma`: prior sigmas of the parameters of effects; `measured`:
+    drift of the biases.
     """
 
     point: Linearisation
@@ -159,6 +162,7 @@ class LinearisedEquations:
     effect_sigma: Mapping[str, float]
     blocks: Sequence[tuple[str, EquationBlock, Stretch] | None]
     sigma: Mapping[Name, float]
+    measured: MeasuredDrift = NO_DRIFT
 
     def with_statics(self, statics: Sequence[StaticRate]) -> "LinearisedEquations":
         """The same with the equations of static positions, before the others."""
@@ -192,6 +196,7 @@ class LinearisedEquations:
             np.array([*PRIOR_SIGMA, self.earth.up_sigma, *self.effect_sigma.values()]),
             tuple(names),
             BIAS,
+            measured=self.measured,
         )
 
     def system(
@@ -208,11 +213,12 @@ def linearised(
     earth: Earth,
     position_sigma: float,
     effect_sigma: Mapping[str, float] | None = None,
+    measured: MeasuredDrift = NO_DRIFT,
 ) -> LinearisedEquations:
     """The equations of rate segments and steady rates, linear about `point`.
 
     `position_sigma`: of the positions, rad; `effect_sigma`: of parameters of effects, which are
-    unknowns too.
+    unknowns too; `measured`: drift of the biases.
     """
     effect_sigma = effect_sigma or {}
     prior = np.concatenate([PRIOR, [earth.up], np.zeros(len(effect_sigma))])
@@ -229,4 +235,4 @@ def linearised(
         block = steady_equations(steady, name, point.matrix, *common)
         stretch = steady.stretch or Stretch(f"{name} (steady)")
         blocks.append((steady.position.name, block, stretch))
-    return LinearisedEquations(point, earth, effect_sigma, blocks, sigma)
+    return LinearisedEquations(point, earth, effect_sigma, blocks, sigma, measured)

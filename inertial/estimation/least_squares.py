@@ -264,6 +264,24 @@ class EffectInformation:
         along = directions.T @ self.right[list(chosen)]
         return float(np.sum(along**2 / values)), len(values)
 
+    def given(self, fitted: Sequence[int]) -> "EffectInformation":
+        """The same with some columns fitted as well, on which no information remains."""
+        own = list(fitted)
+        values, directions, _ = self._modes(own)
+        white = directions / np.sqrt(values)
+        across = self.information[:, own] @ white
+        drop, used = self.drop(own)
+        information = self.information - across @ across.T
+        right = self.right - across @ (white.T @ self.right[own])
+        information[own], information[:, own], right[own] = 0.0, 0.0, 0.0
+        return replace(
+            self,
+            information=information,
+            right=right,
+            chi_squared=self.chi_squared - drop,
+            degrees=self.degrees - used,
+        )
+
     def estimate(self, chosen: Sequence[int]) -> tuple[Array, Array]:
         """Values and covariance of the chosen columns; NaN for unobservable ones."""
         values, directions, unobservable = self._modes(chosen)

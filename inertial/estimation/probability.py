@@ -59,6 +59,12 @@ def t_sf(value: ArrayLike, degrees: ArrayLike) -> Array:
     return np.asarray(special.stdtr(n, -v))
 
 
+def t_isf(chance: ArrayLike, degrees: ArrayLike) -> Array:
+    """Inverse of `t_sf`."""
+    p, n = _reals(chance, degrees)
+    return np.asarray(-special.stdtrit(n, p))
+
+
 def norm_sf(value: ArrayLike) -> Array:
     """Probability of a larger standard normal value."""
     (v,) = _reals(value)

@@ -11,6 +11,10 @@ d and e of every stretch are unknowns, for each axis. The random walk is 0 at th
 that is nearest to the middle of the campaign, so the bias is that of this time. Logs without a
 common clock have a random walk each, whose start has the variance that all recorded time leads to.
 
+Scatter and random walk are alike on all axes, and estimated from what the stretches differ by. What
+the noise within static stretches says of K and of a bias instability B, for each axis, is known
+before and comes on top; see `bias_instability`. Stretches without time have no such drift.
+
 Source: IEEE Std 952-2020, rate random walk.
 """
 
@@ -19,7 +23,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
 
+from inertial.estimation.bias_instability import Instability, moments
 from inertial.estimation.elimination import EquationBlock, Name
 
 Array = NDArray[np.float64]
@@ -47,6 +53,23 @@ class Stretch:
         return self.start + self.seconds
 
 
+@dataclass(frozen=True, eq=False)
+class MeasuredDrift:
+    """What the noise within static stretches says of the drift of each axis, (3,), 0 if nothing.
+
+    `instability`: B, unit of the readings; `walk`: K, the same per √s.
+    """
+
+    instability: Array
+    walk: Array
+
+    def __bool__(self) -> bool:
+        return bool(self.instability.any() or self.walk.any())
+
+
+NO_DRIFT = MeasuredDrift(np.zeros(3), np.zeros(3))
+
+
 def linear_trend(stretches: Sequence[Stretch]) -> Callable[[Stretch], Stretch]:
     """An alternative to a random walk: a drift in proportion to the time from the middle."""
     timed = [stretch for stretch in stretches if np.isfinite(stretch.end)]
@@ -66,37 +89,59 @@ def with_drifts(
     bias: int,
     scatter: float,
     walk: float,
+    measured: MeasuredDrift = NO_DRIFT,
 ) -> tuple[list[EquationBlock], dict[Name, float]]:
     """Equations with the drifts as further errors, ordered so that few errors stay pending.
 
     Parameters
     ----------
     shared : number of unknowns that all blocks share; `bias`: the first of the three biases in it
-    scatter, walk : unit of the readings; the same per √s
+    scatter, walk : unit of the readings; the same per √s; both beyond what is `measured`
 
     Returns
     -------
     the blocks, and the sigmas of those errors that are observations of zero
     """
-    if not (scatter or walk):
+    if not (scatter or walk or measured):
         return [block for block, _ in blocks], {}
     own: dict[Stretch, list[EquationBlock]] = {}
     for block, stretch in blocks:
         own.setdefault(stretch, []).append(_with_drift(block, stretch, bias))
-    timed = [s for s in own if walk and np.isfinite(s.end)]
-    scattered = [s for s in own if not (walk and np.isfinite(s.end))]
+    timed = [s for s in own if (walk or measured) and np.isfinite(s.end)]
+    scattered = [s for s in own if not ((walk or measured) and np.isfinite(s.end))]
     result = [block for stretch in scattered for block in own[stretch]]
-    for stretch, relations in _random_walks(timed, shared, scatter, walk):
-        result += [*relations, *own[stretch]]
-    return result, {name: scatter for stretch in scattered for name in _drifts(stretch)}
+    sigma = {name: scatter for stretch in scattered for name in _drifts(stretch)}
+    recorded = sum(stretch.seconds for stretch in timed)
+    drifts = _drifts_of_axes(timed, scatter, walk, measured)
+    for clock, path, nearest, gaps in _paths(timed):
+        before = f"start {clock}"
+        for drift in drifts:
+            sigma |= drift.at_start(before, clock, recorded)
+            if not drift.size:
+                sigma |= {_drifts(stretch)[drift.axis]: scatter for stretch in path}
+        for stretch, gap in zip(path, gaps, strict=True):
+            zero = nearest.name if clock == COMMON_CLOCK else None
+            result += [d.relation(before, stretch, gap, zero, shared) for d in drifts if d.size]
+            result += own[stretch]
+            before = stretch.name
+    return result, sigma
+
+
+def _drifts_of_axes(
+    timed: Sequence[Stretch], scatter: float, walk: float, measured: MeasuredDrift
+) -> list["_Drift"]:
+    unstable = timed and measured.instability.any()
+    processes = instability_within(timed) if unstable else None
+    slow = measured.instability * (processes.walk if processes else 0.0)
+    walks = np.sqrt(walk**2 + measured.walk**2 + slow**2)
+    return [
+        _Drift(axis, scatter, float(walks[axis]), float(measured.instability[axis]), processes)
+        for axis in range(3)
+    ]
 
 
 def _drifts(stretch: Stretch) -> tuple[Name, ...]:
     return tuple((f"drift {i}", stretch.name) for i in range(3))
-
-
-def _ends(stretch: Stretch) -> tuple[Name, ...]:
-    return tuple((f"drift at end {i}", stretch.name) for i in range(3))
 
 
 def _with_drift(block: EquationBlock, stretch: Stretch, bias: int) -> EquationBlock:
@@ -108,33 +153,90 @@ def _with_drift(block: EquationBlock, stretch: Stretch, bias: int) -> EquationBl
     return EquationBlock(rows, (*block.own, *_drifts(stretch)), block.count, block.deviance)
 
 
-def _random_walks(
-    stretches: Sequence[Stretch], shared: int, scatter: float, walk: float
-) -> Iterator[tuple[Stretch, list[EquationBlock]]]:
-    """Every stretch in the order of time, with the relations of its drift to the others."""
-    for clock, path, nearest, gaps in _paths(stretches):
-        before = tuple((f"drift at end {i}", f"start {clock}") for i in range(3))
-        for stretch, gap in zip(path, gaps, strict=True):
-            relations = []
-            if clock != COMMON_CLOCK and stretch is path[0]:
-                recorded = sum(stretch.seconds for stretch in stretches)
-                start_sigma = np.array([[walk * np.sqrt(recorded)]])
-                relations.append(_relation(np.ones((1, 1)), start_sigma, before, shared))
-            mean, mixed, end = (walk**2 * part for part in _increments(stretch, gap))
-            lower = np.zeros((2, 2))
-            lower[0, 0] = np.sqrt(mean + scatter**2)
-            lower[1, 0] = mixed / lower[0, 0]
-            lower[1, 1] = np.sqrt(end - lower[1, 0] ** 2)
-            own, after = _drifts(stretch), _ends(stretch)
-            change = np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])
-            if clock == COMMON_CLOCK and before == _ends(nearest):
-                relations.append(_relation(change[:, 1:], lower, (*own, *after), shared))
-            elif clock == COMMON_CLOCK and stretch is nearest:
-                relations.append(_relation(change[:, :2], lower, (*before, *own), shared))
-            else:
-                relations.append(_relation(change, lower, (*before, *own, *after), shared))
-            yield stretch, relations
-            before = after
+@dataclass(frozen=True)
+class _Drift:
+    """The drift of one axis. Its states: the random walk, if any, then the processes of B, if any.
+
+    `walk`: K, per √s; `size`: number of states.
+    """
+
+    axis: int
+    scatter: float
+    walk: float
+    instability: float
+    processes: Instability | None
+
+    @property
+    def size(self) -> int:
+        """The number of states."""
+        return int(self.walk > 0) + len(self._constants)
+
+    @property
+    def _constants(self) -> Array:
+        used = self.processes is not None and self.instability > 0
+        return self.processes.constants if used and self.processes else np.zeros(0)
+
+    @property
+    def _variance(self) -> float:
+        """Of each process."""
+        return self.instability**2 * (self.processes.variance if self.processes else 0.0)
+
+    def _names(self, stretch: str) -> tuple[Name, ...]:
+        walk = [(f"drift at end {self.axis}", stretch)] if self.walk else []
+        processes = range(len(self._constants))
+        return (*walk, *((f"process {i} at end {self.axis}", stretch) for i in processes))
+
+    def at_start(self, start: str, clock: str, recorded: float) -> dict[Name, float]:
+        """The sigmas of the states at the start; a walk has none where it is 0 elsewhere."""
+        names = self._names(start)
+        sigma = dict.fromkeys(names[self.walk > 0 :], float(np.sqrt(self._variance)))
+        if self.walk and clock != COMMON_CLOCK:
+            sigma[names[0]] = self.walk * float(np.sqrt(recorded))
+        return sigma
+
+    def relation(
+        self, before: str, stretch: Stretch, gap: float, zero: str | None, shared: int
+    ) -> EquationBlock:
+        """Of the mean drift and the states at the end to the states before, in units of sigma.
+
+        `zero`: the stretch at whose end the random walk is 0.
+        """
+        mean, kept, covariance = self._step(stretch.seconds, gap)
+        size = self.size
+        change = np.zeros((1 + size, 2 * size + 1))
+        change[0, :size], change[1:, :size] = -mean, -np.diag(kept)
+        change[:, size:] = np.eye(1 + size)
+        lower = np.linalg.cholesky(covariance)
+        rows = solve_triangular(lower, change, lower=True)
+        names = (*self._names(before), _drifts(stretch)[self.axis], *self._names(stretch.name))
+        walks = [0] * (before == zero) + [size + 1] * (stretch.name == zero) if self.walk else []
+        there = [i for i in range(len(names)) if i not in walks]
+        padded = np.zeros((len(rows), shared + len(there) + 1))
+        padded[:, shared:-1] = rows[:, there]
+        deviance = 2 * float(np.sum(np.log(np.diag(lower))))
+        return EquationBlock(padded, tuple(names[i] for i in there), 0, deviance)
+
+    def _step(self, seconds: float, gap: float) -> tuple[Array, Array, Array]:
+        """How the mean and the states at the end follow from those before: factors, covariance."""
+        own, variance = self._constants, self._variance
+        pause = np.exp(-gap / own)
+        within, mixed, kept = moments(seconds, own)
+        of_mean = variance * (within - mixed**2 + mixed**2 * (1 - pause**2))
+        of_both = variance * (mixed - mixed * kept + mixed * kept * (1 - pause**2))
+        of_end = variance * -np.expm1(-2 * (seconds + gap) / own)
+        mean, end = mixed * pause, kept * pause
+        if self.walk:
+            of_walk = self.walk**2 * np.array([gap + seconds / 3, gap + seconds / 2, gap + seconds])
+            of_mean, of_both, of_end = (
+                np.append(walk, rest)
+                for walk, rest in zip(of_walk, (of_mean, of_both, of_end), strict=True)
+            )
+            mean, end = np.append(1.0, mean), np.append(1.0, end)
+        covariance = np.diag(np.append(self.scatter**2 + of_mean.sum(), of_end))
+        if self.processes is not None:
+            covariance[0, 0] += self.instability**2 * self.processes.white(seconds)
+        covariance[0, 1:] = covariance[1:, 0] = of_both
+        return mean, end, covariance
 
 
 def _paths(
@@ -191,14 +293,31 @@ def _common(mean: Array, mixed: Array, end: Array) -> Array:
     return covariance
 
 
-def _relation(change: Array, lower: Array, names: tuple[Name, ...], shared: int) -> EquationBlock:
-    """Changes of the drift, the same for three axes, with the covariance lower · lowerᵀ."""
-    white = change / lower[0, 0]
-    if len(lower) > 1:
-        white[1] = (change[1] - lower[1, 0] * white[0]) / lower[1, 1]
-    count, ends = change.shape
-    rows = np.zeros((3 * count, shared + 3 * ends + 1))
-    for axis in range(3):
-        rows[axis::3, shared + axis : shared + 3 * ends : 3] = white
-    deviance = 6 * float(np.sum(np.log(np.diag(lower))))
-    return EquationBlock(rows, names, 0, deviance)
+def instability_within(stretches: Sequence[Stretch]) -> Instability:
+    """The processes that change within a campaign: by its span, or by what is recorded of it."""
+    seconds = [stretch.seconds for stretch in stretches]
+    span = sum(seconds)
+    if all(stretch.clock == COMMON_CLOCK for stretch in stretches):
+        span = max(s.end for s in stretches) - min(s.start for s in stretches)
+    return Instability.between(min(seconds), span)
+
+
+def measured_covariance(stretches: Sequence[Stretch], measured: MeasuredDrift) -> Array:
+    """The covariance of the drifts of each axis by what is measured, (3, n, n); 0 without times."""
+    timed = [i for i, stretch in enumerate(stretches) if np.isfinite(stretch.end)]
+    covariance = np.zeros((3, len(stretches), len(stretches)))
+    if not (timed and measured):
+        return covariance
+    own = list(dict.fromkeys(stretches[i] for i in timed))
+    place = {stretch: i for i, stretch in enumerate(own)}
+    walk, flicker = walk_covariance(own), np.zeros((len(own), len(own)))
+    processes = instability_within(own)
+    for _, path, _, _ in _paths(own):
+        there = np.ix_(*[[place[stretch] for stretch in path]] * 2)
+        flicker[there] = processes.covariance([s.start for s in path], [s.seconds for s in path])
+    squares = measured.instability**2
+    walks = measured.walk**2 + squares * processes.walk**2
+    each = np.multiply.outer(walks, walk) + np.multiply.outer(squares, flicker)
+    of = [place[stretches[i]] for i in timed]
+    covariance[np.ix_(range(3), timed, timed)] = each[np.ix_(range(3), of, of)]
+    return covariance

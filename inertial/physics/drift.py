@@ -8,11 +8,13 @@ a warm-up began earlier, and its amplitude differs by a factor.
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.physics.effect import MEAN_TEMPERATURE, Constant
+from inertial.physics.effect import COLDEST, MEAN_TEMPERATURE, WARMEST, Constant
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
 Array = NDArray[np.float64]
+
+THERMOMETER_ERROR = 1.0  # K beyond the coldest and the warmest mean; resolution of many
 
 NO_CLOCK = (
     "The logs share no clock, so nothing tells how long after one another they were recorded."
@@ -60,9 +62,54 @@ def mean_temperature(motion: Motion, reference: float | None = None) -> Constant
     return Constant(MEAN_TEMPERATURE, "K", _("mean temperature of the campaign"), mean)
 
 
-def warmer(motion: Motion, reference: float | None = None) -> Array:
+def temperature_constants(
+    motion: Motion, reference: float | None, valid: tuple[float, float] | None
+) -> list[Constant]:
+    """The mean temperature, and the range within which what depends on it is known, K."""
+    low, high = valid or (float(motion.temperature.min()), float(motion.temperature.max()))
+    return [
+        mean_temperature(motion, reference),
+        Constant(COLDEST, "K", _("lowest temperature of the campaign"), low),
+        Constant(WARMEST, "K", _("highest temperature of the campaign"), high),
+    ]
+
+
+def warmer(
+    motion: Motion, reference: float | None = None, valid: tuple[float, float] | None = None
+) -> Array:
     """Temperature of each stretch less `reference`, the mean of the campaign, (n,), K.
 
-    Without a reference the motion is all of the campaign.
+    Without a reference the motion is all of the campaign. Outside of the range that is valid it is
+    not extrapolated: NaN.
     """
-    return np.asarray(motion.temperature - mean_temperature(motion, reference).value)
+    above = motion.temperature - mean_temperature(motion, reference).value
+    return np.asarray(np.where(known_at(motion.temperature, valid), above, np.nan))
+
+
+def known_at(temperature: Array, valid: tuple[float, float] | None) -> NDArray[np.bool_]:
+    """Which temperatures are within a range, or as near to it as a thermometer is sure, (n,)."""
+    low, high = valid or (-np.inf, np.inf)
+    return np.asarray(
+        (temperature >= low - THERMOMETER_ERROR) & (temperature <= high + THERMOMETER_ERROR)
+    )
+
+
+def delay(time: Array, temperature: Array, lag: float) -> Array:
+    """By how much a part of the instrument is warmer than its thermometer, (n,), K.
+
+    It follows with a time constant `lag`, s, of first order: τ dT'/dt = T − T'. A negative one is
+    that of the thermometer, which follows the part: T' = T + |τ| dT/dt, whose derivative is taken
+    with the same time constant, so that it is that of a ramp after |τ|. Between the times (n,), in
+    any order, the temperature is linear; at the first of them both are alike.
+    """
+    if not lag or not np.isfinite(time).all():
+        return np.zeros(len(time))
+    constant = abs(lag)
+    at, place = np.unique(time, return_inverse=True)
+    course = np.bincount(place, temperature) / np.bincount(place)
+    behind, below = np.zeros(len(at)), 0.0
+    for i, (step, rise) in enumerate(zip(np.diff(at), np.diff(course), strict=True), 1):
+        ramp = constant * rise / step
+        below = (below - ramp) * np.exp(-step / constant) + ramp
+        behind[i] = below
+    return np.asarray(-np.sign(lag) * behind[place])

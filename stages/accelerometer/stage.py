@@ -14,6 +14,7 @@ from inertial.campaign.unknown_attitude import add_free_accelerometers
 from inertial.estimation import accelerometers, triad
 from inertial.estimation.accelerometers import StaticForce, equations, triad_of, weighted
 from inertial.estimation.position_outlier import off_position
+from inertial.estimation.random_walk import MeasuredDrift
 from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
 from inertial.physics.forward import Triad
 from inertial.tables.stage import Stage, Tables
@@ -60,7 +61,8 @@ def accelerometer(
         effect_sigma = LEVER_ARM if turns else None
         moving = [rest for _, rest in turns]
         rests = [*(_static_force(position) for position in positions), *moving]
-        fitted = accelerometers.fit(rests, *about, data.noise.degrees, effect_sigma)
+        drift = data.noise.drift("accel")
+        fitted = accelerometers.fit(rests, *about, data.noise.degrees, effect_sigma, drift)
         recorded = np.isfinite(np.array([rest.mean for rest in rests])).any(axis=0)
         why = reasons(fitted.estimate.determined, recorded, "accelerometer", CURES)
         estimates.add_triad("joint", fitted.estimate, why)
@@ -73,11 +75,11 @@ def accelerometer(
             np.all(fitted.estimate.determined[: triad.UNKNOWNS])
         )  # by criticism, against effects
         if not weighed and fitted.p_value < MIN_CONSISTENT_P_VALUE:
-            raised += _position_findings(rests, about, result, effect_sigma, data.mount)
+            raised += _position_findings(rests, about, result, effect_sigma, drift, data.mount)
         for seconds in averaging_times(positions, averaging_steps):
             part = [*(_static_force(position, seconds) for position in positions), *moving]
             shorter = equations(
-                part, *about, fitted.scatter, result, effect_sigma, fitted.random_walk
+                part, *about, fitted.scatter, result, effect_sigma, fitted.random_walk, drift
             )
             estimates.add_averaging("joint", seconds, shorter.solve_shared())
         stops = [_static_force(position) for position in positions]
@@ -95,13 +97,14 @@ def _position_findings(
     about: tuple[float, float, float],
     result: Triad,
     effect_sigma: Mapping[str, float] | None,
+    drift: MeasuredDrift,
     mount: str,
 ) -> Iterator[Finding]:
     """The position in error, where a single one explains the misfit of the model."""
-    off = off_position(rests, *about, result, effect_sigma)
+    off = off_position(rests, *about, result, effect_sigma, drift)
     if off is not None:
-        sigma = weighted(rests, *about, effect_sigma=effect_sigma).sigma[: triad.UNKNOWNS]
-        yield from findings(off, sigma, mount)
+        joint = weighted(rests, *about, effect_sigma=effect_sigma, measured=drift)
+        yield from findings(off, joint.sigma[: triad.UNKNOWNS], mount)
 
 
 def _static_force(position: StaticPosition, seconds: float = np.inf) -> StaticForce:

@@ -43,12 +43,13 @@ def gyroscope(
             estimates.add_nothing("joint", omissions(inputs.left_out))
             continue
         moving = (inputs.turns, inputs.steady_rates, inputs.earth, inputs.position_sigma)
-        fitted = gyroscopes.fit(inputs.static_rates, *moving, data.noise.degrees)
+        drift = data.noise.drift("gyro")
+        fitted = gyroscopes.fit(inputs.static_rates, *moving, data.noise.degrees, drift)
         why = reasons(fitted.estimate.determined, _channels(inputs), "gyro", CURES)
         estimates.add_triad("joint", fitted.estimate, why)
         estimates.add_fit("joint", fitted, inputs.used, inputs.left_out)
         linear = gyroscopes.linearised(
-            gyroscopes.linearisation_at(fitted.estimate, inputs.earth), *moving
+            gyroscopes.linearisation_at(fitted.estimate, inputs.earth), *moving, None, drift
         )
         for seconds in averaging_times(inputs.static_positions, averaging_steps):
             shorter = linear.system(

@@ -17,6 +17,9 @@ DECLARED = Declared(
     writes={
         "noise": tables.NOISE,
         "levels": tables.LEVELS,
+        "allan": tables.ALLAN,
+        "spectra": tables.SPECTRA,
+        "terms": tables.NOISE_TERMS,
     },
     streams=("samples",),
 )

@@ -1,7 +1,7 @@
-"""White noise of every channel in every manoeuvre, with the value of the data sheet."""
+"""White noise of every channel in every manoeuvre, and all terms of the noise at rest."""
 
 from collections.abc import Iterator, Sequence
-from itertools import pairwise, product
+from itertools import chain, pairwise, product
 from typing import Any
 
 import numpy as np
@@ -16,12 +16,12 @@ from inertial.estimation.spectrum import band_levels, white_level
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from stages.noise.declared import DECLARED
+from stages.noise.static_stretches import SENSORS, StaticStretches
 
 Array = NDArray[np.float64]
 
 MAX_SAMPLES = 32768  # of one periodogram: bounds the memory of a long log
 PHASES = {"rest": "rest", "rest-before": "rest", "rest-after": "rest", "steady": "steady"}
-_SENSORS = {"accel": slice(0, 3), "gyro": slice(3, 6)}
 MIN_SAMPLES = 16  # fewer give no level
 LEAST_SIGMA = {"accel": 1e-6, "gyro": 1e-8}  # m/s² and rad/s: no mean is known better
 
@@ -39,13 +39,17 @@ def noise(
     from_hz: float,
     to_hz: float,
 ) -> Tables:
-    """One row for each manoeuvre, phase (rest or steady) and channel that is recorded."""
+    """White noise by manoeuvre, phase (rest or steady) and channel; the terms of each channel."""
     clock = clocks_of(clocks)
-    sheet = {f"{row['sensor']}_{row['axis']}": row["white_noise"] for row in rows_of(sensors)}
+    sheet = {f"{row['sensor']}_{row['axis']}": row for row in rows_of(sensors)}
     quiet = [row for row in rows_of(segments) if row["phase"] in PHASES]
     spectra: dict[tuple[str, str], _Spectra] = {}
-    for log, record, values in _unbroken(samples, gaps, masks, Repairs(channel_repairs)):
+    lengths = [row["to_record"] - row["from_record"] for row in quiet if row["phase"] != "steady"]
+    static = StaticStretches(max(lengths, default=0))
+    number = 0
+    for log, record, values, continues in _unbroken(samples, gaps, masks, Repairs(channel_repairs)):
         step = clock[log].duration
+        number += not continues
         for row in quiet:
             if row["log"] != log or step is None:
                 continue
@@ -54,17 +58,27 @@ def noise(
             collected = spectra.setdefault((row["manoeuvre"], PHASES[row["phase"]]), _Spectra())
             for start in range(0, len(chosen), MAX_SAMPLES):
                 collected.add(chosen[start : start + MAX_SAMPLES], 1 / step, (from_hz, to_hz))
+            if row["phase"] != "steady" and len(chosen):
+                static.add((row["manoeuvre"], row["phase"], number), chosen, step)
     rows = [
-        row | {"data_sheet": sheet[row["channel"]]}
+        row | {"data_sheet": sheet[row["channel"]]["white_noise"]}
         for (manoeuvre, phase), collected in spectra.items()
         for row in collected.rows(manoeuvre, phase)
     ]
     measured = pd.DataFrame(rows) if rows else tables.NOISE.empty()
     of_means = list(_levels_of_means(quiet, ranges))
-    levels = effective_levels(measured)
+    noises = list(static.noises())
+    levels = effective_levels(measured, dict(chain.from_iterable(n.drifts() for n in noises)))
     if of_means:
-        levels = pd.concat([levels, pd.DataFrame(of_means)]) if rows else pd.DataFrame(of_means)
-    return {"noise": measured, "levels": levels}
+        own = pd.DataFrame(of_means, columns=levels.columns)
+        levels = pd.concat([levels, own]) if rows else own
+    return {
+        "noise": measured,
+        "levels": levels,
+        "allan": [row for each in noises for row in each.allan_rows()],
+        "spectra": [row for each in noises for row in each.spectrum_rows()],
+        "terms": [row for each in noises for row in each.term_rows(sheet)],
+    }
 
 
 def _levels_of_means(quiet: Sequence[Row], ranges: pd.DataFrame) -> Iterator[Row]:
@@ -100,7 +114,7 @@ class _Spectra:
         self.samples: dict[str, int] = {}
 
     def add(self, values: Array, rate: float, band: tuple[float, float]) -> None:
-        for sensor, columns in _SENSORS.items():
+        for sensor, columns in SENSORS.items():
             part = values[:, columns]
             part = part[np.isfinite(part).any(axis=1)]
             if len(part) >= MIN_SAMPLES:
@@ -115,7 +129,7 @@ class _Spectra:
             white, sigma = white_level(np.concatenate(levels))
             for i, axis in enumerate(tables.AXES):
                 if white[i] > 0:
-                    square = self.squares[_SENSORS[sensor]][i]
+                    square = self.squares[SENSORS[sensor]][i]
                     yield {
                         "manoeuvre": manoeuvre,
                         "phase": phase,
@@ -129,9 +143,13 @@ class _Spectra:
 
 def _unbroken(
     samples: Stream, gaps: pd.DataFrame, masks: pd.DataFrame, repairs: Repairs
-) -> Iterator[tuple[str, NDArray[np.int64], Array]]:
-    """Records of one log without a gap or a masked record between them: log, numbers, values."""
+) -> Iterator[tuple[str, NDArray[np.int64], Array, bool]]:
+    """Records of one log without a gap or a masked record between them.
+
+    Log, numbers, values, and whether they continue those before.
+    """
     known = Masks(masks, repairs)
+    before: tuple[str, int, bool, bytes] | None = None  # log, next record, masks
     for log, piece in pieces(samples, ["record", *tables.CHANNELS], repairs):
         record = piece["record"]
         values = np.column_stack([piece[channel] for channel in tables.CHANNELS])
@@ -143,8 +161,11 @@ def _unbroken(
         breaks |= (here[1:] != here[:-1]).any(axis=1)
         edges = [0, *(np.flatnonzero(breaks) + 1).tolist(), len(record)]
         for first, after in pairwise(edges):
+            start = (log, int(record[first]), bool(bad[first]), here[first].tobytes())
+            continues = start == before and start[1] not in starts
+            before = (log, int(record[after - 1]) + 1, *start[2:])
             if not bad[first]:
-                yield log, record[first:after], values[first:after]
+                yield log, record[first:after], values[first:after], continues
 
 
 STAGE = Stage(noise, DECLARED)

@@ -62,6 +62,7 @@ def test_what_stands_still_turns_the_other_way():
 # ---- closure
 
 
+@pytest.mark.slow
 def test_24_positions_by_hand_give_the_gyros_with_honest_sigmas():
     pulls, errors, misfits = [], [], []
     for seed in range(30):

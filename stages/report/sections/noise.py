@@ -1,182 +1,195 @@
-"""The white noise of every channel in every manoeuvre, beside the data sheet."""
+"""The noise of every channel: Allan deviation, spectrum, and the terms that describe both."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from statistics import median
+from collections.abc import Iterable, Iterator, Sequence
 
-from matplotlib.axes import Axes
-
-from inertial.tables import AXES, CHANNEL_PARTS, CHANNELS
+from inertial.tables import AXES
 from inertial.text.messages import _
-from inertial.text.numbers import aligned, common_decimals, shortened, significant, with_sigma
-from inertial.text.units import RANDOM_WALK
-from stages.report import drawing, outline
+from inertial.text.numbers import aligned, common_decimals, fixed, shortened, significant
+from inertial.text.units import RANDOM_WALK, Unit, quantity
+from stages.report import outline
+from stages.report.sections.noise_figures import allan_figure, spectrum_figure
 from stages.report.tables import Record, Tables
+from stages.report.words import SENSORS, capital, listed
 
-NAME = {"gyro": _("Angle random walk"), "accel": _("Velocity random walk")}
-SENSOR = {"gyro": "gyroscope", "accel": "accelerometer"}
+# The terms of IEEE Std 952 in the order of their slopes, with their letters.
+SYMBOL = {
+    "quantisation": "Q",
+    "white_noise": "N",
+    "bias_instability": "B",
+    "random_walk": "K",
+    "ramp": "R",
+}
+NAME = {
+    "gyro": {
+        "quantisation": _("Quantisation"),
+        "white_noise": _("Angle random walk"),
+        "bias_instability": _("Bias instability"),
+        "random_walk": _("Rate random walk"),
+        "ramp": _("Ramp"),
+    },
+    "accel": {
+        "quantisation": _("Quantisation"),
+        "white_noise": _("Velocity random walk"),
+        "bias_instability": _("Bias instability"),
+        "random_walk": _("Acceleration random walk"),
+        "ramp": _("Ramp"),
+    },
+}
 DATA_SHEET = _("data sheet")
-MOST_ROWS = 48
-MOST_NAMES = 30
-MOST_LEVEL_NAMES = 6  # that have room beside each other
-Place = tuple[str, str]  # manoeuvre and phase
-Sheet = Mapping[str, float | None]  # what the data sheet states of each channel
+RESTS = ("rest", "rest-before", "rest-after")
 
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
-    """A figure of all manoeuvres, a table by channel and one by manoeuvre."""
-    rows, sensors = tables.rows("noise"), tables.rows("sensors")
-    sheet = {f"{row['sensor']}_{row['axis']}": row["white_noise"] for row in sensors}
-    if rows:
-        yield _figure(rows, sheet)
-    yield _summary(rows, sheet, list(dict.fromkeys(s["source"] for s in sensors if s["source"])))
-    if rows:
-        yield from (_by_manoeuvre(rows, sensor) for sensor in NAME)
+    """Allan deviation, spectrum and the terms of the noise; the levels where there is neither."""
+    allan, spectra, terms = (tables.rows(name) for name in ("allan", "spectra", "noise_terms"))
+    sheet = tables.rows("sensors")
+    if allan:
+        yield allan_figure(allan, sheet)
+    else:
+        yield outline.Paragraph(_nothing(tables.rows("segments")), "fair")
+    if spectra:
+        yield spectrum_figure(spectra, sheet)
+    if terms:
+        sensors = [s for s in NAME if any(row["channel"].startswith(s) for row in terms)]
+        for sensor in sensors:
+            own = [row for row in terms if row["channel"].startswith(sensor)]
+            yield _terms_table(sensor, own, _note(terms, sheet) if sensor == sensors[-1] else "")
+    else:
+        yield _levels(tables.rows("levels"), sheet)
 
 
 SECTION = outline.Section(
     "noise",
     "Noise",
+    _("The noise of each channel at rest, as averaging time grows, and the terms it consists of."),
     _(
-        "The white noise of each channel, estimated from the data of each manoeuvre. "
-        "Every σ of this report rests on it."
+        "Left to right: quantisation falls with slope −1, white noise (random walk of angle or "
+        "velocity) with −½; bias instability is flat, a random walk of the bias rises with +½, "
+        "a ramp with +1. Points are the data with their 1-σ interval, lines the sum of the fitted "
+        "terms. Every σ of this report rests on white noise as each manoeuvre has it, and on bias "
+        "instability and random walk where they are certain (p < 0.1 %); the data sheet, dashed, "
+        "is used nowhere."
     ),
-    _(
-        "As random walk: multiplied by the square root of time it is the standard "
-        "deviation of the integral. The data sheet is shown for comparison only and is "
-        "used nowhere. A channel that is noisier in one attitude than in another "
-        "responds to vibration of table or building."
-    ),
-    ("noise", "sensors"),
+    ("allan", "spectra", "noise_terms", "levels", "sensors", "segments"),
     parts,
 )
 
 
-def _places(rows: Sequence[Record]) -> list[Place]:
-    return list(dict.fromkeys((row["manoeuvre"], row["phase"]) for row in rows))
-
-
-def _figure(rows: Sequence[Record], sheet: Sheet) -> outline.Figure:
-    places = {place: number for number, place in enumerate(_places(rows))}
-    with drawing.style():
-        figure, axes = drawing.panels(
-            2, 1, 1.45, drawing.Margins(left=0.46, right=0.95, bottom=1.05)
+def _nothing(segments: Iterable[Record]) -> str:
+    """Why there is no Allan deviation."""
+    lengths = [
+        row["to_s"] - row["from_s"]
+        for row in segments
+        if row["phase"] in RESTS and row["from_s"] is not None and row["to_s"] is not None
+    ]
+    if not lengths:
+        return _(
+            "There is no Allan deviation, for no static stretch with time stamps was recorded. "
+            "One of an hour or more (do: rest) shows how the biases wander."
         )
-        for (panel,), sensor in zip(axes, NAME, strict=True):
-            _panel(panel, sensor, rows, places, sheet)
-        handles = dict(zip(*reversed(axes[0][0].get_legend_handles_labels()), strict=True))
-        shown = [name for name in (*AXES, DATA_SHEET) if name in handles]
-        axes[0][0].legend(
-            [handles[name] for name in shown], shown, loc="upper left", bbox_to_anchor=(1.0, 1.0)
-        )
-        named = list(places.items())[:: max(1, -(-len(places) // MOST_NAMES))]
-        many = len(places) > MOST_LEVEL_NAMES
-        axes[1][0].set_xticks(
-            [number for _unused, number in named],
-            [_named(place, 24) for place, _unused in named],
-            rotation=60 if many else 0,
-            ha="right" if many else "center",
-            rotation_mode="anchor",
-        )
-        drawn = drawing.svg(figure, "noise")
-    return outline.Figure(
-        "White noise by manoeuvre, with its σ; dashed: the data sheet.",
-        drawn,
-        _("White noise of the six channels by manoeuvre; gyroscope above, accelerometer below."),
+    return _(
+        "There is no Allan deviation, for no static stretch is long enough: the longest has "
+        "{longest} s. One of an hour or more (do: rest) shows how the biases wander.",
+        longest=significant(max(lengths), 3),
     )
 
 
-def _panel(
-    panel: Axes, sensor: str, rows: Sequence[Record], places: Mapping[Place, int], sheet: Sheet
-) -> None:
-    unit = RANDOM_WALK[sensor]
-    for offset, axis in zip((-0.2, 0.0, 0.2), AXES, strict=True):
-        own = [row for row in rows if row["channel"] == f"{sensor}_{axis}"]
-        panel.errorbar(
-            [places[row["manoeuvre"], row["phase"]] + offset for row in own],
-            [row["white_noise"] / unit.size for row in own],
-            [row["sigma"] / unit.size for row in own],
-            fmt=drawing.AXIS_MARK[axis],
-            color=drawing.AXIS_COLOUR[axis],
-            markersize=3.5,
-            elinewidth=0.8,
-            label=axis,
+# ---- terms
+
+
+def _note(terms: Sequence[Record], sheet: Sequence[Record]) -> str:
+    """What < means, and whence the data sheet."""
+    sources = dict.fromkeys(row["source"] for row in sheet if row["source"])
+    limit = _("<: upper limit, 95 %; the data do not ask for the term.")
+    source = _("Data sheet: {source}.", source=shortened("; ".join(sources), 300))
+    limits = any(not row["detected"] for row in terms)
+    return " ".join([*([limit] * limits), *([source] * bool(sources))])
+
+
+def _terms_table(sensor: str, rows: Sequence[Record], note: str) -> outline.Table:
+    """A row for each axis: value ± σ of each term, or its upper limit; below, the data sheet."""
+    units = {row["term"]: quantity(row["term"], row["unit"]).laboratory for row in rows}
+    names = [term for term in SYMBOL if term in units]
+    columns = [outline.Column(_("Axis"), "name")]
+    cells: list[list[str]] = []
+    axes = [axis for axis in AXES if any(row["channel"] == f"{sensor}_{axis}" for row in rows)]
+    for term in names:
+        columns += outline.value_and_sigma(
+            NAME[sensor][term], f"{SYMBOL[term]}, {units[term].name}"
         )
-    stated = {value for axis in AXES if (value := sheet.get(f"{sensor}_{axis}")) is not None}
-    for value in sorted(stated):
-        at = value / unit.size
-        panel.axhline(at, color=drawing.INK, linewidth=0.8, dashes=(5, 3), label=DATA_SHEET)
-    panel.set_yscale("log")
-    drawing.plain_numbers(panel.yaxis)
-    panel.set_title(f"{NAME[sensor]}, {unit.name}", pad=3)
-
-
-def _named(place: Place, most: int) -> str:
-    manoeuvre, phase = place
-    return shortened(manoeuvre if phase == "rest" else f"{manoeuvre}, {phase}", most)
-
-
-def _summary(rows: Sequence[Record], sheet: Sheet, sources: Sequence[str]) -> outline.Table:
-    lines = {
-        channel: _line(channel, own, sheet)
-        for channel in CHANNELS
-        if (own := [row for row in rows if row["channel"] == channel])
-    }
-    cells = zip(*map(aligned, zip(*lines.values(), strict=True)), strict=True)
+        own = {row["channel"][-1]: row for row in rows if row["term"] == term}
+        stated = {row["channel"][-1]: row["data_sheet"] for row in own.values()}
+        values, sigmas = _written([own.get(axis) for axis in axes], units[term])
+        shown = next((v for v in stated.values() if v is not None), None)
+        cells.append([*values, significant(units[term].of(shown), 3) if shown else ""])
+        cells.append([*sigmas, ""])
+    by_row = list(zip(*(aligned(column) for column in cells), strict=True))
+    seconds = {row["channel"][-1]: row["seconds"] for row in rows}
+    lines = [
+        outline.table_row(axis, *own, significant(seconds[axis], 3))
+        for axis, own in zip(axes, by_row, strict=False)
+    ]
+    if any(by_row[-1]):
+        lines.append(outline.table_row(DATA_SHEET, *by_row[-1], ""))
     return outline.Table(
-        "White noise by channel, over all manoeuvres.",
+        _("{sensors}: the terms of the noise.", sensors=capital(SENSORS[sensor])),
+        (*columns, *outline.columns("number", _("s"), group=_("Stretch"))),
+        lines,
+        note=note,
+    )
+
+
+def _written(rows: Sequence[Record | None], unit: Unit) -> tuple[list[str], list[str]]:
+    """Values with common decimals, or upper limits; and the sigmas of the values."""
+    sigmas = [unit.of(row["sigma"]) for row in rows if row and row["detected"]]
+    decimals = common_decimals(sigmas)
+    values, spread = [], []
+    for row in rows:
+        found = bool(row and row["detected"])
+        upper = unit.of(row["upper"]) if row and not found else None
+        if row is None or (not found and upper is None):
+            values.append("—")
+        elif found and decimals is not None:
+            values.append(fixed(unit.of(row["value"]), decimals))
+        else:
+            text = significant(unit.of(row["value"]) if found else upper, 3 if found else 2)
+            values.append(text if found else f"< {text}")
+        sigma = unit.of(row["sigma"]) if row and found else None
+        spread.append(fixed(sigma, decimals) if sigma and decimals is not None else "")
+    return values, spread
+
+
+# ---- levels, where there are no terms
+
+
+def _levels(levels: Sequence[Record], sheet: Sequence[Record]) -> outline.Table:
+    """The white noise of each channel that the estimation takes, beside the data sheet."""
+    stated = {f"{row['sensor']}_{row['axis']}": row["white_noise"] for row in sheet}
+    own = {row["channel"]: row for row in levels if row["manoeuvre"] is None}
+    lines = []
+    for channel, row in own.items():
+        sensor, _unused, axis = channel.partition("_")
+        unit = RANDOM_WALK[sensor]
+        values, sigmas = _written([row | {"detected": True, "value": row["white_noise"]}], unit)
+        lines.append(
+            (
+                f"{listed([SENSORS[sensor][:-1]])} {axis}",
+                *values,
+                *sigmas,
+                significant(unit.of(stated.get(channel)), 3),
+                unit.name,
+            )
+        )
+    return outline.Table(
+        _("White noise by channel, of all manoeuvres together."),
         (
             outline.Column("Channel"),
-            *outline.columns(
-                "number", "Median", "Lowest", "Highest", "Data sheet", "Median ÷ data sheet"
-            ),
+            *outline.value_and_sigma(),
+            *outline.columns("number", _("Data sheet")),
             outline.Column("Unit", "unit"),
         ),
-        [
-            outline.table_row(_channel(channel), *own)
-            for channel, own in zip(lines, cells, strict=True)
-        ],
+        [outline.table_row(*line) for line in lines],
         "None: no manoeuvre is long enough to estimate the noise.",
-        "Data sheet: " + shortened("; ".join(sources), 400) + "." if sources else "",
-    )
-
-
-def _line(channel: str, own: Sequence[Record], sheet: Sheet) -> tuple[str, ...]:
-    unit = RANDOM_WALK[CHANNEL_PARTS[channel][0]]
-    values = [row["white_noise"] / unit.size for row in own]
-    stated = unit.of(sheet.get(channel))
-    return (
-        *(significant(each, 3) for each in (median(values), min(values), max(values), stated)),
-        significant(median(values) / stated if stated else None, 2),
-        unit.name,
-    )
-
-
-def _channel(channel: str) -> str:
-    sensor, axis = CHANNEL_PARTS[channel]
-    return f"{SENSOR[sensor]} {axis}"
-
-
-def _by_manoeuvre(rows: Sequence[Record], sensor: str) -> outline.Table:
-    unit = RANDOM_WALK[sensor]
-    by_place = {(row["manoeuvre"], row["phase"], row["channel"]): row for row in rows}
-    places = _places(rows)
-    own = [row for row in rows if CHANNEL_PARTS[row["channel"]][0] == sensor]
-    decimals = common_decimals(row["sigma"] / unit.size for row in own)
-    gap = {"white_noise": None, "sigma": None}
-
-    def cells(place: Place) -> Iterator[str]:
-        for axis in AXES:
-            row = by_place.get((*place, f"{sensor}_{axis}"), gap)
-            yield from with_sigma(unit.of(row["white_noise"]), unit.of(row["sigma"]), decimals)
-
-    return outline.Table(
-        f"{NAME[sensor]} by manoeuvre, {unit.name}.",
-        (
-            outline.Column("Manoeuvre", "name"),
-            *(each for axis in AXES for each in outline.value_and_sigma(axis)),
-        ),
-        [outline.table_row(_named(place, 40), *cells(place)) for place in places[:MOST_ROWS]],
-        note=outline.more(len(places) - MOST_ROWS, " in the noise table of the campaign"),
     )

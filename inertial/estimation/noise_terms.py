@@ -1,0 +1,349 @@
+"""The terms of the noise that the data of static stretches ask for, with sigma and limits.
+
+Quantisation, white noise, bias instability, random walk and ramp (`noise_model`) are fitted to all
+frequencies at once by restricted maximum likelihood (`noise_likelihood`). A term is detected where
+leaving it out is significant (LEVEL): of a variance, half of a chi-squared distribution is at zero,
+because it cannot be negative (Self and Liang, JASA 82, 1987, 605); the slope of the ramp is tested
+by Student's t with Satterthwaite's degrees of freedom. A term that is not detected has an upper
+limit. Where the data ask for a drift but do not tell which (bias instability, random walk, ramp:
+another one in its place is hardly less likely), those form a class: none of them is detected, each
+has an upper limit, and the model contains the likeliest.
+
+Oscillations, bins that stand significantly above both their neighbours and the model, are marked
+and not fitted. What the terms cannot describe, the fall of a sensor's own low-pass filter, is left
+out from the lowest frequency at which it shows.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.estimation.multiresolution import BINS_PER_OCTAVE, Bins, Lowest, Powers
+from inertial.estimation.noise_likelihood import Fit, Likelihood
+from inertial.estimation.noise_model import STOCHASTIC, TERMS, Array, NoiseModel
+from inertial.estimation.probability import chi2_isf, chi2_sf, t_isf, t_sf
+
+Booleans = NDArray[np.bool_]
+
+LEVEL = 0.01  # chance that a term that is absent is detected
+CLASS_RISE = 6.0  # of the deviance: a drift in place of another, 20 times less likely
+DRIFTS = ("bias_instability", "random_walk", "ramp")
+INTERVAL = 0.05  # probability outside an interval
+LIMIT = 0.05  # probability above an upper limit
+LINE_LEVEL = 1e-3  # chance of any line in a channel
+NEIGHBOURS = 16  # bins on each side of a line that it is compared with
+LINE_ROUNDS = 3
+MAX_LEAKED = 0.1  # sigma of a bin, that may leak into it from an oscillation elsewhere
+MISFIT_LEVEL = 1e-3
+MAX_MISFIT = 0.01  # of the density over half an octave, that is accepted although significant
+HALVES = 14  # half octaves by which the band is reduced at the most
+MARGIN = 2  # half octaves more, where the fall of a filter is too small to be seen
+
+
+@dataclass(frozen=True)
+class Term:
+    """One term of one channel; see `noise_model` for the units.
+
+    detected: whether the data ask for it. If so, value and sigma, and `interval`, which covers it
+    with 95 %; otherwise NaN, and `upper`, its upper limit, one-sided 95 %. p_value: of the data
+    without it. alternatives: the drifts that the data do not tell from it.
+    """
+
+    name: str
+    detected: bool
+    value: float
+    sigma: float
+    interval: tuple[float, float]
+    upper: float
+    p_value: float
+    alternatives: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class NoiseTerms:
+    """What the data say of the noise of a channel.
+
+    terms: by name, in the order of TERMS; model: all that is in the data, of a class the likeliest
+    (its ramp with sign); covariance: (5, 5), of the coefficients in the model; highest: Hz, the
+    highest frequency that was fitted; lines: (l, 2), Hz, from and to, of oscillations; misfit:
+    mean square of what is left over its expectation, 1 where the model describes the data.
+    """
+
+    terms: dict[str, Term]
+    model: NoiseModel
+    covariance: Array
+    highest: float
+    lines: Array
+    misfit: float
+
+
+def noise_terms(powers: Powers) -> list[NoiseTerms | None]:
+    """The terms of every channel; None where there is no stretch, or nothing but one value."""
+    bins, lowest = powers.bins(), list(powers.lowest())
+    return [_of_channel(bins, lowest, channel) for channel in range(powers.channels)]
+
+
+def _of_channel(bins: Bins, lowest: Sequence[Lowest], channel: int) -> NoiseTerms | None:
+    if not len(bins.frequency) or not bins.density[:, channel].any():
+        return None
+    lines, leaked, within = _usable(bins, lowest, channel)
+    used = ~leaked & within
+    likelihood = Likelihood.of(bins, lowest, channel, used)
+    likelihood, misfit = _widened(likelihood, bins.frequency[used])
+    chosen = _Selection(likelihood).chosen()
+    return NoiseTerms(
+        {name: chosen.term(name) for name in TERMS},
+        chosen.model,
+        chosen.covariance,
+        float(bins.frequency[within].max()),
+        _ranges(bins, lines),
+        misfit,
+    )
+
+
+# ---- Which terms
+
+
+@dataclass(frozen=True)
+class _Chosen:
+    """The terms of a model, and everything that is told of them."""
+
+    selection: "_Selection"
+    names: frozenset[str]
+    classes: dict[str, tuple[str, ...]]
+
+    @cached_property
+    def fit(self) -> Fit:
+        return self.selection.fit(self.names)
+
+    @property
+    def model(self) -> NoiseModel:
+        return NoiseModel(*map(float, (*np.sqrt(self.fit.variances), self.fit.slope)))
+
+    @property
+    def covariance(self) -> Array:
+        result = np.zeros((5, 5))
+        coefficients = np.sqrt(self.fit.variances)
+        per_variance = np.divide(
+            0.5, coefficients, out=np.zeros(4), where=coefficients > 0
+        )  # of a square root
+        result[:4, :4] = self.fit.covariance * np.outer(per_variance, per_variance)
+        result[4, 4] = self.fit.slope_variance
+        return result
+
+    def term(self, name: str) -> Term:
+        """What is told of a term."""
+        names, nothing = self.names | {name}, (np.nan, np.nan)
+        p_value = self.selection.p_value(names, name)
+        if name not in self.names or name in self.classes:
+            others = self.classes.get(name, ())
+            # Of a class, each is largest where it is there alone.
+            alone = names - {*others} if others else names
+            upper = self.selection.upper(alone, name)
+            return Term(name, False, np.nan, np.nan, nothing, upper, p_value, others)
+        i = TERMS.index(name)
+        sigma = float(np.sqrt(self.covariance[i, i]))
+        value = abs(self.model.ramp) if name == "ramp" else getattr(self.model, name)
+        interval = self.selection.interval(self.names, name)
+        return Term(name, True, value, sigma, interval, np.nan, p_value)
+
+
+class _Selection:
+    """Fits of models of one channel, each made once."""
+
+    def __init__(self, likelihood: Likelihood) -> None:
+        self.likelihood = likelihood
+        self._fits: dict[tuple[frozenset[str], bool], Fit] = {}
+
+    def fit(self, names: frozenset[str], *, restricted: bool = True) -> Fit:
+        key = names, restricted
+        if key not in self._fits:
+            free = _places(names)
+            start = self._fits.get((frozenset(TERMS), True))
+            found = self.likelihood.maximum(
+                free,
+                "ramp" in names,
+                restricted=restricted,
+                start=start.variances if start is not None else None,
+            )
+            self._fits[key] = found
+        return self._fits[key]
+
+    def chosen(self) -> _Chosen:
+        """From all terms, the least significant is left out, until all are significant."""
+        names = frozenset(TERMS)
+        while len(names) > 1:
+            p_values = {name: self.p_value(names, name) for name in names}
+            worst = max(p_values, key=p_values.__getitem__)
+            if p_values[worst] < LEVEL or not _places(names - {worst}):
+                break
+            names -= {worst}
+        for name in TERMS:
+            if name not in names and self.p_value(names | {name}, name) < LEVEL:
+                names |= {name}
+        return _Chosen(self, names, self._classes(names))
+
+    def p_value(self, names: frozenset[str], name: str) -> float:
+        """Chance of data that ask for a term of a model at least as much, if it is absent."""
+        with_it = self.fit(names)
+        if name == "ramp":
+            ratio = abs(with_it.slope) / np.sqrt(with_it.slope_variance)
+            return 2 * float(t_sf(ratio, with_it.slope_degrees))
+        if not _places(names - {name}):
+            return 0.0
+        rise = self.fit(names - {name}).deviance - with_it.deviance
+        return float(chi2_sf(rise, 1)) / 2 if rise > 0 else 0.5
+
+    def _classes(self, names: frozenset[str]) -> dict[str, tuple[str, ...]]:
+        """Drifts of which another one in place of one is hardly less likely."""
+        alike: dict[str, set[str]] = {}
+        best = self.fit(names, restricted=False).deviance
+        for own in names.intersection(DRIFTS):
+            for other in set(DRIFTS) - names:
+                swapped = self.fit(names - {own} | {other}, restricted=False)
+                if swapped.deviance - best < CLASS_RISE:
+                    alike.setdefault(own, set()).add(other)
+                    alike.setdefault(other, set()).add(own)
+        return {name: tuple(n for n in TERMS if n in others) for name, others in alike.items()}
+
+    def interval(self, names: frozenset[str], name: str) -> tuple[float, float]:
+        """Both ends of the interval of a term."""
+        fit, ramp = self.fit(names), "ramp" in names
+        if name == "ramp":
+            half = float(t_isf(INTERVAL / 2, fit.slope_degrees) * np.sqrt(fit.slope_variance))
+            return max(float(abs(fit.slope)) - half, 0.0), float(abs(fit.slope)) + half
+        rise, j = float(chi2_isf(INTERVAL, 1)), STOCHASTIC.index(name)
+        low, high = (
+            self.likelihood.end_of_interval(fit, _places(names), ramp, j, rise, up)
+            for up in (False, True)
+        )
+        return float(np.sqrt(low)), float(np.sqrt(high))
+
+    def upper(self, names: frozenset[str], name: str) -> float:
+        """The upper limit of a term in a model."""
+        fit, ramp = self.fit(names), "ramp" in names
+        if name == "ramp":
+            sigma = np.sqrt(fit.slope_variance)
+            return float(abs(fit.slope) + t_isf(LIMIT, fit.slope_degrees) * sigma)
+        rise, j = float(chi2_isf(2 * LIMIT, 1)), STOCHASTIC.index(name)
+        return float(
+            np.sqrt(self.likelihood.end_of_interval(fit, _places(names), ramp, j, rise, True))
+        )
+
+
+def _places(names: frozenset[str]) -> tuple[int, ...]:
+    return tuple(j for j, name in enumerate(STOCHASTIC) if name in names)
+
+
+# ---- Which bins
+
+
+def _usable(
+    bins: Bins, lowest: Sequence[Lowest], channel: int
+) -> tuple[Booleans, Booleans, Booleans]:
+    """Of every bin: is an oscillation in it, does one leak into it, is it in the band that fits?"""
+    top = float(bins.frequency.max()) * 1.01
+    none = np.zeros(len(bins.frequency), bool)
+    best, least, last = (none, none, ~none), np.inf, HALVES + MARGIN
+    for half in range(HALVES + MARGIN + 1):
+        within = bins.frequency < top * 2 ** (-half / 2)
+        if half > last or within.sum() < 2 * NEIGHBOURS:
+            break
+        lines, leaked, worst = _lines(bins, lowest, channel, within)
+        if worst < least or half == last:
+            best, least = (lines, leaked, within), worst
+        if worst <= 1 and last == HALVES + MARGIN:
+            last = half + MARGIN if half else half
+    return best
+
+
+def _lines(
+    bins: Bins, lowest: Sequence[Lowest], channel: int, within: Booleans
+) -> tuple[Booleans, Booleans, float]:
+    """Bins with oscillations, bins into which they leak, largest misfit over the accepted one.
+
+    The misfit is that of the mean over half an octave.
+    """
+    density, degrees = bins.density[:, channel], bins.degrees
+    beside = _beside(density)
+    limit = chi2_isf(LINE_LEVEL / len(density), degrees) / degrees
+    lines = density > limit * beside
+    variances: Array | None = None
+    leaked = _leaked_into(bins, density, beside, lines)
+    for _ in range(LINE_ROUNDS):
+        used = within & ~leaked
+        likelihood = Likelihood.of(bins, lowest, channel, used)
+        fit = likelihood.maximum(range(4), ramp=True, start=variances)
+        variances = fit.variances
+        expected = fit.variances @ bins.shapes
+        found = density > limit * np.maximum(beside, expected)
+        if np.array_equal(found, lines):
+            break
+        lines, leaked = found, _leaked_into(bins, density, beside, found)
+    ratio, count = _by_half_octave(
+        bins.frequency[used], density[used] / expected[used], degrees[used]
+    )
+    significance = np.sqrt(chi2_isf(MISFIT_LEVEL / len(ratio), 1))
+    accepted = np.maximum(MAX_MISFIT, significance * np.sqrt(2 / count))
+    return lines, leaked, float(np.max(np.abs(ratio - 1) / accepted))
+
+
+def _leaked_into(bins: Bins, density: Array, beside: Array, lines: Booleans) -> Booleans:
+    """The bins with oscillations, and those into which too much of one leaks.
+
+    The transform has no taper: of the power of an oscillation in a block, a coefficient k steps
+    off has 2 / (π k)² on average.
+    """
+    result = lines.copy()
+    tolerated = MAX_LEAKED * beside * np.sqrt(2 / bins.degrees)
+    for i in np.flatnonzero(lines).tolist():
+        power = (density[i] - beside[i]) * bins.frequency[i] * np.log(2) / BINS_PER_OCTAVE
+        apart = np.maximum(np.abs(bins.frequency - bins.frequency[i]), bins.spacing)
+        leaked = power * bins.spacing * 2 / (np.pi * apart) ** 2
+        result |= (bins.level == bins.level[i]) & (leaked > tolerated)
+    if np.sum(~result) < 2 * NEIGHBOURS:
+        return lines
+    return result
+
+
+def _beside(density: Array) -> Array:
+    """The median of the bins beside each, (b,)."""
+    padded = np.pad(density, NEIGHBOURS, mode="reflect")
+    around = np.lib.stride_tricks.sliding_window_view(padded, 2 * NEIGHBOURS + 1)
+    return np.asarray(np.median(around, axis=1))
+
+
+def _by_half_octave(frequency: Array, ratio: Array, degrees: Array) -> tuple[Array, Array]:
+    """The mean ratio of each half octave, weighted by degrees of freedom, and their sum."""
+    place = np.floor(2 * np.log2(frequency)).astype(np.int64)
+    place -= place.min()
+    count = np.bincount(place, degrees)
+    mean = np.bincount(place, degrees * ratio)[count > 0] / count[count > 0]
+    return np.asarray(mean), np.asarray(count[count > 0], np.float64)
+
+
+def _widened(likelihood: Likelihood, frequency: Array) -> tuple[Likelihood, float]:
+    """The likelihood with the degrees of freedom that the misfit of each half octave leaves."""
+    fit = likelihood.maximum(range(4), ramp=True)
+    ratio = likelihood.density / (fit.variances / likelihood.unit @ likelihood.shapes)
+    place = np.floor(2 * np.log2(frequency)).astype(np.int64)
+    place -= place.min()
+    count = np.bincount(place, likelihood.degrees)
+    mean = np.bincount(place, likelihood.degrees * ratio) / np.maximum(count, 1)
+    squares = count * (mean - 1) ** 2 / 2
+    excess = np.where(chi2_sf(squares, 1) < MISFIT_LEVEL / np.sum(count > 0), squares, 1.0)
+    widened = replace(likelihood, degrees=likelihood.degrees / excess[place])
+    return widened, float(np.mean(squares[count > 0]))
+
+
+def _ranges(bins: Bins, lines: Booleans) -> Array:
+    """From and to of bins with oscillations that touch, (l, 2), Hz."""
+    frequency = bins.frequency[lines]
+    if not len(frequency):
+        return np.zeros((0, 2))
+    apart = np.flatnonzero(np.diff(np.log2(frequency)) > 1.5 / BINS_PER_OCTAVE)
+    starts, ends = np.append(0, apart + 1), np.append(apart, len(frequency) - 1)
+    return np.column_stack([frequency[starts], frequency[ends]])

@@ -1,0 +1,205 @@
+"""Allan deviation, spectrum and terms of the noise of all static stretches together.
+
+The rule for gaps and masks: a stretch is what was recorded at rest without a gap, without a masked
+sample and in one manoeuvre, so no average spans any of these. Each stretch has a mean of its own,
+for it has an attitude of its own. Stretches in which the same channels of a sensor are recorded at
+the same rate are pooled; of several such pools the one with the most time counts.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.campaign.noise_levels import drift_of
+from inertial.estimation.allan import Allan, AllanSums, factors_up_to
+from inertial.estimation.multiresolution import MIN_WHOLE, Bins, Powers
+from inertial.estimation.noise_model import TERMS, NoiseModel
+from inertial.estimation.noise_terms import NoiseTerms, noise_terms
+from inertial.tables import AXES
+
+Array = NDArray[np.float64]
+Row = dict[str, Any]
+Stretch = tuple[str, str, int]  # manoeuvre, phase, and its number there
+
+SENSORS = {"accel": slice(0, 3), "gyro": slice(3, 6)}
+SAME_INTERVAL = 1e-3  # relative difference of sampling intervals that are alike
+PER_DECADE = 6  # averaging times
+LONGEST_SHARE = 0.25  # of the longest stretch, that an averaging time may be
+UNITS = {  # of quantisation, white noise, bias instability, random walk and ramp
+    "gyro": ("rad", "rad/√s", "rad/s", "rad/s/√s", "rad/s²"),
+    "accel": ("m/s", "m/s/√s", "m/s²", "m/s²/√s", "m/s³"),
+}
+
+
+@dataclass
+class _Pool:
+    """The stretches in which some channels of a sensor are recorded at one rate."""
+
+    sensor: str
+    recorded: tuple[bool, ...]
+    interval: float
+    sums: AllanSums
+    powers: Powers
+    stretch: Stretch | None = None
+    samples: int = 0
+
+    @classmethod
+    def of(cls, sensor: str, recorded: tuple[bool, ...], interval: float, longest: int) -> "_Pool":
+        factors = factors_up_to(max(int(LONGEST_SHARE * longest), 1), PER_DECADE)
+        channels = sum(recorded)
+        return cls(
+            sensor, recorded, interval, AllanSums(channels, factors), Powers(channels, interval)
+        )
+
+    def add(self, stretch: Stretch, values: Array) -> None:
+        if stretch != self.stretch:
+            self.end()
+            self.stretch = stretch
+        self.sums.add(values)
+        self.powers.add(values)
+        self.samples += len(values)
+
+    def end(self) -> None:
+        self.sums.end()
+        self.powers.end()
+
+    @property
+    def channels(self) -> list[str]:
+        axes = zip(AXES, self.recorded, strict=True)
+        return [f"{self.sensor}_{axis}" for axis, there in axes if there]
+
+
+@dataclass
+class StaticStretches:
+    """Takes in the samples at rest piece by piece, in bounded memory.
+
+    `longest`: records of the longest stretch, as planned from the segments.
+    """
+
+    longest: int
+    _pools: list[_Pool] = field(default_factory=list)
+
+    def add(self, stretch: Stretch, values: Array, interval: float) -> None:
+        """The next samples (n, 6) of a stretch; NaN where a channel, or a sensor, is not there."""
+        for sensor, columns in SENSORS.items():
+            part = values[:, columns]
+            there = np.isfinite(part)
+            if not there.all():
+                rows = there.any(axis=1)
+                part, there = part[rows], there[rows]
+            recorded = tuple(bool(each) for each in np.all(there, axis=0))
+            if len(part) and any(recorded):
+                self._pool(sensor, recorded, interval).add(stretch, part[:, np.array(recorded)])
+
+    def _pool(self, sensor: str, recorded: tuple[bool, ...], interval: float) -> _Pool:
+        for pool in self._pools:
+            alike = (pool.sensor, pool.recorded) == (sensor, recorded)
+            if alike and abs(interval / pool.interval - 1) < SAME_INTERVAL:
+                return pool
+        pool = _Pool.of(sensor, recorded, interval, self.longest)
+        self._pools.append(pool)
+        return pool
+
+    def noises(self) -> Iterator["SensorNoise"]:
+        """The noise of each sensor, where there is a stretch that is long enough."""
+        for sensor in SENSORS:
+            own = [pool for pool in self._pools if pool.sensor == sensor]
+            for pool in sorted(own, key=lambda pool: -pool.samples * pool.interval)[:1]:
+                pool.end()
+                if max(pool.powers.seconds, default=0.0) >= MIN_WHOLE * pool.interval:
+                    yield _noise_of(pool)
+
+
+@dataclass(frozen=True)
+class SensorNoise:
+    """The noise of the c recorded channels of a sensor; `seconds`: of the longest stretch."""
+
+    sensor: str
+    channels: list[str]
+    terms: list[NoiseTerms | None]
+    allan: Allan
+    bins: Bins
+    seconds: float
+
+    def drifts(self) -> Iterator[tuple[str, dict[str, float]]]:
+        """What enters the covariance, by channel."""
+        for channel, terms in zip(self.channels, self.terms, strict=True):
+            if terms is not None:
+                yield channel, drift_of(terms)
+
+    def allan_rows(self) -> Iterator[Row]:
+        """Rows of the table."""
+        allan = self.allan
+        for i, (channel, terms) in enumerate(zip(self.channels, self.terms, strict=True)):
+            model = np.sqrt(terms.model.allan_variance(allan.tau)) if terms else None
+            for j, tau in enumerate(allan.tau.tolist()):
+                if allan.deviation[j, i] > 0:
+                    yield {
+                        "channel": channel,
+                        "tau": tau,
+                        "deviation": float(allan.deviation[j, i]),
+                        "lower": float(allan.lower[j, i]),
+                        "upper": float(allan.upper[j, i]),
+                        "degrees": float(allan.degrees[j, i]),
+                        "model": None if model is None else float(model[j]),
+                        "stretches": int(allan.stretches[j]),
+                    }
+
+    def spectrum_rows(self) -> Iterator[Row]:
+        """Rows of the table."""
+        bins = self.bins
+        for i, (channel, terms) in enumerate(zip(self.channels, self.terms, strict=True)):
+            if terms is None:
+                continue
+            model = terms.model.variances @ bins.shapes
+            within = [(low <= bins.frequency) & (bins.frequency <= up) for low, up in terms.lines]
+            line = np.any(within, axis=0) if within else np.zeros(len(bins.frequency), bool)
+            for j, frequency in enumerate(bins.frequency.tolist()):
+                yield {
+                    "channel": channel,
+                    "frequency": frequency,
+                    "density": float(bins.density[j, i]),
+                    "degrees": float(bins.degrees[j]),
+                    "model": float(model[j]),
+                    "line": bool(line[j]),
+                }
+
+    def term_rows(self, sheet: Mapping[str, Mapping[str, float | None]]) -> Iterator[Row]:
+        """Rows of the table; `sheet`: figures of the data sheet by channel and term."""
+        for channel, terms in zip(self.channels, self.terms, strict=True):
+            if terms is None:
+                continue
+            for name, unit in zip(TERMS, UNITS[self.sensor], strict=True):
+                term = terms.terms[name]
+                yield {
+                    "channel": channel,
+                    "term": name,
+                    "detected": term.detected,
+                    "value": _number(term.value),
+                    "sigma": _number(term.sigma),
+                    "upper": _number(term.upper),
+                    "unit": unit,
+                    "p_value": _number(term.p_value),
+                    "data_sheet": sheet[channel].get(name),
+                    "seconds": self.seconds,
+                }
+
+
+def _noise_of(pool: _Pool) -> SensorNoise:
+    terms = noise_terms(pool.powers)
+    models = [NoiseModel(white_noise=1.0) if each is None else each.model for each in terms]
+    return SensorNoise(
+        pool.sensor,
+        pool.channels,
+        terms,
+        pool.sums.result(pool.interval, models),
+        pool.powers.bins(),
+        max(pool.powers.seconds),
+    )
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,213 @@
+"""Stage noise: hidden terms come back by channel, and no average spans what it must not."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import chain
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pytest
+from ruamel.yaml import YAML
+
+import laboratory
+from inertial import tables
+from inertial.campaign.noise_levels import NoiseLevels
+
+RATE, STRETCH, COUNT = 10.0, 6000, 10  # Hz, samples of a stretch, stretches
+WHITE = {"accel": 1e-4, "gyro": 3.5e-6}  # m/s/√s, rad/√s
+WALK, INSTABILITY = 2e-7, 1.5e-6  # rad/s/√s of gyro y, rad/s of gyro z
+IMU = YAML(typ="safe").load(chain.ROOT / "data/instruments.yaml")["span-cpt"]
+SETTINGS = {"from_hz": 0.5, "to_hz": 5.0}
+
+
+@dataclass
+class Batches:
+    """The samples in batches of some size, and how often they are read."""
+
+    table: pa.Table
+    size: int = 4096
+    passes: list[int] = field(default_factory=list)
+
+    def columns(self, names: list[str]) -> Iterator[pa.RecordBatch]:
+        self.passes.append(1)
+        yield from self.table.select(names).to_batches(self.size)
+
+
+def white(rng: np.random.Generator, samples: int) -> np.ndarray:
+    """Samples (n, 6) of white noise alone."""
+    level = np.repeat([WHITE["accel"], WHITE["gyro"]], 3)
+    return level * np.sqrt(RATE) * rng.standard_normal((samples, 6))
+
+
+def flicker(rng: np.random.Generator, samples: int) -> np.ndarray:
+    """B = 1, shaped in the frequency domain."""
+    frequency = np.fft.rfftfreq(4 * samples, 1 / RATE)
+    shape = np.zeros(len(frequency))
+    shape[1:] = np.sqrt(RATE / (2 * np.pi * frequency[1:]))
+    drawn = np.fft.irfft(np.fft.rfft(rng.standard_normal(4 * samples)) * shape)
+    return np.asarray(drawn[:samples])
+
+
+def of_stretches(values: np.ndarray, **changes: Any) -> dict[str, Any]:
+    """What the stage reads: equally long rests one after the other in one log."""
+    count = len(values)
+    starts = np.arange(0, count, STRETCH)
+    samples = {"log": ["a"] * count, "record": np.arange(count)}
+    samples |= dict(zip(tables.CHANNELS, values.T, strict=True))
+    segments = {"manoeuvre": [f"m{i}" for i in range(len(starts))], "phase": "rest", "log": "a"}
+    segments |= {"from_record": starts, "to_record": np.minimum(starts + STRETCH, count)}
+    clock = {"log": "a", "interval": 1 / RATE, "integration_step": 1 / RATE, "clock": "GPS"}
+    clock |= {"begin": 0.0, "end": count / RATE}
+    sensors = [
+        {"sensor": sensor, "axis": axis, "white_noise": None, "bias_instability": 2e-6}
+        | {"random_walk": None}
+        for sensor in WHITE
+        for axis in tables.AXES
+    ]
+    return {
+        "samples": Batches(pa.table(samples)),
+        "segments": pd.DataFrame(segments),
+        "clocks": pd.DataFrame([clock]),
+        "gaps": pd.DataFrame({"log": [], "record": []}),
+        "masks": tables.MASKS.empty(),
+        "channel_repairs": tables.CHANNEL_REPAIRS.empty(),
+        "sensors": pd.DataFrame(sensors),
+        "ranges": tables.RANGES.empty(),
+        **SETTINGS,
+        **changes,
+    }
+
+
+def noise_of(inputs: dict[str, Any]) -> dict[str, pd.DataFrame]:
+    stage = chain.stage_of("noise")
+    made = stage.result(inputs)
+    return {name: table.arrow(made[name]).to_pandas() for name, table in stage.writes.items()}
+
+
+def drifting(seed: int) -> np.ndarray:
+    """Each rest with a mean of its own; a walk of gyro y and flicker of gyro z go on and on."""
+    rng = np.random.default_rng(seed)
+    count = STRETCH * COUNT
+    values = white(rng, count)
+    values[:, 4] += WALK / np.sqrt(RATE) * np.cumsum(rng.standard_normal(count))
+    values[:, 5] += INSTABILITY * flicker(rng, count)
+    return values + np.repeat(rng.standard_normal((COUNT, 6)), STRETCH, axis=0)
+
+
+@pytest.fixture(scope="module")
+def hidden() -> dict[str, pd.DataFrame]:
+    return noise_of(of_stretches(drifting(3)))
+
+
+def test_hidden_terms_come_back_with_their_sigma(hidden):
+    terms = hidden["terms"].set_index(["channel", "term"])
+    assert len(terms) == 30 and (terms["seconds"] == STRETCH / RATE).all()
+    for place, true in {
+        ("gyro_y", "random_walk"): WALK,
+        ("gyro_z", "bias_instability"): INSTABILITY,
+        **{(f"{s}_{a}", "white_noise"): level for s, level in WHITE.items() for a in tables.AXES},
+    }.items():
+        found = terms.loc[place]
+        assert found["detected"] and abs(found["value"] - true) < 3.5 * found["sigma"], place
+        assert found["sigma"] < 0.2 * true
+    others = terms[~terms["detected"]]
+    assert len(others) >= 20
+    assert others["upper"].notna().all() and others["value"].isna().all()
+    assert (terms.xs("bias_instability", level="term")["data_sheet"] == 2e-6).all()
+
+
+def test_only_the_axes_that_drift_have_a_drift_in_the_covariance(hidden):
+    levels = NoiseLevels(hidden["levels"])
+    gyro = levels.drift("gyro")
+    assert gyro.walk[1] == pytest.approx(WALK, rel=0.4) and not gyro.walk[[0, 2]].any()
+    assert gyro.instability[2] == pytest.approx(INSTABILITY, rel=0.4)
+    assert not gyro.instability[:2].any() and not levels.drift("accel")
+
+
+def test_deviation_and_spectrum_stand_beside_the_model(hidden):
+    allan = hidden["allan"]
+    assert set(allan["channel"]) == set(tables.CHANNELS) and (allan["stretches"] == COUNT).all()
+    assert (allan["lower"] < allan["deviation"]).all() and (
+        allan["deviation"] < allan["upper"]
+    ).all()
+    assert allan["tau"].max() <= STRETCH / RATE / 4
+    off = (allan["model"] - allan["deviation"]) / (allan["upper"] - allan["lower"])
+    assert np.mean(np.abs(2 * off) < 2) > 0.9
+    spectrum = hidden["spectra"].query("channel == 'gyro_x'")
+    mean = np.average(spectrum["density"], weights=spectrum["degrees"])
+    assert mean == pytest.approx(WHITE["gyro"] ** 2, rel=0.02)
+    assert not hidden["spectra"]["line"].any()
+
+
+def test_no_average_spans_a_gap_a_masked_sample_or_a_channel_that_is_masked():
+    """The level jumps at each of them by 1000 sigma."""
+    rng = np.random.default_rng(5)
+    values = white(rng, 4 * STRETCH)
+    gap, masked, of_channel = 2000, STRETCH + 3000, 2 * STRETCH + 1000
+    jump = np.repeat([WHITE["accel"], WHITE["gyro"]], 3) * 1000
+    for record in (gap, masked, of_channel):
+        values[record:] += jump
+    mask = dict.fromkeys((column.name for column in tables.MASKS.columns), None)
+    mask |= {"log": "a", "repeated": False, "censored": False}
+    masks = [
+        mask | {"from_record": masked, "to_record": masked + 1},
+        mask | {"from_record": of_channel - 5, "to_record": of_channel + 5}
+        | {"sensor": "gyro", "axis": "x"},
+    ]  # fmt: skip
+    for size in (777, 1 << 20):
+        inputs = of_stretches(values)
+        inputs["gaps"] = pd.DataFrame({"log": ["a"], "record": [gap]})
+        inputs["masks"] = pd.DataFrame(masks)
+        inputs["samples"].size = size
+        made = noise_of(inputs)
+        assert inputs["samples"].passes == [1]
+        gyro = made["allan"].query("channel == 'gyro_x' and tau > 10")
+        expected = WHITE["gyro"] / np.sqrt(gyro["tau"])
+        np.testing.assert_allclose(gyro["deviation"], expected, rtol=0.3)
+        assert not NoiseLevels(made["levels"]).drift("gyro")
+        if size == 777:
+            in_pieces = made
+    for name in ("allan", "spectra", "terms"):
+        pd.testing.assert_frame_equal(made[name], in_pieces[name], rtol=1e-6)
+
+
+def test_an_oscillation_is_marked_and_not_fitted():
+    rng = np.random.default_rng(6)
+    values = white(rng, 4 * STRETCH)
+    time = np.arange(len(values)) / RATE
+    values[:, 3] += 3 * WHITE["gyro"] * np.sqrt(RATE) * np.sin(2 * np.pi * 1.7 * time)
+    made = noise_of(of_stretches(values))
+    lines = made["spectra"].query("line")
+    assert set(lines["channel"]) == {"gyro_x"} and (abs(lines["frequency"] - 1.7) < 0.1).all()
+    found = made["terms"].set_index(["channel", "term"]).loc[("gyro_x", "white_noise")]
+    assert abs(found["value"] - WHITE["gyro"]) < 3.5 * found["sigma"]
+
+
+@pytest.mark.parametrize("samples", [0, 10, 40, 70, 150])
+def test_what_is_too_short_has_no_terms_or_upper_limits(samples):
+    values = white(np.random.default_rng(7), samples)
+    values[:, 4] = np.nan  # a channel that is not recorded
+    made = noise_of(of_stretches(values))
+    assert "gyro_y" not in set(made["allan"]["channel"])
+    assert not NoiseLevels(made["levels"]).drift("gyro")
+    if samples < 64:
+        assert made["terms"].empty and made["spectra"].empty
+
+
+def test_a_rest_in_one_attitude_is_a_recording_of_its_noise_and_no_calibration():
+    document = chain.demo(seed=7)
+    rest = {"id": "still", "do": "rest", "up": "+z", "seconds": 1900, "log": "still.asc"}
+    document["campaign"]["plan"] = [rest]
+    document["receiver"]["rate_hz"] = 10
+    recording = laboratory.perform(laboratory.specify(document))
+    recording.campaign["plan"][0]["up"] = "unknown"
+    recording.campaign["instrument"] = {**IMU, "rate_hz": 10}
+    results = chain.in_memory(recording, "diagnosis")
+    assert results["noise/terms"].query("term == 'white_noise'")["detected"].all()
+    verdicts = results["diagnosis/verdict"]
+    assert set(verdicts["verdict"]) == {"usable_within_limits"}
+    assert verdicts["sentence"].str.contains("No calibration, noise only").all()
+    result = results["diagnosis/result"].set_index("parameter")["value"]
+    assert result.drop(["bias_x", "bias_y", "bias_z"]).isna().all()  # of gyros, ± earth's rate
