@@ -66,7 +66,7 @@ def of_the_effects(document: Document) -> Iterator[Complaint]:
         if "to_s" in effect and effect["to_s"] <= effect["from_s"]:
             expected = f"later than from_s, {effect['from_s']} s"
             yield Complaint(f"effects.{name}.to_s", f"{effect['to_s']}", expected)
-        if name.endswith("_temperature") and "temperature" not in document:
+        if "temperature" in name and "temperature" not in document:
             yield Complaint("temperature", "nothing", f"its course, since {name} depends on it")
     if "heading_error" in effects and campaign["table"].get("heading_deg") is None:
         expected = "the stated azimuth of the zero mark, of which the true one differs"

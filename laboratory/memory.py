@@ -1,4 +1,4 @@
-"""Memory of a sensor: the sign of its last large input."""
+"""Memory of a sensor: the sign of its last large input, and the play of its hysteresis."""
 
 import numpy as np
 
@@ -15,3 +15,17 @@ def last_sign(values: Array, least: float, before: Array) -> Array:
     signs = np.vstack([before, np.sign(values)])
     signs_then: Array = np.take_along_axis(signs, last, axis=0)
     return signs_then
+
+
+def play(values: Array, width: float, before: float) -> Array:
+    """The play operator, (m,): p follows u, (m,), so that |u − p| ≤ width, and else stays.
+
+    before: p before the first. Between two reversals of u it is the nearest to p at the first that
+    is within reach of u.
+    """
+    ways = np.sign(np.diff(values, prepend=values[:1]))
+    played = np.empty_like(values)
+    for run in np.split(np.arange(len(values)), np.flatnonzero(np.diff(ways)) + 1):
+        played[run] = np.clip(before, values[run] - width, values[run] + width)
+        before = float(played[run[-1]])
+    return played

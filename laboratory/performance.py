@@ -116,14 +116,12 @@ def record_log(
         row += segment.samples
     noiseless, noise_sum = running(readings), running(noises)
     noisy = saturated(noiseless + noise_sum, interval, effects)
-    temperature_rise = np.concatenate(
-        [t.temperature_rise[NODES_PER_INTERVAL::NODES_PER_INTERVAL] for t in truths]
-    )
+    recorded = [temperature.course("thermometer", truth.motion.instants) for truth in truths]
     return LogTruth(
         time=seconds,
         rate=np.concatenate([truth.turned for truth in truths]) / interval,
         force=np.concatenate([truth.velocity for truth in truths]) / interval,
-        temperature=temperature.reference + temperature_rise,
+        temperature=np.concatenate([t[NODES_PER_INTERVAL::NODES_PER_INTERVAL] for t in recorded]),
         noiseless=noiseless,
         noisy=noisy,
         accelerometer=count(noisy.accelerometer, receiver.accelerometer_count),
@@ -158,7 +156,7 @@ def truth_of(
     motion = move(instants, segment.attitude, [*below, *turnings])
     forces = [effect.extra_force(motion, sensors) for effect in effects.values()]
     extra = [force for force in forces if force is not None]
-    return sense(motion, site, extra, temperature.above(instants))
+    return sense(motion, site, extra, temperature)
 
 
 def noiseless_increments(truth: Truth, sensors: Sensors, effects: Effects) -> Reading:

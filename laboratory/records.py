@@ -28,7 +28,7 @@ class Records:
     stamps: Counts  # ns since the start of GPS time, (n,)
     counts: Counts  # (n, 6), columns as in CHANNELS
     ends: Counts  # ns since the start of GPS time, (n,): when the sample truly ended
-    temperature: Array  # K, (n,): of the IMU at the end of the sample
+    temperature: Array  # K, (n,): of the thermometer at the end of the sample
     units: Array  # (6,): the mean reading over a sample that makes one count, m/s² and rad/s
     interval: float  # s, of a sample
     marks: tuple[Mark, ...] = ()

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from laboratory.arrays import Array
 from laboratory.motion import Motion
 from laboratory.site import Site
+from laboratory.temperature import Temperature
 
 
 @dataclass(frozen=True)
@@ -25,16 +26,20 @@ class Truth:
     force: Array  # m/s², (m, 3), +g on the axis that points up
     turned: Array  # rad, (n, 3): integral of the rate over every sample
     velocity: Array  # m/s, (n, 3): integral of the force over every sample
-    temperature_rise: Array  # K, (m,): above the reference of M and bias
+    temperature: Temperature
 
     @property
     def time(self) -> Array:
         """Time of the instants since the campaign's first sample, (m,), s."""
         return self.motion.instants.time
 
+    def warmer(self, node: str) -> Array:
+        """How much accelerometer or gyro is above the reference of M and bias, (m,), K."""
+        return self.temperature.course(node, self.motion.instants) - self.temperature.reference
+
 
 def sense(
-    motion: Motion, site: Site, extra_forces: Iterable[ExtraForce], temperature_rise: Array
+    motion: Motion, site: Site, extra_forces: Iterable[ExtraForce], temperature: Temperature
 ) -> Truth:
     """ω = ω_table + Cᵀ ω_e,  f = Cᵀ (0, 0, g) + extra forces."""
     integral = motion.instants.integral
@@ -44,4 +49,4 @@ def sense(
         force = force + extra.force
         velocity = velocity + extra.velocity
     turned = motion.turned + integral(earth)
-    return Truth(motion, motion.rate + earth, force, turned, velocity, temperature_rise)
+    return Truth(motion, motion.rate + earth, force, turned, velocity, temperature)

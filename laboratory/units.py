@@ -11,6 +11,7 @@ PPM: Final = 1e-6
 MILLISECOND: Final = 1e-3  # s
 MILLIRADIAN: Final = 1e-3  # rad
 ARCSECOND: Final = DEGREE / 3600  # rad
+MINUTE: Final = 60.0  # s
 HOUR: Final = 3600.0  # s
 ROOT_HOUR: Final = 60.0  # √s
 ICE_POINT: Final = 273.15  # K, 0 °C

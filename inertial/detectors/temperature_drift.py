@@ -18,11 +18,10 @@ from inertial.signal.detector import (
 )
 from inertial.text.messages import _
 from inertial.text.numbers import significant
-from inertial.text.units import DEGREE, STANDARD_GRAVITY
+from inertial.text.units import DEGREE, ICE_POINT, STANDARD_GRAVITY
 
 # K. A consumer MEMS then moves by as much as it is calibrated to; a thermometer is sure of it.
 MAX_DRIFT = 1.0
-ICE_POINT = 273.15  # K
 MEDIAN_WINDOWS = 5  # windows of a running median, by which wrong readings of the thermometer go
 MG = STANDARD_GRAVITY * 1e-3  # m/s²
 # Per K: biases of accelerometers, m/s², and gyros, rad/s, at least and at most; scale factors, 1.

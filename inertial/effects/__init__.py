@@ -50,6 +50,8 @@ from inertial.effects.table_ripple import TableRipple
 from inertial.effects.table_speed_error import TableSpeedError
 from inertial.effects.table_tilt import TableTilt
 from inertial.effects.table_wobble import TableWobble
+from inertial.effects.temperature_model import TemperatureModel
+from inertial.effects.thermal_hysteresis import ThermalHysteresis
 from inertial.effects.turn_angle_error import TurnAngleError
 from inertial.physics.effect import Effect
 
@@ -110,3 +112,13 @@ CATALOGUE: dict[str, Effect] = {
         ClockScale(),
     )
 }
+
+# Selected before the others, piece by piece, and so no candidates of the search.
+TEMPERATURE_MODELS: dict[str, TemperatureModel] = {
+    model.name: model for model in (TemperatureModel("gyro"), TemperatureModel("accel"))
+}
+# Searched beside the catalogue where the temperature changes by as much as these ask for.
+OF_TEMPERATURE_CYCLES: dict[str, Effect] = {
+    effect.name: effect for effect in (ThermalHysteresis("gyro"), ThermalHysteresis("accel"))
+}
+KNOWN: dict[str, Effect] = {**CATALOGUE, **TEMPERATURE_MODELS, **OF_TEMPERATURE_CYCLES}

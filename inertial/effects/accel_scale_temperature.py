@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from inertial.physics.drift import mean_temperature, warmer, without_temperature
+from inertial.physics.drift import temperature_constants, warmer, without_temperature
 from inertial.physics.effect import (
     Array,
     Constant,
@@ -37,11 +37,11 @@ class AccelScaleTemperature(Effect):
     sizes = by_grade(1e-6, 5, 20, 50, 200)
 
     def constants(self, motion: Motion) -> Sequence[Constant]:
-        return [mean_temperature(motion, self.reference)]
+        return temperature_constants(motion, self.reference, self.valid)
 
     def blind(self, motion: Motion) -> str:
         return without_temperature(motion)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        change = values * truth.force * warmer(motion, self.reference)[:, None]
+        change = values * truth.force * warmer(motion, self.reference, self.valid)[:, None]
         return replace(reading, accel=reading.accel + change)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.drift import mean_temperature, warmer, without_temperature
+from inertial.physics.drift import temperature_constants, warmer, without_temperature
 from inertial.physics.effect import (
     Array,
     Constant,
@@ -43,11 +43,11 @@ class GyroBiasTemperature(Effect):
     sizes = by_grade(DEGREE_PER_HOUR, 0.05, 1, 5, 18)
 
     def constants(self, motion: Motion) -> Sequence[Constant]:
-        return [mean_temperature(motion, self.reference)]
+        return temperature_constants(motion, self.reference, self.valid)
 
     def blind(self, motion: Motion) -> str:
         return without_temperature(motion)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        change = np.outer(warmer(motion, self.reference), values)
+        change = np.outer(warmer(motion, self.reference, self.valid), values)
         return replace(reading, gyro=reading.gyro + change)

@@ -59,6 +59,8 @@ from laboratory.effects.table_speed_error import TableSpeedError
 from laboratory.effects.table_sway import TableSway
 from laboratory.effects.table_tilt import TableTilt
 from laboratory.effects.table_wobble import TableWobble
+from laboratory.effects.temperature_curves import TemperatureCurves
+from laboratory.effects.temperature_hysteresis import TemperatureHysteresis
 from laboratory.effects.turn_angle_error import TurnAngleError
 from laboratory.effects.turn_on_bias import TurnOnBias
 from laboratory.effects.white_noise import WhiteNoise
@@ -108,6 +110,8 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "gyro_latency": GyroLatency.specified,
     # both
     "turn_on_bias": TurnOnBias.specified,
+    "temperature_curves": TemperatureCurves.specified,
+    "temperature_hysteresis": TemperatureHysteresis.specified,
     # the accelerometers
     "accel_quadratic": AccelQuadratic.specified,
     "accel_cubic": AccelCubic.specified,

@@ -16,4 +16,4 @@ class AccelBiasTemperature(ArrayEffect):
     UNIT = MICROGRAVITY
 
     def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
-        return Reading.of_accelerometers(truth.temperature_rise[:, None] * self.value)
+        return Reading.of_accelerometers(truth.warmer("accelerometer")[:, None] * self.value)

@@ -17,4 +17,6 @@ class AccelScaleTemperature(ArrayEffect):
 
     def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
         force = sensors.accelerometer.project(truth.force)
-        return Reading.of_accelerometers(truth.temperature_rise[:, None] * self.value * force)
+        return Reading.of_accelerometers(
+            truth.warmer("accelerometer")[:, None] * self.value * force
+        )

@@ -16,4 +16,4 @@ class GyroBiasTemperature(ArrayEffect):
     UNIT = DEGREE / HOUR
 
     def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
-        return Reading.of_gyros(truth.temperature_rise[:, None] * self.value)
+        return Reading.of_gyros(truth.warmer("gyro")[:, None] * self.value)

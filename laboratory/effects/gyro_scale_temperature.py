@@ -17,4 +17,4 @@ class GyroScaleTemperature(ArrayEffect):
 
     def reading_error(self, truth: Truth, sensors: Sensors) -> Reading:
         rate = sensors.gyro.project(truth.rate)
-        return Reading.of_gyros(truth.temperature_rise[:, None] * self.value * rate)
+        return Reading.of_gyros(truth.warmer("gyro")[:, None] * self.value * rate)

@@ -5,11 +5,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from inertial.campaign.equations import Campaign
-from inertial.effects import CATALOGUE
+from inertial.effects import CATALOGUE, KNOWN, TEMPERATURE_MODELS
+from inertial.estimation.random_walk import MeasuredDrift
 from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause, EffectTest
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
-from inertial.physics.effect import Effect
+from inertial.physics.effect import Array, Effect
+from inertial.tables import AXES
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, significant, with_sigma
@@ -38,11 +40,8 @@ SHARED_EFFECTS = {"gyro": ("earth", "latitude", "heading"), "accel": ("lever", "
 MIN_EXCESS = 1.2  # of chi-squared per degree; the uncertainty of the noise level explains less
 
 NOT_TESTED = "Not detected."
-OF_NOISE = {
-    "gyro_flicker": _(
-        "One campaign does not distinguish it from a random walk, which is estimated."
-    ),
-}
+NO_FLICKER = _("The noise at rest does not show it.")
+FLICKER = _("The noise at rest shows {sizes} in the order of the axes, which the sigmas allow for.")
 OF_QUALITY = _("Sought in the quality of the samples: findings “{finding}”.")
 WALK_SCORE = _(
     "The biases of the gyros follow a random walk of {size}, which the sigmas allow for."
@@ -54,6 +53,11 @@ WALK_OR = _(
 WALK_ALONE = _(
     "The biases of the {sensors} change as by a random walk of {size}. Any other "
     "change without a law would look much the same."
+)
+WALK_AT_REST = _(
+    "The biases of the {sensors} change as by a random walk of {sizes} in the order of the axes: "
+    "their noise within single static stretches shows it, and the differences between the "
+    "stretches no more than that."
 )
 WALK_CONSEQUENCE = _("The sigmas of all parameters allow for it.")
 REPEAT = _(
@@ -140,7 +144,7 @@ class BlockResults:
     def _limits(self) -> Iterator[TableRow]:
         """The detection limit of each parameter, or why there is none."""
         for limit in self.selection.limits:
-            effect = CATALOGUE[limit.effect]
+            effect = KNOWN[limit.effect]
             parameter = effect.parameters[limit.parameter]
             visible = limit.reason == VISIBLE
             why = sentences.explanation(effect, limit.reason, self.campaign.blind(effect))
@@ -260,6 +264,11 @@ class BlockResults:
             step = min(filter(None, distances), default=0.0)
             sigma = step / 12**0.5 if scan.between else None  # uniform within a step
             parameters.append(Estimated(scan.name, scan.unit, scan.meaning, at, sigma))
+        elif effect.name in TEMPERATURE_MODELS:
+            parameters += [
+                Estimated(one.name, one.unit, one.meaning, one.value)
+                for one in effect.constants(self.campaign.motion)
+            ]
         return parameters
 
 
@@ -268,17 +277,23 @@ def _tested(test: EffectTest, number: float) -> float | None:
     return number if test.degrees else None
 
 
-def other_scores(walk: Walk | None, mount: str) -> Iterator[TableRow]:
-    """Effects sought in the noise, then in the quality of samples; `walk`: of the gyros, if any."""
+def other_scores(walk: Walk | None, measured: MeasuredDrift, mount: str) -> Iterator[TableRow]:
+    """Effects sought in the noise, then in the quality of samples.
+
+    `walk`, `measured`: of the gyros, between stretches, if any, and by the noise at rest.
+    """
+    walks = {WALK: WALK_SCORE.format(size=_walk_size("gyro", walk))} if walk else {}
+    if walk is None and measured.walk.any():
+        walks = {WALK: WALK_SCORE.format(size=_sizes(measured.walk, WALK_UNITS["gyro"]))}
+    shown = measured.instability.any()
+    flicker = FLICKER.format(sizes=_sizes(measured.instability, "rad/s")) if shown else NO_FLICKER
     others = [effect for effect in CATALOGUE.values() if effect.sought_in in ("noise", "quality")]
     for effect in sorted(others, key=lambda effect: effect.sought_in):  # noise comes before quality
-        named = effect.name == WALK and walk is not None
-        if effect.name == WALK and walk is not None:
-            sentence = WALK_SCORE.format(size=_walk_size("gyro", walk))
-        elif effect.sought_in == "quality":
+        named = effect.name in walks
+        if effect.sought_in == "quality":
             sentence = OF_QUALITY.format(finding=in_words(effect.finding))
         else:
-            sentence = OF_NOISE.get(effect.name, NOT_TESTED)
+            sentence = {"gyro_flicker": flicker, **walks}.get(effect.name, NOT_TESTED)
         yield (
             "scores",
             {
@@ -344,6 +359,50 @@ def random_walk_rows(
     yield parameter_row(mount, cause, size, identifier, identifier)
     row: Row = {"mount": mount, "sensor": sensor, "value": walk.size, "sigma": sigma, "unit": unit}
     yield "random_walks", {**row, "finding": identifier}
+
+
+def walk_at_rest_rows(
+    sensor: str, sizes: Array, lawless: WithoutLaw, mount: str
+) -> Iterator[TableRow]:
+    """The random walk that the noise at rest shows, where the stretches differ by no more.
+
+    `sizes`: K of the three axes. That of the equations is beyond it, and 0.
+    """
+    cause, unit = f"{sensor}_random_walk", WALK_UNITS[sensor]
+    identifier = finding_id(cause, mount)
+    size = float(np.sqrt(np.mean(sizes**2)))
+    yield (
+        "findings",
+        {
+            "id": identifier,
+            "mount": mount,
+            "cause": cause,
+            "sensor": sensor,
+            "count": 1,
+            "size": size,
+            "unit": unit,
+            "severity": 1,
+            "sentence": WALK_AT_REST.format(sensors=SENSORS[sensor], sizes=_sizes(sizes, unit)),
+            "consequence": WALK_CONSEQUENCE,
+            "action": SHORTEN,
+            "verdict": UNKNOWN_STRUCTURE,
+        },
+    )
+    others = lawless.members[sensor] if lawless.owner[sensor] == cause else ()
+    yield from member_rows(identifier, mount, list(dict.fromkeys([cause, *others])))
+    for axis, value in zip(AXES, sizes.tolist(), strict=True):
+        meaning = _("random walk of the bias of {axis}, at rest", axis=axis)
+        yield parameter_row(
+            mount, cause, Estimated(f"K_{axis}", unit, meaning, value), identifier, identifier
+        )
+    row: Row = {"mount": mount, "sensor": sensor, "value": 0.0, "sigma": None, "unit": unit}
+    yield "random_walks", {**row, "finding": identifier}
+
+
+def _sizes(sizes: Array, si: str) -> str:
+    """The sizes of three axes with their unit."""
+    unit = quantity("", si).laboratory
+    return f"{', '.join(significant(size / unit.size, 2) for size in sizes.tolist())} {unit.name}"
 
 
 def _walk_size(sensor: str, walk: Walk) -> str:

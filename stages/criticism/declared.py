@@ -30,6 +30,7 @@ DECLARED = Declared(
         "findings": tables.EFFECT_FINDINGS,
         "members": tables.MEMBERS,
         "cause_positions": tables.CAUSE_POSITIONS,
+        "temperature_curves": tables.TEMPERATURE_CURVES,
     },
     streams=("simulated",),
 )

@@ -112,13 +112,8 @@ class Hypothesis:
         return ECCENTRICITY if self.ripple and self.ripple.order_sigma == 0 else RIPPLE
 
 
-def hypotheses_of(
-    detection: Detection, turns: Sequence[SteadyTurn], favoured: str = ""
-) -> list[Hypothesis]:
-    """The likeliest hypothesis of each effect, the likeliest of all first.
-
-    `favoured`: time or angle, what is bound to it comes first if it explains half as much.
-    """
+def hypotheses_of(detection: Detection, turns: Sequence[SteadyTurn]) -> list[Hypothesis]:
+    """The likeliest hypothesis of each effect, the likeliest of all first."""
     every = [Probe(turn) for turn in turns]
     known = [probe for probe in every if np.isfinite(probe.turn.rate)]
     paces = _different([probe.turn.hertz(1.0) for probe in known])
@@ -147,9 +142,17 @@ def hypotheses_of(
     # As likely in time as against the angle, one phase against the angle in all turns comes first.
     if len(likeliest) > 1 and abs(likeliest[0].score - likeliest[1].score) < MIN_LOG_ODDS:
         likeliest.sort(key=lambda one: bool(one.ripple and one.ripple.common), reverse=True)
-    enough = FAVOURED_SHARE * max(one.score for one in likeliest)
-    likeliest.sort(key=lambda one: one.bound_to == favoured and one.score >= enough, reverse=True)
     return likeliest
+
+
+def favouring(hypotheses: Sequence[Hypothesis], favoured: str) -> list[Hypothesis]:
+    """What is bound to time, or to the angle, first if it explains half as much as the best."""
+    enough = FAVOURED_SHARE * max(one.score for one in hypotheses)
+    return sorted(
+        hypotheses,
+        key=lambda one: one.bound_to == favoured and one.score >= enough,
+        reverse=True,
+    )
 
 
 def _different(paces: Sequence[float]) -> list[float]:

@@ -1,13 +1,17 @@
-"""The search for oscillations in the turns of one mount, and their removal from the blocks."""
+"""Oscillations in the turns of one mount: search, removal from the blocks, shifts of parameters."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.equations import Campaign, campaign_of
 from inertial.campaign.steady_residuals import SteadyTurn
+from inertial.estimation.least_squares import Estimate
 from inertial.estimation.periodic_in_angle import Orders, Ripple, detection_limit, search
 from inertial.estimation.periodic_in_time import Taken, line_at, phasor, without_line
 from inertial.tables import AXES, GYRO
@@ -32,6 +36,7 @@ from stages.criticism.oscillation_hypotheses import (
     RIPPLE,
     TIME,
     Hypothesis,
+    favouring,
     folded,
     hypotheses_of,
 )
@@ -112,10 +117,13 @@ def _lead(hypotheses: Sequence[Hypothesis], effect: str) -> float:
 
 
 def oscillation_of(
-    detection: Detection, turns: Sequence[SteadyTurn], lowest: float, level: float, favoured: str
+    hypotheses: Sequence[Hypothesis],
+    p_value: float,
+    turns: Sequence[SteadyTurn],
+    lowest: float,
+    level: float,
 ) -> Oscillation:
-    """What a detection is; `favoured`: as in `hypotheses_of`."""
-    hypotheses = hypotheses_of(detection, turns, favoured)
+    """What a detection with its p-value is, by its hypotheses, the likeliest first."""
     likeliest = hypotheses[0]
     lines = _lines(turns, likeliest, lowest)
     clear = _clear(lines, turns, level)
@@ -123,7 +131,7 @@ def oscillation_of(
     showing = [turn for turn in turns if turn.name in names]
     return Oscillation(
         hypotheses,
-        detection.p_value,
+        p_value,
         combined(clear),
         clear if likeliest.effect == IN_TIME else lines,
         coupled(showing, likeliest.axis, likeliest.frequencies),
@@ -191,42 +199,108 @@ def find_oscillations(turns: Sequence[SteadyTurn], level: float, lowest: float) 
 
     level : accepted probability of a false detection; lowest : Hz, of lines in time
     """
-    plain = _searched(turns, level, lowest, "")
+    searches: dict[Removed, Search] = {}
+    searches[()] = Search(turns, {turn.name: () for turn in turns}, lowest, level / SEARCHES)
+    plain = _searched(searches, "")
     if len(plain.oscillations) < 2:
         return plain
-    tried = [plain, *(_searched(turns, level, lowest, first) for first in (ANGLE, TIME))]
+    tried = [plain, *(_searched(searches, favoured) for favoured in (ANGLE, TIME))]
     return min(tried, key=lambda result: (result.truncated, len(result.oscillations)))
 
 
-def _searched(
-    turns: Sequence[SteadyTurn], level: float, lowest: float, favoured: str
-) -> SearchResult:
-    """Find the most significant oscillation, remove it, and search again."""
-    share = level / SEARCHES
-    remaining, taken = list(turns), {turn.name: list[Taken]() for turn in turns}
+@dataclass(frozen=True)
+class Search:
+    """One search for the most significant line in all turns, in time and against the angle.
+
+    turns : without the lines that were found before; taken : these lines in each turn
+    lowest : Hz, of lines in time; level : accepted probability of a false detection
+    """
+
+    turns: Sequence[SteadyTurn]
+    taken: Mapping[str, Sequence[Taken]]
+    lowest: float
+    level: float
+
+    @cached_property
+    def turning(self) -> Sequence[SteadyTurn]:
+        """The turns whose angle is known."""
+        return [turn for turn in self.turns if np.isfinite(turn.rate)]
+
+    @cached_property
+    def lines(self) -> Sequence[TurnLine]:
+        """The strongest line in time of each axis and turn."""
+        every = (strongest_lines(turn, self.lowest, self.taken[turn.name]) for turn in self.turns)
+        return [line for lines in every for line in lines]
+
+    @cached_property
+    def orders(self) -> Orders | None:
+        """Against the angle; None without a turn whose angle is known."""
+        courses = [turn.course(turn.about) for turn in self.turning]
+        return search(courses) if courses else None
+
+    @cached_property
+    def detections(self) -> Sequence[Detection]:
+        """The most significant in time, the order 1, and the best other."""
+        against = best_orders(self.turning, self.orders, self.taken) if self.orders else []
+        in_time = in_all(self.turns, self.taken, self.lowest)
+        return [*in_turns(self.lines, self.turns), *in_time, *against]
+
+    @cached_property
+    def largest(self) -> Detection | None:
+        """The largest of those that are significant."""
+        significant = [one for one in self.detections if one.p_value < self.level]
+        return max(significant, key=lambda detection: detection.drop, default=None)
+
+    @cached_property
+    def hypotheses(self) -> Sequence[Hypothesis]:
+        """What the largest may be."""
+        return hypotheses_of(self.largest, self.turns) if self.largest else []
+
+    def without(self, frequencies: Mapping[str, float]) -> "Search":
+        """The next search, of turns less the line at a frequency, Hz, in each."""
+        turns, taken = [], dict(self.taken)
+        for turn in self.turns:
+            if turn.name in frequencies:
+                turn, line = _without(turn, frequencies[turn.name])
+                taken[turn.name] = [*taken[turn.name], line]
+            turns.append(turn)
+        return replace(self, turns=turns, taken=taken)
+
+
+# Of each line that was removed: the turns, and its frequency in each, Hz.
+Removed = tuple[tuple[tuple[str, float], ...], ...]
+
+
+def _searched(searches: dict[Removed, Search], favoured: str) -> SearchResult:
+    """Find the most significant oscillation, remove it, and search again.
+
+    searches : by the lines that were removed before; those that are made here are added
+    favoured : time or angle, what is bound to it comes first if it explains half as much
+    """
+    first = current = searches[()]
     oscillations: list[Oscillation] = []
-    first: list[TurnLine] = []
-    while True:
-        lines = [
-            line for turn in remaining for line in strongest_lines(turn, lowest, taken[turn.name])
-        ]
-        first = first if oscillations else lines
-        turning = [turn for turn in remaining if np.isfinite(turn.rate)]
-        orders = search([turn.course(turn.about) for turn in turning]) if turning else None
-        against = [] if orders is None else best_orders(turning, orders, taken)
-        every = [*in_turns(lines, remaining), *in_all(remaining, taken, lowest), *against]
-        significant = [detection for detection in every if detection.p_value < share]
-        if not significant or len(oscillations) == MAX_OSCILLATIONS:
-            break
-        largest = max(significant, key=lambda detection: detection.drop)
-        oscillations.append(oscillation_of(largest, remaining, lowest, share, favoured))
-        frequencies = oscillations[-1].likeliest.frequencies
-        remaining = [
-            _without(turn, frequencies.get(turn.name), taken[turn.name]) for turn in remaining
-        ]
-    sigmas = np.zeros(0) if orders is None else detection_limit(orders, shortest(turning), share)
-    causes = in_causes(oscillations, turns)
-    return SearchResult(turns, causes, first, orders, every, sigmas, bool(significant))
+    removed: Removed = ()
+    while current.largest and len(oscillations) < MAX_OSCILLATIONS:
+        hypotheses = favouring(current.hypotheses, favoured)
+        p_value, lowest, level = current.largest.p_value, current.lowest, current.level
+        oscillations.append(oscillation_of(hypotheses, p_value, current.turns, lowest, level))
+        frequencies = hypotheses[0].frequencies
+        removed = (*removed, tuple(frequencies.items()))
+        if removed not in searches:
+            searches[removed] = current.without(frequencies)
+        current = searches[removed]
+    sigmas = np.zeros(0)
+    if current.orders:
+        sigmas = detection_limit(current.orders, shortest(current.turning), current.level)
+    return SearchResult(
+        first.turns,
+        in_causes(oscillations, first.turns),
+        first.lines,
+        current.orders,
+        current.detections,
+        sigmas,
+        truncated=current.largest is not None,
+    )
 
 
 def in_causes(
@@ -279,17 +353,15 @@ def _is_multiple(
     )
 
 
-def _without(turn: SteadyTurn, frequency: float | None, taken: list[Taken]) -> SteadyTurn:
-    """A turn without an oscillation, of which amplitude and phase are fitted about each axis."""
-    if frequency is None:
-        return turn
+def _without(turn: SteadyTurn, frequency: float) -> tuple[SteadyTurn, Taken]:
+    """A turn less a line, of which amplitude and phase are fitted about each axis; and the line."""
     parts = [without_line(record, 1 / turn.step, frequency) for record in turn.truth.T]
-    taken.append(Taken(frequency, max(part.amplitude for part in parts)))
     residuals = [
         record - part.amplitude * part.shape
         for record, part in zip(turn.truth.T, parts, strict=True)
     ]
-    return replace(turn, truth=np.column_stack(residuals))
+    taken = Taken(frequency, max(part.amplitude for part in parts))
+    return replace(turn, truth=np.column_stack(residuals)), taken
 
 
 # ---- Removal of the oscillations from the blocks of turns.
@@ -350,3 +422,42 @@ def _mean_rates(
             rates[:, axis] -= np.real(amplitude * np.exp(2j * np.pi * frequency * time))
             means[:, axis] += share * np.real(amplitude * np.exp(2j * np.pi * frequency * since))
     return means
+
+
+def shifts(
+    data: CampaignData,
+    turns: Sequence[SteadyTurn],
+    oscillations: Sequence[Oscillation],
+    quiet: Campaign,
+) -> list[float | None]:
+    """The largest shift of a parameter by each, in its sigma; None where none is determined.
+
+    `quiet`: the campaign without any of them.
+    """
+    without = _estimate(quiet) if oscillations else None
+    if without is None:
+        return [None] * len(oscillations)
+    largest = []
+    for one in oscillations:
+        others = [other for other in oscillations if other is not one]
+        blocks = without_lines(data.blocks, turns, others)
+        present = _estimate(campaign_of(replace(data, blocks=blocks)))
+        largest.append(None if present is None else _largest(without, present))
+    return largest
+
+
+def _estimate(campaign: Campaign) -> Estimate | None:
+    system = campaign.system("gyro", [], 1.0)
+    return None if system is None else system.solve_shared()
+
+
+def _largest(without: Estimate, present: Estimate) -> float | None:
+    own = [
+        i
+        for i, (kind, _) in enumerate(present.names)
+        if kind == "parameter" and present.determined[i]
+    ]
+    if not own or without.names != present.names:
+        return None
+    shift = np.abs(present.values - without.values) / present.sigma
+    return float(shift[own].max())

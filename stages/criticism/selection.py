@@ -16,12 +16,13 @@ import numpy as np
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
 from inertial.campaign.scatter_of_positions import scattered
+from inertial.effects import TEMPERATURE_MODELS
 from inertial.estimation.probability import f_sf
 from inertial.model_selection import walk_odds
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause, Named
 from inertial.model_selection.detection_limits import Visible, visible
 from inertial.model_selection.evidence import Evidence, SearchedEffect, searched_effect
-from inertial.model_selection.naming import causes, law_of
+from inertial.model_selection.naming import causes, law_of, with_given
 from inertial.model_selection.search import finer, to_refine
 from inertial.physics.effect import Array, Effect
 from stages.criticism.bias_drift import (
@@ -38,6 +39,7 @@ MAX_LOG_ODDS = 3.0  # of a law and a random walk that are as likely
 FINER_STEPS = 4  # of the second search in each interval of the first
 MIN_THIRD_SEARCH_SNR = 20.0  # from which a third search is finer still
 MAX_WALK_SHARE = 0.2  # of the information of an effect that remains with a random walk
+MIN_TEMPERATURE_SNR = 8.0  # beside a random walk, of functions of temperature that are certain
 SENSORS = ("gyro", "accel")
 MAX_ROUNDS = 3  # of the scatter of positions by hand and the effects
 
@@ -137,15 +139,19 @@ class Selection:
 
 
 def select_with_scatter(
-    campaign: Campaign, effects: Sequence[Effect], level: float, noise_degrees: float
+    campaign: Campaign,
+    effects: Sequence[Effect],
+    level: float,
+    noise_degrees: float,
+    given: Sequence[Effect] = (),
 ) -> Selection:
     """The same with the scatter of positions by hand, which is smaller once effects are named.
 
     A scatter may be all effect: so where none is named beside it, that which takes most of it away
-    is tested against it.
+    is tested against it. `given`: effects that are named before the search.
     """
     quiet = scattered(campaign, [], noise_degrees)
-    selection = first = select_effects(quiet, effects, level, noise_degrees)
+    selection = first = select_effects(quiet, effects, level, noise_degrees, given)
     fitted = selection.fitted or (instead_of_scatter(first, level) if campaign.by_hand else [])
     for _round in range(MAX_ROUNDS if campaign.by_hand else 0):
         if not fitted:
@@ -180,12 +186,16 @@ def instead_of_scatter(selection: Selection, level: float) -> list[Effect]:
 
 
 def select_effects(
-    campaign: Campaign, effects: Sequence[Effect], level: float, noise_degrees: float
+    campaign: Campaign,
+    effects: Sequence[Effect],
+    level: float,
+    noise_degrees: float,
+    given: Sequence[Effect] = (),
 ) -> Selection:
     """Name the causes among `effects`; `level`: accepted probability of a false name."""
 
     def with_walks(walks: tuple[float, float]) -> Selection:
-        return _select(campaign.with_random_walks(walks), effects, level, noise_degrees)
+        return _select(campaign.with_random_walks(walks), effects, level, noise_degrees, given)
 
     selection = without = with_walks((0.0, 0.0))
     for number, walk in enumerate(campaign.solution.random_walks):
@@ -336,27 +346,54 @@ def _resembling_walks(with_walk: Campaign, selection: Selection) -> list[bool]:
         remaining, whole = (
             values @ total.information[np.ix_(own, own)] @ values for total in totals
         )
-        result.append(bool(remaining < MAX_WALK_SHARE * whole))
+        # A walk that follows a measured temperature by chance leaves nothing of its functions.
+        most = MIN_TEMPERATURE_SNR**2 if effect.name in TEMPERATURE_MODELS else np.inf
+        result.append(bool(remaining < min(MAX_WALK_SHARE * float(whole), most)))
     return result
 
 
 def _select(
-    campaign: Campaign, effects: Sequence[Effect], level: float, noise_degrees: float
+    campaign: Campaign,
+    effects: Sequence[Effect],
+    level: float,
+    noise_degrees: float,
+    given: Sequence[Effect],
 ) -> Selection:
     families = {name: tuple(family) for name, family in campaign.candidates(effects).items()}
-    equations, searched = evidence_of(campaign, families, noise_degrees)
-    law = law_of(equations, searched, level)
-    named = causes(equations, searched, law)
-    limits = visible(equations, [effect for effect in searched if effect.name in families])
+    equations, rest, searched = _evidence_given(campaign, families, noise_degrees, given)
+    law = law_of(rest, searched, level)
+    named = causes(rest, searched, law)
+    limits = visible(rest, [effect for effect in searched if effect.name in families])
     min_snr = 0.0
-    while refined := to_refine(equations, named, searched, min_snr):
+    while refined := to_refine(rest, named, searched, min_snr):
         families |= {name: _finer(families[name], places) for name, places in refined.items()}
-        equations, searched = evidence_of(campaign, families, noise_degrees)
-        named = causes(equations, searched, law)
+        equations, rest, searched = _evidence_given(campaign, families, noise_degrees, given)
+        named = causes(rest, searched, law)
         if min_snr:
             break
         min_snr = MIN_THIRD_SEARCH_SNR
+    if given and equations.sensors:
+        column = {name: i for i, name in enumerate(equations.names)}
+        before = [
+            searched_effect(effect.name, [column[name] for name in columns_of(effect)])
+            for effect in given
+        ]
+        named, searched = with_given(equations, named, before), [*searched, *before]
+        families |= {effect.name: (effect,) for effect in given}
     return Selection(campaign, (), equations, searched, families, named, limits)
+
+
+def _evidence_given(
+    campaign: Campaign,
+    families: Mapping[str, Sequence[Effect]],
+    noise_degrees: float,
+    given: Sequence[Effect],
+) -> tuple[Evidence, Evidence, list[SearchedEffect]]:
+    """The evidence on all candidates and on effects that are given; and that given these."""
+    equations, searched = evidence_of(campaign, families, noise_degrees, given)
+    column = {name: i for i, name in enumerate(equations.names)}
+    own = [column[name] for effect in given for name in columns_of(effect) if name in column]
+    return equations, equations.given(own), searched
 
 
 def _finer(family: Sequence[Effect], places: Sequence[int]) -> tuple[Effect, ...]:
@@ -370,9 +407,12 @@ def columns_of(effect: Effect) -> list[str]:
 
 
 def evidence_of(
-    campaign: Campaign, families: Mapping[str, Sequence[Effect]], noise_degrees: float
+    campaign: Campaign,
+    families: Mapping[str, Sequence[Effect]],
+    noise_degrees: float,
+    given: Sequence[Effect] = (),
 ) -> tuple[Evidence, list[SearchedEffect]]:
-    """The evidence on all candidates, and the columns of each.
+    """The evidence on all candidates, and the columns of each; on effects that are `given`, too.
 
     Besides those of the catalogue these are drifts without a law, and the biases of all runs of
     the instrument where there are several.
@@ -388,7 +428,7 @@ def evidence_of(
         for family in [*families.values(), *drifts.values(), *of_runs.values()]
         for effect in family
     ]
-    equations = evidence(campaign, every, noise_degrees)
+    equations = evidence(campaign, [*every, *given], noise_degrees)
     if not equations.sensors:
         return equations, [searched_effect(name) for name in families]
     column = {name: i for i, name in enumerate(equations.names)}

@@ -10,27 +10,32 @@ from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.equations import Campaign, campaign_of
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.effects import CATALOGUE
+from inertial.estimation.random_walk import NO_DRIFT
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from stages.criticism.bias_drift import random_walks_with_sigmas
 from stages.criticism.block_results import (
+    NAMED,
     BlockResults,
     other_scores,
     random_walk_rows,
     unexplained_rows,
+    walk_at_rest_rows,
 )
 from stages.criticism.class_splitting import ExtendedCampaigns, ExtendedPlan, extended_plans
 from stages.criticism.declared import DECLARED
 from stages.criticism.finding_rows import Row, TableRow
 from stages.criticism.oscillation_results import OscillationResults
-from stages.criticism.oscillation_search import find_oscillations, without_lines
-from stages.criticism.oscillation_shifts import shifts
+from stages.criticism.oscillation_search import find_oscillations, shifts, without_lines
 from stages.criticism.residual_structure import structure_rows, structure_tests
-from stages.criticism.selection import SENSORS, select_with_scatter
+from stages.criticism.selection import SENSORS
 from stages.criticism.temperature_findings import temperature_rows
+from stages.criticism.temperature_selection import select_with_temperature
 from stages.criticism.without_law import without_law
 
-BLOCKS_SHARE = 0.9  # of the accepted probability of a false name; the rest is that of the spectrum
+# Of the accepted probability of a false name; the rest is that of the spectrum, and of the
+# functions of temperature.
+BLOCKS_SHARE, SPECTRUM_SHARE = 0.8, 0.1
 
 
 def criticism(
@@ -62,17 +67,32 @@ def _of_mount(
     """Oscillations are removed first: in block means they would be taken for other effects."""
     mount, degrees = data.mount, data.noise.degrees
     turns = steady_turns(data, simulated)
-    spectrum = find_oscillations(turns, level * (1 - BLOCKS_SHARE), lowest_hz)
+    spectrum = find_oscillations(turns, level * SPECTRUM_SHARE, lowest_hz)
     quiet = without_lines(data.blocks, turns, spectrum.oscillations)
-    campaign = campaign_of(replace(data, blocks=quiet))
+    # A jump or a warm-up within a stretch looks like a random walk there. So effects are weighed
+    # against a random walk between stretches that is estimated beside them, see `select_effects`.
+    measured = campaign_of(replace(data, blocks=quiet))
+    campaign = replace(measured, drifts=dict.fromkeys(SENSORS, NO_DRIFT))
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
-    selection = select_with_scatter(campaign, in_blocks, level * BLOCKS_SHARE, degrees)
+    selection = select_with_temperature(
+        campaign,
+        in_blocks,
+        level * BLOCKS_SHARE,
+        level * (1 - BLOCKS_SHARE - SPECTRUM_SHARE),
+        degrees,
+    )
     tested = structure_tests(selection.campaign, selection.fitted, degrees)
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
     random_walks = random_walks_with_sigmas(selection.campaign, selection.fitted)
     plans = {} if data.by_hand else extended_plans(data.plan, data.performed, quiet)
     extended = {name: partial(_with, plan, data) for name, plan in plans.items()}
-    lawless = without_law(selection, random_walks, tested)
+    lawful = {selection.sensor(cause) for cause in selection.named.causes if cause.verdict in NAMED}
+    drifts = measured.drifts.items()
+    at_rest = {s: drift.walk for s, drift in drifts if drift.walk.any() and s not in lawful}
+    lawless = without_law(selection, {*random_walks, *at_rest}, tested)
+    for sensor, sizes in at_rest.items():
+        if sensor not in random_walks:
+            yield from walk_at_rest_rows(sensor, sizes, lawless, mount)
     for sensor, walk in random_walks.items():
         yield from random_walk_rows(sensor, walk, selection.alternatives, lawless, mount)
     yield from BlockResults(
@@ -80,7 +100,8 @@ def _of_mount(
     ).rows()
     moves = shifts(data, turns, spectrum.oscillations, campaign)
     yield from OscillationResults(spectrum, mount, moves).rows()
-    yield from other_scores(random_walks.get("gyro"), mount)
+    shown = NO_DRIFT if "gyro" in lawful else measured.drifts["gyro"]
+    yield from other_scores(random_walks.get("gyro"), shown, mount)
     yield from structure_rows(tested, lawless.reported_structures, mount)
     yield from unexplained_rows(selection, lawless, mount)
     yield from temperature_rows(data.blocks, data.plan, level, mount)

@@ -39,6 +39,7 @@ from stages.criticism.temperature_models import (
     sweeps,
     temperature_dependences,
 )
+from stages.criticism.temperature_sweeps import curve_rows
 
 MIN_UPRIGHT = 0.99  # cosine from which an accelerometer is taken to be along the vertical
 CURVES = {1: "a straight line", 2: "a parabola", 3: "a cubic"}
@@ -73,8 +74,8 @@ CONSEQUENCE = _(
     "The log has no times: a drift during the one sweep would look the same."
 )
 INTERPOLATE = _(
-    "Correct by interpolating between the means, for no polynomial up to a cubic "
-    "describes them. To know more, {split}."
+    "Correct by the curve of the result, or by interpolating between the means, for no polynomial "
+    "up to a cubic describes them. To know more, {split}."
 )
 CORRECT = _("Correct by {curve} of the temperature. To know more, {split}.")
 WITH_TIMES = _(
@@ -127,6 +128,7 @@ def temperature_rows(
     """
     for dependence in temperature_dependences(sweeps(blocks, plan), level):
         yield from _finding(dependence, mount)
+        yield from curve_rows(dependence, mount)
 
 
 def _finding(dependence: TemperatureDependence, mount: str) -> Iterator[TableRow]:

@@ -23,9 +23,10 @@ from inertial.text.numbers import significant
 from inertial.text.units import STANDARD_GRAVITY
 from stages.diagnosis.sensor_results import SensorResult
 
-REPAIRED, MODELLED, MASKED, INTERPOLATED, LEFT_OUT, NONE = (
+REPAIRED, MODELLED, CURVE, MASKED, INTERPOLATED, LEFT_OUT, NONE = (
     "repaired",
     "modelled",
+    "curve",
     "masked",
     "interpolated",
     "left_out",
@@ -42,6 +43,7 @@ DIFFERENT_THINGS = ("manoeuvre_missing", "manoeuvre_swapped")  # each is one of 
 DONE = {
     REPAIRED: _("It was set right before anything was estimated."),
     MODELLED: _("It is in the model of the result, estimated with the parameters."),
+    CURVE: _("The result gives it as a curve of the temperature, with its sigma."),
     MASKED: _("The readings are masked; nothing is estimated from them."),
     INTERPOLATED: _("What is missing is interpolated from the steady rate before and after."),
     LEFT_OUT: _("The manoeuvres concerned are left out of the estimates."),
@@ -172,12 +174,14 @@ class Evidence:
     """What the cures and gains of causes are read from.
 
     `results`: by sensor and mount; `walks`: ids of findings about random walks, which the
-    covariance includes; `performed`: by the name of the manoeuvre.
+    covariance includes; `performed`: by the name of the manoeuvre; `curves`: sensors and mounts
+    whose changes with temperature are known as curves, without their levels.
     """
 
     results: Mapping[tuple[str, str], SensorResult]
     walks: frozenset[str]
     performed: Mapping[str, Performed]
+    curves: frozenset[tuple[str, str]] = frozenset()
 
     def causes(self, explained: Sequence[Explained]) -> list[Cause]:
         """Every cause once: equal faults of one sensor are one."""
@@ -223,6 +227,10 @@ class Evidence:
         if cause.repair is not None:
             applied = cause.repair["state"] in APPLIED
             return REPAIRED if applied else NONE, _moved_by(cause.repair, own), None
+        if cause.row.get("predictor") == "temperature" and self.curves & {
+            (result.sensor, result.mount) for result in own
+        }:
+            return CURVE, None, None
         if cause.stage == MODEL:
             return self._cure_of_effect(cause, own)
         if cause.cause == CLOCK and cause.sensor == "accel":

@@ -14,12 +14,15 @@ DECLARED = Declared(
         "cause_positions": From("criticism", tables.CAUSE_POSITIONS),
         "effects": From("criticism", tables.EFFECTS),
         "random_walks": From("criticism", tables.RANDOM_WALKS),
+        "swept": From("criticism", tables.TEMPERATURE_CURVES),
         "plan_repairs": From("plan", tables.REPAIRS),
         "segment_repairs": From("segment", tables.REPAIRS),
         "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
         "masks": From("quality", tables.MASKS),
         "gaps": From("quality", tables.GAPS),
         "segments": From("segment", tables.SEGMENTS),
+        "manoeuvres": From("segment", tables.MANOEUVRES),
+        "terms": From("noise", tables.NOISE_TERMS, "terms"),
         "performed": From("segment", tables.PERFORMED),
         **{
             f"{stage}_{table.name}": From(stage, table)
@@ -36,5 +39,6 @@ DECLARED = Declared(
         "result": tables.PARAMETERS,
         "covariance": tables.COVARIANCE,
         "verdict": tables.VERDICTS,
+        "temperature_curves": tables.TEMPERATURE_CURVES,
     },
 )

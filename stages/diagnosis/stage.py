@@ -6,13 +6,15 @@ import pandas as pd
 
 from inertial.campaign.explanations import compete
 from inertial.campaign.hypotheses import Findings, findings_of, hypotheses
+from inertial.campaign.noise_levels import only_noise
 from inertial.campaign.records import Row, performed_of, rows_of
-from inertial.effects import CATALOGUE
+from inertial.effects import KNOWN, TEMPERATURE_MODELS
 from inertial.tables.stage import Stage, Tables
 from inertial.text.parameters import AXES
 from stages.diagnosis.causes import Cause, Evidence, Size
 from stages.diagnosis.declared import DECLARED
 from stages.diagnosis.sensor_results import Estimated, SensorResult, estimated_of
+from stages.diagnosis.temperature_curves import curve_rows
 from stages.diagnosis.verdict import Verdict, verdict
 
 PLACES = ("frequency", "n", "phase")  # parameters of lines: where they are, not how large
@@ -26,6 +28,9 @@ def diagnosis(
     effects: pd.DataFrame,
     random_walks: pd.DataFrame,
     performed: pd.DataFrame,
+    swept: pd.DataFrame,
+    manoeuvres: pd.DataFrame,
+    terms: pd.DataFrame,
 ) -> Tables:
     """Causes, consequences, members of classes, the result with its covariance, the verdict.
 
@@ -33,22 +38,30 @@ def diagnosis(
     ----------
     estimated : the candidates for the result of each sensor and mount
     effects : of criticism: sizes of the effects
+    swept : of criticism: changes with temperature of what one attitude shows
+    terms : of the noise at rest
     """
     explained = list(compete(list(hypotheses(findings))))
     results = list(estimated.results(explained))
+    curves = {(row["sensor"], row["mount"]) for row in rows_of(swept)}
     evidence = Evidence(
         {(result.sensor, result.mount): result for result in results},
         frozenset(random_walks["finding"]),
         performed_of(performed),
+        frozenset(curves),
     )
     causes = evidence.causes(explained)
-    verdicts = [verdict(result, causes) for result in results]
+    noisy = only_noise(manoeuvres, terms)
+    verdicts = [
+        verdict(result, causes, _range(swept, result.sensor, result.mount), only_noise=noisy)
+        for result in results
+    ]
     sizes = _sizes(rows_of(effects))
     return {
         "causes": [cause.row(sizes) for cause in causes],
         "members": [row for cause in causes for row in _members(cause, findings)],
         "consequences": [row for cause in causes for row in _consequences(cause)],
-        **_written(results, verdicts),
+        **_written(results, verdicts, rows_of(swept)),
         "verdict": [
             {
                 "mount": result.mount,
@@ -71,7 +84,7 @@ def _sizes(effects: Sequence[Row]) -> dict[str, Size]:
     """
     by_finding: dict[str, list[Row]] = {}
     for row in effects:
-        effect = CATALOGUE.get(row["effect"])
+        effect = KNOWN.get(row["effect"])
         scanned = effect is not None and effect.scan is not None and effect.scan.name
         if row["finding"] and row["sigma"] and row["parameter"] not in (scanned, *PLACES):
             by_finding.setdefault(row["finding"], []).append(row)
@@ -82,7 +95,8 @@ def _size(rows: Sequence[Row]) -> Size:
     """Of an effect with a parameter for each axis the axis, where only one is clear."""
     best = max(rows, key=_sigmas)
     clear = [i for i, row in enumerate(rows) if _sigmas(row) > MIN_CLEAR_SIGMA]
-    axis = AXES[clear[0]] if len(rows) == len(AXES) and len(clear) == 1 else None
+    each_axis = len(rows) == len(AXES) and rows[0]["effect"] not in TEMPERATURE_MODELS
+    axis = AXES[clear[0]] if each_axis and len(clear) == 1 else None
     return Size(best["value"], best["sigma"], best["unit"], axis)
 
 
@@ -117,8 +131,18 @@ def _consequences(cause: Cause) -> Iterator[Row]:
             yield {"finding": each.id, "stage": each.stage, "cause": cause.id}
 
 
-def _written(results: Sequence[SensorResult], verdicts: Sequence[Verdict]) -> Tables:
-    """The rows of the result, null where it is spoilt, and the covariance of those with a value."""
+def _range(swept: pd.DataFrame, sensor: str, mount: str) -> tuple[float, float] | None:
+    """The temperatures between which changes of a sensor are known, K; None: no curve is."""
+    own = swept[(swept["sensor"] == sensor) & (swept["mount"] == mount)]["temperature"]
+    return None if own.empty else (float(own.min()), float(own.max()))
+
+
+def _written(
+    results: Sequence[SensorResult], verdicts: Sequence[Verdict], swept: Sequence[Row]
+) -> Tables:
+    """The rows of the result, null where it is spoilt, the covariance of those with a value, and
+    the curves of temperature.
+    """
     rows: list[Row] = []
     covariances = []
     for result, given in zip(results, verdicts, strict=True):
@@ -128,7 +152,15 @@ def _written(results: Sequence[SensorResult], verdicts: Sequence[Verdict]) -> Ta
         else:
             rows += result.chosen.rows
             covariances.append(result.chosen.covariance_rows())
-    return {"result": rows, "covariance": pd.concat(covariances) if covariances else []}
+    usable = [result for result, given in zip(results, verdicts, strict=True) if not given.spoilt]
+    return {
+        "result": rows,
+        "covariance": pd.concat(covariances) if covariances else [],
+        "temperature_curves": [
+            *(row for result in usable for row in curve_rows(result.chosen)),
+            *swept,
+        ],
+    }
 
 
 STAGE = Stage(diagnosis, DECLARED, gathers={"findings": findings_of, "estimated": estimated_of})

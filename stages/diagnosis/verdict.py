@@ -6,7 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from inertial.text.messages import _, plural
+from inertial.text.numbers import fixed
 from stages.diagnosis.causes import (
+    CURVE,
     INTERPOLATED,
     LEFT_OUT,
     MASKED,
@@ -28,10 +30,12 @@ SENSORS = {"gyro": _("Gyros"), "accel": _("Accelerometers")}
 LIMITS = {
     REPAIRED: _("set right"),
     MODELLED: _("in the model"),
+    CURVE: _("as a curve of the temperature"),
     MASKED: _("masked"),
     INTERPOLATED: _("interpolated"),
     LEFT_OUT: _("left out"),
 }
+ICE_POINT = 273.15  # K
 MOST_NAMES = 4  # of causes, or parameters, in a sentence
 
 
@@ -51,8 +55,18 @@ class Verdict:
     _by_cause: bool = False
 
 
-def verdict(result: SensorResult, causes: Sequence[Cause]) -> Verdict:
-    """Of one sensor: the worst that its causes, and the parameters it lacks, leave."""
+def verdict(
+    result: SensorResult,
+    causes: Sequence[Cause],
+    swept: tuple[float, float] | None = None,
+    *,
+    only_noise: bool = False,
+) -> Verdict:
+    """Of one sensor: the worst that its causes, and the parameters it lacks, leave.
+
+    `swept`: the range of temperatures, K, over which its changes in one attitude are known;
+    `only_noise`: whether the campaign is a recording of the noise in one attitude.
+    """
     own = [cause for cause in causes if result.sensor in cause.sensors]
     sensors = SENSORS[result.sensor]
     spoiling = [cause for cause in own if cause.spoils]
@@ -64,6 +78,10 @@ def verdict(result: SensorResult, causes: Sequence[Cause]) -> Verdict:
             why=_why(spoiling),
         )
         return Verdict(NOT_USABLE, sentence, None, True)
+    if swept is not None and len(result.undetermined) == len(TWELVE):
+        return Verdict(WITHIN_LIMITS, _swept(sensors, swept, own))
+    if only_noise and result.undetermined:
+        return Verdict(WITHIN_LIMITS, _noise(sensors, own))
     if lacking := result.undetermined:
         return Verdict(NOT_USABLE, _lacking(sensors, lacking, own))
     conditions = list(dict.fromkeys(cause.condition for cause in own if cause.condition))
@@ -133,6 +151,28 @@ def _lacking(sensors: str, names: Sequence[str], own: Sequence[Cause]) -> str:
         count=len(names),
         names=shown,
         more=" …" if len(names) > MOST_NAMES else "",
+    )
+
+
+def _swept(sensors: str, swept: tuple[float, float], own: Sequence[Cause]) -> str:
+    low, high = (fixed(each - ICE_POINT, 1) for each in swept)
+    return _(
+        "{sensors}: {causes}. Usable to correct changes with temperature from {low} to {high} °C "
+        "in the attitude that was recorded; not usable beyond that: no parameter is determined.",
+        sensors=sensors,
+        causes=_names(own, _limit),
+        low=low,
+        high=high,
+    )
+
+
+def _noise(sensors: str, own: Sequence[Cause]) -> str:
+    causes = _names(own, _limit) + ". " if own else ""
+    return _(
+        "{sensors}: {causes}No calibration, noise only: one rest in one attitude was recorded, of "
+        "which the terms of the noise hold.",
+        sensors=sensors,
+        causes=causes,
     )
 
 

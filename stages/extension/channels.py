@@ -13,6 +13,7 @@ from inertial.campaign.rate_segments import Recorded
 from inertial.estimation.gyroscope_equations import horizontal_axes, horizontal_names
 from inertial.estimation.gyroscope_observations import Position, RateSegment
 from inertial.estimation.least_squares import System
+from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, measured_covariance
 from inertial.physics.effect import Effect, Truth
 from inertial.physics.forward import Triad, signatures, truth_of
 from inertial.physics.motion import Motion, cross, level_axes, turned_all
@@ -28,10 +29,11 @@ from inertial.physics.motion import Motion, cross, level_axes, turned_all
 #
 # in proportion to changes of its row of M and of its bias, to the effects, and to the errors of
 # the tilt, of the azimuth, of the angle of the turn, of gravity and of the earth's rate, each
-# with its known sigma; where the bias has a random walk, that too. Changes within a
-# turn of a gyro are not included.
+# with its known sigma; where the bias drifts, that too. Changes within a turn of a gyro are not
+# included.
 
 Array = NDArray[np.float64]
+UNTIMED = Stretch("")
 Errors = dict[tuple[str, str], tuple[Array, float]]  # what the readings change by (3,), and sigma
 
 
@@ -41,7 +43,7 @@ class Mean:
 
     `residual`, `sigma`: (3,), less the prediction; `truth`: (3,), the known rate or
     specific force; `traces`: (3, k), per unit of each parameter of the effects; `time`: s, of its
-    middle.
+    middle; `stretch`: of time.
     """
 
     manoeuvre: str
@@ -51,6 +53,7 @@ class Mean:
     traces: Array
     errors: Errors
     time: float
+    stretch: Stretch = UNTIMED
 
 
 @dataclass(frozen=True)
@@ -106,7 +109,8 @@ class Channels:
             errors = self._earth(rest.position, motion, np.ones(1))
             residual = rest.mean - self._gyro.matrix @ known - self._gyro.bias
             name, time = position.manoeuvre.name, float(motion.time[0])
-            means.append(Mean(name, residual, rest.sigma, known, traces[0], errors, time))
+            parts = (known, traces[0], errors, time, rest.stretch or UNTIMED)
+            means.append(Mean(name, residual, rest.sigma, *parts))
         whole = [usable for usable in inputs.usable if usable.plan.recorded == "whole"]
         responses = self._traces[static : static + turns]
         for recorded, turn, (motion, truth, traces, _) in zip(
@@ -142,7 +146,8 @@ class Channels:
             errors[f"tilt {i}", turn.position.name] = (tilted, self.campaign.position_sigma)
         of_effects = np.einsum("n,nck->ck", share, traces)
         time = float(share @ motion.time)
-        return Mean(recorded.plan.name, residual, sigma, known, of_effects, errors, time)
+        parts = (known, of_effects, errors, time, turn.stretch or UNTIMED)
+        return Mean(recorded.plan.name, residual, sigma, *parts)
 
     def _earth(self, position: Position, motion: Motion, share: Array) -> Errors:
         """The errors of the known earth's rate."""
@@ -168,9 +173,8 @@ class Channels:
                 tilted = triad.matrix @ cross(axis, force)
                 errors[f"tilt {i}", rest.position] = (tilted, campaign.position_sigma)
             residual = rest.mean - triad.matrix @ force - triad.bias
-            means.append(
-                Mean(name, residual, rest.sigma, force, traces[0], errors, float(motion.time[0]))
-            )
+            parts = (force, traces[0], errors, float(motion.time[0]), rest.stretch or UNTIMED)
+            means.append(Mean(name, residual, rest.sigma, *parts))
         return means
 
 
@@ -195,11 +199,12 @@ def system_of(
     channel: int,
     shown: Sequence[str],
     random_walk: float,
+    measured: MeasuredDrift = NO_DRIFT,
 ) -> System | None:
     """The equations of one channel; None where it has no reading.
 
     `names`: of all traces, of which the effects `shown` are unknowns; `random_walk`: of the bias,
-    per √s.
+    per √s, beyond the `measured` drift.
     """
     some = [m for m in means if np.isfinite(m.residual[channel]) and np.isfinite(m.sigma[channel])]
     if not some:
@@ -218,8 +223,9 @@ def system_of(
     unknowns += [*(("effect", name) for name in shown), *columns]
     observed = np.array([mean.residual[channel] for mean in some])
     rows = np.column_stack([design, observed]) / sigma[:, None]
-    if random_walk:  # from one stretch to the next, in units of the noise
-        covariance = random_walk**2 * _common_time(some) / np.outer(sigma, sigma)
+    if random_walk or measured:  # from one stretch to the next, in units of the noise
+        covariance = measured_covariance([mean.stretch for mean in some], measured)[channel]
+        covariance = (covariance + random_walk**2 * _common_time(some)) / np.outer(sigma, sigma)
         lower = np.linalg.cholesky(np.eye(len(some)) + covariance)
         rows = solve_triangular(lower, rows, lower=True)
     return System(

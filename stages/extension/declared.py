@@ -38,6 +38,7 @@ DECLARED = Declared(
         "worth": tables.WORTH,
         "candidates": tables.CANDIDATES,
         "candidate_effects": tables.CANDIDATE_EFFECTS,
+        "warm_up": tables.WARM_UP,
     },
     streams=("simulated",),
 )

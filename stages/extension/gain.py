@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.least_squares import EffectInformation, System
 from inertial.estimation.periodic_in_time import without_line
+from inertial.estimation.random_walk import MeasuredDrift
 from inertial.tables import AXES
 from stages.extension.channels import Channels, Mean, system_of
 from stages.extension.cross_validation import CrossValidation, Fold, drop_of, fold_of, snr_squared
@@ -43,10 +44,10 @@ def gain(models: Models, validated: dict[str, CrossValidation], mount: str) -> I
         yield from (("gain", {**shared, "axis": None, **row}) for row in _of_sensor(validation))
         counted = [fold for fold, _ in validation.counted]
         yield from _fold_rows(shared, [(fold, fold in counted) for fold, _ in validation.folds])
-        random_walk = models.extended.solution.random_walks[number]
+        drifts = (models.extended.solution.random_walks[number], models.extended.drifts[sensor])
         means = channels.means(sensor)
         for channel, axis in enumerate(AXES):
-            for row in _of_channel(validation, means, channels.names, channel, random_walk):
+            for row in _of_channel(validation, means, channels.names, channel, *drifts):
                 yield "gain", {**shared, "axis": axis, **row}
 
 
@@ -83,13 +84,14 @@ def _of_channel(
     names: Sequence[str],
     channel: int,
     random_walk: float,
+    measured: MeasuredDrift,
 ) -> Iterator[Row]:
     """With the estimate from all channels; held-out: with that from the other manoeuvres."""
     shown = validation.whole.effects.names
 
     def fitted(without: Sequence[str]) -> tuple[float, int, EffectInformation] | None:
         some = [mean for mean in means if mean.manoeuvre not in without]
-        system = system_of(some, names, channel, shown, random_walk)
+        system = system_of(some, names, channel, shown, random_walk, measured)
         return None if system is None else _fitted(system)
 
     whole = fitted(())

@@ -65,7 +65,7 @@ class Models:
         A column is not shown where its information, all else fitted, is no more than rounding, or
         where the largest plausible size would not be observable.
         """
-        largest = np.array([e.largest for e in self.effects for _ in e.parameters])
+        largest = np.array([e.largest_of(p) for e in self.effects for p in e.parameters])
         gyro, accel = (
             _shown(system, largest) for system in self.extended.systems(self.effects, PRIOR_SIGMA)
         )

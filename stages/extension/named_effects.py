@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from inertial.effects import CATALOGUE
+from inertial.effects import KNOWN
 from inertial.physics.effect import Effect
 
 Row = Mapping[str, Any]
@@ -68,7 +68,7 @@ def named_of(
         places.setdefault(row["finding"], []).append((row["position"], row["statistic"]))
     first: dict[str, str] = {}  # effect → finding
     for row in findings:
-        if row["mount"] == mount and row["verdict"] in NAMED and row["cause"] in CATALOGUE:
+        if row["mount"] == mount and row["verdict"] in NAMED and row["cause"] in KNOWN:
             first.setdefault(row["cause"], row["id"])
     return Named(
         tuple(
@@ -77,12 +77,12 @@ def named_of(
                 positions=tuple(places.get(finding, ())),
             )
             for name, finding in first.items()
-            if CATALOGUE[name].sought_in == "blocks"
+            if KNOWN[name].sought_in == "blocks"
         ),
         {
             name: values.get(finding, {})
             for name, finding in first.items()
-            if CATALOGUE[name].sought_in == "spectrum"
+            if KNOWN[name].sought_in == "spectrum"
         },
     )
 
@@ -92,15 +92,9 @@ def _class_of(
 ) -> NamedClass:
     probability = {row["effect"]: row["probability"] for row in rows}
     others = [
-        Member(CATALOGUE[effect], probability[effect])
+        Member(KNOWN[effect], probability[effect])
         for effect in probability
-        if effect in CATALOGUE and effect != name and CATALOGUE[effect].sought_in == "blocks"
+        if effect in KNOWN and effect != name and KNOWN[effect].sought_in == "blocks"
     ]
-    named = Member(_fixed(CATALOGUE[name], values), probability.get(name))
+    named = Member(KNOWN[name].as_named(values), probability.get(name))
     return NamedClass(finding, (named, *others))
-
-
-def _fixed(effect: Effect, values: Mapping[str, float]) -> Effect:
-    """The effect with the estimate of its scanned variable."""
-    at = values.get(effect.scan.name) if effect.scan else None
-    return effect if at is None else effect.fixed(at)

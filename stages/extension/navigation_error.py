@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.equations import Campaign
-from inertial.effects import CATALOGUE
+from inertial.effects import KNOWN
 from inertial.estimation.triad import UNKNOWNS, linear_names
 from inertial.physics.effect import GOOD, POOR, USUAL, Effect
 from inertial.physics.forward import Triad, signatures, truth_of
@@ -169,7 +169,7 @@ def _slopes(
 
 def of_the_imu(effect: str) -> bool:
     """Whether an effect is of the IMU, and not of the table or the site."""
-    return not set(CATALOGUE[effect].sizes) <= {GOOD, POOR, USUAL}
+    return not set(KNOWN[effect].sizes) <= {GOOD, POOR, USUAL}
 
 
 def _row(

@@ -14,6 +14,7 @@ from inertial.campaign.scatter_of_positions import scattered
 from inertial.campaign.solution import joint_rows
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.estimation.least_squares import System
+from inertial.estimation.random_walk import NO_DRIFT
 from inertial.estimation.triad import linear_names
 from inertial.physics.motion import Motion
 from inertial.tables.parquet import Stream
@@ -29,6 +30,7 @@ from stages.extension.models import SENSORS, Models, models_of, with_columns
 from stages.extension.named_effects import Named, named_of
 from stages.extension.navigation_error import change_of, worth
 from stages.extension.sentences import sentence_of
+from stages.extension.warm_up import warm_up_rows
 
 Row = Mapping[str, Any]
 TableRow = tuple[str, Row]
@@ -42,6 +44,9 @@ def extension(
     causes: tuple[Sequence[Row], Sequence[Row], Sequence[Row], Sequence[Row]],
     random_walks: pd.DataFrame,
     joint: Mapping[str, tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]],
+    *,
+    settled_accel: float,
+    settled_gyro: float,
 ) -> Tables:
     """Candidates for the result, with parameters and covariance of each.
 
@@ -52,6 +57,7 @@ def extension(
     ----------
     causes : rows of the findings, effects, members and positions of criticism
     joint : by sensor, parameters, fit and manoeuvres of the joint result
+    settled_accel, settled_gyro : bands about the last value of a bias, m/s² and rad/s
     """
     walk_of: dict[tuple[str, str], float] = defaultdict(float)
     walk_of |= {(row["mount"], row["sensor"]): row["value"] for row in rows_of(random_walks)}
@@ -66,6 +72,7 @@ def extension(
                 for method in [FREE if sensor in data.result.free else JOINT]
             },
             (walk_of[data.mount, "gyro"], walk_of[data.mount, "accel"]),
+            {"gyro": settled_gyro, "accel": settled_accel},
         )
         for table, row in extended.rows(simulated):
             rows[table].append(row)
@@ -122,7 +129,7 @@ class Extension:
     """The candidates of one mount.
 
     `joint`: rows of the joint result, by sensor; `random_walks`: of the biases of gyros and
-    accelerometers given the named effects.
+    accelerometers given the named effects; `bands`: in which a bias counts as settled, by sensor.
     """
 
     def __init__(
@@ -131,8 +138,9 @@ class Extension:
         named: Named,
         joint: Mapping[str, Joint],
         random_walks: tuple[float, float],
+        bands: Mapping[str, float],
     ) -> None:
-        self.data, self.named, self.joint = data, named, joint
+        self.data, self.named, self.joint, self.bands = data, named, joint, bands
         self.random_walks = random_walks
         self.scatters: dict[str, float] = {}
 
@@ -148,7 +156,9 @@ class Extension:
 
     def _of_blocks(self) -> Iterator[tuple[str, Any]]:
         data, mount = self.data, self.data.mount
-        campaign = campaign_of(data)
+        # The random walks of criticism were estimated beside the effects, without the drift that is
+        # measured at rest: a jump or a warm-up within a stretch would be counted again in it.
+        campaign = replace(campaign_of(data), drifts=dict.fromkeys(SENSORS, NO_DRIFT))
         if campaign.by_hand:
             named = [c.members[0].effect for c in self.named.classes]
             known = [effect for effect in named if effect.scan is None or effect.at is not None]
@@ -183,6 +193,11 @@ class Extension:
                 yield from self._solution(solution)
             if EXTENDED in solutions:
                 likeliest[sensor], validated[sensor] = solutions[EXTENDED], tested[EXTENDED]
+                (own,) = (each.effects for each in candidates if each.method == EXTENDED)
+                for row in warm_up_rows(
+                    solutions[EXTENDED], own, campaign.motion, self.bands[sensor]
+                ):
+                    yield "warm_up", row
         of_likeliest = replace(models, effects=combinations[0].effects)
         yield from gain(of_likeliest, validated, mount)
         yield from self._worth(of_likeliest, likeliest)

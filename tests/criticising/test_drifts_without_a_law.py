@@ -12,7 +12,7 @@ def criticised(place, seed, effects, noise):
     document = chain.demo(seed=seed, effects=effects)
     document["noise"] = {**document["noise"], **noise}
     campaign = chain.simulate(document, place / "campaign")
-    return chain.run(campaign, place / "derived", "criticism")
+    return chain.run(campaign, place / "derived", "criticism", chain.BESIDE)
 
 
 @pytest.fixture(scope="module")

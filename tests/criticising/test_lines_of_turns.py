@@ -239,7 +239,7 @@ def test_what_the_laboratory_hides_in_a_campaign_is_named(tmp_path):
         "oscillation": {"frequency_hz": 20, "amplitude_rad_s": 0.01, "axis": "+x"},
     }
     campaign = chain.simulate(chain.short(effects=effects, seed=5), tmp_path / "campaign")
-    results = chain.run(campaign, tmp_path / "derived", "criticism")
+    results = chain.run(campaign, tmp_path / "derived", "criticism", chain.BESIDE)
     scores = results["criticism/scores"].set_index("effect")
     assert scores["named"][["table_ripple", "oscillation"]].all()
     assert not scores.loc["table_eccentricity", "named"]

@@ -134,7 +134,7 @@ def test_the_ripple_of_the_laboratory(tmp_path, power):
     """Its rate goes with the table's; is the same at both; is the inverse."""
     effects = {"table_ripple": {**RIPPLE, "rate_power": power}}
     campaign = chain.simulate(two_rates(effects=effects, seed=40 - power), tmp_path / "campaign")
-    results = chain.run(campaign, tmp_path / "derived", "extension")
+    results = chain.run(campaign, tmp_path / "derived", "extension", chain.BESIDE)
     (one,) = results["criticism/findings"].to_dict("records")
     assert (one["cause"], one["verdict"]) == ("table_ripple", "found")
     assert results["criticism/lines"].query("finding == @one['id']")["manoeuvre"].nunique() == 12
@@ -146,7 +146,7 @@ def test_the_ripple_of_the_laboratory(tmp_path, power):
 def test_the_oscillation_of_the_laboratory(tmp_path):
     effects = {"oscillation": {"frequency_hz": 6, "amplitude_rad_s": 2e-4, "axis": "+z"}}
     campaign = chain.simulate(two_rates(effects=effects, seed=44), tmp_path / "campaign")
-    results = chain.run(campaign, tmp_path / "derived", "criticism")
+    results = chain.run(campaign, tmp_path / "derived", "criticism", chain.BESIDE)
     (one,) = results["criticism/findings"].to_dict("records")
     assert (one["cause"], one["verdict"]) == ("oscillation", "found")
     assert 0 <= one["moves"] < 0.5

@@ -184,7 +184,7 @@ def test_a_log_of_means_goes_through_the_chain(tmp_path):
         for i, row in enumerate(rest.itertuples())
     ]
     (folder / "test.log").write_text("\n".join(lines) + "\n")
-    results = chain.run(folder, tmp_path / "derived", "extension")
+    results = chain.run(folder, tmp_path / "derived", "extension", chain.BESIDE)
     still = results["segment/blocks"].query("manoeuvre == 'still'")
     assert len(still) == len(at) and (still["count"] == 20000).all()
     causes = results["criticism/findings"].set_index("cause")

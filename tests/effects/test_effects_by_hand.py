@@ -210,10 +210,15 @@ def test_a_jump_within_a_rest_counts_for_what_is_behind_it(name):
 def test_hysteresis_remembers_the_side_from_which_an_axis_came():
     force = GRAVITY * np.array([[1.0, 0, 0], [0, 1, 0], [-1, 0, 0], [0, 0, 1]])
     visits = np.array([0.0, 1, 2, 3])
-    np.testing.assert_array_equal(remembered(force, visits)[:, 0], [1, 1, -1, -1])
-    np.testing.assert_array_equal(remembered(force, visits)[:, 2], [0, 0, 0, 1])
+    unseen = np.full((4, 3), np.nan)
+    np.testing.assert_array_equal(remembered(force, visits, unseen)[:, 0], [1, 1, -1, -1])
+    np.testing.assert_array_equal(remembered(force, visits, unseen)[:, 2], [0, 0, 0, 1])
     # The order of the plan counts, not that of the rows.
-    np.testing.assert_array_equal(remembered(force, visits[::-1])[:, 0], [1, -1, -1, 0])
+    np.testing.assert_array_equal(remembered(force, visits[::-1], unseen)[:, 0], [1, -1, -1, 0])
+    # On the way to the last the table turned x over, as the log shows; to the second it did not.
+    seen = unseen.copy()
+    seen[1], seen[3] = (1, np.nan, np.nan), (1, 1, np.nan)
+    np.testing.assert_array_equal(remembered(force, visits, seen)[:, 0], [1, 1, -1, 1])
     rests = replace(on_a_turn(np.zeros(4)), up=force / GRAVITY, visit=visits)
     _, accel = acted("accel_hysteresis", [1e-4, 0, 0], rests)
     np.testing.assert_allclose(accel[:, 0], [0, 1e-4, 0, -1e-4], atol=2e-7)  # 9.79 of 9.81 at ±g

@@ -10,6 +10,7 @@ import numpy as np
 
 from stages.export.calibration import PARAMETERS, Calibration, Mount, Triad
 from stages.export.examples import Example
+from stages.export.use import Use
 
 REASON = "no whole turn about y was recorded: add one of 360° about y"
 ERRORS = {
@@ -25,6 +26,7 @@ VERDICT: dict[str, Any] = {
     "method": "joint",
     "reason": "they show no effect",
 }
+USE = Use(seconds=60.0, rate_rms=0.35, force_rms=1.0, correlation=1.0)
 CAMPAIGN: dict[str, Any] = {
     "campaign": "spring",
     "simulated": False,
@@ -111,10 +113,12 @@ def calibration(*mounts: Mount, **changes: Any) -> Calibration:
         {
             "channel": f"{sensor}_{axis}",
             "density": density * (1 + 0.1 * number),
+            "sigma": None,
             "least": 0.9 * density,
             "most": 1.3 * density,
             "stretches": 12,
             "data_sheet": None,
+            "terms": {},
         }
         for sensor, density in (("accel", 1.05e-4), ("gyro", 3.4e-6))
         for number, axis in enumerate("xyz")
@@ -129,6 +133,7 @@ def calibration(*mounts: Mount, **changes: Any) -> Calibration:
     return Calibration(
         campaign=CAMPAIGN | changes,
         inputs=[{"file": "x-up.asc", "size": 9, "sha256": "ab"}],
+        use=USE,
         known=[gravity],
         noise=noise,
         rate=100.0,
@@ -145,3 +150,32 @@ def named(name: str) -> Calibration:
     reasons = dict.fromkeys(whole.gyroscope.reasons, name)
     odd = replace(whole, gyroscope=replace(whole.gyroscope, reasons=reasons))
     return calibration(odd, mount("other"), **dict.fromkeys(texts, name))
+
+
+WALK = {"accel": (None, 4e-7), "gyro": (2e-9, None)}  # value, or upper limit; of x, and 1.1 and 1.2
+INSTABILITY = {"accel": 6e-5, "gyro": None}
+
+
+def with_terms(whole: Calibration) -> Calibration:
+    """The same with the terms of the noise, as an hour at rest would show them."""
+    noise = []
+    for row in whole.noise:
+        sensor, _unused, axis = row["channel"].partition("_")
+        more = 1 + 0.1 * "xyz".index(axis)
+        (walk, limit), instability = WALK[sensor], INSTABILITY[sensor]
+        rest = {"p_value": 0.1, "data_sheet": None, "seconds": 3600.0, "unit": "by IEEE 952"}
+        terms = {
+            name: {
+                "detected": value is not None,
+                "value": value and value * more,
+                "sigma": value and 0.1 * value,
+                "upper": upper and upper * more,
+                **rest,
+            }
+            for name, value, upper in (
+                ("bias_instability", instability, 1e-8),
+                ("random_walk", walk, limit),
+            )
+        }
+        noise.append(row | {"terms": terms})
+    return replace(whole, noise=noise)

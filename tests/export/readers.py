@@ -20,7 +20,8 @@ def qgroundcontrol(text: str) -> dict[str, np.float32]:
     for line in text.splitlines():
         if not line.startswith("#"):
             vehicle, component, name, value, kind = line.split("\t")
-            assert (int(vehicle), int(component), int(kind)) == (1, 1, 9)
+            integer = name.endswith("_ENABLE")
+            assert (int(vehicle), int(component), int(kind)) == (1, 1, 6 if integer else 9)
             values[name] = np.float32(value)
     return values
 

@@ -76,6 +76,14 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
     "gyro_saturation": ({"limit_deg_s": [300] * 3}, {"limit_deg_s": [30] * 3}),
     "gyro_latency": ({"lag_ms": 0}, {"lag_ms": 2}),
     "turn_on_bias": ({"gyro_deg_h": 0}, {"gyro_deg_h": 1, "accelerometer_micro_g": 1}),
+    "temperature_curves": (
+        {"gyro": {"bias_deg_h": {"x": {"powers": [0, 0]}}}},
+        {"gyro": {"bias_deg_h": {"x": {"powers": [0, 9]}}}},
+    ),
+    "temperature_hysteresis": (
+        {"gyro_deg_h": ZERO, "half_width_k": 1},
+        {"gyro_deg_h": ONE, "half_width_k": 1},
+    ),
     "accel_quadratic": ({"k2_micro_g_g2": ZERO}, {"k2_micro_g_g2": ONE}),
     "accel_cubic": ({"k3_micro_g_g3": ZERO}, {"k3_micro_g_g3": ONE}),
     "accel_cross_products": (

@@ -1,0 +1,114 @@
+"""Parameters as functions of the temperature: curves with sigma, knots, range, warm-up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from inertial.text.messages import _
+from inertial.text.numbers import counted, fixed
+from inertial.text.units import quantity
+from stages.report import drawing, outline
+from stages.report.tables import Record, Tables
+from stages.report.words import SENSORS, capital, plain, with_mount
+
+ICE_POINT = 273.15  # K
+MOST_PANELS = 12
+DEGREES = {1: _("straight line"), 2: _("parabola"), 3: _("cubic")}
+Curves = Mapping[str, Sequence[Record]]  # by parameter
+
+
+def parts(tables: Tables) -> Iterator[outline.Part]:
+    """A figure for each sensor and mount, a table of the curves; nothing where there is none."""
+    groups: dict[tuple[str, str], dict[str, list[Record]]] = {}
+    for row in tables.rows("temperature_curves"):
+        group = groups.setdefault((row["mount"], row["sensor"]), {})
+        group.setdefault(row["parameter"], []).append(row)
+    for number, ((mount, sensor), curves) in enumerate(groups.items(), 1):
+        yield _figure(with_mount(SENSORS[sensor], mount), f"temperature-{number}", curves)
+        yield _table(with_mount(SENSORS[sensor], mount), curves)
+    if sentences := [row["sentence"] for row in tables.rows("warm_up")]:
+        yield outline.Sentences(tuple(sentences))
+
+
+SECTION = outline.Section(
+    "temperature",
+    _("Temperature"),
+    _("The parameters of the result that depend on the temperature, over the range recorded."),
+    _(
+        "The band is value ± σ, from the covariance of all coefficients; a dashed line is where "
+        "the slope changes. Nothing is known beyond the ends of a curve, nor corrected there."
+    ),
+    ("temperature_curves", "warm_up"),
+    parts,
+)
+
+
+def _figure(title: str, key: str, curves: Curves) -> outline.Figure:
+    def panel_of(panel: Axes, name: str) -> None:
+        rows = curves[name]
+        unit = quantity(name, rows[0]["unit"]).laboratory
+        at, value, sigma = (
+            np.array([row[of] for row in rows], np.float64)
+            for of in ("temperature", "value", "sigma")
+        )
+        at, value, sigma = at - ICE_POINT, value / unit.size, sigma / unit.size
+        colour = drawing.AXIS_COLOUR[name.partition("_")[2][0]]
+        drawing.band(panel, at, value - sigma, value + sigma, colour, alpha=0.22, linewidth=0)
+        panel.plot(at, value, color=colour)
+        if rows[0]["knot"] is not None:
+            panel.axvline(rows[0]["knot"] - ICE_POINT, color=drawing.INK, dashes=(3, 2), lw=0.6)
+        panel.set_title(f"{plain(name)}, {unit.name}", pad=3)
+        drawing.ticks(panel, 4)
+
+    shown = list(curves)[:MOST_PANELS]
+    margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
+    return outline.Figure(
+        _("{title}: value ± σ against temperature.", title=capital(title)),
+        drawing.grid(shown, panel_of, 0.95, margins, _("Temperature, °C"), key),
+        _(
+            "{curves} of the {title}, each within its band of sigma.",
+            curves=counted(len(shown), "curve"),
+            title=title,
+        ),
+    )
+
+
+def _table(title: str, curves: Curves) -> outline.Table:
+    columns = (
+        outline.Column(_("Parameter"), "symbol"),
+        outline.Column(_("Curve")),
+        *outline.columns("number", _("from"), _("to"), _("knot"), group="°C"),
+        outline.Column(_("change"), "number"),
+        outline.Column(_("unit"), "unit"),
+        outline.Column(_("Remark"), "note"),
+    )
+    rows = [_row(name, own) for name, own in curves.items()]
+    return outline.Table(_("Curves of the {title}.", title=title), columns, rows)
+
+
+def _row(name: str, rows: Sequence[Record]) -> outline.Row:
+    first, last = rows[0], rows[-1]
+    unit = quantity(name, first["unit"]).laboratory
+    values = [row["value"] / unit.size for row in rows]
+    knot = first["knot"]
+    remark = ""
+    if first["relative_to"] is not None:
+        remark = _(
+            "change from {reference} °C, its level is not known",
+            reference=fixed(first["relative_to"] - ICE_POINT, 1),
+        )
+        if first["not_separated"]:
+            remark = f"{remark}; {first['not_separated']}"
+    return outline.table_row(
+        name,
+        _("two straight lines") if knot is not None else DEGREES[first["order"]],
+        fixed(first["temperature"] - ICE_POINT, 1),
+        fixed(last["temperature"] - ICE_POINT, 1),
+        "" if knot is None else fixed(knot - ICE_POINT, 1),
+        f"{max(values) - min(values):.3g}",
+        unit.name,
+        remark,
+    )

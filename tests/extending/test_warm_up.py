@@ -1,0 +1,54 @@
+"""The time after which a bias has warmed up, against what its law says."""
+
+from dataclasses import replace
+from typing import cast
+
+import numpy as np
+import pytest
+
+from inertial.effects import CATALOGUE
+from inertial.estimation.least_squares import Estimate
+from inertial.estimation.triad import UNKNOWNS
+from inertial.physics.motion import Motion, stretches
+from stages.extension.estimates import Solved
+from stages.extension.warm_up import warm_up_rows
+
+AMPLITUDE, SIGMA, CONSTANT, BAND = 5e-3, 1e-4, 900.0, 1e-4  # m/s², m/s², s, m/s²
+
+
+def motion(temperature: float = np.nan) -> Motion:
+    time = np.arange(5.0, 14400.0, 10.0)
+    return stretches(time, np.full(len(time), 10.0), np.full(len(time), temperature))
+
+
+def solved() -> Solved:
+    """Only x warms up."""
+    rows = [{"parameter": str(i), "value": 0.0, "sigma": 1.0} for i in range(UNKNOWNS)]
+    rows += [
+        {"parameter": f"accel_warm_up.b_{axis}", "value": value, "sigma": SIGMA}
+        for axis, value in zip("xyz", (AMPLITUDE, 0.0, 0.0), strict=True)
+    ]
+    covariance = np.diag([1.0] * UNKNOWNS + [SIGMA**2] * 3)
+    return Solved("accel", rows, covariance, cast(Estimate, None), 0.0)
+
+
+def test_an_exponential_settles_after_its_time():
+    """|b| e^(−t/τ) = band at t = τ ln(|b|/band), and σ(t) = τ σ(b)/b."""
+    effect = CATALOGUE["accel_warm_up"].fixed(CONSTANT)
+    x, y, z = warm_up_rows(solved(), [effect], motion(), BAND)
+    assert x["seconds"] == pytest.approx(CONSTANT * np.log(AMPLITUDE / BAND), abs=2.0)
+    assert x["sigma"] == pytest.approx(CONSTANT * SIGMA / AMPLITUDE, rel=0.05)
+    assert "stays within 10 µg of its last value from 3521 ± 18 s on" in x["sentence"]
+    assert y["seconds"] == z["seconds"] == 0.0
+
+
+def test_what_never_settles_has_no_time():
+    effect = CATALOGUE["accel_warm_up"].fixed(20 * CONSTANT)
+    x, *_others = warm_up_rows(solved(), [effect], motion(), BAND)
+    assert x["seconds"] is None and "does not settle" in x["sentence"]
+
+
+def test_a_chamber_that_cools_is_no_warm_up():
+    effect = CATALOGUE["accel_warm_up"].fixed(CONSTANT)
+    cooling = replace(motion(), temperature=np.linspace(320, 300, len(motion().time)))
+    assert not list(warm_up_rows(solved(), [effect], cooling, BAND))
