@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from inertial import tables
+from inertial.campaign.noise_levels import only_noise
 from inertial.estimation.triad import linear_names
 from inertial.text.messages import _
 from inertial.text.numbers import counted
@@ -40,13 +41,15 @@ def no_results(derived: Path) -> Iterator[NoResult]:
     recorded = {
         s: bool(_readings(blocks, channel).notna().any(axis=None)) for s, channel in sensors.items()
     }
+    plan = tables.MANOEUVRES.read(derived / "plan/manoeuvres.parquet")
+    if only_noise(plan, tables.NOISE_TERMS.read(derived / "noise/terms.parquet")):
+        return
     for stage in sensors:
         if recorded[stage] or not any(recorded.values()):
             parameters = tables.PARAMETERS.read(derived / f"{stage}/parameters.parquet")
             yield from _undetermined(
                 _("gyros") if stage == "gyroscope" else _("accelerometers"), parameters
             )
-    plan = tables.MANOEUVRES.read(derived / "plan/manoeuvres.parquet")
     yield from _split_rests(plan, blocks)
 
 

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from commands.draft.columns import Triad
-from commands.draft.manoeuvres import Manoeuvre
-from commands.draft.missing import missing
+from commands.draft.manoeuvres import Manoeuvre, missing
 from commands.draft.scales import Scale, are_counts
 from commands.draft.sensors import Kind
 from inertial.text.messages import _

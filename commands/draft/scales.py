@@ -1,8 +1,13 @@
-"""Units and count sizes: accelerometers by gravity, gyros by how gravity's direction turns."""
+"""Units and count sizes: accelerometers by gravity, gyros by how gravity's direction turns.
+
+Of a receiver's counts, which listed instrument they are of: by gravity, rate and round turns.
+"""
 
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +16,7 @@ from commands.draft.series import Divided, Still
 from inertial.estimation.attitude import integrate
 from inertial.signal.axis_permutations import Permutation
 from inertial.signal.gravity_turned import turned
+from inertial.tables.yaml_file import YamlFile
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.units import STANDARD_GRAVITY
@@ -300,3 +306,54 @@ def gyro_scale(
     counts = min(near, key=lambda each: off[each]) if near else float(f"{per_degree:.3g}")
     what = _("{seen}: counts, {counts} in 1 °/s", seen=seen, counts=significant(counts))
     return Scale("deg/s", counts, zero, what, True, axes)
+
+
+# ---- The instrument of a receiver's counts.
+
+INSTRUMENTS = Path(__file__).parents[2] / "data/instruments.yaml"
+MAX_COUNT_ERROR, MAX_RATE_ERROR = 0.1, 0.05  # relative
+RECEIVER_AXES = ["z", "-y", "x"]  # of every receiver of NovAtel
+
+
+@dataclass(frozen=True)
+class Receiver:
+    """An instrument as the campaign file names it or writes it out."""
+
+    instrument: str | dict[str, Any]
+    accel: Scale
+    gyro: Scale
+
+
+def receiver_of(recordings: Sequence[Divided], rate: float) -> Receiver:
+    """The instrument of these counts at `rate`, Hz."""
+    rests = [rest.accel for own in recordings for rest in own.rests]
+    rests = rests or [own.forces.mean(axis=0) for own in recordings]
+    _centre, length, _scatter = sphere(np.array(rests))
+    count = STANDARD_GRAVITY / length / rate
+    seen = _("|f| at rest makes one count {count} m/s", count=significant(count))
+    listed = YamlFile(INSTRUMENTS).content
+    fitting = {}
+    for name, entry in listed.items():
+        own = entry.get("accelerometer", {}).get("count_m_s")
+        same_rate = abs(entry.get("rate_hz", rate) / rate - 1) < MAX_RATE_ERROR
+        if own and same_rate and abs(own / count - 1) < MAX_COUNT_ERROR:
+            size = entry["gyro"]["count_rad"]
+            fitting[name] = (turn_misfit(recordings, size * rate), own, size)
+    if fitting:
+        least = min(misfit for misfit, *_sizes in fitting.values())
+        best = [name for name, own in fitting.items() if own[0] <= least + 1e-9]
+        _misfit, own, size = fitting[best[0]]
+        why = _("{seen}, that of {names}", seen=seen, names=", ".join(best))
+        return Receiver(
+            best[0],
+            Scale("m/s2", 1 / (own * rate), 0.0, why, False),
+            Scale("rad/s", 1 / (size * rate), 0.0, why, False),
+        )
+    accel = Scale("m/s2", length / STANDARD_GRAVITY, 0.0, seen, True)
+    gyro = gyro_scale(recordings, turning(recordings, accel), [])
+    entry = {
+        "axes": RECEIVER_AXES,
+        "gyro": {"count_rad": float(f"{gyro.size / rate:.4g}")},
+        "accelerometer": {"count_m_s": float(f"{count:.4g}")},
+    }
+    return Receiver(entry, accel, gyro)

@@ -8,13 +8,14 @@ from numpy.typing import NDArray
 
 from commands.draft.columns import Columns, alike, columns_of, recorded_together, runs_of
 from commands.draft.raw_log import RawLog
-from commands.draft.receivers import Receiver, receiver_of
 from commands.draft.scales import (
+    Receiver,
     Scale,
     Turning,
     accel_scale,
     are_counts,
     gyro_scale,
+    receiver_of,
     sphere,
     turning,
 )

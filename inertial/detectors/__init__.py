@@ -4,42 +4,43 @@ To add a detector, write its file beside this one and add it here; quality, segm
 and the tests take it from these lists. A detector masks what it detects for those after it.
 """
 
-from inertial.detectors.arrival_stamps import ArrivalStamps
-from inertial.detectors.axis_swap import AxisSwap, AxisSwapOfGyros
-from inertial.detectors.axis_swap_against_plan import AxisSwapAgainstPlan
 from inertial.detectors.bias_jump import BiasJump
 from inertial.detectors.clock_jitter import ClockJitter
 from inertial.detectors.clock_scale import ClockScale
-from inertial.detectors.clock_step import ClockStep
 from inertial.detectors.dead_axis import DeadAxis
-from inertial.detectors.duplicate import Duplicate
 from inertial.detectors.gap import Gap
 from inertial.detectors.gravity_error import GravityError
-from inertial.detectors.held_record import HeldRecord
 from inertial.detectors.impact import Impact
-from inertial.detectors.incomplete_turn import IncompleteTurn
-from inertial.detectors.manoeuvre_missing import ManoeuvreMissing
-from inertial.detectors.manoeuvre_swapped import ManoeuvreSwapped
+from inertial.detectors.manoeuvres_against_plan import ManoeuvreMissing, ManoeuvreSwapped, ShortRest
+from inertial.detectors.misread_axes_and_signs import (
+    AxisSwap,
+    AxisSwapAgainstPlan,
+    AxisSwapOfGyros,
+    SignFlip,
+    SignFlipAgainstPlan,
+    SignFlipOfGyros,
+)
 from inertial.detectors.oscillation import Oscillation
 from inertial.detectors.periodic_glitch import PeriodicGlitch
 from inertial.detectors.quantisation import Quantisation
-from inertial.detectors.rate_off import RateOff
+from inertial.detectors.repeated_records import Duplicate, HeldRecord
 from inertial.detectors.saturation import Saturation
-from inertial.detectors.short_rest import ShortRest
-from inertial.detectors.sign_flip import SignFlip, SignFlipOfGyros
-from inertial.detectors.sign_flip_against_plan import SignFlipAgainstPlan
 from inertial.detectors.spike import Spikes
+from inertial.detectors.stamp_faults import (
+    ArrivalStamps,
+    ClockStep,
+    RateOff,
+    TimeBackwards,
+    TimeStandsStill,
+    WrongDay,
+)
 from inertial.detectors.status_invalid import StatusInvalid
 from inertial.detectors.table_moving import TableMoving
 from inertial.detectors.temperature_drift import TemperatureDrift
-from inertial.detectors.time_backwards import TimeBackwards
-from inertial.detectors.time_stands_still import TimeStandsStill
-from inertial.detectors.wrong_day import WrongDay
-from inertial.detectors.wrong_direction import WrongDirection
+from inertial.detectors.temperature_misstated import TemperatureMisstated
+from inertial.detectors.turns_against_plan import IncompleteTurn, WrongDirection, WrongRate
 from inertial.detectors.wrong_imu_type import WrongImuType
-from inertial.detectors.wrong_rate import WrongRate
-from inertial.detectors.wrong_scale_factor import WrongScaleFactor
-from inertial.detectors.wrong_scale_of_turns import WrongScaleOfTurns
+from inertial.detectors.wrong_scale_factor import WrongScaleFactor, WrongScaleOfTurns
 from inertial.signal.detector import Detector
 from inertial.signal.plan_detector import PlanDetector
 
@@ -89,4 +90,5 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     IncompleteTurn(),
     WrongRate(),
     ShortRest(),
+    TemperatureMisstated(),
 )

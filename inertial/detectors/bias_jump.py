@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inertial.signal.detector import CHANNELS, Description, Detector, Event, Log, Piece, read_in
-from inertial.signal.level_jumps import Jump, jumps
-from inertial.signal.static_tilt import Resting
+from inertial.signal.static_tilt import Jump, Resting, jumps
 from inertial.signal.steps import Step
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant

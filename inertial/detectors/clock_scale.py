@@ -16,8 +16,16 @@ from inertial.signal.detector import (
     Log,
     Piece,
 )
-from inertial.signal.sample_interval import StampEvidence, evidence_of_log, evidence_of_part
-from inertial.signal.stamps import MAX_RATE_ERROR, STAMP_DIGIT_S, Stamps, stamps_of, unit_of
+from inertial.signal.stamps import (
+    MAX_RATE_ERROR,
+    STAMP_DIGIT_S,
+    StampEvidence,
+    Stamps,
+    evidence_of_log,
+    evidence_of_part,
+    stamps_of,
+    unit_of,
+)
 from inertial.signal.steps import changes
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant

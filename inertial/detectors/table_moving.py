@@ -8,9 +8,17 @@ import numpy as np
 from scipy.special import stdtr
 
 from inertial.signal.detector import SENSORS, Array, Description, Detector, Event, Log, Piece
-from inertial.signal.level_jumps import CAMPAIGN_RESTS, FALSE_ALARM_LEVEL, Jump, jumps, shaken
 from inertial.signal.scatter import MAD_TO_SIGMA
-from inertial.signal.static_tilt import UNCONFIRMED, Agreement, Resting
+from inertial.signal.static_tilt import (
+    CAMPAIGN_RESTS,
+    FALSE_ALARM_LEVEL,
+    UNCONFIRMED,
+    Agreement,
+    Jump,
+    Resting,
+    jumps,
+    shaken,
+)
 from inertial.signal.steps import MAX_SIDE_S
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant

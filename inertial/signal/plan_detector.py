@@ -97,6 +97,8 @@ class Recorded:
     from_s, to_s: (m,).
     gyros: (m, 3), whether its log has readings of them.
     count: (m,), rad, what a count of its gyros is by the campaign, NaN where not stated.
+    temperature: (m,), K, recorded, NaN where it is not; stated_temperature and its
+    temperature_sigma: those of the plan, NaN where not stated.
     gyro_signs: (3,), +1 right and −1 wrong, by the earth rate, 0 where it does not show.
     misread, swapped: what explains that the plan is not found as it is. rescaled: count sizes of
     the gyros that were undone, restated: rates of the plan. other_sense: id of the repair by
@@ -132,6 +134,9 @@ class Recorded:
     to_s: Array
     gyros: Booleans
     count: Array
+    temperature: Array
+    stated_temperature: Array
+    temperature_sigma: Array
     gyro_signs: Sequence[int]
     misread: Sequence[Misread]
     swapped: Sequence[Swapped]

@@ -10,12 +10,11 @@ from inertial.formats.columns import column_reader
 from inertial.formats.columns.column_layout import ticks_per_second
 from inertial.tables import AXES
 from inertial.text.campaign_units import CHANNEL_UNITS
+from inertial.text.units import ICE_POINT
 from stages.decode.arrival_times import ArrivalTimes, Stamped, arrival_times
 from stages.decode.decoded import Decoded, Reals, first_of, intervals_of, on_axis
 from stages.decode.table_angle import ANGLE_UNITS
 from stages.decode.unsigned_counts import refuse_unsigned
-
-ICE_POINT = 273.15  # K
 
 
 class ColumnLog:

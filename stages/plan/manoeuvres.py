@@ -11,6 +11,7 @@ from inertial.physics.motion import Array, Profile, turned
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.campaign_units import ARC_SECOND, DEGREE, in_si
 from inertial.text.messages import _
+from inertial.text.units import ICE_POINT
 from stages.plan.taken_as_known import ASSUMED_ANGLE, by_hand
 
 AXES = np.eye(3)
@@ -18,6 +19,7 @@ Row = dict[str, Any]
 
 
 _ALWAYS = {"id", "do", "log", "format", "span", "rows", "where", "mount", "position", "gyro"}
+_ALWAYS |= {"temperature_deg_c", "temperature_sigma_k"}
 _ALLOWED = {
     "rest": {"up", "mark", "seconds"},
     "positions": {"seconds"},
@@ -42,6 +44,7 @@ def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
         "angle_sigma": None,
         "rate": None,
         "acceleration": in_si(item.get("accel_deg_s2"), DEGREE),
+        **_temperature(file, key, item),
     }
     up, mark = _direction(file, [*key, "up"], item), _direction(file, [*key, "mark"], item)
     if up is not None and mark is not None and abs(up @ mark) > cos(radians(1)):
@@ -75,6 +78,22 @@ def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
         yield from _tumble(file, key, item, row, up, mark)
     else:
         yield row | _vectors(up, mark, None)
+
+
+def _temperature(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:
+    """What the campaign states of the temperature, K."""
+    stated, sigma = item.get("temperature_deg_c"), item.get("temperature_sigma_k")
+    if stated is None and sigma is not None:
+        raise file.refuse_text(
+            [*key, "temperature_sigma_k"],
+            _("a standard deviation of no temperature"),
+            "temperature_deg_c",
+            _("add temperature_deg_c, or remove temperature_sigma_k"),
+        )
+    return {
+        "temperature": None if stated is None else stated + ICE_POINT,
+        "temperature_sigma": sigma,
+    }
 
 
 def _direction(file: YamlFile, key: Key, item: dict[str, Any]) -> Array | None:

@@ -13,11 +13,13 @@ from inertial.formats.columns import vectornav_lines
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.campaign_units import CHANNEL_UNITS, DEGREE, PER_ROOT_HOUR, in_si
 from inertial.text.messages import _
-from inertial.text.units import STANDARD_GRAVITY
-from stages.plan.means import MeanSigmas, each, refuse_without_time
-from stages.plan.rate import StatedRate, with_rate
+from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
+from stages.plan.sampling import MeanSigmas, StatedRate, each, refuse_without_time, with_rate
 
 KEY = "encoder"
+MICRO_G = 1e-6 * STANDARD_GRAVITY
+# Allan deviation of a bias instability of 1 (IEEE Std 952): data sheets state the lowest point.
+LOWEST = float(np.sqrt(2 * np.log(2) / np.pi))
 
 
 def encoder(file: YamlFile) -> dict[str, Any] | None:
@@ -97,7 +99,7 @@ def _check_axes(file: YamlFile, key: Key, entry: dict[str, Any]) -> None:
 
 
 def sensors(entry: dict[str, Any]) -> Iterator[Row]:
-    """Count size, full scale and white noise of each channel by the data sheet, in SI."""
+    """Count size, full scale and noise of each channel by the data sheet, in SI."""
     accelerometer, gyro = entry.get("accelerometer", {}), entry.get("gyro", {})
     velocity_random_walk = accelerometer.get("velocity_random_walk_m_s_sqrt_h")
     figures = {
@@ -105,12 +107,20 @@ def sensors(entry: dict[str, Any]) -> Iterator[Row]:
             "count_size": accelerometer.get("count_m_s"),
             "full_scale": in_si(accelerometer.get("full_scale_g"), STANDARD_GRAVITY),
             "white_noise": in_si(velocity_random_walk, PER_ROOT_HOUR),
+            "bias_instability": in_si(accelerometer.get("bias_instability_ug"), MICRO_G / LOWEST),
+            "random_walk": in_si(
+                accelerometer.get("acceleration_random_walk_ug_sqrt_h"), MICRO_G * PER_ROOT_HOUR
+            ),
             "source": accelerometer.get("source"),
         },
         "gyro": {
             "count_size": gyro.get("count_rad"),
             "full_scale": in_si(gyro.get("full_scale_deg_s"), DEGREE),
             "white_noise": in_si(gyro.get("angle_random_walk_deg_sqrt_h"), DEGREE * PER_ROOT_HOUR),
+            "bias_instability": in_si(gyro.get("bias_instability_deg_h"), DEGREE_PER_HOUR / LOWEST),
+            "random_walk": in_si(
+                gyro.get("rate_random_walk_deg_h_sqrt_h"), DEGREE_PER_HOUR * PER_ROOT_HOUR
+            ),
             "source": gyro.get("source"),
         },
     }

@@ -17,9 +17,7 @@ from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
 from stages.plan.declared import DECLARED
 from stages.plan.manoeuvres import expanded
-from stages.plan.means import one_by_one
 from stages.plan.published import published_values
-from stages.plan.rate import SAMPLE_RATE, StatedRate
 from stages.plan.recording import (
     by_log,
     count_sizes,
@@ -30,6 +28,7 @@ from stages.plan.recording import (
     recording,
     sensors,
 )
+from stages.plan.sampling import SAMPLE_RATE, StatedRate, one_by_one
 from stages.plan.taken_as_known import BY_HAND, by_hand, gravity_repairs, known
 
 Row = dict[str, Any]

@@ -13,8 +13,9 @@ from inertial.signal.detector import channel_name
 from inertial.signal.rests_and_motions import Stretch
 from inertial.tables import CHANNELS
 from inertial.text.messages import _
+from inertial.text.units import STANDARD_GRAVITY
 from stages.segment.explanations import Explained
-from stages.segment.matching import motion
+from stages.segment.matching import AS_NAMED, Located, motion
 from stages.segment.windows import Binned
 
 Array = NDArray[np.float64]
@@ -27,6 +28,7 @@ MAX_MASKED_SHARE = 0.1  # of the time of the ramps, or of a turn: what may be in
 # part of a ramp hides in the gap; on S0's turn the rate before and the rate after are then known
 # to 20 ppm each, better than the table keeps it.
 MIN_STEADY_S = 1.0
+MIN_SIDE_FORCE = STANDARD_GRAVITY / 2  # m/s², from which an accelerometer is on a side
 
 
 @dataclass(frozen=True)
@@ -357,3 +359,19 @@ def _steady_rate(moving: pd.DataFrame, about: Array) -> float | None:
     if not steady.any():
         return None
     return float(np.average(about[steady], weights=moving["count"].to_numpy(np.float64)[steady]))
+
+
+def with_sides(performed: dict[str, Performed], located: Located) -> Iterator[Performed]:
+    """The manoeuvres with the side on which each accelerometer was last before, by the readings.
+
+    The table may turn an axis over between two positions, which the plan does not tell.
+    """
+    if located.axes.accel != AS_NAMED:
+        return
+    forces = located.binned.forces
+    signs = np.where(np.abs(np.nan_to_num(forces)) > MIN_SIDE_FORCE, np.sign(forces), 0.0)
+    for name, place in located.matched.items():
+        if place is not None:
+            before = signs[: located.stretches[place].first].T
+            x, y, z = (next(iter(axis[axis != 0][::-1]), None) for axis in before)
+            yield replace(performed[name], side_x=x, side_y=y, side_z=z)

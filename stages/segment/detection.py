@@ -1,15 +1,233 @@
-"""Detectors that know the plan, and those of each static position, at work."""
+"""Detectors that know the plan, and what they compare with it; those of each static position."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
 
 from inertial.campaign.detection import Examination, ExaminationOfStretches
 from inertial.campaign.findings import Detection, Finding, detections_of
 from inertial.campaign.masked_samples import Batch, Masks
-from inertial.signal.detector import Detector, Event, Log
-from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
+from inertial.campaign.records import Manoeuvre, Performed, rows_of
+from inertial.signal.detector import Detector, Event, Given, Log
+from inertial.signal.plan_detector import (
+    Deviation,
+    Misread,
+    PlanDetector,
+    Recorded,
+    Rescaled,
+    Swapped,
+)
 from inertial.tables import STATIC_PHASES
-from stages.segment.matching import Part
+from stages.segment.explanations import (
+    Exchanged,
+    Explained,
+    axes_step,
+    exchange_step,
+    unlike,
+)
+from stages.segment.matching import AS_PLANNED, Located, Part, motion
+
+Array = NDArray[np.float64]
+UNKNOWN = np.full(3, np.nan)
+
+
+@dataclass(frozen=True)
+class Undone:
+    """What was set right, for the findings that tell of it; as in Recorded.
+
+    rivals : for the id of a repair that is not applied those of others that explain as much.
+    """
+
+    misread: Sequence[Misread] = ()
+    swapped: Sequence[Swapped] = ()
+    rescaled: Sequence[Rescaled] = ()
+    restated: Sequence[Rescaled] = ()
+    other_sense: str = ""
+    rivals: Mapping[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
+
+
+def recorded_of(
+    plan: Sequence[Manoeuvre],
+    explained: Explained,
+    undone: Undone,
+    performed: Mapping[str, Performed],
+    segments: pd.DataFrame,
+    blocks: pd.DataFrame,
+    counts: Mapping[str, float],
+    given: Given,
+    tolerance: float,
+) -> Recorded:
+    """Plan and recording of each manoeuvre.
+
+    Parameters
+    ----------
+    explained : what is still not as planned, undone : what was set right
+    segments, blocks : the tables; temperatures of blocks as recorded
+    counts : rad, what a count of the gyros is, by log; NaN where not stated
+    tolerance : accepted difference of a turn's angle or rate from the plan's, 1
+    """
+    where = {
+        m.name: located for located in explained.located for m in located.binned.window.manoeuvres
+    }
+    parts = _parts(segments)
+    done = [performed[m.name] for m in plan]
+    observations = [_shown(m, where[m.name]) for m in plan]
+    warm = blocks.groupby("manoeuvre")["temperature"].mean().to_dict()
+    places = [parts.get(m.name) or _instead(m, where[m.name]) for m in plan]
+    return Recorded(
+        given=given,
+        tolerance=tolerance,
+        name=[m.name for m in plan],
+        log=[m.log for m in plan],
+        do=[m.do for m in plan],
+        steady=np.array([m.recorded == "steady" for m in plan], bool),
+        up=_vectors([m.up for m in plan]),
+        about=_vectors([m.about for m in plan]),
+        angle=_numbers([m.angle for m in plan]),
+        rate=_numbers([m.rate for m in plan]),
+        seconds=_numbers([m.seconds for m in plan]),
+        found=np.array([d.found for d in done], bool),
+        complete=np.array([d.complete for d in done], bool),
+        lost=np.array([d.lost for d in done], bool),
+        said=[d.sentence for d in done],
+        force=_vectors([force for force, _ in observations]),
+        turned=_vectors([turned for _, turned in observations]),
+        moved=_numbers([d.angle for d in done]),
+        speed=_numbers([d.rate for d in done]),
+        lacking=_numbers([d.missing_angle for d in done]),
+        lacking_s=_numbers([d.missing_s for d in done]),
+        duration=_numbers([d.seconds for d in done]),
+        first=np.array([place[0] for place in places], np.int64),
+        after=np.array([place[1] for place in places], np.int64),
+        from_s=_numbers([place[2] for place in places]),
+        to_s=_numbers([place[3] for place in places]),
+        gyros=np.array([np.isfinite(where[m.name].binned.rates).any(axis=0) for m in plan], bool),
+        count=_numbers([counts.get(m.log) for m in plan]),
+        temperature=_numbers([warm.get(m.name) for m in plan]),
+        stated_temperature=_numbers([m.temperature for m in plan]),
+        temperature_sigma=_numbers([m.temperature_sigma for m in plan]),
+        gyro_signs=explained.gyro_signs,
+        misread=[*undone.misread, *(_beside(each, undone) for each in misread_in(plan, explained))],
+        swapped=[*undone.swapped, *(_beside(each, undone) for each in swapped_in(plan, explained))],
+        rescaled=undone.rescaled,
+        restated=undone.restated,
+        other_sense=undone.other_sense,
+    )
+
+
+Left = TypeVar("Left", Misread, Swapped)
+
+
+def _beside(left: Left, undone: Undone) -> Left:
+    """What is not set right, with what explains as much."""
+    return replace(left, rivals=undone.rivals.get(left.repair, ()))
+
+
+Place = tuple[int, int, float | None, float | None]
+NOWHERE: Place = (-1, -1, None, None)
+
+
+def _parts(segments: pd.DataFrame) -> dict[str, Place]:
+    """For each manoeuvre the records and times of its rest, or of all its motion."""
+    own: dict[str, list[dict[str, Any]]] = {}
+    for row in rows_of(segments):
+        if row["phase"] not in ("rest-before", "rest-after"):
+            own.setdefault(row["manoeuvre"], []).append(row)
+    return {
+        name: (
+            min(row["from_record"] for row in rows),
+            max(row["to_record"] for row in rows),
+            rows[0]["from_s"],
+            rows[-1]["to_s"],
+        )
+        for name, rows in own.items()
+    }
+
+
+def _candidate(m: Manoeuvre, located: Located) -> int | None:
+    """The stretch of a manoeuvre; of one that is not found, what a log of its own has instead."""
+    place = located.place(m)
+    if place is not None or not located.binned.window.alone:
+        return place
+    alike = [k for k, what in enumerate(located.observed) if what.moves is (m.do != "rest")]
+    return max(alike, key=lambda k: located.observed[k].seconds, default=None)
+
+
+def _instead(m: Manoeuvre, located: Located) -> Place:
+    place = _candidate(m, located)
+    if place is None:
+        return NOWHERE
+    binned, stretch = located.binned, located.stretches[place]
+    times = binned.first_s[stretch.first], binned.last_s[stretch.after - 1]
+    records = binned.edges[stretch.first], binned.edges[stretch.after]
+    return int(records[0]), int(records[1]), float(times[0]), float(times[1])
+
+
+def _shown(m: Manoeuvre, located: Located) -> tuple[Array | None, Array | None]:
+    """The mean force at its rest, or at that before its turn, and the angles of its motion."""
+    place = _candidate(m, located)
+    if m.do == "positions" or place is None:
+        return None, None
+    if m.do == "rest":
+        return located.observed[place].force, None
+    before = located.rest_before(m)
+    turned = located.observed[place].turned
+    if located.binned.window.alone:
+        first, after = motion(located.binned, located.stretches, place)
+        pairs = zip(located.stretches, located.observed, strict=True)
+        own = [w.turned for s, w in pairs if first <= s.first and s.after <= after]
+        turned = np.asarray(np.sum(own, axis=0))
+    return None if before is None else located.observed[before].force, turned
+
+
+def swapped_in(plan: Sequence[Manoeuvre], explained: Explained) -> list[Swapped]:
+    """Exchanged manoeuvres, in each pair that first which the plan has earlier."""
+    return [in_order(exchanged, plan) for exchanged in explained.exchanged]
+
+
+def in_order(exchanged: Exchanged, plan: Sequence[Manoeuvre]) -> Swapped:
+    """Exchanged manoeuvres, that first which the plan has earlier."""
+    names = [m.name for m in plan]
+    half, repair = len(exchanged.names) // 2, exchange_step(exchanged).id
+    if names.index(exchanged.names[0]) <= names.index(exchanged.names[half]):
+        return Swapped(exchanged.names, exchanged.logs, repair)
+    later_first = exchanged.names[half:] + exchanged.names[:half]
+    return Swapped(later_first, exchanged.logs[::-1], repair)
+
+
+def misread_in(plan: Sequence[Manoeuvre], explained: Explained) -> list[Misread]:
+    """The sensors whose axes are others than those of the plan, and the logs where they are."""
+    found = []
+    for sensor, axes in unlike(explained.everywhere, AS_PLANNED):
+        seen_by = [m.name for m in plan if _sees(m, sensor) and not _same(m, sensor, axes)]
+        found.append(Misread(sensor, axes, "", seen_by, axes_step(sensor, axes).id))
+    for log, own in explained.misread.items():
+        for sensor, axes in unlike(own, explained.everywhere):
+            seen_by = [m.name for m in plan if m.log == log]
+            found.append(Misread(sensor, axes, log, seen_by, axes_step(sensor, axes, log).id))
+    return found
+
+
+def _sees(m: Manoeuvre, sensor: str) -> bool:
+    return (m.up is not None) if sensor == "accel" else m.do == "turn"
+
+
+def _same(m: Manoeuvre, sensor: str, axes: Any) -> bool:
+    direction = m.up if sensor == "accel" else m.about
+    return direction is None or bool(np.allclose(axes.of(direction), direction))
+
+
+def _vectors(values: Sequence[Array | None]) -> Array:
+    return np.array([UNKNOWN if value is None else value for value in values]).reshape(-1, 3)
+
+
+def _numbers(values: Sequence[float | None]) -> Array:
+    return np.array([np.nan if value is None else value for value in values], np.float64)
+
 
 # ---- What disagrees with the plan, as findings.
 

@@ -15,7 +15,7 @@ from inertial.signal.axis_permutations import (
     simplicity,
 )
 from inertial.signal.rests_and_motions import MIN_HAND_RATE, MIN_MOTION_SIGMA, rest_level
-from stages.segment.locating import (
+from stages.segment.matching import (
     AS_NAMED,
     AS_PLANNED,
     Axes,

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.campaign.masked_samples import Batch, Booleans, Integers, Masks, regular
-from inertial.campaign.records import Clock
+from inertial.campaign.records import Clock, Manoeuvre
 from inertial.campaign.sums import ExtremesOver, SumsOver, TimesOver
 from inertial.tables import STATIC_PHASES
 from stages.segment.matching import BETWEEN, Part
@@ -155,6 +155,15 @@ class Blocks(SumsOver):
             after_gap = turn["from_record"].isin(self._gaps_of(log))
             table.loc[turn.index, "missing_s"] = _missing(turn, after_gap, self._clocks[log])
         return table.drop(columns=["first", "last"])
+
+
+def with_temperatures(blocks: pd.DataFrame, plan: Sequence[Manoeuvre]) -> pd.DataFrame:
+    """The table of blocks with the stated temperature where none is recorded, K."""
+    stated = {m.name: m.temperature for m in plan if m.temperature is not None}
+    if not stated:
+        return blocks
+    temperature = blocks["temperature"].fillna(blocks["manoeuvre"].map(stated).astype(np.float64))
+    return blocks.assign(temperature=temperature)
 
 
 def _edges(part: Part, length: int, gaps: Integers, unseen: Integers) -> tuple[Integers, Integers]:

@@ -19,6 +19,7 @@ from inertial.signal.misread_axes import SENSOR_NAMES, determinant, reads_in_wor
 from inertial.signal.plan_detector import Misread, Rescaled, Swapped
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
+from stages.segment.detection import Undone, in_order, misread_in, swapped_in
 from stages.segment.explanations import (
     SENSE,
     Exchanged,
@@ -30,10 +31,8 @@ from stages.segment.explanations import (
     turned_back,
     unlike,
 )
-from stages.segment.locating import AS_NAMED, AS_PLANNED
-from stages.segment.recorded import Undone, in_order, misread_in, swapped_in
-from stages.segment.repair_by_gravity import misread_by_gravity, step_of
-from stages.segment.repair_scales import Scale, rates_of, scales_of
+from stages.segment.matching import AS_NAMED, AS_PLANNED
+from stages.segment.repair_readings import Scale, misread_by_gravity, rates_of, scales_of, step_of
 from stages.segment.windows import Binned
 
 Array = NDArray[np.float64]

@@ -19,14 +19,21 @@ from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
-from stages.segment import completeness, reduction, repair, repaired
+from stages.segment import completeness, reduction, repair
 from stages.segment.declared import DECLARED
-from stages.segment.detection import ExaminationOfRests, compare
+from stages.segment.detection import ExaminationOfRests, compare, recorded_of
 from stages.segment.explanations import Explained
-from stages.segment.locating import AS_NAMED, Located
-from stages.segment.matching import Part, between_parts, position_parts, rest_part, turn_parts
-from stages.segment.recorded import recorded_of
+from stages.segment.matching import (
+    AS_NAMED,
+    Located,
+    Part,
+    between_parts,
+    position_parts,
+    rest_part,
+    turn_parts,
+)
 from stages.segment.repair import set_right
+from stages.segment.repair_readings import log_as_read, plan_as_taken
 from stages.segment.windows import Bins, Selection, Window, windows
 
 Array = NDArray[np.float64]
@@ -84,7 +91,7 @@ def segment(
     plan, level, explained = list(made.plan), made.level, made.explained
     read_as = Repairs(CHANNEL_REPAIRS.frame(made.channels))
     masked = Masks(masks, read_as)
-    by_name = {name: repaired.log_as_read(log, read_as) for name, log in logs.items()}
+    by_name = {name: log_as_read(log, read_as) for name, log in logs.items()}
     parts, performed, turns = _parts(explained, plan, level, margin)
 
     in_samples = stated.means_of_known_noise
@@ -120,12 +127,15 @@ def segment(
         performed[m.name] = done if as_named else completeness.by_other_axes(done)
     for m in plan:
         performed[m.name] = completeness.with_clipped(performed[m.name], block_sums.clipped(m.name))
+    for located in explained.located:
+        performed |= {done.manoeuvre: done for done in completeness.with_sides(performed, located)}
     recorded = recorded_of(
         plan,
         explained,
         made.undone,
         performed,
         segments,
+        blocks,
         _counts(by_name)["gyro"],
         stated.given,
         angle_tolerance,
@@ -133,12 +143,12 @@ def segment(
     of_plan = compare("segment", OF_PLAN, recorded)
     detections = [*(each for each, _by in of_plan), *rests.detections("segment")]
     return {
-        "manoeuvres": repaired.plan_as_taken(manoeuvres, plan),
+        "manoeuvres": plan_as_taken(manoeuvres, plan),
         "repairs": list(_with_findings(made.rows, of_plan, quality_findings)),
         "channel_repairs": list(made.channels),
         "segments": segments,
         "performed": pd.DataFrame([asdict(performed[m.name]) for m in plan]),
-        "blocks": blocks,
+        "blocks": reduction.with_temperatures(blocks, plan),
         "traces": traces.table(),
         "findings": table_of([each.finding for each in detections]),
         "close_ups": close_ups(samples, index, detections),

@@ -5,8 +5,12 @@ import pytest
 from on_a_table import askew, recorded, rest, tumble, turn
 from recorded_by_hand import NOISE, assert_told
 
-from inertial.detectors.axis_swap import AxisSwap, AxisSwapOfGyros
-from inertial.detectors.sign_flip import SignFlip, SignFlipOfGyros
+from inertial.detectors.misread_axes_and_signs import (
+    AxisSwap,
+    AxisSwapOfGyros,
+    SignFlip,
+    SignFlipOfGyros,
+)
 
 EACH = (AxisSwap(), AxisSwapOfGyros(), SignFlip(), SignFlipOfGyros())
 

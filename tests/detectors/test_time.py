@@ -17,15 +17,16 @@ from recorded_by_hand import (
 
 from inertial.detectors.clock_jitter import ClockJitter
 from inertial.detectors.clock_scale import ClockScale
-from inertial.detectors.clock_step import ClockStep
-from inertial.detectors.duplicate import Duplicate
 from inertial.detectors.gap import Gap
-from inertial.detectors.held_record import HeldRecord
-from inertial.detectors.rate_off import RateOff
+from inertial.detectors.repeated_records import Duplicate, HeldRecord
+from inertial.detectors.stamp_faults import (
+    ClockStep,
+    RateOff,
+    TimeBackwards,
+    TimeStandsStill,
+    WrongDay,
+)
 from inertial.detectors.status_invalid import StatusInvalid
-from inertial.detectors.time_backwards import TimeBackwards
-from inertial.detectors.time_stands_still import TimeStandsStill
-from inertial.detectors.wrong_day import WrongDay
 
 OF_TIME = (
     Duplicate(),

@@ -17,7 +17,7 @@ from rosbags.rosbag2 import ReaderError as McapError
 
 from inertial.formats.columns import column_reader as columns
 from inertial.formats.containers import mcap_bag, ros1_bag
-from inertial.formats.containers.bag_records import Record
+from inertial.formats.containers.bags import Record
 from inertial.tables.errors import Refusal
 from tests.formats import written
 

@@ -1,4 +1,4 @@
-"""A bag of ROS 2 in the container MCAP; `imu_topic` lists its columns.
+"""A bag of ROS 2 in the container MCAP; `bags` lists its columns.
 
 Source: https://mcap.dev/spec
 """
@@ -13,9 +13,17 @@ from typing import Any, BinaryIO
 
 from rosbags.rosbag2.storage_mcap import decompress, read_exact, read_sized, read_string
 
-from inertial.formats.containers.bag_records import Framing, Record, bag_records
+from inertial.formats.containers.bags import (
+    Bag,
+    Framing,
+    Gap,
+    Message,
+    Record,
+    Topic,
+    bag_records,
+    imu_table,
+)
 from inertial.formats.containers.container import Table
-from inertial.formats.containers.imu_topic import Bag, Gap, Message, Topic, imu_table
 from inertial.formats.containers.ros2_bag import deserialize, kind_of
 from inertial.text.messages import _
 

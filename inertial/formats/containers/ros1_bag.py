@@ -1,4 +1,4 @@
-"""A bag of ROS 1, version 2.0; `imu_topic` lists its columns.
+"""A bag of ROS 1, version 2.0; `bags` lists its columns.
 
 Source: http://wiki.ros.org/Bags/Format/2.0
 """
@@ -15,9 +15,18 @@ from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.msg import normalize_msgtype
 from rosbags.typesys.store import Typestore
 
-from inertial.formats.containers.bag_records import Framing, Record, bag_records
+from inertial.formats.containers.bags import (
+    IMU,
+    Bag,
+    Framing,
+    Gap,
+    Message,
+    Record,
+    Topic,
+    bag_records,
+    imu_table,
+)
 from inertial.formats.containers.container import Table
-from inertial.formats.containers.imu_topic import IMU, Bag, Gap, Message, Topic, imu_table
 from inertial.text.messages import _
 
 _MAGIC = b"#ROSBAG V2.0\n"

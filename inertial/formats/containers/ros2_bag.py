@@ -1,4 +1,4 @@
-"""A bag of ROS 2 in a database of SQLite, the .db3 file alone; `imu_topic` lists its columns.
+"""A bag of ROS 2 in a database of SQLite, the .db3 file alone; `bags` lists its columns.
 
 The metadata.yaml that lies beside it is not needed. The database is only read, and no file is made
 beside it.
@@ -16,8 +16,8 @@ from typing import Any
 from rosbags.typesys import Stores, get_typestore
 from rosbags.typesys.store import Typestore
 
+from inertial.formats.containers.bags import IMU, Bag, Gap, Message, Topic, imu_table
 from inertial.formats.containers.container import Table
-from inertial.formats.containers.imu_topic import IMU, Bag, Gap, Message, Topic, imu_table
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 

@@ -1,13 +1,22 @@
-"""Sizes of counts, and rates of the plan, that are wrong by a known factor or by one ratio."""
+"""Readings that are set right: axes by gravity, sizes of counts, rates of the plan.
+
+And what that makes of the properties of a log and of the table of the manoeuvres.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
+from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.records import Manoeuvre
-from inertial.signal.detector import Given
+from inertial.signal.axis_permutations import Permutation
+from inertial.signal.detector import Given, Log
+from inertial.signal.gravity_turned import turned
+from inertial.signal.misread_axes import determinant
+from inertial.signal.plan_detector import Misread
 from inertial.signal.rests_and_motions import steady_part
 from inertial.signal.scale_factor import (
     FULL_SCALE_FACTORS,
@@ -15,11 +24,60 @@ from inertial.signal.scale_factor import (
     MAX_SCALE_ERROR,
     factors_near,
 )
-from stages.segment.explanations import Explained
-from stages.segment.locating import Located
-from stages.segment.matching import motion
+from stages.segment.explanations import Explained, Step, axes_step
+from stages.segment.matching import AS_NAMED, Located, motion
+from stages.segment.windows import Binned
 
 Array = NDArray[np.float64]
+
+
+# ---- Axes and signs by which the gyros turn gravity as the accelerometers see it, without a plan.
+
+
+def misread_by_gravity(binned: Sequence[Binned], level: Array) -> list[Misread]:
+    """What explains that the gyros turn gravity otherwise than it turns; each does it alone.
+
+    If the gyros' triad is left-handed beside the accelerometers', only they explain it, for
+    accelerometers that read A f turn by det(A)·A ω, which is right-handed. Else both may: of the
+    accelerometers those with the fewest signs, for all of them reversed turn alike.
+
+    Parameters
+    ----------
+    level : (3,), rad/s, the gyros at rest
+    """
+    stretches = [(one.forces, one.rates - level, one.bin_seconds) for one in binned if one.bins]
+    seen = turned(stretches)
+    if seen is None or seen.axes in (None, AS_NAMED):
+        return []
+    assert seen.axes is not None
+    names = [m.name for one in binned for m in one.window.manoeuvres]
+    explained = [("gyro", seen.axes)]
+    if determinant(seen.axes) > 0:
+        explained.append(("accel", _of_accelerometers(seen.axes)))
+    return [
+        Misread(sensor, axes, "", names, _step(sensor, axes).id, spans=seen.spans)
+        for sensor, axes in explained
+    ]
+
+
+def step_of(misread: Misread) -> Step:
+    """The repair that sets it right."""
+    return _step(misread.sensor, misread.axes)
+
+
+def _step(sensor: str, axes: Permutation) -> Step:
+    step = axes_step(sensor, axes)
+    return Step(f"{step.id}/by-gravity", step.repair, sensor, axes)
+
+
+def _of_accelerometers(gyros: Permutation) -> Permutation:
+    """What the accelerometers' readings need in place of `gyros`, right-handed."""
+    right = gyros.inverse
+    left = Permutation(right.sources, tuple(-sign for sign in right.signs))
+    return min((right, left), key=lambda axes: axes.signs.count(-1))
+
+
+# ---- Sizes of counts that are wrong by a known factor.
 
 # Rests of one attitude do not tell a bias from a full scale that is another: two at 60° do.
 MAX_COSINE = 0.5
@@ -204,3 +262,32 @@ def rates_of(explained: Explained, level: Array, tolerance: float) -> Restated |
     if len(off) < 2 or np.abs(ratios / ratio - 1).max() > MAX_RATIO_SPREAD:
         return None
     return Restated(ratio, [one.name for one in off])
+
+
+# ---- The plan as a table, and the properties of a log, after what was wrong is set right.
+
+
+def plan_as_taken(stated: pd.DataFrame, plan: Sequence[Manoeuvre]) -> pd.DataFrame:
+    """The table of the manoeuvres with what the repairs have changed."""
+    table = stated.set_index("manoeuvre").loc[[m.name for m in plan]].reset_index()
+    for name in ("log", "from_s", "to_s", "from_row", "to_row", "label", "angle", "rate"):
+        values = pd.Series([getattr(m, name) for m in plan], dtype=object)
+        table[name] = values.where(values.notna(), None)
+    return table[list(stated.columns)]
+
+
+def log_as_read(log: Log, repairs: Repairs) -> Log:
+    """A log whose channels are set right: their steps, noise and limits go with them."""
+    source, factor = repairs.channels(log.name)
+    size = np.abs(factor)
+    ends = np.sort([factor * log.least[source], factor * log.most[source]], axis=0)
+    return replace(
+        log,
+        quantum=size * log.quantum[source],
+        noise=size * log.noise[source],
+        equal=log.equal[source],
+        least=ends[0],
+        most=ends[1],
+        limit=size * log.limit[source],
+        count=size * log.count[source],
+    )

@@ -1,0 +1,257 @@
+"""Manoeuvres that are not as planned: missing, exchanged, or a rest of which little is recorded."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.signal.axis_permutations import AXES
+from inertial.signal.detector import Array, Description
+from inertial.signal.plan_detector import (
+    Deviation,
+    PlanDetector,
+    Recorded,
+    Swapped,
+    confirming,
+    rivals_in_words,
+)
+from inertial.text.messages import _
+from inertial.text.numbers import fixed, significant
+
+MIN_SAME_COSINE = float(np.cos(np.radians(25)))  # directions that are the same
+
+
+class ManoeuvreMissing(PlanDetector):
+    """A planned rest or turn of which the log has nothing, and nothing explains why."""
+
+    name = "manoeuvre_missing"
+    cause = _("it was not done, not recorded, or the plan has it in the wrong place")
+    source = "S0: a log that was not written whole"
+    costs = _("what it alone would determine")
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        for i, name in enumerate(recorded.name):
+            if not recorded.found[i] and name not in recorded.explained:
+                yield self.of(recorded, i, None, sensor=None)
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        i = deviation.at
+        assert i is not None  # it is a manoeuvre that is missing
+        return Description(
+            recorded.said[i] + _instead(recorded, i),
+            _("It is left out; the others are used. {recorded}", recorded=_left(recorded, i)),
+            _("Correct the plan, or record it."),
+        )
+
+
+def _instead(recorded: Recorded, i: int) -> str:
+    """What the log has in its place."""
+    if recorded.do[i] == "rest":
+        force, up = recorded.force[i], recorded.up[i]
+        if not (np.isfinite(force).all() and np.isfinite(up).all()):
+            return ""
+        direction = force / np.linalg.norm(force)
+        away = np.degrees(np.arccos(np.clip(direction @ up, -1, 1)))
+        sentence = _(
+            " Its log rests {away:.0f}° from there, with {direction} up.",
+            away=away,
+            direction=_axis(direction),
+        )
+        if float(np.abs(direction).max()) > MIN_SAME_COSINE:
+            sentence += _(
+                " Either the IMU had this attitude, or two axes or a sign of the accelerometers are"
+            )
+            sentence += _(" wrong; this log alone cannot decide.")
+        return sentence
+    turned = np.degrees(recorded.turned[i])
+    about = recorded.about[i]
+    blind = np.flatnonzero(~recorded.gyros[i] & (np.abs(about) > MIN_SAME_COSINE))
+    if len(blind):
+        return _(
+            " The {axes} gyro, which would see it, has no reading to be used.",
+            axes=AXES[int(blind[0])],
+        )
+    if recorded.first[i] >= 0 and np.isfinite(turned).any():
+        angles = ", ".join(fixed(float(angle), 0) for angle in turned)
+        return _(" What moves there turns by ({angles})° about x, y, z.", angles=angles)
+    return ""
+
+
+def _axis(direction: Array) -> str:
+    k = int(np.argmax(np.abs(direction)))
+    if abs(direction[k]) > MIN_SAME_COSINE:
+        return f"{'+' if direction[k] > 0 else '−'}{AXES[k]}"
+    return "(" + ", ".join(fixed(float(part), 2) for part in direction) + ")"
+
+
+def _left(recorded: Recorded, i: int) -> str:
+    """Which other manoeuvres observe the same direction."""
+    rest = recorded.do[i] == "rest"
+    directions = recorded.up if rest else recorded.about
+    own = directions[i]
+    if not np.isfinite(own).all():
+        return ""
+    along = np.nan_to_num(directions) @ own
+    same = (along > MIN_SAME_COSINE) if rest else (np.abs(along) > MIN_SAME_COSINE)
+    others = same & recorded.found & (np.arange(len(along)) != i)
+    others &= np.isfinite(directions).all(axis=1)
+    if others.any():
+        names = [recorded.name[k] for k in np.flatnonzero(others)[:4]]
+        return _(
+            "The same {value} is seen in {names}.",
+            value="direction" if rest else "axis",
+            names=", ".join(names),
+        )
+    axis = _axis(own)
+    if rest:
+        return _(
+            "No other rest has {axis} up, which parts its bias from its scale factor.", axis=axis
+        )
+    return _(
+        "No other turn is about {strip}: its scale factor is not determined.",
+        strip=axis.strip("+−"),
+    )
+
+
+class ManoeuvreSwapped(PlanDetector):
+    """Two logs under each other's names, or two manoeuvres of a log in each other's place.
+
+    Each agrees with the plan of the other, and not with its own.
+    """
+
+    name = "manoeuvre_swapped"
+    cause = _("two files were handed over under each other's names, or the order was another")
+    source = "S0 took another group's log in place of a broken one: names are given by hand"
+    costs = _("the sign of a bias or scale factor, were they used")
+    unit = "manoeuvres"
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        for swapped in recorded.swapped:
+            i = list(recorded.name).index(swapped.names[0])
+            yield self.of(
+                recorded, i, float(len(swapped.names)), facts=swapped, repair=swapped.repair
+            )
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        swapped: Swapped = deviation.facts
+        own = [i for i, name in enumerate(recorded.name) if name in swapped.names]
+        half = len(swapped.names) // 2
+        first, second = ", ".join(swapped.names[:half]), ", ".join(swapped.names[half:])
+        if len(swapped.logs) == 2:
+            one, other = swapped.logs
+            sentence = _(
+                "{value} contains {second}, and {other} contains {first}: their names are "
+                "exchanged.",
+                value=one,
+                second=second,
+                other=other,
+                first=first,
+            )
+        else:
+            sentence = _(
+                "In {logs}, {first} and {second} are exchanged.",
+                logs=swapped.logs[0],
+                first=first,
+                second=second,
+            )
+        if swapped.rivals:
+            sentence += rivals_in_words(swapped.rivals)
+        elif len(swapped.logs) == 2 and not swapped.undone:
+            sentence += _or_a_sign(recorded, own)
+        action = (
+            _(
+                "Each is taken for what it holds, on this condition. Correct the names, or the "
+                "plan; or confirm it by accept: [{repair}].",
+                repair=swapped.repair,
+            )
+            if swapped.undone
+            else _(
+                "Both are left out, for only the laboratory knows which is which. Correct the "
+                "names, or the plan, and run it again."
+            )
+        )
+        action += confirming(swapped.repair, swapped.rivals)
+        return Description(sentence, _if_used(recorded, own), action)
+
+
+def _or_a_sign(recorded: Recorded, own: list[int]) -> str:
+    """What explains the same: a wrong sign of the one axis that both see."""
+    rests = all(recorded.do[i] == "rest" for i in own)
+    directions = recorded.up[own] if rests else recorded.about[own] * recorded.angle[own, None]
+    if len(own) != 2 or not np.isfinite(directions).all():
+        return ""
+    unit = directions / np.linalg.norm(directions, axis=1)[:, None]
+    if float(unit[0] @ unit[1]) > -0.9:
+        return ""
+    axis = "xyz"[int(np.argmax(np.abs(unit[0])))]
+    if rests:
+        return _(
+            " A wrong sign of the {axis} accelerometer cannot be distinguished from it, if "
+            "no other manoeuvre shows its sign.",
+            axis=axis,
+        )
+    if recorded.gyro_signs["xyz".index(axis)] > 0:
+        return _(
+            " Planned angles of the wrong sign cannot be distinguished from it; the sign of "
+            "the {axis} gyro is right, as the earth rate shows.",
+            axis=axis,
+        )
+    return _(
+        " A wrong sign of the {axis} gyro, or of the planned angles, cannot be "
+        "distinguished from it.",
+        axis=axis,
+    )
+
+
+def _if_used(recorded: Recorded, own: list[int]) -> str:
+    if all(recorded.do[i] == "rest" for i in own):
+        gravity = 2 * recorded.given.gravity
+        return _(
+            "Used, each mean would be wrong by up to {gravity:.3g} m/s², twice gravity.",
+            gravity=gravity,
+        )
+    angles = np.degrees(np.abs(recorded.angle[own]))
+    if np.isfinite(angles).all():
+        wrong = f"{2 * angles.max():.0f}°"
+        return _(
+            "Used, each angle would be wrong by up to {wrong}, a scale error of −200 %.",
+            wrong=wrong,
+        )
+    return _("Used, each would be evaluated as the other.")
+
+
+MIN_DURATION_SHARE = 1 / 3  # of the planned time
+
+
+class ShortRest(PlanDetector):
+    """A rest that lasts less than a third of what was planned."""
+
+    name = "short_rest"
+    cause = _("the log was cut off, or is an excerpt")
+    source = "S0: white noise averages out with the root of the time at rest"
+    costs = _("the sigma of its mean")
+    unit = "s"
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        for i, what in enumerate(recorded.do):
+            short = recorded.duration[i] < MIN_DURATION_SHARE * recorded.seconds[i]
+            if what == "rest" and recorded.found[i] and recorded.duration[i] > 0 and short:
+                yield self.of(recorded, i, float(recorded.duration[i]))
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        i = deviation.at
+        assert i is not None and deviation.size is not None
+        planned = float(recorded.seconds[i])
+        times = significant(float(np.sqrt(planned / deviation.size)), 2)
+        return Description(
+            _(
+                "{name} rests for {size} s of the {planned} s planned.",
+                name=recorded.name[i],
+                size=significant(deviation.size, 3),
+                planned=fixed(planned, 0),
+            ),
+            _(
+                "What white noise leaves in its mean is {times} times what was planned.",
+                times=times,
+            ),
+            _("It is used with the sigma that it has. Record it whole."),
+        )

@@ -1,0 +1,359 @@
+"""Time stamps: of arrival, going back, standing still or jumping; another rate, another day."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from datetime import date
+
+import numpy as np
+
+from inertial.signal.detector import Description, Detector, Event, Log, Piece
+from inertial.signal.runs import runs
+from inertial.signal.stamps import MAX_RATE_ERROR, disorders, kinds, stamps_of
+from inertial.text.messages import _, plural
+from inertial.text.numbers import counted, fixed, significant
+
+
+class ArrivalStamps(Detector):
+    """A log whose samples got the times of a regular clock, because their stamps are uneven."""
+
+    name = "arrival_stamps"
+    cause = _("a host stamps samples when they arrive, one by one or many at once, or coarsely")
+    source = "recordings of hobby IMUs by USB: four samples share a packet, stamps 2 ms apart"
+    costs = _("a rate made from stamp to stamp is nonsense; short gaps are not seen")
+    unit = "s"
+    severity = 1
+
+    def detect_in_log(self, log: Log) -> Iterator[Event]:
+        if np.isfinite(log.stamp_scatter):
+            yield log.event(log.stamp_scatter, facts=(log.interval, log.shortest_gap))
+
+    def describe(self, event: Event, name: str) -> Description:
+        interval, gap = event.facts
+        return Description(
+            _(
+                "{name}: the stamps are those of arrival, not of sampling: about a regular clock "
+                "they scatter by {scatter} ms, {share} of a sample interval.",
+                name=name,
+                scatter=significant(event.size * 1e3, 2),
+                share=f"{significant(event.size / interval * 100, 2)} %",
+            ),
+            _(
+                "The samples have the times of a regular clock instead: one every {interval} ms, "
+                "the slope of stamp against sample number, gaps left out. Gaps of less than "
+                "{gap} ms are not seen; a turn lacks what it turned meanwhile.",
+                interval=significant(interval * 1e3, 5),
+                gap=significant(gap * 1e3, 2),
+            ),
+            _("Let the IMU stamp or count its samples, and log that."),
+        )
+
+
+@dataclass(frozen=True)
+class _Facts:
+    """Time before the step back; whether the stamps are ahead; the share that is a replay."""
+
+    before: float
+    ahead: bool
+    replayed: float
+
+
+class TimeBackwards(Detector):
+    """A stretch of records from where time goes back to where it has passed its former maximum.
+
+    Where stamps jump ahead first and come back after fewer records than that, these are the
+    stretch. `from_s` and `to_s` are both the stamp behind the step, for which time it was in
+    between is unknown; the records give its duration.
+    """
+
+    name = "time_backwards"
+    cause = _("logs were joined, the clock was set, or a stamp was spoilt")
+    source = "design study, 41c"
+    costs = _("when these records were taken is not known")
+    unit = "s"
+
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
+        # Nothing is left of a record that repeats an earlier one.
+        replayed = np.asarray(np.isnan(piece.values).all(axis=1))
+        for disorder in disorders(piece.time, piece.reached, log.interval):
+            step = disorder.end if disorder.ahead and disorder.end < len(piece) else disorder.start
+            before = max(piece.reached, float(piece.time[:step].max(initial=-np.inf)))
+            facts = _Facts(
+                before, disorder.ahead, float(replayed[disorder.start : disorder.end].mean())
+            )
+            event = piece.event(disorder.start, disorder.end, disorder.size, facts=facts)
+            stamp = float(piece.time[step])
+            # Where it begins in an earlier piece this is its continuation.
+            yield event if step == 0 else replace(event, from_s=stamp, to_s=stamp)
+
+    def describe(self, event: Event, name: str) -> Description:
+        facts, records = event.facts, counted(event.after - event.first, "record")
+        if facts.ahead:
+            sentence = _(
+                "{name}: the stamps of {records} from line {line} are {size:.6f} s ahead; then "
+                "time goes back to {from_s} s.",
+                name=name,
+                records=records,
+                line=event.line,
+                size=event.size,
+                from_s=fixed(event.from_s, 3),
+            )
+        else:
+            sentence = _(
+                "{name}: at line {line} time goes back by {size:.6f} s, from {before} s to "
+                "{from_s} s; {records} lie behind.",
+                name=name,
+                line=event.line,
+                size=event.size,
+                before=fixed(facts.before, 3),
+                from_s=fixed(event.from_s, 3),
+                records=records,
+            )
+        if facts.replayed == 1:
+            return Description(
+                _("{sentence} They repeat earlier ones.", sentence=sentence),
+                _("None beyond that of the repetition."),
+                _("The repetition is masked. Look for logs that were joined."),
+            )
+        masked = _("What repeats earlier ones is masked") if facts.replayed else "Nothing is masked"
+        return Description(
+            sentence,
+            _(
+                "Means and sums do not use the stamps and stand. When these records were taken "
+                "is unknown by {size:.3g} s: so is what depends on it, a drift of a bias and "
+                "the order of the manoeuvres.",
+                size=event.size,
+            ),
+            _(
+                "{masked}; a turn in which time goes back is left out. Look for logs that were "
+                "joined, or for a clock that was set.",
+                masked=masked,
+            ),
+        )
+
+
+class TimeStandsStill(Detector):
+    """A record with the stamp of the one before, and other readings."""
+
+    name = "time_stands_still"
+    cause = _("the clock of the logger hung, or counts in steps longer than a sample")
+    source = "design study, 41c"
+    costs = _("when it was taken is not known, nor whether time passed with it")
+    unit = "records"
+    masks = True
+
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
+        still = np.zeros(len(piece), bool)
+        for places, _channels in kinds(piece):
+            still[places[1:]] = np.diff(piece.time[places]) == 0
+        for start, end in runs(still):
+            yield piece.event(start, end, float(end - start), facts=log.interval)
+
+    def describe(self, event: Event, name: str) -> Description:
+        return Description(
+            plural(
+                "{name}: {count} record from line {line} has the stamp of the record before,"
+                " {stamp} s, but other readings.",
+                "{name}: {count} records from line {line} have the stamp of the record before,"
+                " {stamp} s, but other readings.",
+                int(event.size),
+                name=name,
+                line=event.line,
+                stamp=fixed(event.from_s, 3),
+            ),
+            _(
+                "Whether {time} s passed meanwhile is not known, so the angle of a turn is"
+                " uncertain by the rate times this time; the mean of a rest is not affected.",
+                time=f"{event.size * event.facts:.3g}",
+            ),
+            _("These records are masked. Check the clock of the logger."),
+        )
+
+
+MIN_STEP_SHARE = 0.02  # of an interval: smaller steps have no effect
+MIN_STEP_SIGMA = 10.0  # times what the stamps beside it scatter by, rms
+SIDE_STAMPS = 32  # stamps on either side
+MIN_SIDE_STAMPS = 8  # of them, where the log begins or ends
+MIN_EVEN_STEPS = 4  # steps alike and evenly apart, which are the rounding of stamps
+MAX_UNEVEN = 0.1  # of their size, and of the records from one to the next
+MAX_RETURN_SHARE = 0.5  # of the step, by which the stamps beside it may take it back
+
+
+class ClockStep(Detector):
+    """One interval between two records that is shorter or longer, and is not made good again.
+
+    A stamp that is late by itself is made good by the next one; what is longer by a whole interval
+    is a gap, and what goes back is time that goes back.
+    """
+
+    name = "clock_step"
+    cause = _("the clock of the receiver or logger was set, or it began to follow another clock")
+    source = "design study, 5: a clock step is in no catalogue of effects, and must not be silent"
+    costs = _("when things happened, by the step; angles and means are sums of samples and stay")
+    unit = "s"
+    severity = 1
+
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
+        events = list(self._steps(piece, log))
+        if not _of_rounding(events):
+            yield from events
+
+    def _steps(self, piece: Piece, log: Log) -> Iterator[Event]:
+        stamps = stamps_of(piece, log)
+        off = np.diff(stamps.time) - stamps.apart * log.interval
+        off[stamps.apart != 1] = np.nan
+        for k in np.flatnonzero(np.abs(off) > MIN_STEP_SHARE * log.interval):
+            before, behind = off[max(k - SIDE_STAMPS, 0) : k], off[k + 1 : k + 1 + SIDE_STAMPS]
+            if min(np.isfinite(before).sum(), np.isfinite(behind).sum()) < MIN_SIDE_STAMPS:
+                continue
+            scatter = float(np.sqrt(np.nanmean(np.append(before, behind) ** 2)))
+            taken_back = abs(float(np.nansum(before[-2:]) + np.nansum(behind[:2])))
+            step = float(off[k])
+            if abs(step) > MIN_STEP_SIGMA * scatter and taken_back < MAX_RETURN_SHARE * abs(step):
+                place = int(stamps.place[k + 1])
+                yield Event(
+                    int(piece.record[place]),
+                    int(piece.record[place]) + 1,
+                    int(piece.line[place]),
+                    float(stamps.time[k]),
+                    float(stamps.time[k + 1]),
+                    abs(step),
+                    facts=step > 0,
+                )
+
+    def describe(self, event: Event, name: str) -> Description:
+        later = "later" if event.facts else "earlier"
+        size = significant(event.size * 1e3, 3)
+        return Description(
+            _(
+                "{name}: from line {line} on, at {to_s} s, all stamps are {size} ms {later} "
+                "than those of an even clock, and no sample is missing.",
+                name=name,
+                line=event.line,
+                to_s=fixed(event.to_s, 3),
+                size=size,
+                later=later,
+            ),
+            _("What is taken against time is off by that much; angles and means hardly change."),
+            _("All samples are used. Let the clock settle before recording."),
+        )
+
+
+def _of_rounding(events: Sequence[Event]) -> bool:
+    """Whether steps are alike and evenly apart: no multiple of the stamps' unit is the interval."""
+    if len(events) < MIN_EVEN_STEPS:
+        return False
+    sizes = np.array([event.size * (1 if event.facts else -1) for event in events])
+    apart = np.diff([event.first for event in events])
+    return bool(
+        np.ptp(sizes) < MAX_UNEVEN * abs(sizes[0]) and np.ptp(apart) < MAX_UNEVEN * apart[0]
+    )
+
+
+FACTORS = (2, 4, 5, 10)  # of rates that instruments offer
+
+
+class RateOff(Detector):
+    """The mean interval of a log, gaps left out, is not one over the stated rate."""
+
+    name = "rate_off"
+    cause = _("the rate was set otherwise, records are left out, or another instrument is named")
+    source = "design study, 41e: 200 against 100 Hz"
+    costs = _("nothing where stamps are recorded; where they are counted, rates by this factor")
+    unit = "1"
+    severity = 1
+
+    def detect_in_log(self, log: Log) -> Iterator[Event]:
+        factor = log.given.interval / log.step
+        if np.isfinite(factor) and abs(factor - 1) > MAX_RATE_ERROR:
+            facts = (1 / log.step, 1 / log.given.interval, log.given.instrument)
+            yield log.event(factor, facts=facts)
+
+    def describe(self, event: Event, name: str) -> Description:
+        rate, stated, instrument = event.facts
+        return Description(
+            _(
+                "{name}: {rate} samples per second by the stamps, but {stated} are stated: {size}.",
+                name=name,
+                rate=significant(rate),
+                stated=significant(stated),
+                size=_factor(event.size),
+            ),
+            _(
+                "None where the stamps are right: sums over time, and rates of increments, are "
+                "made with the log's own interval. Where they are wrong, both are off by this "
+                "factor."
+            ),
+            _(
+                "Nothing is changed. Correct rate_hz of {instrument}, or check whether it is "
+                "the instrument that recorded this, and whether samples are left out.",
+                instrument=instrument,
+            ),
+        )
+
+
+def _factor(factor: float) -> str:
+    """The factor in words, with its round number if it has one."""
+    for whole in FACTORS:
+        if abs(factor / whole - 1) < MAX_RATE_ERROR:
+            return f"×{whole}"
+        if abs(factor * whole - 1) < MAX_RATE_ERROR:
+            return _("÷{whole}, as if only one record in {whole} were written", whole=whole)
+    return f"factor {significant(factor)}"
+
+
+MAX_ZONE_DAYS = 1  # day: between UTC and the laboratory's own time
+ROLLOVER_DAYS = 1024 * 7  # days after which a receiver counts the GPS weeks from 0 again
+
+
+class WrongDay(Detector):
+    """The UTC date of the first stamp is not the stated date, by more than a time zone makes."""
+
+    name = "wrong_day"
+    cause = _("the log belongs to another session, or the date was written down wrong")
+    source = "S0: GPS week 2283 is 8 October 2023, where 18 October is stated; design study, 41h"
+    costs = _("all results are those of another campaign, if the log is")
+    unit = "days"
+
+    def detect_in_log(self, log: Log) -> Iterator[Event]:
+        recorded, stated = _day(log.recorded_on), _day(log.given.date)
+        if recorded is None or stated is None:
+            return
+        apart = (stated - recorded).days
+        if abs(apart) > MAX_ZONE_DAYS:
+            yield log.event(float(abs(apart)), facts=(recorded, stated))
+
+    def describe(self, event: Event, name: str) -> Description:
+        recorded, stated = event.facts
+        days = counted(int(event.size), "day")
+        when = "before" if recorded < stated else "after"
+        why = ""
+        if abs(event.size - ROLLOVER_DAYS) <= MAX_ZONE_DAYS:
+            why = _(" That is 1024 weeks, after which receivers count from 0 again.")
+        elif event.size == 10:
+            why = _(" One wrong digit would make that.")
+        return Description(
+            _(
+                "{name}: its stamps give {isoformat} (UTC), {days} {when} the stated "
+                "{isoformat_2}.{why}",
+                name=name,
+                isoformat=recorded.isoformat(),
+                days=days,
+                when=when,
+                isoformat_2=stated.isoformat(),
+                why=why,
+            ),
+            _(
+                "If the log is of another session, its biases are those of another switch-on; "
+                "if the date was written down wrong, nothing changes but the order of the "
+                "history."
+            ),
+            _("The log is used. Correct the date of the campaign, or put the right log there."),
+        )
+
+
+def _day(text: str | None) -> date | None:
+    """An ISO date; none where it is unknown."""
+    try:
+        return date.fromisoformat(text or "")
+    except ValueError:
+        return None

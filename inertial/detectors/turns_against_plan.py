@@ -1,0 +1,258 @@
+"""Turns that are not as planned: a part is missing, the other way, faster or slower."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from inertial.signal.detector import Description
+from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded, Rescaled
+from inertial.signal.scale_factor import MAX_RATIO_SPREAD, common_turn_ratio, turn_ratios
+from inertial.text.messages import _
+from inertial.text.numbers import counted, fixed, significant, whole
+
+
+class IncompleteTurn(PlanDetector):
+    """A turn that was not recorded from rest to rest, or not to the planned angle.
+
+    What a gap or masked records lack of it is told with these: they are the cause.
+    """
+
+    name = "incomplete_turn"
+    cause = _("the log begins or ends while the table turns, or it turned by another angle")
+    source = "S0, figure 5-9: 11.98 s are missing of a turn, so 240° of 360° are recorded"
+    costs = _("its angle, and with it a scale factor, if the planned or a rounded one is taken")
+    unit = "°"
+    sensor = "gyro"
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        common = common_turn_ratio(recorded)
+        _, angle = turn_ratios(recorded)
+        # By other axes no turn is used, though it may be whole.
+        misread = any(
+            each.sensor == "gyro" and not each.log and not each.undone for each in recorded.misread
+        )
+        for i, name in enumerate(recorded.name):
+            whole_planned = recorded.do[i] == "turn" and not recorded.steady[i]
+            if not whole_planned or not recorded.found[i]:
+                continue
+            if recorded.complete[i] or recorded.lost[i]:
+                continue
+            # Where all turns have another angle, that of one with a gap is not known at all.
+            scaled = common is not None and (
+                abs(angle[i] / common[0] - 1) <= MAX_RATIO_SPREAD or recorded.lacking_s[i] > 0
+            )
+            reversed_ = angle[i] < 0
+            refused = misread and recorded.lacking_s[i] == 0
+            if scaled or reversed_ or refused or name in recorded.explained:
+                continue
+            missing = float(np.degrees(recorded.lacking[i]))
+            yield self.of(recorded, i, missing if np.isfinite(missing) else None)
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        i = deviation.at
+        assert i is not None  # it is a turn that is not complete
+        return Description(
+            f"{recorded.name[i]}: {recorded.said[i]}",
+            _if_taken(recorded, i),
+            _("It is left out of the joint estimate and of the angle method. Record it again."),
+        )
+
+
+def _if_taken(recorded: Recorded, i: int) -> str:
+    """What the scale factor would be wrong by if one took another angle than the recorded one."""
+    common = common_turn_ratio(recorded)
+    scale = common[0] if common else 1.0
+    planned, read = np.degrees([recorded.angle[i], recorded.moved[i] / scale]).tolist()
+    if not np.isfinite(planned * read) or not planned * read:
+        return _("Its angle is not known, so it gives no scale factor.")
+    said = [
+        _(
+            "Taken for {planned}°, {wrong_by}",
+            planned=fixed(planned, 0),
+            wrong_by=_wrong_by(read / planned - 1),
+        )
+    ]
+    if common:
+        said[0] = _(
+            "Without the common ratio it is {read}°. {said}", read=fixed(read, 2), said=said[0]
+        )
+    # The formula of two turns takes the time of a whole one, whatever the log holds of it.
+    whole_turn = abs(recorded.angle[i] / recorded.rate[i]) if recorded.rate[i] else 0.0
+    seconds = float(np.fmax(recorded.duration[i], whole_turn))
+    if seconds > 0 and abs(planned - read) > 0:
+        said[0] += _(", bias by {fixed} °/s", fixed=fixed(abs(planned - read) / (2 * seconds), 4))
+    rounded = round(read)
+    if rounded and abs(read / rounded - 1) < 0.5:
+        said.append(
+            _(
+                "rounded to {rounded}°, {wrong_by}",
+                rounded=fixed(rounded, 0),
+                wrong_by=_wrong_by(read / rounded - 1),
+            )
+        )
+    return "; ".join(said) + "."
+
+
+def _wrong_by(error: float) -> str:
+    """A scale error of one turn, and of a pair with one that is right the other way."""
+    return _(
+        "its scale error is wrong by {whole} ppm ({whole_2} ppm in a pair with a turn "
+        "that is right)",
+        whole=whole(error * 1000000.0),
+        whole_2=whole(error / 2 * 1000000.0),
+    )
+
+
+class WrongDirection(PlanDetector):
+    """A turn that is opposite to the planned direction by its gyro."""
+
+    name = "wrong_direction"
+    cause = _("the sign of the planned angle, or the table turned the other way")
+    source = "S0: shun and ni; judge a turn by the sign on the gyro, not by the word"
+    costs = _("the sign of a scale factor")
+    severity = 3
+    sensor = "gyro"
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        if recorded.other_sense:
+            turns = sum(do == "turn" for do in recorded.do)
+            yield Deviation(None, "", -1.0, self.sensor, count=turns, repair=recorded.other_sense)
+        for i, name in enumerate(recorded.name):
+            ratio = ratio_of(recorded, i)
+            if recorded.found[i] and ratio < 0 and name not in recorded.explained:
+                yield self.of(recorded, i, ratio)
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        i = deviation.at
+        if i is None:
+            return _all_the_other_way(deviation, recorded)
+        assert deviation.size is not None
+        name, turned, planned = recorded.name[i], recorded.moved[i], recorded.angle[i]
+        unit = "°"
+        if not np.isfinite(turned * planned):
+            turned, planned, unit = recorded.speed[i], recorded.rate[i], " °/s"
+        far = [fixed(float(np.degrees(turned)), 2), fixed(float(np.degrees(planned)), 0)]
+        return Description(
+            _(
+                "{name} turns against the planned direction: by {far}{unit} in place of "
+                "{far_2}{unit}.",
+                name=name,
+                far=far[0],
+                unit=unit,
+                far_2=far[1],
+            ),
+            _(
+                "Taken as planned, its scale error would be {fixed} %; it is left out of all "
+                "methods.",
+                fixed=fixed((deviation.size - 1) * 100, 0),
+            ),
+            _("Correct the sign of degrees or rate, or the axes of the gyros."),
+        )
+
+
+def ratio_of(recorded: Recorded, i: int) -> float:
+    """Recorded over planned, of the rate or else of the angle; NaN where either is not known."""
+    by_rate = float(recorded.speed[i] / recorded.rate[i]) if recorded.rate[i] else np.nan
+    if np.isfinite(by_rate) or not recorded.angle[i]:
+        return by_rate
+    return float(recorded.moved[i] / recorded.angle[i])
+
+
+def _all_the_other_way(deviation: Deviation, recorded: Recorded) -> Description:
+    """All turns against the plan, while the gyros see the earth turn as they should."""
+    earth = any(sign > 0 for sign in recorded.gyro_signs)
+    seen = _(", while the gyros see the earth turn as it does") if earth else ""
+    return Description(
+        _(
+            "All {count} turns are against the planned direction{seen}: the table counts its angle "
+            "the other way.",
+            count=deviation.count,
+            seen=seen,
+        ),
+        _("Taken as planned, the scale errors of the gyros would be −200 %."),
+        _(
+            "All turns are taken the other way, on this condition. Correct the signs of degrees "
+            "or rate in the plan; or confirm it by accept: [{repair}].",
+            repair=deviation.repair,
+        ),
+    )
+
+
+class WrongRate(PlanDetector):
+    """A turn whose rate is not the planned one, where no ratio explains all of them."""
+
+    name = "wrong_rate"
+    cause = _("the rate of the plan, or of the table")
+    source = "S0, table 5-6: the rate in the steady part"
+    costs = _("a scale factor, where the rate is the reference")
+    sensor = "gyro"
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        for each in recorded.restated:
+            yield Deviation(
+                None,
+                "",
+                each.ratio,
+                self.sensor,
+                count=len(each.names),
+                facts=each,
+                severity=1,
+                repair=each.repair,
+            )
+        if common_turn_ratio(recorded) is not None:
+            return
+        rate, angle = turn_ratios(recorded)
+        for i, ratio in enumerate(rate):
+            if ratio > 0 and abs(ratio - 1) > recorded.tolerance:
+                as_planned = abs(angle[i] - 1) <= recorded.tolerance
+                yield self.of(recorded, i, float(ratio), severity=1 if as_planned else 3)
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        if isinstance(deviation.facts, Rescaled):
+            return _restated(deviation.facts)
+        i, ratio = deviation.at, deviation.size
+        assert i is not None and ratio is not None
+        read, planned = np.degrees([recorded.speed[i], recorded.rate[i]]).tolist()
+        _unused, angle = turn_ratios(recorded)
+        if deviation.severity == 1:
+            consequence = _(
+                "Its angle is as planned ({fixed}°), so its scale factor holds; the rate is not "
+                "used.",
+                fixed=fixed(float(np.degrees(recorded.moved[i])), 2),
+            )
+        elif np.isfinite(angle[i]):
+            consequence = _(
+                "Its angle is {significant} times the planned one, so it is left out.",
+                significant=significant(float(angle[i]), 4),
+            )
+        else:
+            consequence = _(
+                "Taken as planned, its scale error would be {fixed} %.",
+                fixed=fixed((ratio - 1) * 100, 1),
+            )
+        return Description(
+            _(
+                "{name} turns at {read} °/s, {ratio} times the planned {planned} °/s; the other "
+                "turns are not off by this ratio.",
+                name=recorded.name[i],
+                read=significant(read),
+                ratio=significant(ratio, 5),
+                planned=significant(planned),
+            ),
+            consequence,
+            _("Correct the rate of the plan, or see what the table did."),
+        )
+
+
+def _restated(restated: Rescaled) -> Description:
+    """Turns through their planned angles, all at one multiple of the planned rate."""
+    return Description(
+        _(
+            "{turns} go through the planned angles at {ratio} times the planned rate: {why}.",
+            turns=counted(len(restated.names), "turn"),
+            ratio=significant(restated.ratio, 5),
+            why=restated.why,
+        ),
+        _("The angles are as planned, so the scale factors hold."),
+        _("The rates are taken as recorded. Correct the rate of the plan."),
+    )
