@@ -10,7 +10,8 @@
 #                                 by-hand
 #   make trace ID=<number>        from a number of the report, such as gyroscope/joint/bias_x, back to
 #                                 the lines of the logs; also with CAMPAIGN=<name>
-#   make test                     every test; the same as CI with `make style`
+#   make test                     the tests; the same as CI with `make style`
+#   make test-slow                those that draw many campaigns; ten minutes on two cores
 #   make bench                    errors, time and memory compared with other programs, in one run;
 #                                 also with ONLY="cost noise"
 #   make style                    linters, types, and which room may import which
@@ -19,6 +20,12 @@
 #                                 DRAWS=100 a tenth of them; with ONLY=diagnosis only what the
 #                                 diagnosis says of 690 of them, in docs/diagnosis.md; with
 #                                 ONLY="diagnosis fault spikes" those that have these words
+#   make temperature              records campaigns in a simulated temperature chamber and compares
+#                                 parameters as curves of the temperature with their bound, in
+#                                 docs/temperature.md; two hours on two cores, can be resumed; with
+#                                 DRAWS=100 a tenth of them
+#   make noise                    estimates the noise of 3000 simulated recordings, in docs/noise.md; 15
+#                                 minutes on two cores, can be resumed; with DRAWS=100 of each part
 #   make docs                     docs/tables.md and the catalogue of messages, from the code
 #   make recordings               docs/recordings.md: the real recordings, which are not part of the
 #                                 project, drafted and compared with what is known of them; 15 minutes
@@ -29,7 +36,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new trace test style bench challenge docs recordings clean setup pango campaign
+.PHONY: report check draft new trace test test-slow style bench challenge noise temperature docs recordings clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -65,7 +72,7 @@ report: campaign setup
 	$(SNAKEMAKE) "$${kinds[@]/#/reports/$$CAMPAIGN.}" "reports/$$CAMPAIGN.calibration.json"
 	echo
 	sed '/^Campaign:/,$$d' "reports/$$CAMPAIGN.txt"
-	echo "For other programs:" reports/$$CAMPAIGN.{calibration.json,calibration.yaml,kalibr.yaml,px4.params,ardupilot.param}
+	echo "For other programs:" reports/$$CAMPAIGN.{calibration.json,calibration.yaml,kalibr.yaml,ros.yaml,px4.params,ardupilot.param}
 	echo "The report:" "$${kinds[@]/#/reports/$$CAMPAIGN.}"
 
 # By hand `python -m commands.check --campaign=<name>` ends with 1 where something spoils a result or
@@ -110,11 +117,14 @@ campaign:
 test: setup
 	$(BIN)/python -m pytest
 
+test-slow: setup
+	$(BIN)/python -m pytest -m slow
+
 style: setup
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy stages inertial commands laboratory
-	MYPYPATH=tests:tests/bounds:tests/hidden $(BIN)/mypy benchmarks/*.py benchmarks/own/*.py
+	MYPYPATH=tests:tests/bounds:tests/hidden:tests/temperature $(BIN)/mypy benchmarks/*.py benchmarks/own/*.py
 	$(BIN)/snakefmt --check -l 100 Snakefile
 	$(BIN)/lint-imports
 	# Each rule runs in the environment of requirements.lock, so none names one of its own.
@@ -123,7 +133,8 @@ style: setup
 
 bench: .venv/complete benchmarks/.venv/complete
 	read -ra parts <<< "$$ONLY"
-	PYTHONPATH=tests:tests/bounds:tests/hidden OPENBLAS_NUM_THREADS=1 $(BIN)/python -m benchmarks "$${parts[@]}"
+	PYTHONPATH=tests:tests/bounds:tests/hidden:tests/temperature OPENBLAS_NUM_THREADS=1 \
+		$(BIN)/python -m benchmarks "$${parts[@]}"
 
 challenge: .venv/complete
 	export OPENBLAS_NUM_THREADS=1
@@ -133,6 +144,13 @@ challenge: .venv/complete
 	fi
 	PYTHONPATH=tests:tests/hidden:tests/diagnosis $(BIN)/python -m diagnosis \
 		data/derived/challenge "$${words[@]:1}"
+
+temperature: .venv/complete
+	PYTHONPATH=tests:tests/hidden:tests/diagnosis:tests/bounds:tests/temperature OPENBLAS_NUM_THREADS=1 \
+		$(BIN)/python -m temperature "$$((DRAWS / 5))" data/derived/temperature
+
+noise: .venv/complete
+	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m noise data/derived/noise $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
 
 # Files generated from the code; tests fail where they are not current.
 docs: .venv/complete

@@ -18,6 +18,7 @@ from inertial.tables.stage import Stage
 
 ROOT = Path(__file__).parent.parent
 ORDER = stages.ORDER[: stages.ORDER.index("export")]
+BESIDE = ("studies", "comparison")  # stages on which no later one rests, for `without`
 SETTINGS: dict[str, dict[str, Any]] = YAML(typ="safe").load(ROOT / "config.yaml")
 
 

@@ -1,9 +1,11 @@
 """What the tests share: the real recordings, and runs of the chain that several tests look at."""
 
+import fcntl
 import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 # As in the Snakefile: for matrices as small as ours threads cost more than they bring. It must
@@ -16,6 +18,27 @@ import pytest
 from inertial.tables.campaign_files import logs_of
 
 CAMPAIGNS = Path(__file__).parent / "campaigns"
+
+
+@pytest.fixture(scope="session")
+def made_once(tmp_path_factory) -> Callable[[str, Callable[[Path], None]], Path]:
+    """A folder of this name, filled by the first process that needs it; the others wait for it."""
+    place = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        place = place.parent  # which all processes of this run share
+
+    def folder(name: str, fill: Callable[[Path], None]) -> Path:
+        made = place / name
+        with (place / f"{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not (place / f"{name}.made").exists():
+                shutil.rmtree(made, ignore_errors=True)  # what a failure left
+                made.mkdir()
+                fill(made)
+                (place / f"{name}.made").touch()
+        return made
+
+    return folder
 
 
 @pytest.fixture(scope="session")
@@ -39,35 +62,42 @@ RECORDED = {
 
 
 @pytest.fixture(scope="session")
-def recorded(recordings, tmp_path_factory) -> dict[str, chain.Results]:
+def recorded(recordings, made_once) -> dict[str, chain.Results]:
     """The real recordings in a data folder elsewhere, run to their reports as a user would.
 
     The campaign files are those of tests/campaigns; the logs are copied beside them.
     """
-    place = tmp_path_factory.mktemp("recorded")
-    for campaign, folder in RECORDED.items():
-        raw = place / "data/raw" / campaign
-        raw.mkdir(parents=True)
-        text = (CAMPAIGNS / f"{campaign}.yaml").read_text(encoding="utf-8")
-        (raw / "campaign.yaml").write_text(text, encoding="utf-8")
-        for log in logs_of(raw / "campaign.yaml"):
-            shutil.copy(recordings / folder / log, raw / log)
-    reports = [f"reports/{campaign}.html" for campaign in RECORDED]
-    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--directory", str(place)]
-    command += ["--snakefile", str(chain.ROOT / "Snakefile"), *reports]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert all((place / report).stat().st_size > 10_000 for report in reports)
+
+    def run(place: Path) -> None:
+        for campaign, folder in RECORDED.items():
+            raw = place / "data/raw" / campaign
+            raw.mkdir(parents=True)
+            text = (CAMPAIGNS / f"{campaign}.yaml").read_text(encoding="utf-8")
+            (raw / "campaign.yaml").write_text(text, encoding="utf-8")
+            for log in logs_of(raw / "campaign.yaml"):
+                shutil.copy(recordings / folder / log, raw / log)
+        reports = [f"reports/{campaign}.html" for campaign in RECORDED]
+        command = [sys.executable, "-m", "snakemake", "--cores", "2", "--directory", str(place)]
+        command += ["--snakefile", str(chain.ROOT / "Snakefile"), *reports]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        assert all((place / report).stat().st_size > 10_000 for report in reports)
+
+    place = made_once("recorded", run)
     return {name: chain.Results(place / "data/derived" / name) for name in RECORDED}
 
 
+def simulated(folder: Path, document, until: str) -> None:
+    """A campaign of the laboratory, and what the stages up to `until` make of it, in `derived`."""
+    chain.run(chain.simulate(document, folder / "raw"), folder / "derived", until)
+
+
 @pytest.fixture(scope="session")
-def demo_criticised(tmp_path_factory) -> chain.Results:
+def demo_criticised(made_once) -> chain.Results:
     """The demo campaign with all that it hides, through the chain up to the extension."""
-    folder = tmp_path_factory.mktemp("demo")
     document = chain.laboratory.read(chain.ROOT / "data/simulated/demo.yaml").document
-    campaign = chain.simulate(document, folder / "demo")
-    return chain.run(campaign, folder / "derived", "extension")
+    folder = made_once("demo", lambda folder: simulated(folder, document, "extension"))
+    return chain.Results(folder / "derived")
 
 
 @pytest.fixture(scope="session")
@@ -77,20 +107,21 @@ def demo(demo_criticised) -> chain.Results:
 
 
 @pytest.fixture(scope="session")
-def coupled(tmp_path_factory) -> chain.Results:
+def coupled(made_once) -> chain.Results:
     """A short campaign whose x, y, z gyros read 14, −10 and 12 °/h per g along their own axes."""
-    folder = tmp_path_factory.mktemp("coupled")
     hidden = {"gyro_g_sensitivity": {"matrix_deg_h_g": [[14, 0, 0], [0, -10, 0], [0, 0, 12]]}}
-    campaign = chain.simulate(chain.short(effects=hidden), folder / "coupled")
-    return chain.run(campaign, folder / "derived", until="compensation")
+    document = chain.short(effects=hidden)
+    folder = made_once("coupled", lambda folder: simulated(folder, document, "compensation"))
+    return chain.Results(folder / "derived")
 
 
 @pytest.fixture(scope="session")
-def clean(tmp_path_factory) -> list[chain.Results]:
+def clean(made_once) -> list[chain.Results]:
     """The demo campaign without effects and faults, three times with other noise."""
-    results = []
-    for seed in (11, 12, 13):
-        folder = tmp_path_factory.mktemp("clean")
-        campaign = chain.simulate(chain.demo(seed=seed), folder / "clean")
-        results.append(chain.run(campaign, folder / "derived", until="compensation"))
-    return results
+
+    def run(folder: Path) -> None:
+        for seed in (11, 12, 13):
+            simulated(folder / str(seed), chain.demo(seed=seed), "compensation")
+
+    folder = made_once("clean", run)
+    return [chain.Results(folder / str(seed) / "derived") for seed in (11, 12, 13)]

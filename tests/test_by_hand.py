@@ -41,6 +41,7 @@ def clean(tmp_path_factory) -> list[tuple[dict, chain.Results]]:
     return drawn
 
 
+@pytest.mark.slow
 def test_a_clean_session_is_silent(clean):
     for _, results in clean:
         assert results["criticism/findings"].empty
@@ -49,6 +50,7 @@ def test_a_clean_session_is_silent(clean):
         assert results["criticism/scores"]["statistic"].notna().any()  # it was tested
 
 
+@pytest.mark.slow
 def test_the_sigmas_of_a_clean_session_are_honest(clean):
     for sensor in ("accel", "gyro"):
         every = np.array([pulls(*drawn)[sensor] for drawn in clean])
@@ -58,7 +60,13 @@ def test_the_sigmas_of_a_clean_session_are_honest(clean):
         assert np.abs(every).max() < 4.5
 
 
-@pytest.mark.parametrize("effect", HIDDEN)
+@pytest.mark.parametrize(
+    "effect",
+    [
+        pytest.param(effect, marks=() if n % 3 == 0 else pytest.mark.slow)
+        for n, effect in enumerate(HIDDEN)
+    ],
+)
 def test_what_a_session_hides_is_named_and_no_longer_moves_the_result(effect, tmp_path):
     document = sessions.session(1, effects={effect: HIDDEN[effect]})
     results = sessions.by_hand(document, tmp_path)

@@ -212,7 +212,7 @@ def test_a_turn_of_which_only_the_axis_is_known_gives_its_scale(
             if recorded == "steady":
                 manoeuvre["rate_deg_s"] *= -1 if manoeuvre.pop("degrees") < 0 else 1
     tell(tmp_path / "raw", campaign)
-    results = chain.run(tmp_path / "raw", tmp_path / "derived", "diagnosis")
+    results = chain.run(tmp_path / "raw", tmp_path / "derived", "diagnosis", chain.BESIDE)
     assert np.abs(off_truth(results)).max() < MAX_SIGMA
     assert results["diagnosis/causes"].empty
     scale, known = (
@@ -280,7 +280,7 @@ def test_means_with_the_sigma_of_a_sample_are_as_good_as_their_samples(
     layout["accelerometer"]["sigma"] = [float(FORCE_SAMPLE)] * 3
     campaign["instrument"]["format"] = layout
     tell(tmp_path / "raw", campaign)
-    results = chain.run(tmp_path / "raw", tmp_path / "derived", "diagnosis")
+    results = chain.run(tmp_path / "raw", tmp_path / "derived", "diagnosis", chain.BESIDE)
     assert results["diagnosis/causes"].empty
     assert np.abs(off_truth(results)).max() < MAX_SIGMA
     for stage, names in (("accelerometer", None), ("gyroscope", ["bias_x", "bias_y", "bias_z"])):
@@ -453,7 +453,7 @@ def recorded(recordings: Path, folder: str, campaign: str, tmp_path: Path) -> Pa
 
 def test_ctu_turns_of_unknown_attitude_and_means_alone(recordings, tmp_path):
     raw = recorded(recordings, "ctu_prague", "ctu", tmp_path)
-    results = chain.run(raw, tmp_path / "derived", "diagnosis")
+    results = chain.run(raw, tmp_path / "derived", "diagnosis", chain.BESIDE)
     gyro = results.parameters("gyroscope").loc[["scale_x", "scale_y", "scale_z"]]
     simple_integration = np.array([0.9950, 0.9998, 1.0055]) - 1  # SOURCE.md
     assert np.abs((gyro["value"] - simple_integration) / gyro["sigma"]).max() < 2

@@ -141,6 +141,7 @@ def of_kind(table: pd.DataFrame, kind: str) -> pd.DataFrame:
     return table[table["kind"] == kind].set_index(["sensor", "quantity"])
 
 
+@pytest.mark.slow
 def test_clean_campaigns_differ_by_no_more_than_chance(clean):
     for results in clean:
         table = results["comparison/differences"]

@@ -159,7 +159,7 @@ def test_a_random_walk_is_no_ramp_and_no_g_sensitivity(tmp_path):
     document = chain.demo(seed=61)
     document["noise"] = {**document["noise"], "gyro_rate_random_walk_deg_h_sqrt_h": 0.5}
     campaign = chain.simulate(document, tmp_path / "campaign")
-    results = chain.run(campaign, tmp_path / "derived", "criticism")
+    results = chain.run(campaign, tmp_path / "derived", "criticism", chain.BESIDE)
     assert named(results) == {"gyro_random_walk"}
     (finding,) = results["criticism/findings"].to_dict("records")
     assert finding["cause"] == "gyro_random_walk" and finding["severity"] == 1
@@ -171,6 +171,6 @@ def test_an_oscillation_that_beats_with_the_blocks_is_no_structure(tmp_path):
     """39.6 Hz is 7.9 periods in a block of 0.2 s: what is left of it beats at 2 Hz."""
     ringing = {"frequency_hz": 39.567, "amplitude_rad_s": 0.0038, "axis": "+y"}
     campaign = chain.simulate(chain.demo(effects={"oscillation": ringing}, seed=17), tmp_path / "c")
-    results = chain.run(campaign, tmp_path / "derived", "criticism")
+    results = chain.run(campaign, tmp_path / "derived", "criticism", chain.BESIDE)
     assert results["criticism/findings"]["cause"].tolist() == ["oscillation"]
     assert not results["criticism/structures"]["detected"].any()

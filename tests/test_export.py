@@ -28,9 +28,11 @@ ENDINGS = (
     "calibration.json",
     "calibration.yaml",
     "kalibr.yaml",
+    "ros.yaml",
     "px4.params",
     "ardupilot.param",
 )
+SETTINGS = chain.SETTINGS["export"]
 SCHEMA = chain.ROOT / "stages/export/calibration.schema.json"
 GRAVITY, GRAVITY_SIGMA = 9.7936174, 5e-5
 ESTIMATES = ("parameters", "covariance")
@@ -102,11 +104,17 @@ def verdict(mount: str, sensor: str, **changes: Any) -> dict[str, Any]:
     }
 
 
+def write(derived: Path, documents: Path) -> None:
+    """The files, as the workflow writes them."""
+    settings = ["--settings", json.dumps(SETTINGS)]
+    STAGE.command_line([str(derived), *settings, "--documents", str(documents)])
+
+
 @pytest.fixture(scope="module")
 def files(results: chain.Results, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the files, written as the workflow writes them."""
     folder = tmp_path_factory.mktemp("reports")
-    STAGE.command_line([str(results.folder), "--documents", str(folder / "short")])
+    write(results.folder, folder / "short")
     return folder
 
 
@@ -117,7 +125,7 @@ def content(files: Path) -> dict[str, Any]:
 
 def exported(results: chain.Results, **changes: Any) -> dict[str, str]:
     """The texts, with some of the tables changed."""
-    texts = STAGE.result(STAGE.inputs(STAGE.paths(results.folder)) | changes)
+    texts = STAGE.result(STAGE.inputs(STAGE.paths(results.folder)) | SETTINGS | changes)
     return dict(texts)
 
 
@@ -134,7 +142,7 @@ def numbers(values: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
 # ---- the files
 
 
-def test_the_command_writes_five_files_and_nothing_beside_them(files: Path) -> None:
+def test_the_command_writes_six_files_and_nothing_beside_them(files: Path) -> None:
     assert {path.name for path in files.iterdir()} == {f"short.{ending}" for ending in ENDINGS}
     assert STAGE.declared.documents == ENDINGS
 
@@ -150,7 +158,7 @@ def test_json_and_yaml_say_the_same_by_the_schema(files: Path, content: dict[str
 def test_the_same_tables_give_the_same_bytes(
     results: chain.Results, files: Path, tmp_path: Path
 ) -> None:
-    STAGE.command_line([str(results.folder), "--documents", str(tmp_path / "new/short")])
+    write(results.folder, tmp_path / "new/short")
     for ending in ENDINGS:
         first, second = (folder / f"short.{ending}" for folder in (files, tmp_path / "new"))
         assert first.read_bytes() == second.read_bytes()
@@ -162,7 +170,7 @@ def test_a_missing_table_is_named_and_nothing_is_written(
     derived = shutil.copytree(results.folder, tmp_path / "derived")
     (derived / "noise/noise.parquet").unlink()
     with pytest.raises(SystemExit) as refused:
-        STAGE.command_line([str(derived), "--documents", str(tmp_path / "reports/short")])
+        write(derived, tmp_path / "reports/short")
     assert "noise.parquet" in str(refused.value)
     assert [path.name for path in tmp_path.iterdir()] == ["derived"]
 
@@ -243,9 +251,11 @@ def test_noise_rate_gravity_inputs_and_makers(
     results: chain.Results, content: dict[str, Any]
 ) -> None:
     noise = results["noise/noise"]
+    terms = results["noise/terms"].query("term == 'white_noise' and detected").set_index("channel")
     for row in content["noise"]:
         own = noise[noise["channel"] == row["channel"]]["white_noise"]
-        assert row["density"] == pytest.approx(own.median())
+        fitted = terms["value"].get(row["channel"], own.median())
+        assert row["density"] == pytest.approx(fitted)
         assert (row["least"], row["most"], row["stretches"]) == (own.min(), own.max(), len(own))
     assert [row["channel"] for row in content["noise"]] == list(tables.CHANNELS)
     assert content["rate"] == {"unit": "Hz", "measured": pytest.approx(100), "stated": 100}
@@ -344,7 +354,7 @@ def test_the_result_that_counts_is_exported_with_its_effects(results: chain.Resu
     assert float(offset) == pytest.approx(gyros["bias"]["value"][0], rel=1e-6)
 
 
-@pytest.mark.parametrize("ending", ["kalibr.yaml", "px4.params", "ardupilot.param"])
+@pytest.mark.parametrize("ending", ["kalibr.yaml", "ros.yaml", "px4.params", "ardupilot.param"])
 def test_a_file_says_which_effects_it_does_not_hold(results: chain.Results, ending: str) -> None:
     head = said(exported(results, **with_a_ramp(results))[ending])
     assert "gyro_bias_jump.b_x = 2.5e-06 rad/s, gyro_bias_jump.t0 = 30 s" in head
@@ -430,7 +440,7 @@ def test_a_condition_stands_in_every_file(results: chain.Results) -> None:
     assert mount["gyroscope"]["verdict"] == "on_condition"
     assert mount["gyroscope"]["condition"] == wired
     assert mount["accelerometer"]["condition"] is None
-    for ending in ("kalibr.yaml", "px4.params", "ardupilot.param"):
+    for ending in ("kalibr.yaml", "ros.yaml", "px4.params", "ardupilot.param"):
         assert f"The numbers of the gyroscopes are valid on this condition: {wired}" in said(
             texts[ending]
         )
@@ -457,7 +467,7 @@ def test_of_a_sensor_that_is_not_usable_there_are_nulls_and_the_reason(
     assert set(mavproxy(texts["ardupilot.param"])) == {f"INS_GYROFFS_{a}" for a in "XYZ"}
     kalibr = yaml.safe_load(texts["kalibr.yaml"])
     assert "accelerometer_noise_density" not in kalibr and "gyroscope_noise_density" in kalibr
-    for ending in ("kalibr.yaml", "px4.params", "ardupilot.param"):
+    for ending in ("kalibr.yaml", "ros.yaml", "px4.params", "ardupilot.param"):
         assert f"The accelerometers are not usable, so nothing is given for them. {why}" in said(
             texts[ending]
         )
@@ -530,5 +540,5 @@ def test_a_compensated_campaign_exports_nothing_but_says_why(results: chain.Resu
     assert yaml.safe_load(texts["calibration.yaml"]) == content
     assert qgroundcontrol(texts["px4.params"]) == mavproxy(texts["ardupilot.param"]) == {}
     assert yaml.safe_load(texts["kalibr.yaml"]) is None
-    for ending in ("kalibr.yaml", "px4.params", "ardupilot.param"):
+    for ending in ("kalibr.yaml", "ros.yaml", "px4.params", "ardupilot.param"):
         assert "Nothing is exported." in texts[ending]

@@ -9,12 +9,11 @@ from test_closure import truth_of
 G = 9.80665  # m/s², of the unit of the laboratory's K2
 GRAVITY = 9.7936174
 SIZE = 90.0  # µg/g², twenty sigma of the short campaign
-BETWEEN = ("studies", "comparison")  # not needed for it
 
 
 def run(folder, **changes):
     campaign = chain.simulate(chain.short(**changes), folder / "short")
-    return chain.run(campaign, folder / "derived", "diagnosis", without=BETWEEN)
+    return chain.run(campaign, folder / "derived", "diagnosis", chain.BESIDE)
 
 
 @pytest.fixture(scope="module")

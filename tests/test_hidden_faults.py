@@ -190,8 +190,13 @@ def hard(number: int) -> dict[str, Any]:
     return document
 
 
-def test_a_hundred_clean_campaigns_raise_no_finding():
-    for number in range(100):
+@pytest.mark.parametrize(
+    "numbers",
+    [range(20), pytest.param(range(20, 100), marks=pytest.mark.slow)],
+    ids=["twenty", "eighty"],
+)
+def test_clean_campaigns_raise_no_finding(numbers):
+    for number in numbers:
         recording = laboratory.perform(laboratory.specify(hard(number)))
         found = findings(chain.in_memory(recording, "segment"))
         assert found.empty, (number, found[["cause", "sentence"]].to_dict("records"))

@@ -248,6 +248,31 @@ def test_the_schemas_give_a_description_with_every_number():
         assert missing == []
 
 
+def test_the_noise_of_the_data_sheet_in_si(tmp_path):
+    text = BY_TABLE.replace(
+        "instrument: span-cpt",
+        """instrument:
+  name: of the data sheet
+  rate_hz: 100
+  axes: [z, -y, x]
+  format: {kind: rawimus}
+  gyro: {count_rad: 1.0e-7, bias_instability_deg_h: 0.5, rate_random_walk_deg_h_sqrt_h: 6}
+  accelerometer:
+    count_m_s: 1.5e-6
+    bias_instability_ug: 50
+    acceleration_random_walk_ug_sqrt_h: 60
+""",
+    )
+    rows = planned(tmp_path, text)["sensors"].query("axis == 'z'").set_index("sensor")
+    # 0.5 °/h is 2.4241e-6 rad/s, the lowest point of the curve, 0.6643 of the coefficient B
+    assert rows["bias_instability"]["gyro"] == pytest.approx(2.4241e-6 / 0.6643, rel=1e-4)
+    assert rows["bias_instability"]["accel"] == pytest.approx(4.90333e-4 / 0.6643, rel=1e-4)
+    assert rows["random_walk"]["gyro"] == pytest.approx(2.9089e-5 / 60, rel=1e-4)
+    assert rows["random_walk"]["accel"] == pytest.approx(9.80665e-6)
+    stated = planned(tmp_path / "again", BY_TABLE)["sensors"]
+    assert stated[["bias_instability", "random_walk"]].isna().all(axis=None)
+
+
 def test_positions_of_means_are_a_static_position_for_each_row(tmp_path):
     positions = "plan:\n  - {id: all, do: positions, rows: [9, 12], format: m}"
     made = planned(tmp_path, BY_TABLE.replace("plan:", MEANS + positions))

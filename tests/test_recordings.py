@@ -64,7 +64,9 @@ def test_imucal_runs_through_all_of_it_and_nothing_is_named_that_the_data_do_not
         assert (gravity["before"] - gravity["expected"]).abs().max() > 0.1
         assert len(results["history/archived"]) == 1
     labelled = recorded["imucal-labelled"]["criticism/findings"]
-    assert set(labelled["cause"]) == {"unknown_structure"}
+    # A hand is no table: its accelerometers drift within a rest, too.
+    assert set(labelled["cause"]) == {"unknown_structure", "accel_random_walk"}
+    labelled = labelled[labelled["cause"] == "unknown_structure"]
     assert set(labelled["sensor"]) == {"gyro"} and not labelled["verdict"].eq("found").any()
     assert labelled["sentence"].str.contains("about z they drift").any()
     assert recorded["imucal-continuous"]["criticism/findings"].empty
@@ -222,7 +224,7 @@ def test_cuyo_is_calibrated_by_rests_of_unknown_attitude(recorded, recordings):
     assert missing == {"cross_xy", "cross_yx", "symmetric_xy", *(f"mounting_{a}" for a in "xyz")}
     assert "square" in free.loc["mounting_x", "reason"]
     # params_acc.csv is in counts: their scale over ours is 1 + s.
-    assert free["sigma"].dropna().max() < 0.02
+    assert free["sigma"].dropna().max() < 0.03  # with the drift that is measured at rest
     gyro = results.parameters("gyroscope", "free_positions")
     assert gyro.loc[["bias_x", "bias_y", "bias_z"], "value"].notna().all()
 
@@ -277,6 +279,21 @@ def test_hipnuc_goes_with_the_temperature_along_no_line(recorded):
     assert "No tilt changes z so: it would take 9°" in accel["sentence"]
     assert "Omitted: 1 mean" in accel["sentence"]  # of a single sample
     assert "A knee at 40." in causes.loc["still/gyro", "sentence"]  # of its y gyro
+
+
+def test_hipnuc_is_of_use_for_its_changes_with_temperature(recorded):
+    """One attitude shows no bias but its change: by means in test.log, 13.3 mg of z from 30 °C."""
+    results = recorded["hipnuc"]
+    verdict = results["diagnosis/verdict"].set_index("sensor")
+    assert (verdict["verdict"] == "usable_within_limits").all()
+    assert verdict["sentence"].str.contains("from 1.4 to 65.5 °C").all()
+    curves = results["diagnosis/temperature_curves"]
+    own = curves[(curves["sensor"] == "accel") & (curves["parameter"] == "bias_z")]
+    assert 20 < own["knot"].iloc[0] - 273.15 < 30
+    cold, warm = own.iloc[0], own.iloc[-1]
+    assert cold["value"] - warm["value"] == pytest.approx(9.91491 - 9.78446, abs=0.012)
+    assert own["sigma"].between(1e-3, 2e-2).all()
+    assert "scale factor" in own["not_separated"].iloc[0]
 
 
 def test_every_report_says_what_it_could_not_determine(recorded):

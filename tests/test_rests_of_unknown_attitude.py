@@ -46,7 +46,7 @@ def manoeuvre(name, do, up=None):
 PLAN = [manoeuvre("settle", "rest"), manoeuvre("by-hand", "positions")]
 
 
-def noise(imu):
+def noise(imu, drifts=None):
     levels = {"accel": imu.noise[0], "gyro": imu.noise[1]}
     return NoiseLevels(
         effective_levels(
@@ -60,7 +60,8 @@ def noise(imu):
                     "per_sample": 10 * levels[channel[:-2]],
                 }
                 for channel in CHANNELS
-            )
+            ),
+            drifts,
         )
     )
 
@@ -181,6 +182,22 @@ def test_an_accelerometer_that_is_not_recorded_is_named(imu, recorded):
     assert not found and left[0].omission == "settle: |f| = g needs y too"
     table, _, _ = rows(add_free_accelerometers, "accelerometer", unread, imu)
     assert table["value"].isna().all()
+
+
+def test_a_bias_instability_at_rest_is_part_of_the_sigma_of_its_axis(imu, recorded):
+    """1 mg of x between rests whose noise is far below."""
+    size = 1e-3 * GIVEN.gravity
+
+    def sigmas(drifts):
+        estimates = Estimates("accelerometer")
+        data = CampaignData(PLAN, {}, recorded, noise(imu, drifts), KNOWN)
+        add_free_accelerometers(estimates, data)
+        table = estimates.tables()["parameters"].set_index("parameter")["sigma"]
+        return table[["bias_x", "bias_y", "bias_z"]].to_numpy(np.float64)
+
+    quiet, noisy = sigmas(None), sigmas({"accel_x": {"bias_instability": size}})
+    assert noisy[0] > 2 * quiet[0] and size / 10 < noisy[0] < size
+    assert (noisy[1:] < 1.5 * quiet[1:]).all()
 
 
 @pytest.mark.parametrize(

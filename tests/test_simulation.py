@@ -17,7 +17,7 @@ def quiet(tmp_path_factory) -> chain.Results:
     document["campaign"]["table"]["position_sigma_arcsec"] = 0
     folder = tmp_path_factory.mktemp("quiet")
     campaign = chain.simulate(document, folder / "quiet")
-    return chain.run(campaign, folder / "derived", "simulation")
+    return chain.run(campaign, folder / "derived", "simulation", chain.BESIDE)
 
 
 def test_noise_free_logs_are_met_to_a_count(quiet):
@@ -36,7 +36,9 @@ def test_noise_free_logs_are_met_to_a_count(quiet):
 def test_on_clean_data_the_residuals_are_the_noise(clean, tmp_path_factory):
     folder = tmp_path_factory.mktemp("simulated")
     campaign = chain.simulate(chain.demo(seed=21), folder / "campaign")
-    fidelity = chain.run(campaign, folder / "derived", "simulation")["simulation/fidelity"]
+    fidelity = chain.run(campaign, folder / "derived", "simulation", chain.BESIDE)[
+        "simulation/fidelity"
+    ]
     turns = fidelity[fidelity["profile"] == "trapezoid"]
     assert len(turns) == 6 * 6
     ratio = turns["residual_rms"] / turns["noise_rms"]
@@ -66,7 +68,7 @@ def lossy(tmp_path_factory) -> chain.Results:
         entry |= {"seconds": 60} if entry["do"] == "rest" else {}
     folder = tmp_path_factory.mktemp("lossy")
     campaign = chain.simulate(document, folder / "lossy")
-    return chain.run(campaign, folder / "derived", "simulation")
+    return chain.run(campaign, folder / "derived", "simulation", chain.BESIDE)
 
 
 def test_a_turn_with_a_gap_is_met_to_a_count_on_both_sides_of_it(lossy):

@@ -125,7 +125,7 @@ def test_a_position_that_is_off_is_noticed_and_what_it_spoils_is_named(tmp_path)
     believed = {**true.campaign, "plan": told["campaign"]["plan"]}
     folder = tmp_path / "raw"
     laboratory.write(replace(true, campaign=believed), folder)
-    results = chain.run(folder, tmp_path / "derived", "diagnosis")
+    results = chain.run(folder, tmp_path / "derived", "diagnosis", chain.BESIDE)
     # It is weighed against the effects, in one place, and named with nothing that resembles it.
     assert results["accelerometer/findings"].empty
     (cause,) = results["criticism/findings"].to_dict("records")

@@ -31,11 +31,11 @@ def evidence(
     informative = [(sensor, system.effect_information()) for sensor, system in systems]
     largest = np.array(
         [
-            effect.largest
+            effect.largest_of(parameter)
             if effect.sought_in == "blocks" and not campaign.excludes(effect)
             else 0.0
             for effect in effects
-            for _ in effect.parameters
+            for parameter in effect.parameters
         ]
     )
     information = sum((np.diag(reduced.information) for _, reduced in informative), np.zeros(1))

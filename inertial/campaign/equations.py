@@ -22,6 +22,7 @@ from inertial.estimation.gyroscope_equations import Linearisation
 from inertial.estimation.gyroscopes import LinearisedEquations
 from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import System
+from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.estimation.sensitivities import Sensitivities
 from inertial.physics.effect import Effect, Reading
 from inertial.physics.forward import Triad, signatures
@@ -41,13 +42,8 @@ MAX_KEPT = 4  # equations with different effects
 MERGED_BLOCKS = 5  # blocks of a rotation in one mean of the accelerometers, whose input is slow
 
 
-EffectKey = tuple[str, float | None, float | None]
+EffectKey = tuple[object, ...]
 EffectKeys = tuple[EffectKey, ...]
-
-
-def _key(effect: Effect) -> EffectKey:
-    """What distinguishes an effect from others of its campaign."""
-    return effect.name, effect.at, effect.reference
 
 
 def _prior_sigmas(effects: Sequence[Effect], prior_sigma: float) -> dict[str, float]:
@@ -64,7 +60,8 @@ class Campaign:
     """One mount of a campaign with its joint result, from which systems with effects are formed.
 
     `positions`, `planned`: positions and manoeuvres of the plan, in its order; `by_hand`: where the
-    result is that of positions of unknown attitude.
+    result is that of positions of unknown attitude; `drifts`: of the biases by the noise at rest,
+    of `gyro` and `accel`.
     """
 
     inputs: GyroInputs
@@ -77,6 +74,9 @@ class Campaign:
     positions: Sequence[str]
     planned: Sequence[str] = ()
     by_hand: ByHand | None = None
+    drifts: Mapping[str, MeasuredDrift] = field(
+        default_factory=lambda: dict.fromkeys(SENSORS, NO_DRIFT)
+    )
     _known: dict[EffectKey, Reading] = field(
         default_factory=dict, repr=False, compare=False
     )  # responses to effects, which random walks do not change
@@ -261,11 +261,12 @@ class Campaign:
             for position, response in zip(self.inputs.static_positions, answers, strict=False)
         }
         moving = answers[len(answers) - len(by_hand.motions) :]
-        return by_hand.gyro(self.solution, at_rest, moving, prior_sigmas, only)
+        known = (self.solution, at_rest, moving, prior_sigmas, only)
+        return replace(by_hand.gyro(*known), measured=self.drifts["gyro"])
 
     def _linearised(self, effects: Sequence[Effect]) -> LinearisedEquations:
         """The equations of all static positions and rate segments, with no prior of the effects."""
-        key = tuple(_key(effect) for effect in effects)
+        key = tuple(effect.key for effect in effects)
         if key in self._linear:
             return self._linear[key]
         made = self._newly_linearised(effects)
@@ -302,7 +303,8 @@ class Campaign:
         )
         known = (self.inputs.earth, self.position_sigma)
         columns = _prior_sigmas(effects, 1.0)
-        return gyroscopes.linearised(point, turns, [], *known, columns).with_statics(rests)
+        drift = self.drifts["gyro"]
+        return gyroscopes.linearised(point, turns, [], *known, columns, drift).with_statics(rests)
 
     def _accelerometer(
         self,
@@ -322,8 +324,10 @@ class Campaign:
         ]
         if not rests:
             return None
+        drift = self.drifts["accel"]
         if self.by_hand:
-            return self.by_hand.accelerometer(rests, self.solution.accelerometer, prior_sigmas)
+            known = (self.solution.accelerometer, prior_sigmas)
+            return replace(self.by_hand.accelerometer(rests, *known), measured=drift)
         return accelerometers.drifting(
             rests,
             self.gravity.number,
@@ -332,6 +336,7 @@ class Campaign:
             self.solution.accelerometer,
             prior_sigmas,
             walking=walking,
+            measured=drift,
         )
 
     def _responses(self, effects: Sequence[Effect]) -> list[Reading]:
@@ -340,7 +345,7 @@ class Campaign:
             return []
         unit = Triad(np.eye(3), np.zeros(3))
         triads = self.solution.gyro or unit, self.solution.accelerometer or unit
-        keys = [_key(effect) for effect in effects]
+        keys = [effect.key for effect in effects]
         every = dict(zip(keys, effects, strict=True))
         missing = {key: effect for key, effect in every.items() if key not in self._known}
         found = signatures(self.motion, self.solution.site, *triads, list(missing.values()))
@@ -413,6 +418,7 @@ def campaign_of(data: CampaignData) -> Campaign:
         positions_of(data.plan),
         [m.name for m in data.plan],
         _by_hand(data, motions),
+        {sensor: data.noise.drift(sensor) for sensor in SENSORS},
     )
 
 

@@ -65,6 +65,7 @@ _KIND = {
         "temperature": (
             "temperature_drift",
             *(f"{s}_{what}" for s in ("gyro", "accel") for what in ("warm_up", "bias_ramp")),
+            *(f"{s}_temperature" for s in ("gyro", "accel")),
             *(f"{s}_{what}_temperature" for s in ("gyro", "accel") for what in ("bias", "scale")),
         ),
         "saturation": ("saturation", "gyro_saturation", "accel_saturation"),

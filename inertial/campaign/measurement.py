@@ -4,7 +4,7 @@ reading = M · truth + bias + effects(truth, time, temperature)
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,7 +12,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.records import Row, rows_of
-from inertial.effects import CATALOGUE
+from inertial.effects import KNOWN
 from inertial.estimation.triad import linear_names
 from inertial.physics.effect import Effect
 from inertial.physics.forward import Triad
@@ -90,6 +90,17 @@ class Measurement:
     accelerometer: SensorResult
     gyro: SensorResult
 
+    def along(self, time: Array, temperature: Array) -> "Measurement":
+        """The same in a campaign of this course of the temperature, (n,) each, s and K."""
+
+        def sensor(own: SensorResult) -> SensorResult:
+            effects = [
+                replace(one, effect=one.effect.along(time, temperature)) for one in own.effects
+            ]
+            return replace(own, effects=effects)
+
+        return Measurement(sensor(self.accelerometer), sensor(self.gyro))
+
     def force(self, readings: Array, motion: Motion) -> Array:
         """Specific force from the readings of the accelerometers, (n, 3), m/s²."""
         own = self.accelerometer
@@ -127,7 +138,7 @@ def _sensor(sensor: str, rows: Sequence[Row]) -> SensorResult:
 def _effect(name: str, rows: Iterable[Row]) -> EffectOfResult:
     """`rows`: parameters and constants, each called effect.name."""
     own = {row["parameter"].partition(".")[2]: row for row in rows}
-    effect = CATALOGUE[name]
+    effect = KNOWN[name]
     parameters = {p.name: own[p.name] for p in effect.parameters if p.name in own}
     constants = {key: row for key, row in own.items() if key not in parameters}
     values = {key: row["value"] for key, row in constants.items() if row["value"] is not None}

@@ -50,6 +50,8 @@ class Manoeuvre:
     from_row: int | None
     to_row: int | None
     label: str | None
+    temperature: float | None = None
+    temperature_sigma: float | None = None
 
     @property
     def selected(self) -> bool:
@@ -87,6 +89,7 @@ def manoeuvres_of(table: pd.DataFrame) -> list[Manoeuvre]:
             *(row[key] for key in ("angle", "angle_sigma", "rate")),
             *(row[key] for key in ("acceleration", "seconds", "recorded")),
             *(row[key] for key in ("from_s", "to_s", "from_row", "to_row", "label")),
+            *(row[key] for key in ("temperature", "temperature_sigma")),
         )
         for row in rows_of(table)
     ]
@@ -112,6 +115,15 @@ class Performed:
     seconds: float = 0.0
     bridged: bool = False
     lost: bool = False
+    side_x: float | None = None
+    side_y: float | None = None
+    side_z: float | None = None
+
+    @property
+    def sides(self) -> tuple[float, ...]:
+        """The side, ±1, on which each accelerometer was last before it, (3,); NaN: not known."""
+        sides = (self.side_x, self.side_y, self.side_z)
+        return tuple(np.nan if side is None else side for side in sides)
 
 
 def performed_of(table: pd.DataFrame) -> dict[str, Performed]:

@@ -219,7 +219,7 @@ def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosi
                         time,
                         temperature,
                         density,
-                        _stretch(
+                        stretch_between(
                             part.label, str(logs[indices[0]]), time, seconds, data.shared_clock
                         ),
                     )
@@ -238,10 +238,13 @@ def _refusal(m: Manoeuvre, done: Performed, phase: str, seconds: Array, density:
 
 def stretch_of(name: str, part: Blocks, shared_clock: bool) -> Stretch:
     """The stretch of time of some blocks in their order."""
-    return _stretch(name, str(part.log[0]), part.time, part.seconds, shared_clock)
+    return stretch_between(name, str(part.log[0]), part.time, part.seconds, shared_clock)
 
 
-def _stretch(name: str, log: str, time: Array, seconds: Array, shared_clock: bool) -> Stretch:
+def stretch_between(
+    name: str, log: str, time: Array, seconds: Array, shared_clock: bool
+) -> Stretch:
+    """The stretch of consecutive blocks of a log, from their middles and durations, s."""
     start, end = _ends(time, seconds)
     return Stretch(name, COMMON_CLOCK if shared_clock else log, start, end - start)
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -77,21 +78,24 @@ class SteadyTurn:
 
     def sigma(self, direction: Array) -> float:
         """White noise of a sample about an axis of the case, rad/s."""
-        rate = 1 / self.step
-        levels = band_levels(self.along(direction)[:, None], rate, (MIN_WHITE_HZ, rate / 2))
-        return float(white_level(levels)[0][0] * np.sqrt(rate))
+        return self.course(direction).sigma
 
     def course(self, direction: Array) -> Course:
         """The residual rate about an axis of the case, against the table's angle."""
-        return Course(
-            self.along(direction),
-            self.angle,
-            self.rate,
-            self.step,
-            self.averaged,
-            self.sigma(direction),
-            self.tilted,
-        )
+        key = direction.tobytes()
+        if key not in self._courses:
+            record, rate = self.along(direction), 1 / self.step
+            levels = band_levels(record[:, None], rate, (MIN_WHITE_HZ, rate / 2))
+            sigma = float(white_level(levels)[0][0] * np.sqrt(rate))
+            self._courses[key] = Course(
+                record, self.angle, self.rate, self.step, self.averaged, sigma, self.tilted
+            )
+        return self._courses[key]
+
+    @cached_property
+    def _courses(self) -> dict[bytes, Course]:
+        """Those that were asked for, by the bytes of their direction."""
+        return {}
 
     def whole(self, line: Line) -> Line:
         """A line of the rate, corrected for the averaging over a sample, sinc(fT)."""

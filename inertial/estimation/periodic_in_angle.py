@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import pinvh
 from scipy.ndimage import median_filter
 from scipy.optimize import minimize_scalar
 
@@ -182,8 +183,9 @@ def _dropped(information: Array, product: Array) -> tuple[Array, Array]:
     """v' G⁻¹ v and G⁻¹ of G (…, 2, 2) and v (…, 2); zero and infinity for singular G."""
     observable = np.linalg.det(information) > 0
     safe = np.where(observable[..., None, None], information, np.eye(2))
-    inverse = np.where(observable[..., None, None], np.linalg.inv(safe), np.inf)
-    drop = np.einsum("...i,...ij,...j->...", product, np.linalg.inv(safe), product)
+    inverse = np.linalg.inv(safe)
+    drop = np.einsum("...i,...ij,...j->...", product, inverse, product)
+    inverse[~observable] = np.inf
     return np.where(observable, drop, 0.0), inverse
 
 
@@ -391,7 +393,7 @@ def _coherent(courses: Sequence[Course], order: float) -> tuple[float, Array, Ar
     equations = [course.normal_equations(order) for course in courses]
     information = np.sum([matrix for matrix, _ in equations], axis=0)
     product = np.sum([vector for _, vector in equations], axis=0)
-    values = np.linalg.pinv(information) @ product
+    values = pinvh(information) @ product
     return float(product @ values), values, information
 
 

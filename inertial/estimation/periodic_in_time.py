@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import pinvh
 from scipy.optimize import minimize_scalar
 
 from inertial.estimation.probability import chi2_logsf
@@ -161,8 +162,7 @@ def _fitted(record: Array, rate: float, frequency: float) -> tuple[Array, Array]
     phase = 2 * np.pi * frequency * time
     slope = 2 * time / time[-1] - 1
     columns = np.column_stack([np.sin(phase), np.cos(phase), np.ones_like(time), slope])
-    inverse = np.linalg.pinv(columns.T @ columns, hermitian=True)
-    return columns, np.asarray(inverse @ (columns.T @ record))
+    return columns, np.asarray(pinvh(columns.T @ columns) @ (columns.T @ record))
 
 
 def pooled(

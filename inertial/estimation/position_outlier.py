@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from inertial.estimation.accelerometers import StaticForce, equations
 from inertial.estimation.probability import chi2_sf
+from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.forward import Triad
 from inertial.physics.motion import cross, level_axes
@@ -50,17 +51,20 @@ def off_position(
     position_sigma: float,
     about: Triad,
     effect_sigma: Mapping[str, float] | None = None,
+    measured: MeasuredDrift = NO_DRIFT,
 ) -> OffPosition | None:
     """The position in error, if there is one; `about`: M and bias of the estimate.
 
-    `effect_sigma`: of parameters of effects as in `weighted`; they are fitted as well.
+    `effect_sigma`: of parameters of effects as in `weighted`; they are fitted as well; `measured`:
+    drift of the bias.
     """
     positions = list(dict.fromkeys(static.position for static in statics))
     setup = (gravity, gravity_sigma, position_sigma, 0.0, about)
     columns = [f"{position}/{i}" for position in positions for i in (0, 1)]
     with_tilts, known = _with_tilts(statics, gravity, about.matrix), dict(effect_sigma or {})
+    drift = (0.0, measured)
     information = equations(
-        with_tilts, *setup, known | dict.fromkeys(columns, FREE_TILT_SIGMA)
+        with_tilts, *setup, known | dict.fromkeys(columns, FREE_TILT_SIGMA), *drift
     ).effect_information()
     fitted = list(range(len(known)))
     base, _ = information.drop(fitted) if fitted else (0.0, 0)
@@ -74,8 +78,9 @@ def off_position(
         positions[i] for i in np.argsort(-drops) if drops[i] > drops[best] - MIN_DROP_DIFFERENCE
     ]
     own = columns[2 * best : 2 * best + 2]
-    before = equations(statics, *setup, known).solve()
-    after = equations(with_tilts, *setup, known | dict.fromkeys(own, FREE_TILT_SIGMA)).solve()
+    before = equations(statics, *setup, known, *drift).solve()
+    freed = known | dict.fromkeys(own, FREE_TILT_SIGMA)
+    after = equations(with_tilts, *setup, freed, *drift).solve()
     places = [after.names.index(("effect", name)) for name in own]
     up = next(static.up for static in statics if static.position == positions[best])
     horizontal = np.array(level_axes(up))

@@ -92,6 +92,12 @@ class Evidence:
         )
         return replace(self, sensors=sensors)
 
+    def given(self, columns: Sequence[int]) -> "Evidence":
+        """With some columns fitted too: no information on them remains."""
+        if not len(columns):
+            return self
+        return replace(self, sensors=tuple(sensor.given(columns) for sensor in self.sensors))
+
     def residual(
         self, sensor: EffectInformation, chosen: Sequence[int]
     ) -> tuple[float, int, float]:

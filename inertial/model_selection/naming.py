@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from inertial.estimation.probability import chi2_sf
 from inertial.model_selection import null_simulation
 from inertial.model_selection.cause import (
     FOUND,
@@ -76,6 +77,46 @@ def causes(evidence: Evidence, effects: Sequence[SearchedEffect], law: Chance | 
         _uncertain_given_drift(scaled, named),
         _tests(scaled, candidates, law, noise_degrees, classes),
         excesses,
+    )
+
+
+def with_given(evidence: Evidence, named: Named, given: Sequence[SearchedEffect]) -> Named:
+    """The causes with effects that were named before the search, each by its only candidate."""
+    total = evidence.total
+    every = [*(c.columns for c in named.causes), *(effect.candidates[0] for effect in given)]
+    causes, tests = [*named.causes], [*named.tests]
+    for effect in given:
+        columns = effect.candidates[0]
+        joint = list(dict.fromkeys([*columns, *(i for one in every for i in one)]))
+        values, covariance = total.estimate(joint)
+        whole, used = total.drop(joint)
+        rest, fewer = total.drop(joint[len(columns) :]) if len(joint) > len(columns) else (0.0, 0)
+        drop, degrees = whole - rest, used - fewer
+        p_value = float(chi2_sf(drop, degrees)) if degrees else 1.0
+        own = slice(0, len(columns))
+        causes.append(
+            Cause(
+                effect=effect.name,
+                value=0,
+                verdict=FOUND,
+                members=(effect.name,),
+                member_values=(0,),
+                weights=(1.0,),
+                captured=(1.0,),
+                statistic=drop,
+                degrees=degrees,
+                p_value=p_value,
+                snr=float(np.sqrt(max(drop - degrees, 0.0))),
+                columns=columns,
+                values=values[own],
+                covariance=covariance[own, own],
+            )
+        )
+        tests.append(EffectTest(effect.name, 0, drop, degrees, p_value, p_value))
+    return replace(
+        named,
+        causes=_uncertain_given_drift(evidence, causes),
+        tests=tuple(tests),
     )
 
 

@@ -116,7 +116,8 @@ def on_each_axis(sensor: str, parameter: str, factor: str) -> tuple[Term, ...]:
     return tuple(Term(f"{sensor}_{i}", parameter.format(i=i), factor.format(i=i)) for i in "xyz")
 
 
-MEAN_TEMPERATURE = "T0"  # constant of the effects of temperature
+# Constants of the effects of temperature: the mean of the campaign, and its range.
+MEAN_TEMPERATURE, COLDEST, WARMEST = "T0", "T_min", "T_max"
 
 
 class Effect(ABC):
@@ -146,7 +147,8 @@ class Effect(ABC):
 
     `terms`: what it adds to the readings as a function of force, rate, time and temperature; where
     there are none, `stays` says why it cannot be taken out of readings. `reference`: the mean
-    temperature of the campaign, K, where the motion is not all of it.
+    temperature of the campaign, K, where the motion is not all of it; `valid`: its lowest and
+    highest temperature, K, beyond which what depends on it is not known.
     """
 
     name: ClassVar[str]
@@ -164,6 +166,7 @@ class Effect(ABC):
     stays: ClassVar[str] = _("the table, the site or the mounting causes it, and the IMU feels it")
     at: float | None = None
     reference: float | None = None
+    valid: tuple[float, float] | None = None
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         """The truth with this effect in it; `values` follow `parameters`."""
@@ -209,7 +212,13 @@ class Effect(ABC):
         effect = copy(self)
         effect.at = values.get(self.scan.name) if self.scan else None
         effect.reference = values.get(MEAN_TEMPERATURE)
+        if COLDEST in values and WARMEST in values:
+            effect.valid = values[COLDEST], values[WARMEST]
         return effect
+
+    def along(self, time: Array, temperature: Array) -> Self:
+        """The effect in a campaign of this course of the temperature, (n,) each, s and K."""
+        return self
 
     def value(self, motion: Motion) -> float:
         """The value of the nonlinear parameter, by default the middle of the grid; NaN without."""
@@ -218,10 +227,24 @@ class Effect(ABC):
         grid = self.grid(motion)
         return float(grid[len(grid) // 2]) if len(grid) else np.nan
 
+    def as_named(self, values: Mapping[str, float]) -> Effect:
+        """The effect with the value of the nonlinear parameter, of the numbers by name."""
+        at = values.get(self.scan.name) if self.scan else None
+        return self if at is None else self.fixed(at)
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """What distinguishes it from others of its campaign."""
+        return self.name, self.at, self.reference
+
     @property
     def largest(self) -> float:
         """The largest size considered, in the unit of the last parameter."""
         return self.thinkable * max(self.sizes.values())
+
+    def largest_of(self, parameter: Parameter) -> float:
+        """The largest size of a parameter that is considered, in its unit."""
+        return self.largest
 
     @property
     def label(self) -> str:

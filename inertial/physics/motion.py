@@ -95,7 +95,8 @@ class Motion:
     `run`: (n,), which run of the instrument it is of, from switch-on to switch-off;
     `surveyed`: (n,), whether north is known from the table's heading and not from the gyros;
     `temperature`: (n,), K, and `vibration`: (n, 3), m/s², the standard deviation of the samples of
-    specific force, both NaN where they are not known.
+    specific force; `sides`: (n, 3), the sign of the last specific force beyond g/2 along each axis
+    before the manoeuvre, as measured. These three are NaN where they are not known.
     """
 
     time: Array
@@ -112,6 +113,7 @@ class Motion:
     surveyed: NDArray[np.bool_]
     temperature: Array
     vibration: Array
+    sides: Array
 
     @property
     def omega(self) -> Array:
@@ -190,7 +192,7 @@ def turning(
         np.zeros(n),
         np.zeros(n, bool),
         np.full(n, np.nan),
-        np.full((n, 3), np.nan),
+        *(np.full((n, 3), np.nan),) * 2,
     )
 
 
@@ -207,7 +209,7 @@ def stretches(time: Array, seconds: Array, temperature: Array) -> Motion:
         *(zero, zero, zero),
         np.zeros(n, bool),
         temperature,
-        unknown,
+        *(unknown, unknown),
     )
 
 

@@ -17,7 +17,7 @@ COMPENSATED = Table(
 )
 CHECKS = Table(
     "checks",
-    3,
+    4,
     (
         Column("id", TEXT, "", "stable identifier: compensation/quantity/manoeuvre"),
         MOUNT,
@@ -34,7 +34,8 @@ CHECKS = Table(
             "",
             "gravity: |f|; force_up: f along up; rate_up: rate along up; angle: of a turn about its"
             " axis, the earth's rate taken out; accelerometer, gyro: why one is not compensated;"
-            " effect: one of the result that stays in the readings, and why",
+            " effect: one of the result that stays in the readings, and why; temperature: the range"
+            " beyond which samples are not compensated",
         ),
         Column("unit", TEXT, "", "unit of the values, SI"),
         Column("expected", DOUBLE, "as unit", "what is known of it", nullable=True),

@@ -133,7 +133,7 @@ CAUSE = Column("cause", TEXT, "", "id of the cause")
 
 CAUSES = Table(
     "causes",
-    1,
+    2,
     (
         Column("id", TEXT, "", "stable identifier; no code reads anything from it"),
         Column("cause", TEXT, "", "what is wrong: an effect of the catalogue or a fault"),
@@ -154,7 +154,8 @@ CAUSES = Table(
             "cure",
             TEXT,
             "",
-            "repaired, modelled, masked, interpolated, left_out; none: nothing removes it here",
+            "repaired, modelled, curve: of the temperature, masked, interpolated, left_out; none:"
+            " nothing removes it here",
         ),
         Column("gain", TEXT, "", "what the cure brought, in words", nullable=True),
         Column("fitting_before", INTEGER, "1", "as in repairs", nullable=True),
@@ -212,5 +213,58 @@ VERDICTS = Table(
         Column("method", TEXT, "", "method of the result: joint, extended, or mixture"),
         Column("condition", TEXT, "", "on which the result is valid, in words", nullable=True),
         Column("reason", TEXT, "", "why this method, in words"),
+    ),
+)
+
+# ---- Parameters as functions of temperature, by the result that counts.
+
+TEMPERATURE_CURVES = Table(
+    "temperature_curves",
+    1,
+    (
+        MOUNT,
+        Column("sensor", TEXT, "", "gyro or accel"),
+        Column("parameter", TEXT, "", "one of the twelve, as in parameters"),
+        Column("temperature", DOUBLE, "K", "within the range of the campaign"),
+        Column("value", DOUBLE, "as unit", "of the parameter at this temperature", BODY),
+        Column("sigma", DOUBLE, "as unit", "its standard deviation, that at T0 included"),
+        Column("unit", TEXT, "", "unit of value and sigma"),
+        Column("order", INTEGER, "1", "degree of the polynomial, or of the lines beside a knot"),
+        Column("knot", DOUBLE, "K", "where the slope changes, if it does", nullable=True),
+        Column(
+            "relative_to",
+            DOUBLE,
+            "K",
+            "temperature from which the value is a change, where its level is not known",
+            nullable=True,
+        ),
+        Column(
+            "not_separated",
+            TEXT,
+            "",
+            "what else the change may be, in words, where one attitude does not separate it",
+            nullable=True,
+        ),
+    ),
+)
+
+WARM_UP = Table(
+    "warm_up",
+    1,
+    (
+        MOUNT,
+        Column("sensor", TEXT, "", "gyro or accel"),
+        Column("axis", TEXT, "", BODY),
+        Column("band", DOUBLE, "as unit", "to either side of the last value of the bias"),
+        Column("unit", TEXT, "", "unit of band"),
+        Column(
+            "seconds",
+            DOUBLE,
+            "s",
+            "from the first sample, after which the bias stays within; none: it does not settle",
+            nullable=True,
+        ),
+        Column("sigma", DOUBLE, "s", "its standard deviation; none at the start", nullable=True),
+        Column("sentence", TEXT, "", "the same in words"),
     ),
 )

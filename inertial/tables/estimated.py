@@ -19,9 +19,67 @@ NOISE = Table(
         Column("data_sheet", DOUBLE, "rad/√s, m/s/√s", "the data sheet's figure", nullable=True),
     ),
 )
+ALLAN = Table(
+    "allan",
+    1,
+    (
+        Column("channel", TEXT, "", "one of the six channels"),
+        Column("tau", DOUBLE, "s", "averaging time"),
+        Column("deviation", DOUBLE, "rad/s, m/s²", "overlapping Allan deviation, stretches pooled"),
+        Column("lower", DOUBLE, "rad/s, m/s²", "lower end of its 1-sigma confidence interval"),
+        Column("upper", DOUBLE, "rad/s, m/s²", "upper end of it"),
+        Column("degrees", DOUBLE, "1", "equivalent degrees of freedom of deviation²"),
+        Column(
+            "model", DOUBLE, "rad/s, m/s²", "deviation by the terms of the noise", nullable=True
+        ),
+        Column("stretches", INTEGER, "1", "number of static stretches that are pooled"),
+    ),
+)
+SPECTRA = Table(
+    "spectra",
+    1,
+    (
+        Column("channel", TEXT, "", "one of the six channels"),
+        Column("frequency", DOUBLE, "Hz", "middle of the bin"),
+        Column(
+            "density",
+            DOUBLE,
+            "rad²/s, m²/s³",
+            "power density of both sides, as N² of a white noise N",
+        ),
+        Column("degrees", DOUBLE, "1", "equivalent degrees of freedom of density"),
+        Column(
+            "model", DOUBLE, "rad²/s, m²/s³", "density by the terms of the noise", nullable=True
+        ),
+        Column("line", TRUTH, "", "whether an oscillation is there, so that the bin is not fitted"),
+    ),
+)
+NOISE_TERMS = Table(
+    "noise_terms",
+    1,
+    (
+        Column("channel", TEXT, "", "one of the six channels"),
+        Column(
+            "term",
+            TEXT,
+            "",
+            "quantisation, white_noise, bias_instability, random_walk or ramp (IEEE Std 952)",
+        ),
+        Column(
+            "detected", TRUTH, "", "whether the data ask for the term; otherwise upper is given"
+        ),
+        Column("value", DOUBLE, "as unit", "coefficient", nullable=True),
+        Column("sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
+        Column("upper", DOUBLE, "as unit", "upper limit, one-sided 95 %", nullable=True),
+        Column("unit", TEXT, "", "unit of value, sigma and upper"),
+        Column("p_value", DOUBLE, "1", "probability of the data without the term", nullable=True),
+        Column("data_sheet", DOUBLE, "as unit", "the data sheet's figure", nullable=True),
+        Column("seconds", DOUBLE, "s", "longest stretch without a gap"),
+    ),
+)
 LEVELS = Table(
     "levels",
-    2,
+    3,
     (
         Column("manoeuvre", TEXT, "", "as in noise; none: all that have no row", nullable=True),
         Column("phase", TEXT, "", "rest or steady; none as manoeuvre", nullable=True),
@@ -38,6 +96,20 @@ LEVELS = Table(
         Column("degrees", DOUBLE, "1", "degrees of freedom of white_noise"),
         Column("measured", DOUBLE, "rad/√s, m/s/√s", "as in noise", nullable=True),
         Column("per_sample", DOUBLE, "rad/s, m/s²", "as in noise", nullable=True),
+        Column(
+            "bias_instability",
+            DOUBLE,
+            "rad/s, m/s²",
+            "B of the common level's channel by terms, or the likeliest; none: does not enter",
+            nullable=True,
+        ),
+        Column(
+            "random_walk",
+            DOUBLE,
+            "rad/s/√s, m/s²/√s",
+            "K of its bias by terms, or the likeliest; none: does not enter",
+            nullable=True,
+        ),
     ),
 )
 PARAMETERS = Table(
@@ -78,7 +150,7 @@ COVARIANCE = Table(
 )
 FIT = Table(
     "fit",
-    4,
+    5,
     (
         MOUNT,
         SENSOR,
@@ -96,7 +168,10 @@ FIT = Table(
         ),
         Column("unit", TEXT, "", "unit of the scatter"),
         Column(
-            "random_walk", DOUBLE, "unit/√s", "of the bias, which is that of the middle; 0: none"
+            "random_walk",
+            DOUBLE,
+            "unit/√s",
+            "of the bias, which is that of the middle, beyond that of levels; 0: none",
         ),
         Column("random_walk_sigma", DOUBLE, "unit/√s", "its standard deviation", nullable=True),
     ),

@@ -38,7 +38,7 @@ KNOWN = Table(
 )
 SENSORS = Table(
     "sensors",
-    2,
+    3,
     (
         SENSOR,
         AXIS,
@@ -46,6 +46,20 @@ SENSORS = Table(
         Column("full_scale", DOUBLE, "rad/s, m/s²", "largest input", nullable=True),
         Column(
             "white_noise", DOUBLE, "rad/√s, m/s/√s", "random walk of the data sheet", nullable=True
+        ),
+        Column(
+            "bias_instability",
+            DOUBLE,
+            "rad/s, m/s²",
+            "coefficient B of the data sheet: its lowest Allan deviation ÷ 0.664",
+            nullable=True,
+        ),
+        Column(
+            "random_walk",
+            DOUBLE,
+            "rad/s/√s, m/s²/√s",
+            "random walk of the bias by the data sheet",
+            nullable=True,
         ),
         Column("source", TEXT, "", "where these figures are from", nullable=True),
     ),
@@ -99,7 +113,7 @@ INPUTS = Table(
 )
 MANOEUVRES = Table(
     "manoeuvres",
-    1,
+    2,
     (
         Column("manoeuvre", TEXT, "", "identifier, unique in the campaign"),
         Column("do", TEXT, "", "rest, turn or positions"),
@@ -116,6 +130,10 @@ MANOEUVRES = Table(
         Column("rate", DOUBLE, "rad/s", "signed rate of the turn about `about`", BODY, True),
         Column("acceleration", DOUBLE, "rad/s²", "of the table at start and stop", nullable=True),
         Column("seconds", DOUBLE, "s", "planned duration", nullable=True),
+        Column("temperature", DOUBLE, "K", "stated temperature of the instrument", nullable=True),
+        Column(
+            "temperature_sigma", DOUBLE, "K", "its standard deviation, if stated", nullable=True
+        ),
         Column("recorded", TEXT, "", "whole: rest on both sides is in the log; steady: it is not"),
         Column(
             "from_s", DOUBLE, "s", "start of the stated span, in the log's own time", nullable=True

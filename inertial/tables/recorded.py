@@ -1,6 +1,16 @@
 """What was recorded: samples, clocks, findings, masks, segments, blocks."""
 
-from inertial.tables.shared import AS_CHANNEL, AXIS, BODY, LOG, PHASES, RECORDS, SENSOR, channels
+from inertial.tables.shared import (
+    AS_CHANNEL,
+    AXES,
+    AXIS,
+    BODY,
+    LOG,
+    PHASES,
+    RECORDS,
+    SENSOR,
+    channels,
+)
 from inertial.tables.table import DOUBLE, INTEGER, LABEL, TEXT, TRUTH, WORD, Column, Table
 
 SAMPLES = Table(
@@ -196,7 +206,7 @@ SEGMENTS = Table(
 )
 PERFORMED = Table(
     "performed",
-    3,
+    4,
     (
         Column("manoeuvre", TEXT, "", "as in manoeuvres"),
         Column("found", TRUTH, "", "found in its log"),
@@ -230,6 +240,18 @@ PERFORMED = Table(
             TRUTH,
             "",
             "not complete, because of a gap or masked records alone: their findings are the cause",
+        ),
+        *(
+            Column(
+                f"side_{axis}",
+                DOUBLE,
+                "1",
+                "sign of the last specific force beyond g/2 before it, by the readings of its log;"
+                " none where these do not show one",
+                BODY,
+                True,
+            )
+            for axis in AXES
         ),
         Column("sentence", TEXT, "", "what was recorded of it, in words"),
     ),

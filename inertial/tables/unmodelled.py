@@ -257,7 +257,12 @@ RANDOM_WALKS = Table(
     (
         MOUNT,
         Column("sensor", TEXT, "", "gyro or accel"),
-        Column("value", DOUBLE, "as unit", "random walk of the biases beside the named effects"),
+        Column(
+            "value",
+            DOUBLE,
+            "as unit",
+            "random walk of the biases beside the named effects, beyond that by noise/terms",
+        ),
         Column(
             "sigma", DOUBLE, "as unit", "its standard deviation, where it is known", nullable=True
         ),

@@ -8,6 +8,7 @@ from math import pi
 STANDARD_GRAVITY = 9.80665  # m/s², by definition: what a g in µg is
 DEGREE = pi / 180
 HOUR = 3600.0  # s
+ICE_POINT = 273.15  # K, 0 °C
 ARC_SECOND = DEGREE / 3600
 DEGREE_PER_HOUR = DEGREE / HOUR
 DEGREE_PER_SQRT_HOUR = DEGREE / 60  # rad/√s
@@ -35,6 +36,7 @@ class Quantity:
 
 
 MICRO_G = Unit("µg", STANDARD_GRAVITY * 1e-6)
+MILLI_G = Unit("mg", STANDARD_GRAVITY * 1e-3)
 PPM = Unit("ppm", 1e-6)
 SECONDS_OF_ARC = Unit("arcsec", ARC_SECOND)
 DEGREES = Unit("°", DEGREE)
@@ -62,6 +64,9 @@ _BY_UNIT = {
     ),
     "m/s³": Quantity(Unit("µg/h", STANDARD_GRAVITY * 1e-6 / HOUR), Unit("10⁻⁹ m/s³", 1e-9)),
     "m": Quantity(Unit("mm", 1e-3), Unit("m", 1.0)),
+    "m/s": Quantity(Unit("mm/s", 1e-3), Unit("m/s", 1.0)),
+    "rad/√s": Quantity(RANDOM_WALK["gyro"], Unit("10⁻⁶ rad/√s", 1e-6)),
+    "m/s/√s": Quantity(RANDOM_WALK["accel"], Unit("10⁻³ m/s/√s", 1e-3)),
     "1": _RATIO,
     "(rad/s)/(m/s²)²": Quantity(
         Unit("°/h/g²", DEGREE_PER_HOUR / STANDARD_GRAVITY**2),

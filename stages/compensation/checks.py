@@ -20,6 +20,7 @@ from inertial.campaign.records import Row, with_mount
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_equations import horizontal_sigma
 from inertial.estimation.gyroscope_observations import Earth, Position
+from inertial.physics.drift import THERMOMETER_ERROR
 from inertial.physics.forward import Triad
 from inertial.physics.motion import Motion, stretches
 from inertial.tables import GYRO
@@ -41,6 +42,7 @@ UNITS = {
 SI = {"gravity": "m/s²", "force_up": "m/s²", "rate_up": "rad/s", "angle": "rad"}
 SENSORS = {"accel": "accelerometer", "gyro": "gyro"}
 NO_SCATTER = (0.0, 0.0)
+ICE_POINT = 273.15  # K
 MAX_EXPECTED_SIGMAS = 3.0  # sigmas, above which the parameters do not explain the check
 
 
@@ -129,6 +131,23 @@ def not_compensated(result: SensorResult, mount: str) -> Iterator[Row]:
     if result.triad is None:
         yield _row(sensor, sensor, mount, _not_determined(result, sensor))
         return
+    for effect, _values in result.removable:
+        if effect.valid is not None:
+            low, high = (fixed(each - ICE_POINT, 1) for each in effect.valid)
+            yield _row(
+                "temperature",
+                f"{sensor}/{effect.name}",
+                mount,
+                _(
+                    "The parameters of the {sensor}s depend on the temperature, and are known from "
+                    "{low} to {high} °C: samples that are colder or warmer by more than "
+                    "{margin:.0f} K are not compensated.",
+                    sensor=sensor,
+                    low=low,
+                    high=high,
+                    margin=THERMOMETER_ERROR,
+                ),
+            )
     for one in result.staying:
         yield _row(
             "effect",

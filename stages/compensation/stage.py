@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from inertial import tables
@@ -76,6 +77,10 @@ def compensation(
         return
     rows: list[Row] = []
     measurements = measurements_of(result)
+    for data in mounts:
+        if data.mount in measurements:
+            course = (data.blocks[name].to_numpy(np.float64) for name in ("time", "temperature"))
+            measurements[data.mount] = measurements[data.mount].along(*course)
     for data in mounts:
         measurement = measurements.get(data.mount, NOTHING)
         by_hand = _by_hand(data, measurement)

@@ -41,6 +41,7 @@ from inertial.tables import CHANNELS
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
 from stages.export.examples import Example
+from stages.export.use import Use
 
 Array = NDArray[np.float64]
 
@@ -188,7 +189,8 @@ class Calibration:
 
     campaign : the row of the campaign table
     not_exported : why there is no calibration, if there is none
-    noise : per channel the random walk, and its spread over the manoeuvres
+    noise : per channel the random walk, its spread over the manoeuvres, the terms of the noise
+    use : for which filters get their noise
     epoch_gps : GPS time at time 0, s; none where the logs share no such clock
     rate : measured sample rate, Hz; none without time
     temperature : K, mean, lowest and highest of the blocks; none where it is not recorded
@@ -196,6 +198,7 @@ class Calibration:
 
     campaign: Row
     inputs: Sequence[Row]
+    use: Use
     made_by: Sequence[Row] = ()
     known: Sequence[Row] = ()
     noise: Sequence[Row] = ()
@@ -282,22 +285,32 @@ def _triad(
     )
 
 
-def noise_of(noise: pd.DataFrame) -> list[Row]:
-    """White noise by channel as random walk: median, least and most of all manoeuvres."""
+def noise_of(noise: pd.DataFrame, terms: pd.DataFrame) -> list[Row]:
+    """White noise by channel as random walk, and the terms of the noise by name.
+
+    The density is that of the terms where it is detected, else the median of all manoeuvres.
+    """
     rows = rows_of(noise)
+    by_channel: dict[str, dict[str, Row]] = {}
+    for row in rows_of(terms):
+        by_channel.setdefault(row["channel"], {})[row["term"]] = row
     summaries = []
     for channel in CHANNELS:
         of_channel = [row for row in rows if row["channel"] == channel]
         if of_channel:
             levels = [row["white_noise"] for row in of_channel]
+            own = by_channel.get(channel, {})
+            white = own.get("white_noise", {})
             summaries.append(
                 {
                     "channel": channel,
-                    "density": median(levels),
+                    "density": white["value"] if white.get("detected") else median(levels),
+                    "sigma": white["sigma"] if white.get("detected") else None,
                     "least": min(levels),
                     "most": max(levels),
                     "stretches": len(levels),
                     "data_sheet": of_channel[0]["data_sheet"],
+                    "terms": own,
                 }
             )
     return summaries

@@ -15,6 +15,7 @@ DECLARED = Declared(
         "masks": From("quality", tables.MASKS),
         "blocks": From("segment", tables.BLOCKS),
         "noise": From("noise", tables.NOISE),
+        "terms": From("noise", tables.NOISE_TERMS, "terms"),
         **{
             f"{stage}_{table.name}": From(stage, table)
             for stage in ("accelerometer", "gyroscope", "extension")
@@ -29,6 +30,7 @@ DECLARED = Declared(
         "calibration.json",
         "calibration.yaml",
         "kalibr.yaml",
+        "ros.yaml",
         "px4.params",
         "ardupilot.param",
     ),

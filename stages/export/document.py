@@ -23,14 +23,16 @@ from inertial.campaign.records import Part, Row, labels, omissions
 from inertial.tables import CHANNEL_PARTS
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
+from inertial.text.parameters import SENSOR_OF
 from stages.export.calibration import PARAMETERS, Calibration, Mount, Triad
 from stages.export.equation import added_by, equations
 from stages.export.examples import Example
+from stages.export.filter_noise import FilterNoise, filter_noise
 
 Array = NDArray[np.float64]
 
 FORMAT = "turntable calibration"
-VERSION = 3
+VERSION = 4
 SQRT_HZ = {"accel": "(m/s²)/√Hz", "gyro": "(rad/s)/√Hz"}
 EQUATION = {
     "reading": _("reading = M · truth + bias + effects(truth, t, T)"),
@@ -50,8 +52,9 @@ EQUATION = {
         "f_x, f_y, f_z: specific force, m/s². w_x, w_y, w_z: angular rate, rad/s. t: time of the "
         "log, s, since time.epoch_gps or, where that is null, since the first sample. T: "
         "temperature of the instrument, K. M_xy, bias_x: elements of matrix and bias. Others: "
-        "parameters and constants of effects by their names. abs, exp: absolute value, "
-        "exponential; (t > a) is 1 where it is true, else 0."
+        "parameters and constants of effects by their names; an effect with T_min and T_max is "
+        "valid between these temperatures, K, and not to be extrapolated. abs, exp: absolute "
+        "value, exponential; (t > a) is 1 where it is true, else 0."
     ),
     "matrix": _(
         "Row: the sensor that reads, x y z. Column: the axis that it feels, x y z. "
@@ -78,6 +81,7 @@ NO_LINE_BREAKS = 1_000_000  # characters of a line of YAML
 def document(calibration: Calibration) -> Row:
     """The content of calibration.json and calibration.yaml."""
     campaign = calibration.campaign
+    for_filters = _for_filters(calibration)
     texts = ("instrument", "serial", "date", "laboratory", "operator", "notes", "table")
     return {
         "format": FORMAT,
@@ -88,7 +92,13 @@ def document(calibration: Calibration) -> Row:
         **{key: campaign[key] for key in texts},
         "equation": EQUATION,
         "mounts": [_mount(mount) for mount in calibration.mounts],
-        "noise": [_noise(row) for row in calibration.noise],
+        "noise": [_noise(row, for_filters.get(row["channel"])) for row in calibration.noise],
+        "filter_use": {
+            "seconds": calibration.use.seconds,
+            "rate_rms": calibration.use.rate_rms,
+            "force_rms": calibration.use.force_rms,
+            "correlation": calibration.use.correlation,
+        },
         "rate": {
             "unit": "Hz",
             "measured": _number(calibration.rate),
@@ -206,13 +216,45 @@ def _example(example: Example, mount: Mount) -> Row:
     }
 
 
-def _noise(row: Row) -> Row:
-    numbers = ("density", "least", "most", "data_sheet")
+def _for_filters(calibration: Calibration) -> dict[str, FilterNoise]:
+    """Channel → its noise for a filter, of readings that all of the result has corrected."""
+    found = {}
+    for kind in SENSOR_OF if calibration.mounts else ():
+        triad = calibration.best(kind)[1]
+        if not triad.unusable:
+            for one in filter_noise(triad, calibration.noise, calibration.use):
+                found[f"{SENSOR_OF[kind]}_{one.axis}"] = one
+    return found
+
+
+def _noise(row: Row, for_filter: FilterNoise | None) -> Row:
+    numbers = ("density", "sigma", "least", "most", "data_sheet")
     return {
         "channel": row["channel"],
         "unit": SQRT_HZ[CHANNEL_PARTS[row["channel"]][0]],
         **{key: _number(row[key]) for key in numbers},
         "stretches": row["stretches"],
+        "terms": [_term(name, term) for name, term in row["terms"].items()],
+        "for_filter": for_filter
+        and {
+            "density": for_filter.density,
+            "random_walk": _number(for_filter.walk),
+            "random_walk_by_upper_limit": for_filter.walk_is_limit,
+        },
+    }
+
+
+def _term(name: str, term: Row) -> Row:
+    """A term of the noise: value and sigma, or an upper limit."""
+    found = term["detected"]
+    return {
+        "term": name,
+        "unit": term["unit"],
+        "value": _number(term["value"]) if found else None,
+        "sigma": _number(term["sigma"]) if found else None,
+        "upper_limit": None if found else _number(term["upper"]),
+        "data_sheet": _number(term["data_sheet"]),
+        "seconds": _number(term["seconds"]),
     }
 
 

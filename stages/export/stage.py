@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from math import radians
 from typing import Any
 
 import pandas as pd
@@ -25,19 +26,29 @@ from stages.export.declared import DECLARED
 from stages.export.document import as_json, as_yaml, document
 from stages.export.examples import examples_of
 from stages.export.kalibr import imu_yaml
+from stages.export.ros import ros_yaml
+from stages.export.use import Use
 
 FITTED = ("accelerometer", "gyroscope", "extension")  # stages that keep fits
 
 
 def export(
-    provenance: Mapping[str, Mapping[str, Any]], samples: Stream, **tables: pd.DataFrame
+    provenance: Mapping[str, Mapping[str, Any]],
+    samples: Stream,
+    *,
+    filter_seconds: float,
+    rate_rms_deg_s: float,
+    force_rms_m_s2: float,
+    correlation_seconds: float,
+    **tables: pd.DataFrame,
 ) -> dict[str, str]:
     """Ending of each file's name → its text."""
+    use = Use(filter_seconds, radians(rate_rms_deg_s), force_rms_m_s2, correlation_seconds)
     made_by = _made_by(provenance)
     (campaign,) = rows_of(tables["campaign"])
     inputs = rows_of(tables["inputs"])
     if campaign["compensated"]:
-        calibration = Calibration(campaign, inputs, made_by=made_by, not_exported=COMPENSATED)
+        calibration = Calibration(campaign, inputs, use, made_by=made_by, not_exported=COMPENSATED)
     else:
         repairs = Repairs(tables["channel_repairs"])
         plan = manoeuvres_of(tables["manoeuvres"])
@@ -48,9 +59,10 @@ def export(
         calibration = Calibration(
             campaign,
             inputs,
+            use,
             made_by=made_by,
             known=rows_of(tables["known"]),
-            noise=noise_of(tables["noise"]),
+            noise=noise_of(tables["noise"], tables["terms"]),
             rate=sample_rate(tables["clocks"]),
             epoch_gps=epoch_of(tables["clocks"]),
             temperature=temperature_of(tables["blocks"]),
@@ -68,6 +80,7 @@ def export(
         "calibration.json": as_json(content),
         "calibration.yaml": as_yaml(content),
         "kalibr.yaml": imu_yaml(calibration),
+        "ros.yaml": ros_yaml(calibration),
         "px4.params": parameter_file(calibration, PX4),
         "ardupilot.param": parameter_file(calibration, ARDUPILOT),
     }

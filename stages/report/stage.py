@@ -18,10 +18,12 @@ from stages.report.sections import (
     compensation,
     findings,
     noise,
+    noise_by_manoeuvre,
     parameters,
     raw_data,
     residuals,
     studies,
+    temperature,
     unmodelled_effects,
     verdict,
 )
@@ -40,8 +42,10 @@ SECTIONS = (
     basis.RECORDED,
     raw_data.SECTION,
     noise.SECTION,
+    temperature.SECTION,
     averaging.SECTION,
     studies.SECTION,
+    noise_by_manoeuvre.SECTION,
     basis.KNOWN,
     basis.ACCOUNT,
     basis.PROVENANCE,
@@ -60,7 +64,7 @@ def report(provenance: Mapping[str, Mapping[str, Any]], **read: Any) -> dict[str
         instrument=instrument,
         running=f"{name} · {instrument}" + (" · simulated" if about["simulated"] else ""),
         simulated=bool(about["simulated"]),
-        sections=[(section, list(section.parts(tables))) for section in SECTIONS],
+        sections=[(section, own) for section in SECTIONS if (own := list(section.parts(tables)))],
     )
     return {"html": page(outline), "txt": verdict.as_text(tables)}
 

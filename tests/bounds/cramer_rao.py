@@ -24,7 +24,7 @@ def bound(layout: Layout, instrument: str) -> np.ndarray:
         ],
         axis=-1,
     )
-    rows = _known_rows(layout, jacobian, densities(instrument))
+    rows = known_rows(layout, jacobian, densities(instrument))
     information = rows.T @ rows + np.diag(np.nan_to_num(1 / known**2))
     # In units in which every column alone has length 1.
     size = np.sqrt(np.diag(information))
@@ -36,7 +36,7 @@ def bound(layout: Layout, instrument: str) -> np.ndarray:
     return np.where(hidden, np.inf, sigma)[:24]
 
 
-def _known_rows(layout: Layout, jacobian: np.ndarray, density: np.ndarray) -> np.ndarray:
+def known_rows(layout: Layout, jacobian: np.ndarray, density: np.ndarray) -> np.ndarray:
     """What is read, in units of its noise: all blocks; but the table keeps no exact rate.
 
     So of a gyro along the axis of a turn only the sum over the whole turn counts.

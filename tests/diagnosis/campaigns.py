@@ -9,7 +9,6 @@ import pandas as pd
 
 import laboratory
 
-BESIDE = ("studies", "comparison")  # nothing of the diagnosis rests on them in these campaigns
 TABLES = ("causes", "members", "consequences", "verdict", "result")
 
 
@@ -20,7 +19,7 @@ def performed(document: Mapping[str, Any]) -> laboratory.Recording:
 
 def tables_of(document: Mapping[str, Any], until: str = "diagnosis") -> chain.Tables:
     """The tables of a campaign up to and with the stage `until`."""
-    return chain.in_memory(performed(document), until, BESIDE)
+    return chain.in_memory(performed(document), until, chain.BESIDE)
 
 
 @contextmanager

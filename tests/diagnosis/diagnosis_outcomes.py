@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import chain
-from campaigns import BESIDE, diagnosed
+from campaigns import diagnosed
 from diagnosis_draws import Drawn, drawn
 from judge import at_reference, judge, parameters_of
 
@@ -24,7 +24,9 @@ Outcome = dict[str, Any]
 def code() -> str:
     """A hash of all that an outcome rests on."""
     stages = [
-        name for name in chain.ORDER[: chain.ORDER.index("diagnosis") + 1] if name not in BESIDE
+        name
+        for name in chain.ORDER[: chain.ORDER.index("diagnosis") + 1]
+        if name not in chain.BESIDE
     ]
     files = {file for stage in stages for file in code_of(stage)}
     files |= {*(chain.ROOT / "laboratory").rglob("*.py"), chain.ROOT / "config.yaml"}

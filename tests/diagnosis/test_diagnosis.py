@@ -8,7 +8,13 @@ from judge import judge, parameters_of
 MOST_SIGMA = 4.5  # of some 700 errors of parameters in all cases, one in 200 runs is larger
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(case, id=case.name, marks=() if n % 3 == 0 else pytest.mark.slow)
+        for n, case in enumerate(CASES)
+    ],
+)
 def test_the_right_causes_and_nothing_else(case: Case) -> None:
     document = case.document()
     verdicts = {"accel": case.accel, "gyro": case.gyro}

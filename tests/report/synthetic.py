@@ -6,16 +6,19 @@ from collections import defaultdict
 from collections.abc import Collection, Mapping
 from functools import cache
 from typing import Any
+from unittest import mock
 
 import numpy as np
 import pandas as pd
 
 from inertial import tables
-from stages.report.stage import report
+from stages.report import stage as whole
+from stages.report.outline import Section
 from stages.report.tables import Tables
 from stages.studies.declared import DECLARED
 from tests.report import synthetic_estimates as estimates
 from tests.report import synthetic_model as model
+from tests.report import synthetic_noise
 from tests.report import synthetic_plan as plan
 from tests.report import synthetic_recording as recording
 from tests.report.synthetic_diagnosis import counted, diagnosed
@@ -36,7 +39,17 @@ def tables_of(made: dict[str, Any]) -> Tables:
 
 def report_on(made: dict[str, Any]) -> dict[str, str]:
     """The report on a campaign."""
-    return report(**{**made, "provenance": provenance_of(made)})
+    return whole.report(**{**made, "provenance": provenance_of(made)})
+
+
+def section_on(made: dict[str, Any], section: Section) -> str:
+    """One of its sections as HTML: the page of this section alone, without fonts."""
+    with (
+        mock.patch.object(whole, "SECTIONS", (section,)),
+        mock.patch("stages.report.page._fonts", return_value=()),
+    ):
+        html = report_on(made)["html"]
+    return html[html.index("<section id") : html.index("</section>")]
 
 
 @cache
@@ -48,11 +61,32 @@ def documents() -> dict[str, str]:
 def brief(*logs: str) -> dict[str, Any]:
     """The same with few figures, for drawing takes its time: the raw data of `logs` alone."""
     made = campaign(logs)
-    figures = ("noise", "accelerometer_averaging", "gyroscope_averaging", "fidelity", "earlier")
+    figures = (
+        "noise",
+        "allan",
+        "spectra",
+        "accelerometer_averaging",
+        "gyroscope_averaging",
+        "fidelity",
+        "earlier",
+        "temperature_curves",
+    )
     less = {
         name: made[name].iloc[:0] for name in (*figures, *DECLARED.writes, "compensated_traces")
     }
     return made | less
+
+
+def curve(parameter: str, **changed: Any) -> list[dict[str, Any]]:
+    """A parabola of the temperature, from 1.4 to 65.5 °C."""
+    nothing = {"order": 2, "knot": None, "relative_to": None, "not_separated": None}
+    return [
+        {"mount": "", "sensor": "accel", "parameter": parameter, "temperature": t, "unit": "m/s²"}
+        | {"value": 1e-6 * (t - 300) ** 2, "sigma": 1e-4}
+        | nothing
+        | changed
+        for t in np.linspace(274.53, 338.65, 5)
+    ]
 
 
 def campaign(logs: Collection[str] | None = None) -> dict[str, Any]:
@@ -91,6 +125,12 @@ def campaign(logs: Collection[str] | None = None) -> dict[str, Any]:
         "performed": rows_as(tables.PERFORMED, recording.performed(manoeuvres)),
         "traces": pd.concat(traces, ignore_index=True) if traces else tables.TRACES.empty(),
         "noise": rows_as(tables.NOISE, recording.noise(manoeuvres, generator)),
+        "levels": rows_as(tables.LEVELS, synthetic_noise.levels()),
+        "allan": rows_as(tables.ALLAN, synthetic_noise.allan()),
+        "spectra": rows_as(tables.SPECTRA, synthetic_noise.spectra()),
+        "noise_terms": rows_as(tables.NOISE_TERMS, synthetic_noise.terms()),
+        "temperature_curves": rows_as(tables.TEMPERATURE_CURVES, curve("bias_x")),
+        "warm_up": tables.WARM_UP.empty(),
     }
     for stage, other in (("accelerometer", "six_position"), ("gyroscope", "turns")):
         parameters = estimates.parameters(stage, "joint") + estimates.parameters(stage, other)

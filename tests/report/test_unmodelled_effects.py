@@ -10,6 +10,7 @@ from typing import Any
 import pandas as pd
 
 from inertial import tables
+from stages.report.sections import unmodelled_effects
 from tests.report import synthetic, synthetic_unmodelled
 from tests.report.synthetic_diagnosis import diagnosed
 from tests.report.synthetic_values import Held, rows_as
@@ -18,21 +19,23 @@ CAUSE = re.compile(r'<article class="finding cause[^"]*" id="effect/([^"]+)">(.*
 
 
 @cache
-def of(make: Callable[..., dict[str, Any]], *arguments: str) -> dict[str, str]:
-    """The report on a synthetic campaign."""
-    return synthetic.report_on(make(*arguments))
+def of(make: Callable[..., dict[str, Any]], *arguments: str) -> str:
+    """The section of a synthetic campaign."""
+    return on(make(*arguments))
 
 
-def blocks(made: dict[str, str]) -> dict[str, str]:
+def on(made: dict[str, Any]) -> str:
+    return synthetic.section_on(made, unmodelled_effects.SECTION)
+
+
+def blocks(html: str) -> dict[str, str]:
     """Each block by the identifier of its finding, as HTML with single spaces, in its order."""
-    return {name: " ".join(html.split()) for name, html in CAUSE.findall(made["html"])}
+    return {name: " ".join(block.split()) for name, block in CAUSE.findall(html)}
 
 
-def section(made: dict[str, str]) -> str:
+def section(html: str) -> str:
     """The section without marks."""
-    html = made["html"]
-    part = html[html.index('<section id="unmodelled-effects">') :]
-    return " ".join(re.sub(r"<[^>]+>", " ", part[: part.index("</section>")]).split())
+    return " ".join(re.sub(r"<[^>]+>", " ", html).split())
 
 
 def demo() -> dict[str, str]:
@@ -112,7 +115,7 @@ def test_an_effect_that_was_taken_for_a_position_that_is_off_says_so() -> None:
     off |= {"sensor": "accel", "unit": "rad", "manoeuvre": "z-down", "count": 1, "severity": 3}
     off |= {"sentence": "It is off.", "consequence": "It matters.", "action": "Set it again."}
     made["accelerometer_findings"] = rows_as(tables.FINDINGS, [off])
-    html = blocks(synthetic.report_on(made | diagnosed(made)))["criticism/accel_quadratic"]
+    html = blocks(on(made | diagnosed(made)))["criticism/accel_quadratic"]
     assert "position error in z-down; with the effect in the model no position error is" in html
 
 
@@ -167,7 +170,7 @@ def test_what_nothing_explains_is_a_block_too() -> None:
 def test_a_manoeuvre_that_would_not_split_a_class_is_not_recommended() -> None:
     made = synthetic_unmodelled.of_a_class()
     made["criticism_findings"]["split_snr"] = 0.0013
-    html = blocks(synthetic.report_on(made))["criticism/accel_quadratic"]
+    html = blocks(on(made))["criticism/accel_quadratic"]
     assert "No manoeuvre considered would; the best, rest also with two axes" in html
     assert "expected to distinguish" not in html
 
@@ -182,7 +185,7 @@ def test_a_ripple_is_shown_against_the_angle_of_the_table() -> None:
     )
     for name in ("scores", "effects", "members"):
         made[name] = made[name].replace("oscillation", "table_ripple", regex=True)
-    html = blocks(synthetic.report_on(made | diagnosed(made)))["criticism/table_ripple"]
+    html = blocks(on(made | diagnosed(made)))["criticism/table_ripple"]
     assert "z gyro in z-forward" in html
     assert "Angle turned, °" in html
     assert "As an angle, A/(2πf)" not in html
@@ -195,9 +198,9 @@ def test_a_walk_that_may_be_an_effect_is_one_of_a_class() -> None:
     ramp["effect"] = "gyro_bias_ramp"
     made["members"] = pd.concat([made["members"], rows_as(tables.MEMBERS, [ramp])])
     made |= {"criticism_findings": walk}
-    made = synthetic.report_on(made | diagnosed(made))
-    html = blocks(made)["criticism/gyro_random_walk"]
+    page = on(made | diagnosed(made))
+    html = blocks(page)["criticism/gyro_random_walk"]
     assert "cannot distinguish random walk of the gyro biases and gyro bias ramp." in html
     assert ">one of a class<" in html
     said = "follow a random walk or gyro bias ramp, which this campaign cannot distinguish."
-    assert said in section(made)
+    assert said in section(page)

@@ -24,8 +24,7 @@ QUESTIONS = ["How sure", "How large", "What it does", "What was done", "In the l
 
 def page_one(made: dict[str, Any]) -> str:
     """The section of the verdict, as HTML."""
-    html = synthetic.report_on(made)["html"]
-    return html[html.index('<section id="verdict">') : html.index("</section>")]
+    return synthetic.section_on(made, verdict.SECTION)
 
 
 def cards(made: dict[str, Any]) -> dict[str, str]:

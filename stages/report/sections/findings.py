@@ -41,7 +41,7 @@ MOST_SHOWN = 4  # findings of a cause that have a picture
 MOST_NAMES = 3  # members of a class in a title
 MAX_HARMLESS_MOVE, MAX_MOVE = 0.5, 1.0  # sigma of a parameter
 # Cures, that which asks most of the reader first.
-CURES = ("repaired", "left_out", "modelled", "interpolated", "masked", "none")
+CURES = ("repaired", "left_out", "modelled", "curve", "interpolated", "masked", "none")
 
 
 @once

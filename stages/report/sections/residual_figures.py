@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, shortened
-from inertial.text.units import DEGREE, DEGREES_PER_HOUR, MICRO_G, Unit
+from inertial.text.units import DEGREE, DEGREES_PER_HOUR, ICE_POINT, MICRO_G, Unit
 from stages.report import drawing
 from stages.report.drawing import Array
 from stages.report.linked import gains
@@ -29,7 +29,6 @@ PIECES = 5  # of a rest, so that what changes within it is seen
 APART = 0.04  # of a manoeuvre, between its axes
 MOST_STRUCTURES = 3
 MAX_USUAL_SIGMAS = 3.0  # from which a point does not stretch the picture
-ICE_POINT = 273.15  # K
 # What a picture of each test goes along, its unit, and where that begins in SI.
 ALONG = {
     "time": ("Time", Unit("min", 60.0), 0.0),

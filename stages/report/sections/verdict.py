@@ -87,6 +87,7 @@ SURE = {
 CURED = {
     "repaired": _("set right"),
     "modelled": _("in the model"),
+    "curve": _("as a curve of the temperature"),
     "masked": _("masked"),
     "interpolated": _("interpolated"),
     "left_out": _("left out"),
