@@ -17,12 +17,14 @@ from inertial.campaign.solution import Solution
 from inertial.campaign.static_positions import Blocks, StaticPosition
 from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.between_positions import CarriedEquations
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.gyroscope_equations import Linearisation
 from inertial.estimation.gyroscopes import LinearisedEquations
 from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import System
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
+from inertial.estimation.scatter_by_hand import Scatter
 from inertial.estimation.sensitivities import Sensitivities
 from inertial.physics.effect import Effect, Reading
 from inertial.physics.forward import Triad, signatures
@@ -197,6 +199,16 @@ class Campaign:
             sensor, effects, _prior_sigmas(effects, prior_sigma), None, walking=False
         )
 
+    def by_scatter(
+        self, effects: Sequence[Effect], prior_sigma: float
+    ) -> Callable[[Scatter], DriftingEquations]:
+        """The equations of gyros by hand as a function of their scatter."""
+        by_hand = self.by_hand
+        assert by_hand is not None  # else there is no scatter
+        equations = self._carried(by_hand, effects, _prior_sigmas(effects, prior_sigma))
+        used, measured = by_hand.used(None), self.drifts["gyro"]
+        return lambda scatter: replace(equations.drifting(scatter, used), measured=measured)
+
     def deviance_of_random_walk(
         self, sensor: str, effects: Sequence[Effect], prior_sigma: float
     ) -> Callable[[float], float]:
@@ -239,7 +251,9 @@ class Campaign:
         if self.solution.gyro is None:
             return None
         if self.by_hand and "gyro" in self.solution.free:
-            return self._gyro_by_hand(self.by_hand, effects, prior_sigmas, only)
+            carried = self._carried(self.by_hand, effects, prior_sigmas)
+            drifting = carried.drifting(self.by_hand.scatter, self.by_hand.used(only))
+            return replace(drifting, measured=self.drifts["gyro"])
         names = [position.manoeuvre.name for position in self.inputs.static_positions]
         names += [recorded.plan.name for recorded in self._whole]
         used = [only is None or name in only for name in names]
@@ -248,21 +262,16 @@ class Campaign:
         equations = replace(self._linearised(effects), effect_sigma=prior_sigmas)
         return equations.only(used).drifting()
 
-    def _gyro_by_hand(
-        self,
-        by_hand: ByHand,
-        effects: Sequence[Effect],
-        prior_sigmas: Mapping[str, float],
-        only: set[str] | None,
-    ) -> DriftingEquations:
+    def _carried(
+        self, by_hand: ByHand, effects: Sequence[Effect], prior_sigmas: Mapping[str, float]
+    ) -> CarriedEquations:
         answers = self._sensitivities("gyro", effects, self._responses(effects))
         at_rest = {
             position.label: (_first(response), position.stretch)
             for position, response in zip(self.inputs.static_positions, answers, strict=False)
         }
         moving = answers[len(answers) - len(by_hand.motions) :]
-        known = (self.solution, at_rest, moving, prior_sigmas, only)
-        return replace(by_hand.gyro(*known), measured=self.drifts["gyro"])
+        return by_hand.gyro(self.solution, at_rest, moving, prior_sigmas)
 
     def _linearised(self, effects: Sequence[Effect]) -> LinearisedEquations:
         """The equations of all static positions and rate segments, with no prior of the effects."""

@@ -19,7 +19,7 @@ from inertial.campaign.solution import Solution
 from inertial.estimation import between_positions, force_magnitudes
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.attitude import integrate
-from inertial.estimation.between_positions import NONE, Carried, Prior
+from inertial.estimation.between_positions import NONE, Carried, CarriedEquations, Prior
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
@@ -85,27 +85,27 @@ class ByHand:
         at_rest: Mapping[str, tuple[Sensitivities, Stretch]],
         moving: Sequence[Sensitivities],
         prior_sigmas: Mapping[str, float],
-        only: set[str] | None,
-    ) -> DriftingEquations:
+    ) -> CarriedEquations:
         """Those of the gyros; `at_rest`: by the name of a position with readings of them."""
         gyro, accelerometer = solution.gyro, solution.accelerometer
         assert gyro is not None and accelerometer is not None  # else the gyros are not free
-        names = self.names
         unknown = (NO_SENSITIVITIES, Stretch("unread"))
-        rests = [at_rest.get(name, unknown) for name in names[: len(self.handled.stops)]]
-        return between_positions.drifting(
+        rests = [at_rest.get(name, unknown) for name in self.names[: len(self.handled.stops)]]
+        return between_positions.carried_equations(
             self.handled.stops,
             [each.passage for each in self.handled.passages],
             Prior(self.gravity.number, self.gravity.scatter, self.direction_scatter, self.earth),
             (gyro.matrix, gyro.bias, accelerometer.matrix, accelerometer.bias),
             Carried([own for own, _ in rests], moving, [s for _, s in rests] + self._stretches),
             prior_sigmas,
-            self.scatter,
-            used=[
-                i not in self.left_out and (only is None or name in only)
-                for i, name in enumerate(names)
-            ],
         )
+
+    def used(self, only: set[str] | None) -> list[bool]:
+        """Of each stop, then of each passage, whether its gyros are used."""
+        return [
+            i not in self.left_out and (only is None or name in only)
+            for i, name in enumerate(self.names)
+        ]
 
     @cached_property
     def _stretches(self) -> list[Stretch]:

@@ -1,8 +1,7 @@
 """The scatter of positions by hand given some effects, and what contradicts all others."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -77,7 +76,7 @@ def _with_rates(campaign: Campaign, effects: Sequence[Effect], noise_degrees: fl
     while True:
         by_hand = campaign.by_hand
         assert by_hand is not None  # else there is no scatter
-        found, scatter = likeliest(partial(_rates, campaign, effects), noise_degrees)
+        found, scatter = likeliest(_rates(campaign, effects), noise_degrees)
         rests = _degrees(found.estimate, effects) - 2 * len(by_hand.motions)
         degrees = {**by_hand.degrees, "gyro": rests if scatter.rate else np.inf}
         campaign = _with(campaign, scatter=scatter, degrees=degrees)
@@ -136,8 +135,9 @@ def _solved(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> Estim
     return system.solve_shared()
 
 
-def _rates(campaign: Campaign, effects: Sequence[Effect], scatter: Scatter) -> Estimate:
-    return _solved(_with(campaign, scatter=scatter), "gyro", effects)
+def _rates(campaign: Campaign, effects: Sequence[Effect]) -> Callable[[Scatter], Estimate]:
+    equations = campaign.by_scatter(effects, PRIOR_SIZE)
+    return lambda scatter: equations(scatter).system().solve_shared()
 
 
 def _residuals(campaign: Campaign, effects: Sequence[Effect], found: Estimate) -> dict[int, Array]:

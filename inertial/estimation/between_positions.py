@@ -16,9 +16,9 @@ propagate it. The noise of a motion rotates all later directions, so its covaria
 Rests and motions differ beyond noise by what `scatter_by_hand` describes.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import partial
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +27,7 @@ from inertial.estimation import multi_position as forces
 from inertial.estimation.attitude import integrate
 from inertial.estimation.carried_attitude import IntegratedMotion, Passage, integrated_motion
 from inertial.estimation.drifting_equations import DriftingEquations
-from inertial.estimation.elimination import whitened
+from inertial.estimation.elimination import EquationBlock, whitened
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.gyroscopes import PRIOR, PRIOR_SIGMA
 from inertial.estimation.least_squares import Estimate, System, solve_iterated
@@ -48,15 +48,29 @@ SCALES = np.geomspace(0.5, 2.0, 29)  # of the gyros, where the search for M begi
 
 @dataclass(frozen=True)
 class Rows:
-    """Coefficients (m, p), residuals (m,) and their sigma (m,) of a rest or a motion.
+    """Coefficients (m, p), residuals (m,) and their covariance (m, m) of a rest or a motion.
 
-    `response`: (m, s, 3), of the residuals to errors of the mean rates in s stretches of it.
+    `response`: (m, s, 3), of the residuals to errors of the mean rates in s stretches of it;
+    `seconds`: of all of it; `by_rate`, `by_swing`: (m, m), what a scatter of unit variance adds to
+    the covariance, of the mean rates, (rad/s)², and of the angle, rad².
     """
 
     design: Array
     rest: Array
-    sigma: Array
     response: Array
+    seconds: float
+    noise: Array
+    by_rate: Array
+    by_swing: Array
+
+    def independent(self, rate: float, swing: float) -> tuple[Array, Array]:
+        """Orthogonal combinations of the rows that are independent, (m, m), and their sigma, (m,).
+
+        `rate`: rad/s, `swing`: rad, the sigmas of the scatter.
+        """
+        covariance = self.noise + rate**2 * self.by_rate + swing**2 * self.by_swing
+        variance, axes = np.linalg.eigh(covariance)
+        return axes.T, np.sqrt(variance)
 
 
 @dataclass(frozen=True)
@@ -92,8 +106,8 @@ def between_rests(
 
     `stops` in the order of time.
     """
-    data = replace(_data(stops, passages, known), scatter=scatter)
-    return solve_iterated(partial(equations, data), data.start)
+    data = _data(stops, passages, known)
+    return solve_iterated(partial(equations, data, scatter), data.start)
 
 
 def fit(
@@ -107,16 +121,15 @@ def fit(
     stops, places, left_out = list(stops), list(range(len(passages))), list[int]()
     while True:
         data = _data(stops, [passages[i] for i in places], known)
-        about = solve_iterated(partial(equations, data), data.start).values
+        about = solve_iterated(partial(equations, data, NONE), data.start).values
         for _ in range(ROUNDS):
-            found, scatter = likeliest(partial(_linear, data, about), noise_degrees)
+            found, scatter = likeliest(_linear(data, about), noise_degrees)
             if scatter == NONE:
                 break
-            best = replace(data, scatter=scatter)
-            found = replace(found, estimate=solve_iterated(partial(equations, best), about))
-            about = found.estimate.values
-        parts = dict(_of_rates(replace(data, scatter=scatter), about))
-        residuals = [_whitened(parts[i]) for i in range(len(parts))]
+            estimate = solve_iterated(partial(equations, data, scatter), about)
+            found, about = replace(found, estimate=estimate), estimate.values
+        parts = dict(_of_rates(data, about))
+        residuals = [_whitened(parts[i], data, scatter) for i in range(len(parts))]
         worst = contradicting(residuals, len(stops))
         if worst is None:
             return found, sorted(left_out)
@@ -127,13 +140,14 @@ def fit(
             left_out.append(len(stops) + places.pop(worst - len(stops)))
 
 
-def _whitened(rows: Rows) -> Array:
-    there = np.isfinite(rows.rest) & np.isfinite(rows.sigma)
-    return rows.rest[there] / rows.sigma[there]
+def _linear(data: "_Data", about: Array) -> Callable[[Scatter], Estimate]:
+    rates = dict(_of_rates(data, about))
+    return lambda scatter: _system(data, about, rates, scatter).solve()
 
 
-def _linear(data: "_Data", about: Array, scatter: Scatter) -> Estimate:
-    return equations(replace(data, scatter=scatter), about).solve()
+def _whitened(rows: Rows, data: "_Data", scatter: Scatter) -> Array:
+    turn, sigma = rows.independent(scatter.of_rate(rows.seconds, data.usual), scatter.swing)
+    return turn @ rows.rest / sigma
 
 
 @dataclass(frozen=True)
@@ -148,8 +162,6 @@ class _Data:
     passages: Sequence[Passage]
     known: Prior
     up: Upward
-    scatter: Scatter = NONE
-    _integrated: dict[bytes, list[IntegratedMotion]] = field(default_factory=dict, repr=False)
 
     @property
     def start(self) -> Array:
@@ -174,20 +186,14 @@ class _Data:
         return start
 
     def integrated(self, around: Array) -> list[IntegratedMotion]:
-        """The motions by the gyros with the M and bias of `around`; those of the last are kept."""
-        key = around[:UNKNOWNS].tobytes()
-        if key not in self._integrated:
-            self._integrated.clear()
-            matrix, bias = around[:9].reshape(3, 3), around[9:UNKNOWNS]
-            self._integrated[key] = [integrated_motion(p, matrix, bias) for p in self.passages]
-        return self._integrated[key]
+        """The motions by the gyros with the M and bias of `around`."""
+        matrix, bias = around[:9].reshape(3, 3), around[9:UNKNOWNS]
+        return [integrated_motion(passage, matrix, bias) for passage in self.passages]
 
-    def between(self, seconds: float) -> float:
-        """Scatter of the mean rates of a rest or a motion of so many seconds, rad/s."""
-        if not self.scatter.sways:
-            return self.scatter.rate
-        usual = float(np.median([stop.seconds for stop in self.stops]))
-        return self.scatter.rate * usual / seconds
+    @cached_property
+    def usual(self) -> float:
+        """The usual length of a rest, s."""
+        return float(np.median([stop.seconds for stop in self.stops]))
 
     @property
     def chains(self) -> list[list[int]]:
@@ -247,19 +253,23 @@ class _Data:
         )
 
 
-def equations(data: _Data, around: Array) -> System:
+def equations(data: _Data, scatter: Scatter, around: Array) -> System:
     """The equations of all stops and of the motions between them, linear about `around`."""
-    parts = [rows for _, rows in _parts(data, around)]
-    design, rest, sigma = (
-        np.concatenate([getattr(rows, name) for rows in parts])
-        for name in ("design", "rest", "sigma")
-    )
-    finite = np.isfinite(rest) & np.isfinite(sigma)  # a gyro may be missing
-    design = design[finite]
+    return _system(data, around, dict(_of_rates(data, around)), scatter)
+
+
+def _system(data: _Data, around: Array, rates: Mapping[int, Rows], scatter: Scatter) -> System:
+    designs, rests, sigmas = map(list, zip(_of_forces(data, around), strict=True))
+    for rows in rates.values():
+        turn, sigma = rows.independent(scatter.of_rate(rows.seconds, data.usual), scatter.swing)
+        designs.append(turn @ rows.design)
+        rests.append(turn @ rows.rest)
+        sigmas.append(sigma)
+    design = np.concatenate(designs)
     return System(
         design,
-        rest[finite] + design @ around,
-        sigma[finite],
+        np.concatenate(rests) + design @ around,
+        np.concatenate(sigmas),
         data.prior,
         data.prior_sigma,
         data.parameters,
@@ -280,72 +290,84 @@ class Carried:
     stretches: Sequence[Stretch]
 
 
-def drifting(
+@dataclass(frozen=True)
+class CarriedEquations:
+    """The equations with parameters of effects as further unknowns, before any scatter.
+
+    `forces`: those of the accelerometers; `rates`: of each stop and passage by number, of which the
+    last column is the observation, both about the priors; `effect_sigma`: of their priors.
+    """
+
+    data: "_Data"
+    forces: EquationBlock
+    rates: Mapping[int, Rows]
+    stretches: Sequence[Stretch]
+    effect_sigma: Mapping[str, float]
+
+    def drifting(self, scatter: Scatter, used: Sequence[bool]) -> DriftingEquations:
+        """In blocks; `used`: of each stop, then of each passage, whether its gyros are."""
+        data, blocks = self.data, [(self.forces, Stretch("forces"))]
+        for number, rows in self.rates.items():
+            if used[number]:
+                rate = scatter.of_rate(rows.seconds, data.usual)
+                turn, sigma = rows.independent(rate, scatter.swing)
+                blocks.append((whitened(turn @ rows.design, sigma, ()), self.stretches[number]))
+        return DriftingEquations(
+            blocks,
+            [stretch.name for _, stretch in blocks],
+            {},
+            np.append(data.prior, np.zeros(len(self.effect_sigma))),
+            np.append(data.prior_sigma, list(self.effect_sigma.values())),
+            (*data.names, *(("effect", name) for name in self.effect_sigma)),
+            UNKNOWNS - 3,
+            data.parameters,
+        )
+
+
+def carried_equations(
     stops: Sequence[Stop],
     passages: Sequence[Passage],
     known: Prior,
     about: tuple[Array, Array, Array, Array],
     carried: Carried,
     effect_sigma: Mapping[str, float],
-    scatter: Scatter,
-    used: Sequence[bool],
-) -> DriftingEquations:
-    """The equations with parameters of effects as further unknowns, in blocks.
-
-    `about`: M and bias of the gyros, then P and bias of the accelerometers, about which they are
-    linear; `used`: of each stop, then of each passage, whether its gyros are.
-    """
+) -> CarriedEquations:
+    """Linear about M and bias of the gyros, then P and bias of the accelerometers, `about`."""
     matrix, bias, symmetric, force_bias = about
     means = np.array([stop.forces.mean for stop in stops])
     up = upward_of((means - force_bias) @ np.linalg.inv(symmetric).T)
-    data = _Data(stops, passages, known, up, scatter)
+    data = _Data(stops, passages, known, up)
     around = data.prior
     pairs = [symmetric[i, j] for i, j in forces.PAIRS]
     around[: UNKNOWNS + forces.FREE] = [*matrix.ravel(), *bias, *pairs, *force_bias]
-    shared, effects = data.size + len(effect_sigma), list(effect_sigma)
-    prior = np.append(data.prior, np.zeros(len(effects)))
+    effects = list(effect_sigma)
     answers = [each.of(effects)[None] for each in carried.at_stops]
     answers += [each.of(effects) for each in carried.moving]
-    stretches = [Stretch("forces"), *carried.stretches]
-    blocks = []
-    for number, rows in _parts(data, around):
-        if number is not None and not used[number]:
-            continue
-        stacked = np.zeros((len(rows.rest), shared + 1))
-        stacked[:, : data.size] = rows.design
-        if number is not None:
-            stacked[:, data.size : -1] = np.einsum("msi,sik->mk", rows.response, answers[number])
-        stacked[:, -1] = rows.rest + rows.design @ (around - data.prior)
-        stretch = stretches[0 if number is None else number + 1]
-        blocks.append((whitened(stacked, rows.sigma, ()), stretch))
-    return DriftingEquations(
-        blocks,
-        [stretch.name for _, stretch in blocks],
-        {},
-        prior,
-        np.append(data.prior_sigma, list(effect_sigma.values())),
-        (*data.names, *(("effect", name) for name in effects)),
-        UNKNOWNS - 3,
-        data.parameters,
+
+    def stacked(design: Array, rest: Array, of_effects: Array) -> Array:
+        observed = rest + design @ (around - data.prior)
+        return np.column_stack([design, of_effects, observed])
+
+    design, rest, sigma = _of_forces(data, around)
+    of_forces = stacked(design, rest, np.zeros((len(rest), len(effects))))
+    rates = {}
+    for number, rows in _of_rates(data, around):
+        of_effects = np.einsum("msi,sik->mk", rows.response, answers[number])
+        rates[number] = replace(rows, design=stacked(rows.design, rows.rest, of_effects))
+    return CarriedEquations(
+        data, whitened(of_forces, sigma, ()), rates, carried.stretches, effect_sigma
     )
 
 
-def _parts(data: _Data, around: Array) -> Iterator[tuple[int | None, Rows]]:
-    """The equations in parts: those of the forces, None; of each stop; of each passage after."""
-    yield None, _of_forces(data, around)
-    yield from _of_rates(data, around)
-
-
-def _of_forces(data: _Data, around: Array) -> Rows:
-    """The accelerometers at every stop."""
+def _of_forces(data: _Data, around: Array) -> tuple[Array, Array, Array]:
+    """The accelerometers at every stop: coefficients (m, p), residuals and their sigma (m,)."""
     place = data.of_forces
     rests = [stop.forces for stop in data.stops]
     own, observed, sigma = forces.readings(rests, data.up, data.known.scatter, around[place])
     own = own.reshape(-1, len(place))
     design = np.zeros((len(own), data.size))
     design[:, place] = own
-    rest = observed.ravel() - own @ around[place]
-    return Rows(design, rest, sigma.ravel(), np.zeros((len(own), 0, 3)))
+    return design, observed.ravel() - own @ around[place], sigma.ravel()
 
 
 def _of_rates(data: _Data, around: Array) -> Iterator[tuple[int, Rows]]:
@@ -419,8 +441,10 @@ class _AtStop:
         design[:, self.place] = self.matrix @ self.level.T
         design[:, -1] = self.matrix @ self.ups[i]
         rest = stop.mean - self.matrix @ self.earth(i) - self.bias
-        sigma = np.hypot(stop.sigma, self.data.between(stop.seconds))
-        return Rows(design, rest, sigma, np.eye(3)[:, None])
+        there = np.isfinite(rest) & np.isfinite(stop.sigma)  # a gyro may be missing
+        noise, unit = np.diag(stop.sigma[there] ** 2), np.eye(int(there.sum()))
+        response = np.eye(3)[there, None]
+        return Rows(design[there], rest[there], response, stop.seconds, noise, unit, 0 * unit)
 
     def motion(self, i: int, motion: IntegratedMotion, turned: Array) -> Rows:
         """The next upward direction against this one rotated there, along two horizontal axes."""
@@ -436,8 +460,7 @@ class _AtStop:
         design[:, self.place] = motion.seconds * lever @ turned @ self.level.T
         design[:, -1] = motion.seconds * lever @ turned @ self.ups[i]
         rest = across @ (rotated - self.ups[i + 1])
-        angle = self.data.between(motion.seconds) * motion.seconds
-        spread = motion.white + (angle**2 + self.data.scatter.swing**2) * np.eye(3)
-        variance, axes = np.linalg.eigh(lever @ spread @ lever.T)
-        response = np.einsum("mi,sij->msj", axes.T @ lever, motion.response)
-        return Rows(axes.T @ design, axes.T @ rest, np.sqrt(variance), response)
+        noise, swing = lever @ motion.white @ lever.T, lever @ lever.T
+        response = np.einsum("mi,sij->msj", lever, motion.response)
+        seconds = motion.seconds
+        return Rows(design, rest, response, seconds, noise, seconds**2 * swing, swing)

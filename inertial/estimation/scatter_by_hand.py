@@ -35,6 +35,10 @@ class Scatter:
     sways: bool = False
     swing: float = 0.0
 
+    def of_rate(self, seconds: float, usual: float) -> float:
+        """Of the mean rates of a rest or a motion of so many seconds, rad/s."""
+        return self.rate * usual / seconds if self.sways else self.rate
+
 
 def likeliest(
     fit: Callable[[Scatter], Estimate], noise_degrees: float
