@@ -123,8 +123,8 @@ def test_mikoff_accelerometers_agree_with_the_published_ones(diagnosed, number):
     bias, scale = (known.values for known in BY_NAME[f"mikoff-{number}"].known)
     value = of_sensor(results, "accel")
     # Theirs are rounded to 0.001 m/s² and 0.001 %, and 9.81 m/s² is not their gravity.
-    assert np.abs(value[9:] - bias).max() < 3e-3
-    assert np.abs(100 * value[[0, 4, 8]] - scale).max() < 0.03
+    assert np.abs(value[9:] - bias).max() < 2e-3
+    assert np.abs(100 * value[[0, 4, 8]] - scale).max() < 0.02
 
 
 # ---- snu: one IMU, twice

@@ -416,6 +416,7 @@ def campaign_of(data: CampaignData) -> Campaign:
             edges = [0, *(gap.before for gap in turn.gaps), len(turn.seconds)]
             parts = _turning(recorded.plan, recorded.blocks, motion, density, edges)
             static_forces += [(m, replace(part, stretch=turn.stretch), at) for m, part, at in parts]
+    handled = data.by_hand is not None  # there the support drifts, not only the bias
     return Campaign(
         inputs,
         static_forces,
@@ -427,7 +428,7 @@ def campaign_of(data: CampaignData) -> Campaign:
         positions_of(data.plan),
         [m.name for m in data.plan],
         _by_hand(data, motions),
-        {sensor: data.noise.drift(sensor) for sensor in SENSORS},
+        {sensor: NO_DRIFT if handled else data.noise.drift(sensor) for sensor in SENSORS},
     )
 
 

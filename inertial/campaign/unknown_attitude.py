@@ -17,7 +17,7 @@ from inertial.campaign.estimates import NAMES as LINEAR
 from inertial.campaign.estimates import Estimates
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Manoeuvre, Part, omissions
-from inertial.campaign.static_positions import NO_NOISE, StaticPosition, stretch_between
+from inertial.campaign.static_positions import NO_NOISE, StaticPosition
 from inertial.estimation.between_positions import Stop
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.multi_position import FREE as UNKNOWNS
@@ -30,7 +30,6 @@ from inertial.estimation.multi_position import (
     free_positions,
     unobservable,
 )
-from inertial.estimation.random_walk import measured_covariance
 from inertial.estimation.variance_components import ScatterFit, with_scatter
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 from inertial.text.messages import _
@@ -131,26 +130,13 @@ def _static_position(
     )
 
 
-def drifts_of(data: "CampaignData", positions: Sequence[FreeStaticPosition], sensor: str) -> Array:
-    """Sigma by which the bias of each position drifts, as measured at rest, (n, 3).
-
-    That its drift is correlated with that of the others is left out.
-    """
-    stretches = [
-        stretch_between(each.label, each.log, each.rate.time, each.rate.seconds, data.shared_clock)
-        for each in positions
-    ]
-    covariance = measured_covariance(stretches, data.noise.drift(sensor))
-    return np.sqrt(np.diagonal(covariance, axis1=1, axis2=2)).T
-
-
 def fitted_to(data: "CampaignData", positions: Sequence[FreeStaticPosition]) -> ScatterFit:
-    """P and bias of the accelerometers, with a scatter between positions beyond the noise."""
-    gravity, drifts = data.gravity, drifts_of(data, positions, "accel")
-    rests = [
-        replace(position.rest, sigma=np.hypot(position.rest.sigma, drift))
-        for position, drift in zip(positions, drifts, strict=True)
-    ]
+    """P and bias of the accelerometers, with a scatter between positions beyond the white noise.
+
+    Within a position by hand it is the support that drifts, not only the bias: so what drifts there
+    tells nothing of the differences between positions, which show their scatter themselves.
+    """
+    gravity, rests = data.gravity, [position.rest for position in positions]
     fit = partial(free_positions, rests, gravity.number, gravity.scatter)
     return with_scatter(fit, between=SCATTER_RANGE, noise_degrees=data.noise.degrees)
 

@@ -12,7 +12,7 @@ from inertial.campaign.estimates import Estimates, reasons
 from inertial.campaign.findings import Finding
 from inertial.campaign.passages import passages_of
 from inertial.campaign.records import omissions
-from inertial.campaign.unknown_attitude import drifts_of, fitted_to, free_static_positions
+from inertial.campaign.unknown_attitude import fitted_to, free_static_positions
 from inertial.estimation.between_positions import Prior, fit
 from inertial.text.messages import _
 from inertial.text.parameters import FREE
@@ -43,11 +43,6 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> list[Finding]:
     moving, broken = passages_of(positions, data.blocks, data.noise)
     between = fitted_to(data, positions).scatter
     prior = Prior(data.gravity.number, data.gravity.scatter, between, data.earth)
-    drifts = drifts_of(data, positions, "gyro")
-    stops = [
-        replace(stop, sigma=np.hypot(stop.sigma, drift))
-        for stop, drift in zip(stops, drifts, strict=True)
-    ]
     passages = [recorded.passage for recorded in moving]
     fitted, off = fit(stops, passages, prior, data.noise.degrees)
     why = reasons(fitted.estimate.determined, recorded, "gyro", CURES)
