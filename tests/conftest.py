@@ -14,6 +14,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import chain
 import pytest
+from recordings.known import RECORDINGS
 
 from inertial.tables.campaign_files import logs_of
 
@@ -51,40 +52,72 @@ def recordings() -> Path:
     return folder
 
 
-RECORDED = {
-    "imucal-labelled": "imucal_ferraris",
-    "imucal-continuous": "imucal_ferraris",
-    "whu": "whu_xwgi7681_excerpt",
-    "softdream": "softdream_sixpos",
-    "cuyo": "mpu6050_cuyo",
-    "hipnuc": "hipnuc_temp",
+# Where the logs are of the campaigns that people wrote, and the last stage that tests look at.
+WRITTEN = {
+    "imucal-labelled": ("imucal_ferraris", "history"),
+    "imucal-continuous": ("imucal_ferraris", "history"),
+    "whu": ("whu_xwgi7681_excerpt", "history"),
+    "softdream": ("softdream_sixpos", "history"),
+    "cuyo": ("mpu6050_cuyo", "history"),
+    "hipnuc": ("hipnuc_temp", "report"),
+    "imu-tk": ("imu_tk_xsens", "diagnosis"),
+    "sunsided": ("sunsided_mpu6050", "gyroscope"),
 }
 
 
 @pytest.fixture(scope="session")
-def recorded(recordings, made_once) -> dict[str, chain.Results]:
-    """The real recordings in a data folder elsewhere, run to their reports as a user would.
+def recorded(recordings, made_once) -> Callable[[str], chain.Results]:
+    """By the name of a campaign in tests/campaigns its results; each is run once.
 
-    The campaign files are those of tests/campaigns; the logs are copied beside them.
+    That which has a report is run by the workflow as a user would, in a data folder elsewhere; the
+    stages of the others run in this process. The logs lie beside a copy of the campaign file.
     """
 
-    def run(place: Path) -> None:
-        for campaign, folder in RECORDED.items():
-            raw = place / "data/raw" / campaign
-            raw.mkdir(parents=True)
-            text = (CAMPAIGNS / f"{campaign}.yaml").read_text(encoding="utf-8")
-            (raw / "campaign.yaml").write_text(text, encoding="utf-8")
-            for log in logs_of(raw / "campaign.yaml"):
-                shutil.copy(recordings / folder / log, raw / log)
-        reports = [f"reports/{campaign}.html" for campaign in RECORDED]
-        command = [sys.executable, "-m", "snakemake", "--cores", "2", "--directory", str(place)]
-        command += ["--snakefile", str(chain.ROOT / "Snakefile"), *reports]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
-        assert all((place / report).stat().st_size > 10_000 for report in reports)
+    def of(name: str) -> chain.Results:
+        logs, until = WRITTEN[name]
 
-    place = made_once("recorded", run)
-    return {name: chain.Results(place / "data/derived" / name) for name in RECORDED}
+        def run(place: Path) -> None:
+            raw = place / "data/raw" / name
+            raw.mkdir(parents=True)
+            shutil.copy(CAMPAIGNS / f"{name}.yaml", raw / "campaign.yaml")
+            for log in logs_of(raw / "campaign.yaml"):
+                shutil.copy(recordings / logs / log, raw / log)
+            if until == "report":
+                reported(place, name)
+            else:
+                chain.run(raw, place / "data/derived" / name, until)
+
+        place = made_once(f"recorded-{name}", run)
+        return chain.Results(place / "data/derived" / name)
+
+    return of
+
+
+def reported(place: Path, name: str) -> None:
+    """Run the workflow in a data folder up to the report of a campaign."""
+    page = f"reports/{name}.html"
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--directory", str(place)]
+    command += ["--snakefile", str(chain.ROOT / "Snakefile"), page]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert (place / page).stat().st_size > 10_000
+
+
+@pytest.fixture(scope="session")
+def drafted(recordings, made_once) -> Callable[..., tuple[Path, chain.Results]]:
+    """By the name of a real recording its drafted campaign and its results; each is run once."""
+
+    def of(name: str, until: str = "diagnosis") -> tuple[Path, chain.Results]:
+        (recording,) = (one for one in RECORDINGS if one.name == name)
+
+        def run(place: Path) -> None:
+            campaign = recording.drafted(recordings, place / "data")
+            chain.run(campaign, place / "derived", until, chain.BESIDE)
+
+        place = made_once(f"drafted-{name}-{until}", run)
+        return place / "data/raw" / name, chain.Results(place / "derived")
+
+    return of
 
 
 def simulated(folder: Path, document, until: str) -> None:

@@ -1,5 +1,8 @@
 """Sessions by hand from the simulated laboratory: what they hide is named, and nothing else."""
 
+from collections.abc import Callable
+from functools import cache
+
 import by_hand_campaigns as sessions
 import chain
 import numpy as np
@@ -41,6 +44,18 @@ def clean(tmp_path_factory) -> list[tuple[dict, chain.Results]]:
     return drawn
 
 
+@pytest.fixture(scope="module")
+def hiding(tmp_path_factory) -> Callable[[str], tuple[dict, chain.Results]]:
+    """By the name of an effect a session that hides it; each is recorded and run once."""
+
+    @cache
+    def run(effect: str) -> tuple[dict, chain.Results]:
+        document = sessions.session(1, effects={effect: HIDDEN[effect]})
+        return document, sessions.by_hand(document, tmp_path_factory.mktemp(effect))
+
+    return run
+
+
 @pytest.mark.slow
 def test_a_clean_session_is_silent(clean):
     for _, results in clean:
@@ -67,9 +82,8 @@ def test_the_sigmas_of_a_clean_session_are_honest(clean):
         for n, effect in enumerate(HIDDEN)
     ],
 )
-def test_what_a_session_hides_is_named_and_no_longer_moves_the_result(effect, tmp_path):
-    document = sessions.session(1, effects={effect: HIDDEN[effect]})
-    results = sessions.by_hand(document, tmp_path)
+def test_what_a_session_hides_is_named_and_no_longer_moves_the_result(effect, hiding):
+    document, results = hiding(effect)
     (cause,) = results["criticism/findings"].to_dict("records")
     members = results["criticism/members"]
     assert cause["verdict"] in ("found", "one_of_class")
@@ -79,14 +93,12 @@ def test_what_a_session_hides_is_named_and_no_longer_moves_the_result(effect, tm
         assert np.abs(own).max() < 4.5
 
 
-def test_the_g_sensitivity_has_the_size_that_was_hidden(tmp_path):
-    hidden = HIDDEN["gyro_g_sensitivity"]
-    document = sessions.session(2, effects={"gyro_g_sensitivity": hidden})
-    results = sessions.by_hand(document, tmp_path)
+def test_the_g_sensitivity_has_the_size_that_was_hidden(hiding):
+    _, results = hiding("gyro_g_sensitivity")
     table = results["diagnosis/result"]
     own = table[table["effect"] == "gyro_g_sensitivity"]
     g = np.radians(1 / 3600) / 9.80665  # rad/s per m/s² in °/h per g
-    truth = g * np.array(hidden["matrix_deg_h_g"]).ravel()
+    truth = g * np.array(HIDDEN["gyro_g_sensitivity"]["matrix_deg_h_g"]).ravel()
     assert list(own["parameter"].str[-2:]) == [a + b for a in "xyz" for b in "xyz"]
     assert np.abs((own["value"] - truth) / own["sigma"]).max() < 3.5
     checks = results["compensation/checks"].query("quantity == 'gravity'")
@@ -97,7 +109,7 @@ def test_gyros_of_another_count_size_are_a_finding_and_stay_usable(tmp_path):
     document = sessions.session(3)
     matrix = 0.765 * np.array(document["truth"]["gyro"]["matrix"])
     document["truth"]["gyro"]["matrix"] = matrix.tolist()
-    results = sessions.by_hand(document, tmp_path)
+    results = sessions.by_hand(document, tmp_path, "diagnosis")
     (cause,) = results["diagnosis/causes"].to_dict("records")
     assert cause["cause"] == "gyro_count_size" and cause["cure"] == "modelled"
     assert cause["size"] == pytest.approx(np.mean(np.diag(matrix)), abs=1e-3)
@@ -106,7 +118,7 @@ def test_gyros_of_another_count_size_are_a_finding_and_stay_usable(tmp_path):
     assert np.abs(pulls(document, results)["gyro"]).max() < 4
 
 
-def test_what_no_session_by_hand_can_show_has_one_reason(clean):
-    limits = clean[0][1]["criticism/detection_limits"]
+def test_what_no_session_by_hand_can_show_has_one_reason(hiding):
+    limits = hiding("gyro_g_sensitivity")[1]["criticism/detection_limits"]
     of_tables = limits[limits["effect"].str.startswith(("table_tilt", "table_wobble"))]
     assert set(of_tables["explanation"]) == {"no table takes part in a session by hand"}

@@ -444,15 +444,9 @@ def test_logs_without_common_time_are_refused(simple, tmp_path):
 # ---- real recordings that need them
 
 
-def recorded(recordings: Path, folder: str, campaign: str, tmp_path: Path) -> Path:
-    """The folder of a campaign with its logs."""
-    shutil.copytree(recordings / folder, tmp_path / "raw")
-    shutil.copy(CAMPAIGNS / f"{campaign}.yaml", tmp_path / "raw/campaign.yaml")
-    return tmp_path / "raw"
-
-
 def test_ctu_turns_of_unknown_attitude_and_means_alone(recordings, tmp_path):
-    raw = recorded(recordings, "ctu_prague", "ctu", tmp_path)
+    raw = shutil.copytree(recordings / "ctu_prague", tmp_path / "raw")
+    shutil.copy(CAMPAIGNS / "ctu.yaml", raw / "campaign.yaml")
     results = chain.run(raw, tmp_path / "derived", "diagnosis", chain.BESIDE)
     gyro = results.parameters("gyroscope").loc[["scale_x", "scale_y", "scale_z"]]
     simple_integration = np.array([0.9950, 0.9998, 1.0055]) - 1  # SOURCE.md
@@ -466,9 +460,8 @@ def test_ctu_turns_of_unknown_attitude_and_means_alone(recordings, tmp_path):
     assert verdict.loc["accel", "method"] == "free_positions"
 
 
-def test_sunsided_logs_apart_that_read_gravity(recordings, tmp_path):
-    raw = recorded(recordings, "sunsided_mpu6050", "sunsided", tmp_path)
-    results = chain.run(raw, tmp_path / "derived")
+def test_sunsided_logs_apart_that_read_gravity(recorded):
+    results = recorded("sunsided")
     assert results["segment/repairs"].empty and results["segment/findings"].empty
     turns = results["segment/performed"].set_index("manoeuvre")["angle"].dropna()
     np.testing.assert_allclose(np.abs(np.degrees(turns)), 720, atol=20)  # by hand, twice round

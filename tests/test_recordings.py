@@ -1,6 +1,7 @@
 """Real recordings through the chain: against what others published, and what the data allow."""
 
 import json
+from typing import Any
 
 import chain
 import numpy as np
@@ -8,7 +9,11 @@ import pandas as pd
 import pytest
 
 from inertial.estimation.triad import linear_names
+from stages.report.sections import verdict
+from stages.report.stage import report
+from stages.report.tables import Tables
 
+NAMES = ("imucal-labelled", "imucal-continuous", "whu", "softdream", "cuyo", "hipnuc")
 ARC_HOUR = np.radians(1 / 3600)  # rad/s in °/h
 
 
@@ -18,11 +23,23 @@ def matrix_of(results: chain.Results, stage: str, column: str) -> tuple[np.ndarr
     return values[:9].reshape(3, 3), values[9:]
 
 
+def read(results: chain.Results) -> dict[str, Any]:
+    """What the report reads: the tables, and their provenance."""
+    stage = chain.stage_of("report")
+    return stage.inputs(stage.paths(results.folder))
+
+
+def verdict_of(results: chain.Results) -> str:
+    tables = read(results)
+    provenance = tables.pop("provenance")
+    return verdict.as_text(Tables(tables, provenance))
+
+
 # ---- imucal_ferraris, by hand
 
 
 def test_imucal_labelled_accelerometer_agrees_with_its_published_calibration(recorded, recordings):
-    results = recorded["imucal-labelled"]
+    results = recorded("imucal-labelled")
     published = json.loads((recordings / "imucal_ferraris/example_cal.json").read_text())
     # Theirs: truth = R⁻¹ K⁻¹ (counts − b); ours: reading = counts / 208.9 = M · truth + bias.
     theirs = np.array(published["K_a"]) @ np.array(published["R_a"]) / 208.9 - np.eye(3)
@@ -35,7 +52,7 @@ def test_imucal_labelled_accelerometer_agrees_with_its_published_calibration(rec
 
 
 def test_imucal_labelled_gyro_agrees_up_to_the_sign_of_the_turn(recorded, recordings):
-    results = recorded["imucal-labelled"]
+    results = recorded("imucal-labelled")
     published = json.loads((recordings / "imucal_ferraris/example_cal.json").read_text())
     theirs = -np.array(published["K_g"]) @ np.array(published["R_g"]) / 16.4 - np.eye(3)
     ours, bias = matrix_of(results, "gyroscope", "value")
@@ -47,7 +64,7 @@ def test_imucal_labelled_gyro_agrees_up_to_the_sign_of_the_turn(recorded, record
 
 
 def test_imucal_turns_of_one_direction_are_no_pair_for_the_formula(recorded):
-    turns = recorded["imucal-labelled"].parameters("gyroscope", "turns")
+    turns = recorded("imucal-labelled").parameters("gyroscope", "turns")
     assert turns["value"].isna().all()
     assert turns["reason"].str.contains("forward and backward").all()
 
@@ -55,7 +72,7 @@ def test_imucal_turns_of_one_direction_are_no_pair_for_the_formula(recorded):
 def test_imucal_runs_through_all_of_it_and_nothing_is_named_that_the_data_do_not_hold(recorded):
     """Its gyro rests differ by 0.1 °/s, for it is held by hand; no effect does that."""
     for name in ("imucal-labelled", "imucal-continuous"):
-        results = recorded[name]
+        results = recorded(name)
         assert not results["criticism/scores"]["named"].any()
         assert results["extension/parameters"].empty
         checks = results["compensation/checks"]
@@ -63,17 +80,17 @@ def test_imucal_runs_through_all_of_it_and_nothing_is_named_that_the_data_do_not
         assert (gravity["after"] - gravity["expected"]).abs().max() < 0.1  # m/s²
         assert (gravity["before"] - gravity["expected"]).abs().max() > 0.1
         assert len(results["history/archived"]) == 1
-    labelled = recorded["imucal-labelled"]["criticism/findings"]
+    labelled = recorded("imucal-labelled")["criticism/findings"]
     # A hand is no table: its accelerometers drift within a rest, too.
     assert set(labelled["cause"]) == {"unknown_structure", "accel_random_walk"}
     labelled = labelled[labelled["cause"] == "unknown_structure"]
     assert set(labelled["sensor"]) == {"gyro"} and not labelled["verdict"].eq("found").any()
     assert labelled["sentence"].str.contains("about z they drift").any()
-    assert recorded["imucal-continuous"]["criticism/findings"].empty
+    assert recorded("imucal-continuous")["criticism/findings"].empty
 
 
 def test_imucal_continuous_finds_every_part(recorded):
-    results = recorded["imucal-continuous"]
+    results = recorded("imucal-continuous")
     performed = results["segment/performed"].set_index("manoeuvre")
     assert performed["complete"].all()
     # What its SOURCE.md found by adding up the selected rows.
@@ -86,13 +103,13 @@ def test_imucal_continuous_finds_every_part(recorded):
 
 
 def test_whu_every_checksum_is_right(recorded):
-    accounts = recorded["whu"]["decode/accounts"]
+    accounts = recorded("whu")["decode/accounts"]
     assert accounts.set_index("kind").loc["decoded", "lines"].sum() == 412
     assert set(accounts["kind"]) == {"decoded"}
 
 
 def test_whu_accelerometer_agrees_with_the_published_result(recorded):
-    results = recorded["whu"]
+    results = recorded("whu")
     # lidongyang2004, from three minutes of each position; SOURCE.md of the recording.
     scale = np.diag([264.83e-6, 383.55e-6, 445.63e-6])
     cross = np.array(
@@ -105,7 +122,7 @@ def test_whu_accelerometer_agrees_with_the_published_result(recorded):
 
 
 def test_whu_sigmas_are_honest_for_a_third_of_a_second(recorded):
-    results = recorded["whu"]
+    results = recorded("whu")
     fit = results["accelerometer/fit"].iloc[0]
     # The x axis reads 1.7 mm/s² more when it is vertical than the twelve parameters allow.
     assert fit["p_value"] < 1e-10
@@ -113,7 +130,7 @@ def test_whu_sigmas_are_honest_for_a_third_of_a_second(recorded):
 
 
 def test_whu_every_turn_is_refused_for_the_angle_method(recorded):
-    results = recorded["whu"]
+    results = recorded("whu")
     performed = results["segment/performed"].set_index("manoeuvre")
     turns = performed[performed.index.str.contains("360")]
     assert len(turns) == 6 and not turns["complete"].any()
@@ -134,7 +151,7 @@ def test_whu_every_turn_is_refused_for_the_angle_method(recorded):
 
 
 def test_whu_gyro_bias_agrees_with_the_published_result(recorded):
-    results = recorded["whu"]
+    results = recorded("whu")
     bias = results.parameters("gyroscope").loc[["bias_x", "bias_y", "bias_z"]]
     published = np.array([-0.5097616, 0.05342534, 0.02657215]) * ARC_HOUR
     assert np.abs((bias["value"] - published) / bias["sigma"]).max() < 3
@@ -150,29 +167,29 @@ def found(results, cause: str) -> pd.DataFrame:
 
 
 def test_whu_has_six_turns_cut_out_and_no_fault_of_time_or_scale(recorded):
-    assert len(found(recorded["whu"], "incomplete_turn")) == 6
+    assert len(found(recorded("whu"), "incomplete_turn")) == 6
     others = {"gap", "duplicate", "clock_scale", "clock_jitter", "rate_off", "wrong_day"}
     others |= {"saturation", "dead_axis", "axis_swap", "sign_flip", "wrong_scale_factor"}
     others |= {"gravity_error", "manoeuvre_missing", "wrong_direction", "bias_jump"}
     for cause in others:
-        assert found(recorded["whu"], cause).empty, cause
+        assert found(recorded("whu"), cause).empty, cause
 
 
 def test_cuyo_clips_its_gyros_at_the_last_count(recorded):
-    clipped = found(recorded["cuyo"], "saturation")
+    clipped = found(recorded("cuyo"), "saturation")
     assert list(clipped["count"]) == [3]  # visits: two of x, one of z
     assert "18 readings" in clipped["sentence"].iloc[0]  # twelve of x, six of z, by the file
     np.testing.assert_allclose(clipped["from_s"], [39.10], atol=1e-6)
     # The accelerometers' counts are all multiples of four.
-    steps = found(recorded["cuyo"], "quantisation")
+    steps = found(recorded("cuyo"), "quantisation")
     assert list(steps["size"]) == pytest.approx([4 * 9.80665 / 16384])
 
 
 def test_softdream_has_stamps_of_whole_milliseconds_and_another_rate_than_stated(recorded):
-    jitter = found(recorded["softdream"], "clock_jitter")
+    jitter = found(recorded("softdream"), "clock_jitter")
     assert list(jitter["count"]) == [10]
     assert "11 ms and 12 ms" in jitter["sentence"].iloc[0]
-    assert found(recorded["softdream"], "rate_off")["size"].iloc[0] == pytest.approx(
+    assert found(recorded("softdream"), "rate_off")["size"].iloc[0] == pytest.approx(
         1.027, abs=1e-3
     )
 
@@ -180,11 +197,11 @@ def test_softdream_has_stamps_of_whole_milliseconds_and_another_rate_than_stated
 def test_imucal_is_recorded_without_a_fault(recorded):
     for campaign in ("imucal-labelled", "imucal-continuous"):
         for stage in ("quality", "segment"):
-            assert recorded[campaign][f"{stage}/findings"].empty
+            assert recorded(campaign)[f"{stage}/findings"].empty
 
 
 def test_hipnuc_warms_by_65_kelvin(recorded):
-    (drift,) = found(recorded["hipnuc"], "temperature_drift").itertuples()
+    (drift,) = found(recorded("hipnuc"), "temperature_drift").itertuples()
     assert drift.size == pytest.approx(66.67 - 1.38, abs=0.01)
 
 
@@ -192,7 +209,7 @@ def test_hipnuc_warms_by_65_kelvin(recorded):
 
 
 def test_softdream_is_read_to_the_end(recorded):
-    results = recorded["softdream"]
+    results = recorded("softdream")
     accounts = results["decode/accounts"]
     assert set(accounts["kind"]) == {"decoded"}
     performed = results["segment/performed"].set_index("manoeuvre")
@@ -210,7 +227,7 @@ def test_softdream_is_read_to_the_end(recorded):
 
 
 def test_cuyo_is_calibrated_by_rests_of_unknown_attitude(recorded, recordings):
-    results = recorded["cuyo"]
+    results = recorded("cuyo")
     performed = results["segment/performed"].set_index("manoeuvre")
     assert performed.loc["settle", "seconds"] == pytest.approx(36.5, abs=2)
     segments = results["segment/segments"]
@@ -230,7 +247,7 @@ def test_cuyo_is_calibrated_by_rests_of_unknown_attitude(recorded, recordings):
 
 
 def test_hipnuc_bins_are_means_without_time(recorded):
-    results = recorded["hipnuc"]
+    results = recorded("hipnuc")
     samples = results["decode/samples"]
     still = samples[samples["log"] == "test.log:still"]
     assert len(still) == 30 and still["time"].isna().all()
@@ -247,7 +264,7 @@ def test_hipnuc_bins_are_means_without_time(recorded):
 
 def test_hipnuc_goes_with_the_temperature_along_no_line(recorded):
     """SOURCE.md: z acceleration has a knee near 30 °C, the scale factor of z is 0.4 % off."""
-    causes = recorded["hipnuc"]["criticism/findings"].set_index("id")
+    causes = recorded("hipnuc")["criticism/findings"].set_index("id")
     causes.index = causes.index.str.removeprefix("criticism/temperature/")
     assert set(causes.index) == {"still/accel", "still/gyro", "turning/scale"}
     assert (causes["p_value"] < 0.005).all()
@@ -260,7 +277,7 @@ def test_hipnuc_goes_with_the_temperature_along_no_line(recorded):
     assert (
         "along a cubic" in scale["sentence"] and "a straight line would leave" in scale["sentence"]
     )
-    table = recorded["hipnuc"]["criticism/members"]
+    table = recorded("hipnuc")["criticism/members"]
     table["finding"] = table["finding"].str.removeprefix("criticism/temperature/")
     members = table.groupby("finding")["effect"].agg(list)
     of_accel = ["accel_bias_temperature", "accel_scale_temperature", "table_tilt"]
@@ -270,7 +287,7 @@ def test_hipnuc_goes_with_the_temperature_along_no_line(recorded):
 
     accel = causes.loc["still/accel"]
     assert accel["axis"] == "z" and accel["size"] == pytest.approx(9.91491 - 9.78446)
-    effects = recorded["hipnuc"]["criticism/effects"]
+    effects = recorded("hipnuc")["criticism/effects"]
     own = effects[effects["finding"] == "criticism/temperature/still/accel"]
     own = own.set_index("parameter")[["value", "sigma"]]
     knee, below, above = (own.loc[f"{name}_z"].to_list() for name in ("knee", "below", "above"))
@@ -283,7 +300,7 @@ def test_hipnuc_goes_with_the_temperature_along_no_line(recorded):
 
 def test_hipnuc_is_of_use_for_its_changes_with_temperature(recorded):
     """One attitude shows no bias but its change: by means in test.log, 13.3 mg of z from 30 °C."""
-    results = recorded["hipnuc"]
+    results = recorded("hipnuc")
     verdict = results["diagnosis/verdict"].set_index("sensor")
     assert (verdict["verdict"] == "usable_within_limits").all()
     assert verdict["sentence"].str.contains("from 1.4 to 65.5 °C").all()
@@ -296,16 +313,30 @@ def test_hipnuc_is_of_use_for_its_changes_with_temperature(recorded):
     assert "scale factor" in own["not_separated"].iloc[0]
 
 
-def test_every_report_says_what_it_could_not_determine(recorded):
-    for name, results in recorded.items():
-        reports = results.folder.parents[2] / "reports"
-        verdict = (reports / f"{name}.txt").read_text(encoding="utf-8")
-        assert "Verdict:" in verdict
+def test_every_verdict_says_what_could_not_be_determined(recorded):
+    for name in NAMES:
+        results = recorded(name)
+        text = verdict_of(results)
+        assert "Verdict:" in text
         parameters = [results[f"{stage}/parameters"] for stage in ("accelerometer", "gyroscope")]
         told = pd.concat(parameters)
         determined = told[told["method"].str.match("joint|free")]["value"].notna().any()
-        assert "not usable" in " ".join(verdict.split()) or determined, name
-        assert "SIMULATED" not in verdict
+        assert "not usable" in " ".join(text.split()) or determined, name
+        assert "SIMULATED" not in text
+
+
+def test_the_report_of_the_workflow_has_this_verdict(recorded):
+    results = recorded("hipnuc")
+    text = (results.folder.parents[2] / "reports/hipnuc.txt").read_text(encoding="utf-8")
+    assert text == verdict_of(results)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_every_recording_has_its_page(name, recorded):
+    results = recorded(name)
+    made = report(**read(results))
+    assert len(made["html"]) > 10_000 and made["txt"] == verdict_of(results)
 
 
 # ---- mikoff_mpu9150, by hand, without time

@@ -73,30 +73,3 @@ def test_ctu_gyros_of_one_attitude_each_leave_g_sensitivity_and_bias_of_each_run
     scales = result.loc[["scale_x", "scale_y", "scale_z"]]
     off = scales["value"] - [-0.0050, -0.0002, 0.0055]
     assert (off.abs() < 3 * scales["sigma"]).all()
-
-
-def test_gesture_names_no_effect(recordings, raw):
-    """The means of its gyros at rest depend neither on time nor on force, by a law: SOURCE.md."""
-    log = loadmat(recordings / "gesture_multipos/caldata.mat")["cal_data"]
-    np.savetxt(raw / "log.csv", log[:, 1:7], fmt="%d", delimiter=",")
-    counts = {"counts_per_unit": 209, "unit": "m/s2", "columns": [1, 2, 3]}
-    rates = {"counts_per_unit": 16.4, "unit": "deg/s", "columns": [4, 5, 6]}
-    form = columns(delimiter=",", accelerometer=counts, gyro=rates)
-    campaign(raw, {"name": "gesture", "rate_hz": 100, "format": form}, BY_HAND, log="log.csv")
-    results = diagnosed(raw, raw.parent / "derived")
-    scores = results["criticism/scores"].query("effect != 'gyro_random_walk'")
-    assert not scores["named"].any()
-    assert "gravity_error" not in set(results["diagnosis/causes"]["cause"])
-    assert "wrong_scale_factor" not in set(results["diagnosis/causes"]["cause"])
-
-
-def test_mikoff_4_has_an_impact_and_nothing_reversed(recordings, raw):
-    """Its SOURCE.md: a knock of many g, and nothing is exchanged or reversed."""
-    text = (recordings / "mikoff_mpu9150/imu4.log").read_text(encoding="utf-8")
-    (raw / "log.txt").write_text(text, encoding="utf-8")
-    force = {"columns": [1, 2, 3], "unit": "m/s2"}
-    form = columns(delimiter=" ", accelerometer=force, gyro=GYRO)
-    campaign(raw, {"name": "mpu9150", "rate_hz": 100, "format": form}, BY_HAND, log="log.txt")
-    causes = set(diagnosed(raw, raw.parent / "derived")["diagnosis/causes"]["cause"])
-    assert "impact" in causes
-    assert not causes & {"sign_flip", "axis_swap", "wrong_scale_factor"}
