@@ -8,7 +8,6 @@ from typing import Any
 import chain
 import numpy as np
 import pandas as pd
-from campaigns import BESIDE
 from temperature_bars import Outcome
 from temperature_draws import Drawn, drawn, planned
 
@@ -25,9 +24,8 @@ AWAY = 0.15  # of the distance between two nodes, at least so far from both: bet
 @cache
 def code() -> str:
     """A hash of all that an outcome rests on."""
-    stages = [
-        name for name in chain.ORDER[: chain.ORDER.index("diagnosis") + 1] if name not in BESIDE
-    ]
+    every = chain.ORDER[: chain.ORDER.index("diagnosis") + 1]
+    stages = [name for name in every if name not in chain.BESIDE]
     files = {file for stage in stages for file in code_of(stage)}
     files |= {*(chain.ROOT / "laboratory").rglob("*.py"), chain.ROOT / "config.yaml"}
     files |= {HERE / f"temperature_{name}.py" for name in ("draws", "bound", "outcomes")}
@@ -48,7 +46,7 @@ def outcome(name: str) -> Outcome:
 def _told(name: str, hidden: Drawn) -> Outcome:
     plan = planned(name.split("|")[0])
     recording = laboratory.perform(laboratory.specify(hidden.document))
-    tables = chain.in_memory(recording, "diagnosis", BESIDE)
+    tables = chain.in_memory(recording, "diagnosis", chain.BESIDE)
     at = np.linspace(plan.low, plan.high, POINTS)
     bound = plan.bound.of_curves(hidden.curves, hidden.coefficients, at)
     curves = []
