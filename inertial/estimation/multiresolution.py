@@ -19,6 +19,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import dct, rfft
+from scipy.linalg import matmul_toeplitz
 
 from inertial.estimation.noise_model import Array, rate_autocovariance
 
@@ -263,9 +264,8 @@ def lowest_shapes(count: int, interval: float, lowest: int) -> tuple[Array, Arra
     """
     k = np.arange(1, lowest + 1)
     rows = np.sqrt(2 / count) * np.cos(np.pi * k[:, None] * (np.arange(count) + 0.5) / count)
-    lags = np.abs(np.arange(count)[:, None] - np.arange(count))
     shapes = np.stack(
-        [rows @ gamma[lags] @ rows.T for gamma in rate_autocovariance(count, interval)]
+        [rows @ matmul_toeplitz(gamma, rows.T) for gamma in rate_autocovariance(count, interval)]
     )
     ramp = rows @ (interval * (np.arange(count) - (count - 1) / 2))
     return (shapes + shapes.transpose(0, 2, 1)) / 2, np.asarray(ramp)
