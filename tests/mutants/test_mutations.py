@@ -1,0 +1,52 @@
+"""Which faults are put into a source, and that a sample of those in the physics is still seen."""
+
+import json
+
+import pytest
+from mutant_runs import ROOT, killed
+from mutants_page import SAMPLE
+from mutations import mutations
+
+
+@pytest.mark.parametrize(
+    ("source", "faults"),
+    [
+        ("a + b", {"(a) - (b)", "a"}),
+        ("a - b * c", {"(a) + (b * c)", "a", "(b) / (c)", "2 * (b) * (c)"}),
+        ("m @ v", {"(m).T @ (v)"}),
+        ("m.T @ v", {"m"}),
+        ("-x", {"x"}),
+        ("x**2", {"(x) ** (2 + 1)"}),
+        ("m[i, j]", {"(m)[j, i]"}),
+        ("m[0] / m[1]", {"(m[0]) * (m[1])", "(m)[1]", "(m)[0]"}),
+        ("f'{a + b}' + 'text'", set()),
+        ("x: 'a + b' = 1", set()),
+        ("m[:, None]", set()),
+    ],
+)
+def test_each_expression_has_its_faults(source, faults):
+    found = mutations(source.encode())
+    assert {one.after for one in found} == {f"({fault})" for fault in faults}
+    for one in found:
+        compile(one.applied(source.encode()), "mutant", "exec")
+
+
+def test_a_fault_stands_in_its_place_behind_other_letters():
+    source = "σ = 1  # µ\ny = (σ + 2) * 3\n"
+    (sign,) = (one for one in mutations(source.encode()) if one.kind == "sign")
+    assert sign.applied(source.encode()).decode() == "σ = 1  # µ\ny = (((σ) - (2))) * 3\n"
+
+
+SAMPLED = json.loads(SAMPLE.read_text(encoding="utf-8")) if SAMPLE.exists() else []
+
+
+@pytest.mark.parametrize("fault", SAMPLED, ids=lambda fault: fault["file"].rpartition("/")[2])
+def test_a_fault_of_the_physics_is_seen(fault):
+    found = [
+        one
+        for one in mutations((ROOT / fault["file"]).read_bytes())
+        if (one.before, one.after) == (fault["before"], fault["after"])
+    ]
+    if not found:
+        pytest.skip("this line has changed since the sample was drawn; make mutants draws another")
+    assert killed(fault["file"], found[0], [fault["killed"]], 60) == fault["killed"]
