@@ -57,12 +57,12 @@ MULTIPLES = _(" Lines at {each} have the same cause.")
 VERY_LARGE_ODDS = "more than 10¹⁷ times"
 
 COUPLED_UNKNOWN = _(" Through their cross terms the other axes contain it too.")
-COUPLED = _(" Through their cross terms {each}.")
-COUPLED_HIDDEN = _("{axis} contains {expected} °/s, less than its noise shows")
-COUPLED_READ = _("{axis} contains {expected} °/s and reads {read} °/s{more}")
-COUPLED_MORE = (
-    ", {excess} °/s more than coupling; the case tips into the table's rate, which brings"
-    " {tipping} °/s"
+COUPLED = _(" Of it the cross terms predict {each}.")
+COUPLED_HIDDEN = _("{expected} °/s in {axis}, less than its noise shows")
+COUPLED_READ = _("{expected} °/s in {axis}, where {read} °/s is measured{more}")
+COUPLED_MORE = _(
+    " (the difference, {excess} °/s with its phase, is more than the noise; the case tips about"
+    " the axis of the turn, which explains {tipping} °/s)"
 )
 
 CONSEQUENCE = _(
@@ -281,7 +281,7 @@ def _coupling(coupled: Sequence[Coupled]) -> str:
     """The oscillation in the other axes by coupling."""
     if not coupled:
         return COUPLED_UNKNOWN
-    return COUPLED.format(each=" and ".join(_coupled(axis) for axis in coupled))
+    return COUPLED.format(each="; ".join(_coupled(axis) for axis in coupled))
 
 
 def _coupled(axis: Coupled) -> str:
