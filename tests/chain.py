@@ -1,7 +1,7 @@
 """The stages one after another in this process, as the workflow runs them."""
 
 import tempfile
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -89,11 +89,12 @@ def in_memory(
     until: str = "gyroscope",
     without: Collection[str] = (),
     onto: Tables | None = None,
+    edit: Callable[[str], str] | None = None,
 ) -> Tables:
     """The chain on a recording of the laboratory up to and with `until`; tables stay in memory.
 
     `without`: as in `run`; `onto`: tables of an earlier run, to which the others are
-    added.
+    added; `edit`: what is changed in the campaign file that the laboratory writes.
     """
     tables = Tables() if onto is None else onto
     done = {name.partition("/")[0] for name in tables}
@@ -101,6 +102,9 @@ def in_memory(
         tempfile.TemporaryDirectory() as folder,
         recorded(recording, Path(folder) / "raw") as campaign,
     ):
+        if edit is not None:
+            file = campaign / "campaign.yaml"
+            file.write_text(edit(file.read_text(encoding="utf-8")), encoding="utf-8")
         sources = _sources(campaign, Path(folder))
         for name in ORDER[: ORDER.index(until) + 1]:
             if name not in done and name not in without:
@@ -108,6 +112,13 @@ def in_memory(
                 inputs = {file: sources.get(file, []) for file in stage.declared.files}
                 tables.add(stage, stage.result({**inputs, **_inputs(stage, tables, name)}))
     return tables
+
+
+def in_memory_of(
+    document: Mapping[str, Any], until: str = "gyroscope", without: Collection[str] = ()
+) -> Tables:
+    """A campaign of the laboratory by its description, and the chain on it, as `in_memory`."""
+    return in_memory(laboratory.perform(laboratory.specify(document)), until, without)
 
 
 def _inputs(stage: Stage, tables: Tables, name: str) -> dict[str, Any]:

@@ -19,6 +19,13 @@ from recordings.known import RECORDINGS
 from inertial.tables.campaign_files import logs_of
 
 CAMPAIGNS = Path(__file__).parent / "campaigns"
+# They take longest, so they stand first: both processes are then busy to the end.
+FIRST = ("test_workflow", "test_recordings_by_hand", "test_drafts_of_recordings", "test_report")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    order = {name: place for place, name in enumerate(FIRST)}
+    items.sort(key=lambda item: order.get(item.path.stem, len(FIRST)))
 
 
 @pytest.fixture(scope="session")

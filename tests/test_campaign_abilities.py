@@ -162,7 +162,7 @@ def test_axes_and_signs_of_each_sensor_undo_those_of_the_log(simple, simple_resu
     np.testing.assert_allclose(values(results), values(simple_results), atol=1e-12, rtol=1e-9)
 
 
-@pytest.mark.parametrize("message", ["columns", "RAWIMUSA"])
+@pytest.mark.parametrize("message", [pytest.param("columns", marks=pytest.mark.slow), "RAWIMUSA"])
 def test_one_reversed_gyro_that_is_stated_needs_no_repair(message, tmp_path):
     document = in_columns()
     document["faults"] = [{"flip": {"log": "all", "sensor": "gyro", "axis": "x"}}]
@@ -351,7 +351,10 @@ def test_two_logs_with_the_same_stamps_are_the_same_campaign(simple, simple_resu
     assert results["decode/accounts"].groupby("log")["bytes"].sum().to_dict() == sizes
 
 
-@pytest.mark.parametrize(("gyro_hz", "late_s"), [(100, 0.0037), (73, 0.0), (400, 0.0)])
+@pytest.mark.parametrize(
+    ("gyro_hz", "late_s"),
+    [(100, 0.0037), (73, 0.0), pytest.param(400, 0.0, marks=pytest.mark.slow)],
+)
 def test_two_logs_with_stamps_of_their_own_are_joined(simple, gyro_hz, late_s, tmp_path):
     """The motion is the same; stamps, rates and noise of the gyros are others."""
     document = in_columns(gyro_hz, seed=6)

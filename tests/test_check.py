@@ -269,19 +269,3 @@ def test_a_campaign_that_names_no_log_is_refused_as_by_make_report(tmp_path: Pat
     assert "'x-up.asc'" in said
     assert "put the log there, or correct its name" in said
     assert check(tmp_path / "data") == 2
-
-
-@pytest.mark.workflow
-def test_a_check_makes_what_a_report_begins_with(tmp_path: Path) -> None:
-    """From nothing but the logs: the first seven stages, and no other."""
-    raw = tmp_path / "data/raw" / NAME
-    chain.simulate(chain.short(), raw)
-    recipe = (ROOT / "Makefile").read_text().partition("\ncheck:")[2].partition("\n\n")[0]
-    assert "data/derived/$$CAMPAIGN/{accelerometer,gyroscope}/parameters.parquet" in recipe
-    goals = [f"data/derived/{NAME}/{stage}/parameters.parquet" for stage in SENSORS]
-    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--directory", str(tmp_path)]
-    command += ["--snakefile", str(ROOT / "Snakefile"), "--", *goals]
-    subprocess.run(command, capture_output=True, check=True)
-    made = {path.name for path in (tmp_path / "data/derived" / NAME).iterdir()}
-    assert made == {"plan", "decode", "quality", "segment", "noise", *SENSORS}
-    assert check(tmp_path / "data") == 0

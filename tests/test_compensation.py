@@ -239,10 +239,10 @@ def test_each_mount_has_its_own_parameters_and_between_them_nothing_is_known(cle
 @pytest.fixture(scope="module")
 def compensated_before(tmp_path_factory) -> chain.Results:
     folder = tmp_path_factory.mktemp("before")
-    campaign = chain.simulate(chain.demo(seed=3), folder / "before")
+    campaign = chain.simulate(chain.short(seed=3), folder / "before")
     file = campaign / "campaign.yaml"
     file.write_text(f"compensated: true\n{file.read_text(encoding='utf-8')}", encoding="utf-8")
-    return chain.run(campaign, folder / "derived", until="compensation")
+    return chain.run(campaign, folder / "derived", "compensation", ("studies",))
 
 
 def test_a_second_compensation_is_refused_with_a_finding_and_all_else_runs(compensated_before):

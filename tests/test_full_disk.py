@@ -37,14 +37,20 @@ def run(results: chain.Results, raw: Path, size: int | None):
     )
 
 
-@pytest.mark.parametrize("size", [0, 1000, 100_000])
-def test_a_stage_without_room_leaves_the_tables_that_were_there(tmp_path, size):
-    document = chain.demo(faults=[], effects={})
-    campaign = chain.simulate(document, tmp_path / "raw")
-    results = chain.run(campaign, tmp_path / "derived", "plan")
-    output = results.folder / "decode"
+@pytest.fixture(scope="module")
+def decoded(tmp_path_factory) -> tuple[Path, chain.Results]:
+    folder = tmp_path_factory.mktemp("full")
+    campaign = chain.simulate(chain.demo(), folder / "raw")
+    results = chain.run(campaign, folder / "derived", "plan")
     done = run(results, campaign, None)
     assert done.returncode == 0, done.stderr
+    return campaign, results
+
+
+@pytest.mark.parametrize("size", [0, 1000, 100_000])
+def test_a_stage_without_room_leaves_the_tables_that_were_there(decoded, size):
+    campaign, results = decoded
+    output = results.folder / "decode"
     before = {path.name: path.read_bytes() for path in output.iterdir()}
 
     failed = run(results, campaign, size)

@@ -11,13 +11,11 @@ COUNTS = {"accel": 0.05 / 2**15 / 0.01, "gyro": 0.1 / (3600 * 256) / 0.01}  # m/
 
 
 @pytest.fixture(scope="module")
-def quiet(tmp_path_factory) -> chain.Results:
+def quiet() -> chain.Results:
     """The demo campaign without noise, tilts, effects and faults."""
     document = chain.demo(noise={name: 0 for name in chain.demo()["noise"]})
     document["campaign"]["table"]["position_sigma_arcsec"] = 0
-    folder = tmp_path_factory.mktemp("quiet")
-    campaign = chain.simulate(document, folder / "quiet")
-    return chain.run(campaign, folder / "derived", "simulation", chain.BESIDE)
+    return chain.in_memory_of(document, "simulation", chain.BESIDE)
 
 
 def test_noise_free_logs_are_met_to_a_count(quiet):
@@ -33,12 +31,8 @@ def test_noise_free_logs_are_met_to_a_count(quiet):
         assert sums.abs().max() < 3, channel
 
 
-def test_on_clean_data_the_residuals_are_the_noise(clean, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("simulated")
-    campaign = chain.simulate(chain.demo(seed=21), folder / "campaign")
-    fidelity = chain.run(campaign, folder / "derived", "simulation", chain.BESIDE)[
-        "simulation/fidelity"
-    ]
+def test_on_clean_data_the_residuals_are_the_noise(clean):
+    fidelity = clean[0]["simulation/fidelity"]
     turns = fidelity[fidelity["profile"] == "trapezoid"]
     assert len(turns) == 6 * 6
     ratio = turns["residual_rms"] / turns["noise_rms"]

@@ -1,6 +1,5 @@
 """Faulty data inside a good campaign do not move its result, or are named."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 from math import radians, tan
 from typing import Any
@@ -84,10 +83,6 @@ def fast() -> dict[str, Any]:
     return {"effects": {"table_speed_error": {"rate_ppm": 100}}}
 
 
-def solved(folder, document: Mapping[str, Any], until: str = "gyroscope") -> chain.Results:
-    return chain.run(chain.simulate(document, folder / "raw"), folder / "derived", until)
-
-
 def values(results: chain.Results) -> np.ndarray:
     """The 24 parameters, accelerometers first."""
     stages = ("accelerometer", "gyroscope")
@@ -95,13 +90,13 @@ def values(results: chain.Results) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def clean(tmp_path_factory) -> chain.Results:
-    return solved(tmp_path_factory.mktemp("clean"), good(), "criticism")
+def clean() -> chain.Results:
+    return chain.in_memory_of(good(), "criticism", chain.BESIDE)
 
 
 @pytest.mark.parametrize("spoilt", [lost, spiked, fast])
-def test_the_result_stays_where_it_is(spoilt, clean, tmp_path):
-    moved = np.abs(values(solved(tmp_path, good(**spoilt()))) - values(clean))
+def test_the_result_stays_where_it_is(spoilt, clean):
+    moved = np.abs(values(chain.in_memory_of(good(**spoilt()))) - values(clean))
     assert moved[1, :9].max() < 25e-6
     assert moved[0, 9:].max() < 5e-6 * 9.80665
 
@@ -113,7 +108,7 @@ def test_the_earth_rate_does_not_leak_into_the_g_sensitivity(clean):
     assert degrees_per_hour.abs().max() < 1
 
 
-def test_a_position_that_is_off_is_noticed_and_what_it_spoils_is_named(tmp_path):
+def test_a_position_that_is_off_is_noticed_and_what_it_spoils_is_named():
     told = good()
     leaning = [0.0, 1.0, tan(radians(OFF))]  # y up, off towards z
     crooked = good()
@@ -123,9 +118,8 @@ def test_a_position_that_is_off_is_noticed_and_what_it_spoils_is_named(tmp_path)
     true = laboratory.perform(laboratory.specify(crooked))
     # The laboratory believes and writes down what it had planned.
     believed = {**true.campaign, "plan": told["campaign"]["plan"]}
-    folder = tmp_path / "raw"
-    laboratory.write(replace(true, campaign=believed), folder)
-    results = chain.run(folder, tmp_path / "derived", "diagnosis", chain.BESIDE)
+    recording = replace(true, campaign=believed)
+    results = chain.in_memory(recording, "diagnosis", chain.BESIDE)
     # It is weighed against the effects, in one place, and named with nothing that resembles it.
     assert results["accelerometer/findings"].empty
     (cause,) = results["criticism/findings"].to_dict("records")

@@ -11,17 +11,16 @@ def wanted(results: chain.Results, stage: str):
     return results[f"{stage}/wanted"].set_index("quantity")
 
 
+@pytest.fixture(scope="module")
+def of_20_and_60_s() -> tuple[chain.Results, chain.Results]:
+    return chain.in_memory_of(lasting(20)), chain.in_memory_of(lasting(60))
+
+
 @pytest.mark.parametrize(
     ("stage", "method"), [("accelerometer", "six_position"), ("gyroscope", "static")]
 )
-def test_rests_of_that_length_have_that_sigma(stage, method, tmp_path):
-    short, long = (
-        chain.run(
-            chain.simulate(lasting(seconds), tmp_path / f"{seconds}"),
-            tmp_path / f"derived-{seconds}",
-        )
-        for seconds in (20, 60)
-    )
+def test_rests_of_that_length_have_that_sigma(stage, method, of_20_and_60_s):
+    short, long = of_20_and_60_s
     told, then = wanted(short, stage), wanted(long, stage)
     assert list(told.index) == BIAS and set(told["method"]) == {method}
     # From what rests of 20 s give, the sigma of rests of 60 s is foretold, and the time for it.
@@ -45,10 +44,10 @@ def lasting(seconds: float):
     return document
 
 
-def test_no_time_averages_out_a_tilt(tmp_path):
+def test_no_time_averages_out_a_tilt():
     document = chain.short()
     document["campaign"]["table"]["position_sigma_arcsec"] = 30
-    results = chain.run(chain.simulate(document, tmp_path / "a"), tmp_path / "b")
+    results = chain.in_memory_of(document, "accelerometer")
     told = wanted(results, "accelerometer")
     # Four of six readings of an axis are level: σ g/√6 · √(4/6) = σ g/3.
     floor = np.radians(30 / 3600) * 9.794 / 3

@@ -1,6 +1,7 @@
 """The workflow: it tells what the stages tell, reruns what changed, and survives what goes wrong.
 
-It runs in a copy of the project, so that lines of it can be changed, on a short simulated campaign.
+It runs in a checkout of the project, so that lines of it can be changed, on the demo and on short
+campaigns of the simulated laboratory.
 """
 
 from __future__ import annotations
@@ -17,30 +18,19 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any
 
 import pyarrow.parquet as pq
 import pytest
-from ruamel.yaml import YAML
 
+from commands.check import main as check
 from inertial.tables.declared import Declared
 from stages import ORDER
-from tests.chain import ROOT, demo
+from tests.chain import ROOT, short, simulate
 
 pytestmark = pytest.mark.workflow
 
-COPIED = (
-    "Snakefile",
-    "config.yaml",
-    "requirements.lock",
-    "profiles",
-    "stages",
-    "inertial",
-    "laboratory",
-)
-PAGE = "reports/short.html"
-EXPORT = "reports/short.calibration.json"
-PUBLISHED = "data/raw/short/published.yaml"
+PAGE = "reports/demo.html"
+PUBLISHED = "data/raw/demo/published.yaml"
 DIAGNOSED = {"diagnosis", "compensation", "history", "report"}
 USING = {"comparison", "simulation", "criticism", "extension", *DIAGNOSED}
 ESTIMATION = {"accelerometer", "gyroscope", "studies", *USING}
@@ -54,6 +44,7 @@ class Workflow:
 
     home: Path
     data: Path
+    said: str = ""  # by the first `make report`
 
     def command(self, *arguments: str) -> list[str]:
         """Snakemake as `make report` calls it."""
@@ -70,43 +61,39 @@ class Workflow:
         return set(re.findall(r"^(\w+) +\d+$", dry.stdout + dry.stderr, re.MULTILINE)) - {"total"}
 
     def beside(self, data: Path, *campaigns: str) -> Workflow:
-        """The same workflow on fresh data: the raw logs of the short campaign under other names."""
+        """The same workflow on fresh data: the raw logs of a short campaign by these names."""
         for campaign in campaigns:
-            shutil.copytree(self.data / "data/raw/short", data / "data/raw" / campaign)
+            simulate(short(), data / "data/raw" / campaign)
         return Workflow(self.home, data)
-
-
-def short() -> dict[str, Any]:
-    """The demo, cut short: rests of 20 s, quick turns."""
-    document = demo(handling={"still_s": 5})
-    document["start"] = {**document["start"], "pause_s": 10}
-    plan = [
-        {**item, "seconds": 20}
-        if item["do"] == "rest"
-        else {**item, "rate_deg_s": 30, "accel_deg_s2": 30}
-        for item in document["campaign"]["plan"]
-    ]
-    return {**document, "campaign": {**document["campaign"], "plan": plan}}
 
 
 @pytest.fixture(scope="module")
 def workflow(tmp_path_factory: pytest.TempPathFactory) -> Workflow:
-    """A copy of the project in which the short campaign was run once, up to page and export."""
-    made = Workflow(tmp_path_factory.mktemp("home"), tmp_path_factory.mktemp("data"))
-    for name in COPIED:
-        copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy2
-        copy(ROOT / name, made.home / name)
-    (made.home / "data").mkdir()
-    shutil.copy2(ROOT / "data/instruments.yaml", made.home / "data")
-    (made.data / "data/simulated").mkdir(parents=True)
-    YAML(typ="safe").dump(short(), made.data / "data/simulated/short.yaml")
-    (made.data / "data/raw/short").mkdir(parents=True)
-    (made.data / PUBLISHED).write_text(
-        "source: data sheet\ngyro: {bias_x: {value: 0.5, unit: deg/h}}\n"
-    )
-    first = made.run(PAGE, EXPORT)
+    """A checkout of what git has, as it stands here, in which `make report` was run once."""
+    if not (ROOT / ".git").exists() or shutil.which("git") is None:
+        pytest.skip("needs a git checkout, which it copies")
+    home = tmp_path_factory.mktemp("checkout")
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True)
+    for name in filter(None, listed.stdout.split("\0")):
+        if (ROOT / name).is_file():
+            (home / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, home / name)
+    # With the environment that this runs in: to make one is what CI begins with.
+    (home / ".venv").symlink_to(sys.prefix)
+    os.utime(home / "requirements.lock", (0, 0))
+    (home / "data/raw/demo").mkdir(parents=True)
+    (home / PUBLISHED).write_text("source: data sheet\ngyro: {bias_x: {value: 0.5, unit: deg/h}}\n")
+    first = make(home, "report")
     assert first.returncode == 0, first.stdout + first.stderr
-    return made
+    assert "(100%) done" in first.stderr
+    return Workflow(home, home, first.stdout)
+
+
+def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """`make` as from a fresh shell: what an outer `make test` hands down is left out."""
+    passed_on = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "MAKEOVERRIDES", "CAMPAIGN")
+    env = {name: value for name, value in os.environ.items() if name not in passed_on}
+    return subprocess.run(["make", *arguments], cwd=folder, env=env, capture_output=True, text=True)
 
 
 # ---- one story
@@ -120,12 +107,12 @@ def test_the_rules_are_the_stages_with_what_they_declare(workflow: Workflow) -> 
         row = dict(zip(names, line.split("\t"), strict=True))
         outputs.setdefault(row["rule"], set()).add(row["output_file"])
         if row["rule"] in set(ORDER) - {"pdf"}:
-            assert f"python -m stages.{row['rule']} data/derived/short" in row["shellcmd"]
-    assert set(outputs) - {"pdf"} == {*ORDER, "laboratory_short"} - {"pdf"}
+            assert f"python -m stages.{row['rule']} data/derived/demo" in row["shellcmd"]
+    assert set(outputs) - {"pdf"} == {*ORDER, "laboratory_demo"} - {"pdf"}
     for stage in set(ORDER) - {"pdf"}:
         declared: Declared = import_module(f"stages.{stage}.declared").DECLARED
-        expected = {f"data/derived/short/{stage}/{table}.parquet" for table in declared.writes}
-        expected |= {f"reports/short.{ending}" for ending in declared.documents}
+        expected = {f"data/derived/demo/{stage}/{table}.parquet" for table in declared.writes}
+        expected |= {f"reports/demo.{ending}" for ending in declared.documents}
         assert outputs[stage] == expected
 
 
@@ -147,7 +134,7 @@ def test_a_file_that_is_only_newer_changes_nothing(workflow: Workflow) -> None:
 @pytest.mark.parametrize(
     ("setting", "rerun"),
     [
-        ("segment: {margin: 0.6}", AFTER_DECODE - {"quality"}),
+        pytest.param("segment: {margin: 0.6}", AFTER_DECODE - {"quality"}, marks=pytest.mark.slow),
         ("noise: {from_hz: 0.6}", {"noise", *ESTIMATION}),
         ("accelerometer: {averaging_steps: 5}", {"accelerometer", *USING}),
     ],
@@ -163,13 +150,18 @@ def test_a_changed_setting_reruns_its_stage_and_what_follows(
 @pytest.mark.parametrize(
     ("file", "rerun"),
     [
-        ("inertial/formats/columns/text_reader.py", {"decode", *AFTER_DECODE}),
-        ("inertial/estimation/spectrum.py", {"noise", *ESTIMATION}),
+        pytest.param(
+            *("inertial/formats/columns/text_reader.py", {"decode", *AFTER_DECODE}),
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            *("inertial/estimation/spectrum.py", {"noise", *ESTIMATION}), marks=pytest.mark.slow
+        ),
         ("inertial/estimation/least_squares.py", ESTIMATION),
         ("inertial/text/numbers.py", {"plan", "decode", *AFTER_DECODE}),
         ("inertial/text/cause_names.py", {"criticism", "extension", *DIAGNOSED}),
         ("stages/report/report.css", {"report"}),
-        ("laboratory/counts.py", {"laboratory_short", "plan", "decode", *AFTER_DECODE}),
+        ("laboratory/counts.py", {"laboratory_demo", "plan", "decode", *AFTER_DECODE}),
     ],
 )
 def test_a_changed_line_of_code_reruns_what_rests_on_it(
@@ -203,27 +195,32 @@ def test_a_killed_run_leaves_no_half_table_and_the_next_run_completes(
 ) -> None:
     killed = workflow.beside(tmp_path, "killed")
     derived = tmp_path / "data/derived/killed"
-    goal = "data/derived/killed/gyroscope/parameters.parquet"
+    goals = [f"data/derived/killed/{of}/parameters.parquet" for of in ORDER[5:7]]
     for stage in ("decode", "noise", "gyroscope"):
-        kill_within(stage, killed, derived, goal)
+        kill_within(stage, killed, derived, goals)
         assert list((derived / stage).glob("*.part"))
         assert not list((derived / stage).glob("*.parquet"))
         for table in derived.rglob("*.parquet"):
             pq.read_table(table)
 
-    last = killed.run(goal)
+    last = killed.run(*goals)
     assert last.returncode == 0, last.stderr
-    assert (tmp_path / goal).is_file()
+    assert all((tmp_path / goal).is_file() for goal in goals)
     assert not list(tmp_path.rglob("*.part"))
+    # The goal of `make check`: from nothing but the logs the first seven stages, and no other.
+    recipe = (ROOT / "Makefile").read_text().partition("\ncheck:")[2].partition("\n\n")[0]
+    assert "data/derived/$$CAMPAIGN/{accelerometer,gyroscope}/parameters.parquet" in recipe
+    assert {path.name for path in derived.iterdir()} == set(ORDER[:7])
+    assert check(["--campaign", "killed", "--data", str(tmp_path / "data")]) == 0
 
 
-def kill_within(stage: str, workflow: Workflow, derived: Path, goal: str) -> None:
+def kill_within(stage: str, workflow: Workflow, derived: Path, goals: list[str]) -> None:
     """Start a run and kill it with all it started (-9) while `stage` is at work.
 
     A stage opens the parts of its tables before it works, and moves them at its end.
     """
     run = subprocess.Popen(
-        workflow.command(goal),
+        workflow.command(*goals),
         start_new_session=True,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
@@ -245,7 +242,7 @@ def test_a_bad_campaign_is_refused_by_name_and_a_good_one_beside_it_is_finished(
     file.write_text(file.read_text().replace("serial:", "sreial:"))
     line = 1 + [text.startswith("sreial:") for text in file.read_text().splitlines()].index(True)
 
-    goals = [f"data/derived/{name}/gyroscope/parameters.parquet" for name in ("bad", "good")]
+    goals = [f"data/derived/{name}/segment/segments.parquet" for name in ("bad", "good")]
     done = both.run(*goals)
 
     assert done.returncode != 0
@@ -284,13 +281,6 @@ def test_an_unknown_setting_is_refused_by_name(workflow: Workflow, tmp_path: Pat
 # ---- make
 
 
-def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """`make` as from a fresh shell: what an outer `make test` hands down is left out."""
-    passed_on = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "MAKEOVERRIDES", "CAMPAIGN")
-    env = {name: value for name, value in os.environ.items() if name not in passed_on}
-    return subprocess.run(["make", *arguments], cwd=folder, env=env, capture_output=True, text=True)
-
-
 @pytest.mark.parametrize(
     "name",
     [
@@ -316,42 +306,35 @@ def test_an_odd_name_of_a_campaign_is_refused_and_not_run(tmp_path: Path, name: 
     assert [path.name for path in tmp_path.iterdir()] == ["Makefile"]
 
 
-def test_make_report_in_a_clean_clone(tmp_path: Path) -> None:
-    if not (ROOT / ".git").exists() or shutil.which("git") is None:
-        pytest.skip("needs a git checkout, which it clones")
-    clone = tmp_path / "clone"
-    subprocess.run(["git", "clone", "--quiet", ROOT, clone], check=True)
-    # With the environment that this runs in: to make one is what CI begins with.
-    (clone / ".venv").symlink_to(sys.prefix)
-    os.utime(clone / "requirements.lock", (0, 0))
-
-    first = make(clone, "report")
-    assert first.returncode == 0, first.stdout + first.stderr
-    assert "(100%) done" in first.stderr
+def test_make_report_in_a_clean_checkout(workflow: Workflow) -> None:
+    home, said = workflow.home, workflow.said
     pages = ["reports/demo.html", *(["reports/demo.pdf"] if has_pango() else [])]
     for page in pages:
-        assert (clone / page).stat().st_size > 100_000
-    *_, exported, path = first.stdout.splitlines()
+        assert (home / page).stat().st_size > 100_000
+    *_, exported, path = said.splitlines()
     assert path == f"The report: {' '.join(pages)}"
     assert exported.startswith("For other programs: reports/demo.calibration.json ")
     for file in exported.partition(": ")[2].split():
-        assert (clone / file).stat().st_size > 100
-    verdict, _, _ = (clone / "reports/demo.txt").read_text().partition("\nCampaign:")
+        assert (home / file).stat().st_size > 100
+    verdict, _, _ = (home / "reports/demo.txt").read_text().partition("\nCampaign:")
     assert verdict.startswith("SIMULATED")
-    assert f"{verdict}\n{exported}\n{path}\n" in first.stdout
+    assert f"{verdict}\n{exported}\n{path}\n" in said
 
-    shutil.copytree(clone / "data/raw/demo", clone / "data/raw/page")
-    (clone / "data/raw/page/x-up.asc").write_bytes(b"<!DOCTYPE html>\n<html>\n")
-    for target in ("report", "check"):
-        refused = make(clone, target, "CAMPAIGN=page")
-        assert refused.returncode == 2
-        assert "decode: x-up.asc\n  found:    a page of HTML" in refused.stderr
-        assert_it_is_the_last_on_the_screen(refused.stderr)
-
-    second = make(clone, "report")
+    second = make(home, "report")
     assert "Nothing to be done" in second.stderr
     assert f"{verdict}\n{exported}\n{path}\n" in second.stdout
     assert ".venv" not in second.stdout  # it was not made again
+
+
+@pytest.mark.parametrize("target", ["report", "check"])
+def test_a_log_of_another_kind_is_refused_by_make(workflow: Workflow, target: str) -> None:
+    name = f"page-{target}"
+    raw = simulate(short(), workflow.home / "data/raw" / name)
+    (raw / "x-up.asc").write_bytes(b"<!DOCTYPE html>\n<html>\n")
+    refused = make(workflow.home, target, f"CAMPAIGN={name}")
+    assert refused.returncode == 2
+    assert "decode: x-up.asc\n  found:    a page of HTML" in refused.stderr
+    assert_it_is_the_last_on_the_screen(refused.stderr)
 
 
 def has_pango() -> bool:

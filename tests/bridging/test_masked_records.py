@@ -19,7 +19,14 @@ def masked(results: chain.Results, *stretches: tuple[int, int], **more) -> dict[
     return chain.again(results, "segment", masks=pd.DataFrame(rows))
 
 
-@pytest.mark.parametrize("axis", [None, "z", "x"], ids=["all channels", "gyro z", "gyro x"])
+@pytest.mark.parametrize(
+    "axis",
+    [
+        pytest.param(None, id="all channels"),
+        pytest.param("z", id="gyro z", marks=pytest.mark.slow),
+        pytest.param("x", id="gyro x"),
+    ],
+)
 @pytest.mark.parametrize(
     ("stretches", "most"),
     [

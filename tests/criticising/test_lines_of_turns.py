@@ -233,13 +233,13 @@ def test_without_a_turn_it_says_so():
         assert "no whole turn at a steady rate" in row["sentence"]
 
 
-def test_what_the_laboratory_hides_in_a_campaign_is_named(tmp_path):
+def test_what_the_laboratory_hides_in_a_campaign_is_named():
     effects = {
         "table_ripple": {"order": 36, "amplitude_arcsec": 0.5, "phase_deg": 30},
         "oscillation": {"frequency_hz": 20, "amplitude_rad_s": 0.01, "axis": "+x"},
     }
-    campaign = chain.simulate(chain.short(effects=effects, seed=5), tmp_path / "campaign")
-    results = chain.run(campaign, tmp_path / "derived", "criticism", chain.BESIDE)
+    document = chain.short(effects=effects, seed=5)
+    results = chain.in_memory_of(document, "criticism", chain.BESIDE)
     scores = results["criticism/scores"].set_index("effect")
     assert scores["named"][["table_ripple", "oscillation"]].all()
     assert not scores.loc["table_eccentricity", "named"]

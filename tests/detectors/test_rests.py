@@ -160,11 +160,12 @@ KINDS = [
 ]
 
 
+@pytest.mark.parametrize("seeds", [range(8), pytest.param(range(8, 25), marks=pytest.mark.slow)])
 @pytest.mark.parametrize("kind", KINDS)
-def test_noise_drift_and_settling_are_no_jump(kind):
+def test_noise_drift_and_settling_are_no_jump(kind, seeds):
     jumps = [
         (seed, event)
-        for seed in range(25)
+        for seed in seeds
         for name, event in seen(coloured(kind, seed))
         if name == "bias_jump"
     ]

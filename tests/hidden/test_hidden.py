@@ -46,8 +46,7 @@ def test_a_plan_shows_what_is_hidden_in_it(plan):
 
 
 def test_a_draw_can_be_made_again_and_is_as_large_as_it_says():
-    numbers = range(2 * CYCLE)
-    for one in (draw(number, size) for number in numbers):
+    for one in (draw(number, size) for number in range(CYCLE)):
         assert one == draw(one.number, size)
         laboratory.specify(one.document())
         for name, values in one.truth.items():
