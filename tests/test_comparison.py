@@ -268,7 +268,7 @@ def test_a_mistake_in_published_values_is_refused_with_place_and_cure(mistake, t
 def test_published_values_beside_the_campaign_pass_through_the_chain(tmp_path):
     campaign = chain.simulate(chain.short(seed=5), tmp_path / "told")
     (campaign / "published.yaml").write_text(RIGHT, encoding="utf-8")
-    results = chain.run(campaign, tmp_path / "derived", "history", ("studies",))
+    results = chain.run(campaign, tmp_path / "derived", until="history")
     assert len(results["plan/published"]) == 4
     assert len(of_kind(results["history/published_differences"], "published")) == 4
     assert "published.yaml" not in list(results["plan/inputs"]["file"])

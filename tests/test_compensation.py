@@ -242,7 +242,7 @@ def compensated_before(tmp_path_factory) -> chain.Results:
     campaign = chain.simulate(chain.short(seed=3), folder / "before")
     file = campaign / "campaign.yaml"
     file.write_text(f"compensated: true\n{file.read_text(encoding='utf-8')}", encoding="utf-8")
-    return chain.run(campaign, folder / "derived", "compensation", ("studies",))
+    return chain.run(campaign, folder / "derived", "compensation")
 
 
 def test_a_second_compensation_is_refused_with_a_finding_and_all_else_runs(compensated_before):
