@@ -17,7 +17,13 @@ from inertial.effects.temperature_model import (
     polynomials,
 )
 from inertial.estimation.least_squares import EffectInformation
-from inertial.estimation.temperature import SensorEquations, orders
+from inertial.estimation.temperature import (
+    Columns,
+    SensorEquations,
+    best_knots,
+    orders,
+    with_knots,
+)
 from inertial.physics.drift import delay
 from inertial.physics.effect import Effect, Reading, Truth
 from inertial.physics.motion import stretches
@@ -99,6 +105,45 @@ def test_a_bend_is_a_knot_at_its_temperature(plan):
     assert set(models) == {"gyro"}
     assert orders_of(models["gyro"]) == {"bias_y": 0}
     assert models["gyro"].knots["bias_y"] == pytest.approx(MIDDLE + 7.0, abs=1.0)
+
+
+def test_bends_of_several_parameters_leave_no_random_walk(plan):
+    """What a cubic leaves of a bend looks like a random walk, or a bias per log."""
+
+    def bent(above: Array, read: Array, time: Array) -> Array:
+        change = np.zeros_like(read)
+        change[:, 0] = 2e-4 * np.maximum(above - 3.0, 0.0)
+        change[:, 1] = -1e-4 * above + 3e-4 * np.maximum(above + 5.0, 0.0)
+        return change
+
+    dense = soaks.soak(np.arange(-20, 61, 10), 5.0)
+    campaign = soaks.recorded(dense, 23, bent)
+    effects = [CATALOGUE["accel_bias_ramp"]]
+    selection = select_with_temperature(campaign, effects, LEVEL, TEMPERATURE_LEVEL, np.inf)
+    (cause,) = selection.named.causes
+    (model,) = selection.effects
+    assert (cause.effect, cause.verdict, selection.random_walks) == (SEEN[0], "found", (0.0, 0.0))
+    assert isinstance(model, TemperatureModel)
+    assert orders_of(model) == {"bias_x": 0, "bias_y": 0}
+    assert model.knots["bias_x"] == pytest.approx(MIDDLE + 3.0, abs=1.0)
+    assert model.knots["bias_y"] == pytest.approx(MIDDLE - 5.0, abs=1.0)
+
+
+def test_a_knot_that_may_be_anywhere_is_in_the_middle_and_has_no_shift():
+    """A single temperature below it: any knot between −20 and 30 °C describes the readings."""
+
+    def bent(above: Array, read: Array, time: Array) -> Array:
+        change = np.zeros_like(read)
+        change[:, 2] = 1e-3 * np.maximum(above, 0.0)
+        return change
+
+    few = soaks.soak((-20, 30, 36, 42, 48, 54, 60), 20.0)
+    for rows in few.rows:
+        rows["temperature"] = ICE_POINT + np.round(rows["temperature"] - ICE_POINT)
+    model = found(few, 29, bent)["accel"]
+    assert orders_of(model) == {"bias_z": 0}
+    assert Piece("bias_z", SHIFT) not in model.pieces
+    assert MIDDLE - 20 < model.knots["bias_z"] < MIDDLE + 5
 
 
 def test_cross_terms_are_functions_of_temperature(plan):
@@ -242,6 +287,52 @@ def test_the_degree_is_right_from_an_snr_of_eight_on(order):
         lines += order > 1 and given["scale_y"] < 2
     assert hits >= 57
     assert not lines
+
+
+def test_what_is_given_is_no_gain_of_a_degree():
+    """A large effect that is fitted as well; the functions are constants."""
+    rng = np.random.default_rng(3)
+    whole = information()
+    beta = np.zeros(36)
+    beta[0] = 100 / np.sqrt(whole[0, 0])
+    right = whole @ beta + np.linalg.cholesky(whole) @ rng.standard_normal(len(whole))
+    equations = EffectInformation(("",) * len(whole), whole, right, 0.0, 100)
+    tested = SensorEquations(equations, np.diag(whole), 1.0, np.inf, TEMPERATURE_LEVEL, (0,))
+    others = {f: own for f, own in COLUMNS.items() if 0 not in own}
+    assert not any(orders(tested, others).values())
+
+
+# ---- knots on drawn normal equations of one function
+
+ABOVE = np.linspace(-1, 1, 40)
+TRIED = np.round(np.linspace(-0.8, 0.8, 33), 3).tolist()
+BENDS = np.stack([np.maximum(ABOVE - at, 0.0) for at in TRIED], axis=1)
+SHAPED = np.column_stack([ABOVE, ABOVE**2, ABOVE**3, BENDS])
+
+
+@pytest.mark.parametrize(
+    ("shape", "is_knot"), [(ABOVE**2, False), (ABOVE**3, False), (np.maximum(ABOVE, 0), True)]
+)
+def test_a_knot_is_told_from_a_parabola_and_a_cubic(shape, is_knot):
+    """At a signal-to-noise ratio of 40, which a line with a knot leaves at least 4 of."""
+    rng = np.random.default_rng(31)
+    design = SHAPED - SHAPED.mean(axis=0)
+    own = shape - np.polyval(np.polyfit(ABOVE, shape, 1), ABOVE)
+    size = 40 / np.linalg.norm(own)
+    columns = Columns(
+        {"bias_x": (0, 1, 2)}, {"bias_x": dict(zip(TRIED, range(3, 36), strict=True))}
+    )
+    hits = 0
+    for _draw in range(20):
+        right = design.T @ (size * shape + rng.standard_normal(len(ABOVE)))
+        whole = design.T @ design
+        equations = EffectInformation(("",) * 36, whole, right, 0.0, 40)
+        tested = SensorEquations(equations, np.diag(whole), 1.0, np.inf, TEMPERATURE_LEVEL)
+        cubic = {"bias_x": (0, 1, 2)}
+        best = best_knots(tested, columns, cubic, {"bias_x": TRIED})
+        hits += bool(with_knots(tested, columns, cubic, best)) == is_knot
+        assert not is_knot or abs(best["bias_x"]) < 0.15
+    assert hits == 20
 
 
 # ---- what the model adds to a reading
