@@ -353,7 +353,11 @@ def test_two_logs_with_the_same_stamps_are_the_same_campaign(simple, simple_resu
 
 @pytest.mark.parametrize(
     ("gyro_hz", "late_s"),
-    [(100, 0.0037), (73, 0.0), pytest.param(400, 0.0, marks=pytest.mark.slow)],
+    [
+        pytest.param(100, 0.0037, marks=pytest.mark.slow),
+        (73, 0.0),
+        pytest.param(400, 0.0, marks=pytest.mark.slow),
+    ],
 )
 def test_two_logs_with_stamps_of_their_own_are_joined(simple, gyro_hz, late_s, tmp_path):
     """The motion is the same; stamps, rates and noise of the gyros are others."""

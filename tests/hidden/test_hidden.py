@@ -126,6 +126,7 @@ def test_of_what_is_in_no_catalogue_there_is_a_warning():
     assert warned(run(one))
 
 
+@pytest.mark.slow
 def test_power_on_sufficient_statistics_reaches_its_limit():
     counted = tried("positions", "gyro_bias_ramp", 6.0, 60)
     assert counted["power"] / 60 > counted["limit"] - 0.05 - 2 * np.sqrt(0.25 / 60)

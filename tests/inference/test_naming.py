@@ -94,7 +94,10 @@ def test_the_limit_is_the_one_of_the_design_study():
     assert power_limit(0.0, 3, 24, 0.01) == pytest.approx(0.01 / 24)
 
 
-@pytest.mark.parametrize(("plan", "snr", "least"), [("b", 8.0, 0.93), ("c", 15.0, 0.97)])
+@pytest.mark.parametrize(
+    ("plan", "snr", "least"),
+    [("b", 8.0, 0.93), pytest.param("c", 15.0, 0.97, marks=pytest.mark.slow)],
+)
 def test_the_true_cause_is_in_the_class(plan: str, snr: float, least: float):
     p, rng = plan_of(plan), np.random.default_rng(4)
     trials = 12
@@ -106,7 +109,9 @@ def test_the_true_cause_is_in_the_class(plan: str, snr: float, least: float):
     assert right >= trials * least - 2.5 * np.sqrt(trials * least * (1 - least))
 
 
-@pytest.mark.parametrize(("number", "least"), [(2, 0.94), (3, 0.92)])
+@pytest.mark.parametrize(
+    ("number", "least"), [pytest.param(2, 0.94, marks=pytest.mark.slow), (3, 0.92)]
+)
 def test_several_causes_at_once_are_all_named(number: int, least: float):
     p, rng = plan_of("c"), np.random.default_rng(5)
     trials, right = 5, 0
