@@ -21,7 +21,7 @@ Booleans = NDArray[np.bool_]
 
 MEAN_OF = 4  # values of a level make one of the next
 OVERSAMPLED = 16  # sampling rate of a level over its highest frequency, except for the first
-SEGMENTS = (256, 1024)  # values of a segment, at the least and at the most
+SEGMENTS = (64, 1024)  # values of a segment, at the least and at the most
 LONGEST_SEGMENTS = 4  # segments in the longest stretch, at the least
 FIRST_BIN = 2.5  # bins: below it, what is slower than a segment leaks in
 BATCH = 16  # segments that are transformed together

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from inertial.campaign.noise_levels import drift_of
 from inertial.estimation.allan import Allan, AllanSums, factors_up_to
-from inertial.estimation.multiresolution import MIN_WHOLE, Bins, Powers
+from inertial.estimation.multiresolution import MIN_WHOLE, Powers
 from inertial.estimation.noise_model import TERMS, NoiseModel
 from inertial.estimation.noise_terms import NoiseTerms, noise_terms
+from inertial.estimation.welch import Spectrum, WelchSums, segment_for
 from inertial.tables import AXES
 
 Array = NDArray[np.float64]
@@ -43,6 +44,7 @@ class _Pool:
     interval: float
     sums: AllanSums
     powers: Powers
+    welch: WelchSums
     stretch: Stretch | None = None
     samples: int = 0
 
@@ -51,20 +53,25 @@ class _Pool:
         factors = factors_up_to(max(int(LONGEST_SHARE * longest), 1), PER_DECADE)
         channels = sum(recorded)
         return cls(
-            sensor, recorded, interval, AllanSums(channels, factors), Powers(channels, interval)
+            sensor,
+            recorded,
+            interval,
+            AllanSums(channels, factors),
+            Powers(channels, interval),
+            WelchSums(channels, interval, segment_for([longest])),
         )
 
     def add(self, stretch: Stretch, values: Array) -> None:
         if stretch != self.stretch:
             self.end()
             self.stretch = stretch
-        self.sums.add(values)
-        self.powers.add(values)
+        for sums in (self.sums, self.powers, self.welch):
+            sums.add(values)
         self.samples += len(values)
 
     def end(self) -> None:
-        self.sums.end()
-        self.powers.end()
+        for sums in (self.sums, self.powers, self.welch):
+            sums.end()
 
     @property
     def channels(self) -> list[str]:
@@ -115,13 +122,17 @@ class StaticStretches:
 
 @dataclass(frozen=True)
 class SensorNoise:
-    """The noise of the c recorded channels of a sensor; `seconds`: of the longest stretch."""
+    """The noise of the c recorded channels of a sensor.
+
+    `interval`: s, between samples; `seconds`: of the longest stretch.
+    """
 
     sensor: str
     channels: list[str]
     terms: list[NoiseTerms | None]
     allan: Allan
-    bins: Bins
+    spectrum: Spectrum
+    interval: float
     seconds: float
 
     def drifts(self) -> Iterator[tuple[str, dict[str, float]]]:
@@ -150,19 +161,18 @@ class SensorNoise:
 
     def spectrum_rows(self) -> Iterator[Row]:
         """Rows of the table."""
-        bins = self.bins
+        spectrum = self.spectrum
         for i, (channel, terms) in enumerate(zip(self.channels, self.terms, strict=True)):
             if terms is None:
                 continue
-            model = terms.model.variances @ bins.shapes
-            within = [(low <= bins.frequency) & (bins.frequency <= up) for low, up in terms.lines]
-            line = np.any(within, axis=0) if within else np.zeros(len(bins.frequency), bool)
-            for j, frequency in enumerate(bins.frequency.tolist()):
+            model = terms.model.density(spectrum.frequency, self.interval)
+            line = spectrum.in_ranges(terms.lines)
+            for j, frequency in enumerate(spectrum.frequency.tolist()):
                 yield {
                     "channel": channel,
                     "frequency": frequency,
-                    "density": float(bins.density[j, i]),
-                    "degrees": float(bins.degrees[j]),
+                    "density": float(spectrum.density[j, i]),
+                    "degrees": float(spectrum.degrees[j]),
                     "model": float(model[j]),
                     "line": bool(line[j]),
                 }
@@ -196,7 +206,8 @@ def _noise_of(pool: _Pool) -> SensorNoise:
         pool.channels,
         terms,
         pool.sums.result(pool.interval, models),
-        pool.powers.bins(),
+        pool.welch.spectrum(),
+        pool.interval,
         max(pool.powers.seconds),
     )
 

@@ -65,6 +65,6 @@ def test_a_level_of_means_continues_the_one_below():
 
 
 def test_segments_fit_into_the_stretches():
-    assert segment_for([]) == 256
+    assert segment_for([]) == 64
     assert segment_for([3000]) == 512
     assert segment_for([10**7, 300]) == 1024
