@@ -98,3 +98,16 @@ def test_the_temperature_of_every_rest_is_known_where_the_log_tells_it(
 def means(blocks: pd.DataFrame, columns: list[str]) -> pd.DataFrame:
     """The mean of every manoeuvre."""
     return blocks.groupby("manoeuvre")[columns].mean()
+
+
+def test_a_turn_beyond_both_positions_is_told_by_its_peak(
+    tumbled: tuple[laboratory.Recording, chain.Results],
+) -> None:
+    """After 340° the table completes the circle before it comes back: y passes zero, z +g."""
+    performed = tumbled[1]["segment/performed"].set_index("manoeuvre")
+    peaks = performed[["peak_x", "peak_y", "peak_z"]]
+    back = peaks.loc["tumble-z-back-17"]
+    assert abs(back["peak_y"]) < 0.2  # m/s², of −3.3 at both ends
+    assert back[["peak_x", "peak_z"]].isna().all()  # 0.06 g is no turn
+    own = peaks[peaks.index.str.startswith("tumble-z-")]
+    assert own.drop("tumble-z-back-17").iloc[1:].isna().all(axis=None)

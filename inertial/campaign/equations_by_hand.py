@@ -156,5 +156,5 @@ def motion_of(
         surveyed=np.zeros(n, bool),
         temperature=mean(recorded.temperature),
         vibration=np.zeros((n, 3)),
-        sides=unknown,
+        peaks=unknown,
     )

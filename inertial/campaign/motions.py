@@ -198,7 +198,7 @@ class CampaignMotions:
             run=np.array([self._runs[name]]),
             temperature=np.array([position.mean_of(position.temperature)]),
             vibration=self._data.noise.of_samples(name, "rest", ACCEL)[None],
-            sides=self._sides(name, 1),
+            peaks=self._peaks(name, 1),
         )
 
     def turning(self, rotation: Recorded, turn: RateSegment) -> Motion:
@@ -218,12 +218,12 @@ class CampaignMotions:
             run=np.full(len(time), self._runs[name]),
             temperature=blocks.temperature,
             vibration=np.tile(vibration, (len(time), 1)),
-            sides=self._sides(name, len(time)),
+            peaks=self._peaks(name, len(time)),
         )
 
-    def _sides(self, name: str, count: int) -> Array:
+    def _peaks(self, name: str, count: int) -> Array:
         done = self._data.performed.get(name)
-        return np.tile(np.full(3, np.nan) if done is None else done.sides, (count, 1))
+        return np.tile(np.full(3, np.nan) if done is None else done.peaks, (count, 1))
 
 
 def positions_of(plan: Sequence[Manoeuvre]) -> list[str]:
@@ -255,7 +255,7 @@ def mean_motions(motion: Motion, merged: Merged) -> list[Motion]:
     # The acceleration at a lever arm is quadratic in the rate, so the rate is the rms.
     means["rate"] = np.sign(means["rate"]) * np.sqrt(merged.mean(motion.rate**2))
     means["seconds"] = merged.seconds
-    for name in ("surveyed", "position", "run", "sides"):
+    for name in ("surveyed", "position", "run", "peaks"):
         means[name] = getattr(motion, name)[merged.starts]
     return [
         Motion(about=motion.about, **{name: values[i : i + 1] for name, values in means.items()})

@@ -115,15 +115,15 @@ class Performed:
     seconds: float = 0.0
     bridged: bool = False
     lost: bool = False
-    side_x: float | None = None
-    side_y: float | None = None
-    side_z: float | None = None
+    peak_x: float | None = None
+    peak_y: float | None = None
+    peak_z: float | None = None
 
     @property
-    def sides(self) -> tuple[float, ...]:
-        """The side, ±1, on which each accelerometer was last before it, (3,); NaN: not known."""
-        sides = (self.side_x, self.side_y, self.side_z)
-        return tuple(np.nan if side is None else side for side in sides)
+    def peaks(self) -> tuple[float, ...]:
+        """Of the force along each axis on the way to it, m/s², (3,); NaN where there is none."""
+        peaks = (self.peak_x, self.peak_y, self.peak_z)
+        return tuple(np.nan if peak is None else peak for peak in peaks)
 
 
 def performed_of(table: pd.DataFrame) -> dict[str, Performed]:

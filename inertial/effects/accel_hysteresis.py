@@ -9,39 +9,50 @@ from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
-MIN_REVERSAL = STANDARD_GRAVITY / 2  # m/s², of a force that reverses the hysteresis
+WIDTHS = (np.arange(20) + 0.5) / 20 * STANDARD_GRAVITY  # m/s², at which contacts give way
 
 
-def remembered(force: Array, order: Array, sides: Array) -> Array:
-    """The sign of the last force beyond half of gravity along each axis, (n, 3), by `order`.
+def hysteresis(force: Array, order: Array, peaks: Array) -> Array:
+    """Rayleigh's hysteresis of the force along each axis, by `order`, (n, 3).
 
-    0 before the first one. Between two manoeuvres the table may pass through any attitude: what
-    was measured of that, `sides` (n, 3), is known at the start of a manoeuvre, or NaN.
+    1 and −1 are its values at zero force after g and −g. Contacts without an elastic threshold give
+    way at forces up to g, evenly many at each; at first none is loaded. Between two manoeuvres the
+    table may pass through any attitude: `peaks`, (n, 3), m/s², see `Motion`.
     """
     sequence = np.argsort(order, kind="stable")
-    signs = np.where(np.abs(force) > MIN_REVERSAL, np.sign(force), 0.0)[sequence]
+    force, peaks = force[sequence], peaks[sequence]
     starts = np.diff(np.floor(order[sequence]), prepend=-1.0) != 0
-    measured = np.where(starts[:, None], np.nan_to_num(sides[sequence]), 0.0)
-    signs = np.where(signs != 0, signs, measured)
-    place = np.where(signs != 0, np.arange(len(signs))[:, None], 0)
-    last = np.maximum.accumulate(place, axis=0)
-    result = np.zeros_like(signs)
-    result[sequence] = np.take_along_axis(signs, last, axis=0)
-    return result
+    changes = starts | np.append(True, np.any(np.diff(force, axis=0) != 0, axis=1))
+    loaded = np.zeros((3, len(WIDTHS)))
+    means = []
+    for row in np.flatnonzero(changes):
+        if starts[row]:
+            known = np.isfinite(peaks[row])
+            loaded[known] = _followed(loaded, peaks[row])[known]
+        loaded = _followed(loaded, force[row])
+        means.append(loaded.mean(axis=1))
+    result = np.zeros_like(force)
+    result[sequence] = np.array(means)[np.cumsum(changes) - 1] - force / 2
+    return 4 / STANDARD_GRAVITY * result
+
+
+def _followed(loaded: Array, force: Array) -> Array:
+    """The loads of the contacts of three axes after a force, (3, k)."""
+    return np.clip(loaded, force[:, None] - WIDTHS, force[:, None] + WIDTHS)
 
 
 class AccelHysteresis(Effect):
-    """f̃_i += h_i s_i (1 − |f_i|/g), s_i = ±1 the side on which axis i was last.
+    """f̃_i += h_i r_i, r_i Rayleigh's hysteresis of the force along axis i, 1 at the most.
 
-    A loop that is widest where the axis is level and closed at ±g. Shown by an axis that comes
-    to level from above and from below, in the order of the plan and by what the log has of the
-    moves between. A level axis is also what the
-    error of a set position moves, so the loop must exceed that.
+    After forces of ±g its loop is r = ±(1 − (f/g)²), widest where the axis is level and closed at
+    ±g; loops of smaller forces are narrower. Shown by an axis that comes to level from above and
+    from below, in the order of the plan and by what the log has of the moves between. A level axis
+    is also what the error of a set position moves, so the loop must exceed that.
     """
 
     name = "accel_hysteresis"
     cause = _("the suspension does not return quite to where it was before the load")
-    source = "IEEE Std 528-2019, 'hysteresis error'"
+    source = "IEEE Std 528-2019, 'hysteresis error'; Lord Rayleigh, Phil. Mag. 23, 1887, 225"
     parameters = tuple(
         Parameter(
             f"h_{axis}",
@@ -55,6 +66,5 @@ class AccelHysteresis(Effect):
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 5, 20, 50, 500)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        side = remembered(truth.force, motion.visit, motion.sides)
-        width = np.clip(1 - np.abs(truth.force) / STANDARD_GRAVITY, 0.0, 1.0)
-        return replace(reading, accel=reading.accel + values * side * width)
+        loop = hysteresis(truth.force, motion.visit, motion.peaks)
+        return replace(reading, accel=reading.accel + values * loop)

@@ -95,8 +95,8 @@ class Motion:
     `run`: (n,), which run of the instrument it is of, from switch-on to switch-off;
     `surveyed`: (n,), whether north is known from the table's heading and not from the gyros;
     `temperature`: (n,), K, and `vibration`: (n, 3), m/s², the standard deviation of the samples of
-    specific force; `sides`: (n, 3), the sign of the last specific force beyond g/2 along each axis
-    before the manoeuvre, as measured. These three are NaN where they are not known.
+    specific force; `peaks`: (n, 3), m/s², the last extreme of specific force along each axis on the
+    way to the manoeuvre. These three are NaN where they are not known.
     """
 
     time: Array
@@ -113,7 +113,7 @@ class Motion:
     surveyed: NDArray[np.bool_]
     temperature: Array
     vibration: Array
-    sides: Array
+    peaks: Array
 
     @property
     def omega(self) -> Array:

@@ -243,10 +243,10 @@ PERFORMED = Table(
         ),
         *(
             Column(
-                f"side_{axis}",
+                f"peak_{axis}",
                 DOUBLE,
-                "1",
-                "sign of the last specific force beyond g/2 before it, by the readings of its log;"
+                "m/s²",
+                "last extreme of specific force on the way to it beyond both ends, by the readings;"
                 " none where these do not show one",
                 BODY,
                 True,

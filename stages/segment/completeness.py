@@ -28,7 +28,7 @@ MAX_MASKED_SHARE = 0.1  # of the time of the ramps, or of a turn: what may be in
 # part of a ramp hides in the gap; on S0's turn the rate before and the rate after are then known
 # to 20 ppm each, better than the table keeps it.
 MIN_STEADY_S = 1.0
-MIN_SIDE_FORCE = STANDARD_GRAVITY / 2  # m/s², from which an accelerometer is on a side
+MIN_PEAK_FORCE = 0.1 * STANDARD_GRAVITY  # m/s², of a peak between two positions beyond both
 
 
 @dataclass(frozen=True)
@@ -361,17 +361,29 @@ def _steady_rate(moving: pd.DataFrame, about: Array) -> float | None:
     return float(np.average(about[steady], weights=moving["count"].to_numpy(np.float64)[steady]))
 
 
-def with_sides(performed: dict[str, Performed], located: Located) -> Iterator[Performed]:
-    """The manoeuvres with the side on which each accelerometer was last before, by the readings.
+def with_peaks(performed: dict[str, Performed], located: Located) -> Iterator[Performed]:
+    """The manoeuvres with the peak of the force along each axis on the way to them, as read.
 
     The table may turn an axis over between two positions, which the plan does not tell.
     """
     if located.axes.accel != AS_NAMED:
         return
-    forces = located.binned.forces
-    signs = np.where(np.abs(np.nan_to_num(forces)) > MIN_SIDE_FORCE, np.sign(forces), 0.0)
-    for name, place in located.matched.items():
-        if place is not None:
-            before = signs[: located.stretches[place].first].T
-            x, y, z = (next(iter(axis[axis != 0][::-1]), None) for axis in before)
-            yield replace(performed[name], side_x=x, side_y=y, side_z=z)
+    forces, since = located.binned.forces, 0
+    found = ((place, name) for name, place in located.matched.items() if place is not None)
+    for place, name in sorted(found):
+        stretch = located.stretches[place]
+        way = forces[max(since - 1, 0) : stretch.first + 1]
+        x, y, z = (_peak(axis) for axis in way.T)
+        yield replace(performed[name], peak_x=x, peak_y=y, peak_z=z)
+        since = stretch.after
+
+
+def _peak(force: Array) -> float | None:
+    """The last extreme that is clearly beyond both ends; None where there is none."""
+    force = force[np.isfinite(force)]
+    if len(force) < 3:
+        return None
+    low, high = sorted(force[[0, -1]])
+    found = [int(np.argmax(force))] if force.max() > high + MIN_PEAK_FORCE else []
+    found += [int(np.argmin(force))] if force.min() < low - MIN_PEAK_FORCE else []
+    return float(force[max(found)]) if found else None

@@ -128,7 +128,7 @@ def segment(
     for m in plan:
         performed[m.name] = completeness.with_clipped(performed[m.name], block_sums.clipped(m.name))
     for located in explained.located:
-        performed |= {done.manoeuvre: done for done in completeness.with_sides(performed, located)}
+        performed |= {done.manoeuvre: done for done in completeness.with_peaks(performed, located)}
     recorded = recorded_of(
         plan,
         explained,

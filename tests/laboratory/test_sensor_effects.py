@@ -277,15 +277,27 @@ def test_a_temperature_warms_up_drifts_and_jumps(performed: Performed) -> None:
 def test_hysteresis_keeps_the_side_that_was_last_up(performed: Performed) -> None:
     """z lies level after it was up, and after it was down; at first it has been neither.
 
-    Where it is up or down the loop is closed, to what gravity is short of 9.80665 m/s².
+    Where it is up or down the loop is closed, to what gravity is short of 9.80665 m/s²: s of it.
+    Contacts that give way at r have p = G − r up, and level again the smaller of r and G − r, of
+    which the means are G − 1/2 and 1/4 − s/2.
     """
+    s = 1 - G
     ups = ["+x", "+z", "+x", "-z", "+x"]
     plan = [rest(up, f"{k}") for k, up in enumerate(ups)]
     effects = {"accel_hysteresis": {"offset_micro_g": [0, 0, 20]}}
     recording = performed(*plan, effects=effects)
-    for k, share in enumerate([0, 1 - G, 1, G - 1, -1]):
+    for k, share in enumerate([0, -2 * s, 1 - 2 * s, 2 * s, 2 * s - 1]):
         off = deviation(recording, f"{k}", "accelerometer")
         assert off[:, 2] == pytest.approx(share * 20 * MICRO_G, abs=1e-11)
+
+
+def test_hysteresis_after_a_small_force_is_small(performed: Performed) -> None:
+    """Rayleigh's loop of half its reach has a quarter of its width; 30° is g/2, of ten contacts."""
+    oblique = [float(np.sqrt(0.75)), 0, 0.5]
+    plan = [rest(up, f"{k}") for k, up in enumerate(["+x", oblique, "+x"])]
+    recording = performed(*plan, effects={"accel_hysteresis": {"offset_micro_g": [0, 0, 20]}})
+    off = deviation(recording, "2", "accelerometer")
+    assert off[:, 2] == pytest.approx(20 * MICRO_G / 4, rel=0.05)
 
 
 def test_gyros_keep_the_way_of_their_last_turn(performed: Performed) -> None:
