@@ -3,7 +3,6 @@
 import json
 from collections.abc import Iterator
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -56,13 +55,12 @@ def encoder(file: YamlFile) -> dict[str, Any] | None:
 Row = dict[str, Any]
 
 
-def instrument(file: YamlFile, instruments: Path) -> dict[str, Any]:
+def instrument(file: YamlFile, listed: YamlFile) -> dict[str, Any]:
     """The instrument of a campaign, written out in it or one of the listed."""
     stated = file.content["instrument"]
     if isinstance(stated, dict):
         _check_axes(file, ["instrument"], stated)
         return stated
-    listed = YamlFile(instruments)
     listed.check("campaign", entries="instrument")
     if stated not in listed.content:
         raise file.refuse(
@@ -71,7 +69,7 @@ def instrument(file: YamlFile, instruments: Path) -> dict[str, Any]:
             _("one of {content}", content=", ".join(listed.content)),
             _(
                 "correct the name, add the instrument to {name}, or write it out here",
-                name=instruments.name,
+                name=listed.path.name,
             ),
         )
     _check_axes(listed, [stated], listed.content[stated])
@@ -176,9 +174,9 @@ def _axes(entry: dict[str, Any]) -> dict[str, list[str]]:
     return axes
 
 
-def count_sizes(instruments: Path) -> Iterator[Row]:
+def count_sizes(listed: YamlFile) -> Iterator[Row]:
     """The increments that one count is worth in each of the listed instruments."""
-    for name, entry in YamlFile(instruments).content.items():
+    for name, entry in listed.content.items():
         for sensor, key, size in (
             ("accel", "accelerometer", "count_m_s"),
             ("gyro", "gyro", "count_rad"),

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from inertial.tables.yaml_file import Key, YamlFile
@@ -20,11 +19,11 @@ class StatedRate:
     place: str
 
     @classmethod
-    def of(cls, file: YamlFile, instruments: Path) -> "StatedRate":
+    def of(cls, file: YamlFile, listed: YamlFile) -> "StatedRate":
         """Of the instrument of a campaign, written out in it or one of the listed."""
         key, stated = "instrument", file.content["instrument"]
         if isinstance(stated, str):
-            file, key = YamlFile(instruments), stated
+            file, key = listed, stated
             stated = file.content[stated]
         place = f"{file.path.name}, {file.place([key, SAMPLE_RATE])}"
         return cls(stated.get(SAMPLE_RATE), place)

@@ -61,10 +61,11 @@ def plan(
             _("write the campaign in version 1 of the grammar"),
         )
     file.check("campaign")
-    entry = instrument(file, instruments[0])
+    listed = YamlFile(instruments[0])
+    entry = instrument(file, listed)
     set_right = list(gravity_repairs(file, repairs))
     taken_as_known = list(known(file, set_right))
-    manoeuvres, table = _manoeuvres(file, entry, instruments[0]), encoder(file)
+    manoeuvres, table = _manoeuvres(file, entry, listed), encoder(file)
     present = {path.name: path for path in raw}
     named = [(row["key"], row["file"]) for row in manoeuvres]
     named += [(row["gyro_key"], row["gyro_file"]) for row in manoeuvres if row["gyro_file"]]
@@ -93,7 +94,7 @@ def plan(
         "sensors": pd.DataFrame(sensors(entry)),
         "logs": pd.DataFrame(logs(manoeuvres, entry, table)),
         "ranges": pd.DataFrame(ranges(manoeuvres, entry)),
-        "count_sizes": pd.DataFrame(count_sizes(instruments[0])),
+        "count_sizes": pd.DataFrame(count_sizes(listed)),
         "inputs": pd.DataFrame(
             {"file": path.name, "size": path.stat().st_size, "sha256": hash_of_file(path)}
             for path in [campaign[0], *used]
@@ -143,10 +144,10 @@ def _common_rate(manoeuvres: list[Row]) -> float | None:
     return rates.pop() if len(rates) == 1 else None
 
 
-def _manoeuvres(file: YamlFile, entry: dict[str, Any], instruments: Path) -> list[Row]:
+def _manoeuvres(file: YamlFile, entry: dict[str, Any], listed: YamlFile) -> list[Row]:
     """The plan with every shorthand expanded, in its order, each with its log."""
     rows: dict[str, Row] = {}
-    rate = StatedRate.of(file, instruments)
+    rate = StatedRate.of(file, listed)
     for number, item in enumerate(file.content["plan"]):
         for row in expanded(file, ["plan", number], item):
             if row["manoeuvre"] in rows:
