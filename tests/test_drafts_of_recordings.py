@@ -33,7 +33,12 @@ def in_counts(results: chain.Results, folder: Path, sensor: str, method: str) ->
     return np.vstack([known.ours(results, campaign) for known in wanted])
 
 
-@pytest.mark.parametrize("name", WRITTEN)
+FAST = ("imucal-labelled", "softdream", "sunsided")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=() if n in FAST else pytest.mark.slow) for n in WRITTEN]
+)
 def test_a_draft_agrees_with_the_campaign_that_a_person_wrote(name, recorded, drafted):
     method, written = WRITTEN[name], recorded(name)
     folder = written.folder.parents[1] / "raw" / name
@@ -60,8 +65,8 @@ TOLERANCES = {"accel": (0.02, 0.004), "gyro": (0.15, 0.03)}
 
 @pytest.mark.parametrize(
     ("name", "until"),
-    [("mikoff-1", "accelerometer"), ("mikoff-3", "accelerometer")]
-    + [(name, "diagnosis") for name in ("snu-2", "snu-3", "gesture")],  # as others look at them
+    [("mikoff-1", "accelerometer"), ("mikoff-3", "accelerometer"), ("gesture", "diagnosis")]
+    + [pytest.param(name, "diagnosis", marks=pytest.mark.slow) for name in ("snu-2", "snu-3")],
 )
 def test_a_draft_agrees_with_what_is_published(name, until, drafted):
     folder, results = drafted(name, until)

@@ -116,6 +116,7 @@ def test_mikoff_4_has_an_impact_and_nothing_reversed(drafted):
 # ---- snu: one IMU, twice
 
 
+@pytest.mark.slow
 def test_two_sessions_of_one_imu_agree(drafted):
     (_, first), (_, second) = drafted("snu-2"), drafted("snu-3")
     for sensor in ("accel", "gyro"):

@@ -135,7 +135,7 @@ def test_a_file_that_is_only_newer_changes_nothing(workflow: Workflow) -> None:
     ("setting", "rerun"),
     [
         pytest.param("segment: {margin: 0.6}", AFTER_DECODE - {"quality"}, marks=pytest.mark.slow),
-        ("noise: {from_hz: 0.6}", {"noise", *ESTIMATION}),
+        pytest.param("noise: {from_hz: 0.6}", {"noise", *ESTIMATION}, marks=pytest.mark.slow),
         ("accelerometer: {averaging_steps: 5}", {"accelerometer", *USING}),
     ],
 )
@@ -159,7 +159,10 @@ def test_a_changed_setting_reruns_its_stage_and_what_follows(
         ),
         ("inertial/estimation/least_squares.py", ESTIMATION),
         ("inertial/text/numbers.py", {"plan", "decode", *AFTER_DECODE}),
-        ("inertial/text/cause_names.py", {"criticism", "extension", *DIAGNOSED}),
+        pytest.param(
+            *("inertial/text/cause_names.py", {"criticism", "extension", *DIAGNOSED}),
+            marks=pytest.mark.slow,
+        ),
         ("stages/report/report.css", {"report"}),
         ("laboratory/counts.py", {"laboratory_demo", "plan", "decode", *AFTER_DECODE}),
     ],

@@ -34,7 +34,10 @@ def test_the_kinds_are_drawn_as_often_as_is_wanted():
     assert OUTSIDE and len({one.name for one in OUTSIDE}) == len(OUTSIDE)
 
 
-@pytest.mark.parametrize("plan", hidden_plans.PLANS)
+@pytest.mark.parametrize(
+    "plan",
+    [pytest.param(p, marks=() if p == "rates" else pytest.mark.slow) for p in hidden_plans.PLANS],
+)
 def test_a_plan_shows_what_is_hidden_in_it(plan):
     """What is hidden there is seen, and noise alone makes a name of it as often as allowed."""
     known = reference(plan)
