@@ -161,16 +161,23 @@ class _Selection:
     def fit(self, names: frozenset[str], *, restricted: bool = True) -> Fit:
         key = names, restricted
         if key not in self._fits:
-            free = _places(names)
             start = self._fits.get((frozenset(TERMS), True))
-            found = self.likelihood.maximum(
-                free,
+            self._fits[key] = self._larger(names, restricted) or self.likelihood.maximum(
+                _places(names),
                 "ramp" in names,
                 restricted=restricted,
                 start=start.variances if start is not None else None,
             )
-            self._fits[key] = found
         return self._fits[key]
+
+    def _larger(self, names: frozenset[str], restricted: bool) -> Fit | None:
+        """The fit of a larger model in which the further terms are zero: it is that of `names`."""
+        for (others, alike), fit in self._fits.items():
+            further = others - names
+            smaller = names < others and alike == restricted and "ramp" not in further
+            if smaller and not fit.variances[list(_places(further))].any():
+                return fit
+        return None
 
     def chosen(self) -> _Chosen:
         """From all terms, the least significant is left out, until all are significant."""
