@@ -397,6 +397,7 @@ def test_two_logs_with_stamps_of_their_own_are_joined(simple, gyro_hz, late_s, t
     np.testing.assert_allclose(rate, min(gyro_hz, 100), rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_two_logs_that_arrive_in_packets_of_their_own_are_joined(simple, simple_results, tmp_path):
     """5 accelerometer readings every 50 ms, 4 of the gyros every 40 ms, some ms late."""
     rng = np.random.default_rng(3)

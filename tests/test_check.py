@@ -162,6 +162,7 @@ plan:
     return chain.run(folder / NAME, folder / "derived", "gyroscope")
 
 
+@pytest.mark.slow
 def test_a_rate_stated_ten_times_too_low_cuts_rests_to_pieces(
     recordings: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

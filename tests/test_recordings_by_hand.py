@@ -66,6 +66,7 @@ def test_imu_tk_accelerometers_are_those_that_its_source_knows(recorded):
 # ---- gesture: nine-axis MEMS, 40 positions
 
 
+@pytest.mark.slow
 def test_gesture_names_no_effect_though_all_are_tested(drafted):
     """The means of its gyros at rest depend neither on time nor on force, by a law: SOURCE.md."""
     _, results = drafted("gesture")
@@ -78,6 +79,7 @@ def test_gesture_names_no_effect_though_all_are_tested(drafted):
     assert not causes & {"gravity_error", "wrong_scale_factor"}
 
 
+@pytest.mark.slow
 def test_gesture_rest_that_shakes_at_49_hz_is_left_out(drafted, recordings):
     """At 255 s gyro x reads 0.135 °/s more, the accelerometers stand still, and all shake."""
     _, results = drafted("gesture")
@@ -93,7 +95,7 @@ def test_gesture_rest_that_shakes_at_49_hz_is_left_out(drafted, recordings):
 
 
 @pytest.mark.parametrize(
-    "number", [*(pytest.param(n, marks=pytest.mark.slow) for n in (1, 2, 3)), 4, 5]
+    "number", [*(pytest.param(n, marks=pytest.mark.slow) for n in (1, 2, 3, 5)), 4]
 )
 def test_mikoff_accelerometers_agree_with_the_published_ones(drafted, number):
     _, results = drafted(f"mikoff-{number}")

@@ -199,6 +199,7 @@ def test_what_is_wrong_as_a_whole_is_set_right_and_named_once(edits, repair, cau
         assert row["fitting_before"] < row["fitting_after"] == row["observations"]
 
 
+@pytest.mark.slow
 def test_two_causes_are_two_repairs():
     wrong = [faults(flip("gyro", "y")), count_size("gyro", "count_rad", degrees(1))]
     results = recorded(*wrong)
@@ -247,6 +248,7 @@ def test_gyros_that_do_not_see_the_earth_leave_two_explanations(edits):
     )
 
 
+@pytest.mark.slow
 def test_the_laboratory_decides_between_two_explanations():
     reversed_ = faults(*(flip("gyro", axis) for axis in "xyz"))
     for repair, way in (("signs/gyro", 1), ("sense_of_table", -1)):
@@ -262,6 +264,7 @@ def test_the_laboratory_decides_between_two_explanations():
         assert (np.abs(off) < MAX_PULL * solved.loc[off.index, "sigma"]).all()
 
 
+@pytest.mark.slow
 def test_one_reversed_axis_may_be_two_exchanged_logs():
     told = repairs(recorded(noisy, faults(flip("gyro", "y")), until="segment"))
     assert set(told.index) == {"signs/gyro", "exchanged_manoeuvres/y-backward/y-forward"}
@@ -345,6 +348,7 @@ def test_refused_repairs_leave_the_recording_as_it_is(refused):
     assert sorted(findings(results)["cause"]) == ["gravity_error", "sign_flip"]
 
 
+@pytest.mark.slow
 def test_refused_exchanges_and_senses_are_left_out(refused):
     results = recorded(faults(exchange("x-up", "y-up")), until="segment")
     done = results["segment/performed"].set_index("manoeuvre")["found"]

@@ -174,6 +174,7 @@ def test_a_changed_line_of_code_reruns_what_rests_on_it(
         assert workflow.planned() == rerun
 
 
+@pytest.mark.slow
 def test_changed_published_values_rerun_the_plan_that_reads_them(workflow: Workflow) -> None:
     with one_more_line(workflow.data / PUBLISHED):
         assert "plan" in workflow.planned()

@@ -20,6 +20,7 @@ def walking():
     return criticised(203, effects, WALK)
 
 
+@pytest.mark.slow
 def test_a_random_walk_beside_an_effect_is_estimated_and_takes_no_name(walking):
     findings = walking["criticism/findings"].set_index("cause")
     assert set(findings.index) == {"gyro_g_sensitivity", "gyro_random_walk"}

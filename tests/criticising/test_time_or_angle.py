@@ -38,7 +38,9 @@ def found(made: Sequence[SteadyTurn]) -> list[dict[str, Any]]:
     ]
 
 
-@pytest.mark.parametrize("power", [0.0, 1.0, -1.0])
+@pytest.mark.parametrize(
+    "power", [0.0, *(pytest.param(p, marks=pytest.mark.slow) for p in (1.0, -1.0))]
+)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_ripple_is_one_whatever_its_amplitude_does_with_the_rate(seed, power):
     (one,) = found(rippling(seed, [(36.0, 5e-5)], power, SLOW))
@@ -92,6 +94,7 @@ def test_multiples_of_one_order_are_one_finding_and_other_orders_another():
     assert [one["cause"] for one in two] == ["table_ripple"] * 2
 
 
+@pytest.mark.slow
 def test_multiples_of_one_frequency_are_one_finding_and_other_frequencies_another():
     harmonics = [(13.7, SNR_15, "x"), (27.4, SNR_15, "x"), (41.1, SNR_15, "x")]
     (one,) = found(turns(4, ringing=harmonics, rates=TWO_RATES))
@@ -131,7 +134,7 @@ def two_rates(**changes: Any) -> dict[str, Any]:
 RIPPLE = {"order": 36, "amplitude_arcsec": 0.7, "phase_deg": 50, "at_rate_deg_s": 30}
 
 
-@pytest.mark.parametrize("power", [0, pytest.param(-1, marks=pytest.mark.slow), -2])
+@pytest.mark.parametrize("power", [*(pytest.param(p, marks=pytest.mark.slow) for p in (0, -1)), -2])
 def test_the_ripple_of_the_laboratory(power):
     """Its rate goes with the table's; is the same at both; is the inverse."""
     effects = {"table_ripple": {**RIPPLE, "rate_power": power}}

@@ -102,6 +102,7 @@ def test_axes_that_are_others_in_all_logs_are_named(faults, cause, sensors, said
         assert found["consequence"].str.contains("scale error of y −200 %").all()
 
 
+@pytest.mark.slow
 def test_two_flips_that_cancel_are_told_by_the_determinant():
     faults = [flip("all", "accelerometer", axis) for axis in "xy"]
     (sentence,) = found_in(segmented(faults))["sentence"]
@@ -196,12 +197,14 @@ def test_logs_under_each_others_names_are_named_and_taken_for_what_they_hold(one
     assert (log.drop([one, other]) == log.drop([one, other]).index + ".asc").all()
 
 
+@pytest.mark.slow
 def test_two_pairs_of_exchanged_logs_are_two_findings():
     faults = [exchange("x-up.asc", "x-down.asc"), exchange("y-forward.asc", "y-backward.asc")]
     found = found_in(segmented(faults))
     assert list(found["cause"]) == ["manoeuvre_swapped"] * 2
 
 
+@pytest.mark.slow
 def test_a_sign_that_would_look_the_same_is_told():
     """Without the rests beside turns about x, no other manoeuvre shows the sign of x."""
     document = chain.short(faults=[exchange("x-up.asc", "x-down.asc")])
@@ -217,6 +220,7 @@ def test_a_sign_that_would_look_the_same_is_told():
     assert list(done.index[~done["found"]]) == ["x-up", "x-down"]
 
 
+@pytest.mark.slow
 def test_two_manoeuvres_in_each_others_place_within_a_log_are_named():
     document = chain.short()
     for manoeuvre in document["campaign"]["plan"]:
@@ -324,6 +328,7 @@ def test_what_a_gap_takes_from_a_turn_is_told_by_the_gap_alone(line, samples):
 # ---- what is missing
 
 
+@pytest.mark.slow
 def test_what_the_log_has_instead_is_told():
     # The IMU stood with z down; the plan has it so in another log as well.
     results = segmented(edit=with_line("z-down", "up: -z", "up: +y"))
@@ -333,6 +338,7 @@ def test_what_the_log_has_instead_is_told():
     assert "seen in y-up" in finding["consequence"]
 
 
+@pytest.mark.slow
 def test_a_dead_gyro_does_not_hinder_the_others():
     logs = [f"{axis}-{way}.asc" for axis in "xyz" for way in ("up", "down", "forward", "backward")]
     faults = [
@@ -369,6 +375,7 @@ def test_a_table_that_creeps_is_named_in_the_rests_that_it_spoils():
     assert finding["to_s"] == pytest.approx(95, abs=5.1)
 
 
+@pytest.mark.slow
 def test_jumps_beside_turns_are_told_with_their_phase():
     place = {"log": "x-forward.asc", "channel": "gyro_y", "line": 130}
     results = segmented([{"step": place | {"size_rad_s": 7e-4, "samples": 600}}])

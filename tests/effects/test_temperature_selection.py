@@ -107,6 +107,7 @@ def test_a_bend_is_a_knot_at_its_temperature(plan):
     assert models["gyro"].knots["bias_y"] == pytest.approx(MIDDLE + 7.0, abs=1.0)
 
 
+@pytest.mark.slow
 def test_bends_of_several_parameters_leave_no_random_walk(plan):
     """What a cubic leaves of a bend looks like a random walk, or a bias per log."""
 
@@ -146,6 +147,7 @@ def test_a_knot_that_may_be_anywhere_is_in_the_middle_and_has_no_shift():
     assert MIDDLE - 20 < model.knots["bias_z"] < MIDDLE + 5
 
 
+@pytest.mark.slow
 def test_cross_terms_are_functions_of_temperature(plan):
     def crossed(above: Array, read: Array, time: Array) -> Array:
         change = np.zeros_like(read)

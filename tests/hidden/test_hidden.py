@@ -48,6 +48,7 @@ def test_a_plan_shows_what_is_hidden_in_it(plan):
     assert np.quantile(known.law.smallest, LEVEL) == pytest.approx(known.law.share, rel=0.5)
 
 
+@pytest.mark.slow
 def test_a_draw_can_be_made_again_and_is_as_large_as_it_says():
     for one in (draw(number, size) for number in range(CYCLE)):
         assert one == draw(one.number, size)
@@ -76,6 +77,7 @@ def test_in_memory_is_as_on_disk(tmp_path):
             assert left.drop(columns=offsets).equals(right.drop(columns=offsets))
 
 
+@pytest.mark.slow
 def test_a_run_in_memory_has_the_tables_of_one_on_disk(tmp_path):
     recording = laboratory.perform(laboratory.specify(chain.short(seed=4)))
     laboratory.write(recording, tmp_path / "raw")
@@ -88,6 +90,7 @@ def test_a_run_in_memory_has_the_tables_of_one_on_disk(tmp_path):
         pd.testing.assert_frame_equal(memory[name], disk[name], obj=name)
 
 
+@pytest.mark.slow
 def test_nothing_is_named_where_nothing_is_hidden():
     one = draw(CLEAN, size)
     assert one.kind == "clean" and not one.hidden
@@ -95,7 +98,9 @@ def test_nothing_is_named_where_nothing_is_hidden():
     assert not outcome.get("error") and false_names(outcome) == []
 
 
-@pytest.mark.parametrize("number", [OF_A_CLASS, SHOWN_BY_ONE_PLAN])
+@pytest.mark.parametrize(
+    "number", [pytest.param(OF_A_CLASS, marks=pytest.mark.slow), SHOWN_BY_ONE_PLAN]
+)
 def test_a_single_effect_is_named_with_its_class(number):
     one = draw(number, size)
     assert one.kind == "single" and min(one.ratios.values()) >= 10
@@ -110,6 +115,7 @@ def test_a_decoy_is_not_named():
     assert false_names(run(one)) == []
 
 
+@pytest.mark.slow
 def test_effects_at_once_are_all_named():
     one = draw(TOGETHER, size)
     assert one.kind == "several" and min(one.ratios.values()) >= 12

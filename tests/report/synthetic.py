@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Mapping
+from copy import deepcopy
 from functools import cache
 from typing import Any
 from unittest import mock
@@ -91,6 +92,11 @@ def curve(parameter: str, **changed: Any) -> list[dict[str, Any]]:
 
 def campaign(logs: Collection[str] | None = None) -> dict[str, Any]:
     """The tables of the report, by name; where `logs` are given, raw data of these alone."""
+    return deepcopy(_campaign(None if logs is None else tuple(logs)))
+
+
+@cache
+def _campaign(logs: tuple[str, ...] | None) -> dict[str, Any]:
     generator = np.random.default_rng(20231018)
     manoeuvres = plan.manoeuvres()
     traces = [
