@@ -26,6 +26,9 @@
 #                                 DRAWS=100 a tenth of them
 #   make noise                    estimates the noise of 3000 simulated recordings, in docs/noise.md; 15
 #                                 minutes on two cores, can be resumed; with DRAWS=100 of each part
+#   make mutants                  puts faults into the physics, one at a time, and reports which of them the
+#                                 tests see, in docs/mutants.md; 1200 faults take an hour on two cores,
+#                                 can be resumed; with DRAWS=100 so many of them
 #   make docs                     docs/tables.md and the catalogue of messages, from the code
 #   make recordings               docs/recordings.md: the real recordings, which are not part of the
 #                                 project, drafted and compared with what is known of them; 15 minutes
@@ -36,7 +39,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new trace test test-slow style bench challenge noise temperature docs recordings clean setup pango campaign
+.PHONY: report check draft new trace test test-slow style bench challenge noise temperature mutants docs recordings clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -151,6 +154,9 @@ temperature: .venv/complete
 
 noise: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m noise data/derived/noise $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
+
+mutants: .venv/complete
+	PYTHONPATH=tests:tests/mutants OPENBLAS_NUM_THREADS=1 $(BIN)/python -m mutants "$$DRAWS" data/derived/mutants
 
 # Files generated from the code; tests fail where they are not current.
 docs: .venv/complete

@@ -78,7 +78,7 @@ def test_the_sigmas_of_a_clean_session_are_honest(clean):
 @pytest.mark.parametrize(
     "effect",
     [
-        pytest.param(effect, marks=() if n % 6 == 0 else pytest.mark.slow)
+        pytest.param(effect, marks=() if n == 0 else pytest.mark.slow)
         for n, effect in enumerate(HIDDEN)
     ],
 )

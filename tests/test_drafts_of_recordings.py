@@ -33,7 +33,7 @@ def in_counts(results: chain.Results, folder: Path, sensor: str, method: str) ->
     return np.vstack([known.ours(results, campaign) for known in wanted])
 
 
-FAST = ("imucal-labelled", "softdream")
+FAST = ("softdream",)
 
 
 @pytest.mark.parametrize(

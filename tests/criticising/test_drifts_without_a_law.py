@@ -35,6 +35,7 @@ def test_a_random_walk_beside_an_effect_is_estimated_and_takes_no_name(walking):
     assert walk.sensor == "gyro" and true / 3 < walk.value < true * 2.5
 
 
+@pytest.mark.slow
 def test_telegraph_noise_is_no_jump_and_its_structure_is_shown():
     effects = {"gyro_telegraph": {"height_deg_h": [2.0, 0, 0], "dwell_s": 400}}
     results = criticised(4, effects, {})
