@@ -34,7 +34,7 @@ HIDDEN = {
     ),
     "table_wobble": ({"east_arcsec": 0, "north_arcsec": 5}, {}),
 }
-# In the quick tests; the others are hidden there too, by tests of drifts, diagnosis or pairs.
+# One of each kind in the quick tests; `make test-slow` hides them all.
 QUICK = ("gyro_bias_jump", "accel_quadratic", "lever_arm", "table_wobble")
 NOT_NEEDED = ("studies", "comparison", "compensation")  # by criticism and extension
 # What this plan cannot tell from it.

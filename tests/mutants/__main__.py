@@ -2,8 +2,7 @@
 
     PYTHONPATH=tests:tests/mutants python -m mutants <mutants> <folder>
 
-Every outcome is a line of `mutants.jsonl` in the folder. At the end docs/mutants.md is written, and
-`killed.json`, of which `test_mutants` tries a sample.
+Every outcome is a line of `mutants.jsonl` in the folder. At the end docs/mutants.md is written.
 """
 
 import sys

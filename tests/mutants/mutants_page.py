@@ -1,6 +1,5 @@
-"""The page of the mutants, docs/mutants.md, and the sample of them that the quick tests try."""
+"""The page of the mutants, docs/mutants.md."""
 
-import json
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -11,17 +10,15 @@ import jinja2
 from ruamel.yaml import YAML
 
 HERE = Path(__file__).parent
-PAGE, SAMPLE = chain.ROOT / "docs/mutants.md", HERE / "sample.json"
+PAGE = chain.ROOT / "docs/mutants.md"
 TEMPLATE, EXPLAINED = HERE / "mutants.md.jinja", HERE / "explained.yaml"
 KINDS = ("sign", "transpose", "index", "factor", "term")
-SAMPLED = 12
-NOT_QUICK = ("test_extension", "test_criticism", "test_simulation", "cannot", "takes")
 
 Outcome = Mapping[str, Any]
 
 
 def write(outcomes: Sequence[Outcome], of: int) -> str:
-    """Write the page and the sample; what is said in the terminal."""
+    """Write the page; what is said in the terminal."""
     why = YAML(typ="safe").load(EXPLAINED) or []
     told = {(one["file"], one["before"], one["after"]): one["why"] for one in why}
     alive = sorted(
@@ -43,8 +40,6 @@ def write(outcomes: Sequence[Outcome], of: int) -> str:
     }
     text = TEMPLATE.read_text(encoding="utf-8")
     PAGE.write_text(jinja2.Template(text, keep_trailing_newline=True).render(figures), "utf-8")
-    sample = json.dumps(_sample(outcomes), indent=1, ensure_ascii=False)
-    SAMPLE.write_text(f"{sample}\n", encoding="utf-8")
     return (
         f"{len(outcomes)} of {of} mutants: {len(alive)} live, {figures['explained']} explained\n"
         f"The page: {PAGE}\n"
@@ -74,16 +69,3 @@ def _table(
     alive = Counter(one[column] for one in outcomes if one["killed"] is None)
     for value in values or sorted(tried):
         yield value, tried[value], alive[value]
-
-
-def _sample(outcomes: Sequence[Outcome]) -> list[dict[str, str]]:
-    """Killed ones of each kind in turn, from different files, by quick tests."""
-    chosen: list[Outcome] = []
-    for n in range(SAMPLED):
-        for one in outcomes:
-            quick = one["killed"] and not any(word in one["killed"] for word in NOT_QUICK)
-            new = all(one["file"] != other["file"] for other in chosen)
-            if quick and new and one["kind"] == KINDS[n % len(KINDS)]:
-                chosen.append(one)
-                break
-    return [{name: one[name] for name in ("file", "before", "after", "killed")} for one in chosen]
