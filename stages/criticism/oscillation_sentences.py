@@ -61,8 +61,8 @@ COUPLED = _(" Of it the cross terms predict {each}.")
 COUPLED_HIDDEN = _("{expected} °/s in {axis}, less than its noise shows")
 COUPLED_READ = _("{expected} °/s in {axis}, where {read} °/s is measured{more}")
 COUPLED_MORE = _(
-    " (the difference, {excess} °/s with its phase, is more than the noise; the case tips about"
-    " the axis of the turn, which explains {tipping} °/s)"
+    " ({excess} °/s apart by its phase; the case tips, which turns {tipping} °/s of the table's"
+    " rate there)"
 )
 
 CONSEQUENCE = _(

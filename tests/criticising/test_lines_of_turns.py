@@ -253,4 +253,4 @@ def test_what_the_laboratory_hides_in_a_campaign_is_named():
         assert_near((found["value"], found["sigma"]), true)
     causes = results["criticism/findings"].set_index("cause")
     # The case tips by 16″ into the table's rate, which no cross term tells.
-    assert "more than the noise" in causes.loc["oscillation", "sentence"]
+    assert "the case tips" in causes.loc["oscillation", "sentence"]
