@@ -1,6 +1,13 @@
 """The tables that pass between stages, each column with its unit, frame and meaning."""
 
-from inertial.tables.calibrated import ARCHIVED, CALIBRATION, CHECKS, COMPENSATED, EARLIER
+from inertial.tables.calibrated import (
+    ARCHIVED,
+    CALIBRATION,
+    CHARACTERISTICS,
+    CHECKS,
+    COMPENSATED,
+    EARLIER,
+)
 from inertial.tables.diagnosed import (
     CANDIDATE_EFFECTS,
     CANDIDATES,
@@ -113,6 +120,7 @@ __all__ = [
     "CHANNEL_PARTS",
     "CHANNEL_REPAIRS",
     "CHANNEL_STATISTICS",
+    "CHARACTERISTICS",
     "CHECKS",
     "CLOCKS",
     "CLOSE_UPS",

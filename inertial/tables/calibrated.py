@@ -1,6 +1,6 @@
 """Compensated samples, their checks, and the archive of calibrations."""
 
-from inertial.tables.shared import MOUNT, QUANTITY, SENSOR, channels
+from inertial.tables.shared import AXIS, MOUNT, QUANTITY, SENSOR, channels
 from inertial.tables.table import DOUBLE, INTEGER, LABEL, TEXT, TEXTS, TRUTH, Column, Table
 
 # ---- Samples with the errors taken out, and the checks of them.
@@ -52,6 +52,41 @@ CHECKS = Table(
         ),
         Column("in_sigmas_after", DOUBLE, "1", "after less expected, in sigmas", nullable=True),
         Column("sentence", TEXT, "", "the check in words"),
+    ),
+)
+
+CHARACTERISTICS = Table(
+    "characteristics",
+    1,
+    (
+        Column("id", TEXT, "", "stable identifier: compensation/sensor/quantity_axis"),
+        MOUNT,
+        SENSOR,
+        AXIS,
+        Column(
+            "quantity",
+            TEXT,
+            "",
+            "as IEEE Std 528 names it: composite_error: largest difference of the compensated"
+            " output from the input; linearity_error: largest deviation of the output from a"
+            " least-squares line; asymmetry: scale factor of positive less that of negative input,"
+            " over both; acceleration_insensitive_drift: bias of a gyro, whatever force adds",
+        ),
+        Column("value", DOUBLE, "as unit", "errors: over the largest input", nullable=True),
+        Column("sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
+        Column(
+            "by_noise",
+            DOUBLE,
+            "as unit",
+            "of a largest error: what noise, table and site alone do not exceed in 95 % of the"
+            " cases",
+            nullable=True,
+        ),
+        Column("unit", TEXT, "", "unit of the values, SI"),
+        Column("largest_input", DOUBLE, "as input_unit", "largest that was applied", nullable=True),
+        Column("input_unit", TEXT, "", "its unit, SI"),
+        Column("points", INTEGER, "1", "inputs that were applied, or static positions"),
+        Column("reason", TEXT, "", "why there is no value"),
     ),
 )
 

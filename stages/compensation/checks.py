@@ -112,17 +112,17 @@ def checks(
     `scatter`: of accelerometers and gyros between positions by hand, m/s² and rad/s.
     """
     positions = data.accelerometer_positions[0]
-    forces = {position.label: _force(position, measurement) for position in positions}
+    forces = {position.label: force_at(position, measurement) for position in positions}
     if (triad := measurement.accelerometer.triad) is not None:
         for position in positions:
             yield from _forces(position, forces[position.label], triad, data, scatter[0])
     if (triad := measurement.gyro.triad) is not None:
         for position in data.gyro_inputs.of_known_attitude.static_positions:
             force = forces.get(position.label, UNKNOWN)
-            yield from _rate(position, measurement, triad, force, data, scatter[1])
+            yield from rate_check(position, measurement, triad, force, data, scatter[1])
         for rotation in data.gyro_inputs.usable:
             if rotation.plan.recorded == "whole" and rotation.done.complete:
-                yield from _angle(rotation, measurement, triad, data)
+                yield from angle_check(rotation, measurement, triad, data)
 
 
 def not_compensated(result: SensorResult, mount: str) -> Iterator[Row]:
@@ -200,7 +200,7 @@ def table_of(rows: list[Row]) -> pd.DataFrame:
 # --- Static positions ---
 
 
-def _motion(position: StaticPosition) -> Motion:
+def motion_of(position: StaticPosition) -> Motion:
     """When a static position was recorded and how warm it was, as one stretch."""
     middle, temperature = (
         np.array([position.mean_of(values)]) for values in (position.time, position.temperature)
@@ -208,9 +208,9 @@ def _motion(position: StaticPosition) -> Motion:
     return stretches(middle, np.array([position.seconds.sum()]), temperature)
 
 
-def _force(position: StaticPosition, measurement: Measurement) -> Array:
+def force_at(position: StaticPosition, measurement: Measurement) -> Array:
     """The specific force in a static position by its readings, (3,)."""
-    (force,) = measurement.force(position.over()[0][None], _motion(position))
+    (force,) = measurement.force(position.over()[0][None], motion_of(position))
     return np.asarray(force)
 
 
@@ -234,7 +234,7 @@ def _forces(
         gravity.scatter,
         float(np.linalg.norm(reading)),
         size,
-        _noise_along(force / size, triad, noise),
+        noise_along(force / size, triad, noise),
     )
     if data.by_hand:
         return
@@ -247,11 +247,11 @@ def _forces(
         gravity.scatter,
         float(reading @ up),
         float(force @ up),
-        float(np.hypot(_noise_along(up, triad, noise), tilted)),
+        float(np.hypot(noise_along(up, triad, noise), tilted)),
     )
 
 
-def _rate(
+def rate_check(
     position: StaticPosition,
     measurement: Measurement,
     triad: Triad,
@@ -263,10 +263,10 @@ def _rate(
     reading, noise = position.over()
     noise = np.hypot(noise, scatter)
     up, earth = position.up_now, data.earth
-    after = float(measurement.rate(reading[None], _motion(position), force[None])[0] @ up)
+    after = float(measurement.rate(reading[None], motion_of(position), force[None])[0] @ up)
     if np.isfinite(after):
         tilted = earth.level * data.position_sigma
-        spread = (_noise_along(up, triad, noise), tilted, earth.up_sigma)
+        spread = (noise_along(up, triad, noise), tilted, earth.up_sigma)
         yield Check(
             position.label,
             "rate_up",
@@ -278,7 +278,7 @@ def _rate(
         )
 
 
-def _noise_along(direction: Array, triad: Triad, sigma: Array) -> float:
+def noise_along(direction: Array, triad: Triad, sigma: Array) -> float:
     """The noise of a compensated mean along a direction, from that of the three readings."""
     weights = direction @ np.linalg.inv(triad.matrix)
     return float(np.linalg.norm(np.where(weights == 0, 0.0, weights * sigma)))
@@ -287,7 +287,7 @@ def _noise_along(direction: Array, triad: Triad, sigma: Array) -> float:
 # --- Rotations ---
 
 
-def _angle(
+def angle_check(
     rotation: Recorded, measurement: Measurement, triad: Triad, data: CampaignData
 ) -> Iterator[Check]:
     """The angle of a whole turn about its axis, with the earth's rate taken out.
@@ -303,11 +303,11 @@ def _angle(
     force = measurement.force(blocks.accel, motion)
     rates = measurement.rate(blocks.gyro, motion, force)
     before, turned = (float(seconds @ values @ m.axis) for values in (blocks.gyro, rates))
-    earth, sigma = _earth_along(m.axis, position_of(m, data.heading), data.earth)
+    earth, sigma = earth_along(m.axis, position_of(m, data.heading), data.earth)
     after = turned - earth * time
     if not np.isfinite(after):
         return
-    noise = _noise_along(m.axis, triad, data.noise.of(m.name, "rest", GYRO) * np.sqrt(time))
+    noise = noise_along(m.axis, triad, data.noise.of(m.name, "rest", GYRO) * np.sqrt(time))
     yield Check(
         m.name,
         "angle",
@@ -319,7 +319,7 @@ def _angle(
     )
 
 
-def _earth_along(axis: Array, position: Position, earth: Earth) -> tuple[float, float]:
+def earth_along(axis: Array, position: Position, earth: Earth) -> tuple[float, float]:
     """The earth's rate along the axis of a turn, and its sigma, rad/s."""
     if not position.is_known:
         return 0.0, horizontal_sigma(position, earth)

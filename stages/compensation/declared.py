@@ -24,6 +24,7 @@ DECLARED = Declared(
     writes={
         "compensated": tables.COMPENSATED,
         "checks": tables.CHECKS,
+        "characteristics": tables.CHARACTERISTICS,
         "compensated_traces": tables.TRACES,
         "findings": tables.FINDINGS,
     },

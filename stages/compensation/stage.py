@@ -19,6 +19,7 @@ from inertial.tables.parquet import Stream
 from inertial.tables.stage import Pieces, Stage
 from inertial.text.messages import _
 from inertial.text.parameters import FREE
+from stages.compensation.characteristics import characteristics
 from stages.compensation.checks import NO_SCATTER, checks, not_compensated, table_of
 from stages.compensation.correction import NOTHING, CompensatedStream, envelope, mounted
 from stages.compensation.declared import DECLARED
@@ -52,7 +53,7 @@ def compensation(
     fits: Sequence[Row],
     provenance: Mapping[str, Mapping[str, Any]],
 ) -> Pieces:
-    """The tables compensated, checks, compensated_traces and findings, in pieces.
+    """The tables compensated, checks, characteristics, compensated_traces and findings, in pieces.
 
     By the result that counts: M and bias, and those effects that a reading, its time and its
     temperature tell. A sensor that is not usable has no compensated reading.
@@ -76,6 +77,7 @@ def compensation(
         yield "findings", findings.table_of([ALREADY])
         return
     rows: list[Row] = []
+    figures: list[Row] = []
     measurements = measurements_of(result)
     for data in mounts:
         if data.mount in measurements:
@@ -86,9 +88,11 @@ def compensation(
         by_hand = _by_hand(data, measurement)
         scatter = _scatters(fits, data.mount) if by_hand.by_hand else NO_SCATTER
         rows += [check.row(data.mount) for check in checks(by_hand, measurement, scatter)]
+        figures += characteristics(data, measurement)
         for sensor in (measurement.accelerometer, measurement.gyro):
             rows += not_compensated(sensor, data.mount)
     yield "checks", table_of(rows)
+    yield "characteristics", tables.CHARACTERISTICS.frame(figures)
     repairs = Repairs(channel_repairs)
     parts = mounted(mounts, measurements, segments)
     compensated = CompensatedStream(samples.path, parts, Masks(masks, repairs), repairs)

@@ -77,6 +77,7 @@ DECLARED = Declared(
         "warm_up": From("extension", tables.WARM_UP),
         "differences": From("comparison", tables.DIFFERENCES),
         "checks": From("compensation", tables.CHECKS),
+        "characteristics": From("compensation", tables.CHARACTERISTICS),
         "compensated_traces": From("compensation", tables.TRACES, "compensated_traces"),
         "compensation_findings": From("compensation", tables.FINDINGS),
         "archived": From("history", tables.ARCHIVED),

@@ -14,6 +14,7 @@ from stages.report.page import page
 from stages.report.sections import (
     averaging,
     basis,
+    characteristics,
     comparisons,
     compensation,
     findings,
@@ -38,6 +39,7 @@ SECTIONS = (
     residuals.SECTION,
     comparisons.COMPARISONS,
     compensation.SECTION,
+    characteristics.SECTION,
     comparisons.HISTORY,
     basis.RECORDED,
     raw_data.SECTION,

@@ -57,8 +57,9 @@ class Coverage:
 
 
 def pytest_command(*arguments: str) -> list[str]:
-    """pytest in one process, without its cache."""
-    return [sys.executable, "-m", "pytest", "-q", "-n0", "-p", "no:cacheprovider", *arguments]
+    """pytest in one process, without its cache; only without --dist has coverage its contexts."""
+    options = ("-q", "-n0", "--dist=no", "-p", "no:cacheprovider")
+    return [sys.executable, "-m", "pytest", *options, *arguments]
 
 
 def covered(folder: Path) -> Coverage:

@@ -154,6 +154,7 @@ def _campaign(logs: tuple[str, ...] | None) -> dict[str, Any]:
     for name, rows in studies(np.random.default_rng(1)).items():
         made[name] = rows_as(DECLARED.writes[name], rows)
     made["checks"] = rows_as(tables.CHECKS, estimates.checks(manoeuvres))
+    made["characteristics"] = rows_as(tables.CHARACTERISTICS, estimates.characteristics())
     made["compensated_traces"] = estimates.compensated(made["traces"])
     made["differences"] = rows_as(tables.DIFFERENCES, estimates.differences())
     made["result"] = counted(made)

@@ -194,6 +194,27 @@ def checks(manoeuvres: Rows) -> Rows:
     return rows
 
 
+def characteristics() -> Rows:
+    """A linearity error of 30 ppm of 10 °/s, and why there is none of another axis."""
+    row = {
+        "id": "compensation/gyro/linearity_error_x",
+        "sensor": "gyro",
+        "axis": "x",
+        "quantity": "linearity_error",
+        "value": 3e-5,
+        "sigma": 4e-6,
+        "by_noise": 1.1e-5,
+        "unit": "1",
+        "largest_input": np.radians(10),
+        "input_unit": "rad/s",
+        "points": 8,
+        "reason": "",
+    }
+    nothing = dict.fromkeys(("value", "sigma", "by_noise", "largest_input")) | {"axis": "y"}
+    other = {"id": "compensation/gyro/linearity_error_y", "reason": "nothing was applied"}
+    return [row, row | nothing | other | {"points": 0}]
+
+
 def compensated(traces: pd.DataFrame) -> pd.DataFrame:
     """The same envelopes with the biases taken out."""
     after = traces.copy()

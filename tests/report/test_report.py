@@ -31,6 +31,7 @@ TITLES = [
     "Residuals",
     "Comparisons",
     "Compensation",
+    "Sensor characteristics",
     "Earlier calibrations",
     "Recorded manoeuvres",
     "Raw data",
@@ -287,6 +288,13 @@ def test_checks_stand_before_and_after() -> None:
     assert number(page.rows["compensation/angle/x-forward"][5]) == 7.0
 
 
+def test_the_figures_of_the_standards_stand_beside_what_noise_explains() -> None:
+    page = Page(synthetic.documents()["html"])
+    cells = page.rows["compensation/gyro/linearity_error_x"]
+    assert cells == ["x", "30.0", "±\u202f4.0", "11.0", "ppm", "10.0 °/s", "8"]
+    assert "Gyros, linearity error: not determined, for nothing was applied." in page.text
+
+
 def test_earlier_calibrations_and_the_archive_are_named() -> None:
     text = Page(synthetic.documents()["html"]).text
     assert "2 earlier calibrations, the latest last." in text
@@ -368,8 +376,9 @@ def test_a_campaign_that_gave_nothing_says_so_in_words() -> None:
     documents = synthetic.report_on(synthetic.poor())
     page = Page(documents["html"])
     headings = [heading.lstrip("0123456789 ") for heading in page.headings]
-    # Where no parameter depends on the temperature nothing is said of it.
-    assert headings == [title for title in TITLES if title != "Temperature"]
+    # Where no parameter depends on the temperature nothing is said of it; so of figures.
+    silent = ("Temperature", "Sensor characteristics")
+    assert headings == [title for title in TITLES if title not in silent]
     assert "Verdict: not usable" in documents["txt"]
     assert "Nothing was estimated of any sensor." in page.text
     assert "None: no method estimated a parameter." in page.text

@@ -1,0 +1,95 @@
+"""Figures of a sensor by n pairs of input and output, as IEEE Std 528-2019 defines them.
+
+All are relative to the largest input that was applied, the tested range, not to the range of the
+data sheet.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.special import log_ndtr
+
+from inertial.estimation.least_squares import pseudo_inverse
+
+Array = NDArray[np.float64]
+
+MIN_APART = 1e-3  # of the largest input: inputs that are closer count as one
+CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True)
+class LargestError:
+    """The largest error of n outputs, with its sign, over the largest input.
+
+    `sigma`: of that output; `by_noise`: what the largest error does not exceed in 95 % of the cases
+    if the outputs are in error by their sigmas alone.
+    """
+
+    value: float
+    sigma: float
+    by_noise: float
+
+
+def composite_error(applied: Array, read: Array, sigma: Array) -> LargestError:
+    """The largest difference of an output from its input ('composite error'), (n,) each."""
+    return _largest(read - applied, sigma, float(np.abs(applied).max()))
+
+
+def linearity_error(applied: Array, read: Array, sigma: Array) -> LargestError | None:
+    """The largest deviation from the least-squares line ('linearity error'), (n,) each.
+
+    None where fewer than three different inputs were applied: any two lie on a line.
+    """
+    largest = float(np.abs(applied).max())
+    if len(np.unique(np.round(applied / largest / MIN_APART))) < 3:
+        return None
+    line = np.column_stack([np.ones(len(applied)), applied / largest])
+    off_line = np.eye(len(applied)) - line @ np.linalg.pinv(line)
+    return _largest(off_line @ read, np.linalg.norm(off_line * sigma, axis=1), largest)
+
+
+def asymmetry(applied: Array, read: Array, sigma: Array) -> tuple[float, float] | None:
+    """Scale factor of positive input less that of negative, over both, and its sigma.
+
+        output = bias + K (input + a/2 |input|)        ('asymmetry error')
+
+    None where the inputs do not tell the bias from the asymmetry.
+    """
+    largest = float(np.abs(applied).max())
+    along = applied / largest
+    design = np.column_stack([np.ones(len(along)), along, np.abs(along)]) / sigma[:, None]
+    found = pseudo_inverse(design)
+    if not found.determined.all():
+        return None
+    _bias, scale, half = found.inverse @ (read / sigma)
+    return 2 * half / scale, 2 * float(np.linalg.norm(found.inverse[2])) / abs(scale)
+
+
+def at_no_force(rate: Array, sigma: Array, force: Array) -> tuple[float, float] | None:
+    """Rate that n readings at rest have in common, whatever they change with force; its sigma.
+
+        reading = D + D_x f_x + D_y f_y + D_z f_z        ('acceleration-insensitive drift rate')
+
+    `rate`, `sigma`: (n,), rad/s, the earth's rate taken out; `force`: (n, 3). None where the
+    positions do not tell D from the other coefficients.
+    """
+    design = np.column_stack([np.ones(len(rate)), force]) / sigma[:, None]
+    found = pseudo_inverse(design)
+    if not found.determined[0]:
+        return None
+    weights = found.inverse[0]
+    return float(weights @ (rate / sigma)), float(np.linalg.norm(weights))
+
+
+def _largest(errors: Array, sigma: Array, largest: float) -> LargestError:
+    worst = int(np.argmax(np.abs(errors)))
+
+    def beyond(size: float) -> float:
+        within = np.log1p(-2 * np.exp(log_ndtr(-size / sigma[sigma > 0])))
+        return float(within.sum() - np.log(CONFIDENCE))
+
+    most = float(sigma.max())
+    by_noise = brentq(beyond, 1e-3 * most, 40 * most) if most else 0.0
+    return LargestError(errors[worst] / largest, sigma[worst] / largest, by_noise / largest)

@@ -1,0 +1,257 @@
+"""Figures of each sensor as the standards define them, from what was applied and what was read.
+
+Readings have bias, M and the effects of the result taken out, but for those effects that are a
+function of the sensor's own input: they are what the figures describe. The composite error is that
+of the whole result.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial import tables
+from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.measurement import Measurement, SensorResult
+from inertial.campaign.rate_segments import Recorded, position_of
+from inertial.campaign.records import Row, with_mount
+from inertial.campaign.static_positions import StaticPosition
+from inertial.estimation.gyroscope_observations import Position
+from inertial.estimation.input_output import (
+    asymmetry,
+    at_no_force,
+    composite_error,
+    linearity_error,
+)
+from inertial.physics.motion import stretches, turned
+from inertial.tables import AXES
+from inertial.text.messages import _
+from stages.compensation.checks import (
+    angle_check,
+    earth_along,
+    force_at,
+    motion_of,
+    noise_along,
+    rate_check,
+)
+
+Array = NDArray[np.float64]
+
+MIN_COSINE = 1 - 1e-9  # between an axis of the case and that of the input
+OF_INPUT = {
+    *("accel_scale_asymmetry", "accel_quadratic", "accel_cubic", "accel_hysteresis"),
+    *("gyro_scale_asymmetry", "gyro_scale_quadratic", "gyro_scale_cubic", "gyro_dead_band"),
+    "gyro_hysteresis",
+}
+OF_FORCE = {"gyro_g_sensitivity", "gyro_g2_sensitivity"}
+UNIT = {"accel": "m/s²", "gyro": "rad/s"}
+
+NO_RESULT = _("there is no result, so no readings without cross terms")
+NO_ATTITUDE = _("the attitudes are not known, so neither is the input along the axis")
+NO_INPUT = _("no known input was applied along the axis")
+ONE_LINE = _("fewer than three different inputs were applied along the axis")
+NOT_BOTH = _("the inputs along the axis do not tell the bias from an asymmetry")
+NO_FORCES = _("the static positions do not tell it from the sensitivity to force")
+
+
+@dataclass(frozen=True)
+class Point:
+    """An input along an axis of the case, 0, 1, 2, the output, and the sigma of their difference.
+
+    `whole`: the output with all effects of the result taken out.
+    """
+
+    axis: int
+    applied: float
+    read: float
+    whole: float
+    sigma: float
+
+
+def characteristics(data: CampaignData, measurement: Measurement) -> Iterator[Row]:
+    """The figures of both sensors on one mount, each with the reason where there is none."""
+    accel, gyro = measurement.accelerometer, measurement.gyro
+    own = Measurement(_without(accel, OF_INPUT), _without(gyro, OF_INPUT))
+    for sensor, result, points in (("accel", accel, _accelerometers), ("gyro", gyro, _gyros)):
+        reason = NO_RESULT if result.triad is None else NO_ATTITUDE if data.by_hand else ""
+        there = [] if reason else list(points(data, measurement, own))
+        for axis in range(3):
+            along = [p for p in there if p.axis == axis and np.isfinite(p.read + p.sigma)]
+            yield from _of_axis(sensor, axis, along, reason, data.mount)
+    yield from _drifts(data, measurement, reason)
+
+
+def _without(result: SensorResult, names: set[str]) -> SensorResult:
+    return replace(result, effects=[one for one in result.effects if one.effect.name not in names])
+
+
+def _of_axis(
+    sensor: str, axis: int, points: Sequence[Point], reason: str, mount: str
+) -> Iterator[Row]:
+    """The three figures of input and output along one axis."""
+    applied, read, whole, sigma = (
+        np.array([getattr(point, name) for point in points])
+        for name in ("applied", "read", "whole", "sigma")
+    )
+    largest = float(np.abs(applied).max(initial=0.0))
+    figures: dict[str, dict[str, Any]]
+    if not largest:
+        none: dict[str, Any] = {"reason": reason or NO_INPUT}
+        figures = {"composite_error": none, "linearity_error": none, "asymmetry": none}
+    else:
+        line, both = linearity_error(applied, read, sigma), asymmetry(applied, read, sigma)
+        figures = {
+            "composite_error": asdict(composite_error(applied, whole, sigma)),
+            "linearity_error": asdict(line) if line else {"reason": ONE_LINE},
+            "asymmetry": {"value": both[0], "sigma": both[1]} if both else {"reason": NOT_BOTH},
+        }
+    shared: dict[str, Any] = {
+        "largest_input": largest or None,
+        "input_unit": UNIT[sensor],
+        "points": len(points),
+    }
+    for quantity, figure in figures.items():
+        yield _row(sensor, axis, quantity, "1", mount) | shared | figure
+
+
+def _row(sensor: str, axis: int, quantity: str, unit: str, mount: str) -> dict[str, Any]:
+    return {
+        "id": f"{with_mount('compensation', mount)}/{sensor}/{quantity}_{AXES[axis]}",
+        "mount": mount,
+        "sensor": sensor,
+        "axis": AXES[axis],
+        "quantity": quantity,
+        **dict.fromkeys(("value", "sigma", "by_noise", "largest_input")),
+        "unit": unit,
+        "input_unit": "",
+        "points": 0,
+        "reason": "",
+    }
+
+
+# --- Inputs along the axes: gravity in static positions, the earth's rate, the table's rate ---
+
+
+def _accelerometers(data: CampaignData, whole: Measurement, own: Measurement) -> Iterator[Point]:
+    """A tilt changes the components across the vertical, and that along it by its square."""
+    gravity, triad = data.gravity.number, whole.accelerometer.triad
+    assert triad is not None  # else there is no result
+    for position in data.accelerometer_positions[0]:
+        read, all_out = force_at(position, own), force_at(position, whole)
+        noise, up = position.over()[1], position.up_now
+        for axis, unit in enumerate(np.eye(3)):
+            level = np.sqrt(max(1 - up[axis] ** 2, 0.0))
+            tilted = gravity * max(data.position_sigma * level, data.position_sigma**2)
+            sigma = float(np.hypot(noise_along(unit, triad, noise), tilted))
+            yield Point(axis, gravity * up[axis], read[axis], all_out[axis], sigma)
+
+
+def _gyros(data: CampaignData, whole: Measurement, own: Measurement) -> Iterator[Point]:
+    """Only inputs along an axis of the case: across it the earth's rate may be unknown."""
+    triad = whole.gyro.triad
+    assert triad is not None  # else there is no result
+    for position in data.gyro_inputs.of_known_attitude.static_positions:
+        if (along := _axis(position.up_now)) is None:
+            continue
+        checked = [
+            check
+            for measurement in (own, whole)
+            for check in rate_check(
+                position, measurement, triad, force_at(position, measurement), data, 0.0
+            )
+        ]
+        if len(checked) == 2:
+            axis, sign = along
+            read, all_out = (sign * check.after for check in checked)
+            yield Point(axis, sign * checked[0].expected, read, all_out, checked[0].sigma)
+    for rotation in data.gyro_inputs.usable:
+        if (along := _axis(rotation.plan.axis)) is not None:
+            axis, sign = along
+            turn = _whole_turn if rotation.plan.recorded == "whole" else _steady_turn
+            for applied, read, all_out, sigma in turn(rotation, data, whole, own):
+                yield Point(axis, sign * applied, sign * read, sign * all_out, sigma)
+
+
+def _axis(direction: Array) -> tuple[int, float] | None:
+    """The axis of the case along a direction and its sign."""
+    axis = int(np.argmax(np.abs(direction)))
+    along = float(direction[axis])
+    return (axis, float(np.sign(along))) if abs(along) > MIN_COSINE else None
+
+
+Turned = tuple[float, float, float, float]
+
+
+def _whole_turn(
+    rotation: Recorded, data: CampaignData, whole: Measurement, own: Measurement
+) -> Iterator[Turned]:
+    """The mean rate of a turn from rest to rest, by its angle."""
+    triad = whole.gyro.triad
+    assert triad is not None
+    checked = [
+        check
+        for measurement in (own, whole)
+        for check in angle_check(rotation, measurement, triad, data)
+    ]
+    seconds = float(rotation.weights @ rotation.blocks.seconds)
+    if len(checked) == 2 and rotation.done.complete:
+        read, all_out = (check.after / seconds for check in checked)
+        yield checked[0].expected / seconds, read, all_out, checked[0].sigma / seconds
+
+
+def _steady_turn(
+    rotation: Recorded, data: CampaignData, whole: Measurement, own: Measurement
+) -> Iterator[Turned]:
+    """The steady rate of a turn, by what the plan states of it."""
+    m, blocks, triad = rotation.plan, rotation.steady, whole.gyro.triad
+    assert m.rate is not None and triad is not None
+    motion = stretches(blocks.time, blocks.seconds, blocks.temperature)
+    earth, earth_sigma = earth_along(m.axis, position_of(m, data.heading), data.earth)
+    means = []
+    for measurement in (own, whole):
+        rates = measurement.rate(blocks.gyro, motion, measurement.force(blocks.accel, motion))
+        means.append(float(np.average(rates @ m.axis, weights=blocks.counts)) - earth)
+    noise = data.noise.of(m.name, "steady", tables.GYRO) / np.sqrt(blocks.seconds.sum())
+    sigma = (noise_along(m.axis, triad, noise), abs(m.rate) * data.rate_sigma, earth_sigma)
+    yield m.rate, means[0], means[1], float(np.linalg.norm(sigma))
+
+
+def _position_now(position: StaticPosition, data: CampaignData) -> Position:
+    """The set position of a manoeuvre as it has turned since its start."""
+    start, about, angle = (
+        position_of(position.manoeuvre, data.heading),
+        position.about,
+        position.angle,
+    )
+    north = None if start.north is None else turned(start.north, about, angle)
+    return replace(start, up=position.up_now, north=north)
+
+
+# --- The drift that does not depend on specific force ---
+
+
+def _drifts(data: CampaignData, measurement: Measurement, reason: str) -> Iterator[Row]:
+    """The acceleration-insensitive drift rates: by static positions, whatever the force adds."""
+    own = replace(measurement, gyro=_without(measurement.gyro, OF_FORCE))
+    triad = measurement.gyro.triad
+    positions = [] if reason else data.gyro_inputs.of_known_attitude.static_positions
+    up = np.array([position.up_now for position in positions]).reshape(-1, 3)
+    for axis, unit in enumerate(np.eye(3)):
+        rates, sigmas = np.empty(len(positions)), np.empty(len(positions))
+        for i, position in enumerate(positions):
+            assert triad is not None  # else there is a reason
+            reading, noise = position.over()
+            earth, spread = earth_along(unit, _position_now(position, data), data.earth)
+            (rate,) = own.rate(reading[None], motion_of(position), force_at(position, own)[None])
+            rates[i] = rate[axis] + triad.bias[axis] - earth
+            sigmas[i] = np.hypot(noise_along(unit, triad, noise), spread)
+        known = np.isfinite(rates + sigmas)
+        found = at_no_force(rates[known], sigmas[known], data.gravity.number * up[known])
+        yield _row("gyro", axis, "acceleration_insensitive_drift", "rad/s", data.mount) | {
+            "points": int(known.sum()),
+            **(
+                {"value": found[0], "sigma": found[1]} if found else {"reason": reason or NO_FORCES}
+            ),
+        }

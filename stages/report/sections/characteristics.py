@@ -1,0 +1,107 @@
+"""The figures by which the standards describe a sensor, over the inputs that were applied."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from inertial.text import numbers
+from inertial.text.messages import _
+from inertial.text.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, PPM, Unit
+from stages.report.outline import Column, Part, Row, Section, Sentences, Table, head, table_row
+from stages.report.tables import Record, Tables
+from stages.report.words import SENSOR, capital
+
+NAMES = {
+    "composite_error": _("Composite error, over the largest input"),
+    "linearity_error": _("Linearity error, over the largest input"),
+    "asymmetry": _("Scale factor asymmetry"),
+    "acceleration_insensitive_drift": _("Acceleration-insensitive drift rate"),
+}
+UNITS = {"1": PPM, "rad/s": DEGREES_PER_HOUR}
+INPUTS = {"rad/s": DEGREES_PER_SECOND, "m/s²": METRES}
+
+
+def parts(tables: Tables) -> Iterator[Part]:
+    """One table of both sensors, and why figures are missing."""
+    rows = tables.rows("characteristics")
+    known = [row for row in rows if row["value"] is not None]
+    if not known:
+        return
+    yield Table(
+        _("Figures of each axis, as IEEE Std 528 defines them."),
+        (
+            Column(_("Axis"), "name"),
+            Column(_("value"), "number"),
+            Column("± σ", "sigma"),
+            Column(_("by noise alone, 95 %"), "number"),
+            Column(_("unit"), "unit"),
+            Column(_("largest input"), "number"),
+            Column(_("points"), "number"),
+        ),
+        list(_table_rows(known)),
+        note=_(
+            "By noise alone: what the largest of so many errors does not exceed in 95 % of the "
+            "cases if noise, the table and the site are all there is."
+        ),
+    )
+    if missing := list(dict.fromkeys(map(_missing, (row for row in rows if row["reason"])))):
+        yield Sentences(tuple(missing))
+
+
+SECTION = Section(
+    "characteristics",
+    _("Sensor characteristics"),
+    _(
+        "How far the output of each axis departs from its input and from a straight line, over the "
+        "inputs that were applied and not over the range of the data sheet; bias, cross terms and "
+        "the effects of the result are taken out, but for those that depend on the axis's own "
+        "input. The composite error is that of the whole result."
+    ),
+    _(
+        "A linearity error within the figure for noise alone is an upper limit. The "
+        "acceleration-insensitive drift rate is what a gyro reads whatever force it is under."
+    ),
+    ("characteristics",),
+    parts,
+)
+
+
+def _table_rows(rows: Sequence[Record]) -> Iterator[Row]:
+    for quantity, name in NAMES.items():
+        for sensor in ("accel", "gyro"):
+            own = [r for r in rows if (r["quantity"], r["sensor"]) == (quantity, sensor)]
+            if not own:
+                continue
+            yield head(f"{name}: {SENSOR[sensor]}")
+            unit = UNITS[own[0]["unit"]]
+            decimals = numbers.common_decimals([unit.of(row["sigma"]) for row in own])
+            for row in own:
+                yield _table_row(row, unit, decimals)
+
+
+def _table_row(row: Record, unit: Unit, decimals: int | None) -> Row:
+    value, sigma = numbers.with_sigma(unit.of(row["value"]), unit.of(row["sigma"]), decimals)
+    largest = ""
+    if row["largest_input"] is not None:
+        given = INPUTS[row["input_unit"]]
+        largest = f"{numbers.significant(given.of(row['largest_input']), 3)} {given.name}"
+    mount = f" ({row['mount']})" if row["mount"] else ""
+    return table_row(
+        row["axis"] + mount,
+        value,
+        sigma,
+        numbers.fixed(unit.of(row["by_noise"]), decimals or 0) if row["by_noise"] else "–",
+        unit.name,
+        largest or "–",
+        numbers.whole(row["points"]),
+        anchor=row["id"],
+    )
+
+
+def _missing(row: Record) -> str:
+    return _(
+        "{sensor}s, {quantity}: not determined, for {reason}.",
+        sensor=capital(SENSOR[row["sensor"]]),
+        quantity=NAMES[row["quantity"]].partition(",")[0].lower(),
+        reason=row["reason"],
+    )

@@ -1,0 +1,99 @@
+"""Linearity, asymmetry, composite error and drift without force, as the standards define them."""
+
+import chain
+import numpy as np
+import pytest
+from scipy import stats
+
+from inertial.estimation.input_output import (
+    asymmetry,
+    at_no_force,
+    composite_error,
+    linearity_error,
+)
+
+DEGREE_PER_HOUR = np.radians(1 / 3600)  # rad/s
+PPM = 1e-6
+
+
+def test_the_error_of_a_parabola_in_three_points_is_largest_in_the_middle():
+    """y = x + c x² at −1, 0, 1: its line is x + 2/3 c, and the variance of a residual there 2/3."""
+    applied = np.array([-1.0, 0.0, 1.0])
+    found = linearity_error(applied, applied + 0.06 * applied**2 + 3.0, np.full(3, 1e-6))
+    assert found.value == pytest.approx(-0.04)
+    assert found.sigma == pytest.approx(1e-6 * np.sqrt(2 / 3))
+
+
+def test_two_inputs_have_no_linearity_error():
+    applied = np.array([-1.0, 1.0, 1.0])
+    assert linearity_error(applied, applied, np.ones(3)) is None
+    assert asymmetry(applied, applied, np.ones(3)) is None
+
+
+def test_noise_alone_exceeds_its_limit_in_one_case_of_twenty():
+    random = np.random.default_rng(1)
+    sigma = np.array([1.0, 3.0, 2.0, 0.5])
+    applied = np.array([-4.0, -1.0, 1.0, 4.0])
+    errors = [
+        composite_error(applied, applied + sigma * noise, sigma)
+        for noise in random.normal(size=(4000, 4))
+    ]
+    beyond = sum(abs(one.value) > one.by_noise for one in errors)
+    assert stats.binomtest(beyond, len(errors), 0.05).pvalue > 1e-3
+
+
+def test_what_force_adds_is_no_drift_without_force():
+    random = np.random.default_rng(2)
+    force = 9.8 * np.vstack([np.eye(3), -np.eye(3)])
+    rate = 3e-6 + force @ [1e-7, -2e-7, 5e-7] + 1e-9 * random.normal(size=6)
+    drift, sigma = at_no_force(rate, np.full(6, 1e-9), force)
+    assert sigma == pytest.approx(1e-9 / np.sqrt(6))
+    assert drift == pytest.approx(3e-6, abs=4 * sigma)
+    assert at_no_force(rate[:1], np.full(1, 1e-9), force[:1]) is None
+
+
+@pytest.fixture(scope="module")
+def asymmetric(tmp_path_factory):
+    """Gyros and accelerometers with a share of |input| in their output, S0's six positions."""
+    folder = tmp_path_factory.mktemp("asymmetric")
+    effects = {
+        "gyro_scale_asymmetry": {"asymmetry_ppm": [150, -400, 250]},
+        "accel_scale_asymmetry": {"asymmetry_micro_g_g": [200, -300, 0]},
+    }
+    chain.simulate(chain.short(effects=effects), folder / "raw")
+    table = chain.run(folder / "raw", folder / "derived", "compensation")
+    return table["compensation/characteristics"].set_index(["sensor", "quantity", "axis"]).sort_index()
+
+
+@pytest.mark.parametrize(
+    ("sensor", "half_ppm"), [("gyro", [150, -400, 250]), ("accel", [200, -300, 0])]
+)
+def test_asymmetry_is_the_difference_of_the_scale_factors_of_both_ways(
+    asymmetric, sensor, half_ppm
+):
+    found = asymmetric.loc[sensor, "asymmetry"]
+    pulls = (found["value"] - 2 * PPM * np.array(half_ppm)) / found["sigma"]
+    assert np.abs(pulls).max() < 4
+    assert found["sigma"].max() < 50 * PPM
+
+
+def test_a_linearity_error_beyond_noise_is_that_of_the_asymmetry(asymmetric):
+    """The y axis is up in one rest and before and after two turns, down in one, else level."""
+    row = asymmetric.loc["accel", "linearity_error", "y"]
+    applied = np.array([1.0] * 5 + [-1.0] + [0.0] * 12)
+    bent = np.abs(applied)
+    off_line = bent - np.polyval(np.polyfit(applied, bent, 1), applied)
+    expected = 300 * PPM * np.abs(off_line).max()
+    assert abs(row["value"]) == pytest.approx(expected, abs=4 * row["sigma"])
+    assert abs(row["value"]) > 4 * row["by_noise"]
+    assert row["points"] == 18
+    assert row["largest_input"] == pytest.approx(9.7936174)
+
+
+def test_the_drift_without_force_is_the_bias(coupled):
+    """G is 14, −10 and 12 °/h/g in this campaign; S0's biases are hidden in it."""
+    found = chain.again(coupled, "compensation")["characteristics"]
+    drift = found[found["quantity"] == "acceleration_insensitive_drift"]
+    pulls = (drift["value"].to_numpy() - [1.30e-06, -2.10e-06, 0.90e-06]) / drift["sigma"]
+    assert np.abs(pulls).max() < 4
+    assert drift["sigma"].max() < 2 * DEGREE_PER_HOUR
