@@ -24,6 +24,7 @@ HIDDEN = {
     ),
     "gyro_warm_up": ({"start_deg_h": [0, 0, 5], "time_constant_s": 500}, {}),
     "gyro_scale_asymmetry": ({"asymmetry_ppm": [120, 0, 0]}, {"a_x": 120 * PPM}),
+    "gyro_hysteresis": ({"offset_deg_h": [0, 1.5, 0]}, {"h_y": 1.5 * DEGREE_PER_HOUR}),
     "accel_quadratic": ({"k2_micro_g_g2": [0, 200, 0]}, {"k2_y": 200e-6 / G}),
     "accel_bias_ramp": ({"ramp_m_s2_h": [0, 0, 1.0e-3]}, {"c_z": 1e-3 / 3600}),
     "accel_bias_jump": ({"size_micro_g": [60, 0, 0], "at_s": 700}, {"b_x": 60 * MICRO_G}),

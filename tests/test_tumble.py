@@ -111,3 +111,15 @@ def test_a_turn_beyond_both_positions_is_told_by_its_peak(
     assert back[["peak_x", "peak_z"]].isna().all()  # 0.06 g is no turn
     own = peaks[peaks.index.str.startswith("tumble-z-")]
     assert own.drop("tumble-z-back-17").iloc[1:].isna().all(axis=None)
+
+
+def test_the_sense_of_the_last_rate_is_that_of_the_last_step(
+    tumbled: tuple[laboratory.Recording, chain.Results],
+) -> None:
+    """Every rest on the way back is approached backwards, the first one too."""
+    performed = tumbled[1]["segment/performed"].set_index("manoeuvre")
+    forwards = performed[performed.index.str.startswith("tumble-z-")].iloc[1:]
+    back = forwards.index.str.contains("back")
+    assert set(forwards.loc[~back, "sense_x"]) == {1.0}
+    assert set(forwards.loc[back, "sense_x"]) == {-1.0}
+    assert forwards[["sense_y", "sense_z"]].isna().all(axis=None)

@@ -157,4 +157,5 @@ def motion_of(
         temperature=mean(recorded.temperature),
         vibration=np.zeros((n, 3)),
         peaks=unknown,
+        senses=unknown,
     )

@@ -198,7 +198,8 @@ class CampaignMotions:
             run=np.array([self._runs[name]]),
             temperature=np.array([position.mean_of(position.temperature)]),
             vibration=self._data.noise.of_samples(name, "rest", ACCEL)[None],
-            peaks=self._peaks(name, 1),
+            peaks=self._on_the_way(name, 1)[0],
+            senses=self._on_the_way(name, 1)[1],
         )
 
     def turning(self, rotation: Recorded, turn: RateSegment) -> Motion:
@@ -218,12 +219,16 @@ class CampaignMotions:
             run=np.full(len(time), self._runs[name]),
             temperature=blocks.temperature,
             vibration=np.tile(vibration, (len(time), 1)),
-            peaks=self._peaks(name, len(time)),
+            peaks=self._on_the_way(name, len(time))[0],
+            senses=self._on_the_way(name, len(time))[1],
         )
 
-    def _peaks(self, name: str, count: int) -> Array:
-        done = self._data.performed.get(name)
-        return np.tile(np.full(3, np.nan) if done is None else done.peaks, (count, 1))
+    def _on_the_way(self, name: str, count: int) -> tuple[Array, Array]:
+        """Peaks and senses on the way to a manoeuvre, (count, 3) each; see `Motion`."""
+        done, unknown = self._data.performed.get(name), np.full(3, np.nan)
+        both = (unknown, unknown) if done is None else (done.peaks, done.senses)
+        peaks, senses = (np.tile(each, (count, 1)) for each in both)
+        return peaks, senses
 
 
 def positions_of(plan: Sequence[Manoeuvre]) -> list[str]:
@@ -255,7 +260,7 @@ def mean_motions(motion: Motion, merged: Merged) -> list[Motion]:
     # The acceleration at a lever arm is quadratic in the rate, so the rate is the rms.
     means["rate"] = np.sign(means["rate"]) * np.sqrt(merged.mean(motion.rate**2))
     means["seconds"] = merged.seconds
-    for name in ("surveyed", "position", "run", "peaks"):
+    for name in ("surveyed", "position", "run", "peaks", "senses"):
         means[name] = getattr(motion, name)[merged.starts]
     return [
         Motion(about=motion.about, **{name: values[i : i + 1] for name, values in means.items()})

@@ -118,12 +118,23 @@ class Performed:
     peak_x: float | None = None
     peak_y: float | None = None
     peak_z: float | None = None
+    sense_x: float | None = None
+    sense_y: float | None = None
+    sense_z: float | None = None
 
     @property
     def peaks(self) -> tuple[float, ...]:
         """Of the force along each axis on the way to it, m/s², (3,); NaN where there is none."""
-        peaks = (self.peak_x, self.peak_y, self.peak_z)
-        return tuple(np.nan if peak is None else peak for peak in peaks)
+        return _with_nan(self.peak_x, self.peak_y, self.peak_z)
+
+    @property
+    def senses(self) -> tuple[float, ...]:
+        """In which it last turned about each axis on the way to it, ±1, (3,); NaN: it did not."""
+        return _with_nan(self.sense_x, self.sense_y, self.sense_z)
+
+
+def _with_nan(*values: float | None) -> tuple[float, ...]:
+    return tuple(np.nan if value is None else value for value in values)
 
 
 def performed_of(table: pd.DataFrame) -> dict[str, Performed]:

@@ -27,6 +27,7 @@ from inertial.effects.gyro_dead_band import GyroDeadBand
 from inertial.effects.gyro_flicker import GyroFlicker
 from inertial.effects.gyro_g2_sensitivity import GyroG2Sensitivity
 from inertial.effects.gyro_g_sensitivity import GyroGSensitivity
+from inertial.effects.gyro_hysteresis import GyroHysteresis
 from inertial.effects.gyro_latency import GyroLatency
 from inertial.effects.gyro_random_walk import GyroRandomWalk
 from inertial.effects.gyro_saturation import GyroSaturation
@@ -73,6 +74,7 @@ CATALOGUE: dict[str, Effect] = {
         GyroRandomWalk(),
         GyroFlicker(),
         GyroDeadBand(),
+        GyroHysteresis(),
         GyroSaturation(),
         GyroLatency(),
         # accelerometers

@@ -96,7 +96,8 @@ class Motion:
     `surveyed`: (n,), whether north is known from the table's heading and not from the gyros;
     `temperature`: (n,), K, and `vibration`: (n, 3), m/s², the standard deviation of the samples of
     specific force; `peaks`: (n, 3), m/s², the last extreme of specific force along each axis on the
-    way to the manoeuvre. These three are NaN where they are not known.
+    way to the manoeuvre; `senses`: (n, 3), ±1, in which it last turned about each axis on that way.
+    These four are NaN where they are not known.
     """
 
     time: Array
@@ -114,6 +115,7 @@ class Motion:
     temperature: Array
     vibration: Array
     peaks: Array
+    senses: Array
 
     @property
     def omega(self) -> Array:
@@ -192,7 +194,7 @@ def turning(
         np.zeros(n),
         np.zeros(n, bool),
         np.full(n, np.nan),
-        *(np.full((n, 3), np.nan),) * 2,
+        *(np.full((n, 3), np.nan),) * 3,
     )
 
 
@@ -209,7 +211,7 @@ def stretches(time: Array, seconds: Array, temperature: Array) -> Motion:
         *(zero, zero, zero),
         np.zeros(n, bool),
         temperature,
-        *(unknown, unknown),
+        *(unknown, unknown, unknown),
     )
 
 

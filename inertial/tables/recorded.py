@@ -206,7 +206,7 @@ SEGMENTS = Table(
 )
 PERFORMED = Table(
     "performed",
-    4,
+    5,
     (
         Column("manoeuvre", TEXT, "", "as in manoeuvres"),
         Column("found", TRUTH, "", "found in its log"),
@@ -247,6 +247,18 @@ PERFORMED = Table(
                 DOUBLE,
                 "m/s²",
                 "last extreme of specific force on the way to it beyond both ends, by the readings;"
+                " none where these do not show one",
+                BODY,
+                True,
+            )
+            for axis in AXES
+        ),
+        *(
+            Column(
+                f"sense_{axis}",
+                DOUBLE,
+                "1",
+                "sense of the last rate about the axis on the way to it, 1 or -1, by the readings;"
                 " none where these do not show one",
                 BODY,
                 True,

@@ -40,6 +40,7 @@ NAMES = {
     "gyro_drift": _("drift of the gyros without a law"),
     "gyro_g2_sensitivity": _("gyro g²-sensitivity"),
     "gyro_g_sensitivity": _("gyro g-sensitivity"),
+    "gyro_hysteresis": _("gyro hysteresis"),
     "gyro_random_walk": _("random walk of the gyro biases"),
     "gyro_scale_cubic": _("gyro scale factor with the square of the rate"),
     "gyro_scale_g_dependence": _("gyro scale factor with acceleration"),

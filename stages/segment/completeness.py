@@ -29,6 +29,7 @@ MAX_MASKED_SHARE = 0.1  # of the time of the ramps, or of a turn: what may be in
 # to 20 ppm each, better than the table keeps it.
 MIN_STEADY_S = 1.0
 MIN_PEAK_FORCE = 0.1 * STANDARD_GRAVITY  # m/s², of a peak between two positions beyond both
+MIN_SENSE_RATE = np.radians(1.0)  # rad/s, of a turn about an axis between two manoeuvres
 
 
 @dataclass(frozen=True)
@@ -361,21 +362,30 @@ def _steady_rate(moving: pd.DataFrame, about: Array) -> float | None:
     return float(np.average(about[steady], weights=moving["count"].to_numpy(np.float64)[steady]))
 
 
-def with_peaks(performed: dict[str, Performed], located: Located) -> Iterator[Performed]:
-    """The manoeuvres with the peak of the force along each axis on the way to them, as read.
+def with_ways(
+    performed: dict[str, Performed], located: Located, level: Array
+) -> Iterator[Performed]:
+    """The manoeuvres with what sensors remember of the way to them, as read; `level`: see `turn`.
 
-    The table may turn an axis over between two positions, which the plan does not tell.
+    That is the peak of the force along each axis, and the sense of the last rate about it. The
+    table may turn an axis over between two positions, which the plan does not tell.
     """
-    if located.axes.accel != AS_NAMED:
-        return
-    forces, since = located.binned.forces, 0
+    binned, since = located.binned, 0
     found = ((place, name) for name, place in located.matched.items() if place is not None)
     for place, name in sorted(found):
-        stretch = located.stretches[place]
-        way = forces[max(since - 1, 0) : stretch.first + 1]
-        x, y, z = (_peak(axis) for axis in way.T)
-        yield replace(performed[name], peak_x=x, peak_y=y, peak_z=z)
-        since = stretch.after
+        done, before = performed[name], located.stretches[since:place]
+        if located.axes.accel == AS_NAMED:
+            first, after = located.stretches[since].first, located.stretches[place].first
+            way = binned.forces[max(first - 1, 0) : after + 1]
+            x, y, z = (_peak(axis) for axis in way.T)
+            done = replace(done, peak_x=x, peak_y=y, peak_z=z)
+        if located.axes.gyro == AS_NAMED:
+            moves = [binned.rates[s.first : s.after] for s in before if s.moves]
+            rates = np.concatenate([np.empty((0, 3)), *moves]) - level
+            x, y, z = (_sense(axis) for axis in rates.T)
+            done = replace(done, sense_x=x, sense_y=y, sense_z=z)
+        yield done
+        since = place + 1
 
 
 def _peak(force: Array) -> float | None:
@@ -387,3 +397,9 @@ def _peak(force: Array) -> float | None:
     found = [int(np.argmax(force))] if force.max() > high + MIN_PEAK_FORCE else []
     found += [int(np.argmin(force))] if force.min() < low - MIN_PEAK_FORCE else []
     return float(force[max(found)]) if found else None
+
+
+def _sense(rate: Array) -> float | None:
+    """The sign of the last rate that is a turn, ±1; None where there is none."""
+    turns = rate[np.abs(rate) > MIN_SENSE_RATE]
+    return float(np.sign(turns[-1])) if len(turns) else None

@@ -128,7 +128,9 @@ def segment(
     for m in plan:
         performed[m.name] = completeness.with_clipped(performed[m.name], block_sums.clipped(m.name))
     for located in explained.located:
-        performed |= {done.manoeuvre: done for done in completeness.with_peaks(performed, located)}
+        performed |= {
+            done.manoeuvre: done for done in completeness.with_ways(performed, located, level)
+        }
     recorded = recorded_of(
         plan,
         explained,

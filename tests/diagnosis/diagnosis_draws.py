@@ -114,10 +114,6 @@ WITHOUT_BAR: Mapping[str, tuple[str, Told]] = {
         "positions",
         lambda r: {"accel_saturation": {"limit_g": _limits(0.99, 0.995)(r)}},
     ),
-    "gyro_hysteresis": (
-        "positions",
-        lambda r: {"gyro_hysteresis": {"offset_deg_h": r.normal(0, 1, 3).tolist()}},
-    ),
 }
 
 

@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from inertial.effects import CATALOGUE
 from inertial.effects.accel_hysteresis import hysteresis
+from inertial.effects.gyro_hysteresis import course
 from inertial.physics.forward import Site, Triad, predict, truth_of
 from inertial.physics.motion import Motion, Profile, joined, turning
 from inertial.physics.site import earth_rate
@@ -234,6 +235,29 @@ def test_hysteresis_remembers_the_side_from_which_an_axis_came():
     forces = 9.80665 * up
     loop = hysteresis(forces, visits, np.full((4, 3), np.nan))[:, 0]
     np.testing.assert_allclose(loop, [-0.5, 0.25, 0.0, 0.75], atol=3e-3)
+
+
+def test_gyros_remember_whether_the_rate_rose_or_fell():
+    about_x = DEGREE * np.array([0.0, 4, 10, 10, 6, 0, 0, -10, -9.8, 0])
+    visits = np.array([0.0, 1.3, 1.3, 1.3, 1.3, 1.7, 2, 3, 3, 4])
+    rate, unseen = np.outer(about_x, [1.0, 0, 0]), np.full((10, 3), np.nan)
+    loop = course(rate, visits, unseen)
+    # 0.2 °/s are no change of course, only elastic: 1 of 2.5 parts of the way
+    expected = [0, 1, 1, 1, -1, -1, -1, -1, -0.6, 1]
+    np.testing.assert_allclose(loop[:, 0], expected, atol=1e-12)
+    assert not loop[:, 1:].any()
+    mixed = np.roll(np.arange(10), 3)  # the order of the plan counts
+    np.testing.assert_allclose(course(rate[mixed], visits[mixed], unseen), loop[mixed], atol=1e-12)
+    # On the way to the third the table turned back, and last about y; in a visit that counts once.
+    seen = unseen.copy()
+    seen[6] = (-1, 1, np.nan)
+    seen[4:6] = 1
+    loop = course(rate, visits, seen)
+    np.testing.assert_allclose(loop[6:, 0], [1, -1, -0.6, 1], atol=1e-12)
+    np.testing.assert_allclose(loop[:, 1], [0] * 6 + [-1] * 4, atol=1e-12)
+    turn = replace(on_a_turn(np.zeros(10)), about=np.array([1.0, 0, 0]), rate=about_x, visit=visits)
+    gyro, _ = acted("gyro_hysteresis", [2e-6, 0, 0], turn)
+    np.testing.assert_allclose(gyro[[1, 5, 9], 0], [-2e-6, 2e-6, -2e-6], rtol=0.01)
 
 
 def test_sites_that_are_wrong_by_their_own_formulas():

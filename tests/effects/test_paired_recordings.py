@@ -34,7 +34,7 @@ GROUPS = (
     ),
     (
         *("gyro_scale_asymmetry", "gyro_scale_g_dependence", "accel_scale_asymmetry"),
-        *("accel_bias_jump", "earth_rate_omitted"),
+        *("accel_bias_jump", "earth_rate_omitted", "gyro_hysteresis"),
     ),
     (
         *("gyro_bias_ramp", "accel_quadratic", "accel_bias_ramp", "size_effect", "latitude_error"),

@@ -53,12 +53,6 @@ OUTSIDE: tuple[Outside, ...] = (
         "k_deg_h_h3",
     ),
     Outside(
-        "gyro_hysteresis",
-        (),
-        lambda r, s, span: {"gyro_hysteresis": {"offset_deg_h": (s * direction(r)).tolist()}},
-        "offset_deg_h",
-    ),
-    Outside(
         "clock_step",
         (),
         lambda r, s, span: {

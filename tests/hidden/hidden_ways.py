@@ -69,6 +69,7 @@ def _leaning(v: Array) -> dict[str, Any]:
 
 
 TURNS, RATES = ("stops", "rates"), ("rates",)
+MEMORY = ("positions", "rates")  # in `stops` every rest but the first follows a turn backwards
 AT: dict[str, Any] = {"scan": ("at_s", 0.12, 0.85), "share": True}
 TAU: dict[str, Any] = {"scan": ("time_constant_s", 200.0, 900.0)}
 
@@ -84,6 +85,7 @@ WAYS: Mapping[str, Way] = {
     "gyro_bias_temperature": _three("k_deg_h_k", DEGREE_PER_HOUR, "k", plans=RATES),
     "gyro_scale_temperature": _three("k_ppm_k", PPM, "k", plans=RATES),
     "gyro_bias_jump": _three("size_deg_h", DEGREE_PER_HOUR, "b", **AT),
+    "gyro_hysteresis": _three("offset_deg_h", DEGREE_PER_HOUR, "h", plans=MEMORY),
     "accel_quadratic": _three("k2_micro_g_g2", PPM / G, "k2"),
     "accel_cubic": _three("k3_micro_g_g3", PPM / G**2, "k3", plans=RATES),
     "accel_cross_products": Way(
