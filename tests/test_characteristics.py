@@ -62,7 +62,9 @@ def asymmetric(tmp_path_factory):
     }
     chain.simulate(chain.short(effects=effects), folder / "raw")
     table = chain.run(folder / "raw", folder / "derived", "compensation")
-    return table["compensation/characteristics"].set_index(["sensor", "quantity", "axis"]).sort_index()
+    return (
+        table["compensation/characteristics"].set_index(["sensor", "quantity", "axis"]).sort_index()
+    )
 
 
 @pytest.mark.parametrize(

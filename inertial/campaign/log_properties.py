@@ -212,6 +212,9 @@ def logs(
         types.setdefault(row["log"], []).append(row["imu_type"])
     rows = {row["log"]: row for row in rows_of(clocks)}
     clock = clocks_of(clocks)
+    in_all = statistics.assign(reach=statistics[["smallest", "largest"]].abs().max(axis=1))
+    in_all = in_all.groupby(["sensor", "axis"]).agg({"reach": "max", "noise": "median"})
+    in_all = in_all.loc[[*zip(SENSORS, AXES * 2, strict=True)]]
     made = {}
     for name, own in statistics.groupby("log", sort=False):
         log = str(name)
@@ -234,6 +237,8 @@ def logs(
             windows=windows.get(log, Windows.none()),
             records=rows[log]["records"],
             step=clock[log].duration or np.nan,
+            reach=in_all["reach"].to_numpy(np.float64),
+            usual_noise=in_all["noise"].to_numpy(np.float64),
             increments=any(row.get("increments") for row in channels),
             imu=tuple(types.get(log, ())),
             stamp_scatter=_number(rows[log].get("stamp_scatter"), np.nan),

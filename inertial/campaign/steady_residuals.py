@@ -39,6 +39,7 @@ class SteadyTurn:
         no stated rate, for then it follows from the gyros, and their residuals have no ripple
     averaged : whether a sample is the mean of the rate over its interval, an increment
     tilted : whether gravity rotates in the case
+    stated : rad, signed, that the table is stated to turn from rest to rest; NaN where it is not
     """
 
     name: str
@@ -50,6 +51,7 @@ class SteadyTurn:
     averaged: bool
     tilted: bool
     start: float = np.nan
+    stated: float = np.nan
 
     @property
     def rate(self) -> float:
@@ -144,6 +146,7 @@ def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
                 data.clocks[m.log].averaged,
                 tilted,
                 float(further[0, 1]),
+                np.nan if m.angle is None else m.angle,
             )
         )
     return steady_parts

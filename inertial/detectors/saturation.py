@@ -28,7 +28,8 @@ from inertial.text.numbers import counted, significant
 
 # Next counts below, whose readings are compared with those at the extreme
 COMPARED_COUNTS = (8, 64, 512)
-TESTS = 6 * 2 * len(COMPARED_COUNTS) * 12  # both ends of each channel, in as many logs as S0 has
+# Both ends of each channel, in one count and in two, in as many logs as S0 has
+TESTS = 6 * 2 * 2 * len(COMPARED_COUNTS) * 12
 MAX_CHANCE = 1e-6  # chance of a pile in a campaign
 MAX_VISIT_BREAK = 8  # readings at the most between two visits that are one
 # Of the readings of a pile in one run: it is no noise cut off, but one long visit
@@ -41,10 +42,13 @@ SIDE_READINGS = 8
 MIN_DISTANCE_SCATTER = 8.0
 MIN_LEAP_RATIO = 10.0  # times the changes beside a visit, by which readings leap to it and back
 MAX_BEYOND = 1.25  # times the stated range, which is nominal: what readings of it may reach
+MIN_EXCESS_SIGMA = 5.0  # of readings in a count, for the scatter of their number
 MIN_FILLED_SHARE = 0.7  # of the counts from the median to the extreme: what noise fills of them
 
 
-def pile_at_top(values: Array, most: float, count: float, noise: float) -> tuple[Integers, float]:
+def pile_at_top(
+    values: Array, most: float, count: float, noise: float, width: int = 1
+) -> tuple[Integers, float]:
     """The readings at the largest value of a log, if they pile up there, and the chance of it.
 
     Where they cut off the noise of a steady reading: unclipped, what lies above would spread over
@@ -60,20 +64,25 @@ def pile_at_top(values: Array, most: float, count: float, noise: float) -> tuple
     most : the largest in the log
     count : the smallest step, in the same unit
     noise : sigma of a reading
+    width : how many of the largest values count as one: increments at a limit between two counts
+        alternate, for what a count leaves over goes into the next
     """
-    pile, none = np.flatnonzero(values == most), np.empty(0, np.int64)
-    if len(pile) < 2 or most == 0 or not np.isfinite(count):
+    none = np.empty(0, np.int64)
+    if most == 0 or not np.isfinite(count):
+        return none, 1.0
+    pile = np.flatnonzero(values > most - (width - 0.5) * count)
+    if len(pile) < 2:
         return none, 1.0
     # Where the noise is less than a count, a steady turn stands at one value by right.
-    if _noise_beside(values, pile) < MIN_NOISE_COUNTS * count:
+    if _noise_beside(values, pile) < MIN_NOISE_COUNTS * width * count:
         return none, 1.0
     places = np.unique(
         np.clip(pile[:, None] + np.arange(-SIDE_READINGS, SIDE_READINGS + 1), 0, len(values) - 1)
     )
-    if _steady(values[places], most, count):
-        chance = TESTS * _by_the_other_side(values[places], most, count)
+    if _steady(values[places], most, count, width):
+        chance = TESTS * _by_the_other_side(values[places], most, count, width)
     elif np.count_nonzero(np.diff(pile) == 1) >= len(pile) / 2 - 1:
-        chance = TESTS * _by_what_is_below(values, most, count, len(pile))
+        chance = TESTS * _by_what_is_below(values, most, count, width)
     else:
         return none, 1.0  # the crests of an oscillation: one reading each
     if chance < MAX_CHANCE and _runs_into(values, pile, noise):
@@ -100,38 +109,50 @@ def _noise_beside(values: Array, pile: Integers) -> float:
     return float(MAD_TO_SIGMA * np.median(rough) / np.sqrt(6)) if len(rough) else 0.0
 
 
-def _steady(values: Array, most: float, count: float) -> bool:
+def standing_at(values: Array, count: float, noise: float) -> float:
+    """The chance that noise leaves all readings of a log, (n,), in two neighbouring counts.
+
+    `noise`: sigma of a reading in the other logs.
+    """
+    if not MIN_NOISE_COUNTS * count < np.ptp(values) < 1.5 * count:
+        return 1.0
+    share = min(2 * count / (noise * np.sqrt(2 * np.pi)), 1.0)  # at the most, in two counts
+    return float(TESTS * share ** len(values))
+
+
+def _steady(values: Array, most: float, count: float, width: int) -> bool:
     """Whether readings fill all counts from their median to the extreme: noise about one value."""
     upper = values[values >= np.median(values)]
     steps = (most - upper.min()) / count
     filled = len(np.unique(np.rint((most - upper) / count)))
-    return bool(steps >= 1 and filled > MIN_FILLED_SHARE * (steps + 1))
+    return bool(steps > width - 0.5 and filled > MIN_FILLED_SHARE * (steps + 1))
 
 
-def _by_the_other_side(values: Array, most: float, count: float) -> float:
-    """The chance that all readings above a level fall into one count, by those as far below.
+def _by_the_other_side(values: Array, most: float, count: float, width: int = 1) -> float:
+    """The chance that all readings above a level fall into `width` counts, by those as far below.
 
     Noise is as wide upwards as downwards: of the N readings at the extreme, and of those that are
-    as far below the mean or farther, the same share lies within one count. What that share is
+    as far below the mean or farther, the same share lies within so many counts. What that share is
     these few readings alone tell: that none of those beyond it is above has the hypergeometric
     chance (Fisher's exact test).
     """
-    number = np.count_nonzero(values == most)
+    number = np.count_nonzero(values > most - (width - 0.5) * count)
     below = 2 * values.mean() - most
     beyond = np.count_nonzero(values < below - count / 2)
-    within = np.count_nonzero(np.abs(values - below) <= count / 2)
+    within = np.count_nonzero(values <= below + (width - 0.5) * count) - beyond
     return float(hypergeom.sf(number - 1, number + within + beyond, number + within, number))
 
 
-def _by_what_is_below(values: Array, most: float, count: float, number: int) -> float:
-    """The chance of so many readings at the largest value, by those in the counts below it."""
+def _by_what_is_below(values: Array, most: float, count: float, width: int = 1) -> float:
+    """The chance of so many readings in the largest counts, by those in the counts below them."""
+    number = np.count_nonzero(values > most - (width - 0.5) * count)
     chance, filled = 1.0, 0.0
     for steps in COMPARED_COUNTS:
-        together = np.count_nonzero(values > most - (steps + 0.5) * count)
+        together = np.count_nonzero(values > most - (steps + width - 0.5) * count)
         density = (together - number) / steps
         if density < filled:
             break  # the readings end before: they lie closer together than so many counts
-        chance = min(chance, float(bdtrc(number - 1, together, 1 / (steps + 1))))
+        chance = min(chance, float(bdtrc(number - 1, together, width / (steps + width))))
         filled = density
     return chance
 
@@ -184,7 +205,9 @@ class Saturation(Detector):
     It is known where the campaign states the limit, or the extreme is the full count of a
     converter. Otherwise a pile of readings at the largest or smallest value of the log shows it,
     where the noise is no less than a count, and the readings run into it: a value that they leap
-    to is no end of a range, nor is zero.
+    to is no end of a range, nor is zero. Increments at a limit between two counts alternate
+    between these. A log that does so throughout stands at the limit where the channel is noisy in
+    the other logs, and goes no farther in any.
 
     What is cut off is the upper part of the noise, so the mean of the readings left beside it is
     too small: of Gaussian noise σ whose upper half is masked, by σ √(2/π).
@@ -208,9 +231,9 @@ class Saturation(Detector):
                 upward = sign * values
                 clipped |= upward >= ROUNDING * _known(sign, log, i)
                 if not (upward[clipped] == most).any():
-                    pile, p_value = pile_at_top(upward, most, log.quantum[i], log.noise[i])
+                    pile, p_value = _unstated(upward, most, log, i)
                     clipped[pile] = True
-                    chance[sign * most] = p_value
+                    chance |= dict.fromkeys((sign * upward[pile]).tolist(), p_value)
             for start, end in joined(np.flatnonzero(clipped), MAX_VISIT_BREAK):
                 limit = float(values[start])
                 yield piece.event(
@@ -293,6 +316,29 @@ class Saturation(Detector):
                 else _("The readings are masked. Look for what spoils them.")
             ),
         )
+
+
+def _unstated(upward: Array, most: float, log: Log, i: int) -> tuple[Integers, float]:
+    """The readings at a limit that nothing states, and the chance of them."""
+    count = float(log.quantum[i])
+    pile, p_value = pile_at_top(upward, most, count, log.noise[i])
+    if log.increments and (not len(pile) or _alternates(upward, most, count)):
+        wider, chance = pile_at_top(upward, most, count, log.noise[i], width=2)
+        pile, p_value = (wider, chance) if len(wider) else (pile, p_value)
+    if len(pile):
+        return pile, p_value
+    if log.increments and most > log.reach[i] - 1.5 * count and log.usual_noise[i] > 0:
+        p_value = standing_at(upward, count, log.usual_noise[i])
+        if p_value < MAX_CHANCE:
+            return np.arange(len(upward)), p_value
+    return pile, p_value
+
+
+def _alternates(upward: Array, most: float, count: float) -> bool:
+    """Whether the count next to the largest has clearly more readings than the one after it."""
+    steps = np.rint((most - upward) / count)
+    second, third = np.count_nonzero(steps == 1), np.count_nonzero(steps == 2)
+    return bool(second > third + MIN_EXCESS_SIGMA * np.sqrt(third + 1))
 
 
 def _limits(events: Sequence[Event]) -> str:

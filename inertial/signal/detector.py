@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
@@ -94,6 +94,8 @@ class Log:
     about its neighbours, m/s² and rad/s, NaN where not recorded.
     equal: (6,), share of readings that are equal to the one before.
     least, most: (6,), its smallest and largest reading.
+    reach, usual_noise: (6,), its largest reading of either sign in any log, and the median of its
+    noise in all logs.
     limit: (6,), how far the channel reaches, infinite where not stated.
     count: (6,), what one count is by the campaign, m/s² and rad/s, NaN where not stated.
     records: how many. increments: readings are increments over `step`, and what a count leaves
@@ -117,6 +119,8 @@ class Log:
     windows: Windows
     records: int
     step: float = np.nan
+    reach: Array = field(default_factory=lambda: np.full(6, np.nan))
+    usual_noise: Array = field(default_factory=lambda: np.full(6, np.nan))
     increments: bool = False
     imu: tuple[int, ...] = ()
     stamp_scatter: float = np.nan

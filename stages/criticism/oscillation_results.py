@@ -2,10 +2,11 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import exp, sqrt
+from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import expit
 
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.effects import CATALOGUE
@@ -167,7 +168,7 @@ class OscillationResults:
                 "split_stated": False if several else None,
             },
         )
-        likelier = 1 / (1 + exp(-oscillation.log_odds))
+        likelier = float(expit(oscillation.log_odds))
         probability = (likelier, 1 - likelier) if several else (1.0,)
         yield from member_rows(named.finding, self.mount, members, probability)
 

@@ -375,9 +375,10 @@ def without_lines(
 ) -> pd.DataFrame:
     """The same blocks, each line removed from the steady ones with its own phase in each turn.
 
-    The angle of a turn is unchanged: from rest to rest an oscillation adds none, nor does a ripple
-    of integer order. What it adds in the steady part is removed while the table accelerates and
-    decelerates.
+    From rest to rest an oscillation adds no angle. A ripple of the table does where its order is no
+    integer, or the turn no whole one, which is removed too where one ripple against the angle
+    explains all turns. What else it adds in the steady part is removed while the table accelerates
+    and decelerates.
     """
     if not lines:
         return blocks
@@ -386,8 +387,20 @@ def without_lines(
         own = (blocks["manoeuvre"] == turn.name) & (blocks["phase"] == "steady")
         if own.any() and np.isfinite(turn.start):
             rates = _mean_rates(turn, lines, *_stretches(blocks[own], turn))
-            quiet.loc[own, GYRO] -= (rates[:-1] - rates[-1]) @ turn.matrix.T
+            further = _further(turn, lines) / float(blocks.loc[own, "seconds"].sum()) * turn.about
+            quiet.loc[own, GYRO] -= (rates[:-1] - rates[-1] + further) @ turn.matrix.T
     return quiet
+
+
+def _further(turn: SteadyTurn, lines: Sequence[Oscillation]) -> float:
+    """By how much the table turns further than stated, for its ripples, rad."""
+    further = 0.0
+    for line in (part for cause in lines for part in cause.parts):
+        ripple = line.likeliest.ripple
+        if ripple and line.likeliest.effect != IN_TIME and ripple.common:
+            turned = ripple.order * turn.stated
+            further += float(ripple.values @ [np.sin(turned), np.cos(turned) - 1.0])
+    return further if np.isfinite(further) else 0.0
 
 
 def _stretches(blocks: pd.DataFrame, turn: SteadyTurn) -> tuple[Array, Array]:

@@ -200,7 +200,7 @@ def select_effects(
     selection = without = with_walks((0.0, 0.0))
     for number, walk in enumerate(campaign.solution.random_walks):
         size = walk or _replacing_walk(selection, number)
-        if size:
+        if size and SENSORS[number] in selection.evidence.labels:  # else it has no equations
             walks = _replaced(selection.random_walks, number, size)
             selection = _weighed(selection, with_walks(walks), number)
     if any(selection.random_walks) and selection.effects:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from on_a_table import RATE, recorded, rest, tumble, turn
+from on_a_table import BIAS, RATE, profile, recorded, rest, tumble, turn
 from recorded_by_hand import COUNT, INTERVAL, NOISE, assert_told
 
 from inertial.detectors.saturation import Saturation, _by_the_other_side
@@ -72,6 +72,39 @@ def test_a_turn_cut_off_without_a_stated_limit_is_found(sigma):
     assert touched[0] - 30 <= events[0].first <= touched[0]
     assert touched[-1] < events[-1].after <= touched[-1] + 31
     assert sum(event.size for event in events) >= len(touched)
+
+
+@pytest.mark.parametrize("sigma", [-5, -1, 0.5, 1.5])
+@pytest.mark.parametrize("part", [0.1, 0.5, 0.8])
+def test_increments_at_a_limit_between_two_counts_alternate_and_are_found(sigma, part):
+    """Cut off before they are counted: what a count leaves over goes into the next."""
+    rate = profile()
+    truth = np.tile(BIAS, (len(rate), 1))
+    truth[:, 2] += 9.79
+    truth[:, 5] += rate
+    limit = (np.floor((RATE + sigma * NOISE[5]) / COUNT[5]) + part) * COUNT[5]
+    noisy = truth + NOISE * np.random.default_rng(4).standard_normal(truth.shape)
+    touched = np.flatnonzero(noisy[:, 5] > limit)
+    noisy[touched, 5] = limit
+    values = np.diff(np.rint(np.cumsum(noisy, 0) / COUNT), axis=0, prepend=0.0) * COUNT
+    events = found(values)
+    assert {event.channel for event in events} == {5}
+    assert events[0].first <= touched[0] + 50 and events[-1].after > touched[-1] - 50
+    # Of few the lower count is not told from the noise of 3 counts.
+    assert sum(event.size for event in events) >= (0.95 if sigma < 1 else 0.6) * len(touched)
+
+
+def test_a_log_that_stands_at_the_limit_throughout_is_found_by_the_others():
+    """Two counts by turns, where the other logs have seven counts of noise and go no farther."""
+    values = rest(3000)
+    limit = (np.floor(9.7 / COUNT[2]) + 0.3) * COUNT[2]
+    values[:, 2] = np.diff(np.rint(limit * np.arange(3001) / COUNT[2])) * COUNT[2]
+    noise, reach = NOISE.copy(), np.abs(values).max(axis=0)
+    (event,) = found(values, usual_noise=noise, reach=reach)
+    assert (event.channel, event.size) == (2, 3000)
+    farther = np.where(np.arange(6) == 2, 9.8, reach)
+    assert found(values, usual_noise=noise, reach=farther) == []
+    assert found(values, usual_noise=0.3 * COUNT, reach=reach) == []
 
 
 def test_both_ends_are_seen():

@@ -118,6 +118,15 @@ def direction(random: Random, axes: int = 3) -> Any:
     return drawn / np.linalg.norm(drawn)
 
 
+def _near(random: Random, reading: float, sigma: float) -> float:
+    """A limit that cuts into the noise of samples about a reading, or all of it.
+
+    A scatter of a thousandth in the scale factors is as much as their noise, so the share that is
+    cut off differs from axis to axis.
+    """
+    return float(reading + sigma * random.uniform(-2, 1))
+
+
 def _turned_too_far(random: Random) -> Told:
     turn = f"{random.choice(list('xyz'))}-up-{random.choice([20, 40, 80])}-forward"
     return {"turn_angle_error": {"turn": turn, "further_arcsec": between(random, 60, 600)}}, {}
@@ -141,12 +150,12 @@ ELSEWHERE: tuple[Elsewhere, ...] = (
     Elsewhere(
         ("gyro_saturation",),
         "positions",
-        lambda r: ({"gyro_saturation": {"limit_deg_s": [float(r.uniform(9.9, 9.98))] * 3}}, {}),
+        lambda r: ({"gyro_saturation": {"limit_deg_s": [_near(r, 10.0, 0.011)] * 3}}, {}),
     ),
     Elsewhere(
         ("accel_saturation",),
         "positions",
-        lambda r: ({"accel_saturation": {"limit_g": [float(r.uniform(0.99, 0.995))] * 3}}, {}),
+        lambda r: ({"accel_saturation": {"limit_g": [_near(r, 0.99867, 0.00055)] * 3}}, {}),
     ),
     Elsewhere(("table_ripple",), "rates", _ripple),
     Elsewhere(
