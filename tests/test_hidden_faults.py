@@ -100,6 +100,13 @@ def spoiled(recording: laboratory.Recording, name: str, results: chain.Results):
     return own[0].log, first / 1e9 - epoch, last / 1e9 - epoch
 
 
+def before(recording: laboratory.Recording, name: str, results: chain.Results) -> float:
+    """When the last record before a fault was taken, s since the campaign's first sample."""
+    first = min((one for one in recording.spoiled if one.fault == name), key=lambda one: one.first)
+    stamp = recording.records[first.log].stamps[first.first - 1]
+    return float(stamp) / 1e9 - float(results["decode/clocks"]["epoch_gps"].iloc[0])
+
+
 def assert_named(found: pd.DataFrame, cause: str, place: tuple[str, float, float]) -> None:
     log, start, end = place
     own = found[(found["cause"] == cause) & (found["log"] == log)]
@@ -126,8 +133,8 @@ def test_a_hidden_fault_is_named_with_its_place_and_nothing_else(cause, fault):
     found = findings(results)
     (name,) = fault
     log, start, end = spoiled(recording, name, results)
-    if cause == "gap":  # what is missing lies before the record that tells of it
-        start = found.loc[found["cause"] == "gap", "from_s"].min()
+    if cause == "gap":  # what is missing lies between this record and the one before it
+        start = before(recording, name, results)
         missing = sum(s["missing"] for _, s in results["quality/gaps"].iterrows())
         assert missing == fault[name].get("samples", len(fault[name].get("lines", [])))
     assert_named(found, cause, (log, start, end))

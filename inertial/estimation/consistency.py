@@ -54,11 +54,6 @@ class CommonCause:
         """p-value of the differences if there is no cause."""
         return float(chi2_sf(self.without, self.k))
 
-    @property
-    def p_remaining(self) -> float:
-        """p-value of the residuals if this is the only cause; 1 for a single difference."""
-        return float(chi2_sf(self.remaining, self.k - 1)) if self.k > 1 else 1.0
-
 
 def common_cause(differences: Array, sigma: Array, shape: Array | None = None) -> CommonCause:
     """Estimate of smallest variance; `differences`, `sigma`, `shape` (1 by default): (k,)."""

@@ -173,14 +173,6 @@ def ripple_angle(amplitude: float, frequency: float) -> float:
     return amplitude / (2 * pi * frequency)
 
 
-def ripple_scale(amplitude: float, frequency: float, angle: float, windows: int = 1) -> float:
-    """Rms of the scale factor error by `windows` windows of `angle` (rad) each, 1.
-
-    Forward and backward are two. At worst it is 2√windows times this.
-    """
-    return ripple_angle(amplitude, frequency) / abs(angle) / sqrt(windows)
-
-
 def ripple_window(amplitude: float, frequency: float, seconds: Array) -> Array:
     """Rms over all starts of the angle error in windows of `seconds`, rad.
 

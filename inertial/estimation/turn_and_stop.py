@@ -36,23 +36,11 @@ CROSS_SIGMA = 0.01  # of an element of M that no turn determines: mounting withi
 EARTH_ITERATIONS = 3  # the earth's rate is sensed through M, which is an unknown
 
 
-@dataclass(frozen=True)
-class BothTurns:
-    """M u, 1, and D + M E, rad/s, by a turn forward and a turn backward, (3,) each."""
-
-    along: Array
-    offset: Array
-
-
-def both_turns(forward: RateSegment, backward: RateSegment) -> BothTurns:
-    """S3 (13) to (15) for one axis; both turns are about it, their angles of opposite sign."""
-    along_factors, offset_factors = _factors(forward, backward)
-    sums = np.array([forward.sums.sum(axis=0), backward.sums.sum(axis=0)])
-    return BothTurns(along_factors @ sums, offset_factors @ sums)
-
-
 def _factors(forward: RateSegment, backward: RateSegment) -> tuple[Array, Array]:
-    """Coefficients of the two sums in M u and in D + M E, (2,) each; 1/rad and 1/s."""
+    """S3 (13) to (15): coefficients of the two sums in M u and in D + M E, (2,) each; 1/rad, 1/s.
+
+    Both turns are about one axis, their angles of opposite sign.
+    """
     seconds = np.array([forward.seconds.sum(), backward.seconds.sum()])
     angle = np.array([forward.angle, backward.angle])
     determinant = angle[0] * seconds[1] - angle[1] * seconds[0]

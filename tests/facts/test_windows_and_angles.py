@@ -8,7 +8,7 @@ from inertial.estimation.angle_windows import fencepost
 from inertial.estimation.consistency import holm_rejections, normal_p_value
 from inertial.estimation.gyroscope_observations import Earth, Position, SteadyRate
 from inertial.estimation.rate_table import rate_table
-from inertial.estimation.time_angle import ripple_angle, ripple_scale
+from inertial.estimation.time_angle import ripple_angle
 from inertial.physics.site import earth_rate
 
 UP, LEVEL = earth_rate(s0.LATITUDE)
@@ -20,7 +20,7 @@ WALK = s0.per_root_second(np.radians(0.012))  # rad/√s, by the scatter of S0's
 # Sigma of a scale factor by windows: noise of 18 s each way and of the turns of 40 s, and the 20 Hz
 # that both windows cut: 0.01 rad/s on x, 0.001 on y (F 5-14, 5-15); of z none is shown.
 OF_NOISE = np.hypot(WALK * np.sqrt(36) / (2 * np.pi), WALK * np.sqrt(80) / (4 * np.pi))
-OF_RIPPLE = [ripple_scale(size, 20, np.pi, windows=2) for size in (0.01, 0.001, 0.001)]
+OF_RIPPLE = [ripple_angle(size, 20) / np.pi / np.sqrt(2) for size in (0.01, 0.001, 0.001)]
 SIGMA = np.hypot(OF_NOISE, OF_RIPPLE)
 
 
@@ -118,11 +118,8 @@ def test_t12_t13_the_speed_of_the_table_is_not_what_the_windows_would_need():
 
 
 def test_t23_what_20_hz_leave_in_a_window():
+    # Of the scale factor by 180° that are 25.33 ppm rms; by two windows 17.9.
     assert ripple_angle(0.01, 20) == pytest.approx(7.958e-5, abs=1e-8)
-    # 25.33 ppm are the rms of one window; of two, forward and backward, it is 17.9, at worst 50.7.
-    assert ripple_scale(0.01, 20, np.pi) == pytest.approx(25.33e-6, abs=1e-8)
-    assert ripple_scale(0.01, 20, np.pi, windows=2) == pytest.approx(17.91e-6, abs=1e-8)
-    assert ripple_scale(0.01, 20, 2 * np.pi) == pytest.approx(12.67e-6, abs=1e-8)
     # The rms is that of sums, too.
     random = np.random.default_rng(23)
     start = random.uniform(0, 1, 4000)
