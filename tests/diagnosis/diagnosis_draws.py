@@ -158,7 +158,7 @@ def ratio_without(
 ) -> float:
     """The signal-to-noise ratio of an effect in a plan of which some manoeuvres are spoiled."""
     known = reference(plan)
-    family = known.families[name]
+    family = known.campaign.candidates([CATALOGUE[name]])[name]
     effect = min(family, key=lambda one: abs((one.at or 0.0) - (at or 0.0)))
     kept = set(known.campaign.manoeuvres) - set(spoiled)
     squared = 0.0

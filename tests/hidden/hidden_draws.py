@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from hidden_courses import scanned
 from hidden_elsewhere import ELSEWHERE, HARD, Random
 from hidden_outside import OUTSIDE, course_size, recorded
 from hidden_plans import PLANS, SPANS, sensors
@@ -193,8 +194,7 @@ def _hide(
             direction = np.abs(direction)
         extra = {}
         if way.scan is not None:
-            scale = SPANS[plan] if way.share else 1.0
-            told["at"][name] = float(random.uniform(*way.scan[1:]) * scale)
+            told["at"][name] = float(random.choice(scanned(way, plan)))
             extra = {way.scan[0]: told["at"][name]}
         unit = size(plan, name, told["at"].get(name), direction)
         factor = amount / unit if by == "ratio" else amount

@@ -88,5 +88,5 @@ def course_size(document: Document) -> Callable[[str], float]:
         laboratory.perform(laboratory.specify(document | {"effects": effects}))
         for effects in (document["effects"], {})
     )
-    course = known_course(one, other)
+    course = known_course("known_course", [one], other)
     return lambda plan: reference(plan).size_of(course)

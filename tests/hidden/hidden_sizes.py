@@ -9,8 +9,9 @@ from typing import Any
 
 import chain
 import numpy as np
+from hidden_courses import courses, scanned
 from hidden_plans import PLANS
-from hidden_ways import WAYS
+from hidden_ways import WAYS, Array
 
 import laboratory
 from inertial.campaign.effect_evidence import evidence
@@ -37,34 +38,41 @@ LEVEL = chain.SETTINGS["criticism"]["level"] * BLOCKS_SHARE
 class Reference:
     """A clean campaign of a plan, ready to be asked.
 
-    `said`: of all candidates; `asked`: the columns of each effect; `families`: its candidates;
-    `law`: what noise alone brings forth, by simulation; `noise_degrees`: of freedom of the noise.
+    `said`: of all candidates and of what the laboratory makes of each effect; `asked`: the columns
+    of the candidates of each effect, `hidden`: those of the laboratory, for every value of its
+    scan; `law`: what noise alone brings forth, by simulation; `noise_degrees`: of freedom of the
+    noise.
     """
 
+    plan: str
     campaign: Campaign
     said: Evidence
     asked: Sequence[SearchedEffect]
-    families: Mapping[str, Sequence[Effect]]
+    hidden: Mapping[str, Sequence[Sequence[int]]]
     law: Chance
     noise_degrees: float
 
-    def columns(self, name: str, at: float | None) -> list[int]:
-        """The columns of an effect, with the value of its scan that is nearest."""
-        family = self.families[name]
-        number = 0 if at is None else int(np.argmin([abs((one.at or 0.0) - at) for one in family]))
-        place = {column: i for i, column in enumerate(self.said.names)}
-        return [place[f"{family[number].label}.{parameter}"] for parameter in WAYS[name].names]
+    def columns(self, name: str, at: float | None) -> Sequence[int]:
+        """What the laboratory makes of an effect, with the value of its scan that is nearest."""
+        values = scanned(WAYS[name], self.plan)
+        number = 0 if at is None else int(np.argmin([abs((one or 0.0) - at) for one in values]))
+        return self.hidden[name][number]
+
+    def typical(self, name: str) -> Array:
+        """The sizes of an effect's parameters of which the courses are, in the model's units."""
+        return np.array([one.typical for one in CATALOGUE[name].parameters])
 
     def size(self, name: str, at: float | None, values: Any) -> float:
         """The signal-to-noise ratio of values of an effect, all 24 parameters being fitted."""
         columns = self.columns(name, at)
         information = self.said.total.information[np.ix_(columns, columns)]
-        return float(np.sqrt(values @ information @ values))
+        sizes = values / self.typical(name)
+        return float(np.sqrt(sizes @ information @ sizes))
 
     def left(self, name: str, at: float | None, values: Any, other: str) -> float:
         """Which share of the square of its ratio another effect leaves, whatever its size is."""
         information = self.said.total.information
-        signal = information[:, self.columns(name, at)] @ values
+        signal = information[:, self.columns(name, at)] @ (values / self.typical(name))
         candidates = next(one.candidates for one in self.asked if one.name == other)
         taken = [
             signal[list(own)] @ np.linalg.pinv(information[np.ix_(own, own)]) @ signal[list(own)]
@@ -139,7 +147,14 @@ def _made(plan: str) -> Reference:
     campaign, degrees = campaign_of(data).without_random_walks(), data.noise.degrees
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
     families = {name: tuple(one) for name, one in campaign.candidates(in_blocks).items()}
-    said, asked = evidence_of(campaign, families, degrees)
+    made = courses(plan)
+    every = [course for of_effect in made.values() for course in of_effect]
+    said, asked = evidence_of(campaign, families, degrees, every)
     law = law_of(said, asked, LEVEL)
     assert law is not None  # the plans show effects
-    return Reference(campaign, said.observable(), asked, families, law, degrees)
+    place = {column: i for i, column in enumerate(said.names)}
+    hidden = {
+        name: [[place[f"{one.label}.{each.name}"] for each in one.parameters] for one in of_effect]
+        for name, of_effect in made.items()
+    }
+    return Reference(plan, campaign, said.observable(), asked, hidden, law, degrees)
