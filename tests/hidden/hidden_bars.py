@@ -25,13 +25,15 @@ from hidden_scores import (
 
 FALSE_NAMES, CLEAN = 8, 300
 SHORT = 0.05  # of its limit a power may be
-RIGHT = {6.0: 0.80, 8.0: 0.93, 10.0: 0.95, 15.0: 0.97}
+RIGHT = 0.95  # of what is named, the class
+RIGHT_AT = (6.0, 8.0, 10.0, 15.0)
 TOGETHER = {
-    "2 at 12 to 40": 0.94,
+    "2 at 12 to 40": 0.95,
     "3 at 12 to 40": 0.92,
-    "2 at 6 to 12": 0.82,
-    "3 at 6 to 12": 0.72,
+    "2 at 6 to 12": 0.90,
+    "3 at 6 to 12": 0.85,
 }
+NAMED_FALSELY = 0.02  # decoys, and physical sizes of each grade
 CURSE = {5.0: 1.12, 6.0: 1.06, 8.0: 1.03}
 SHIFT = 0.5  # sigma
 TIME = 10.0  # s
@@ -59,14 +61,23 @@ def bars(outcomes: Sequence[Outcome], statistics: Sequence[dict[str, Any]]) -> I
     """Every demand."""
     yield from _of_clean(outcomes)
     yield from _of_power(outcomes, statistics)
-    for ratio, wanted in RIGHT.items():
-        yield _right(
-            f"class right at SNR {ratio:g}", of(outcomes, "single", "ratio", ratio), wanted
-        )
+    for ratio in RIGHT_AT:
+        named = [one for one in of(outcomes, "single", "ratio", ratio) if one["named"]]
+        yield _right(f"class right where anything is named, SNR {ratio:g}", named, RIGHT)
+    for ratio in (6.0, 8.0):
+        rows = [row for row in statistics if row["ratio"] == ratio]
+        right, all_named = (sum(row[key] for row in rows) for key in ("in_class", "power"))
+        words = f"class right where anything is named, SNR {ratio:g}, sufficient statistics"
+        yield _least(words, (right, all_named), RIGHT)
     for sort, wanted in TOGETHER.items():
         number, _, band = sort.partition(" at ")
         words = f"{number} effects at once at SNR {band} each, all classes right"
         yield _told_apart(_right(words, of(outcomes, "several", sort), wanted), outcomes, sort)
+    yield _most("decoys with a false name", of(outcomes, "decoy"))
+    physical = of(outcomes, "single", "physical")
+    for grade in dict.fromkeys(one["grade"] for one in physical):
+        own = [one for one in physical if one["grade"] == grade]
+        yield _most(f"physical sizes with a false name, {grade}", own)
     yield from _of_estimates(outcomes)
     outside = of(outcomes, "outside")
     yield _least("outside the catalogue: a warning", tally(outside, warned), 0.95)
@@ -204,6 +215,13 @@ def _told_apart(bar: Bar, outcomes: Sequence[Outcome], sort: str) -> Bar:
     own = [one for one in of(outcomes, "several", sort) if one["apart"]]
     count, number = tally(own, class_right)
     return replace(bar, measured=f"{bar.measured}; {count} of {number} where none does for another")
+
+
+def _most(words: str, outcomes: Sequence[Outcome]) -> Bar:
+    """That no more than the share allowed has a false name."""
+    counted = tally(outcomes, lambda one: bool(false_names(one)))
+    met = counted[0] <= NAMED_FALSELY * counted[1] if counted[1] else None
+    return Bar(words, f"≤ {NAMED_FALSELY:g}", _share(counted), met)
 
 
 def _least(words: str, counted: Tally, wanted: float) -> Bar:

@@ -36,6 +36,7 @@ def run(draw: Draw) -> Outcome:
         "plan": draw.plan,
         "kind": draw.kind,
         "sort": draw.sort,
+        "grade": draw.grade,
         "hidden": list(draw.hidden),
         "ratios": draw.ratios,
         "on_disk": draw.on_disk,

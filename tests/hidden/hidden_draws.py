@@ -21,7 +21,6 @@ from inertial.effects import CATALOGUE
 
 RATIOS = (5.0, 6.0, 8.0, 10.0, 15.0)
 BANDS = {"6 to 12": (6.0, 12.0), "12 to 40": (12.0, 40.0)}
-PHYSICAL = (0.3, 10.0)  # times the typical size of the catalogue
 # A quarter clean, 35 % singles, 15 % decoys, 15 % several, 10 % outside, well mixed.
 KINDS = tuple(
     {"c": "clean", "s": "single", "d": "decoy", "m": "several", "o": "outside"}[letter]
@@ -39,7 +38,8 @@ class Draw:
 
     `sort`: what sort of its kind; `hidden`: the effects that may be named; `truth`: for each
     effect its parameters in the model's units; `at`: what is scanned; `ratios`: the
-    signal-to-noise ratio of each; `noise`: changes of it; `twin`: whether the 24 parameters are
+    signal-to-noise ratio of each; `grade`: of the sensor, the table or the site, whose typical size
+    it has; `noise`: changes of it; `twin`: whether the 24 parameters are
     compared with those of the same campaign without the effects; `on_disk`: written and read.
     """
 
@@ -52,6 +52,7 @@ class Draw:
     truth: dict[str, dict[str, float]] = field(default_factory=dict)
     at: dict[str, float] = field(default_factory=dict)
     ratios: dict[str, float] = field(default_factory=dict)
+    grade: str = ""
     noise: dict[str, Any] = field(default_factory=dict)
     twin: bool = False
     on_disk: bool = False
@@ -114,10 +115,10 @@ def _single(turn: int, random: Random, size: Size, number: int) -> dict[str, Any
     if place == 5:
         name = names[turn % len(names)]
         plan = _plan_of(name, turn, random)
-        factor = float(np.exp(random.uniform(*np.log(PHYSICAL))))
-        typical = CATALOGUE[name].parameters[0].typical
-        return {"plan": plan, "sort": "physical"} | _hide(
-            {name: ("size", factor * typical)}, plan, random, size
+        sizes = CATALOGUE[name].sizes
+        grade = list(sizes)[turn // len(names) % len(sizes)]
+        return {"plan": plan, "sort": "physical", "grade": grade} | _hide(
+            {name: ("size", sizes[grade])}, plan, random, size
         )
     count = turn * 5 + place
     name = names[count % len(names)]

@@ -126,10 +126,17 @@ def test_a_bar_is_met_by_its_figures():
     assert verdict("clean campaigns", *[clean] * 292, *[false] * 8) is True
     assert verdict("clean campaigns", *[clean] * 291, *[false] * 9) is False
     assert verdict("clean campaigns", *[clean] * 9, *[false] * 1) is False  # 0.27 of 10 are allowed
-    right, wrong = outcome("table_tilt", named("table_tilt")), outcome("table_tilt")
-    assert verdict("class right at SNR 6", *[right] * 8, *[wrong] * 2) is True
-    assert verdict("class right at SNR 6", *[right] * 7, *[wrong] * 3) is False
-    assert verdict("class right at SNR 8", right) is None
+    right, silent = outcome("table_tilt", named("table_tilt")), outcome("table_tilt")
+    wrong = outcome("table_tilt", named("lever_arm"))
+    given = "class right where anything is named, SNR 6"
+    assert verdict(given, *[right] * 19, wrong, *[silent] * 9) is True
+    assert verdict(given, *[right] * 18, *[wrong] * 2) is False
+    assert verdict("class right where anything is named, SNR 8", right) is None
+    decoy, named_falsely = (
+        outcome("gravity_error", *said, kind="decoy") for said in ((), (named("lever_arm"),))
+    )
+    assert verdict("decoys", *[decoy] * 49, named_falsely) is True
+    assert verdict("decoys", *[decoy] * 48, named_falsely) is False
     assert verdict("campaigns that end", right, outcome("", error="ValueError: none")) is False
     assert verdict("CPU time", outcome("", seconds=10.5)) is False
 
