@@ -73,7 +73,7 @@ CATALOGUE: dict[str, Effect] = {
         GyroBiasJump(),
         GyroRandomWalk(),
         GyroFlicker(),
-        GyroDeadBand(),
+        *(GyroDeadBand(axis) for axis in "xyz"),
         GyroHysteresis(),
         GyroSaturation(),
         GyroLatency(),

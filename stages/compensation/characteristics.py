@@ -42,8 +42,8 @@ Array = NDArray[np.float64]
 MIN_COSINE = 1 - 1e-9  # between an axis of the case and that of the input
 OF_INPUT = {
     *("accel_scale_asymmetry", "accel_quadratic", "accel_cubic", "accel_hysteresis"),
-    *("gyro_scale_asymmetry", "gyro_scale_quadratic", "gyro_scale_cubic", "gyro_dead_band"),
-    "gyro_hysteresis",
+    *("gyro_scale_asymmetry", "gyro_scale_quadratic", "gyro_scale_cubic"),
+    *("gyro_dead_band_x", "gyro_dead_band_y", "gyro_dead_band_z", "gyro_hysteresis"),
 }
 OF_FORCE = {"gyro_g_sensitivity", "gyro_g2_sensitivity"}
 UNIT = {"accel": "m/s²", "gyro": "rad/s"}

@@ -38,7 +38,9 @@ def with_a_tumble() -> Motion:
 @pytest.mark.parametrize("name", CATALOGUE)
 def test_it_introduces_itself(name):
     effect = CATALOGUE[name]
-    assert effect.name == name == type(effect).__module__.rpartition(".")[2]
+    of_axis = (f"_{effect.parameters[0].name[-1]}",) if name.startswith("gyro_dead_band") else ("",)
+    module = type(effect).__module__.rpartition(".")[2]
+    assert name in {module + axis for axis in of_axis} and effect.name == name
     assert effect.cause and effect.source and type(effect).__doc__
     assert all(p.unit and p.meaning and p.typical > 0 for p in effect.parameters)
     assert set(effect.sizes) == SENSOR_GRADES or set(effect.sizes) in OTHER_SIZES
@@ -90,7 +92,8 @@ def test_sensor_effects_touch_their_sensor_alone(motion):
 def test_what_is_scanned_has_candidates_of_its_own(motion):
     scanned = [effect for effect in CATALOGUE.values() if effect.scan]
     assert {e.name for e in scanned} == {
-        "gyro_warm_up", "gyro_bias_jump", "gyro_dead_band",
+        "gyro_warm_up", "gyro_bias_jump",
+        "gyro_dead_band_x", "gyro_dead_band_y", "gyro_dead_band_z",
         "accel_warm_up", "accel_bias_jump", "table_ripple", "table_position_error",
         "turn_angle_error",
     }  # fmt: skip

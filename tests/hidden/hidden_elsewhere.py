@@ -136,7 +136,7 @@ ELSEWHERE: tuple[Elsewhere, ...] = (
     Elsewhere(("oscillation",), "positions", _ringing),
     Elsewhere(("table_ripple",), "positions", _ripple),
     Elsewhere(("table_eccentricity",), "rates", _eccentricity),
-    Elsewhere(("gyro_dead_band",), "rates", _dead_band),
+    Elsewhere(tuple(f"gyro_dead_band_{axis}" for axis in "xyz"), "rates", _dead_band),
     Elsewhere(
         ("gyro_random_walk",),
         "positions",
