@@ -4,6 +4,7 @@ import chain
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.stats import truncnorm
 from test_closure import truth_of
 
 G = 9.80665  # m/s², of the unit of the laboratory's K2
@@ -229,6 +230,49 @@ def test_the_worth_is_the_error_of_the_joint_result_by_hand(quadratic):
     assert (row["attitude_joint"], row["motion"]) == (0.0, "rest")
     assert worth.loc["x-forward", "motion"] == "turn"
     assert worth.loc["x-forward", "rate"] == pytest.approx(np.radians(60), rel=0.3)
+
+
+# ---- an effect as small as it may be to be named
+
+
+def test_what_was_only_just_named_is_taken_less_of(quadratic):
+    """Had 92 % of its χ² been needed to name it: the sizes shrink, the others follow them."""
+    findings = quadratic["criticism/findings"]
+    barely = findings.assign(threshold=0.92 * findings["statistic"])
+    made = chain.again(quadratic, "extension", criticism_findings=barely)
+    (degrees,) = findings["degrees"]
+    snr, needed = np.sqrt(findings["statistic"] - degrees), np.sqrt(0.92 * findings["statistic"])
+    for method in ("extended", "member_1"):
+        before = quadratic.parameters("extension", method)
+        after = made["parameters"].query("method == @method").set_index("parameter")
+        own = before["effect"].notna()
+        ratio = (after.loc[own, "value"] / before.loc[own, "value"]).to_numpy(np.float64)
+        # Of one parameter that exceeds a threshold: the mean of a truncated normal.
+        expected = 1 - (truncnorm(needed - snr, np.inf).mean() / snr)[0]
+        assert ratio == pytest.approx(np.full(own.sum(), ratio[0]), rel=1e-5)
+        assert ratio[0] == pytest.approx(expected, abs=0.01) and ratio[0] < 0.99
+    # The twelve move with the effect, as the conditional mean of a Gaussian.
+    before = quadratic.parameters("extension", "extended").set_index("id")
+    after = made["parameters"].set_index("id").loc[before.index]
+    spread = quadratic["extension/covariance"].pivot(
+        index="first", columns="second", values="covariance"
+    )
+    own, twelve = before.index[before["effect"].notna()], before.index[before["effect"].isna()]
+    change = after["value"] - before["value"]
+    weights = np.linalg.solve(spread.loc[own, own], change[own])
+    np.testing.assert_allclose(
+        change[twelve] / before.loc[twelve, "sigma"],
+        spread.loc[twelve, own] @ weights / before.loc[twelve, "sigma"],
+        atol=1e-6,
+    )
+    assert (change[twelve].abs() / before.loc[twelve, "sigma"]).max() > 0.2
+    # What the fit has not seen is predicted as before: no size of it enters there.
+    own = ["sensor", "method", "drop", "snr_squared", "probability"]
+    pd.testing.assert_frame_equal(made["candidates"][own], quadratic["extension/candidates"][own])
+    covariance = made["covariance"]
+    diagonal = covariance[covariance["first"] == covariance["second"]].set_index("first")
+    sigma = made["parameters"].set_index("id")["sigma"]
+    np.testing.assert_allclose(np.sqrt(diagonal["covariance"][sigma.index]), sigma, rtol=1e-9)
 
 
 # ---- nothing to add

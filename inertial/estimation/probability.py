@@ -41,6 +41,14 @@ def ncx2_sf(value: ArrayLike, degrees: ArrayLike, centre: ArrayLike) -> Array:
     return np.asarray(1.0 - special.chndtr(*_reals(value, degrees, centre)))
 
 
+def ncx2_pdf(value: ArrayLike, degrees: ArrayLike, centre: ArrayLike) -> Array:
+    """Density of the noncentral chi-squared of a centre above zero."""
+    x, n, c = _reals(value, degrees, centre)
+    order = n / 2 - 1
+    bessel = special.ive(order, np.sqrt(c * x))  # scaled: times e^−√(c x)
+    return np.asarray(0.5 * np.exp(-((x**0.5 - c**0.5) ** 2) / 2) * (x / c) ** (order / 2) * bessel)
+
+
 def f_sf(value: ArrayLike, degrees: ArrayLike, of_noise: ArrayLike) -> Array:
     """Probability of a larger F, the ratio of two mean squares with these degrees of freedom."""
     v, n, m = _reals(value, degrees, of_noise)

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.model_selection.size_after_selection import Selected, selected
+
 Array = NDArray[np.float64]
 
 FOUND = "found"
@@ -20,9 +22,10 @@ class Cause:
     indistinguishable effects, the most probable first; `member_values`: the best candidate of
     the scan of each; `weights`: their posterior probabilities; `captured`: which share of the
     signal each can mimic; `statistic`: reduction of chi-squared given the other causes, on
-    `degrees`; `p_value`: probability that noise yields as large a statistic for any effect of
+    `degrees`; `threshold`: the reduction from which it is named, 0 if it was not searched;
+    `p_value`: probability that noise yields as large a statistic for any effect of
     the catalogue; `snr`: root of the reduction less what noise adds; `columns`, `values`,
-    `covariance`: of the parameters, estimated with those of the other causes.
+    `covariance`: of the parameters, estimated with those of the other causes by least squares.
     """
 
     effect: str
@@ -39,6 +42,12 @@ class Cause:
     columns: tuple[int, ...]
     values: Array
     covariance: Array
+    threshold: float = 0.0
+
+    @property
+    def selected(self) -> Selected:
+        """What having been selected by its size changes in the estimate of it."""
+        return selected(self.statistic, self.degrees, self.threshold)
 
 
 @dataclass(frozen=True)

@@ -146,10 +146,7 @@ def _classes(evidence: Evidence, candidates: Candidates, law: Chance) -> list[Ef
     total = evidence.total
     noise_degrees = _noise_degrees(evidence, candidates)
     thresholds = np.array(
-        [
-            law.threshold(i, noise_degrees[i]) + MIN_FREE_ADVANTAGE * effect.free
-            for i, effect in enumerate(candidates.effects)
-        ]
+        [_threshold(candidates, law, noise_degrees, i) for i in range(len(candidates.effects))]
     )
     best, peers = Search(candidates, thresholds, total.information, total.right).best()
     places = list(best.places)
@@ -165,6 +162,14 @@ def _classes(evidence: Evidence, candidates: Candidates, law: Chance) -> list[Ef
             classes.append(group)
     classes = with_rivals(candidates, classes, best, peers)
     return sorted(classes, key=lambda group: -group.drop)
+
+
+def _threshold(
+    candidates: Candidates, law: Chance, noise_degrees: Sequence[float], effect: int
+) -> float:
+    """The drop of chi-squared from which an effect is named."""
+    free = candidates.effects[effect].free
+    return law.threshold(effect, noise_degrees[effect]) + MIN_FREE_ADVANTAGE * free
 
 
 def _cause(
@@ -196,6 +201,7 @@ def _cause(
         columns=columns,
         values=values[own],
         covariance=covariance[own, own],
+        threshold=_threshold(candidates, law, noise_degrees, effect),
     )
 
 

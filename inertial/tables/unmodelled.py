@@ -41,7 +41,7 @@ FINDING = Column("finding", TEXT, "", "id of the finding that names it", nullabl
 
 EFFECT_FINDINGS = Table(
     "effect_findings",
-    4,
+    5,
     (
         *FINDINGS.columns,
         Column("verdict", TEXT, "", "found, one_of_class, unknown_structure", nullable=True),
@@ -53,6 +53,13 @@ EFFECT_FINDINGS = Table(
             nullable=True,
         ),
         Column("degrees", INTEGER, "1", "degrees of freedom of the statistic", nullable=True),
+        Column(
+            "threshold",
+            DOUBLE,
+            "1",
+            "the statistic from which an effect is named; none where it was not selected by it",
+            nullable=True,
+        ),
         Column("snr", DOUBLE, "1", "signal-to-noise ratio: √(statistic − degrees)", nullable=True),
         Column(
             "moves",
@@ -202,7 +209,7 @@ SCORES = Table(
 )
 EFFECTS = Table(
     "effects",
-    2,
+    3,
     (
         Column("id", TEXT, "", "stable identifier of a number; no code reads anything from it"),
         MOUNT,
@@ -210,9 +217,21 @@ EFFECTS = Table(
         Column("effect", TEXT, "", "name in the catalogue"),
         Column("parameter", TEXT, "", "name within the effect"),
         Column(
-            "value", DOUBLE, "as unit", "estimate, fitted with all named effects", nullable=True
+            "value",
+            DOUBLE,
+            "as unit",
+            "estimate, fitted with all named effects; of those less what they are on average too"
+            " large for having been selected by their size",
+            nullable=True,
         ),
         Column("sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
+        Column(
+            "least_squares",
+            DOUBLE,
+            "as unit",
+            "the estimate without that correction, where it is by least squares",
+            nullable=True,
+        ),
         Column(
             "detection_limit",
             DOUBLE,

@@ -10,6 +10,7 @@ from inertial.estimation.random_walk import MeasuredDrift
 from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause, EffectTest
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
+from inertial.model_selection.size_after_selection import corrected
 from inertial.physics.effect import Array, Effect
 from inertial.tables import AXES
 from inertial.text.cause_names import in_words
@@ -198,6 +199,7 @@ class BlockResults:
                 "verdict": cause.verdict,
                 "statistic": cause.statistic,
                 "degrees": cause.degrees,
+                "threshold": cause.threshold or None,
                 "snr": cause.snr,
                 "split_manoeuvre": split.manoeuvre if split else None,
                 "split_snr": split.separation if split else None,
@@ -242,7 +244,13 @@ class BlockResults:
         own = [place[f"{effect.label}.{parameter.name}"] for parameter in effect.parameters]
         others = [c.columns for c in self.selection.named.causes if c.effect != effect.name]
         chosen = list(dict.fromkeys([*own, *(i for columns in others for i in columns)]))
-        values, covariance = evidence.total.estimate(chosen)
+        plain, of_plain = evidence.total.estimate(chosen)
+        among = {column: i for i, column in enumerate(chosen)}
+        named = {
+            tuple(among[column] for column in cause.columns): cause.selected
+            for cause in self.selection.named.causes
+        }
+        values, covariance = corrected(plain, of_plain, named)
         limits = {
             effect.parameters[limit.parameter].name: limit.size
             for limit in self.selection.limits
@@ -255,8 +263,8 @@ class BlockResults:
             estimate = float(values[i]) if known else None
             sigma = float(np.sqrt(variance)) if known else None
             described = (parameter.name, parameter.unit, parameter.meaning)
-            limit = limits.get(parameter.name)
-            parameters.append(Estimated(*described, estimate, sigma, limit))
+            limit, fitted = limits.get(parameter.name), float(plain[i]) if known else None
+            parameters.append(Estimated(*described, estimate, sigma, limit, fitted))
         if effect.scan is not None and effect.name in self.causes:
             scan, at = effect.scan, effect.at or 0.0
             family = self.selection.families[effect.name]

@@ -35,7 +35,10 @@ def member_rows(
 
 @dataclass(frozen=True)
 class Estimated:
-    """A parameter of an effect: value and sigma in the SI `unit`, where they are known."""
+    """A parameter of an effect: value and sigma in the SI `unit`, where they are known.
+
+    `least_squares`: the value before the correction for having been selected.
+    """
 
     name: str
     unit: str
@@ -43,6 +46,7 @@ class Estimated:
     value: float | None = None
     sigma: float | None = None
     detection_limit: float | None = None
+    least_squares: float | None = None
 
 
 def parameter_row(
@@ -58,6 +62,7 @@ def parameter_row(
         "value": parameter.value,
         "sigma": parameter.sigma,
         "detection_limit": parameter.detection_limit,
+        "least_squares": parameter.least_squares,
         "unit": parameter.unit,
         "meaning": parameter.meaning,
     }

@@ -17,6 +17,7 @@ from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.parameters import EXTENDED, STAGES
 from stages.extension.candidates import Candidate
+from stages.extension.selected_sizes import SelectedSizes
 
 # ---- The parameters of a model with effects, their covariance, and how well it fits.
 
@@ -99,10 +100,14 @@ def solved(
     candidate: Candidate,
     motion: Motion,
     random_walk: float,
+    sizes: SelectedSizes,
     mount: str,
 ) -> Solved:
-    """The twelve parameters of a sensor and those of the effects of a candidate."""
-    estimate = system.solve_shared()
+    """The twelve parameters of a sensor and those of the effects of a candidate.
+
+    `sizes`: what of the effects is too large for having been selected, and taken off.
+    """
+    estimate = sizes.applied(sensor, system, system.solve_shared())
     stage = STAGES[sensor]
     places = list(range(UNKNOWNS))
     effects: list[str] = []

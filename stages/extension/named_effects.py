@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from inertial.effects import KNOWN
+from inertial.model_selection.size_after_selection import NOT_SELECTED, Selected, selected
 from inertial.physics.effect import Effect
 
 Row = Mapping[str, Any]
@@ -24,12 +25,14 @@ class NamedClass:
     """A finding and the effects that it may be, the named one first.
 
     That one has the value of its scanned variable, the others have none yet. `positions`: at which
-    an effect of a single position may be, and the reduction of chi-squared there.
+    an effect of a single position may be, and the reduction of chi-squared there; `selected`: how
+    having been named by its size changes the estimate of the named one.
     """
 
     finding: str
     members: tuple[Member, ...]
     positions: tuple[tuple[str, float], ...] = ()
+    selected: Selected = NOT_SELECTED
 
 
 @dataclass(frozen=True)
@@ -67,14 +70,18 @@ def named_of(
     for row in sorted(positions, key=lambda row: int(row["rank"])):
         places.setdefault(row["finding"], []).append((row["position"], row["statistic"]))
     first: dict[str, str] = {}  # effect → finding
+    by_size: dict[str, Selected] = {}
     for row in findings:
         if row["mount"] == mount and row["verdict"] in NAMED and row["cause"] in KNOWN:
             first.setdefault(row["cause"], row["id"])
+            if row["threshold"] is not None:
+                by_size[row["id"]] = selected(row["statistic"], row["degrees"], row["threshold"])
     return Named(
         tuple(
             replace(
                 _class_of(name, finding, values.get(finding, {}), of_class.get(finding, ())),
                 positions=tuple(places.get(finding, ())),
+                selected=by_size.get(finding, NOT_SELECTED),
             )
             for name, finding in first.items()
             if KNOWN[name].sought_in == "blocks"

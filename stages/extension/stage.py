@@ -29,6 +29,7 @@ from stages.extension.gain import gain, gain_of_line, gain_of_ripple
 from stages.extension.models import SENSORS, Models, models_of, with_columns
 from stages.extension.named_effects import Named, named_of
 from stages.extension.navigation_error import change_of, worth
+from stages.extension.selected_sizes import SelectedSizes, selected_sizes
 from stages.extension.sentences import sentence_of
 from stages.extension.warm_up import warm_up_rows
 
@@ -170,6 +171,7 @@ class Extension:
         every = {e.label: e for c in combinations for e in c.effects if e.sought_in == "blocks"}
         models = models_of(campaign, list(every.values()), self.random_walks)
         trainings = Trainings(models)
+        sizes = selected_sizes(trainings.whole, classes)
         likeliest: dict[str, Solved] = {}
         validated: dict[str, CrossValidation] = {}
         for number, (sensor, system) in enumerate(zip(SENSORS, models.systems(), strict=True)):
@@ -179,7 +181,9 @@ class Extension:
                 for candidate in candidates
                 if system is not None
                 and candidate.columns
-                and (solution := self._solved(sensor, system, candidate, campaign.motion)).effects
+                and (
+                    solution := self._solved(sensor, system, candidate, campaign.motion, sizes)
+                ).effects
             }
             tested = {
                 candidate.method: validation
@@ -202,10 +206,17 @@ class Extension:
         yield from gain(of_likeliest, validated, mount)
         yield from self._worth(of_likeliest, likeliest)
 
-    def _solved(self, sensor: str, system: System, candidate: Candidate, motion: Motion) -> Solved:
+    def _solved(
+        self,
+        sensor: str,
+        system: System,
+        candidate: Candidate,
+        motion: Motion,
+        sizes: SelectedSizes,
+    ) -> Solved:
         own = with_columns(system, frozenset(candidate.columns))
         walk = self.random_walks[SENSORS.index(sensor)]
-        return solved(sensor, own, candidate, motion, walk, self.data.mount)
+        return solved(sensor, own, candidate, motion, walk, sizes, self.data.mount)
 
     def _solution(self, solution: Solved) -> Iterator[tuple[str, Any]]:
         """The rows of a fit, and of the likeliest how far its parameters move."""

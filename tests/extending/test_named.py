@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import pytest
+
 from stages.extension.named_effects import named_of
 
 Row = dict[str, Any]
@@ -9,7 +11,7 @@ Row = dict[str, Any]
 
 def finding(cause: str, verdict: str | None, sensor: str = "gyro", mount: str = "") -> Row:
     own = {"id": f"{cause} of {mount}", "mount": mount, "cause": cause, "sensor": sensor}
-    return own | {"verdict": verdict}
+    return own | {"verdict": verdict, "statistic": None, "degrees": None, "threshold": None}
 
 
 def members(cause: str, *others: str, mount: str = "") -> list[Row]:
@@ -46,3 +48,14 @@ def test_effects_are_taken_by_mount_with_the_value_that_was_scanned():
         ("accel_scale_asymmetry", 0.4),
     ]
     assert other.in_spectrum == {"oscillation": {"frequency": 20.0}}
+
+
+def test_an_effect_that_was_named_by_its_size_has_that_allowed_for():
+    named = finding("accel_quadratic", "found", "accel")
+    near = named | {"statistic": 21.0, "degrees": 3, "threshold": 20.0}
+    far = named | {"statistic": 200.0, "degrees": 3, "threshold": 20.0}
+    factors = []
+    for row in (near, far, named):
+        (own,) = named_of([row], [], [], [], "").classes
+        factors.append(own.selected.factor)
+    assert 0.7 < factors[0] < 0.9 and factors[1:] == pytest.approx([1.0, 1.0], abs=1e-9)
