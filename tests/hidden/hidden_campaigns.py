@@ -98,7 +98,7 @@ def _said(results: chain.Results) -> Outcome:
 
 
 def _estimated(draw: Draw, results: chain.Results) -> Outcome:
-    """Errors of named effects in sigma, and their signal in units of the true one."""
+    """Errors of named effects in sigma, and their size along the true direction over the truth."""
     findings = results["criticism/findings"]
     clear = set(findings.loc[findings["verdict"].isin(CLEAR), "cause"])
     effects = results["criticism/effects"].drop_duplicates(["effect", "parameter"])
@@ -114,7 +114,8 @@ def _estimated(draw: Draw, results: chain.Results) -> Outcome:
         pulls += errors[np.isfinite(errors)].tolist()
         if np.isfinite(found).all():
             plan = reference(draw.plan)
-            curse[name] = plan.size(name, draw.at.get(name), found) / draw.ratios[name]
+            truth = np.array([*values.values()])
+            curse[name] = plan.along(name, draw.at.get(name), found, truth)
     return {"pulls": pulls, "curse": curse}
 
 

@@ -9,6 +9,7 @@ import jinja2
 import numpy as np
 from hidden_bars import SHORT, bars, short_by
 from hidden_campaigns import Outcome
+from hidden_named_sizes import rows_of_page
 from hidden_pictures import RATIOS, picture
 from hidden_scores import (
     Tally,
@@ -49,6 +50,7 @@ def write(outcomes: Sequence[Outcome], statistics: Statistics, page: Path = PAGE
         "singles": list(_singles(outcomes)),
         "elsewhere": list(_elsewhere(outcomes)),
         "power": list(_power(statistics)),
+        "sizes": list(rows_of_page(statistics)),
         "level": f"{100 * LEVEL:.1f}",
         "clean_draws": list(_false(statistics)),
         "time": list(_time(outcomes)),

@@ -96,7 +96,7 @@ def pulls(outcomes: Sequence[Outcome]) -> Tally:
 
 
 def curses(outcomes: Sequence[Outcome]) -> list[float]:
-    """By how much the signal of rightly named effects came out too large."""
+    """The size of rightly named effects along the true direction, in units of the true one."""
     return [value for one in outcomes for value in one["curse"].values()]
 
 

@@ -28,8 +28,8 @@ from stages.criticism.stage import BLOCKS_SHARE
 SEED = 9_999
 APART = 0.25  # of the square of its ratio, that another effect must leave
 KEPT = chain.ROOT / "data/derived/challenge"
-DRAWN_BY = ("campaigns", "courses", "draws", "elsewhere", "outside", "plans", "sizes")
-DRAWN_BY += ("statistics", "ways")
+DRAWN_BY = ("campaigns", "courses", "draws", "elsewhere", "named_sizes", "outside", "plans")
+DRAWN_BY += ("sizes", "statistics", "ways")
 BESIDE = ("studies", "comparison", "compensation")  # no later stage of these campaigns needs them
 LEVEL = chain.SETTINGS["criticism"]["level"] * BLOCKS_SHARE
 
@@ -68,6 +68,13 @@ class Reference:
         information = self.said.total.information[np.ix_(columns, columns)]
         sizes = values / self.typical(name)
         return float(np.sqrt(sizes @ information @ sizes))
+
+    def along(self, name: str, at: float | None, found: Any, truth: Any) -> float:
+        """Estimated values along the true direction, in units of the true size."""
+        columns = self.columns(name, at)
+        information = self.said.total.information[np.ix_(columns, columns)]
+        one, other = found / self.typical(name), truth / self.typical(name)
+        return float(one @ information @ other / (other @ information @ other))
 
     def left(self, name: str, at: float | None, values: Any, other: str) -> float:
         """Which share of the square of its ratio another effect leaves, whatever its size is."""

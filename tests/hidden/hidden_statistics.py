@@ -12,6 +12,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from hidden_named_sizes import FIRST, MATE, SCANNED, Counts, Truth, counted, summed
 from hidden_sizes import Reference, code, reference
 from hidden_ways import POSITIVE, WAYS, Array
 
@@ -53,31 +54,32 @@ def _counted(plan: str, name: str, ratio: float, trials: int) -> dict[str, Any]:
     """How often.
 
     `power`: anything is named; `in_class`: the effect is a member; `first`: it is the most
-    probable; `members`: of its classes in all; `covered` of `asked`: parameters whose 95 %
-    interval holds the truth; `curse`: mean of estimated over true signal.
+    probable; `members`: of its classes in all; `sizes`: what the named draws say of the size.
     """
     known = reference(plan)
     random = np.random.default_rng([2028, PLANS.index(plan), list(WAYS).index(name), int(ratio)])
-    told = dict.fromkeys(("power", "in_class", "first", "members", "covered", "asked"), 0)
-    curse = []
+    told = dict.fromkeys(("power", "in_class", "first", "members"), 0)
+    asked = next(one for one in known.asked if one.name == name)
+    sizes: dict[str, list[Counts]] = {FIRST: [], MATE: [], SCANNED: []}
     for _ in range(trials):
         columns = _columns(known, name, random)
         beta, values = _truth(known, name, columns, ratio, random)
-        named = causes(_drawn(plan, beta, random), known.asked, known.law).causes
+        said = _drawn(plan, beta, random)
+        named = causes(said, known.asked, known.law).causes
         mine = [one for one in named if one.verdict in CLEAR and name in one.members][:1]
         told["power"] += bool(named)
         told["in_class"] += len(mine)
         told["members"] += sum(len(cause.members) for cause in mine)
         told["first"] += sum(cause.effect == name for cause in mine)
+        truth = Truth(columns, beta[columns], values, ratio)
         for cause in mine:
-            if cause.effect == name:  # else the values are of something else
-                sigma = np.sqrt(np.diag(cause.covariance))
-                told["covered"] += int(np.sum(np.abs(cause.values - values) < 1.96 * sigma))
-                told["asked"] += len(columns)
-                own = list(cause.columns)
-                block = known.said.total.information[np.ix_(own, own)]
-                curse.append(float(np.sqrt(cause.values @ block @ cause.values)) / ratio)
-    return told | {"curse": float(np.mean(curse)) if curse else None}
+            value = cause.member_values[cause.members.index(name)]
+            own = cause.columns if cause.effect == name else asked.candidates[value]
+            counts = counted(said.total, named, cause, own, truth)
+            sizes[FIRST if cause.effect == name else MATE].append(counts)
+            if len(asked.candidates) > 1:
+                sizes[SCANNED].append(counts)
+    return told | {"sizes": {sort: summed(some) for sort, some in sizes.items()}}
 
 
 def _false_names(plan: str, part: int, trials: int) -> int:
