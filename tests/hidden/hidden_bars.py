@@ -189,13 +189,13 @@ def _of_sizes(
     enough = counts["draws"] >= LEAST_NAMED
     plain, reported = WAYS_OF_ESTIMATING
     in_campaigns = curses(of(outcomes, "single", "ratio", ratio))
-    beside = f"; in campaigns {np.mean(in_campaigns):.3f} of {len(in_campaigns)}"
     said = said_covered = "–"
     size = share = np.nan
     if counts["draws"]:
         (before, _), (size, sigma) = mean_ratio(counts, plain), mean_ratio(counts, reported)
         said = f"{size:.3f} ± {sigma:.3f} of {counts['draws']:.0f}, by least squares {before:.3f}"
-        said += beside if in_campaigns else ""
+        if in_campaigns:
+            said += f"; in campaigns {np.mean(in_campaigns):.3f} of {len(in_campaigns)}"
         share = coverage(counts, reported)
         said_covered = f"{share:.3f} of {counts['parameters']:.0f} parameters"
     yield Bar(

@@ -27,7 +27,7 @@ Counts = dict[str, float]
 
 SIGMAS, SHARE = 1.96, 0.95
 WAYS_OF_ESTIMATING = ("least squares", "reported")
-FIRST, MATE, SCANNED = "named first", "a class mate named first", "of these, with a scan"
+FIRST, MATE, SCANNED = "named first", "a class mate named first", "of all, with a scan"
 NOTHING: Counts = dict.fromkeys(
     (
         "draws",
