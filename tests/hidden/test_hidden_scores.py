@@ -1,10 +1,22 @@
 """The scores of made-up outcomes: what counts as a false name, and what does not."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hidden_bars import bars
+from hidden_named_sizes import (
+    FIRST,
+    MATE,
+    NOTHING,
+    SCANNED,
+    WAYS_OF_ESTIMATING,
+    Truth,
+    counted,
+    summed,
+)
 from hidden_page import write
 from hidden_scores import (
     class_right,
@@ -17,6 +29,9 @@ from hidden_scores import (
     unknown_or_true,
     warned,
 )
+
+from inertial.estimation.least_squares import EffectInformation
+from inertial.model_selection.cause import Cause
 
 
 def named(cause: str, *members: str, verdict: str = "") -> dict[str, Any]:
@@ -153,10 +168,56 @@ def test_several_are_judged_on_all_and_counted_where_none_does_for_another():
     assert bar.measured.endswith("; 1 of 1 where none does for another")
 
 
+def sizes_of(draws: int) -> dict[str, dict[str, float]]:
+    """Of an effect of two parameters: 8 % too large by least squares, 1 % as reported."""
+    own = NOTHING | {"draws": draws, "parameters": 2 * draws}
+    for way, ratio, outside, missed in zip(
+        WAYS_OF_ESTIMATING, (1.08, 1.01), (2, 1), (2, 1), strict=True
+    ):
+        own |= {f"ratio {way}": ratio * draws, f"squares {way}": ratio**2 * draws}
+        own |= {f"inside {way}": 2 * draws - outside, f"ellipsoid {way}": draws - missed}
+    return {FIRST: own, MATE: dict(NOTHING), SCANNED: dict(NOTHING)}
+
+
+@pytest.mark.parametrize(("draws", "met"), [(999, False), (1000, True)])
+def test_the_size_of_what_is_named_is_judged_by_a_thousand_draws(draws: int, met: bool):
+    rows = [{"ratio": 5.0, "limit": 0.8, "power": 1, "trials": 1, "sizes": sizes_of(draws)}]
+    size, intervals = (
+        next(bar for bar in bars([], rows) if bar.words.startswith(f"{what} of what is named"))
+        for what in ("size", "95 % intervals")
+    )
+    assert size.met is met and size.measured.startswith(f"1.010 ± 0.000 of {draws}")
+    assert size.measured.endswith("by least squares 1.080")
+    assert intervals.met is False  # nearly all hold it, which is more than 0.97
+
+
+def test_a_named_draw_counts_along_the_true_direction():
+    """Two parameters, of sigma 1 and 0.5, found at (6, 1) where (5, 0) is true."""
+    total = EffectInformation(("p", "q"), np.diag([1.0, 4.0]), np.array([6.0, 4.0]), 40.0, 40)
+    cause = Cause(
+        *("hidden", 0, "found", ("hidden",), (0,), (1.0,), (1.0,), 40.0, 2, 0.0, 6.0, (0, 1)),
+        values=np.array([6.0, 1.0]),
+        covariance=np.diag([1.0, 0.25]),
+        threshold=36.0,
+    )
+    counts = counted(total, [cause], cause, (0, 1), Truth((0, 1), np.array([5.0, 0.0]), 5.0))
+    assert counts["ratio least squares"] == pytest.approx(30 / 25)
+    assert counts["inside least squares"] == 1  # the second is two sigma off
+    assert counts["ellipsoid least squares"] == 1  # 1 + 4 < 5.99
+    # Of two parameters, |z| = √40 where √36 names: nearer to the truth by 8 to 16 %.
+    assert 1.0 < counts["ratio reported"] < 1.12
+    # Without a threshold it is least squares, and so is another member's fit of its own columns.
+    given = replace(cause, threshold=0.0)
+    counts = counted(total, [given], given, (1,), Truth((0,), np.array([5.0]), 5.0))
+    assert counts["ratio reported"] == counts["ratio least squares"] == 0.0
+    assert summed([counts, counts])["draws"] == 2
+
+
 def test_the_page_tells_every_bar(tmp_path: Path):
     rows = [
         {"plan": "positions", "effect": "table_tilt", "ratio": 6.0, "trials": 10, "power": 9}
-        | {"in_class": 8, "limit": 0.97, "textbook": 0.96, "degrees": 2, "seconds": 1.0},
+        | {"in_class": 8, "limit": 0.97, "textbook": 0.96, "degrees": 2, "seconds": 1.0}
+        | {"sizes": sizes_of(8)},
         {"plan": "positions", "effect": "clean 0", "ratio": 0.0, "trials": 100, "power": 1},
     ]
     outcomes = [
@@ -176,4 +237,5 @@ def test_the_page_tells_every_bar(tmp_path: Path):
         assert bar.words in told
     assert "| gyro_telegraph | 1 of 1 | 0 of 1 | lever_arm (1) |" in text
     assert "**0.90 / 0.97 (0.96); 0.80**" in text
+    assert "| 6 | all | 8 | 1.080 → 1.010 ± 0.000 | 0.875 → 0.938 | 0.750 → 0.875 |" in text
     assert page.with_suffix(".png").stat().st_size > 10_000
