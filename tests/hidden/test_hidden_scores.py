@@ -168,6 +168,9 @@ def test_several_are_judged_on_all_and_counted_where_none_does_for_another():
     assert bar.measured.endswith("; 1 of 1 where none does for another")
 
 
+TRUE = np.array([5.0, 0.0])
+
+
 def sizes_of(draws: int) -> dict[str, dict[str, float]]:
     """Of an effect of two parameters: 8 % too large by least squares, 1 % as reported."""
     own = NOTHING | {"draws": draws, "parameters": 2 * draws}
@@ -200,7 +203,7 @@ def test_a_named_draw_counts_along_the_true_direction():
         covariance=np.diag([1.0, 0.25]),
         threshold=36.0,
     )
-    counts = counted(total, [cause], cause, (0, 1), Truth((0, 1), np.array([5.0, 0.0]), 5.0))
+    counts = counted(total, [cause], cause, (0, 1), Truth((0, 1), TRUE, TRUE, 5.0))
     assert counts["ratio least squares"] == pytest.approx(30 / 25)
     assert counts["inside least squares"] == 1  # the second is two sigma off
     assert counts["ellipsoid least squares"] == 1  # 1 + 4 < 5.99
@@ -208,7 +211,7 @@ def test_a_named_draw_counts_along_the_true_direction():
     assert 1.0 < counts["ratio reported"] < 1.12
     # Without a threshold it is least squares, and so is another member's fit of its own columns.
     given = replace(cause, threshold=0.0)
-    counts = counted(total, [given], given, (1,), Truth((0,), np.array([5.0]), 5.0))
+    counts = counted(total, [given], given, (1,), Truth((0,), TRUE[:1], TRUE[:1], 5.0))
     assert counts["ratio reported"] == counts["ratio least squares"] == 0.0
     assert summed([counts, counts])["draws"] == 2
 
