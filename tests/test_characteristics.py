@@ -94,8 +94,15 @@ def test_a_linearity_error_beyond_noise_is_that_of_the_asymmetry(asymmetric):
 
 def test_the_drift_without_force_is_the_bias(coupled):
     """G is 14, −10 and 12 °/h/g in this campaign; S0's biases are hidden in it."""
-    found = chain.again(coupled, "compensation")["characteristics"]
+    found = coupled["compensation/characteristics"]
     drift = found[found["quantity"] == "acceleration_insensitive_drift"]
     pulls = (drift["value"].to_numpy() - [1.30e-06, -2.10e-06, 0.90e-06]) / drift["sigma"]
     assert np.abs(pulls).max() < 4
     assert drift["sigma"].max() < 2 * DEGREE_PER_HOUR
+
+
+def test_the_result_leaves_noise(coupled):
+    """Without G in the result the gyros would be off by 10 °/h of 60 °/s, 46 ppm."""
+    found = coupled["compensation/characteristics"].query("quantity == 'composite_error'")
+    assert (found["value"].abs() < 1.5 * found["by_noise"]).all()
+    assert found.query("sensor == 'gyro'")["by_noise"].max() < 30 * PPM

@@ -36,6 +36,7 @@ from stages.compensation.checks import (
     noise_along,
     rate_check,
 )
+from stages.compensation.correction import UNKNOWN
 
 Array = NDArray[np.float64]
 
@@ -152,14 +153,15 @@ def _gyros(data: CampaignData, whole: Measurement, own: Measurement) -> Iterator
     """Only inputs along an axis of the case: across it the earth's rate may be unknown."""
     triad = whole.gyro.triad
     assert triad is not None  # else there is no result
+    forces = [_forces(data, measurement) for measurement in (own, whole)]
     for position in data.gyro_inputs.of_known_attitude.static_positions:
         if (along := _axis(position.up_now)) is None:
             continue
         checked = [
             check
-            for measurement in (own, whole)
+            for measurement, force in zip((own, whole), forces, strict=True)
             for check in rate_check(
-                position, measurement, triad, force_at(position, measurement), data, 0.0
+                position, measurement, triad, force.get(position.label, UNKNOWN), data, 0.0
             )
         ]
         if len(checked) == 2:
@@ -172,6 +174,11 @@ def _gyros(data: CampaignData, whole: Measurement, own: Measurement) -> Iterator
             turn = _whole_turn if rotation.plan.recorded == "whole" else _steady_turn
             for applied, read, all_out, sigma in turn(rotation, data, whole, own):
                 yield Point(axis, sign * applied, sign * read, sign * all_out, sigma)
+
+
+def _forces(data: CampaignData, measurement: Measurement) -> dict[str, Array]:
+    """The specific force in each static position of the accelerometers, (3,), by its label."""
+    return {p.label: force_at(p, measurement) for p in data.accelerometer_positions[0]}
 
 
 def _axis(direction: Array) -> tuple[int, float] | None:
@@ -238,13 +245,15 @@ def _drifts(data: CampaignData, measurement: Measurement, reason: str) -> Iterat
     triad = measurement.gyro.triad
     positions = [] if reason else data.gyro_inputs.of_known_attitude.static_positions
     up = np.array([position.up_now for position in positions]).reshape(-1, 3)
+    forces = _forces(data, own)
     for axis, unit in enumerate(np.eye(3)):
         rates, sigmas = np.empty(len(positions)), np.empty(len(positions))
         for i, position in enumerate(positions):
             assert triad is not None  # else there is a reason
             reading, noise = position.over()
             earth, spread = earth_along(unit, _position_now(position, data), data.earth)
-            (rate,) = own.rate(reading[None], motion_of(position), force_at(position, own)[None])
+            force = forces.get(position.label, UNKNOWN)
+            (rate,) = own.rate(reading[None], motion_of(position), force[None])
             rates[i] = rate[axis] + triad.bias[axis] - earth
             sigmas[i] = np.hypot(noise_along(unit, triad, noise), spread)
         known = np.isfinite(rates + sigmas)

@@ -292,7 +292,7 @@ def test_the_figures_of_the_standards_stand_beside_what_noise_explains() -> None
     page = Page(synthetic.documents()["html"])
     cells = page.rows["compensation/gyro/linearity_error_x"]
     assert cells == ["x", "30.0", "±\u202f4.0", "11.0", "ppm", "10.0 °/s", "8"]
-    assert "Gyros, linearity error: not determined, for nothing was applied." in page.text
+    assert "y gyro, linearity error: not determined, for nothing was applied." in page.text
 
 
 def test_earlier_calibrations_and_the_archive_are_named() -> None:

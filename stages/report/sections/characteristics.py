@@ -9,7 +9,7 @@ from inertial.text.messages import _
 from inertial.text.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, PPM, Unit
 from stages.report.outline import Column, Part, Row, Section, Sentences, Table, head, table_row
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, capital
+from stages.report.words import SENSOR
 
 NAMES = {
     "composite_error": _("Composite error, over the largest input"),
@@ -100,8 +100,9 @@ def _table_row(row: Record, unit: Unit, decimals: int | None) -> Row:
 
 def _missing(row: Record) -> str:
     return _(
-        "{sensor}s, {quantity}: not determined, for {reason}.",
-        sensor=capital(SENSOR[row["sensor"]]),
+        "{axis} {sensor}, {quantity}: not determined, for {reason}.",
+        axis=row["axis"],
+        sensor=SENSOR[row["sensor"]],
         quantity=NAMES[row["quantity"]].partition(",")[0].lower(),
         reason=row["reason"],
     )
