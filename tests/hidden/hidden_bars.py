@@ -20,6 +20,7 @@ from hidden_scores import (
     seconds,
     sets,
     tally,
+    truly_named,
     unknown_or_true,
     warned,
 )
@@ -41,6 +42,8 @@ SIZE = (0.98, 1.02)  # of the true one, given that it is named
 COVERAGE = (0.93, 0.97)  # of 95 % intervals
 SHIFT = 0.5  # sigma
 TIME = 10.0  # s
+# Sought elsewhere than in the blocks of means: in the samples, in the spectrum, or with a width.
+ELSEWHERE = ("gyro_dead_band", "gyro_saturation", "accel_saturation", "table_ripple")
 
 
 @dataclass(frozen=True)
@@ -82,6 +85,13 @@ def bars(outcomes: Sequence[Outcome], statistics: Sequence[dict[str, Any]]) -> I
     for grade in dict.fromkeys(one["grade"] for one in physical):
         own = [one for one in physical if one["grade"] == grade]
         yield _most(f"physical sizes with a false name, {grade}", own)
+    for name in ELSEWHERE:
+        own = [
+            one
+            for one in of(outcomes, "single", "elsewhere")
+            if any(hidden.startswith(name) for hidden in one["hidden"])
+        ]
+        yield _least(f"{name}: found, and nothing else named", tally(own, truly_named), 0.9)
     yield from _of_estimates(outcomes, statistics)
     outside = of(outcomes, "outside")
     yield _least("outside the catalogue: a warning", tally(outside, warned), 0.95)
