@@ -1,7 +1,8 @@
 """Faults of physics in a module, one at a time: a sign, a transpose, an index, a factor, a term.
 
 Each replaces one expression of the source and leaves the rest as it is. Other faults, such as a
-changed message or default, are no physics and are not made.
+changed message or default, are no physics and are not made; nor are those of typical sizes and of
+types.
 """
 
 import ast
@@ -14,6 +15,8 @@ SWAPPED: dict[type[ast.operator], tuple[str, str]] = {
     ast.Mult: ("factor", "/"),
     ast.Div: ("factor", "*"),
 }
+# What an effect declares of its parameters and their typical sizes.
+DECLARED = {"parameters", "sizes", "UNIT"}
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,8 @@ class _Finder:
         if isinstance(node, ast.AnnAssign):
             if node.value is not None:
                 yield from self.every(node.value)
+            return
+        if isinstance(node, ast.Assign) and _declares(node):
             return
         if isinstance(node, ast.FunctionDef):
             for part in (*node.args.defaults, *node.body):
@@ -112,6 +117,12 @@ class _Finder:
             self.starts[node.lineno - 1] + node.col_offset,
             self.starts[node.end_lineno - 1] + node.end_col_offset,
         )
+
+
+def _declares(node: ast.Assign) -> bool:
+    """Whether typical sizes are assigned, or a type, whose name has capitals and small letters."""
+    names = [target.id for target in node.targets if isinstance(target, ast.Name)]
+    return any(name in DECLARED or (name[0].isupper() and not name.isupper()) for name in names)
 
 
 def _is_slice(*nodes: ast.expr) -> bool:

@@ -18,6 +18,9 @@ from mutations import mutations
         ("f'{a + b}' + 'text'", set()),
         ("x: 'a + b' = 1", set()),
         ("m[:, None]", set()),
+        ("Pair = tuple[int, str]", set()),
+        ("sizes = by_grade(2 * g, 5, 20)", set()),
+        ("WIDTH = 2 * g", {"(2) / (g)", "2 * (2) * (g)"}),
     ],
 )
 def test_each_expression_has_its_faults(source, faults):
