@@ -16,7 +16,7 @@
 #                                 also with ONLY="cost noise"
 #   make style                    linters, types, and which room may import which
 #   make challenge                hides effects in many campaigns and reports what is detected, in
-#                                 docs/challenge.md; 90 minutes on two cores, can be resumed; with
+#                                 docs/challenge.md; three hours on two cores, can be resumed; with
 #                                 DRAWS=100 a tenth of them; with ONLY=diagnosis only what the
 #                                 diagnosis says of 690 of them, in docs/diagnosis.md; with
 #                                 ONLY="diagnosis fault spikes" those that have these words

@@ -17,6 +17,7 @@ from campaigns import performed, tables_of
 from cases import Cause, cause
 from diagnosis_faults import BY_NAME, FAULTS, FORMULA_SIGMA, Place, Setting
 from hidden_draws import COMMON, _hide
+from hidden_elsewhere import ELSEWHERE
 from hidden_plans import PLANS, sensors
 from hidden_sizes import KEPT, code, reference, size
 from hidden_ways import ABSORBED, WAYS
@@ -97,23 +98,17 @@ def _pairs() -> Iterator[str]:
     yield from (f"pair|{plans[n % len(plans)]}||{n}" for n in range(PAIRS))
 
 
-def _limits(low: float, high: float) -> Callable[[Random], list[float]]:
-    return lambda random: [float(random.uniform(low, high))] * 3
+def _elsewhere(*hidden: str) -> tuple[str, Told]:
+    """The plan and the draws of an effect that is sought elsewhere than in the blocks."""
+    own = next(one for one in ELSEWHERE if one.hidden == hidden)
+    return own.plan, lambda random: own.told(random)[0]
 
 
+DEAD_BANDS = tuple(f"gyro_dead_band_{axis}" for axis in "xyz")
 WITHOUT_BAR: Mapping[str, tuple[str, Told]] = {
-    "gyro_dead_band": (
-        "rates",
-        lambda r: {"gyro_dead_band": {"width_deg_h": r.uniform(3, 14, 3).tolist()}},
-    ),
-    "gyro_saturation": (
-        "positions",
-        lambda r: {"gyro_saturation": {"limit_deg_s": _limits(9.9, 9.98)(r)}},
-    ),
-    "accel_saturation": (
-        "positions",
-        lambda r: {"accel_saturation": {"limit_g": _limits(0.99, 0.995)(r)}},
-    ),
+    "gyro_dead_band": _elsewhere(*DEAD_BANDS),
+    "gyro_saturation": _elsewhere("gyro_saturation"),
+    "accel_saturation": _elsewhere("accel_saturation"),
 }
 
 
@@ -209,7 +204,7 @@ def _without_bar(
     plan: str, what: str, number: float, random: Random, document: Document
 ) -> dict[str, Any]:
     told = WITHOUT_BAR[what][1](random)
-    names = {what, "saturation"} if what.endswith("saturation") else {what}
+    names = {what, "saturation"} if what.endswith("saturation") else set(DEAD_BANDS)
     return {
         "what": what,
         "size": None,
