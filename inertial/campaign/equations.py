@@ -9,7 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.equations_by_hand import NO_TABLE, ByHand, motion_of, of_a_table
+from inertial.campaign.equations_by_hand import (
+    NO_TABLE,
+    SWAYING,
+    ByHand,
+    motion_of,
+    of_a_table,
+)
 from inertial.campaign.motions import CampaignMotions, Merged, mean_motions, positions_of
 from inertial.campaign.rate_segments import GyroInputs, Recorded
 from inertial.campaign.records import Known, Manoeuvre
@@ -138,7 +144,9 @@ class Campaign:
         }
 
     def excludes(self, effect: Effect) -> bool:
-        """Whether an effect is none of this campaign: of a table, where there is none."""
+        """Whether an effect is none of this campaign: of a table, or of stillness, by hand."""
+        if effect.of_stillness:
+            return self.by_hand is not None or any(turn.by_hand for turn in self.inputs.turns)
         return self.by_hand is not None and of_a_table(effect)
 
     def places(self, effect: Effect) -> Sequence[str]:
@@ -149,7 +157,7 @@ class Campaign:
     def blind(self, effect: Effect) -> str:
         """Why an effect is not observable in this campaign; empty where it may be."""
         if self.excludes(effect):
-            return NO_TABLE
+            return SWAYING if effect.of_stillness else NO_TABLE
         return effect.blind(self.motion) if self._motions else NOT_SIMULATED
 
     def with_random_walks(self, random_walks: tuple[float, float]) -> "Campaign":

@@ -33,6 +33,7 @@ from inertial.text.messages import _
 Array = NDArray[np.float64]
 
 NO_TABLE = _("No table takes part in a session by hand.")
+SWAYING = _("A hand that turns the IMU sways at rest too, more than this would change.")
 
 
 def of_a_table(effect: Effect) -> bool:

@@ -59,6 +59,7 @@ class GyroHysteresis(Effect):
         )
         for axis in "xyz"
     )
+    of_stillness = True
     stays = _("it depends on the rates before the reading, which the reading does not tell")
     sizes = by_grade(DEGREE_PER_HOUR, 0.05, 1, 10, 50)
 

@@ -10,8 +10,9 @@ from scipy.spatial.transform import Rotation
 from inertial.effects import CATALOGUE
 from inertial.effects.accel_hysteresis import hysteresis
 from inertial.effects.gyro_hysteresis import course
+from inertial.physics.effect import Reading, Truth
 from inertial.physics.forward import Site, Triad, predict, truth_of
-from inertial.physics.motion import Motion, Profile, joined, turning
+from inertial.physics.motion import Motion, Profile, joined, stretches, turning
 from inertial.physics.site import earth_rate
 
 DEGREE = np.radians(1)
@@ -330,3 +331,42 @@ def test_an_azimuth_that_the_gyros_tell_themselves_is_no_evidence(names, size):
     gyro = sum(acted(name, [size], found, SITE, at=at)[0] for name in names)
     assert np.abs(gyro @ UP).max() > 1e-9
     np.testing.assert_allclose(np.cross(gyro, UP), 0, atol=1e-16)
+
+
+RATE, FORCE = (0.2, -0.3, 0.1), (3.0, -5.0, 8.0)  # rad/s, m/s²
+PAIRS = ((0, 1), (1, 2), (2, 0))  # xy, yz, zx
+# What axis i of the sensor reads more, k its own parameters; of matrices k_ij is k[3 i + j].
+BY_AXIS = {
+    "gyro_g_sensitivity": lambda k, i: sum(k[3 * i + j] * FORCE[j] for j in range(3)),
+    "gyro_g2_sensitivity": lambda k, i: k[i] * FORCE[i] ** 2,
+    "gyro_scale_asymmetry": lambda k, i: k[i] * abs(RATE[i]),
+    "gyro_scale_quadratic": lambda k, i: k[i] * RATE[i] * abs(RATE[i]),
+    "gyro_scale_cubic": lambda k, i: k[i] * RATE[i] ** 3,
+    "gyro_scale_g_dependence": lambda k, i: k[i] * RATE[i] * FORCE[i],
+    "gyro_bias_ramp": lambda k, i: k[i] * 700.0,
+    "gyro_bias_temperature": lambda k, i: k[i] * 4.0,
+    "gyro_scale_temperature": lambda k, i: k[i] * 4.0 * RATE[i],
+    "accel_quadratic": lambda k, i: k[i] * FORCE[i] ** 2,
+    "accel_cubic": lambda k, i: k[i] * FORCE[i] ** 3,
+    "accel_scale_asymmetry": lambda k, i: k[i] * abs(FORCE[i]),
+    "accel_cross_products": lambda k, i: sum(
+        k[3 * i + n] * FORCE[one] * FORCE[other] for n, (one, other) in enumerate(PAIRS)
+    ),
+    "accel_bias_ramp": lambda k, i: k[i] * 700.0,
+    "accel_bias_temperature": lambda k, i: k[i] * 4.0,
+    "accel_scale_temperature": lambda k, i: k[i] * 4.0 * FORCE[i],
+}
+
+
+@pytest.mark.parametrize("name", BY_AXIS)
+def test_each_element_acts_on_its_own_axis_as_the_standards_write_it(name):
+    """All elements different; 700 s after the start, 4 K above the mean of the campaign."""
+    effect = CATALOGUE[name]
+    values = 1e-3 * np.arange(1.0, len(effect.parameters) + 1)
+    still = stretches(np.array([-700.0, 700.0]), np.full(2, 0.01), np.array([289.0, 297.0]))
+    truth = Truth(np.tile(RATE, (2, 1)), np.tile(FORCE, (2, 1)))
+    read = effect.reads(Reading(np.ones((2, 3)), np.ones((2, 3))), truth, still, values)
+    changed, other = (read.gyro, read.accel)[:: 1 if name.startswith("gyro") else -1]
+    expected = [1 + BY_AXIS[name](values, i) for i in range(3)]
+    np.testing.assert_allclose(changed[1], expected, rtol=1e-12)
+    np.testing.assert_array_equal(other, 1.0)

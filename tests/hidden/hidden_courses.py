@@ -22,7 +22,7 @@ from laboratory import LogTruth, Recording
 Array = NDArray[np.float64]
 
 RATE = 20  # Hz, of these recordings: all plans move in steps of it, and integrals are exact
-SCANNED = 5  # values of what an effect scans, evenly between the first and the last that is drawn
+SCANNED = 3  # values of what an effect scans, evenly between the first and the last that is drawn
 
 
 class Course(Effect):
@@ -107,9 +107,15 @@ def courses(plan: str) -> dict[str, list[Course]]:
 
     The k-th size of a course is the k-th parameter of the model in its typical size.
     """
-    plain = _recorded(plan, {})
-    campaign = laboratory.perform(laboratory.specify(PLANS[plan]()))
+    document = PLANS[plan]()
+    campaign = laboratory.perform(laboratory.specify(document))
     started = {log: _start(truth) for log, truth in campaign.truth.items()}
+    document["receiver"]["rate_hz"] = RATE
+
+    def recorded(effects: dict[str, Any]) -> Recording:
+        return laboratory.perform(laboratory.specify(document | {"effects": effects}))
+
+    plain = recorded({})
     found: dict[str, list[Course]] = {}
     for name, way in WAYS.items():
         if plan not in way.plans:
@@ -118,16 +124,10 @@ def courses(plan: str) -> dict[str, list[Course]]:
         found[name] = [
             known_course(
                 f"{name} of the laboratory, {number}",
-                [_recorded(plan, {name: told(name, unit, at)}) for unit in units],
+                [recorded({name: told(name, unit, at)}) for unit in units],
                 plain,
                 started,
             )
             for number, at in enumerate(scanned(way, plan))
         ]
     return found
-
-
-def _recorded(plan: str, effects: dict[str, Any]) -> Recording:
-    document = PLANS[plan](effects=effects)
-    document["receiver"]["rate_hz"] = RATE
-    return laboratory.perform(laboratory.specify(document))

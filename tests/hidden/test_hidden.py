@@ -130,7 +130,7 @@ def test_what_is_sought_elsewhere_is_found():
 
 
 def test_of_what_is_in_no_catalogue_there_is_a_warning():
-    one = draw(19, size)
+    one = draw(59, size)
     assert one.kind == "outside" and min(one.ratios.values()) >= 12
     assert warned(run(one))
 
