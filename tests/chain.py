@@ -2,6 +2,8 @@
 
 import tempfile
 from collections.abc import Callable, Collection, Iterator, Mapping
+from copy import deepcopy
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -195,8 +197,12 @@ def again(results: Results, name: str, **changes: Any) -> dict[str, pd.DataFrame
 
 def demo(**changes: Any) -> dict[str, Any]:
     """The description of the demo as a plain dict, without effects and faults but for `changes`."""
-    document = laboratory.read(ROOT / "data/simulated/demo.yaml").document
-    return {**document, "effects": {}, "faults": [], **changes}
+    return {**deepcopy(_demo()), "effects": {}, "faults": [], **changes}
+
+
+@cache
+def _demo() -> Mapping[str, Any]:
+    return laboratory.read(ROOT / "data/simulated/demo.yaml").document
 
 
 def short(**changes: Any) -> dict[str, Any]:
