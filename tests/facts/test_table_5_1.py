@@ -14,7 +14,7 @@ PAIRS = ([0, 0, 1], [1, 2, 2])  # xy, xz, yz
 def test_t5_the_mounting_rotation():
     found = mounting_and_symmetric(s0.ACCELEROMETER)[:3]
     assert np.degrees(np.linalg.norm(found)) == pytest.approx(0.458673, abs=1e-6)
-    # The design study has half the antisymmetric part, which differs by third order and S·θ, 2 µrad.
+    # The design study has half the antisymmetric part: it differs by third order and S·θ, 2 µrad.
     np.testing.assert_allclose(found, [-0.742750e-3, -7.583250e-3, 2.463650e-3], atol=3e-6)
 
 
