@@ -188,7 +188,7 @@ setup: .venv/complete pango
 	fi >&2
 	echo "Making .venv from requirements.lock, once; it takes a minute or two."
 	$(PYTHON) -m venv --clear .venv
-	$(BIN)/python -m pip install --quiet --no-compile --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
 	# The readers of logs are compiled now, so that the first log need not wait for it.
 	$(BIN)/python -c "import numpy; from inertial.formats.novatel.imu_messages import find_items; find_items(numpy.zeros(0, numpy.uint8), 0, last=True)"
 	touch $@

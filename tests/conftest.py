@@ -3,8 +3,6 @@
 import fcntl
 import os
 import shutil
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -66,7 +64,7 @@ WRITTEN = {
     "whu": ("whu_xwgi7681_excerpt", "history"),
     "softdream": ("softdream_sixpos", "history"),
     "cuyo": ("mpu6050_cuyo", "history"),
-    "hipnuc": ("hipnuc_temp", "report"),
+    "hipnuc": ("hipnuc_temp", "history"),
     "imu-tk": ("imu_tk_xsens", "diagnosis"),
     "sunsided": ("sunsided_mpu6050", "gyroscope"),
 }
@@ -76,8 +74,7 @@ WRITTEN = {
 def recorded(recordings, made_once) -> Callable[[str], chain.Results]:
     """By the name of a campaign in tests/campaigns its results; each is run once.
 
-    That which has a report is run by the workflow as a user would, in a data folder elsewhere; the
-    stages of the others run in this process. The logs lie beside a copy of the campaign file.
+    The logs lie beside a copy of the campaign file.
     """
 
     def of(name: str) -> chain.Results:
@@ -89,25 +86,12 @@ def recorded(recordings, made_once) -> Callable[[str], chain.Results]:
             shutil.copy(CAMPAIGNS / f"{name}.yaml", raw / "campaign.yaml")
             for log in logs_of(raw / "campaign.yaml"):
                 shutil.copy(recordings / logs / log, raw / log)
-            if until == "report":
-                reported(place, name)
-            else:
-                chain.run(raw, place / "data/derived" / name, until)
+            chain.run(raw, place / "data/derived" / name, until)
 
         place = made_once(f"recorded-{name}", run)
         return chain.Results(place / "data/derived" / name)
 
     return of
-
-
-def reported(place: Path, name: str) -> None:
-    """Run the workflow in a data folder up to the report of a campaign."""
-    page = f"reports/{name}.html"
-    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--directory", str(place)]
-    command += ["--snakefile", str(chain.ROOT / "Snakefile"), page]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert (place / page).stat().st_size > 10_000
 
 
 @pytest.fixture(scope="session")

@@ -1,6 +1,9 @@
 """Real recordings through the chain: against what others published, and what the data allow."""
 
 import json
+import shutil
+import subprocess
+import sys
 from typing import Any
 
 import chain
@@ -325,9 +328,18 @@ def test_every_verdict_says_what_could_not_be_determined(recorded):
         assert "SIMULATED" not in text
 
 
-def test_the_report_of_the_workflow_has_this_verdict(recorded):
+@pytest.mark.slow
+def test_the_report_of_the_workflow_has_this_verdict(recorded, tmp_path):
+    """As a user would run it, in a data folder elsewhere."""
     results = recorded("hipnuc")
-    text = (results.folder.parents[2] / "reports/hipnuc.txt").read_text(encoding="utf-8")
+    shutil.copytree(results.folder.parents[1] / "raw", tmp_path / "data/raw")
+    page = "reports/hipnuc.html"
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--directory", str(tmp_path)]
+    command += ["--snakefile", str(chain.ROOT / "Snakefile"), page]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / page).stat().st_size > 10_000
+    text = (tmp_path / "reports/hipnuc.txt").read_text(encoding="utf-8")
     assert text == verdict_of(results)
 
 

@@ -194,6 +194,7 @@ def one_more_line(file: Path) -> Iterator[None]:
 # ---- what goes wrong
 
 
+@pytest.mark.slow
 def test_a_killed_run_leaves_no_half_table_and_the_next_run_completes(
     workflow: Workflow, tmp_path: Path
 ) -> None:
