@@ -5,12 +5,14 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from inertial.effects import CATALOGUE
 from inertial.estimation.input_output import (
     asymmetry,
     at_no_force,
     composite_error,
     linearity_error,
 )
+from stages.compensation.characteristics import OF_FORCE, OF_INPUT
 
 DEGREE_PER_HOUR = np.radians(1 / 3600)  # rad/s
 PPM = 1e-6
@@ -22,6 +24,10 @@ def test_the_error_of_a_parabola_in_three_points_is_largest_in_the_middle():
     found = linearity_error(applied, applied + 0.06 * applied**2 + 3.0, np.full(3, 1e-6))
     assert found.value == pytest.approx(-0.04)
     assert found.sigma == pytest.approx(1e-6 * np.sqrt(2 / 3))
+
+
+def test_what_figures_describe_is_in_the_catalogue():
+    assert set(CATALOGUE) >= OF_INPUT | OF_FORCE
 
 
 def test_two_inputs_have_no_linearity_error():

@@ -198,8 +198,7 @@ class CampaignMotions:
             run=np.array([self._runs[name]]),
             temperature=np.array([position.mean_of(position.temperature)]),
             vibration=self._data.noise.of_samples(name, "rest", ACCEL)[None],
-            peaks=self._on_the_way(name, 1)[0],
-            senses=self._on_the_way(name, 1)[1],
+            **self._on_the_way(name, 1),
         )
 
     def turning(self, rotation: Recorded, turn: RateSegment) -> Motion:
@@ -219,16 +218,17 @@ class CampaignMotions:
             run=np.full(len(time), self._runs[name]),
             temperature=blocks.temperature,
             vibration=np.tile(vibration, (len(time), 1)),
-            peaks=self._on_the_way(name, len(time))[0],
-            senses=self._on_the_way(name, len(time))[1],
+            **self._on_the_way(name, len(time)),
         )
 
-    def _on_the_way(self, name: str, count: int) -> tuple[Array, Array]:
+    def _on_the_way(self, name: str, count: int) -> dict[str, Array]:
         """Peaks and senses on the way to a manoeuvre, (count, 3) each; see `Motion`."""
         done, unknown = self._data.performed.get(name), np.full(3, np.nan)
         both = (unknown, unknown) if done is None else (done.peaks, done.senses)
-        peaks, senses = (np.tile(each, (count, 1)) for each in both)
-        return peaks, senses
+        return {
+            key: np.tile(each, (count, 1))
+            for key, each in zip(("peaks", "senses"), both, strict=True)
+        }
 
 
 def positions_of(plan: Sequence[Manoeuvre]) -> list[str]:
