@@ -189,6 +189,7 @@ class CampaignMotions:
         place = (name, position.angle)  # all pieces of a position have one attitude
         if place not in self._at_rest:
             self._at_rest[place] = at_rest(self._data, position, time)
+        peaks, senses = self._on_the_way(name, 1)
         return replace(
             self._at_rest[place],
             time=np.array([time]),
@@ -198,7 +199,8 @@ class CampaignMotions:
             run=np.array([self._runs[name]]),
             temperature=np.array([position.mean_of(position.temperature)]),
             vibration=self._data.noise.of_samples(name, "rest", ACCEL)[None],
-            **self._on_the_way(name, 1),
+            peaks=peaks,
+            senses=senses,
         )
 
     def turning(self, rotation: Recorded, turn: RateSegment) -> Motion:
@@ -211,6 +213,7 @@ class CampaignMotions:
         vibration = (
             self._data.noise.of_samples(name, "steady", ACCEL) if upright else np.full(3, np.nan)
         )
+        peaks, senses = self._on_the_way(name, len(time))
         return replace(
             motion,
             visit=np.full(len(time), self._visits[name] + MOVING),
@@ -218,17 +221,16 @@ class CampaignMotions:
             run=np.full(len(time), self._runs[name]),
             temperature=blocks.temperature,
             vibration=np.tile(vibration, (len(time), 1)),
-            **self._on_the_way(name, len(time)),
+            peaks=peaks,
+            senses=senses,
         )
 
-    def _on_the_way(self, name: str, count: int) -> dict[str, Array]:
+    def _on_the_way(self, name: str, count: int) -> tuple[Array, Array]:
         """Peaks and senses on the way to a manoeuvre, (count, 3) each; see `Motion`."""
         done, unknown = self._data.performed.get(name), np.full(3, np.nan)
         both = (unknown, unknown) if done is None else (done.peaks, done.senses)
-        return {
-            key: np.tile(each, (count, 1))
-            for key, each in zip(("peaks", "senses"), both, strict=True)
-        }
+        peaks, senses = (np.tile(each, (count, 1)) for each in both)
+        return peaks, senses
 
 
 def positions_of(plan: Sequence[Manoeuvre]) -> list[str]:
