@@ -1,0 +1,412 @@
+"""The certificate on pages one and two, with the items of ISO/IEC 17025:2017, 7.8."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import degrees
+
+from inertial.text import numbers
+from inertial.text.cause_names import in_words
+from inertial.text.certified import (
+    IN_FULL_ONLY,
+    NOT_STATED,
+    REALISES,
+    RULES,
+    STATEMENTS,
+    THIS_ITEM_ONLY,
+    TRACEABILITY,
+)
+from inertial.text.messages import _
+from inertial.text.units import COVERAGE_FACTOR, ICE_POINT, Unit
+from stages.report.outline import (
+    Column,
+    Facts,
+    Figure,
+    Heading,
+    Level,
+    Paragraph,
+    Part,
+    Row,
+    Section,
+    Sentences,
+    Signatures,
+    Table,
+    columns,
+    head,
+    table_row,
+)
+from stages.report.results import (
+    RESULT_TABLES,
+    Estimate,
+    final_results,
+    kind_of,
+    quantity_of,
+    symbol,
+)
+from stages.report.sections.axes_of_case import axes_of_case
+from stages.report.sections.verdict import LEVELS, verdict_sentences, worst
+from stages.report.tables import Record, Tables, once
+from stages.report.words import SENSOR, capital
+
+ITEMS = {  # of the left and of the right column, each with the items that it joins
+    _("Laboratory"): ("laboratory.name", "laboratory.address", "laboratory.accreditation"),
+    _("Place of calibration"): ("laboratory.place",),
+    _("Customer"): ("customer.name", "customer.address"),
+    _("Condition of the item"): ("item.condition",),
+    _("Axes of the case"): ("item.axes",),
+    _("Received"): ("received",),
+    _("Calibrated"): ("calibrated",),
+    _("Issued"): ("issued",),
+    _("Procedure"): ("procedure.name", "procedure.version"),
+    _("Deviations from it"): ("procedure.deviations",),
+    _("Air temperature"): ("conditions.temperature",),
+    _("Relative humidity"): ("conditions.humidity",),
+    _("Warm-up"): ("conditions.warm_up",),
+    _("Measured with"): ("conditions.measured_with",),
+}
+IF_STATED = {"laboratory.place", "item.axes", "conditions.humidity", "conditions.measured_with"}
+KNOWN = ("gravity", "latitude")  # of the known quantities what results rest on
+
+
+def certificate_number(tables: Tables) -> str:
+    """Its number; the name of the campaign where none is stated."""
+    return str(_stated(tables).get("number") or tables.row("campaign")["campaign"])
+
+
+def parts(tables: Tables) -> Iterator[Part]:
+    """What 7.8 asks for: who, what, how, with which standards; then results and statements."""
+    word, tone, meaning = LEVELS[worst(tables)]
+    yield Level(word, tone, meaning)
+    yield Sentences(tuple(verdict_sentences(tables)))
+    yield Facts(tuple(_facts(tables)))
+    yield _standards(tables)
+    yield Figure(
+        _("Axes of the case: right-handed; the axis that points up reads +g."),
+        axes_of_case(),
+        _("The axes x, y and z of the case, at right angles to each other."),
+        small=True,
+    )
+    yield Heading(_("Results"), breaks=True)
+    earlier = _earlier(tables)
+    for mount in dict.fromkeys(result.mount for result in final_results(tables)):
+        own = [result for result in final_results(tables) if result.mount == mount]
+        yield _values(own, mount, earlier)
+        if effects := [row for result in own for row in result.effects]:
+            yield _effects(effects)
+    yield from _conformity(tables)
+    yield Sentences(tuple(_statements(tables, earlier)))
+    yield Signatures(
+        tuple(_signatures(tables)), _("End of the certificate. What follows is its evidence.")
+    )
+
+
+# ---- Who, what, how.
+
+
+@once
+def _stated(tables: Tables) -> Mapping[str, str]:
+    """The items that are stated, in words."""
+    texts = {row["item"]: _text(row) for row in tables.rows("certificate")}
+    return {item: text for item, text in texts.items() if text}
+
+
+def _text(row: Record) -> str | None:
+    """What is stated: a text, or a value with its expanded uncertainty."""
+    if row["value"] is None:
+        return None if row["text"] is None else str(row["text"])
+    spread = row["expanded_uncertainty"]
+    decimals = numbers.decimals_of(spread)
+    value = numbers.significant(row["value"], 3)
+    if decimals is None:
+        return f"{value} {row['unit']}"
+    value, spread = numbers.with_sigma(row["value"], spread, decimals)
+    return f"({value} ± {spread}) {row['unit']}"
+
+
+def _facts(tables: Tables) -> Iterator[tuple[str, str]]:
+    campaign, stated = tables.row("campaign"), _stated(tables)
+    yield _("Number"), certificate_number(tables)
+    yield _("Campaign"), campaign["campaign"]
+    maker, part, firmware = (stated.get(f"item.{key}") for key in ("maker", "part", "firmware"))
+    item = [campaign["instrument"], _("serial {serial}", serial=campaign["serial"])]
+    item += [_("part {part}", part=part)] if part else []
+    item += [_("firmware {firmware}", firmware=firmware)] if firmware else []
+    yield _("Item"), ", ".join([*([maker] if maker else []), *item])
+    for name, items in ITEMS.items():
+        texts = [stated[one] for one in items if one in stated]
+        if texts or not IF_STATED.issuperset(items):
+            yield name, "; ".join(texts) or NOT_STATED
+    yield _("Recorded"), _recorded(tables)
+    yield _("Temperature of the IMU"), _temperature(tables)
+    yield _("Remarks"), campaign["notes"] or _("none")
+
+
+def _recorded(tables: Tables) -> str:
+    dates = sorted({row["recorded_on"] for row in tables.rows("clocks") if row["recorded_on"]})
+    if not dates:
+        return _("not known: the logs have no absolute clock")
+    return " … ".join(dict.fromkeys((dates[0], dates[-1]))) + " (UTC)"
+
+
+def _temperature(tables: Tables) -> str:
+    """The range that the blocks, or the plan, state."""
+    frames = (tables.frame(name)["temperature"].dropna() for name in ("blocks", "manoeuvres"))
+    kelvin = next((column for column in frames if len(column)), None)
+    if kelvin is None:
+        return _("not recorded")
+    low, high = (numbers.fixed(limit - ICE_POINT, 1) for limit in (kelvin.min(), kelvin.max()))
+    return f"{low} … {high} °C" if low != high else f"{low} °C"
+
+
+def _standards(tables: Tables) -> Table:
+    """The standards, and the known quantities that results rest on."""
+    rows = [
+        table_row(
+            capital(REALISES[row["realises"]]),
+            row["name"] + (f", {row['identification']}" if row["identification"] else ""),
+            ", ".join(filter(None, (row["certificate"], row["issued_by"]))) or NOT_STATED,
+            row["valid_until"] or NOT_STATED,
+        )
+        for row in tables.rows("standards")
+    ]
+    there = {row["realises"] for row in tables.rows("standards")}
+    if "angle" not in there and "rate" not in there:
+        table = tables.row("campaign")["table"]
+        rows.append(table_row(_("Angle, rotation rate"), table, NOT_STATED, NOT_STATED))
+    for row in tables.rows("known"):
+        if row["quantity"] in KNOWN and row["value"] is not None:
+            rows.append(table_row(capital(row["quantity"]), _known(row), row["origin"], "–"))
+    return Table(
+        _("Standards used, and quantities taken as known."),
+        columns("text", _("Quantity"), _("Standard or value"), _("Certificate or origin"))
+        + columns("name", _("valid until")),
+        rows,
+    )
+
+
+def _known(row: Record) -> str:
+    scale, unit = (degrees(1.0), "°") if row["unit"] == "rad" else (1.0, f" {row['unit']}")
+    spread = None if row["sigma"] is None else COVERAGE_FACTOR * row["sigma"] * scale
+    value, error = numbers.with_sigma(row["value"] * scale, spread, numbers.decimals_of(spread))
+    return f"{value}{unit}" if spread is None else f"{value}{unit}, U = {error}{unit}"
+
+
+# ---- The results with U.
+
+
+def _values(results: Sequence[Estimate], mount: str, earlier: Mapping[str, Record]) -> Table:
+    """The twelve parameters of each sensor side by side, in the order of the first."""
+    sensors = [result.sensor for result in results]
+    names = list(dict.fromkeys(n for one in results for n in map(_name, one.parameters)))
+    by_sensor = [{_name(row): row for row in one.parameters} for one in results]
+    written = [_with_uncertainty(list(own.values())) for own in by_sensor]
+    rows: list[Row] = []
+    for name in names:
+        cells = [symbol(name)]
+        for own, texts in zip(by_sensor, written, strict=True):
+            cells += [*texts.get(name, ("—", "—", ""))]
+            if earlier:
+                cells.append(_change(own.get(name), earlier))
+        rows.append(table_row(*cells))
+    extra = [Column(_("change"), "number")] if earlier else []
+    return Table(
+        _(
+            "Bias b, scale error s and cross-axis terms m{mount}, frame: case; index ij: response "
+            "of sensor i to an input along axis j. U: expanded uncertainty, k = 2, about 95 %.",
+            mount=_(", mount {mount}", mount=mount) if mount else "",
+        ),
+        (
+            Column("", "symbol"),
+            *(
+                Column(column.heading, column.kind, sensor)
+                for sensor in sensors
+                for column in (
+                    Column(_("value"), "number"),
+                    Column("± U", "sigma"),
+                    Column(_("unit"), "unit"),
+                    *extra,
+                )
+            ),
+        ),
+        rows,
+        _("None: no parameter was determined."),
+        _("—: not determined; “Undetermined parameters” says why.")
+        if any("—" in row.cells for row in rows)
+        else "",
+    )
+
+
+def _name(row: Record) -> str:
+    return str(row["parameter"])
+
+
+def _with_uncertainty(rows: Sequence[Record]) -> dict[str, tuple[str, str, str]]:
+    """Value, U and unit of each, with common decimals for those of one kind."""
+    by_kind: dict[str, list[Record]] = {}
+    for row in rows:
+        by_kind.setdefault(kind_of(row["parameter"]), []).append(row)
+    written = {}
+    for own in by_kind.values():
+        unit = quantity_of(own[0]).laboratory
+        decimals = numbers.common_decimals([_expanded(row, unit) for row in own])
+        for row in own:
+            if row["value"] is not None:
+                pair = numbers.with_sigma(unit.of(row["value"]), _expanded(row, unit), decimals)
+                written[_name(row)] = (*pair, unit.name)
+    return written
+
+
+def _expanded(row: Record, unit: Unit) -> float | None:
+    return None if row["sigma"] is None else unit.of(COVERAGE_FACTOR * row["sigma"])
+
+
+def _effects(rows: Sequence[Record]) -> Table:
+    lines: list[Row] = []
+    for effect in dict.fromkeys(row["effect"] for row in rows):
+        lines.append(head(capital(in_words(effect))))
+        for row in rows:
+            if row["effect"] == effect and row["value"] is not None:
+                unit = quantity_of(row).laboratory
+                spread = _expanded(row, unit)
+                pair = numbers.with_sigma(
+                    unit.of(row["value"]), spread, numbers.decimals_of(spread)
+                )
+                lines.append(table_row(symbol(row["parameter"]), *pair, unit.name, row["meaning"]))
+    return Table(
+        _("Effects that the result contains beside them; they hold together with it."),
+        (
+            Column("", "symbol"),
+            Column(_("value"), "number"),
+            Column("± U", "sigma"),
+            Column(_("unit"), "unit"),
+            Column(_("meaning"), "note"),
+        ),
+        lines,
+    )
+
+
+# ---- The last calibration before this one.
+
+
+@once
+def _earlier(tables: Tables) -> Mapping[str, Record]:
+    """The parameters of the latest earlier calibration, by sensor, mount and name."""
+    rows = [row for row in tables.rows("earlier") if row["date"][:1].isdigit()]
+    latest = max((row["date"] for row in rows), default="")
+    return {
+        _key(row["sensor"], row["mount"], row["quantity"]): row
+        for row in rows
+        if row["date"] == latest
+    }
+
+
+def _key(sensor: str, mount: str, quantity: str) -> str:
+    return f"{sensor}@{mount}/{quantity}"
+
+
+def _change(row: Record | None, earlier: Mapping[str, Record]) -> str:
+    if row is None or row["value"] is None:
+        return "—"
+    before = earlier.get(_key(row["sensor"], row["mount"], row["parameter"]))
+    if before is None:
+        return "—"
+    unit = quantity_of(row).laboratory
+    decimals = numbers.decimals_of(_expanded(row, unit))
+    change = unit.of(row["value"] - before["value"])
+    text = numbers.significant(change, 2) if decimals is None else numbers.fixed(change, decimals)
+    return text if text.startswith("−") else f"+{text}"
+
+
+# ---- Statements.
+
+
+def _conformity(tables: Tables) -> Iterator[Part]:
+    """A row for each sensor and kind, by its worst parameter; or that nothing is assessed."""
+    yield Heading(_("Conformity"))
+    rows = tables.rows("conformity")
+    if not rows:
+        yield Paragraph(_("Not assessed: no tolerances are stated."))
+        return
+    groups: dict[tuple[str, str, str], list[Record]] = {}
+    for row in rows:
+        groups.setdefault((row["mount"], row["sensor"], kind_of(row["quantity"])), []).append(row)
+    yield Table(
+        _("Decision rule: {rule}.", rule=RULES[rows[0]["decision_rule"]]),
+        (
+            *columns("text", _("Parameters"), _("Statement")),
+            Column(_("limit ±"), "number"),
+            Column(_("unit"), "unit"),
+            Column(_("probability that it is wrong, at most"), "number"),
+        ),
+        [_assessed(key, groups[key]) for key in sorted(groups, key=_in_order)],
+    )
+
+
+def _in_order(key: tuple[str, str, str]) -> tuple[str, str, int]:
+    return key[0], key[1], list(KINDS).index(key[2])
+
+
+def _assessed(key: tuple[str, str, str], rows: Sequence[Record]) -> Row:
+    mount, sensor, kind = key
+    unit = quantity_of({"parameter": rows[0]["quantity"], "unit": rows[0]["unit"]}).laboratory
+    each: dict[str, list[str]] = {}
+    for row in rows:
+        each.setdefault(row["statement"], []).append(symbol(row["quantity"]))
+    said = [
+        STATEMENTS[one] if len(each) == 1 else f"{STATEMENTS[one]}: {', '.join(each[one])}"
+        for one in STATEMENTS
+        if one in each
+    ]
+    risks = [row["risk"] for row in rows if row["risk"] is not None]
+    name = f"{capital(SENSOR[sensor])}, {KINDS[kind]}" + (f" ({mount})" if mount else "")
+    tone = "" if set(each) == {"conforms"} else "poor" if "does_not_conform" in each else "fair"
+    return table_row(
+        name,
+        capital("; ".join(said)),
+        numbers.significant(unit.of(rows[0]["limit"]), 3),
+        unit.name,
+        numbers.probability(max(risks)) if risks else "—",
+        tone=tone,  # type: ignore[arg-type]
+    )
+
+
+KINDS = {"bias": _("bias"), "scale": _("scale error"), "cross": _("cross-axis terms")}
+
+
+def _statements(tables: Tables, earlier: Mapping[str, Record]) -> Iterator[str]:
+    stated = _stated(tables)
+    if earlier:
+        before = next(iter(earlier.values()))
+        yield _(
+            "Change: this result less that of {date} ({campaign}), which is the error as found of "
+            "an IMU that was used with that one; as left it is this result.",
+            date=before["date"],
+            campaign=before["campaign"],
+        )
+    else:
+        yield _("No earlier result of this item is known, so there is none as found.")
+    yield stated.get("traceability", TRACEABILITY)
+    yield THIS_ITEM_ONLY
+    yield IN_FULL_ONLY
+    if "opinions" in stated:
+        yield _("Opinion, not a result: {opinions}", opinions=stated["opinions"])
+
+
+def _signatures(tables: Tables) -> Iterator[tuple[str, str]]:
+    stated = _stated(tables)
+    yield _("Calibrated by"), stated.get("calibrated_by", NOT_STATED)
+    yield _("Released by"), stated.get("released_by", NOT_STATED)
+
+
+SECTION = Section(
+    "certificate",
+    _("Certificate"),
+    _("What was calibrated, how, and with which result."),
+    "",
+    (
+        *RESULT_TABLES,
+        *("campaign", "certificate", "standards", "known", "clocks", "blocks", "manoeuvres"),
+        *("conformity", "earlier", "causes"),
+    ),
+    parts,
+)
