@@ -1,0 +1,143 @@
+"""Where the uncertainties of the result come from, and how they belong together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from inertial.text.messages import _
+from inertial.text.numbers import significant
+from stages.report.drawing import Margins, panels, style, svg
+from stages.report.outline import Column, Figure, Part, Row, Section, Table, columns, table_row
+from stages.report.results import (
+    RESULT_TABLES,
+    by_kind,
+    final_results,
+    kind_of,
+    quantity_of,
+    symbol,
+)
+from stages.report.tables import Record, Tables
+from stages.report.words import SENSOR, capital, with_mount
+
+SOURCES = {
+    "noise": _("white noise"),
+    "drift": _("drift of the bias in the noise"),
+    "scatter": _("scatter of manoeuvres"),
+    "random_walk": _("random walk of the bias"),
+    "position": _("table, position"),
+    "angle": _("table, angle"),
+    "interpolation": _("interpolated gaps"),
+    "azimuth": _("azimuth"),
+    "gravity": _("gravity"),
+    "latitude": _("latitude"),
+}
+KINDS = {"bias": _("bias"), "scale": _("scale error"), "cross": _("cross-axis terms")}
+MIN_SHARE = 5e-4  # of a variance, below which a share is written as nothing
+MIN_LABELLED = 25  # parameters of a sensor, from which a picture has no names
+
+
+def parts(tables: Tables) -> Iterator[Part]:
+    """A row per sensor and kind of parameter; the correlations of each sensor as a picture."""
+    rows = tables.rows("uncertainty_budget")
+    if not rows:
+        return
+    there = [source for source in SOURCES if any(row["source"] == source for row in rows)]
+    groups: dict[tuple[str, str, str], list[Record]] = {}
+    for row in rows:
+        groups.setdefault((row["sensor"], row["mount"], kind_of(row["quantity"])), []).append(row)
+    yield Table(
+        _("Shares of the variance, in %, as the mean over the parameters of a kind."),
+        (
+            Column(_("Parameters"), "text"),
+            Column(_("largest σ"), "number"),
+            Column(_("unit"), "unit"),
+            *columns("number", *(SOURCES[source] for source in there)),
+        ),
+        [_shares(key, own, there) for key, own in sorted(groups.items(), key=_in_order)],
+    )
+    yield from _correlations(tables)
+
+
+SECTION = Section(
+    "budget",
+    _("Uncertainty budget"),
+    _("Which source of error the uncertainty of each kind of parameter comes from."),
+    _(
+        "All sources that the estimation knows of; their shares add up to 100 %. Errors that "
+        "it does not know of are not in them, nor in any σ: a scale error of clock or encoder "
+        "that no standard excludes is part of the scale factors of the gyros."
+    ),
+    ("uncertainty_budget", "covariance", *RESULT_TABLES),
+    parts,
+)
+
+
+def _in_order(item: tuple[tuple[str, str, str], list[Record]]) -> tuple[str, str, int]:
+    (sensor, mount, kind), _rows = item
+    return sensor, mount, list(KINDS).index(kind)
+
+
+def _shares(key: tuple[str, str, str], rows: Sequence[Record], there: Sequence[str]) -> Row:
+    sensor, mount, kind = key
+    names = dict.fromkeys(row["quantity"] for row in rows)
+    variances = [sum(r["sigma"] ** 2 for r in rows if r["quantity"] == name) for name in names]
+    unit = quantity_of({"parameter": rows[0]["quantity"], "unit": rows[0]["unit"]}).laboratory
+    shares = [
+        float(np.mean([row["share"] for row in rows if row["source"] == source] or [0.0]))
+        for source in there
+    ]
+    return table_row(
+        with_mount(f"{capital(SENSOR[sensor])}, {KINDS[kind]}", mount),
+        significant(unit.of(float(np.sqrt(max(variances)))), 2),
+        unit.name,
+        *("–" if share < MIN_SHARE else significant(100 * share, 2) for share in shares),
+    )
+
+
+def _correlations(tables: Tables) -> Iterator[Figure]:
+    """The correlations of the parameters and effects of each sensor, from −1 to 1."""
+    known = {(row["first"], row["second"]): row["covariance"] for row in tables.rows("covariance")}
+    each = []
+    for result in final_results(tables):
+        rows = by_kind([*result.calibration.values(), *result.effects])
+        rows = [row for row in rows if (row["id"], row["id"]) in known]
+        if len(rows) > 1:
+            each.append((result.sensor, rows))
+    if not each:
+        return
+    with style():
+        margins = Margins(left=0.5, across=0.5, bottom=0.1, top=0.3, right=0.35)
+        figure, axes = panels(1, len(each), 2.9, margins, sharex=False)
+        for panel, (name, rows) in zip(axes[0], each, strict=True):
+            _matrix(panel, name, rows, known)
+        drawn = svg(figure, "correlations")
+    yield Figure(
+        _("Correlations of the parameters: red +1, white 0, blue −1."),
+        drawn,
+        _("The matrix of the correlations of all parameters of each sensor."),
+    )
+
+
+def _matrix(
+    panel: Axes, name: str, rows: Sequence[Record], known: dict[tuple[str, str], float]
+) -> None:
+    ids = [row["id"] for row in rows]
+    covariance = np.array(
+        [[known.get((a, b), known.get((b, a), 0.0)) for b in ids] for a in ids], np.float64
+    )
+    sigma = np.sqrt(np.diag(covariance))
+    panel.pcolormesh(
+        covariance / np.outer(sigma, sigma), cmap="RdBu_r", vmin=-1, vmax=1, rasterized=False
+    )
+    panel.invert_yaxis()
+    panel.set_aspect("equal")
+    panel.grid(visible=False)
+    panel.set_title(name, loc="left", pad=2)
+    panel.set_xticks([])
+    labels = [symbol(row["parameter"]).replace("_", "") for row in rows]
+    size = 6.0 if len(rows) < MIN_LABELLED else 4.0
+    panel.set_yticks(np.arange(len(ids)) + 0.5, labels, fontsize=size)
+    panel.tick_params(length=0)

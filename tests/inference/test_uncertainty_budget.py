@@ -1,0 +1,55 @@
+"""Parts of the variances in closed form: six positions of accelerometers along their axes."""
+
+import numpy as np
+import pytest
+
+from inertial.estimation.accelerometers import StaticForce, drifting
+from inertial.estimation.uncertainty_budget import Model, budget
+from inertial.physics.forward import Triad
+
+GRAVITY, NOISE, GRAVITY_SIGMA, TILT = 9.8, 3e-5, 5e-5, 1e-5
+SCALE_X, CROSS_XY, BIAS_X = 0, 1, 9
+
+
+@pytest.fixture(scope="module")
+def parts():
+    ups = np.vstack([np.eye(3), -np.eye(3)])
+    statics = [
+        StaticForce(f"p{i}", up, GRAVITY * up, np.full(3, NOISE)) for i, up in enumerate(ups)
+    ]
+    known = (GRAVITY, GRAVITY_SIGMA, TILT, Triad(np.eye(3), np.zeros(3)))
+    return budget(Model(drifting(statics, *known, walking=False)))
+
+
+def test_the_parts_add_up(parts):
+    whole, each = parts
+    assert {*each} == {"noise", "position", "gravity"}
+    np.testing.assert_allclose(sum(each.values()), whole, rtol=1e-3)
+
+
+def test_gravity_is_in_the_scale_factors_alone(parts):
+    """s = (f₊ − f₋)/(2 g) − 1: noise σ²/(2 g²), gravity (σ_g/g)², tilts of second order."""
+    _whole, each = parts
+    scale = {source: part[SCALE_X] for source, part in each.items()}
+    assert scale["gravity"] == pytest.approx((GRAVITY_SIGMA / GRAVITY) ** 2, rel=1e-3)
+    assert scale["noise"] == pytest.approx(NOISE**2 / (2 * GRAVITY**2), rel=1e-3)
+    assert scale["position"] < 1e-6 * scale["noise"]
+
+
+def test_a_cross_term_has_the_tilts_of_two_positions(parts):
+    """m_xy = (f₊ − f₋)/(2 g) with ±y up: noise σ²/(2 g²), tilts δ²/2."""
+    _whole, each = parts
+    assert each["position"][CROSS_XY] == pytest.approx(TILT**2 / 2, rel=1e-3)
+    assert each["noise"][CROSS_XY] == pytest.approx(NOISE**2 / (2 * GRAVITY**2), rel=1e-3)
+    assert each["gravity"][CROSS_XY] < 1e-6 * TILT**2
+
+
+def test_a_bias_weighs_upright_positions_against_level_ones(parts):
+    """Upright: two readings of variance σ²; level: four of σ² + (g δ)²; the mean of both."""
+    _whole, each = parts
+    tilted = (GRAVITY * TILT) ** 2
+    upright, level = 2 / NOISE**2, 4 / (NOISE**2 + tilted)
+    share = level / (upright + level)
+    noise = NOISE**2 * ((1 - share) ** 2 / 2 + share**2 / 4)
+    assert each["noise"][BIAS_X] == pytest.approx(noise, rel=1e-3)
+    assert each["position"][BIAS_X] == pytest.approx(tilted * share**2 / 4, rel=1e-3)
