@@ -7,6 +7,8 @@ DECLARED = Declared(
     reads={
         "campaign": From("plan", tables.CAMPAIGN),
         "known": From("plan", tables.KNOWN),
+        "certificate": From("plan", tables.CERTIFICATE),
+        "standards": From("plan", tables.STANDARDS),
         "inputs": From("plan", tables.INPUTS),
         "manoeuvres": From("segment", tables.MANOEUVRES),
         "clocks": From("decode", tables.CLOCKS),
@@ -24,11 +26,14 @@ DECLARED = Declared(
         "result": From("diagnosis", tables.PARAMETERS, "result"),
         "covariance": From("diagnosis", tables.COVARIANCE),
         "verdict": From("diagnosis", tables.VERDICTS, "verdict"),
+        "conformity": From("diagnosis", tables.CONFORMITY),
     },
     streams=("samples",),
     documents=(
         "calibration.json",
         "calibration.yaml",
+        "calibration.h",
+        "dcc.xml",
         "kalibr.yaml",
         "ros.yaml",
         "px4.params",

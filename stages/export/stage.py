@@ -12,6 +12,7 @@ from inertial.campaign.records import Row, manoeuvres_of, rows_of
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage
 from stages.export.autopilots import ARDUPILOT, PX4, parameter_file
+from stages.export.c_header import c_header
 from stages.export.calibration import (
     COMPENSATED,
     Calibration,
@@ -22,11 +23,13 @@ from stages.export.calibration import (
     sample_rate,
     temperature_of,
 )
+from stages.export.dcc import dcc
 from stages.export.declared import DECLARED
 from stages.export.document import as_json, as_yaml, document
 from stages.export.examples import examples_of
 from stages.export.kalibr import imu_yaml
 from stages.export.ros import ros_yaml
+from stages.export.stated import stated_by
 from stages.export.use import Use
 
 FITTED = ("accelerometer", "gyroscope", "extension")  # stages that keep fits
@@ -76,9 +79,17 @@ def export(
             ),
         )
     content = document(calibration)
+    stated = stated_by(
+        tables["certificate"],
+        tables["standards"],
+        tables["conformity"],
+        rows_of(tables["clocks"]),
+    )
     return {
         "calibration.json": as_json(content),
         "calibration.yaml": as_yaml(content),
+        "calibration.h": c_header(content),
+        "dcc.xml": dcc(content, stated),
         "kalibr.yaml": imu_yaml(calibration),
         "ros.yaml": ros_yaml(calibration),
         "px4.params": parameter_file(calibration, PX4),

@@ -7,7 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from scipy.linalg import block_diag
 
+from inertial.campaign.measurement import measurement_of
 from stages.export.calibration import PARAMETERS, Calibration, Mount, Triad
 from stages.export.examples import Example
 from stages.export.use import Use
@@ -179,3 +181,62 @@ def with_terms(whole: Calibration) -> Calibration:
         }
         noise.append(row | {"terms": terms})
     return replace(whole, noise=noise)
+
+
+# Value and unit of every number of an effect; those in CONSTANTS have no sigma.
+EFFECTS: dict[str, dict[str, dict[str, tuple[float, str]]]] = {
+    "accelerometer": {
+        "accel_quadratic": {"k2_x": (2e-5, "(m/s²)/(m/s²)²"), "k2_z": (-1e-5, "(m/s²)/(m/s²)²")},
+        "accel_bias_jump": {"b_x": (1e-3, "m/s²"), "t0": (30.0, "s")},
+    },
+    "gyroscope": {
+        "gyro_g_sensitivity": {"g_xx": (3e-6, "(rad/s)/(m/s²)"), "g_yx": (-2e-6, "(rad/s)/(m/s²)")},
+        "gyro_scale_asymmetry": {"a_z": (4e-4, "1")},
+        "gyro_warm_up": {"b_y": (2e-5, "rad/s"), "tau": (90.0, "s")},
+    },
+}
+CONSTANTS = ("t0", "tau")
+
+
+def with_effects(plain: Triad) -> Triad:
+    """The same three sensors with EFFECTS in their model, each of one part in a hundred."""
+    rows = [
+        {
+            "id": f"{plain.id_prefix}/{effect}.{name}",
+            "sensor": "accel" if plain.kind == "accelerometer" else "gyro",
+            "effect": effect,
+            "parameter": f"{effect}.{name}",
+            "value": value,
+            "sigma": None if name in CONSTANTS else abs(value) / 100,
+            "unit": unit,
+            "meaning": "made up",
+        }
+        for effect, numbers in EFFECTS[plain.kind].items()
+        for name, (value, unit) in numbers.items()
+    ]
+    measurement = measurement_of(rows)
+    own = measurement.accelerometer if plain.kind == "accelerometer" else measurement.gyro
+    estimated = [row for row in rows if row["sigma"] is not None]
+    return replace(
+        plain,
+        effects=own.effects,
+        ids=(*plain.ids, *(str(row["id"]) for row in estimated)),
+        covariance=block_diag(plain.covariance, np.diag([row["sigma"] ** 2 for row in estimated])),
+    )
+
+
+def moving_mount(name: str = "as mounted") -> Mount:
+    """A mount whose sensors have effects, with readings at rest and in a turn."""
+    plain = mount(name)
+    turn = Example(
+        *("one sample of a turn", "z-forward", "z.asc", 70, 71, 90),
+        np.array([0.21, -0.4, 9.7, 0.002, -0.001, -1.05]),
+        time=45.25,
+        temperature=300.0,
+    )
+    return replace(
+        plain,
+        accelerometer=with_effects(plain.accelerometer),
+        gyroscope=with_effects(plain.gyroscope),
+        examples=[replace(plain.examples[0], time=12.5), turn],
+    )
