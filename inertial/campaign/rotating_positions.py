@@ -1,0 +1,92 @@
+"""The accelerometers while the table turns steadily: as good as a rest, with a known pull.
+
+A whole turn shows every accelerometer its part of gravity for as long as a rest. It also pulls at
+the case: f += ω × (ω × r), with an unknown lever arm r from the table's axis, for each of the three
+its own. At a steady rate only the component of r along the accelerometer counts, so three unknowns
+are enough; ramps, where the others count too, are left out.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.rate_segments import gaps_of, refusal_of, weights_of
+from inertial.campaign.records import Manoeuvre, Part
+from inertial.campaign.static_positions import Blocks, by_manoeuvre, stretch_of
+from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.sensitivities import Sensitivities
+from inertial.physics.motion import mean_turned
+from inertial.tables import ACCEL, AXES, STATIC_PHASES
+
+Array = NDArray[np.float64]
+
+LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU is mounted farther off
+MAX_TURN_IN_MEAN = np.radians(5)  # by how much the vertical may turn in the case within one mean
+
+
+def turning_rests(data: CampaignData) -> list[tuple[Part, StaticForce]]:
+    """The steady parts of all whole turns, each with its manoeuvre, in means of like attitude.
+
+    The `sensitivities` of each are those of LEVER_ARM.
+    """
+    blocks, performed = data.blocks, data.performed
+    moving = by_manoeuvre(blocks[~blocks["phase"].isin(STATIC_PHASES)])
+    quiet = by_manoeuvre(blocks[blocks["phase"].isin(["rest-before", "rest-after"])])
+    forces: list[tuple[Part, StaticForce]] = []
+    for m in data.plan:
+        if m.do != "turn" or m.recorded != "whole" or m.up is None or m.name not in moving:
+            continue
+        part = moving[m.name]
+        usable = performed[m.name].complete and not refusal_of(m, performed[m.name], part)
+        if usable and m.name in quiet and bool(part.steady.any()):
+            density = data.noise.of(m.name, "steady", ACCEL)
+            stretch = stretch_of(m.name, part.those(part.steady), data.shared_clock)
+            forces += [
+                (Part(m.name, "steady"), replace(rest, stretch=stretch))
+                for rest in _steady(m, part, quiet[m.name], density)
+            ]
+    return forces
+
+
+def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[StaticForce]:
+    """Means of blocks of the steady part, over which the attitude is nearly constant."""
+    assert m.up is not None and m.angle is not None  # else it is left out
+    readings, seconds = part.accel, part.seconds
+    angle = _angles(m, part, quiet)
+    steady = np.flatnonzero(part.steady)
+    middle = np.cumsum(angle) - angle / 2
+    for gap in gaps_of(part):
+        middle[gap.before :] += gap.shares @ angle
+    ups = mean_turned(m.up, m.axis, middle, angle)
+    level = np.linalg.norm(m.up - (m.up @ m.axis) * m.axis)
+    rate = angle / seconds
+    turns = abs(float(angle[steady].sum())) * float(level)
+    pieces = np.array_split(steady, max(1, int(np.ceil(turns / MAX_TURN_IN_MEAN))))
+    rests = []
+    for indices in (piece for piece in pieces if len(piece)):
+        share = seconds[indices] / seconds[indices].sum()
+        square = float(share @ rate[indices] ** 2)
+        pull = square * (np.outer(m.axis, m.axis) - np.eye(3))  # ω × (ω × r) of r
+        rests.append(
+            StaticForce(
+                m.position,
+                share @ ups[indices],
+                share @ readings[indices],
+                density / np.sqrt(seconds[indices].sum()),
+                sensitivities=Sensitivities(tuple(LEVER_ARM), pull),
+                felt=True,
+                turning=True,
+            )
+        )
+    return rests
+
+
+def _angles(m: Manoeuvre, part: Blocks, quiet: Blocks) -> Array:
+    """The angle of each block, (k,), rad: the known whole in proportion to the gyro readings."""
+    assert m.angle is not None  # else it is left out
+    along = np.nan_to_num(part.gyro) @ m.axis
+    offset = float(np.nan_to_num(quiet.gyro @ m.axis).mean())
+    increments = (along - offset) * part.seconds
+    return np.asarray(increments * (m.angle / (weights_of(part) @ increments)))

@@ -1,0 +1,1 @@
+"""Coarse alignment, and the error of the attitude with and without rotation."""

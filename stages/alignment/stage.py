@@ -1,0 +1,274 @@
+"""Alignment at rest, and how far the attitude errs afterwards, with rotation and without."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.masked_samples import Repairs
+from inertial.campaign.measurement import Measurement, measurements_of
+from inertial.campaign.records import Row, rows_of
+from inertial.campaign.sample_stretches import samples_in
+from inertial.estimation.alignment import (
+    AttitudeError,
+    CoarseAlignment,
+    Separated,
+    at_rest,
+    gained,
+    integrated,
+    separated,
+)
+from inertial.physics.motion import cross, turned_all
+from inertial.tables import AXES
+from inertial.tables.parquet import Stream
+from inertial.tables.stage import Stage, Tables
+from inertial.text.parameters import BIAS
+from stages.alignment.declared import DECLARED
+from stages.alignment.runs import LEVEL, Group, Run, groups, records_of, run_of, since_alignment
+
+Array = NDArray[np.float64]
+
+RECORDED, COMPENSATED = "recorded", "compensated"
+MAX_POINTS = 200  # of a curve in the table
+
+
+def alignment(
+    mounts: Sequence[CampaignData],
+    samples: Stream,
+    masks: pd.DataFrame,
+    channel_repairs: pd.DataFrame,
+    segments: pd.DataFrame,
+    purposes: pd.DataFrame,
+    result: pd.DataFrame,
+) -> Tables:
+    """The tables of the stage; empty where the campaign has no manoeuvre for an alignment."""
+    named = {row["manoeuvre"]: row["purpose"] for row in rows_of(purposes)}
+    found = [(data, group) for data in mounts for group in groups(data.plan, data.performed, named)]
+    wanted = {
+        m.name: records_of(m, segments)
+        for _data, group in found
+        for m in (group.alignment, *(each for each, _ in group.followed))
+    }
+    repairs = Repairs(channel_repairs)
+    read = samples_in(samples, wanted, masks, repairs) if wanted else {}
+    measurements = measurements_of(result)
+    rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
+    for data, group in found:
+        aligned, *others = (
+            run_of(data, m, read[m.name]) if m.name in read else None
+            for m in (group.alignment, *(each for each, _ in group.followed))
+        )
+        if aligned is None:
+            continue
+        followed = [
+            (run, each) for run, each in zip(others, group.followed, strict=True) if run is not None
+        ]
+        runs, kept = [run for run, _ in followed], [each for _, each in followed]
+        group = replace(group, followed=kept)
+        for case in _cases(data, group, aligned, runs, measurements.get(data.mount)):
+            for name, more in case.tables().items():
+                rows[name] += more
+    return {name: table.frame(rows[name]) for name, table in DECLARED.writes.items()}
+
+
+def _cases(
+    data: CampaignData,
+    group: Group,
+    aligned: Run,
+    runs: Sequence[Run],
+    measurement: Measurement | None,
+) -> Iterator["Case"]:
+    """The readings as recorded, and compensated where both sensors have a result."""
+    runs = since_alignment(aligned, runs)
+    yield Case(data, group, RECORDED, aligned, runs, np.zeros(3))
+    if measurement is None or None in (measurement.accelerometer.triad, measurement.gyro.triad):
+        return
+    bias = np.array([measurement.gyro.rows[name]["sigma"] for name in BIAS], dtype=np.float64)
+    corrected = [run.compensated(measurement) for run in (aligned, *runs)]
+    yield Case(data, group, COMPENSATED, corrected[0], corrected[1:], bias)
+
+
+@dataclass(frozen=True)
+class Case:
+    """One alignment by the readings of one kind; `bias_sigma`: (3,), rad/s, of the calibration."""
+
+    data: CampaignData
+    group: Group
+    readings: str
+    aligned: Run
+    runs: Sequence[Run]
+    bias_sigma: Array
+
+    @property
+    def up(self) -> Array:
+        """The planned up, (3,), body axes."""
+        assert self.group.alignment.up is not None
+        return self.group.alignment.up
+
+    @property
+    def direction(self) -> tuple[str, Array]:
+        """The body direction whose azimuth is stated: the mark, or an axis that is level."""
+        if self.group.alignment.mark is not None:
+            return "mark", self.group.alignment.mark
+        axis = int(np.argmin(np.abs(self.up)))
+        return AXES[axis], np.eye(3)[axis]
+
+    def tables(self) -> dict[str, list[Row]]:
+        """The rows of each table."""
+        static = self._static()
+        turns = [
+            run
+            for run, (_, modulated) in zip(self.runs, self.group.followed, strict=True)
+            if modulated
+        ]
+        frame, rows = static, list(self._alignment_rows("static", static))
+        if turns:
+            frame, level_rate = self._by_rotation(turns[0], static)
+            rows += self._alignment_rows("rotation", frame)
+            rows.append(self._alignment("rotation", "level_rate", *level_rate, "rad/s"))
+            rows[-1]["known"] = self.data.earth.level
+        name, direction = self.direction
+        if name == "mark" and self.data.heading is not None:
+            sigma = self.data.position_sigma
+            frame = frame.with_azimuth(direction, self.data.heading, sigma)
+        curves, gains = self._followed(frame)
+        return {"alignments": rows, "attitude_errors": curves, "modulation_gains": gains}
+
+    def _static(self) -> CoarseAlignment:
+        """By the means of the rest."""
+        run, seconds = self.aligned, float(self.aligned.seconds.sum())
+        gyro, accel = (density / np.sqrt(seconds) for density in run.density)
+        level = np.abs(self.up) < LEVEL
+        gyro = np.hypot(gyro, np.sqrt(np.mean(self.bias_sigma[level] ** 2)))
+        force, rate = run.mean(run.force), run.mean(run.rate)
+        return at_rest(force, rate, accel, float(gyro), self.data.earth.up)
+
+    def _by_rotation(
+        self, run: Run, static: CoarseAlignment
+    ) -> tuple[CoarseAlignment, tuple[float, float]]:
+        """By what turns in the axes of the case; and the level rate that it gives, with sigma."""
+        rate = self._separated(run, run.rate, run.density[0])
+        force = self._separated(run, run.force, run.density[1])
+        gravity = self.data.gravity.number
+        up = self.up + force.turning / gravity
+        up /= np.linalg.norm(up)
+        level = rate.turning - (rate.turning @ up) * up
+        size = float(np.linalg.norm(level))
+        north = level / size
+        axes = np.stack([cross(north, up), north, up])
+        found = CoarseAlignment(axes, force.sigma / gravity, rate.sigma / size, 0.0)
+        return found, (size, rate.sigma)
+
+    def _separated(self, run: Run, means: Array, density: float) -> Separated:
+        sigma = density / np.sqrt(run.seconds)
+        return separated(means, run.angle, run.speed, self.up, sigma)
+
+    def _alignment_rows(self, method: str, found: CoarseAlignment) -> Iterator[Row]:
+        """Tilts about the level axes, and the azimuth."""
+        tilt = cross(self.up, found.up)
+        for i, axis in enumerate(AXES):
+            if abs(self.up[i]) < LEVEL:
+                yield self._alignment(
+                    method, f"tilt_{axis}", float(tilt[i]), found.tilt_sigma, "rad"
+                )
+        name, direction = self.direction
+        azimuth = found.azimuth(direction)
+        known = self.data.heading if name == "mark" else None
+        if known is not None:  # in the turn in which the known one is
+            azimuth = known + float(np.remainder(azimuth - known + np.pi, 2 * np.pi)) - np.pi
+        row = self._alignment(method, "azimuth", azimuth, found.heading_sigma, "rad")
+        yield row | {"direction": name, "per_bias": found.per_bias, "known": known}
+
+    def _alignment(self, method: str, quantity: str, value: float, sigma: float, unit: str) -> Row:
+        return self._common | {
+            "method": method,
+            "quantity": quantity,
+            "direction": None,
+            "value": value,
+            "sigma": sigma,
+            "per_bias": None,
+            "known": None,
+            "unit": unit,
+        }
+
+    @property
+    def _common(self) -> Row:
+        return {
+            "mount": self.data.mount,
+            "alignment": self.group.alignment.name,
+            "readings": self.readings,
+        }
+
+    def _followed(self, frame: CoarseAlignment) -> tuple[list[Row], list[Row]]:
+        """The error over each run, and the gain of the first one with rotation."""
+        earth = self.data.earth.up * frame.up + self.data.earth.level * frame.axes[1]
+        remains = self.aligned.mean(self.aligned.rate) - earth
+        mean_sigma = self.aligned.density[0] / np.sqrt(float(self.aligned.seconds.sum()))
+        curves: list[Row] = []
+        errors: dict[bool, tuple[str, AttitudeError, AttitudeError]] = {}
+        for run, (m, modulated) in zip(self.runs, self.group.followed, strict=True):
+            k = len(run.seconds)
+            truth = run.speed[:, None] * self.up + turned_all(earth, self.up, run.angle)
+            place = (run.angle, run.seconds, self.up, frame.axes)
+            error = integrated(run.rate - truth, *place, run.density[0])
+            fixed, sigma = np.tile(remains, (k, 1)), mean_sigma
+            if modulated:  # cross terms of the rate are fixed in the case as well
+                found = self._separated(run, run.rate, run.density[0])
+                fixed = (
+                    (remains @ self.up) * self.up + found.fixed + np.outer(run.speed, found.growing)
+                )
+                sigma = found.fixed_sigma
+            predicted = integrated(fixed, *place, 0.0)
+            chord = integrated(np.tile(frame.axes[0], (k, 1)), *place, 0.0).level()
+            errors.setdefault(modulated, (m.name, error, predicted))
+            curves += self._curve(m.name, modulated, error, predicted, sigma * chord)
+        if len(errors) < 2:
+            return curves, []
+        (turning, measured, expected), (still, without, drift) = errors[True], errors[False]
+        gain, foreseen = gained(measured, without), gained(expected, drift)
+        return curves, [
+            self._common
+            | {
+                "modulated": turning,
+                "still": still,
+                "seconds": gain.seconds,
+                "still_error": gain.still,
+                "still_sigma": gain.still_sigma,
+                "modulated_error": gain.modulated,
+                "modulated_sigma": gain.modulated_sigma,
+                "factor": gain.factor,
+                "factor_sigma": gain.sigma,
+                "predicted_factor": foreseen.factor,
+            }
+        ]
+
+    def _curve(
+        self,
+        name: str,
+        modulated: bool,
+        error: AttitudeError,
+        predicted: AttitudeError,
+        sigma: Array,
+    ) -> Iterator[Row]:
+        last = len(error.seconds) - 1
+        for i in np.unique(np.linspace(0, last, min(last + 1, MAX_POINTS)).astype(int)):
+            components = dict(zip(("east", "north", "up"), error.angle[i].tolist(), strict=True))
+            foreseen = zip(("east", "north", "up"), predicted.angle[i].tolist(), strict=True)
+            yield (
+                self._common
+                | components
+                | {
+                    "manoeuvre": name,
+                    "modulated": modulated,
+                    "seconds": float(error.seconds[i]),
+                    "sigma": float(error.sigma[i]),
+                    **{f"predicted_{axis}": value for axis, value in foreseen},
+                    "predicted_sigma": float(sigma[i]),
+                }
+            )
+
+
+STAGE = Stage(alignment, DECLARED, gathers={"mounts": campaigns_of})

@@ -1,0 +1,1 @@
+"""What the calibration is worth in free inertial navigation, and which parameter limits it."""

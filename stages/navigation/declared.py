@@ -1,0 +1,29 @@
+"""What the stage reads and writes."""
+
+from inertial import tables
+from inertial.tables.declared import Declared, From
+
+DECLARED = Declared(
+    reads={
+        "samples": From("decode", tables.SAMPLES),
+        "compensated": From("compensation", tables.COMPENSATED),
+        "campaign": From("plan", tables.CAMPAIGN),
+        "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
+        "segments": From("segment", tables.SEGMENTS),
+        "blocks": From("segment", tables.BLOCKS),
+        "manoeuvres": From("segment", tables.MANOEUVRES),
+        "performed": From("segment", tables.PERFORMED),
+        "levels": From("noise", tables.LEVELS),
+        "known": From("plan", tables.KNOWN),
+        "published": From("plan", tables.PUBLISHED),
+        "clocks": From("decode", tables.CLOCKS),
+        "result": From("diagnosis", tables.PARAMETERS, "result"),
+        "covariance": From("diagnosis", tables.COVARIANCE),
+    },
+    writes={
+        "navigation_errors": tables.NAVIGATION_ERRORS,
+        "navigation_courses": tables.NAVIGATION_COURSES,
+        "navigation_shares": tables.NAVIGATION_SHARES,
+    },
+    streams=("samples", "compensated"),
+)

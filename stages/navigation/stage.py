@@ -1,0 +1,95 @@
+"""Free inertial navigation of the campaign's own rests and turns, before and after calibration.
+
+At rest, and after a whole turn, the truth is known: the attitude is that of the start, velocity and
+position are zero. Before as after calibration the attitude at the start is found from the same
+readings, corrected in the same way: level by the accelerometers, north as the plan has it, or else
+by the earth's rate where the gyros show it. So what an alignment absorbs, as the mounting rotation
+that both triads share and the level part of an accelerometer's bias, counts neither as an error
+before nor as a gain.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import pandas as pd
+
+from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.masked_samples import Repairs
+from inertial.campaign.measurement import Measurement
+from inertial.campaign.records import Part, Row, rows_of
+from inertial.estimation.triad import linear_names
+from inertial.physics.forward import Triad
+from inertial.tables.parquet import Stream
+from inertial.tables.stage import Stage, Tables
+from inertial.text.messages import _
+from stages.navigation.corridor import uncertain
+from stages.navigation.declared import DECLARED
+from stages.navigation.navigator import Navigator, reason_rows
+from stages.navigation.windows import readings, windows
+
+NO_RESULT = _("M and bias of both sensors are not determined, so nothing is navigated")
+ALREADY = _("the logs are compensated already, so there is nothing before calibration")
+
+
+def navigation(
+    mounts: Sequence[CampaignData],
+    samples: Stream,
+    compensated: Stream,
+    channel_repairs: pd.DataFrame,
+    segments: pd.DataFrame,
+    campaign: pd.DataFrame,
+    published: pd.DataFrame,
+    result: pd.DataFrame,
+    covariance: pd.DataFrame,
+) -> Tables:
+    """Errors after 60 s, 10 min and whole turns; the longest course; the shares of the sources."""
+    rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
+    (facts,) = rows_of(campaign)
+    before = published_triads(rows_of(published))
+    repairs = Repairs(channel_repairs)
+    for data in mounts:
+        own = [row for row in rows_of(result) if row["mount"] == data.mount]
+        known = None if facts["compensated"] else uncertain(own, covariance, _along(data))
+        if known is None:
+            reason = ALREADY if facts["compensated"] else NO_RESULT
+            rows["navigation_errors"] += reason_rows([Part("", None, reason)], data.mount)
+            continue
+        wanted, short = windows(data, segments)
+        navigator = Navigator(data, known, before)
+        for each in readings(samples, compensated, wanted, repairs):
+            navigator.add(each)
+        navigator.predict(short)
+        rows["navigation_errors"] += navigator.error_rows
+        rows["navigation_courses"] += navigator.course_rows
+        rows["navigation_shares"] += navigator.share_rows
+    return {
+        name: pd.DataFrame(rows[name]) if rows[name] else table.empty()
+        for name, table in DECLARED.writes.items()
+    }
+
+
+def _along(data: CampaignData) -> Callable[[Measurement], Measurement]:
+    """Puts a measurement into the course of time and temperature of the campaign."""
+    time, temperature = (data.blocks[name].to_numpy(np.float64) for name in ("time", "temperature"))
+    return lambda measurement: measurement.along(time, temperature)
+
+
+def published_triads(rows: Sequence[Row]) -> dict[str, Triad]:
+    """M and bias of accel and gyro by published values; what is not published is nominal.
+
+    Empty where none of them is.
+    """
+    names = linear_names()
+    values = {
+        (row["sensor"], row["quantity"]): row["value"] for row in rows if row["quantity"] in names
+    }
+    if not values:
+        return {}
+    triads = {}
+    for sensor in ("accel", "gyro"):
+        twelve = np.array([values.get((sensor, name), 0.0) for name in names], np.float64)
+        triads[sensor] = Triad(np.eye(3) + twelve[:9].reshape(3, 3), twelve[9:])
+    return triads
+
+
+STAGE = Stage(navigation, DECLARED, gathers={"mounts": campaigns_of})

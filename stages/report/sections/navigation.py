@@ -1,0 +1,232 @@
+"""What the calibration is worth in free inertial navigation, and what limits it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import sqrt
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from inertial.text import numbers
+from inertial.text.cause_names import in_words
+from inertial.text.messages import _
+from inertial.text.units import DEGREES, Unit
+from stages.report import drawing, outline
+from stages.report.tables import Record, Tables
+from stages.report.words import SENSOR, with_mount
+
+QUANTITIES = {
+    "attitude": (_("attitude"), DEGREES),
+    "velocity": (_("velocity"), Unit("m/s", 1.0)),
+    "position": (_("position"), Unit("m", 1.0)),
+}
+CALIBRATIONS = {
+    "nominal": (_("nominal"), "#a9b3be"),
+    "published": (_("published"), "#cc79a7"),
+    "calibrated": (_("calibrated"), drawing.AXIS_COLOUR["z"]),
+}
+KINDS = {"bias": _("bias"), "scale": _("scale factor"), "cross": _("cross-axis terms")}
+OTHERS = {
+    "noise white_noise": _("white noise while aligning and navigating"),
+    "noise drift": _("bias instability and random walk since the alignment"),
+    "earth_rate azimuth": _("the level earth rate, for the azimuth is not known"),
+    "table angle": _("angle of the table"),
+}
+MIN_SHARE = 0.005  # below which a source is not listed
+MOST_SOURCES = 8
+Key = tuple[str, str, float | None]  # mount, motion, seconds; none: turns
+
+
+def parts(tables: Tables) -> Iterator[outline.Part]:
+    """A table of the errors, the longest course as a figure, a table of the shares."""
+    rows = tables.rows("navigation_errors")
+    groups: dict[Key, list[Record]] = {}
+    for row in rows:
+        if row["predicted"] is not None:
+            seconds = None if row["motion"] == "turn" else row["seconds"]
+            groups.setdefault((row["mount"], row["motion"], seconds), []).append(row)
+    if not groups:
+        yield from (outline.Paragraph(f"{row['reason']}.") for row in rows[:1] if row["reason"])
+        return
+    yield _errors(groups)
+    if not any(row["calibrated"] is not None for row in rows if row["seconds"] == 600.0):
+        yield outline.Paragraph(
+            _(
+                "No rest is ten minutes long beside its alignment: the errors after ten minutes "
+                "are predicted from the covariance and the noise, and not tried."
+            )
+        )
+    yield from _courses(tables)
+    yield _shares(tables, groups)
+
+
+SECTION = outline.Section(
+    "navigation",
+    _("Worth in navigation"),
+    _(
+        "The rests and whole turns of this campaign as free inertial navigation, before and after "
+        "calibration: at rest, and after a whole turn, attitude, velocity and position should be "
+        "those of the start. Every calibration aligns itself at rest before, level by its "
+        "accelerometers, north by the plan, or by the earth's rate where the gyros show it; so "
+        "what an alignment absorbs is no gain."
+    ),
+    _(
+        "Errors are root mean squares over the manoeuvres, of all three axes. Predicted is what "
+        "the covariance of the result and the noise lead to; in brackets its part by the "
+        "parameters alone, which were estimated from these same data, so that the error found "
+        "may be smaller. Attitude is its drift since the start."
+    ),
+    ("navigation_errors", "navigation_courses", "navigation_shares"),
+    parts,
+)
+
+
+def _errors(groups: Mapping[Key, Sequence[Record]]) -> outline.Table:
+    """A row for each motion, time and quantity."""
+    published = any(row["published"] is not None for own in groups.values() for row in own)
+    shown = [name for name in CALIBRATIONS if published or name != "published"]
+    rows = [
+        _error_row(key, quantity, [row for row in own if row["quantity"] == quantity], shown)
+        for key, own in sorted(groups.items(), key=lambda item: _order(item[0]))
+        for quantity in QUANTITIES
+    ]
+    return outline.Table(
+        _("Errors of free inertial navigation."),
+        (
+            outline.Column(_("Motion"), "name"),
+            outline.Column(_("Error of")),
+            *outline.columns("number", *(CALIBRATIONS[name][0] for name in shown), group="rms"),
+            outline.Column(_("predicted"), "number", "rms"),
+            outline.Column(_("(parameters)"), "number", "rms"),
+            outline.Column(_("unit"), "unit", "rms"),
+            outline.Column(_("manoeuvres"), "number"),
+            outline.Column(_("χ² over its degrees"), "number"),
+        ),
+        rows,
+        note=_(
+            "χ² over its degrees: squared error after calibration by its predicted covariance; "
+            "near 1 where that is right."
+        ),
+    )
+
+
+def _order(key: Key) -> tuple[str, str, float]:
+    return key[0], key[1], key[2] or 0.0
+
+
+def _error_row(
+    key: Key, quantity: str, rows: Sequence[Record], shown: Sequence[str]
+) -> outline.Row:
+    name, unit = QUANTITIES[quantity]
+    tried = [row for row in rows if row["calibrated"] is not None]
+    chi_squared = [row["normalised"] for row in tried]
+    # Predictions beside errors that were found are those of the same manoeuvres.
+    predicted = tried or rows
+    return outline.table_row(
+        _motion(key),
+        name,
+        *(_rms(tried, calibration, unit) for calibration in shown),
+        _rms(predicted, "predicted", unit),
+        f"({_rms(predicted, 'by_parameters', unit)})",
+        unit.name,
+        numbers.whole(len(tried)),
+        numbers.fixed(sum(chi_squared) / len(tried) if tried else None, 2),
+        anchor=rows[0]["id"],
+    )
+
+
+def _motion(key: Key) -> str:
+    mount, _motion, seconds = key
+    text = _("whole turn") if seconds is None else _("{seconds:.0f} s at rest", seconds=seconds)
+    return with_mount(text, mount)
+
+
+def _rms(rows: Sequence[Record], name: str, unit: Unit) -> str:
+    values = [unit.of(row[name]) for row in rows if row[name] is not None]
+    squares = [value**2 for value in values if value is not None]
+    return numbers.significant(sqrt(sum(squares) / len(squares)) if squares else None, 2)
+
+
+def _courses(tables: Tables) -> Iterator[outline.Figure]:
+    """Errors against time in the longest rest of each mount."""
+    by_mount: dict[str, list[Record]] = {}
+    for row in tables.rows("navigation_courses"):
+        by_mount.setdefault(row["mount"], []).append(row)
+    for number, (mount, rows) in enumerate(by_mount.items(), 1):
+        name = numbers.shortened(rows[0]["manoeuvre"], 60)
+        yield outline.Figure(
+            with_mount(
+                _(
+                    "{name}: errors against time; grey as decoded, blue calibrated, and the band "
+                    "of ± 1 σ that is predicted for it.",
+                    name=name,
+                ),
+                mount,
+            ),
+            _drawn(rows, f"navigation-{number}"),
+            _("Errors of attitude, velocity and position of {name} against time.", name=name),
+        )
+
+
+def _drawn(rows: Sequence[Record], key: str) -> str:
+    def panel_of(panel: Axes, quantity: str) -> None:
+        name, unit = QUANTITIES[quantity]
+        own = [row for row in rows if row["quantity"] == quantity and row["seconds"] > 0]
+        at = np.array([row["seconds"] for row in own])
+        predicted = np.array([row["predicted"] for row in own]) / unit.size
+        colour = CALIBRATIONS["calibrated"][1]
+        drawing.band(panel, at, 0 * predicted, predicted, colour, alpha=0.18, linewidth=0)
+        for calibration, (_unused, line) in CALIBRATIONS.items():
+            values = [row[calibration] for row in own]
+            if None not in values:
+                panel.plot(at, np.array(values) / unit.size, color=line)
+        panel.set_title(f"{name}, {unit.name}", pad=3)
+        panel.set_ylim(bottom=0)
+        drawing.ticks(panel, 4)
+
+    margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
+    return drawing.grid(list(QUANTITIES), panel_of, 1.05, margins, _("Time, s"), key)
+
+
+def _shares(tables: Tables, groups: Mapping[Key, Sequence[Record]]) -> outline.Table:
+    """What causes the predicted variance: families of parameters, and others."""
+    keys = [key for key in sorted(groups, key=_order) if key[0] == min(groups, key=_order)[0]]
+    total: dict[str, dict[tuple[Key, str], float]] = {}
+    for row in tables.rows("navigation_shares"):
+        place = (row["mount"], row["motion"], row["seconds"]), row["quantity"]
+        own = total.setdefault(_family(row), {})
+        own[place] = own.get(place, 0.0) + row["share"]
+    largest = sorted(total, key=lambda name: -max(map(abs, total[name].values())))
+    listed = [n for n in largest if max(map(abs, total[n].values())) >= MIN_SHARE][:MOST_SOURCES]
+    columns = [(key, quantity) for key in keys for quantity in QUANTITIES]
+    return outline.Table(
+        _("Shares of the predicted variance, per cent."),
+        (
+            outline.Column(_("Source")),
+            *(
+                outline.Column(QUANTITIES[quantity][0], "number", _motion(key))
+                for key, quantity in columns
+            ),
+        ),
+        [
+            outline.table_row(
+                name,
+                *(numbers.fixed(100 * total[name].get(column, 0.0), 1) for column in columns),
+            )
+            for name in listed
+        ],
+        note=_(
+            "What two correlated parameters have in common counts by half for each, so a share "
+            "may be negative."
+        ),
+    )
+
+
+def _family(row: Record) -> str:
+    """A family of sources in words."""
+    sensor, _space, kind = row["family"].partition(" ")
+    if sensor in SENSOR:
+        name = KINDS.get(kind) or in_words(kind)
+        return f"{SENSOR[sensor]}: {name}"
+    return OTHERS[f"{row['family']} {row['source']}"]
