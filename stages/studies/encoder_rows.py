@@ -1,0 +1,120 @@
+"""The encoder of the table against the gyros, turn by turn: rows of the study."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.rate_segments import Recorded
+from inertial.campaign.sample_stretches import Samples, Stretch
+from inertial.estimation.encoder_angle import Ripple, against_encoder, ripple
+from inertial.estimation.probability import chi2_sf
+from inertial.estimation.time_angle import Valued
+from inertial.tables import GYRO
+
+Row = dict[str, Any]
+
+MIN_DELAY_SIGMAS = 3.0  # of a delay that tells a bandwidth
+MAX_RIPPLE_P = 1e-4  # chance of a ripple, or of a harmonic, that counts
+MIN_SCATTER_P = 0.01  # below which turns differ by more than their sigmas
+COMMON = ("delay", "sine", "cosine")  # what is the same in all turns
+
+
+def with_rests(m: str) -> str:
+    """The name of the stretch of a turn with its rests; no manoeuvre has a blank in its name."""
+    return f"{m} with rests"
+
+
+def whole_stretch(rotation: Recorded, segments: pd.DataFrame) -> Stretch:
+    """All the records of a turn, rests before and after it included."""
+    m = rotation.plan
+    rows = segments[(segments["manoeuvre"] == m.name) & (segments["log"] == m.log)]
+    return Stretch(m.log, int(rows["from_record"].min()), int(rows["to_record"].max()))
+
+
+def of_turn(
+    data: CampaignData, rotation: Recorded, samples: Samples, steady: tuple[float, float]
+) -> list[Row]:
+    """What one turn says; nothing where the encoder has gaps in it, or samples are missing."""
+    m, step = rotation.plan, data.clocks[rotation.plan.log].step
+    about = m.axis != 0
+    rates = samples.values[:, 3:][:, about] @ m.axis[about]
+    angle = samples.table_angle
+    even = np.abs(np.diff(samples.time) / step - 1) < 0.5
+    if not (np.isfinite(rates).all() and np.isfinite(angle).all() and even.all()):
+        return []
+    rates = rates * np.sign((rates[1:] @ np.diff(angle)) or 1.0)  # in the sense of the encoder
+    density = float(np.linalg.norm(m.axis[about] * data.noise.of(m.name, "steady", GYRO)[about]))
+    found = against_encoder(rates, angle, step, density)
+
+    def row(quantity: str, value: Valued, unit: str, **more: Any) -> Row:
+        return _row(data.mount, m.name, quantity, value, unit) | more
+
+    rows = [row("scale", found.scale, "1"), row("delay", found.delay, "s")]
+    for order, (sine, cosine) in found.harmonics.items():
+        rows += [row("sine", sine, "rad", order=order), row("cosine", cosine, "rad", order=order)]
+    inside = (samples.time >= steady[0]) & (samples.time <= steady[1])
+    drive: Ripple | None = ripple(angle[inside]) if inside.sum() > 8 else None
+    if drive is not None and drive.p_value < MAX_RIPPLE_P:
+        more = {"order": drive.order, "p_value": drive.p_value}
+        rows.append(row("ripple", drive.amplitude, "rad", **more))
+    return rows
+
+
+def together(data: CampaignData, rows: Sequence[Row]) -> Iterator[Row]:
+    """What all turns have in common: the delay, the bandwidth that it means, the harmonics."""
+    alike: dict[tuple[str, int | None], list[Row]] = {}
+    for row in rows:
+        if row["quantity"] in COMMON:
+            alike.setdefault((row["quantity"], row["order"]), []).append(row)
+    for (quantity, order), own in alike.items():
+        value, chance = _mean(own)
+        yield _row(data.mount, None, quantity, value, own[0]["unit"]) | {
+            "order": order,
+            "p_value": chance,
+        }
+        if quantity == "delay" and value.value > MIN_DELAY_SIGMAS * value.sigma:
+            hertz = 1 / (2 * np.pi * value.value)
+            bandwidth = Valued(hertz, hertz * value.sigma / value.value)
+            yield _row(data.mount, None, "bandwidth", bandwidth, "Hz")
+
+
+def _mean(rows: Sequence[Row]) -> tuple[Valued, float | None]:
+    """Weighted mean, its sigma by the scatter where that is more, and the chance of the scatter."""
+    values, sigmas = (np.array([row[key] for row in rows]) for key in ("value", "sigma"))
+    weights = sigmas**-2
+    mean, sigma = float(np.average(values, weights=weights)), float(weights.sum() ** -0.5)
+    if len(rows) == 1:
+        return Valued(mean, sigma), None
+    chi_squared = float(weights @ (values - mean) ** 2)
+    chance = float(chi2_sf(chi_squared, len(rows) - 1))
+    if chance < MIN_SCATTER_P:
+        sigma *= float(np.sqrt(chi_squared / (len(rows) - 1)))
+    return Valued(mean, sigma), chance
+
+
+def harmonics_of(common: Sequence[Row]) -> dict[int, tuple[float, float]]:
+    """The harmonics of the encoder's error that are certain: sine and cosine, rad, by order."""
+    waves = {(row["quantity"], row["order"]): row for row in common if row["order"]}
+    result = {}
+    for order in {order for _quantity, order in waves}:
+        sine, cosine = waves["sine", order], waves["cosine", order]
+        size = sum((row["value"] / row["sigma"]) ** 2 for row in (sine, cosine))
+        if float(chi2_sf(size, 2)) < MAX_RIPPLE_P:
+            result[order] = (sine["value"], cosine["value"])
+    return result
+
+
+def _row(mount: str, manoeuvre: str | None, quantity: str, value: Valued, unit: str) -> Row:
+    return {
+        "mount": mount,
+        "manoeuvre": manoeuvre,
+        "quantity": quantity,
+        "order": None,
+        "value": value.value,
+        "sigma": value.sigma,
+        "unit": unit,
+        "p_value": None,
+    }

@@ -1,0 +1,173 @@
+"""The encoder's angle as the reference, on a campaign that hides what only an encoder shows."""
+
+from copy import deepcopy
+
+import chain
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.signal import lfilter
+
+import laboratory
+from inertial.campaign.records import Manoeuvre
+from inertial.estimation.encoder_angle import against_encoder, corrected, ripple
+from stages.decode.table_angle import Continuous
+from stages.segment.encoder import by_encoder
+
+SOURCE = chain.ROOT / "data/simulated/encoder.yaml"
+ARC_SECOND = np.pi / 648_000
+SCALES = {"x": 6e-4, "y": 0.0, "z": 6e-4}  # of the gyros in the description
+ENCODER = 40e-6  # scale of the encoder
+SPEED = 3000e-6  # by which the table is faster than set
+
+
+@pytest.fixture(scope="module")
+def made():
+    return chain.in_memory_of(laboratory.read(SOURCE).document, "studies")
+
+
+def test_the_encoder_replaces_the_stated_angle_of_a_turn_that_stops_early(made):
+    parameters = made.parameters("gyroscope")
+    for axis, true in SCALES.items():
+        row = parameters.loc[f"scale_{axis}"]
+        # The common scale is the encoder's: it reads 40 ppm too much, so all gyros read less.
+        assert row["value"] == pytest.approx(true - ENCODER, abs=3.5 * row["sigma"])
+    turn = made["segment/manoeuvres"].set_index("manoeuvre").loc["x-forward"]
+    read = np.radians(358) + 3 * ARC_SECOND * np.sin(np.radians(12 * 358))  # the ripple is a motion
+    assert turn["angle"] == pytest.approx(read * (1 + ENCODER), abs=0.1 * ARC_SECOND)
+    assert not len(made["segment/findings"])
+    [fit] = made["gyroscope/fit"].query("method == 'joint'").to_dict("records")
+    assert fit["p_value"] > 1e-3
+
+
+def test_without_the_encoder_the_early_stop_goes_into_the_scale_factor():
+    document = deepcopy(laboratory.read(SOURCE).document)
+    del document["encoder"]
+    row = chain.in_memory_of(document).parameters("gyroscope").loc["scale_x"]
+    assert abs(row["value"] - SCALES["x"]) > 1e-3  # 2° of 720° are 2800 ppm
+
+
+def test_the_encoder_replaces_the_rate_of_a_steady_part():
+    """The table is 3000 ppm faster than set; by its stated rate so is every scale factor."""
+    document = deepcopy(laboratory.read(SOURCE).document)
+    document["effects"] = {"table_speed_error": {"rate_ppm": 3000}}
+    plan = document["campaign"]["plan"]
+    document["campaign"]["plan"] = [plan[4], plan[5], plan[10], plan[11]]
+    for turn in document["campaign"]["plan"][2:]:
+        sign = np.sign(turn.pop("degrees"))
+        turn.pop("accel_deg_s2")
+        turn |= {"rate_deg_s": float(20 * sign), "seconds": 15, "recorded": "steady"}
+    row = chain.in_memory_of(document).parameters("gyroscope").loc["scale_z"]
+    assert row["value"] == pytest.approx(SCALES["z"] - ENCODER, abs=3.5 * row["sigma"])
+    assert row["sigma"] < 1e-5
+
+
+def test_windows_of_180_degrees_are_usable_by_the_encoder(made):
+    """S0 left this open: by the set rate they are off by what the table is faster."""
+    windows = made["studies/middles"].set_index(["axis", "by"])
+    for axis, true in SCALES.items():
+        by_rate, by_angle = windows.loc[axis, "set rate"], windows.loc[axis, "encoder"]
+        # The eccentricity is in them too: 2 · 10 arcsec over 180° are 31 ppm.
+        assert by_rate["scale"] == pytest.approx(true + SPEED, abs=5e-5)
+        assert by_angle["scale"] == pytest.approx(true - ENCODER, abs=3.5 * by_angle["scale_sigma"])
+        assert by_angle["scale_sigma"] < 1e-5
+    growing = made["studies/growing"].query("by == 'encoder'")
+    off = growing["scale"] - growing["axis"].map(SCALES) + ENCODER
+    assert (np.abs(off) < 4.5 * growing["scale_sigma"]).all()
+    assert np.degrees(growing["angle"].min()) < 6
+
+
+def test_delay_bandwidth_eccentricity_and_ripple_are_found(made):
+    table = made["studies/encoder"]
+    common = table[table["manoeuvre"].isna()].set_index(["quantity", "order"])
+    delay = common.loc["delay"].iloc[0]
+    assert delay["value"] == pytest.approx(5e-3 - 2e-3, abs=3.5 * delay["sigma"])
+    # Two ramps of 1 s at 20 °/s², twelve turns: N / (a √(2 T)) each.
+    walk, ramp = np.radians(0.012) / 60, np.radians(20)
+    assert delay["sigma"] == pytest.approx(walk / ramp / np.sqrt(2 * 6), rel=0.3)
+    hertz = common.loc["bandwidth"].iloc[0]
+    assert hertz["value"] == pytest.approx(1 / (2 * np.pi * 3e-3), abs=3.5 * hertz["sigma"])
+    for quantity, true in (("sine", 10 * ARC_SECOND), ("cosine", -6 * ARC_SECOND)):
+        row = common.loc[quantity, 1.0]
+        assert row["value"] == pytest.approx(true, abs=3.5 * row["sigma"])
+        assert abs(row["value"]) > 10 * row["sigma"]
+        assert abs(common.loc[quantity, 2.0]["value"]) < 4 * common.loc[quantity, 2.0]["sigma"]
+    found = table[table["quantity"] == "ripple"]
+    assert len(found) == 6 and (found["order"] == 12).all()
+    assert found["value"].to_numpy() == pytest.approx(3 * ARC_SECOND, rel=0.01)
+
+
+def test_the_sigmas_are_those_of_the_scatter():
+    """400 turns drawn without the laboratory: 30 °/s, ramps of 0.5 s, delay 4 ms, 300 ppm."""
+    step, generator = 0.005, np.random.default_rng(4)
+    time = step * np.arange(4000)
+    rate = np.radians(30) * np.clip(np.minimum(time - 3, 15.5 - time) / 0.5, 0, 1)
+    walk = 1e-5
+    angle, late = np.cumsum(rate) * step, np.interp(time - 4e-3, time, rate)
+    off = []
+    for _ in range(400):
+        noise = walk / np.sqrt(step) * generator.standard_normal(len(time))
+        found = against_encoder((1 + 3e-4) * late + 2e-5 + noise, angle, step, walk)
+        truth = ((found.delay, 4e-3), (found.scale, 3e-4), (found.bias, 2e-5))
+        off.append([(each.value - true) / each.sigma for each, true in truth])
+    assert np.std(off, axis=0) == pytest.approx(1, abs=0.12)
+    assert np.mean(off, axis=0) == pytest.approx(0, abs=0.25)
+
+
+@pytest.mark.parametrize("constant", [0.002, 0.008, 0.03])
+def test_the_delay_of_a_low_pass_is_its_time_constant(constant):
+    """Rates from 0 to 30 °/s in half a second, through 1 / (1 + τ s), sampled at 1 kHz."""
+    step = 0.001
+    time = step * np.arange(20_000)
+    rate = np.radians(30) * np.clip(np.minimum(time - 3, 15.5 - time) / 0.5, 0, 1)
+    share = 1 - np.exp(-step / constant)
+    slow = lfilter([share], [1, share - 1], rate)
+    late = step * (1 / share - 1)  # in steps it is late by less than the constant
+    found = against_encoder(slow, np.cumsum(rate) * step, step, 1e-6)
+    assert found.delay.value == pytest.approx(late, rel=0.02)
+
+
+def test_an_encoder_that_contradicts_the_gyros_is_not_used():
+    """A column in degrees that is read as radians, or the encoder of another axis."""
+    rate, seconds = np.radians(10), 36.0
+    blocks = pd.DataFrame(
+        {
+            "phase": ["rest-before", "steady", "rest-after"],
+            "time": [0.0, 20.0, 40.0],
+            "seconds": [2.0, seconds, 2.0],
+            "count": [200.0, 3600.0, 200.0],
+            "missing_s": [0.0, 0.0, 0.0],
+            "table_angle": [0.0, 180.0, 360.0],
+            "gyro_x": [0.0, 0.0, 0.0],
+            "gyro_y": [0.0, 0.0, 0.0],
+            "gyro_z": [0.0, rate, 0.0],
+        }
+    )
+    up = np.array([0, 0, 1.0])
+    place = ("turn", "turn", "one.csv", "home", "as mounted")
+    stated = (2 * np.pi, 1e-5, rate, None, None, "whole")
+    turn = Manoeuvre(*place, up, None, up, *stated, None, None, None, None, None)
+    found = by_encoder(turn, blocks, 1e-5, 0.1)
+    assert found.manoeuvre == turn
+    assert "contradict" in found.remark
+    blocks["table_angle"] = np.radians([0.0, -180.0, -359.0])  # it counts the other way
+    found = by_encoder(turn, blocks, 1e-5, 0.1)
+    assert found.manoeuvre.angle == pytest.approx(np.radians(359))
+
+
+def test_a_ripple_needs_more_than_noise_and_harmonics_are_taken_off():
+    generator = np.random.default_rng(1)
+    even = np.linspace(0, 6, 3000)
+    noise = 1e-6 * generator.standard_normal(3000)
+    assert ripple(even + noise).p_value > 1e-4
+    found = ripple(even + noise + 4e-7 * np.sin(7 * even + 1))
+    assert (found.order, found.p_value < 1e-6) == (7.0, True)
+    assert found.amplitude.value == pytest.approx(4e-7, abs=4 * found.amplitude.sigma)
+    np.testing.assert_allclose(corrected(even, {1: (2e-5, 1e-5)})[0], 1e-5)
+
+
+def test_the_angle_of_a_log_is_continuous_over_its_pieces():
+    angle = np.linspace(0, 30, 1000)
+    continuous = Continuous()
+    pieces = np.split(np.mod(angle, 2 * np.pi), [300, 301, 700])
+    np.testing.assert_allclose(np.concatenate([continuous(piece) for piece in pieces]), angle)
