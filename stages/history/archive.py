@@ -24,6 +24,7 @@ from inertial.text.parameters import EXTENDED, JOINT, SENSOR_OF
 
 SIMULATED = "simulated"  # folder of simulated calibrations; no instrument's folder has this name
 RESULT = "diagnosis"  # stage of the rows that are the result that counts
+SHARED = ("mounting", "switch_on")  # labels that calibrations may have in common
 COMPARABLE_BY = ("instrument", "serial", "compensated")  # equal where calibrations are compared
 FILE_HASH_DIGITS = 12
 MAX_NAME_LENGTH = 100  # characters; a file name holds campaign, date and hash, 255 at most
@@ -161,14 +162,24 @@ def _of_version_2(row: Row) -> Row:
         for old in rows
         if old["method"] == JOINT
     ]
-    return row | {"parameters": rows + [old | {"stage": RESULT} for old in counted], "verdicts": []}
+    parameters = rows + [old | {"stage": RESULT} for old in counted]
+    return _of_version_3(row | {"parameters": parameters, "verdicts": []})
+
+
+def _of_version_3(row: Row) -> Row:
+    """A row of version 3, which did not say what it shares with other calibrations."""
+    return row | dict.fromkeys(SHARED)
 
 
 def _key(row: Row) -> tuple[str, str, str]:
     return row["mount"], row["sensor"], row["parameter"]
 
 
-OLDER = {2: _of_version_2, 1: _of_version_1}  # how a row of each older version is read
+OLDER = {
+    3: _of_version_3,
+    2: _of_version_2,
+    1: _of_version_1,
+}  # how a row of each older version is read
 
 
 def content_hash(calibration: Row) -> str:
@@ -177,7 +188,7 @@ def content_hash(calibration: Row) -> str:
     The code is left out: where a change of it leaves all numbers unchanged, the calibration is
     the same.
     """
-    content = {
+    content: Row = {
         "of": [calibration[key] for key in ("campaign", "simulated", "instrument", "serial")],
         "date": calibration["date"],
         "parameters": sorted(
@@ -194,6 +205,8 @@ def content_hash(calibration: Row) -> str:
         "inputs": sorted([row["file"], row["sha256"]] for row in calibration["inputs"]),
         "settings": {row["stage"]: row["settings"] for row in calibration["made_by"]},
     }
+    if shared := {key: calibration[key] for key in SHARED if calibration.get(key)}:
+        content["shared"] = shared  # without them the hash is that of older versions
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 

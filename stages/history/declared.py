@@ -15,11 +15,15 @@ DECLARED = Declared(
         "published": From("plan", tables.PUBLISHED),
         "growing": From("studies", tables.WINDOWS, "growing"),
         "motions": From("studies", tables.MOTIONS),
+        "blocks": From("segment", tables.BLOCKS),
     },
     writes={
         "archived": tables.ARCHIVED,
         "earlier": tables.EARLIER,
         "published_differences": tables.DIFFERENCES,
+        "repeatability": tables.REPEATABILITY,
+        "jumps": tables.JUMPS,
+        "forecast": tables.FORECAST,
     },
     files=("archive",),
 )

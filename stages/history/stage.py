@@ -16,6 +16,13 @@ from stages.history.archive import RESULT, Archive, Entry
 from stages.history.declared import DECLARED
 from stages.history.fencepost_error import off_by_a_sample
 from stages.history.published import against_published
+from stages.history.repeatability import (
+    forecast_rows,
+    jump_rows,
+    jumps_of,
+    repeatability_rows,
+    series_of,
+)
 
 # The inputs whose content is archived.
 KEPT = (
@@ -41,11 +48,15 @@ def history(
     published: pd.DataFrame,
     growing: pd.DataFrame,
     motions: pd.DataFrame,
+    blocks: pd.DataFrame,
     provenance: Mapping[str, Mapping[str, Any]],
     *,
     level: float,
+    tolerance: Mapping[str, float] | None = None,
 ) -> Tables:
     """Archive the result that counts; earlier results of the same IMU; published values.
+
+    Where there are earlier results: how well they repeat, jumps, and what the next may be.
 
     The archive grows with every campaign. Later additions are read when this stage runs, but
     never cause a rerun. The parameters by all methods are kept beside the result.
@@ -74,10 +85,16 @@ def history(
             yield from against_published(published, counted, mount, own)
             yield from off_by_a_sample(published, counted.gyro, mount, growing, motions, level)
 
+    others = kept.earlier(calibration)
+    series = series_of([(each.row, _results(each)) for each in [*others, entry]])
+    jumps = jumps_of(series, level)
     return {
         "archived": [archived],
-        "earlier": [row for other in kept.earlier(calibration) for row in _results(other)],
+        "earlier": [row for other in others for row in _results(other)],
         "published_differences": table_of(list(differences()), level),
+        "repeatability": list(repeatability_rows(series, blocks)),
+        "jumps": list(jump_rows(jumps, len(series))),
+        "forecast": list(forecast_rows(series, jumps, tolerance or {})) if others else [],
     }
 
 

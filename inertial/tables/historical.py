@@ -1,0 +1,93 @@
+"""How well calibrations of one IMU repeat, jumps between them, and what the next may be."""
+
+from inertial.tables.shared import QUANTITY, SENSOR
+from inertial.tables.table import DOUBLE, INTEGER, TEXT, Column, Table
+
+UNIT = Column("unit", TEXT, "", "unit of the parameter, SI")
+
+REPEATABILITY = Table(
+    "repeatability",
+    1,
+    (
+        SENSOR,
+        QUANTITY,
+        UNIT,
+        Column(
+            "component",
+            TEXT,
+            "",
+            "within: rms of the sigmas that the calibrations state; repeatability: standard"
+            " deviation of all values (JJF 1535-2015, 3.2; IEEE Std 528); day, mounting, switch_on:"
+            " what values that share one have in common, beyond within; with + what the"
+            " calibrations do not tell apart; stability: of means over 10 s in the longest rest of"
+            " this campaign (JJF 1535-2015, 3.3)",
+        ),
+        Column("calibrations", INTEGER, "1", "values, one for each calibration and mount"),
+        Column("groups", INTEGER, "1", "days, mountings or switch-ons; of stability: means"),
+        Column("value", DOUBLE, "as unit", "standard deviation", nullable=True),
+        Column(
+            "sigma",
+            DOUBLE,
+            "as unit",
+            "its standard deviation; none where 0 is the likeliest value",
+            nullable=True,
+        ),
+        Column("upper", DOUBLE, "as unit", "upper limit, one-sided 95 %", nullable=True),
+        Column("reason", TEXT, "", "why there is no value"),
+    ),
+)
+JUMPS = Table(
+    "jumps",
+    1,
+    (
+        SENSOR,
+        QUANTITY,
+        UNIT,
+        Column("after", TEXT, "", "date of the last calibration before the jump"),
+        Column("after_campaign", TEXT, "", "its campaign"),
+        Column("until", TEXT, "", "date of the first calibration after the jump"),
+        Column("until_campaign", TEXT, "", "its campaign"),
+        Column("size", DOUBLE, "as unit", "by how much the level changed, beside a drift"),
+        Column("sigma", DOUBLE, "as unit", "its standard deviation"),
+        Column(
+            "p_value",
+            DOUBLE,
+            "1",
+            "chance of such a jump of any parameter at any date in histories that have none",
+        ),
+        Column("sentence", TEXT, "", "the jump in words"),
+    ),
+)
+FORECAST = Table(
+    "forecast",
+    1,
+    (
+        SENSOR,
+        QUANTITY,
+        UNIT,
+        Column("calibrations", INTEGER, "1", "values of known date"),
+        Column("from_date", TEXT, "", "date of the first", nullable=True),
+        Column("to_date", TEXT, "", "date of the last", nullable=True),
+        Column("drift", DOUBLE, "unit per year", "by weighted regression", nullable=True),
+        Column(
+            "drift_sigma",
+            DOUBLE,
+            "unit per year",
+            "its standard deviation, with what the days differ by",
+            nullable=True,
+        ),
+        Column("at", TEXT, "", "date of the next, after the usual interval", nullable=True),
+        Column("low", DOUBLE, "as unit", "lower limit of its 95 % interval", nullable=True),
+        Column("median", DOUBLE, "as unit", "median of what it may find", nullable=True),
+        Column("high", DOUBLE, "as unit", "upper limit of its 95 % interval", nullable=True),
+        Column("tolerance", DOUBLE, "as unit", "for a change, by config.yaml", nullable=True),
+        Column(
+            "due",
+            TEXT,
+            "",
+            "date from which the 95 % interval leaves the last value ± tolerance",
+            nullable=True,
+        ),
+        Column("reason", TEXT, "", "why there is no prediction, or no due date"),
+    ),
+)

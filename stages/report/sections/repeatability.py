@@ -1,0 +1,173 @@
+"""How well the calibrations of this IMU repeat, its jumps, and what the next may find."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from inertial.text import numbers
+from inertial.text.messages import _
+from inertial.text.units import Unit, quantity
+from stages.report import outline
+from stages.report.tables import Record, Tables
+from stages.report.words import SENSOR
+
+FIRST = ("repeatability", "within")  # columns; what is left are components
+NAMES = {
+    "repeatability": _("repeatability"),
+    "within": _("within campaigns"),
+    "day": _("day"),
+    "mounting": _("mounting"),
+    "switch_on": _("switch-on"),
+    "stability": _("bias stability"),
+}
+Series = tuple[str, str]  # sensor and quantity
+
+
+def parts(tables: Tables) -> Iterator[outline.Part]:
+    """Jumps, the components of each parameter, the next calibration, bias stability."""
+    rows = tables.rows("repeatability")
+    for row in tables.rows("jumps"):
+        yield outline.Paragraph(row["sentence"], "fair")
+    between = [row for row in rows if row["component"] != "stability"]
+    if between:
+        yield _components(between)
+        reasons = dict.fromkeys(row["reason"] for row in between if row["reason"])
+        if reasons:
+            yield outline.Sentences(tuple(f"{reason.capitalize()}." for reason in reasons))
+    if forecast := tables.rows("forecast"):
+        yield from _forecast(forecast)
+    if stability := [row for row in rows if row["component"] == "stability"]:
+        yield _stability(stability)
+
+
+SECTION = outline.Section(
+    "repeatability",
+    _("Repeatability and drift"),
+    _(
+        "How the calibrations of this instrument differ beyond their own sigmas: from day to day, "
+        "from mounting to mounting, from switch-on to switch-on; and what the next one may find. "
+        "Repeatability is the standard deviation of all values, stability that of means over 10 s "
+        "in the longest rest (IEEE Std 528; for gyros JJF 1535-2015, 3.2 and 3.3)."
+    ),
+    _(
+        "A component is value ± σ by restricted likelihood, the sigmas within campaigns taken off, "
+        "or below its 95 % limit. Components joined by + divide these calibrations in the same "
+        "way, so they are one number. Campaigns that share a mounting or a switch-on say so in "
+        "their files; parts of one campaign are not told apart."
+    ),
+    ("repeatability", "jumps", "forecast"),
+    parts,
+)
+
+
+def _unit(row: Record) -> Unit:
+    return quantity(row["quantity"], row["unit"]).laboratory
+
+
+def _components(rows: Sequence[Record]) -> outline.Table:
+    """A row for each parameter, a column for each component."""
+    series: dict[Series, dict[str, Record]] = {}
+    for row in rows:
+        series.setdefault((row["sensor"], row["quantity"]), {})[row["component"]] = row
+    found = dict.fromkeys(row["component"] for row in rows if not row["reason"])
+    names = [*FIRST, *(name for name in found if name not in FIRST)]
+    lines = []
+    for (sensor, name), own in series.items():
+        unit = _unit(next(iter(own.values())))
+        lines.append(
+            outline.table_row(
+                f"{SENSOR[sensor]} {name}",
+                numbers.whole(own["within"]["calibrations"]),
+                *(_cell(own.get(component), unit) for component in names),
+                unit.name,
+            )
+        )
+    return outline.Table(
+        _("Standard deviations between calibrations."),
+        (
+            outline.Column(_("Parameter"), "name"),
+            outline.Column(_("values"), "number"),
+            *outline.columns("number", *(_title(name) for name in names)),
+            outline.Column(_("unit"), "unit"),
+        ),
+        lines,
+    )
+
+
+def _title(component: str) -> str:
+    return " + ".join(NAMES[name] for name in component.split(" + "))
+
+
+def _cell(row: Record | None, unit: Unit) -> str:
+    """A value ± sigma, or below its limit."""
+    if row is None or row["value"] is None:
+        return "—"
+    value, sigma = unit.of(row["value"]), unit.of(row["sigma"])
+    if row["component"] == "within":
+        return numbers.significant(value, 2)
+    if sigma is None or row["value"] < row["sigma"]:
+        return f"< {numbers.significant(unit.of(row['upper']), 2)}"
+    return " ± ".join(numbers.with_sigma(value, sigma, numbers.decimals_of(sigma)))
+
+
+def _forecast(rows: Sequence[Record]) -> Iterator[outline.Part]:
+    """Drift and the interval of the next calibration; why there is none, once."""
+    known = [row for row in rows if row["low"] is not None]
+    if known:
+        due = [row["due"] for row in known if row["due"] is not None]
+        yield outline.Table(
+            _("Drift by weighted regression, and what the next calibration may find."),
+            (
+                outline.Column(_("Parameter"), "name"),
+                *outline.value_and_sigma(_("drift in a year")),
+                outline.Column(_("next on"), "name"),
+                *outline.columns("number", _("from"), _("to"), group=_("95 % interval")),
+                outline.Column(_("unit"), "unit"),
+                outline.Column(_("due"), "name"),
+            ),
+            [_forecast_row(row) for row in known],
+            note=_("The first is due on {date}.", date=min(due)) if due else "",
+        )
+    reasons = dict.fromkeys(row["reason"] for row in rows if row["reason"])
+    yield outline.Sentences(
+        tuple(f"{numbers.shortened(reason, 200).capitalize()}." for reason in reasons)
+    )
+
+
+def _forecast_row(row: Record) -> outline.Row:
+    unit = _unit(row)
+    decimals = numbers.decimals_of(unit.of(row["drift_sigma"]))
+    width = unit.of(row["high"] - row["low"])
+    return outline.table_row(
+        f"{SENSOR[row['sensor']]} {row['quantity']}",
+        *numbers.with_sigma(unit.of(row["drift"]), unit.of(row["drift_sigma"]), decimals),
+        row["at"],
+        *(numbers.fixed(unit.of(row[k]), numbers.decimals_of(width) or 0) for k in ("low", "high")),
+        unit.name,
+        row["due"] or "—",
+        tone="fair" if row["due"] is not None and row["reason"] else "",
+    )
+
+
+def _stability(rows: Sequence[Record]) -> outline.Table:
+    return outline.Table(
+        _("Bias stability: scatter of means over 10 s in the longest rest of this campaign."),
+        (
+            outline.Column(_("Parameter"), "name"),
+            *outline.value_and_sigma(unit=True),
+            outline.Column(_("means"), "number"),
+        ),
+        [
+            outline.table_row(
+                f"{SENSOR[row['sensor']]} {row['quantity']}",
+                *numbers.with_sigma(
+                    _unit(row).of(row["value"]),
+                    _unit(row).of(row["sigma"]),
+                    numbers.decimals_of(_unit(row).of(row["sigma"])),
+                ),
+                _unit(row).name,
+                numbers.whole(row["groups"]),
+            )
+            for row in rows
+        ],
+    )
