@@ -8,6 +8,10 @@
 #                                 NAME=<name>, and RATE=<Hz> where no log has a clock
 #   make new PLAN=<plan> NAME=<name>   a plan to record by: six-position, turn-stop, rate-table,
 #                                 by-hand
+#   make design INSTRUMENT=<instrument> TABLE=<table>   the best plan from nothing; also with MINUTES=<of
+#                                 table time>, 30, CRITERION=A, D or worst, NAME=<name>
+#   make design CAMPAIGN=<name> TABLE=<table>   what to record next, so that a class is split; with
+#                                 WANT=gyroscope/scale=5e-6, so that wanted sigmas are reached
 #   make trace ID=<number>        from a number of the report, such as gyroscope/joint/bias_x, back to
 #                                 the lines of the logs; also with CAMPAIGN=<name>
 #   make test                     the tests; the same as CI with `make style`
@@ -26,10 +30,15 @@
 #                                 DRAWS=100 a tenth of them
 #   make noise                    estimates the noise of 3000 simulated recordings, in docs/noise.md; 15
 #                                 minutes on two cores, can be resumed; with DRAWS=100 of each part
+#   make histories                predicts the next calibration and seeks jumps in 3500 simulated histories, in
+#                                 docs/repeatability.md; two minutes, can be resumed
+#   make designs                  designs recorded by the simulated laboratory, in docs/design.md: sigmas
+#                                 foreseen and realised, classes split; 45 minutes on two cores, can be
+#                                 resumed; with DRAWS=4 so many of each part
 #   make mutants                  puts faults into the physics, one at a time, and reports which of them the
 #                                 tests see, in docs/mutants.md; 1200 faults take an hour on two cores,
 #                                 can be resumed; with DRAWS=100 so many of them
-#   make docs                     docs/tables.md and the catalogue of messages, from the code
+#   make docs                     docs/tables.md, docs/theory.md and the catalogue of messages, from the code
 #   make recordings               docs/recordings.md: the real recordings, which are not part of the
 #                                 project, drafted and compared with what is known of them; 15 minutes
 #   make clean                    deletes what can be computed again from the raw logs; reports stay
@@ -39,7 +48,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new trace test test-slow style bench challenge noise temperature mutants docs recordings clean setup pango campaign
+.PHONY: report check draft new design trace test test-slow style bench challenge noise histories temperature designs mutants docs recordings clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -51,6 +60,11 @@ LOG ?=
 NAME ?=
 RATE ?=
 PLAN ?=
+INSTRUMENT ?=
+TABLE ?=
+MINUTES ?= 30
+CRITERION ?= A
+WANT ?=
 override CAMPAIGN := $(value CAMPAIGN)
 override ID := $(value ID)
 override ONLY := $(value ONLY)
@@ -59,7 +73,12 @@ override LOG := $(value LOG)
 override NAME := $(value NAME)
 override RATE := $(value RATE)
 override PLAN := $(value PLAN)
-export CAMPAIGN ID ONLY DRAWS LOG NAME RATE PLAN
+override INSTRUMENT := $(value INSTRUMENT)
+override TABLE := $(value TABLE)
+override MINUTES := $(value MINUTES)
+override CRITERION := $(value CRITERION)
+override WANT := $(value WANT)
+export CAMPAIGN ID ONLY DRAWS LOG NAME RATE PLAN INSTRUMENT TABLE MINUTES CRITERION WANT
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -75,7 +94,7 @@ report: campaign setup
 	$(SNAKEMAKE) "$${kinds[@]/#/reports/$$CAMPAIGN.}" "reports/$$CAMPAIGN.calibration.json"
 	echo
 	sed '/^Campaign:/,$$d' "reports/$$CAMPAIGN.txt"
-	echo "For other programs:" reports/$$CAMPAIGN.{calibration.json,calibration.yaml,kalibr.yaml,ros.yaml,px4.params,ardupilot.param}
+	echo "For other programs:" reports/$$CAMPAIGN.{calibration.json,calibration.yaml,calibration.h,dcc.xml,kalibr.yaml,ros.yaml,px4.params,ardupilot.param}
 	echo "The report:" "$${kinds[@]/#/reports/$$CAMPAIGN.}"
 
 # By hand `python -m commands.check --campaign=<name>` ends with 1 where something spoils a result or
@@ -101,6 +120,15 @@ draft: .venv/complete
 
 new: .venv/complete
 	$(BIN)/python -m commands.new "--plan=$$PLAN" "--name=$$NAME"
+
+design: campaign .venv/complete
+	if [[ $$INSTRUMENT ]]; then
+		of=("--instrument=$$INSTRUMENT" "--minutes=$$MINUTES" "--criterion=$$CRITERION")
+	else
+		$(SNAKEMAKE) data/derived/$$CAMPAIGN/criticism/findings.parquet
+		of=("--campaign=$$CAMPAIGN" "--want=$$WANT")
+	fi
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m commands.design "$${of[@]}" "--table=$$TABLE" "--name=$$NAME"
 
 trace: campaign setup
 	$(BIN)/python -m commands.trace "--campaign=$$CAMPAIGN" "--id=$$ID"
@@ -155,12 +183,19 @@ temperature: .venv/complete
 noise: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m noise data/derived/noise $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
 
+histories: .venv/complete
+	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m histories data/derived/histories $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
+
+designs: .venv/complete
+	PYTHONPATH=tests:tests/hidden:tests/bounds OPENBLAS_NUM_THREADS=1 $(BIN)/python -m design data/derived/design $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
+
 mutants: .venv/complete
 	PYTHONPATH=tests:tests/mutants OPENBLAS_NUM_THREADS=1 $(BIN)/python -m mutants "$$DRAWS" data/derived/mutants
 
 # Files generated from the code; tests fail where they are not current.
 docs: .venv/complete
 	$(BIN)/python -m commands.tables
+	$(BIN)/python -m commands.theory
 	$(BIN)/pybabel -q extract --keywords _ --keywords plural:1,2 --no-wrap --omit-header \
 		--sort-by-file --add-location file --output inertial/text/messages.pot inertial stages commands
 

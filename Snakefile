@@ -105,6 +105,11 @@ def published(wildcards):
     return [file] if Path(file).is_file() else []
 
 
+def laboratory():
+    """What is the same on all certificates of the laboratory, where it has stated it."""
+    return [file for file in ["data/laboratory.yaml"] if Path(file).is_file()]
+
+
 wildcard_constraints:
     campaign="[a-z0-9][a-z0-9-]*",
 
@@ -148,6 +153,7 @@ rule plan:
         raw=logs,
         instruments=HOME / "data/instruments.yaml",
         published=published,
+        laboratory=laboratory(),
     output:
         writes("plan"),
     log:
@@ -387,6 +393,40 @@ rule compensation:
         command("compensation")
 
 
+rule navigation:
+    input:
+        **reads("navigation"),
+    output:
+        writes("navigation"),
+    log:
+        f"{DERIVED}/navigation/stage.log",
+    params:
+        settings=settings("navigation"),
+        files=files("navigation"),
+        code=code("navigation"),
+    message:
+        "{wildcards.campaign}: free inertial navigation before and after calibration"
+    shell:
+        command("navigation")
+
+
+rule alignment:
+    input:
+        **reads("alignment"),
+    output:
+        writes("alignment"),
+    log:
+        f"{DERIVED}/alignment/stage.log",
+    params:
+        settings=settings("alignment"),
+        files=files("alignment"),
+        code=code("alignment"),
+    message:
+        "{wildcards.campaign}: alignment at rest, and the attitude error with and without rotation"
+    shell:
+        command("alignment")
+
+
 rule history:
     input:
         **reads("history"),
@@ -441,6 +481,7 @@ rule report:
 rule pdf:
     input:
         html="reports/{campaign}.html",
+        attached=["reports/{campaign}.calibration.json", "reports/{campaign}.dcc.xml"],
     output:
         writes("pdf"),
     log:

@@ -10,6 +10,7 @@ from laboratory.errors import Complaint
 from laboratory.layout import changes_between, logs_of, steps_between
 from laboratory.manoeuvre import Manoeuvre
 from laboratory.profiles import Trapezoid
+from laboratory.receiver import COLUMNS
 
 Document = Mapping[str, Any]
 
@@ -21,6 +22,7 @@ def impossible(
     yield from of_the_table(document["handling"], manoeuvres)
     yield from of_the_truth(document, manoeuvres)
     yield from of_the_instrument(document)
+    yield from of_the_encoder(document)
     yield from of_the_effects(document)
     yield from of_the_turns(document["handling"], manoeuvres, effects)
 
@@ -34,6 +36,14 @@ def of_the_table(handling: Document, manoeuvres: Sequence[Manoeuvre]) -> Iterato
     if "step" not in handling and any(steps_between(*pair) for pair in pairs):
         expected = "rate and acceleration of the table between two rests of a tumble"
         yield Complaint("handling.step", "nothing", expected)
+
+
+def of_the_encoder(document: Document) -> Iterator[Complaint]:
+    """An encoder whose angle has no column."""
+    message = document["receiver"]["message"]
+    if "encoder" in document and message != COLUMNS:
+        expected = f"receiver.message: {COLUMNS}, since {message} has no angle of the table"
+        yield Complaint("encoder", "an encoder", expected)
 
 
 def of_the_truth(document: Document, manoeuvres: Sequence[Manoeuvre]) -> Iterator[Complaint]:

@@ -13,7 +13,7 @@ from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 from laboratory.recording import Recording
 
 CAMPAIGN_FILE = "campaign.yaml"
-QUOTED = ("serial", "date", "laboratory", "operator", "notes")
+QUOTED = ("serial", "date", "laboratory", "operator", "notes", "mounting", "switch_on")
 
 
 def write(recording: Recording, folder: Path) -> None:

@@ -8,7 +8,9 @@ from math import ceil, pi
 import numpy as np
 
 from laboratory.arrays import Array
+from laboratory.instants import Instants
 from laboratory.manoeuvre import Manoeuvre
+from laboratory.motion import Turning
 from laboratory.placement import Placement
 from laboratory.profiles import Change, Profile, Trapezoid
 from laboratory.rotation import axis_and_angle, rotation_about
@@ -47,6 +49,11 @@ class Segment:
     attitude: Array  # level from body, (3, 3), at the start
     axis: Array  # the table's axis, (3,), body axes
     profile: Profile
+
+    def turning(self, instants: Instants) -> Turning:
+        """The rotation that is set, at these instants."""
+        course, steady = self.profile.course(instants.elapsed), self.profile.steady_rate
+        return Turning(self.axis, *course, steady, self.manoeuvre is not None)
 
     @property
     def end(self) -> Array:

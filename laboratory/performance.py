@@ -58,7 +58,7 @@ def perform(specification: Specification) -> Recording:
         samples = Samples(
             specification.start + written, truths[log].accelerometer, truths[log].gyro
         )
-        logs[log] = receiver.records(samples, truths[log].temperature)
+        logs[log] = receiver.records(samples, truths[log].temperature, truths[log].table_angle)
         first = int(stamps[-1]) + specification.pause
     logs = apply_faults(logs, specification)
     spoiled = [span for log, records in logs.items() for span in fault_spans(log, records)]
@@ -93,6 +93,7 @@ def record_log(
     readings: list[Reading] = []
     noises: list[Reading] = []
     rows: dict[str, range] = {}
+    encoder, scale, turned = specification.encoder, list[Array](), 0.0
     row = 0
     # True time: a clock without rate error leaves the numbers unchanged.
     seconds = stamps / NANOSECONDS * (interval / receiver.interval)
@@ -107,6 +108,9 @@ def record_log(
                 segment, replace(instants, late=delay), site, sensors, temperature, effects
             )
             reading = replace(reading, gyro=noiseless_increments(before, sensors, effects).gyro)
+        if encoder is not None:
+            scale.append(turned + encoder.course(segment, instants, effects.values()))
+            turned = float(scale[-1][-1])
         noise = [effect.noise(truth, generators[name]) for name, effect in effects.items()]
         truths.append(truth)
         readings.append(reading)
@@ -122,6 +126,7 @@ def record_log(
         rate=np.concatenate([truth.turned for truth in truths]) / interval,
         force=np.concatenate([truth.velocity for truth in truths]) / interval,
         temperature=np.concatenate([t[NODES_PER_INTERVAL::NODES_PER_INTERVAL] for t in recorded]),
+        table_angle=None if encoder is None else encoder.readings(np.concatenate(scale)),
         noiseless=noiseless,
         noisy=noisy,
         accelerometer=count(noisy.accelerometer, receiver.accelerometer_count),
@@ -141,9 +146,7 @@ def truth_of(
     """The truth during one segment: motion of the case and specific force."""
     turnings: Sequence[Turning] = []
     if not isinstance(segment.profile, Standing):
-        course = segment.profile.course(instants.elapsed)
-        planned = segment.manoeuvre is not None
-        turnings = [Turning(segment.axis, *course, segment.profile.steady_rate, planned)]
+        turnings = [segment.turning(instants)]
     for effect in effects.values():
         turnings = effect.change_rotations(turnings, instants)
     of_the_table = [

@@ -37,7 +37,7 @@ def expanded_plan(campaign: Mapping[str, Any], still: float) -> list[Manoeuvre]:
 
 def manoeuvre_of(written: Mapping[str, Any], log: str, place: str, still: float) -> Manoeuvre:
     """The manoeuvre of an item of the plan; of a tumble its first rest."""
-    turns = written["do"] == "turn"
+    turns = written["do"] in ("turn", "modulate")
     profile, seconds = (
         turn_profile(written, place, still) if turns else rest_profile(written, place)
     )
@@ -60,6 +60,8 @@ SPECIFIC_KEYS: Final = {  # by kind of manoeuvre
     "rest": {"seconds"},
     "turn": {"about", "degrees", "rate_deg_s", "accel_deg_s2", "seconds", "recorded"},
     "tumble": {"about", "step_degrees", "steps", "and_back", "seconds"},
+    "align": {"seconds"},
+    "modulate": {"about", "degrees", "rate_deg_s", "accel_deg_s2", "seconds"},
 }
 REQUIRED_KEYS: Final = {"tumble": ("about", "step_degrees", "steps")}
 

@@ -25,10 +25,11 @@ class Receiver:
     accelerometer_count: float  # m/s
     status: str
     line_end: bytes
+    encoder: bool  # whether the angle of the table is a column
     imu_type: int  # by NovAtel's list; in the messages with X
 
     @classmethod
-    def specified(cls, written: Mapping[str, Any]) -> "Receiver":
+    def specified(cls, written: Mapping[str, Any], encoder: bool = False) -> "Receiver":
         """The receiver that simulated.schema.yaml describes."""
         return cls(
             written["message"],
@@ -37,6 +38,7 @@ class Receiver:
             written["accelerometer_count_m_s"],
             written["status"],
             {"crlf": b"\r\n", "lf": b"\n"}[written["line_end"]],
+            encoder,
             written.get("imu_type", 0),
         )
 
@@ -45,13 +47,14 @@ class Receiver:
         """Time from sample to sample by its own clock, s."""
         return self.step / NANOSECONDS
 
-    def records(self, samples: Samples, temperature: Array) -> Records:
-        """A log before any fault; temperature: (n,), K."""
+    def records(self, samples: Samples, temperature: Array, table_angle: Array | None) -> Records:
+        """A log before any fault; temperature: (n,), K; table_angle: (n,), rad, if recorded."""
         return Records(
             stamps=samples.stamps,
             counts=np.hstack([samples.accelerometer, samples.gyro]),
             ends=samples.stamps,
             temperature=temperature,
+            table_angle=table_angle,
             units=np.repeat([self.accelerometer_count, self.gyro_count], 3) / self.interval,
             interval=self.interval,
         )
@@ -69,4 +72,4 @@ class Receiver:
         if self.message != COLUMNS:
             return None
         rate, force = self.interval / self.gyro_count, self.interval / self.accelerometer_count
-        return columns.layout(counts_per_rad_s=rate, counts_per_m_s2=force)
+        return columns.layout(rate, force, self.encoder)

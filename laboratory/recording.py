@@ -20,6 +20,7 @@ class LogTruth:
     rate: Array  # rad/s, (n, 3), body axes: true mean rate over every sample
     force: Array  # m/s², (n, 3), body axes: true mean specific force over every sample
     temperature: Array  # K, (n,): of the thermometer, at the end of every sample
+    table_angle: Array | None  # rad, (n,): as the encoder reads it; None where there is none
     noiseless: Reading  # (n, 3) m/s and rad: running integrals of what the sensors read
     noisy: Reading  # the same with the noise, within the range of the sensors
     accelerometer: Counts  # (n, 3): as counted, x y z

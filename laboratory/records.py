@@ -29,6 +29,7 @@ class Records:
     counts: Counts  # (n, 6), columns as in CHANNELS
     ends: Counts  # ns since the start of GPS time, (n,): when the sample truly ended
     temperature: Array  # K, (n,): of the thermometer at the end of the sample
+    table_angle: Array | None  # rad, (n,): as the encoder reads it; None where there is none
     units: Array  # (6,): the mean reading over a sample that makes one count, m/s² and rad/s
     interval: float  # s, of a sample
     marks: tuple[Mark, ...] = ()
@@ -58,6 +59,7 @@ class Records:
             counts=self.counts[rows],
             ends=self.ends[rows],
             temperature=self.temperature[rows],
+            table_angle=None if self.table_angle is None else self.table_angle[rows],
             marks=tuple(marks),
         )
 

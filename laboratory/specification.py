@@ -17,6 +17,7 @@ from laboratory.chance import Chance
 from laboratory.checking import check
 from laboratory.effects import EFFECTS, NOISE
 from laboratory.effects.effect import Effect
+from laboratory.encoder import Encoder
 from laboratory.errors import Complaint, SpecificationError
 from laboratory.faults import FAULTS
 from laboratory.faults.fault import Fault
@@ -87,7 +88,12 @@ class Specification:
 
     @cached_property
     def receiver(self) -> Receiver:
-        return Receiver.specified(self._document["receiver"])
+        return Receiver.specified(self._document["receiver"], self.encoder is not None)
+
+    @property
+    def encoder(self) -> Encoder | None:
+        """The encoder of the table, where its angle is recorded."""
+        return Encoder.specified(self._document.get("encoder"))
 
     @property
     def sensors(self) -> Sensors:
@@ -162,7 +168,7 @@ class Specification:
         for log, manoeuvres in logs_of(self.manoeuvres).items():
             zeros = np.zeros((length(manoeuvres, self.handling), 3), dtype=np.int64)
             samples = Samples(zeros[:, 0], zeros, zeros)
-            logs[log] = self.receiver.records(samples, np.zeros(len(zeros)))
+            logs[log] = self.receiver.records(samples, np.zeros(len(zeros)), None)
         return logs
 
 

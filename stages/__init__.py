@@ -21,6 +21,8 @@ ORDER = (
     "extension",
     "diagnosis",
     "compensation",
+    "navigation",
+    "alignment",
     "history",
     "export",
     "report",

@@ -142,6 +142,7 @@ def _sources(campaign: Path, archive: Path) -> Mapping[str, list[Path]]:
         "raw": [path for path in campaign.iterdir() if path.name not in told],
         "instruments": [ROOT / "data/instruments.yaml"],
         "published": list(campaign.glob("published.yaml")),
+        "laboratory": [],
         "archive": [archive / "history"],
     }
 

@@ -91,6 +91,7 @@ def _rawimusa(recording: Recording, records: Records) -> novatel_reader.Reading:
 
 def _of_columns(recording: Recording, records: Records) -> column_reader.Reading:
     number = np.arange(len(records), dtype=np.int64)
+    angle = records.table_angle
     rows = column_reader.Rows(
         record=number,
         offset=number * LINE_BYTES,
@@ -99,7 +100,7 @@ def _of_columns(recording: Recording, records: Records) -> column_reader.Reading
         mean_of=None,
         accelerometer=records.counts[:, :3].astype(np.float64),
         gyro=records.counts[:, 3:].astype(np.float64),
-        table_angle=None,
+        table_angle=None if angle is None else np.degrees(angle).round(7).astype(np.float64),
         temperature=np.array([float(f"{t:.3f}") for t in records.temperature - ICE_POINT]),
         label=None,
     )

@@ -11,6 +11,8 @@ from inertial.estimation.input_output import (
     at_no_force,
     composite_error,
     linearity_error,
+    resolution,
+    threshold,
 )
 from stages.compensation.characteristics import OF_FORCE, OF_INPUT
 
@@ -58,8 +60,29 @@ def test_what_force_adds_is_no_drift_without_force():
     assert at_no_force(rate[:1], np.full(1, 1e-9), force[:1]) is None
 
 
+def test_inputs_in_the_dead_band_are_below_the_threshold():
+    """A band of ±2 swallows ±1 whole; the other outputs are as large as their inputs."""
+    applied = np.array([-3.0, -1.0, 1.0, 3.0, 50.0, 54.0])
+    read = np.where(np.abs(applied) < 2, 0.0, applied)
+    sigma = np.full(6, 0.1)
+    assert threshold(applied, read, sigma) == 3.0
+    assert resolution(applied, read, sigma) == 4.0
+    assert threshold(applied, applied, sigma) == 1.0
+    assert resolution(applied[:4], read[:4], sigma[:4]) is None
+    assert threshold(applied[:4], applied[:4], np.full(4, 2.0)) is None
+
+
+def test_noise_alone_is_sensed_in_one_case_of_twenty():
+    """All outputs are half of their input, the edge of what counts as sensed."""
+    random = np.random.default_rng(3)
+    applied, sigma = np.array([1.0, 2.0, 3.0]), np.array([0.1, 0.3, 0.2])
+    noise = sigma * random.normal(size=(4000, 3))
+    sensed = sum(threshold(applied, applied / 2 + one, sigma) is not None for one in noise)
+    assert stats.binomtest(sensed, len(noise), 0.05).pvalue > 1e-3
+
+
 @pytest.fixture(scope="module")
-def asymmetric(tmp_path_factory):
+def compensation(tmp_path_factory):
     """Gyros and accelerometers with a share of |input| in their output, S0's six positions."""
     folder = tmp_path_factory.mktemp("asymmetric")
     effects = {
@@ -67,10 +90,13 @@ def asymmetric(tmp_path_factory):
         "accel_scale_asymmetry": {"asymmetry_micro_g_g": [200, -300, 0]},
     }
     chain.simulate(chain.short(effects=effects), folder / "raw")
-    table = chain.run(folder / "raw", folder / "derived", "compensation")
-    return (
-        table["compensation/characteristics"].set_index(["sensor", "quantity", "axis"]).sort_index()
-    )
+    return chain.run(folder / "raw", folder / "derived", "compensation")
+
+
+@pytest.fixture(scope="module")
+def asymmetric(compensation):
+    rows = compensation["compensation/characteristics"]
+    return rows.set_index(["sensor", "quantity", "axis"]).sort_index()
 
 
 @pytest.mark.parametrize(
@@ -98,6 +124,14 @@ def test_a_linearity_error_beyond_noise_is_that_of_the_asymmetry(asymmetric):
     assert row["largest_input"] == pytest.approx(9.7936174)
 
 
+def test_gyros_on_a_table_at_rest_are_shown_to_feel_the_earth(asymmetric):
+    """Each axis is up and down once; S0's Ω sin φ is 7.64 °/h. All turns are at one rate."""
+    limits = asymmetric.loc["gyro", "threshold"]
+    np.testing.assert_allclose(limits["value"] / DEGREE_PER_HOUR, 7.64, atol=0.01)
+    assert limits["sigma"].isna().all()
+    assert asymmetric.loc["gyro", "resolution"]["value"].isna().all()
+
+
 def test_the_drift_without_force_is_the_bias(coupled):
     """G is 14, −10 and 12 °/h/g in this campaign; S0's biases are hidden in it."""
     found = coupled["compensation/characteristics"]
@@ -112,3 +146,16 @@ def test_the_result_leaves_noise(coupled):
     found = coupled["compensation/characteristics"].query("quantity == 'composite_error'")
     assert (found["value"].abs() < 1.5 * found["by_noise"]).all()
     assert found.query("sensor == 'gyro'")["by_noise"].max() < 30 * PPM
+
+
+def test_the_budget_adds_up_and_has_gravity_and_the_angle_of_the_table(compensation):
+    """Scale factors: σ_g/g, 5.1 ppm; two turns of 2″ in 360°, 2/(1296000 √2), 1.09 ppm."""
+    rows = compensation["compensation/uncertainty_budget"]
+    sums = rows.groupby(["sensor", "quantity"])["share"].sum()
+    np.testing.assert_allclose(sums, 1, atol=2e-3)
+    own = rows.set_index(["sensor", "quantity", "source"])["sigma"]
+    assert own["accel", "scale_x", "gravity"] == pytest.approx(5e-5 / 9.7936174, rel=0.01)
+    assert own["gyro", "scale_x", "angle"] == pytest.approx(2 / 1_296_000 / np.sqrt(2), rel=0.02)
+    assert own["accel", "cross_xy", "position"] == pytest.approx(
+        np.radians(2 / 3600) / np.sqrt(2), rel=0.3
+    )

@@ -27,6 +27,8 @@ from tests.expressions import value_of
 ENDINGS = (
     "calibration.json",
     "calibration.yaml",
+    "calibration.h",
+    "dcc.xml",
     "kalibr.yaml",
     "ros.yaml",
     "px4.params",
@@ -59,6 +61,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> chain.Results:
         "result": tables.PARAMETERS,
         "covariance": tables.COVARIANCE,
         "verdict": tables.VERDICTS,
+        "conformity": tables.CONFORMITY,
     }
     made_by["stage"] = "diagnosis"
     with Writer(results.folder / "diagnosis", writes, lambda: made_by) as writer:
@@ -88,6 +91,7 @@ def joint_counts(estimates: dict[str, pd.DataFrame]) -> dict[str, pd.DataFrame]:
             first=products["first"].map(ids), second=products["second"].map(ids)
         ),
         "verdict": tables.VERDICTS.frame(verdicts),
+        "conformity": tables.CONFORMITY.empty(),
     }
 
 
@@ -142,7 +146,7 @@ def numbers(values: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
 # ---- the files
 
 
-def test_the_command_writes_six_files_and_nothing_beside_them(files: Path) -> None:
+def test_the_command_writes_its_files_and_nothing_beside_them(files: Path) -> None:
     assert {path.name for path in files.iterdir()} == {f"short.{ending}" for ending in ENDINGS}
     assert STAGE.declared.documents == ENDINGS
 

@@ -115,6 +115,7 @@ def run(
     code: str = "c0",
     verdicts: Sequence[Row] = (),
     published: Sequence[Row] = (),
+    settings: Row | None = None,
     **facts: Any,
 ) -> Row:
     """Run the stage on a campaign in `place`, into the archive there; its row of `archived`.
@@ -141,6 +142,7 @@ def run(
         },
         "accelerometer": {"parameters": (tables.PARAMETERS, [])},
         "gyroscope": {"parameters": (tables.PARAMETERS, estimates)},
+        "segment": {"blocks": (tables.BLOCKS, [])},
         "studies": {"growing": (tables.WINDOWS, []), "motions": (tables.MOTIONS, [])},
         "diagnosis": {
             "result": (tables.PARAMETERS, [*result, effect]),
@@ -154,7 +156,7 @@ def run(
     for stage, each in made.items():
         for name, (table, rows) in each.items():
             write(derived / stage, name, table, rows, by | {"stage": stage})
-    STAGE.run(derived, {"archive": [place / "history"]}, {"level": 0.01})
+    STAGE.run(derived, {"archive": [place / "history"]}, settings or {"level": 0.01})
     return dict(pd.read_parquet(derived / "history/archived.parquet").iloc[0])
 
 

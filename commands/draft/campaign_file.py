@@ -1,10 +1,9 @@
 """The campaign file as text: what the logs show, each guess marked, questions at the top."""
 
-import json
 import re
 import textwrap
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ from commands.draft.columns import Triad
 from commands.draft.manoeuvres import Manoeuvre, missing
 from commands.draft.scales import Scale, are_counts
 from commands.draft.sensors import Kind
+from commands.flow_yaml import flow, in_flow, scalar
 from inertial.text.messages import _
 from inertial.text.numbers import significant, whole
 
@@ -23,8 +23,6 @@ TABLE_RATE = 1000  # ppm, of a table of which nothing is known
 GRAVITY, GRAVITY_SIGMA = 9.80665, 0.03  # m/s², anywhere on earth
 LINE_WIDTH = 100
 LARGEST_COUNT = 32767
-PLAIN = re.compile(r"^[A-Za-z][\w-]*$")
-WORDS = {"true", "false", "null", "yes", "no", "on", "off", "y", "n"}
 
 
 def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -> str:
@@ -40,13 +38,13 @@ def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -
         *_instrument(kinds, name),
         "serial: unknown",
         "date: unknown",
-        f"site: {_flow(**site)}{_guess(anywhere)}",
+        f"site: {flow(**site)}{_guess(anywhere)}",
         *_table(plan, by_hand),
         *(["formats:"] if formats else []),
         *(line for lines in formats.values() for line in lines),
     ]
     if len(logs) == 1:
-        lines += [f"{key}: {_value(value)}" for key, value in _logs_of(plan[0], kinds).items()]
+        lines += [f"{key}: {in_flow(value)}" for key, value in _logs_of(plan[0], kinds).items()]
     lines.append("plan:")
     sigma = _angle_sigma(plan)
     for m, own in zip(plan, _ids(plan), strict=True):
@@ -55,7 +53,7 @@ def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -
             keys["format"] = f"format-{_place(m, kinds)}"
         if len(logs) > 1:
             keys |= _logs_of(m, kinds)
-        lines.append(f"  - {_flow(**keys)}{_seen(m)}")
+        lines.append(f"  - {flow(**keys)}{_seen(m)}")
     return "\n".join(lines) + "\n"
 
 
@@ -200,12 +198,12 @@ def _instrument(kinds: Sequence[Kind], name: str) -> Iterator[str]:
         yield f"instrument: {receiver.instrument}{_guess(receiver.accel.evidence)}"
         return
     yield "instrument:"
-    yield f"  name: {_scalar(name)}" + _guess(_("the name of the campaign"))
+    yield f"  name: {scalar(name)}" + _guess(_("the name of the campaign"))
     if receiver is not None and not isinstance(receiver.instrument, str):
         for key, value in receiver.instrument.items():
-            yield f"  {key}: {_value(value)}" + _guess(receiver.accel.evidence)
+            yield f"  {key}: {in_flow(value)}" + _guess(receiver.accel.evidence)
     elif (axes := _axes(kinds)) is not None:
-        yield f"  gyro: {_flow(axes=axes)}" + _guess(_("gravity turns as if so"))
+        yield f"  gyro: {flow(axes=axes)}" + _guess(_("gravity turns as if so"))
     if len(kinds) == 1:
         yield "  format:"
         yield from _format(kinds[0], ("accelerometer", "gyro"), "    ")
@@ -238,22 +236,22 @@ def _format(kind: Kind, sensors: Sequence[str], indent: str) -> Iterator[str]:
     file = next((triad.file for key in sensors if (triad := triads[key]) is not None), 0)
     log = kind.parts[0].logs[file]
     for key, value in log.layout.items():
-        yield f"{indent}{key}: {_scalar(value)}"
+        yield f"{indent}{key}: {scalar(value)}"
     if log.kind == "rawimus":
         return
     guess = _guess(timing.evidence) if timing.guessed else ""
     if kind.means:
         yield f"{indent}mean_of: null{_guess(timing.evidence)}"
     else:
-        yield f"{indent}time: {_flow(**_time(kind, file))}{guess}"
+        yield f"{indent}time: {flow(**_time(kind, file))}{guess}"
     if columns.temperature is not None and file == 0:
         name, unit = columns.temperature
-        yield f"{indent}temperature: {_flow(column=name, unit=unit)}{_guess(_('by its name'))}"
+        yield f"{indent}temperature: {flow(column=name, unit=unit)}{_guess(_('by its name'))}"
     for key, scale in (("accelerometer", kind.accel), ("gyro", kind.gyro)):
         triad = triads[key]
         if log.kind == "columns" and triad and scale and triad.file == file:
             guess = _guess(scale.evidence) if scale.guessed or columns.guessed else ""
-            yield f"{indent}{key}: {_flow(**_triad(kind, triad, scale))}{guess}"
+            yield f"{indent}{key}: {flow(**_triad(kind, triad, scale))}{guess}"
 
 
 def _time(kind: Kind, file: int) -> dict[str, Any]:
@@ -291,7 +289,7 @@ def _table(plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
     if by_hand and all(m.do == "positions" for m in plan):
         return
     if by_hand:
-        yield f"table: {_flow(name='by hand', position_sigma_arcsec=HAND_POSITION)}" + _guess(
+        yield f"table: {flow(name='by hand', position_sigma_arcsec=HAND_POSITION)}" + _guess(
             _("a case on its faces stands to within 1°")
         )
     else:
@@ -301,7 +299,7 @@ def _table(plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
             "angle_sigma_arcsec": TABLE_SIGMA,
             "rate_sigma_ppm": TABLE_RATE,
         }
-        yield f"table: {_flow(**keys)}" + _guess(_("steady rates are those of a table"))
+        yield f"table: {flow(**keys)}" + _guess(_("steady rates are those of a table"))
 
 
 # ---- the plan
@@ -385,31 +383,3 @@ def _name(m: Manoeuvre) -> str:
 
 def _guess(why: str) -> str:
     return f"  # guessed: {why}"
-
-
-def _flow(**keys: Any) -> str:
-    return "{" + ", ".join(f"{key}: {_value(value)}" for key, value in keys.items()) + "}"
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{_scalar(k)}: {_value(v)}" for k, v in value.items()) + "}"
-    if isinstance(value, list):
-        return "[" + ", ".join(map(_scalar, value)) + "]"
-    return _scalar(value)
-
-
-def _scalar(value: Any) -> str:
-    if value is None:
-        return "null"
-    if isinstance(value, float):
-        return f"{value:.10g}"
-    if (
-        isinstance(value, str)
-        and not (
-            (PLAIN.match(value) or re.fullmatch(r"[+-][xyz]", value)) and value.lower() not in WORDS
-        )
-        and value not in ("m/s2", "rad/s", "deg/s", "by hand", "not known")
-    ):
-        return json.dumps(value, ensure_ascii=False)
-    return str(value)

@@ -200,11 +200,11 @@ class Campaign:
         return self._system(sensor, effects, _prior_sigmas(effects, prior_sigma), None)
 
     def equations(
-        self, sensor: str, effects: Sequence[Effect], prior_sigma: float
+        self, sensor: str, effects: Sequence[Effect], prior_sigma: float, *, walking: bool = False
     ) -> DriftingEquations | None:
-        """The same before errors are eliminated."""
+        """The same before errors are eliminated; `walking`: a random walk may be added."""
         return self._drifting(
-            sensor, effects, _prior_sigmas(effects, prior_sigma), None, walking=False
+            sensor, effects, _prior_sigmas(effects, prior_sigma), None, walking=walking
         )
 
     def by_scatter(
@@ -483,7 +483,7 @@ def _turning(
     merged = Merged(seconds, starts)
     sigmas = density / np.sqrt(merged.seconds)[:, None]
     rests = [
-        StaticForce(m.position, up, mean, sigma)
+        StaticForce(m.position, up, mean, sigma, turning=True)
         for up, mean, sigma in zip(merged.mean(ups), merged.mean(read), sigmas, strict=True)
     ]
     return [

@@ -28,6 +28,7 @@ class Stated:
     given : of all logs
     earth_rate_up : the upward component of the earth's rate at the site, rad/s
     clocks, ranges, imu_types : tables; of each log the type of IMU in its messages
+    angle_sigma : of the angle of a turn, rad
     """
 
     given: Given
@@ -35,6 +36,7 @@ class Stated:
     clocks: pd.DataFrame
     ranges: pd.DataFrame
     imu_types: pd.DataFrame
+    angle_sigma: float
 
     def logs(
         self, statistics: pd.DataFrame, windows: Mapping[str, Windows] | None = None
@@ -60,7 +62,9 @@ def stated_by(
 ) -> Stated:
     """From the tables of plan and decode."""
     given = given_by(campaign, known, count_sizes, clocks, gravity_repairs)
-    return Stated(given, known_of(known)["earth_rate_up"].number, clocks, ranges, imu_types)
+    quantities = known_of(known)
+    up, sigma = quantities["earth_rate_up"].number, quantities["turn_angle"].scatter
+    return Stated(given, up, clocks, ranges, imu_types, sigma)
 
 
 def given_by(

@@ -321,7 +321,7 @@ def steady_rate_of(
         position=position_of(m, heading),
         about=m.axis,
         rate=m.rate,
-        rate_sigma=abs(m.rate) * rate_sigma,
+        rate_sigma=abs(m.rate) * rate_sigma if m.rate_sigma is None else m.rate_sigma,
         seconds=part.seconds,
         elapsed=ends - part.seconds / 2,
         mean=np.average(part.gyro, weights=part.counts, axis=0),

@@ -52,6 +52,7 @@ class Manoeuvre:
     label: str | None
     temperature: float | None = None
     temperature_sigma: float | None = None
+    rate_sigma: float | None = None
 
     @property
     def selected(self) -> bool:
@@ -89,7 +90,7 @@ def manoeuvres_of(table: pd.DataFrame) -> list[Manoeuvre]:
             *(row[key] for key in ("angle", "angle_sigma", "rate")),
             *(row[key] for key in ("acceleration", "seconds", "recorded")),
             *(row[key] for key in ("from_s", "to_s", "from_row", "to_row", "label")),
-            *(row[key] for key in ("temperature", "temperature_sigma")),
+            *(row[key] for key in ("temperature", "temperature_sigma", "rate_sigma")),
         )
         for row in rows_of(table)
     ]

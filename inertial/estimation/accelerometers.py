@@ -43,7 +43,8 @@ SCATTER_BOUNDS = (1e-7, 1.0)  # m/s², between static positions beyond the noise
 class StaticForce:
     """Mean readings at rest, m/s², NaN where not recorded, and their sigma.
 
-    `sensitivities`: of the means to the parameters of effects; `stretch`: of time.
+    `sensitivities`: of the means to the parameters of effects, or with `felt` of the specific force
+    that the sensors feel; `stretch`: of time; `turning`: not at rest, the table turns steadily.
     """
 
     position: str
@@ -52,6 +53,8 @@ class StaticForce:
     sigma: Array  # (3,)
     sensitivities: Sensitivities = NO_SENSITIVITIES
     stretch: Stretch | None = None
+    felt: bool = False
+    turning: bool = False
 
 
 def weighted(
@@ -226,24 +229,36 @@ def linear_rows(
         rows[:, row, 9 + row] = 1.0
     rows[:, :, UNKNOWNS] = along
     rows[:, :, UNKNOWNS + 1 : s] = [static.sensitivities.of(effects) for static in statics]
+    felt = [static.felt for static in statics]
+    rows[felt, :, UNKNOWNS + 1 : s] = about.matrix @ rows[felt, :, UNKNOWNS + 1 : s]
     horizontal = all_level_axes(ups)
     for axis in (0, 1):
         rows[:, :, s + axis] = cross(horizontal[:, axis], gravity * ups) @ about.matrix.T
     means = np.array([static.mean for static in statics])
-    rows[:, :, -1] = means + gravity * (1 + _versed(means, ups, about))[:, None] * along
+    rows[:, :, -1] = means + gravity * (1 + _versed(statics, ups, about))[:, None] * along
     rows[:, :, -1] -= rows[:, :, :s] @ prior
     return rows
 
 
-def _versed(means: Array, ups: Array, about: Triad) -> Array:
+def _versed(statics: Sequence[StaticForce], ups: Array, about: Triad) -> Array:
     """1 − cos of the angle from the planned upward direction to the one that is read, (n,).
 
-    0 where it cannot be told yet.
+    0 where it cannot be told yet. While the table turns, the pull at the lever arm would pass for a
+    tilt, which is that of the rests in the same position.
     """
+    means = np.array([static.mean for static in statics])
     force = np.linalg.solve(about.matrix, (means - about.bias).T).T
     cosine = np.sum(force * ups, axis=1) / np.linalg.norm(force, axis=1)
     versed = np.clip(1 - cosine / np.linalg.norm(ups, axis=1), 0.0, 1.0)
-    return np.asarray(np.nan_to_num(versed))
+    versed = np.nan_to_num(versed)
+    at_rest: dict[str, list[float]] = {}
+    for static, own in zip(statics, versed.tolist(), strict=True):
+        if not static.turning:
+            at_rest.setdefault(static.position, []).append(own)
+    for i, static in enumerate(statics):
+        if static.turning:
+            versed[i] = np.mean(at_rest.get(static.position, [0.0]))
+    return np.asarray(versed)
 
 
 def triad_of(estimate: Estimate) -> Triad:

@@ -1,7 +1,7 @@
 """Figures of a sensor by n pairs of input and output, as IEEE Std 528-2019 defines them.
 
-All are relative to the largest input that was applied, the tested range, not to the range of the
-data sheet.
+Errors are relative to the largest input that was applied, the tested range, not to the range of
+the data sheet.
 """
 
 from dataclasses import dataclass
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import log_ndtr
+from scipy.stats import norm
 
 from inertial.estimation.least_squares import pseudo_inverse
 
@@ -17,6 +18,8 @@ Array = NDArray[np.float64]
 
 MIN_APART = 1e-3  # of the largest input: inputs that are closer count as one
 CONFIDENCE = 0.95
+MAX_CHANGE = 0.1  # of the largest input: a change that says something of the resolution
+SENSED_SHARE = 0.5  # of the expected output, which an input above the threshold gives at least
 
 
 @dataclass(frozen=True)
@@ -81,6 +84,41 @@ def at_no_force(rate: Array, sigma: Array, force: Array) -> tuple[float, float] 
         return None
     weights = found.inverse[0]
     return float(weights @ (rate / sigma)), float(np.linalg.norm(weights))
+
+
+def threshold(applied: Array, read: Array, sigma: Array) -> float | None:
+    """An upper limit of 'threshold': the least input that gave half of its output, (n,) each.
+
+    With 95 % confidence for all inputs together; None where no input is shown to have given it.
+    """
+    return _least(np.abs(applied), np.sign(applied) * read, sigma)
+
+
+def resolution(applied: Array, read: Array, sigma: Array) -> float | None:
+    """An upper limit of 'resolution': the least change of input that gave half of its output.
+
+    Between inputs on one side of zero, above the threshold, that are not far apart; as `threshold`.
+    """
+    least = threshold(applied, read, sigma)
+    if least is None:
+        return None
+    i, j = np.triu_indices(len(applied), 1)
+    above = (np.minimum(np.abs(applied[i]), np.abs(applied[j])) >= least) & (
+        applied[i] * applied[j] > 0
+    )
+    above &= np.abs(applied[i] - applied[j]) <= MAX_CHANGE * np.abs(applied).max()
+    change = (applied[i] - applied[j])[above]
+    output = np.sign(change) * (read[i] - read[j])[above]
+    return _least(np.abs(change), output, np.hypot(sigma[i], sigma[j])[above])
+
+
+def _least(inputs: Array, outputs: Array, sigma: Array) -> float | None:
+    """The least of n positive inputs whose output is at least half of it for certain."""
+    if not len(inputs):
+        return None
+    beyond = float(norm.isf((1 - CONFIDENCE) / len(inputs)))
+    sensed = inputs[outputs - SENSED_SHARE * inputs > beyond * sigma]
+    return float(sensed.min()) if len(sensed) else None
 
 
 def _largest(errors: Array, sigma: Array, largest: float) -> LargestError:

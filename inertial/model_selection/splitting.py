@@ -6,6 +6,7 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtr
 
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.cause import Cause
@@ -77,39 +78,77 @@ def split(
     extended : the same with each manoeuvre added; its `right` is not used
     number : which of the causes has the class
     """
-    candidates = Candidates(effects)
-    index = {effect.name: i for i, effect in enumerate(effects)}
-    # A random walk is no member with columns: it follows no law that a manoeuvre would show.
-    members = [index[member] for member in causes[number].members if member in index]
-    if len(members) < 2:
+    others = [(c.effect, c.value) for i, c in enumerate(causes) if i != number]
+    rivals = Rivals(present, effects, causes[number].members, others)
+    if len(rivals.names) < 2:
         return []
-    others = [
-        int(
-            np.flatnonzero((candidates.effect == index[c.effect]) & (candidates.value == c.value))[
-                0
-            ]
-        )
-        for i, c in enumerate(causes)
-        if i != number
-    ]
-    given = candidates.together(others)
-    drops, degrees = candidates.drops(present.information, present.right, given)
-    truths = {}
-    for member in members:
-        own = np.flatnonzero((candidates.effect == member) & (degrees > 0))
-        place = int(own[np.argmax(drops[own])])
-        truths[member] = (place, _values(present, candidates.columns[place], given))
-    separations = _separations(present.information, candidates, truths, given)
+    separations = rivals.separations(present.information)
     splits = []
     for manoeuvre, with_manoeuvre in extended.items():
         pairs = [
-            Pair(effects[i].name, effects[j].name, separations[i, j], separation)
-            for (i, j), separation in _separations(
-                with_manoeuvre.information, candidates, truths, given
-            ).items()
+            Pair(*names, separations[names], separation)
+            for names, separation in rivals.separations(with_manoeuvre.information).items()
         ]
         splits.append(Split(manoeuvre, tuple(sorted(pairs, key=lambda pair: -pair.extended))))
     return sorted(splits, key=lambda split: split.rank, reverse=True)
+
+
+class Rivals:
+    """The members of a class, each as large as a campaign has it if it were the truth.
+
+    Parameters
+    ----------
+    present : the information of the campaign on the effects, all sensors
+    members : of the class; those without columns are left out, such as a random walk: it follows
+        no law that a manoeuvre would show
+    others : the other causes, which stay in the model, with the place of each in its scan
+    """
+
+    def __init__(
+        self,
+        present: EffectInformation,
+        effects: Sequence[SearchedEffect],
+        members: Sequence[str],
+        others: Sequence[tuple[str, int]],
+    ) -> None:
+        self._candidates = candidates = Candidates(effects)
+        index = {effect.name: i for i, effect in enumerate(effects)}
+        places = [
+            np.flatnonzero((candidates.effect == index[name]) & (candidates.value == value))
+            for name, value in others
+        ]
+        self._given = candidates.together([int(place[0]) for place in places])
+        drops, degrees = candidates.drops(present.information, present.right, self._given)
+        self._truths = {}
+        for member in (index[member] for member in members if member in index):
+            own = np.flatnonzero((candidates.effect == member) & (degrees > 0))
+            if len(own):
+                place = int(own[np.argmax(drops[own])])
+                values = _values(present, candidates.columns[place], self._given)
+                self._truths[member] = (place, values)
+        self._names = {i: effects[i].name for i in self._truths}
+
+    @property
+    def names(self) -> list[str]:
+        """The members that are compared."""
+        return list(self._names.values())
+
+    def separations(self, information: Array) -> dict[tuple[str, str], float]:
+        """For each pair of members the smaller of the two separations."""
+        found = _separations(information, self._candidates, self._truths, self._given)
+        return {(self._names[i], self._names[j]): size for (i, j), size in found.items()}
+
+    def right_share(self, information: Array) -> float:
+        """In which share of campaigns the likeliest member is the right one, at least.
+
+        The difference of chi-squared of two members has the mean δ² and the variance 4 δ², δ being
+        their separation.
+        """
+        wrong = dict.fromkeys(self.names, 0.0)
+        for names, separation in self.separations(information).items():
+            for name in names:
+                wrong[name] += float(ndtr(-separation / 2))
+        return 1 - max(wrong.values())
 
 
 def _values(present: EffectInformation, columns: Sequence[int], given: Sequence[int]) -> Array:

@@ -57,7 +57,7 @@ CHECKS = Table(
 
 CHARACTERISTICS = Table(
     "characteristics",
-    1,
+    2,
     (
         Column("id", TEXT, "", "stable identifier: compensation/sensor/quantity_axis"),
         MOUNT,
@@ -70,10 +70,20 @@ CHARACTERISTICS = Table(
             "as IEEE Std 528 names it: composite_error: largest difference of the compensated"
             " output from the input; linearity_error: largest deviation of the output from a"
             " least-squares line; asymmetry: scale factor of positive less that of negative input,"
-            " over both; acceleration_insensitive_drift: bias of a gyro, whatever force adds",
+            " over both; threshold: least input that gave at least half of the expected output;"
+            " resolution: least change of an input that did, on one side of zero;"
+            " acceleration_insensitive_drift: bias of a gyro, whatever force adds",
         ),
-        Column("value", DOUBLE, "as unit", "errors: over the largest input", nullable=True),
-        Column("sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
+        Column(
+            "value",
+            DOUBLE,
+            "as unit",
+            "errors: over the largest input; threshold and resolution: an upper limit, 95 %",
+            nullable=True,
+        ),
+        Column(
+            "sigma", DOUBLE, "as unit", "its standard deviation; null for limits", nullable=True
+        ),
         Column(
             "by_noise",
             DOUBLE,
@@ -91,6 +101,28 @@ CHARACTERISTICS = Table(
 )
 
 
+UNCERTAINTY_BUDGET = Table(
+    "uncertainty_budget",
+    1,
+    (
+        MOUNT,
+        SENSOR,
+        QUANTITY,
+        Column(
+            "source",
+            TEXT,
+            "",
+            "noise: white noise; drift: bias instability and random walk by the noise; scatter,"
+            " random_walk: between manoeuvres, by the fit; position, angle: of the table;"
+            " interpolation: of gaps; azimuth: unknown direction of north; gravity; latitude",
+        ),
+        Column("sigma", DOUBLE, "as unit", "its part of the standard deviation, root of variance"),
+        Column("unit", TEXT, "", "unit of sigma, SI"),
+        Column("share", DOUBLE, "1", "of the variance; all sources together 1"),
+    ),
+)
+
+
 # ---- The archive of calibrations.
 
 
@@ -103,7 +135,7 @@ def _rows(*fields: tuple[str, str, str]) -> tuple[Column, ...]:
 # version up writes how the older files are read.
 CALIBRATION = Table(
     "calibration",
-    3,
+    4,
     (
         Column("campaign", TEXT, "", "name of the campaign's folder"),
         Column("simulated", TRUTH, "", "recorded by the simulated laboratory"),
@@ -114,6 +146,8 @@ CALIBRATION = Table(
         Column("laboratory", TEXT, "", "where", nullable=True),
         Column("operator", TEXT, "", "by whom", nullable=True),
         Column("notes", TEXT, "", "remarks of the laboratory", nullable=True),
+        Column("mounting", TEXT, "", "as in campaign; none in older calibrations", nullable=True),
+        Column("switch_on", TEXT, "", "as in campaign; none in older ones", nullable=True),
         Column("table", TEXT, "", "name of the table"),
         Column(
             "parameters",

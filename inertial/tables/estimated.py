@@ -288,8 +288,8 @@ WINDOWS = Table(
             TEXT,
             "",
             "how the angle of the window is known: whole turn; set rate: by time; own angle: by the"
-            " time and angle of the same two turns; other turns: by the speed of turns about other"
-            " axes",
+            " time and angle of the same two turns; encoder: by that of the table; other turns: by"
+            " the speed of turns about other axes",
         ),
         Column("from_s", DOUBLE, "s", "start of the window, from the start of the steady part"),
         Column("samples", INTEGER, "1", "intervals of the window"),
@@ -328,6 +328,36 @@ MOTIONS = Table(
         Column("sigma", DOUBLE, "as unit", "its sigma"),
         Column("set_value", DOUBLE, "as unit", "what was set", nullable=True),
         Column("unit", TEXT, "", "unit of these"),
+    ),
+)
+ENCODER = Table(
+    "encoder",
+    1,
+    (
+        MOUNT,
+        Column(
+            "manoeuvre", TEXT, "", "a turn with the angle of the encoder; none: all", nullable=True
+        ),
+        Column(
+            "quantity",
+            TEXT,
+            "",
+            "scale: scale factor's error of the gyro less that of the encoder; delay of the gyro"
+            " less that of the encoder; bandwidth of a first-order gyro with that delay; sine,"
+            " cosine: error of the encoder with its angle times order; ripple:"
+            " amplitude in the course of the encoder at the steady rate",
+        ),
+        Column("order", DOUBLE, "1", "periods in a turn; none: not periodic", nullable=True),
+        Column("value", DOUBLE, "as unit", "its value"),
+        Column("sigma", DOUBLE, "as unit", "its sigma, enlarged where the residuals exceed noise"),
+        Column("unit", TEXT, "", "unit of value and sigma"),
+        Column(
+            "p_value",
+            DOUBLE,
+            "1",
+            "of a ripple, without one; of all turns, that they have the value in common",
+            nullable=True,
+        ),
     ),
 )
 NOT_STUDIED = Table(

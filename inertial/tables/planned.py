@@ -5,7 +5,7 @@ from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
 
 CAMPAIGN = Table(
     "campaign",
-    2,
+    3,
     (
         Column("campaign", TEXT, "", "name of the campaign's folder"),
         Column("simulated", TRUTH, "", "recorded by the simulated laboratory"),
@@ -16,6 +16,8 @@ CAMPAIGN = Table(
         Column("laboratory", TEXT, "", "where", nullable=True),
         Column("operator", TEXT, "", "by whom", nullable=True),
         Column("notes", TEXT, "", "remarks of the laboratory", nullable=True),
+        Column("mounting", TEXT, "", "label of campaigns between which it stayed", nullable=True),
+        Column("switch_on", TEXT, "", "label of campaigns between which it ran on", nullable=True),
         Column("table", TEXT, "", "name of the table"),
         Column("rate", DOUBLE, "Hz", "stated sample rate", nullable=True),
         Column("latitude", DOUBLE, "rad", "geodetic latitude", "earth", True),
@@ -34,6 +36,25 @@ KNOWN = Table(
         Column("unit", TEXT, "", "unit of value and sigma"),
         Column("origin", TEXT, "", "stated in the campaign, computed, or assumed, and from what"),
         Column("assumed", TRUTH, "", "the campaign states nothing that it could be computed from"),
+    ),
+)
+IDEAL_READINGS = Table(
+    "ideal_readings",
+    1,
+    (
+        Column(
+            "situation",
+            TEXT,
+            "",
+            "at_rest, in_free_fall, at_equator, at_pole, under_way_north or under_way_east",
+        ),
+        Column("latitude", DOUBLE, "rad", "geodetic latitude", "earth"),
+        Column("height", DOUBLE, "m", "height above the ellipsoid", "earth"),
+        Column("speed", DOUBLE, "m/s", "steady speed to the north or to the east"),
+        SENSOR,
+        Column("north", DOUBLE, "rad/s, m/s²", "ideal reading, north component", "NED"),
+        Column("east", DOUBLE, "rad/s, m/s²", "ideal reading, east component", "NED"),
+        Column("down", DOUBLE, "rad/s, m/s²", "ideal reading, downward component", "NED"),
     ),
 )
 SENSORS = Table(
@@ -102,6 +123,14 @@ COUNT_SIZES = Table(
         Column("count_size", DOUBLE, "rad, m/s", "increment of one count"),
     ),
 )
+PURPOSES = Table(
+    "purposes",
+    1,
+    (
+        Column("manoeuvre", TEXT, "", "as in manoeuvres; those without a purpose have no row"),
+        Column("purpose", TEXT, "", "alignment, a rest; or modulation, a turn about the vertical"),
+    ),
+)
 INPUTS = Table(
     "inputs",
     1,
@@ -113,7 +142,7 @@ INPUTS = Table(
 )
 MANOEUVRES = Table(
     "manoeuvres",
-    2,
+    3,
     (
         Column("manoeuvre", TEXT, "", "identifier, unique in the campaign"),
         Column("do", TEXT, "", "rest, turn or positions"),
@@ -128,6 +157,13 @@ MANOEUVRES = Table(
         ),
         Column("angle_sigma", DOUBLE, "rad", "standard deviation of the angle", nullable=True),
         Column("rate", DOUBLE, "rad/s", "signed rate of the turn about `about`", BODY, True),
+        Column(
+            "rate_sigma",
+            DOUBLE,
+            "rad/s",
+            "standard deviation of the rate by the encoder; none: by the table's stated one",
+            nullable=True,
+        ),
         Column("acceleration", DOUBLE, "rad/s²", "of the table at start and stop", nullable=True),
         Column("seconds", DOUBLE, "s", "planned duration", nullable=True),
         Column("temperature", DOUBLE, "K", "stated temperature of the instrument", nullable=True),

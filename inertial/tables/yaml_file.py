@@ -66,22 +66,26 @@ class YamlFile:
         """The error that names this file and `key`."""
         return Refusal(str(self.path), self.place(key), shown(found), expected, cure)
 
-    def check(self, schema: str, entries: str | None = None) -> None:
+    def check(self, schema: str, entries: str | None = None, within: Key = ()) -> None:
         """Hold the content, or each of its entries, against `inertial/tables/<schema>.schema.yaml`.
 
-        `entries` is the definition of that schema that every entry must follow.
+        `entries` is the definition of that schema that every entry must follow; `within`: the key
+        of what is held against it, where that is a part of the content.
         """
         rules = schema_of(schema)
         if entries:
             of_each = {"$ref": f"#/$defs/{entries}"}
             rules = {"type": "object", "additionalProperties": of_each, "$defs": rules["$defs"]}
         validator = jsonschema.Draft202012Validator(rules)
-        errors = list(validator.iter_errors(self.content))
+        part = self.content
+        for name in within:
+            part = part[name]
+        errors = list(validator.iter_errors(part))
         if errors:
-            raise self._refusal_of(jsonschema.exceptions.best_match(errors))
+            raise self._refusal_of(jsonschema.exceptions.best_match(errors), within)
 
-    def _refusal_of(self, error: jsonschema.ValidationError) -> Refusal:
-        key = list(error.absolute_path)
+    def _refusal_of(self, error: jsonschema.ValidationError, within: Key) -> Refusal:
+        key = [*within, *error.absolute_path]
         rule: Any = error.schema
         meaning = rule.get("description", "") if isinstance(rule, dict) else ""
         if error.validator == "additionalProperties":

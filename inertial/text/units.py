@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import pi
 
 STANDARD_GRAVITY = 9.80665  # m/s², by definition: what a g in µg is
+COVERAGE_FACTOR = 2.0  # k of an expanded uncertainty U = k σ, about 95 %
 DEGREE = pi / 180
 HOUR = 3600.0  # s
 ICE_POINT = 273.15  # K, 0 °C

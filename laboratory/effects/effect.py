@@ -24,6 +24,8 @@ class Effect:
     segment by segment in the order of time. With zero parameters it is absent.
     """
 
+    of_scale: ClassVar[bool] = False  # whether it is an error of the scale that the encoder reads
+
     # ---- the site and the clock
 
     def true_site(self, site: Site) -> Site:

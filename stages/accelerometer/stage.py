@@ -9,6 +9,7 @@ from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
 from inertial.campaign.records import omissions
+from inertial.campaign.rotating_positions import LEVER_ARM, turning_rests
 from inertial.campaign.static_positions import StaticPosition, averaging_times
 from inertial.campaign.unknown_attitude import add_free_accelerometers
 from inertial.estimation import accelerometers, triad
@@ -21,7 +22,6 @@ from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
 from stages.accelerometer.declared import DECLARED
 from stages.accelerometer.position_findings import findings
-from stages.accelerometer.rotating_positions import LEVER_ARM, turning_rests
 from stages.accelerometer.source_formulas import add_pooled_positions, add_six_positions
 
 Array = NDArray[np.float64]

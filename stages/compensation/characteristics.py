@@ -24,6 +24,8 @@ from inertial.estimation.input_output import (
     at_no_force,
     composite_error,
     linearity_error,
+    resolution,
+    threshold,
 )
 from inertial.physics.motion import stretches, turned
 from inertial.tables import AXES
@@ -48,11 +50,20 @@ OF_INPUT = {
 }
 OF_FORCE = {"gyro_g_sensitivity", "gyro_g2_sensitivity"}
 UNIT = {"accel": "m/s²", "gyro": "rad/s"}
+FIGURES = {  # of input and output, and their unit where it is not that of the sensor
+    "composite_error": "1",
+    "linearity_error": "1",
+    "asymmetry": "1",
+    "threshold": "",
+    "resolution": "",
+}
 
 NO_RESULT = _("there is no result, so no readings without cross terms")
 NO_ATTITUDE = _("the attitudes are not known, so neither is the input along the axis")
 NO_INPUT = _("no known input was applied along the axis")
 ONE_LINE = _("fewer than three different inputs were applied along the axis")
+NOT_SENSED = _("no input along the axis is so large that noise shows it to be sensed")
+NO_CHANGE = _("no small change of the input along the axis was applied that noise does not hide")
 NOT_BOTH = _("the inputs along the axis do not tell the bias from an asymmetry")
 NO_FORCES = _("the static positions do not tell it from the sensitivity to force")
 
@@ -91,7 +102,7 @@ def _without(result: SensorResult, names: set[str]) -> SensorResult:
 def _of_axis(
     sensor: str, axis: int, points: Sequence[Point], reason: str, mount: str
 ) -> Iterator[Row]:
-    """The three figures of input and output along one axis."""
+    """The figures of input and output along one axis."""
     applied, read, whole, sigma = (
         np.array([getattr(point, name) for point in points])
         for name in ("applied", "read", "whole", "sigma")
@@ -99,14 +110,15 @@ def _of_axis(
     largest = float(np.abs(applied).max(initial=0.0))
     figures: dict[str, dict[str, Any]]
     if not largest:
-        none: dict[str, Any] = {"reason": reason or NO_INPUT}
-        figures = {"composite_error": none, "linearity_error": none, "asymmetry": none}
+        figures = {quantity: {"reason": reason or NO_INPUT} for quantity in FIGURES}
     else:
         line, both = linearity_error(applied, read, sigma), asymmetry(applied, read, sigma)
         figures = {
             "composite_error": asdict(composite_error(applied, whole, sigma)),
             "linearity_error": asdict(line) if line else {"reason": ONE_LINE},
             "asymmetry": {"value": both[0], "sigma": both[1]} if both else {"reason": NOT_BOTH},
+            "threshold": _limit(threshold(applied, read, sigma), NOT_SENSED),
+            "resolution": _limit(resolution(applied, read, sigma), NO_CHANGE),
         }
     shared: dict[str, Any] = {
         "largest_input": largest or None,
@@ -114,7 +126,13 @@ def _of_axis(
         "points": len(points),
     }
     for quantity, figure in figures.items():
-        yield _row(sensor, axis, quantity, "1", mount) | shared | figure
+        yield (
+            _row(sensor, axis, quantity, FIGURES[quantity] or UNIT[sensor], mount) | shared | figure
+        )
+
+
+def _limit(limit: float | None, reason: str) -> dict[str, Any]:
+    return {"reason": reason} if limit is None else {"value": limit}
 
 
 def _row(sensor: str, axis: int, quantity: str, unit: str, mount: str) -> dict[str, Any]:

@@ -23,6 +23,7 @@ from stages.compensation.characteristics import characteristics
 from stages.compensation.checks import NO_SCATTER, checks, not_compensated, table_of
 from stages.compensation.correction import NOTHING, CompensatedStream, envelope, mounted
 from stages.compensation.declared import DECLARED
+from stages.compensation.uncertainty_budget import budget_rows
 
 ALREADY = Finding(
     id="compensation/already_compensated/campaign",
@@ -53,7 +54,7 @@ def compensation(
     fits: Sequence[Row],
     provenance: Mapping[str, Mapping[str, Any]],
 ) -> Pieces:
-    """The tables compensated, checks, characteristics, compensated_traces and findings, in pieces.
+    """The table compensated, and what is known of the result, in pieces.
 
     By the result that counts: M and bias, and those effects that a reading, its time and its
     temperature tell. A sensor that is not usable has no compensated reading.
@@ -78,6 +79,7 @@ def compensation(
         return
     rows: list[Row] = []
     figures: list[Row] = []
+    shares: list[Row] = []
     measurements = measurements_of(result)
     for data in mounts:
         if data.mount in measurements:
@@ -89,10 +91,12 @@ def compensation(
         scatter = _scatters(fits, data.mount) if by_hand.by_hand else NO_SCATTER
         rows += [check.row(data.mount) for check in checks(by_hand, measurement, scatter)]
         figures += characteristics(data, measurement)
+        shares += budget_rows(data, measurement, fits)
         for sensor in (measurement.accelerometer, measurement.gyro):
             rows += not_compensated(sensor, data.mount)
     yield "checks", table_of(rows)
     yield "characteristics", tables.CHARACTERISTICS.frame(figures)
+    yield "uncertainty_budget", tables.UNCERTAINTY_BUDGET.frame(shares)
     repairs = Repairs(channel_repairs)
     parts = mounted(mounts, measurements, segments)
     compensated = CompensatedStream(samples.path, parts, Masks(masks, repairs), repairs)
@@ -119,9 +123,11 @@ def _scatters(fits: Sequence[Row], mount: str) -> tuple[float, float]:
     return accel, gyro
 
 
-def fits_of(accelerometer_fit: pd.DataFrame, gyroscope_fit: pd.DataFrame) -> Sequence[Row]:
-    """The fits of both sensors as rows."""
-    return [*rows_of(accelerometer_fit), *rows_of(gyroscope_fit)]
+def fits_of(
+    accelerometer_fit: pd.DataFrame, gyroscope_fit: pd.DataFrame, extended_fit: pd.DataFrame
+) -> Sequence[Row]:
+    """The fits of both sensors as rows, those with effects too."""
+    return [*rows_of(accelerometer_fit), *rows_of(gyroscope_fit), *rows_of(extended_fit)]
 
 
 STAGE = Stage(compensation, DECLARED, gathers={"mounts": campaigns_of, "fits": fits_of})

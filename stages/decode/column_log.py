@@ -13,7 +13,7 @@ from inertial.text.campaign_units import CHANNEL_UNITS
 from inertial.text.units import ICE_POINT
 from stages.decode.arrival_times import ArrivalTimes, Stamped, arrival_times
 from stages.decode.decoded import Decoded, Reals, first_of, intervals_of, on_axis
-from stages.decode.table_angle import ANGLE_UNITS
+from stages.decode.table_angle import ANGLE_UNITS, Continuous
 from stages.decode.unsigned_counts import refuse_unsigned
 
 
@@ -60,6 +60,7 @@ class ColumnLog:
 
     def decoded(self, origin: int) -> Iterator[Decoded]:
         """The log, piece by piece; `origin` is none of its business."""
+        continuous = Continuous()
         for number, reading in enumerate(column_reader.read(self.path, self._layout)):
             rows = reading.records
             if number == 0:
@@ -79,7 +80,7 @@ class ColumnLog:
                 samples["time"] = (rows.ticks - self._first) / self._ticks
             if rows.table_angle is not None:
                 unit = ANGLE_UNITS[self._layout["table_angle"]["unit"]]
-                samples["table_angle"] = rows.table_angle * unit
+                samples["table_angle"] = continuous(rows.table_angle * unit)
             if rows.temperature is not None:
                 above = ICE_POINT if self._layout["temperature"]["unit"] == "degC" else 0.0
                 samples["temperature"] = rows.temperature + above

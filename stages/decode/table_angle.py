@@ -6,11 +6,31 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from inertial.formats.columns.encoder_log import Encoder
 from inertial.formats.gps_time import WEEK
 from stages.decode.decoded import Reals, path_of
 
 ANGLE_UNITS = {"deg": math.radians(1), "rad": 1.0}
+
+
+class Continuous:
+    """An angle without its jumps by whole turns, piece by piece; NaN where it is not known."""
+
+    def __init__(self) -> None:
+        self._last = math.nan
+
+    def __call__(self, angle: Reals) -> Reals:
+        """The next piece, (n,), rad."""
+        result = np.array(angle, dtype=np.float64)
+        known = np.flatnonzero(np.isfinite(result))
+        if len(known):
+            before = [] if math.isnan(self._last) else [self._last]
+            whole = np.unwrap(np.concatenate([before, result[known]]), period=2 * math.pi)
+            result[known] = whole[len(before) :]
+            self._last = float(whole[-1])
+        return result
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ DECLARED = Declared(
         "gaps": From("quality", tables.GAPS),
         "segments": From("segment", tables.SEGMENTS),
         "manoeuvres": From("segment", tables.MANOEUVRES),
+        "tolerances": From("plan", tables.TOLERANCES),
         "terms": From("noise", tables.NOISE_TERMS, "terms"),
         "performed": From("segment", tables.PERFORMED),
         **{
@@ -38,6 +39,7 @@ DECLARED = Declared(
         "consequences": tables.CONSEQUENCES,
         "result": tables.PARAMETERS,
         "covariance": tables.COVARIANCE,
+        "conformity": tables.CONFORMITY,
         "verdict": tables.VERDICTS,
         "temperature_curves": tables.TEMPERATURE_CURVES,
     },

@@ -12,6 +12,7 @@ from inertial.effects import KNOWN, TEMPERATURE_MODELS
 from inertial.tables.stage import Stage, Tables
 from inertial.text.parameters import AXES
 from stages.diagnosis.causes import Cause, Evidence, Size
+from stages.diagnosis.conformity import conformity_rows
 from stages.diagnosis.declared import DECLARED
 from stages.diagnosis.sensor_results import Estimated, SensorResult, estimated_of
 from stages.diagnosis.temperature_curves import curve_rows
@@ -31,8 +32,11 @@ def diagnosis(
     swept: pd.DataFrame,
     manoeuvres: pd.DataFrame,
     terms: pd.DataFrame,
+    tolerances: pd.DataFrame,
 ) -> Tables:
     """Causes, consequences, members of classes, the result with its covariance, the verdict.
+
+    And whether the result conforms to the tolerances.
 
     Parameters
     ----------
@@ -57,11 +61,14 @@ def diagnosis(
         for result in results
     ]
     sizes = _sizes(rows_of(effects))
+    written = _result_rows(results, verdicts)
     return {
         "causes": [cause.row(sizes) for cause in causes],
         "members": [row for cause in causes for row in _members(cause, findings)],
         "consequences": [row for cause in causes for row in _consequences(cause)],
+        "result": written,
         **_written(results, verdicts, rows_of(swept)),
+        "conformity": [*conformity_rows(written, rows_of(tolerances))],
         "verdict": [
             {
                 "mount": result.mount,
@@ -137,24 +144,22 @@ def _range(swept: pd.DataFrame, sensor: str, mount: str) -> tuple[float, float] 
     return None if own.empty else (float(own.min()), float(own.max()))
 
 
+def _result_rows(results: Sequence[SensorResult], verdicts: Sequence[Verdict]) -> list[Row]:
+    """The parameters of the result, null where it is spoilt."""
+    rows: list[Row] = []
+    for result, given in zip(results, verdicts, strict=True):
+        spoilt = {"value": None, "sigma": None, "reason": given.sentence} if given.spoilt else {}
+        rows += [{**row, **spoilt} for row in result.chosen.rows]
+    return rows
+
+
 def _written(
     results: Sequence[SensorResult], verdicts: Sequence[Verdict], swept: Sequence[Row]
 ) -> Tables:
-    """The rows of the result, null where it is spoilt, the covariance of those with a value, and
-    the curves of temperature.
-    """
-    rows: list[Row] = []
-    covariances = []
-    for result, given in zip(results, verdicts, strict=True):
-        if given.spoilt:
-            nothing = {"value": None, "sigma": None, "reason": given.sentence}
-            rows += [{**row, **nothing} for row in result.chosen.rows]
-        else:
-            rows += result.chosen.rows
-            covariances.append(result.chosen.covariance_rows())
+    """The covariance of the parameters with a value, and the curves of temperature."""
     usable = [result for result, given in zip(results, verdicts, strict=True) if not given.spoilt]
+    covariances = [result.chosen.covariance_rows() for result in usable]
     return {
-        "result": rows,
         "covariance": pd.concat(covariances) if covariances else [],
         "temperature_curves": [
             *(row for result in usable for row in curve_rows(result.chosen)),

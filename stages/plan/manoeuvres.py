@@ -29,13 +29,18 @@ _ALLOWED = {
     },
     "tumble": {"up", "mark", "about", "step_degrees", "steps", "and_back", "seconds"},
 }
+# Manoeuvres with a purpose of their own; for the calibration they are rests and turns like others.
+PURPOSES = {"align": ("rest", "alignment"), "modulate": ("turn", "modulation")}
+_ALLOWED |= {name: _ALLOWED[do] for name, (do, _purpose) in PURPOSES.items()}
 
 
 def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
     """One row for a rest, a turn or a search for positions; one per rest of a tumble."""
+    do, purpose = PURPOSES.get(item["do"], (item["do"], None))
     row: Row = {
         "manoeuvre": item["id"],
-        "do": item["do"],
+        "do": do,
+        "purpose": purpose,
         "position": item.get("position", item["id"]),
         "mount": item.get("mount", "as mounted"),
         "recorded": item.get("recorded", "whole"),
@@ -43,6 +48,7 @@ def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
         "angle": None,
         "angle_sigma": None,
         "rate": None,
+        "rate_sigma": None,
         "acceleration": in_si(item.get("accel_deg_s2"), DEGREE),
         **_temperature(file, key, item),
     }
@@ -63,7 +69,14 @@ def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
             ),
             _("remove {name}, or correct do", name=name),
         )
-    if item["do"] == "turn":
+    if purpose is not None and up is None:
+        raise file.refuse_text(
+            key,
+            _("do: {do} without a known up", do=item["do"]),
+            _("up, the body direction that points up"),
+            _("add up: the alignment is told against it"),
+        )
+    if do == "turn":
         about = _direction(file, [*key, "about"], item)
         about = up if about is None else about
         if about is None:
@@ -74,7 +87,7 @@ def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
                 _("add about: the axis of the turn"),
             )
         yield row | _vectors(up, mark, about) | _turn(file, key, item)
-    elif item["do"] == "tumble":
+    elif do == "tumble":
         yield from _tumble(file, key, item, row, up, mark)
     else:
         yield row | _vectors(up, mark, None)

@@ -141,7 +141,7 @@ def refuse_without_time(
                 key, _("no key 'seconds'"), _("seconds: the shortest rest, s"), _("add seconds")
             )
         return
-    if item["do"] == "turn" and item.get("recorded") != "steady":
+    if item["do"] in ("turn", "modulate") and item.get("recorded") != "steady":
         raise file.refuse_text(
             key,
             _("a whole turn in rows that are means"),

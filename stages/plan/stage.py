@@ -15,7 +15,9 @@ from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
+from stages.plan.certificate import Statements
 from stages.plan.declared import DECLARED
+from stages.plan.ideal_readings import ideal_readings
 from stages.plan.manoeuvres import expanded
 from stages.plan.published import published_values
 from stages.plan.recording import (
@@ -33,18 +35,23 @@ from stages.plan.taken_as_known import BY_HAND, by_hand, gravity_repairs, known
 
 Row = dict[str, Any]
 
+FACTS = ("laboratory", "operator", "notes", "mounting", "switch_on")  # as stated, or none
+
 
 def plan(
     campaign: list[Path],
     raw: list[Path],
     instruments: list[Path],
     published: Sequence[Path] = (),
+    laboratory: Sequence[Path] = (),
     *,
     repairs: str = "apply",
+    certificate: str = "as_stated",
 ) -> Tables:
     """The campaign, its instrument, its logs and its manoeuvres, and what others published of it.
 
-    `repairs`: apply or refuse, whether a gravity that is not that of the place is set right.
+    `repairs`: apply or refuse, whether a gravity that is not that of the place is set right;
+    `certificate`: as_stated or strict, whether it must state all that a certificate needs.
 
     Raises
     ------
@@ -86,11 +93,13 @@ def plan(
                 _("put the log there, or correct its name"),
             )
         _stays_inside(file, key, present[log])
+    stated = Statements(file, laboratory, certificate)
     others = [row for path in published for row in published_values(YamlFile(path))]
     used = sorted({present[log] for _unused, log in named})
     return {
         "campaign": pd.DataFrame([_campaign(file, entry, manoeuvres)]),
         "known": pd.DataFrame(taken_as_known),
+        "ideal_readings": list(ideal_readings(file.content["site"])),
         "sensors": pd.DataFrame(sensors(entry)),
         "logs": pd.DataFrame(logs(manoeuvres, entry, table)),
         "ranges": pd.DataFrame(ranges(manoeuvres, entry)),
@@ -100,7 +109,15 @@ def plan(
             for path in [campaign[0], *used]
         ),
         "published": pd.DataFrame(others) if others else tables.PUBLISHED.empty(),
+        "certificate": stated.items,
+        "standards": stated.standards(),
+        "tolerances": [*stated.tolerances()],
         "manoeuvres": pd.DataFrame(manoeuvres)[[c.name for c in tables.MANOEUVRES.columns]],
+        "purposes": [
+            {"manoeuvre": row["manoeuvre"], "purpose": row["purpose"]}
+            for row in manoeuvres
+            if row["purpose"]
+        ],
         "repairs": set_right,
         "accepted": [
             {"repair": repair, "place": file.place(["accept", number])}
@@ -129,7 +146,7 @@ def _campaign(file: YamlFile, entry: dict[str, Any], manoeuvres: list[Row]) -> R
         "instrument": entry["name"],
         "serial": content["serial"],
         "date": content["date"],
-        **{key: content.get(key) for key in ("laboratory", "operator", "notes")},
+        **{key: content.get(key) for key in FACTS},
         "table": BY_HAND if by_hand(content) else content["table"].get("name", "not named"),
         "rate": entry.get(SAMPLE_RATE, _common_rate(manoeuvres)),
         "latitude": None if site["latitude_deg"] is None else radians(site["latitude_deg"]),

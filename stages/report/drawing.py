@@ -12,6 +12,7 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
@@ -47,6 +48,7 @@ PHASE_COLOUR = {
     "spin-down": "#fbe3b8",
 }
 GRID_COLUMNS = 3
+COLUMN_GAP = 0.06  # inches to the right of a column of panels that belong to it
 SMALL_RATE = 0.2 * DEGREES_PER_SECOND.size
 MISSING = "#8e2a5b"
 MASKED = "#aeb7c2"
@@ -217,12 +219,43 @@ def plain_numbers(axis: Axis) -> None:
 
 
 def svg(figure: Figure, key: str) -> str:
-    """`figure` as an element of the page; `key`, a plain word, keeps its identifiers apart."""
+    """`figure` as an element of the page; `key`, a plain word, keeps its identifiers apart.
+
+    Behind it stands each of its columns of panels alone, for screens that are too narrow for all.
+    """
     text = io.StringIO()
     with mpl.rc_context({"svg.hashsalt": key}):
         nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
         figure.savefig(text, format="svg", metadata=nothing, transparent=True)
-    return light(text.getvalue(), key)
+    drawn = light(text.getvalue(), key)
+    edges = _columns(figure)
+    if len(edges) < 3:
+        return drawn
+    name = f"{key.replace(' ', '-')}-whole"
+    points = 72 * figure.get_size_inches()
+    size = f'width="{points[0]:g}" height="{points[1]:g}"'
+    columns = [
+        f'<svg class="column" aria-hidden="true" viewBox="{left * points[0]:.1f} 0 '
+        f'{(right - left) * points[0]:.1f} {points[1]:g}"><use href="#{name}" {size}/></svg>'
+        for left, right in pairwise(edges)
+    ]
+    return drawn.replace("<svg ", f'<svg class="whole" id="{name}" ', 1) + "".join(columns)
+
+
+def _columns(figure: Figure) -> list[float]:
+    """The edges of the columns of panels, labels to their left, as shares of the width."""
+    spans = sorted(
+        (panel.get_position().x0, panel.get_position().x1)
+        for panel in figure.axes
+        if panel.get_visible()
+    )
+    ends: list[float] = []
+    for left, right in spans:
+        if ends and left < ends[-1]:
+            ends[-1] = max(ends[-1], right)
+        else:
+            ends.append(right)
+    return [0.0, *(end + COLUMN_GAP / WIDTH for end in ends[:-1]), 1.0]
 
 
 def shade(axes: Axes, phases: Sequence[Record], start: str = "start", end: str = "end") -> None:

@@ -31,6 +31,13 @@ class Column:
     kind: Kind = "text"
     group: str = ""
 
+    @property
+    def label(self) -> str:
+        """What stands before its cells where a narrow screen makes a card of each row."""
+        if self.kind in ("sigma", "unit"):  # they follow the number that they belong to
+            return ""
+        return " ".join(filter(None, (self.group, self.heading)))
+
 
 def columns(kind: Kind, *headings: str, group: str = "") -> tuple[Column, ...]:
     """Columns of one kind, below a common heading where `group` is given."""
@@ -98,12 +105,16 @@ class Table(Part):
 
 @dataclass(frozen=True)
 class Figure(Part):
-    """A drawing with its caption; `drawn` is SVG, `words` say it to who cannot see it."""
+    """A drawing with its caption; `drawn` is SVG, `words` say it to who cannot see it.
+
+    `small`: it stands to the right of what comes before it.
+    """
 
     caption: str
     drawn: str
     words: str
     tone: Tone = ""
+    small: bool = False
 
 
 @dataclass(frozen=True)
@@ -116,10 +127,14 @@ class Paragraph(Part):
 
 @dataclass(frozen=True)
 class Heading(Part):
-    """The name of what follows within a section; other places lead to its `anchor`."""
+    """The name of what follows within a section; other places lead to its `anchor`.
+
+    `breaks`: it begins a printed page.
+    """
 
     text: str
     anchor: str = ""
+    breaks: bool = False
 
 
 @dataclass(frozen=True)
@@ -134,6 +149,14 @@ class Facts(Part):
     """Names and what they are: instrument, serial, date."""
 
     pairs: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class Signatures(Part):
+    """Lines to sign on, what the signature is for and whose, and what stands below them."""
+
+    pairs: tuple[tuple[str, str], ...]
+    end: str
 
 
 @dataclass(frozen=True)
@@ -202,7 +225,7 @@ class Finding(Part):
 
 @dataclass(frozen=True)
 class Section:
-    """One numbered section: what it shows, how to read it if that needs words, tables, parts."""
+    """One section: what it shows, how to read it if that needs words, tables, parts."""
 
     key: str
     title: str
@@ -213,12 +236,26 @@ class Section:
 
 
 @dataclass(frozen=True)
+class Chapter:
+    """A section in its place: its number, or as an annex its letter, and its parts."""
+
+    number: str
+    section: Section
+    parts: Sequence[Part]
+
+    @property
+    def annex(self) -> bool:
+        """Whether it stands behind the evidence; on screen it is folded then."""
+        return self.number.isalpha()
+
+
+@dataclass(frozen=True)
 class Report:
-    """The whole report: its title page and its sections in order, each with its parts."""
+    """The whole report: its title page and its chapters in order."""
 
     title: str
     campaign: str
     instrument: str  # with its serial
     running: str  # what stands on top of every printed page
     simulated: bool
-    sections: Sequence[tuple[Section, Sequence[Part]]]
+    chapters: Sequence[Chapter]

@@ -2,53 +2,69 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import count
+from string import ascii_uppercase
 from typing import Any
 
 from inertial.tables.stage import Stage
 from inertial.text.messages import _
 from inertial.text.numbers import shortened
 from stages.report.declared import DECLARED
-from stages.report.outline import Report
+from stages.report.outline import Chapter, Report, Section
 from stages.report.page import page
 from stages.report.sections import (
+    alignment,
     averaging,
     basis,
+    certificate,
     characteristics,
     comparisons,
     compensation,
     findings,
+    ideal_triad,
+    navigation,
     noise,
     noise_by_manoeuvre,
     parameters,
     raw_data,
+    repeatability,
     residuals,
     studies,
     temperature,
+    uncertainty_budget,
     unmodelled_effects,
     verdict,
 )
 from stages.report.tables import Tables
 
-SECTIONS = (
+EVIDENCE = (
+    certificate.SECTION,
     verdict.SECTION,
-    parameters.PARAMETERS,
-    unmodelled_effects.SECTION,
-    findings.SECTION,
-    parameters.UNDETERMINED,
+    noise.SECTION,
     residuals.SECTION,
+    unmodelled_effects.SECTION,
     comparisons.COMPARISONS,
     compensation.SECTION,
-    characteristics.SECTION,
-    comparisons.HISTORY,
-    basis.RECORDED,
-    raw_data.SECTION,
-    noise.SECTION,
+    navigation.SECTION,
+    alignment.SECTION,
+    uncertainty_budget.SECTION,
     temperature.SECTION,
+    comparisons.HISTORY,
+    repeatability.SECTION,
+)
+ANNEXES = (
+    parameters.PARAMETERS,
+    parameters.UNDETERMINED,
+    findings.SECTION,
+    characteristics.SECTION,
     averaging.SECTION,
     studies.SECTION,
+    basis.RECORDED,
+    raw_data.SECTION,
     noise_by_manoeuvre.SECTION,
     basis.KNOWN,
+    ideal_triad.SECTION,
     basis.ACCOUNT,
     basis.PROVENANCE,
 )
@@ -60,15 +76,28 @@ def report(provenance: Mapping[str, Mapping[str, Any]], **read: Any) -> dict[str
     about = tables.row("campaign")
     name, serial = (shortened(about[key], 80) for key in ("campaign", "serial"))
     instrument = f"{shortened(about['instrument'], 80)} · serial {serial}"
+    number = shortened(certificate.certificate_number(tables), 80)
     outline = Report(
-        title=_("Calibration report: {name} · {instrument}", name=name, instrument=instrument),
+        title=_("Calibration certificate {number}", number=number),
         campaign=name,
         instrument=instrument,
-        running=f"{name} · {instrument}" + (" · simulated" if about["simulated"] else ""),
+        running=f"{number} · {instrument}" + (" · simulated" if about["simulated"] else ""),
         simulated=bool(about["simulated"]),
-        sections=[(section, own) for section in SECTIONS if (own := list(section.parts(tables)))],
+        chapters=[
+            *_chapters(EVIDENCE, map(str, count(1)), tables),
+            *_chapters(ANNEXES, iter(ascii_uppercase), tables),
+        ],
     )
     return {"html": page(outline), "txt": verdict.as_text(tables)}
+
+
+def _chapters(
+    sections: Sequence[Section], numbers: Iterator[str], tables: Tables
+) -> Iterator[Chapter]:
+    """The sections that have something to show."""
+    for section in sections:
+        if parts := list(section.parts(tables)):
+            yield Chapter(next(numbers), section, parts)
 
 
 STAGE = Stage(report, DECLARED)

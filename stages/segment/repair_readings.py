@@ -270,7 +270,17 @@ def rates_of(explained: Explained, level: Array, tolerance: float) -> Restated |
 def plan_as_taken(stated: pd.DataFrame, plan: Sequence[Manoeuvre]) -> pd.DataFrame:
     """The table of the manoeuvres with what the repairs have changed."""
     table = stated.set_index("manoeuvre").loc[[m.name for m in plan]].reset_index()
-    for name in ("log", "from_s", "to_s", "from_row", "to_row", "label", "angle", "rate"):
+    for name in (
+        "log",
+        "from_s",
+        "to_s",
+        "from_row",
+        "to_row",
+        "label",
+        "angle",
+        "rate",
+        "rate_sigma",
+    ):
         values = pd.Series([getattr(m, name) for m in plan], dtype=object)
         table[name] = values.where(values.notna(), None)
     return table[list(stated.columns)]

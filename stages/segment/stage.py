@@ -1,7 +1,7 @@
 """Where the manoeuvres of the plan are in the logs, and each reduced to short means."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 import pandas as pd
@@ -22,6 +22,7 @@ from inertial.text.messages import _
 from stages.segment import completeness, reduction, repair
 from stages.segment.declared import DECLARED
 from stages.segment.detection import ExaminationOfRests, compare, recorded_of
+from stages.segment.encoder import ByEncoder, plan_by_encoder
 from stages.segment.explanations import Explained
 from stages.segment.matching import (
     AS_NAMED,
@@ -109,8 +110,12 @@ def segment(
     rests, index = ExaminationOfRests(OF_RESTS, parts, by_name, masked), RecordIndex()
     read_once(samples, [block_sums, segment_times, traces, rests, index], read_as)
     blocks, segments = block_sums.table(), segment_times.table()
+    turned = plan_by_encoder(plan, blocks, stated.angle_sigma, angle_tolerance)
+    plan = [turned[m.name].manoeuvre if m.name in turned else m for m in plan]
     in_motion = dict(list(blocks[~blocks["phase"].isin(STATIC_PHASES)].groupby("manoeuvre")))
-    for located, place, m in turns:
+    for located, place, stated_turn in turns:
+        told = turned.get(stated_turn.name, ByEncoder(stated_turn))
+        m = told.manoeuvre
         own = in_motion.get(m.name, blocks.iloc[:0])
         done = completeness.turn(
             located.binned,
@@ -124,7 +129,8 @@ def segment(
             block_sums.clipped(m.name).get("", np.zeros(6, bool))[3:],
         )
         as_named = located.axes.gyro == AS_NAMED
-        performed[m.name] = done if as_named else completeness.by_other_axes(done)
+        done = done if as_named else completeness.by_other_axes(done)
+        performed[m.name] = replace(done, sentence=f"{done.sentence} {told.remark}".rstrip())
     for m in plan:
         performed[m.name] = completeness.with_clipped(performed[m.name], block_sums.clipped(m.name))
     for located in explained.located:

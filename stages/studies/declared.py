@@ -26,6 +26,7 @@ DECLARED = Declared(
         "middles": tables.WINDOWS,
         "time_angle": tables.TIME_ANGLE,
         "motions": tables.MOTIONS,
+        "encoder": tables.ENCODER,
         "not_studied": tables.NOT_STUDIED,
     },
     streams=("samples",),

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import UNIT, described
 from inertial.campaign.records import Manoeuvre, Performed, rows_of, with_mount
+from inertial.campaign.sample_stretches import Samples, Stretch
 from inertial.estimation.averaging_epochs import Formula, in_epochs, spread
 from inertial.estimation.triad import errors_of, linear_names
 from inertial.tables import AXES, CHANNELS
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
-from stages.studies.table_motion import Samples, Stretch
 
 Array = NDArray[np.float64]
 Row = dict[str, Any]

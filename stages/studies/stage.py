@@ -7,11 +7,12 @@ import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.masked_samples import Repairs
+from inertial.campaign.sample_stretches import samples_in
 from inertial.campaign.solution import scatter_by_mount
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
-from stages.studies import motion_rows
+from stages.studies import encoder_rows, motion_rows
 from stages.studies.declared import DECLARED
 from stages.studies.epochs import rests_of, studied
 from stages.studies.table_motion import (
@@ -21,7 +22,6 @@ from stages.studies.table_motion import (
     gyros_of,
     motion_of,
     pairs_of,
-    samples_in,
     steady_times,
     stretch_of,
 )
@@ -48,7 +48,12 @@ def studies(
     }
 
     wanted = {name: stretch for found in rests.values() for name, (_, stretch) in found.items()}
-    wanted |= {r.plan.name: stretch_of(r, segments) for found in turns.values() for r in found}
+    blocks = mounts[0].blocks if mounts else pd.DataFrame()
+    encoded = set(blocks.loc[blocks["table_angle"].notna(), "manoeuvre"]) if len(blocks) else set()
+    for r in (r for found in turns.values() for r in found):
+        wanted[r.plan.name] = stretch_of(r, segments)
+        if r.plan.name in encoded:
+            wanted[encoder_rows.with_rests(r.plan.name)] = encoder_rows.whole_stretch(r, segments)
     read = samples_in(samples, wanted, masks, Repairs(channel_repairs))
 
     rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
@@ -58,9 +63,19 @@ def studies(
         gyros = gyros_of(gyroscope_parameters, data.mount)
         between = scatter.get(data.mount, 0.0)
         motions: dict[str, WholeMotion] = {}
+        times = {r.plan.name: steady_times(r, segments) for r in turns[data.mount]}
+        encoder = [
+            row
+            for r in turns[data.mount]
+            if (whole := read.get(encoder_rows.with_rests(r.plan.name))) is not None
+            for row in encoder_rows.of_turn(data, r, whole, times[r.plan.name])
+        ]
+        common = list(encoder_rows.together(data, encoder))
+        _add(rows, {"encoder": [*common, *encoder]})
+        harmonics = encoder_rows.harmonics_of(common)
         for r in turns[data.mount]:
-            name, times = r.plan.name, steady_times(r, segments)
-            found = motion_of(data, r, read[name], times, gyros, between)
+            name = r.plan.name
+            found = motion_of(data, r, read[name], times[name], gyros, between, harmonics)
             if isinstance(found, WholeMotion):
                 motions[name] = found
             else:

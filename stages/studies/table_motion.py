@@ -10,11 +10,12 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.masked_samples import Masks, Repairs, pieces
 from inertial.campaign.motions import measured_angles
 from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Manoeuvre
+from inertial.campaign.sample_stretches import Samples, Stretch
 from inertial.campaign.solution import joint_rows
+from inertial.estimation.encoder_angle import corrected
 from inertial.estimation.periodic_in_time import strongest
 from inertial.estimation.time_angle import (
     Errors,
@@ -26,61 +27,17 @@ from inertial.estimation.time_angle import (
 from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import cross
-from inertial.tables import AXES, CHANNELS, GYRO, STATIC_PHASES
-from inertial.tables.parquet import Stream
+from inertial.tables import AXES, GYRO, STATIC_PHASES
 from inertial.text.messages import _
 
-# ---- The samples of some stretches of the logs, in one pass, without those masked.
-
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Stretch:
-    """Records of a log, from `first` to the one before `after`."""
-
-    log: str
-    first: int
-    after: int
-
-
-@dataclass(frozen=True)
-class Samples:
-    """n samples: `time` (n,), s; `values` (n, 6), in the order of CHANNELS, NaN where masked."""
-
-    time: Array
-    values: Array
-
-
-def samples_in(
-    samples: Stream, stretches: Mapping[str, Stretch], masks: pd.DataFrame, repairs: Repairs
-) -> dict[str, Samples]:
-    """The samples of each stretch by its name; repeated records are left out."""
-    known = Masks(masks, repairs)
-    extracted: dict[str, list[tuple[Array, Array]]] = {name: [] for name in stretches}
-    for log, piece in pieces(samples, ["record", "time", *CHANNELS], repairs):
-        record = piece["record"]
-        for name, stretch in stretches.items():
-            if stretch.log != log or record[-1] < stretch.first or record[0] >= stretch.after:
-                continue
-            inside = (record >= stretch.first) & (record < stretch.after)
-            masked = known.of(log, record[inside])
-            values = np.column_stack([piece[channel][inside] for channel in CHANNELS])
-            values[masked.channels | masked.lost[:, None]] = np.nan
-            kept = ~masked.repeated
-            extracted[name].append((piece["time"][inside][kept], values[kept]))
-    return {
-        name: Samples(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
-        for name, parts in extracted.items()
-        if parts
-    }
-
 
 # ---- Rotations recorded whole, sample by sample: gyro increments, and the angle of the table.
 
 UNKNOWN_CROSS = 0.01  # rad, half a degree: assumed for a cross term that is not determined
 MIN_LINE_HZ = 2.0  # Hz, above which a line is an oscillation; slower is the motion of the table
 MAX_LINE_P = 1e-4  # chance below which it is significant
+MAX_UNLIKE = 0.02  # relative, by which the angles of a pair by the encoder may differ
 MAX_DELAY_STEPS = 0.5  # of a step by which a sample may be late; more, and one is missing
 
 
@@ -141,7 +98,10 @@ class WholeMotion:
     """One turn from the first motion to the last.
 
     `increments`: (n, 3), rad, of the gyros; `first`, `after`: edges of the steady part; `angle`:
-    the table's angle at the edges; `lines`: (3,) oscillations of the gyros, None where none.
+    the table's angle at the edges; `lines`: (3,) oscillations of the gyros, None where none;
+    `encoder`: (n + 1,), rad, about the manoeuvre's axis, by the encoder less its harmonics; None
+    where it is not recorded. Its latency counts as none: in a steady part it shifts both ends of a
+    window alike.
     """
 
     recorded: Recorded
@@ -151,6 +111,7 @@ class WholeMotion:
     after: int
     table: TimeAngle
     lines: Sequence[Ringing | None]
+    encoder: Array | None = None
 
     @property
     def plan(self) -> Manoeuvre:
@@ -213,6 +174,7 @@ def motion_of(
     steady: tuple[float, float],
     gyros: Gyros,
     scatter: float,
+    harmonics: Mapping[int, tuple[float, float]],
 ) -> WholeMotion | str:
     """A turn, or why there is none.
 
@@ -220,12 +182,14 @@ def motion_of(
     ----------
     steady : s, time of the first and of the last sample of the steady part
     scatter : rad/s, between manoeuvres, that the joint estimate allows for
+    harmonics : of the encoder's error, sine and cosine, rad, by order
     """
     m, step = rotation.plan, data.clocks[rotation.plan.log].step
     assert m.up is not None and m.angle is not None and m.angle_sigma is not None  # else refused
     rates, time = samples.values[:, 3:], samples.time
     finite = np.isfinite(rates) | ~np.isfinite(rates).any(axis=0)
-    rates, time = rates[finite.all(axis=1)], time[finite.all(axis=1)]
+    kept = finite.all(axis=1)
+    rates, time, encoder = rates[kept], time[kept], samples.table_angle[kept]
     even = np.abs(np.diff(time) / step - 1) < MAX_DELAY_STEPS
     about = m.axis
     if not even.all() or len(time) < 2:
@@ -273,7 +237,16 @@ def motion_of(
         after,
         time_angle(angle, step, abs(m.angle), errors),
         lines,
+        _encoder(corrected(encoder, harmonics), float(np.sign(m.angle))),
     )
+
+
+def _encoder(read: Array, sense: float) -> Array | None:
+    """The angle of the encoder at the edges of n samples, (n + 1,), growing with the turn's."""
+    if not np.isfinite(read).all():
+        return None
+    edges = np.append(read[0], read)
+    return np.asarray(sense * np.sign((read[-1] - read[0]) or 1.0) * edges)
 
 
 def _line(increments: Array, step: float) -> Ringing | None:
@@ -326,8 +299,9 @@ def _same(first: WholeMotion, second: WholeMotion, i: int) -> bool:
     ups = [motion.plan.up for motion in (first, second)]
     if ups[0] is None or ups[1] is None or ups[0][i] * ups[1][i] < 0:
         return False
-    sizes, others = (
-        np.array([abs(m.plan.angle or 0.0), abs(m.plan.rate or 0.0), m.step])
-        for m in (first, second)
-    )
-    return bool(np.allclose(sizes, others, rtol=1e-6))
+    sizes, others = (np.array([abs(m.plan.rate or 0.0), m.step]) for m in (first, second))
+    one, other = (abs(m.plan.angle or 0.0) for m in (first, second))
+    # By the encoder each has its own angle.
+    unlike = MAX_UNLIKE if first.encoder is not None and second.encoder is not None else 1e-6
+    alike = bool(np.isclose(one, other, rtol=unlike))
+    return alike and bool(np.allclose(sizes, others, rtol=1e-6))

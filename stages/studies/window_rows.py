@@ -89,8 +89,20 @@ class Pair:
         )
         return first, second
 
+    def read(self) -> tuple[Array, Array] | None:
+        """The same by the encoder, where it is recorded in both turns."""
+        encoders = [motion.encoder for motion in (self.forward, self.backward)]
+        if encoders[0] is None or encoders[1] is None:
+            return None
+        first, second = (
+            encoder[motion.first : motion.after + 1] * float(motion.plan.axis[self.axis])
+            for motion, encoder in zip((self.forward, self.backward), encoders, strict=True)
+            if encoder is not None
+        )
+        return first, second
+
     def rows(
-        self, window: Window, by: str, table_sigma: float, *, any_phase: bool = False
+        self, window: Window, by: str, table_sigma: Array | float, *, any_phase: bool = False
     ) -> Iterator[Row]:
         """Windows whose angles are known but for `table_sigma`, of the table's speed, relative.
 
@@ -102,6 +114,7 @@ class Pair:
         # While the table turns on, the level earth rate sums to 2 sin(α/2)/ω.
         level = self.level * 2 * np.abs(np.sin(window.forward / 2)) / self.rate
         each = np.sqrt((ripple[0] ** 2 + ripple[1] ** 2) / 2 + level**2)
+        of_table = np.broadcast_to(table_sigma, (len(scale),))
         cut, bias_sigma = noise_of(window, self.densities, each)
         for k in range(len(scale)):
             yield self._row(
@@ -110,7 +123,7 @@ class Pair:
                 samples=int(window.after[k] - window.first[k]),
                 angle=float(window.forward[k] - window.backward[k]) / 2,
                 scale=float(scale[k]),
-                scale_sigma=float(np.hypot(cut[k], table_sigma)),
+                scale_sigma=float(np.hypot(cut[k], of_table[k])),
                 cut_sigma=float(cut[k]),
                 bias=float(bias[k]),
                 bias_sigma=float(bias_sigma[k]),
@@ -122,6 +135,15 @@ class Pair:
         for row in self.rows(own, "own angle", 0.0):
             sigmas = {name: whole[name] for name in ("scale_sigma", "cut_sigma", "bias_sigma")}
             yield row | sigmas
+
+    def by_encoder(self, window: Window, *, any_phase: bool = False) -> Iterator[Row]:
+        """The same windows by the encoder, whose angles are as good over a part as over all."""
+        if (read := self.read()) is None:
+            return
+        own = by_angles(window, *read)
+        sigma = self.forward.plan.angle_sigma or 0.0
+        table_sigma = 2 * sigma / np.abs(own.forward - own.backward)
+        yield from self.rows(own, "encoder", table_sigma, any_phase=any_phase)
 
     def whole(self, data: CampaignData) -> Row:
         """The whole turn, by S0's formula."""
@@ -159,7 +181,7 @@ def sliding(pair: Pair, whole: Row) -> list[Row]:
     )
     window = at_set_rate(starts, pair.half, pair.step, pair.rate)
     own = pair.by_own_angle(window, whole)
-    return [*pair.rows(window, "set rate", pair.rate_sigma), *own]
+    return [*pair.rows(window, "set rate", pair.rate_sigma), *own, *pair.by_encoder(window)]
 
 
 def growing(pair: Pair, whole: Row) -> list[Row]:
@@ -170,7 +192,11 @@ def growing(pair: Pair, whole: Row) -> list[Row]:
     samples = np.unique(np.linspace(shortest, pair.samples, MAX_ENDS).astype(int))
     window = at_set_rate(np.zeros_like(samples), samples, pair.step, pair.rate)
     own = pair.by_own_angle(window, whole)
-    return [*pair.rows(window, "set rate", pair.rate_sigma, any_phase=True), *own]
+    return [
+        *pair.rows(window, "set rate", pair.rate_sigma, any_phase=True),
+        *own,
+        *pair.by_encoder(window, any_phase=True),
+    ]
 
 
 def middle(pair: Pair, whole: Row) -> list[Row]:
@@ -180,7 +206,7 @@ def middle(pair: Pair, whole: Row) -> list[Row]:
         return [whole]
     window = at_set_rate(np.array([start]), pair.half, pair.step, pair.rate)
     rows = [whole, *pair.rows(window, "set rate", pair.rate_sigma)]
-    rows += pair.by_own_angle(window, whole)
+    rows += [*pair.by_own_angle(window, whole), *pair.by_encoder(window)]
     if pair.others is not None:
         real = at_set_rate(
             np.array([start]), pair.half, pair.step, pair.rate * (1 + pair.others.value)

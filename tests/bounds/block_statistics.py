@@ -45,7 +45,9 @@ class Piece:
     phases: Sequence[str]
 
 
-def unit(direction: str) -> Array:
+def unit(direction: str | Sequence[float]) -> Array:
+    if not isinstance(direction, str):
+        return np.asarray(np.asarray(direction) / np.linalg.norm(direction))
     sign = 1.0 if direction[0] == "+" else -1.0
     return np.asarray(sign * np.eye(3)["xyz".index(direction[1])])
 
@@ -176,7 +178,7 @@ class Layout:
             norths = turned(np.broadcast_to(north, (*turned_by.shape, 3)), about, turned_by).mean(1)
             spin = p.rates[:, None] * stretch * about
             felt = spin + EARTH_UP * ups + EARTH_LEVEL * norths
-            pull = -np.square(p.rates * stretch)[:, None] * arm * (1 - about**2)
+            pull = np.square(p.rates * stretch)[:, None] * (about * (about @ arm) - arm)
             felt_force = GRAVITY * ups + pull
             rows.append(np.hstack([felt_force @ force.T + force_bias, felt @ rate.T + rate_bias]))
         return np.vstack(rows)

@@ -44,13 +44,18 @@ class Planned:
 
 @cache
 def planned(plan: str) -> Planned:
+    return planned_as(plans.campaign(plan))
+
+
+def planned_as(document: dict[str, Any]) -> Planned:
+    """The same of a campaign file whose log is session.asc."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name) / "campaign"
         folder.mkdir()
         (folder / "session.asc").touch()
-        YAML().dump(plans.campaign(plan), folder / "campaign.yaml")
+        YAML().dump(document, folder / "campaign.yaml")
         results = chain.run(folder, Path(name) / "derived", "plan")
-        layout = Layout(pieces(plans.PLANS[plan]))
+        layout = Layout(pieces(document["plan"]))
         return Planned(layout, results["plan/manoeuvres"], results["plan/known"])
 
 
@@ -62,15 +67,20 @@ def least(plan: str, instrument: str) -> np.ndarray:
 
 def solved(plan: str, instrument: str, seed: int) -> tuple[np.ndarray, np.ndarray]:
     """Errors and stated sigmas of the 24 parameters, NaN where not determined; (24,) each."""
-    told = planned(plan)
     random = np.random.default_rng([seed, *map(ord, plan + instrument)])
+    return solved_as(planned(plan), densities(instrument), random)
+
+
+def solved_as(
+    told: Planned, density: np.ndarray, random: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray]:
+    """The same of any plan and noise."""
     unknowns = told.layout.truth()
     unknowns[:9] += random.normal(0, MISALIGNED, 9)
     unknowns[12:21] += random.normal(0, MISALIGNED, 9)
     unknowns[9:12], unknowns[21:24] = (random.normal(0, size, 3) for size in BIAS)
     unknowns[24:-3] = random.normal(0, told.layout.known[24:-3])
     unknowns[-3:] = random.normal(0, 0.05, 3)
-    density = densities(instrument)
     seconds = told.layout.seconds
     means = told.layout.read(unknowns)
     means = means + random.normal(0, 1, means.shape) * density / np.sqrt(seconds)[:, None]

@@ -12,6 +12,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from hidden_draws import SEED
 from hidden_named_sizes import FIRST, MATE, SCANNED, Counts, Truth, counted, summed
 from hidden_sizes import Reference, code, reference
 from hidden_ways import POSITIVE, WAYS, Array
@@ -57,7 +58,9 @@ def _counted(plan: str, name: str, ratio: float, trials: int) -> dict[str, Any]:
     probable; `members`: of its classes in all; `sizes`: what the named draws say of the size.
     """
     known = reference(plan)
-    random = np.random.default_rng([2028, PLANS.index(plan), list(WAYS).index(name), int(ratio)])
+    random = np.random.default_rng(
+        [SEED + 2, PLANS.index(plan), list(WAYS).index(name), int(ratio)]
+    )
     told = dict.fromkeys(("power", "in_class", "first", "members"), 0)
     asked = next(one for one in known.asked if one.name == name)
     sizes: dict[str, list[Counts]] = {FIRST: [], MATE: [], SCANNED: []}
@@ -85,7 +88,7 @@ def _counted(plan: str, name: str, ratio: float, trials: int) -> dict[str, Any]:
 def _false_names(plan: str, part: int, trials: int) -> int:
     """In how many of so many clean campaigns anything is named."""
     known = reference(plan)
-    random = np.random.default_rng([2029, PLANS.index(plan), part])
+    random = np.random.default_rng([SEED + 3, PLANS.index(plan), part])
     nothing = np.zeros(len(known.said.names))
     return sum(
         bool(causes(_drawn(plan, nothing, random), known.asked, known.law).causes)

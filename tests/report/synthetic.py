@@ -17,6 +17,7 @@ from stages.report import stage as whole
 from stages.report.outline import Section
 from stages.report.tables import Tables
 from stages.studies.declared import DECLARED
+from tests.report import synthetic_alignment as alignment
 from tests.report import synthetic_estimates as estimates
 from tests.report import synthetic_model as model
 from tests.report import synthetic_noise
@@ -46,7 +47,7 @@ def report_on(made: dict[str, Any]) -> dict[str, str]:
 def section_on(made: dict[str, Any], section: Section) -> str:
     """One of its sections as HTML: the page of this section alone, without fonts."""
     with (
-        mock.patch.object(whole, "SECTIONS", (section,)),
+        mock.patch.multiple(whole, EVIDENCE=(section,), ANNEXES=()),
         mock.patch("stages.report.page._fonts", return_value=()),
     ):
         html = report_on(made)["html"]
@@ -105,6 +106,13 @@ def _campaign(logs: tuple[str, ...] | None) -> dict[str, Any]:
     made: dict[str, Any] = {
         "campaign": rows_as(tables.CAMPAIGN, [plan.about()]),
         "known": rows_as(tables.KNOWN, plan.known()),
+        "ideal_readings": rows_as(tables.IDEAL_READINGS, plan.ideal()),
+        "certificate": rows_as(tables.CERTIFICATE, plan.certificate()),
+        "standards": tables.STANDARDS.empty(),
+        "conformity": tables.CONFORMITY.empty(),
+        "uncertainty_budget": rows_as(tables.UNCERTAINTY_BUDGET, estimates.budget()),
+        "covariance": tables.COVARIANCE.empty(),
+        "blocks": tables.BLOCKS.empty(),
         "sensors": rows_as(tables.SENSORS, plan.sensors()),
         "inputs": rows_as(tables.INPUTS, plan.inputs(manoeuvres)),
         "manoeuvres": rows_as(tables.MANOEUVRES, manoeuvres),
@@ -153,8 +161,13 @@ def _campaign(logs: tuple[str, ...] | None) -> dict[str, Any]:
     made |= model.criticised()
     for name, rows in studies(np.random.default_rng(1)).items():
         made[name] = rows_as(DECLARED.writes[name], rows)
+    made["alignments"] = rows_as(tables.ALIGNMENTS, alignment.alignments())
+    made["attitude_errors"] = rows_as(tables.ATTITUDE_ERRORS, alignment.attitude_errors())
+    made["modulation_gains"] = rows_as(tables.MODULATION_GAINS, alignment.modulation_gains())
     made["checks"] = rows_as(tables.CHECKS, estimates.checks(manoeuvres))
     made["characteristics"] = rows_as(tables.CHARACTERISTICS, estimates.characteristics())
+    for name, rows in (estimates.navigation() | estimates.repeated()).items():
+        made[name] = rows_as(getattr(tables, name.upper()), rows)
     made["compensated_traces"] = estimates.compensated(made["traces"])
     made["differences"] = rows_as(tables.DIFFERENCES, estimates.differences())
     made["result"] = counted(made)

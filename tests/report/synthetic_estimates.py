@@ -215,6 +215,78 @@ def characteristics() -> Rows:
     return [row, row | nothing | other | {"points": 0}]
 
 
+def navigation() -> dict[str, Rows]:
+    """A rest, predicted for ten minutes, and a turn; the bias of a gyro limits all of them."""
+    numbers = {"nominal": 4.0, "calibrated": 0.3, "predicted": 0.4, "by_parameters": 0.2}
+    errors = [
+        {
+            "id": f"navigation/{quantity}/{manoeuvre}/{seconds:.0f}",
+            "manoeuvre": manoeuvre,
+            "motion": motion,
+            "seconds": seconds,
+            "quantity": quantity,
+            "unit": unit,
+            **(numbers if reason == "" else {"predicted": 0.4, "by_parameters": 0.2}),
+            "normalised": 0.9 if reason == "" else None,
+            "azimuth": "gyros",
+            "reason": reason,
+        }
+        for quantity, unit in (("attitude", "rad"), ("velocity", "m/s"), ("position", "m"))
+        for manoeuvre, motion, seconds, reason in (
+            ("x-up", "rest", 60.0, ""),
+            ("x-up", "rest", 600.0, "it is not recorded for so long"),
+            ("x-forward", "turn", 48.5, ""),
+        )
+    ]
+    rests = [row for row in errors if row["reason"] == "" and row["motion"] == "rest"]
+    courses = [
+        {name: row[name] for name in ("manoeuvre", "quantity", "unit")}
+        | {"seconds": seconds}
+        | {name: row[name] * seconds for name in ("nominal", "calibrated", "predicted")}
+        for row in rests
+        for seconds in (0.0, 30.0, 60.0)
+    ]
+    shares = [
+        {"motion": row["motion"], "quantity": row["quantity"], "family": family, "source": source}
+        | {"seconds": None if row["motion"] == "turn" else row["seconds"], "share": share}
+        for row in errors
+        for family, source, share in (
+            ("gyro bias", "bias_x", 0.6),
+            ("gyro gyro_g_sensitivity", "gyro_g_sensitivity.g_xx", 0.1),
+            ("noise", "white_noise", 0.3),
+        )
+    ]
+    return {
+        "navigation_errors": errors,
+        "navigation_courses": courses,
+        "navigation_shares": shares,
+    }
+
+
+def repeated() -> dict[str, Rows]:
+    """Three calibrations of a gyro, one scatter of days that are also switch-ons, and a jump."""
+    key = {"sensor": "gyro", "quantity": "bias_x", "unit": "rad/s", "calibrations": 3}
+    nothing = {"groups": 3, "value": None, "sigma": None, "upper": None, "reason": ""}
+    components = [
+        {"component": "within", "value": 1e-7},
+        {"component": "repeatability", "value": 6e-7, "sigma": 2e-7},
+        {"component": "day + switch_on", "value": 5e-7, "sigma": 2e-7, "upper": 1.2e-6},
+        {"component": "mounting", "groups": 1, "reason": "all share one mounting"},
+        {"component": "stability", "groups": 30, "value": 2e-7, "sigma": 3e-8},
+    ]
+    dates = {"from_date": "2025-01-02", "to_date": "2026-01-02", "at": "2026-07-02"}
+    numbers = {"drift": 1e-7, "drift_sigma": 3e-7, "low": -1e-6, "median": 0.0, "high": 1e-6}
+    return {
+        "repeatability": [key | nothing | component for component in components],
+        "jumps": [
+            {**{k: key[k] for k in ("sensor", "quantity", "unit")}, "size": 2e-6, "sigma": 1e-7}
+            | {"after": "2025-01-02", "after_campaign": "a", "until": "2025-07-02"}
+            | {"until_campaign": "b", "p_value": 1e-4, "sentence": "The bias jumped."}
+        ],
+        "forecast": [key | dates | numbers | {"due": "2026-09-01", "reason": ""}],
+    }
+
+
 def compensated(traces: pd.DataFrame) -> pd.DataFrame:
     """The same envelopes with the biases taken out."""
     after = traces.copy()
@@ -232,6 +304,17 @@ def archived() -> dict[str, Any]:
         "content": "c3" * 32,
         "supersedes": "",
     }
+
+
+def budget() -> Rows:
+    """Two sources of two parameters, 3 to 4 in sigma."""
+    return [
+        {"mount": "", "sensor": sensor, "quantity": name, "source": source, "unit": "1"}
+        | {"sigma": 1e-6 * part, "share": part**2 / 25}
+        for sensor in ("accel", "gyro")
+        for name in ("scale_x", "scale_y")
+        for source, part in (("noise", 3.0), ("gravity", 4.0))
+    ]
 
 
 def earlier(made: dict[str, Any], generator: np.random.Generator) -> Rows:

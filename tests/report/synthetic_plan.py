@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from inertial import tables
+from stages.plan.ideal_readings import ideal_readings
 from tests.report.synthetic_values import AXES, DEGREE, GRAVITY, INTERVAL, REST_S, TURN_S, Rows
 
 
@@ -26,6 +27,29 @@ def about() -> dict[str, Any]:
         "compensated": False,
         "must_be_clear": 0,
     }
+
+
+STATED = {
+    "number": "C-17",
+    "customer.name": "A customer",
+    "issued": "2026-11-03",
+    "released_by": "the head of the laboratory",
+}
+
+
+def certificate() -> Rows:
+    """A few items stated; the order is the alphabet's."""
+    items = ("accreditation", "address", "name", "place")
+    names = [f"laboratory.{one}" for one in items]
+    names += ["customer.address", "customer.name", "calibrated", "calibrated_by", "issued"]
+    names += [f"item.{one}" for one in ("axes", "condition", "firmware", "maker", "part")]
+    names += [f"procedure.{one}" for one in ("deviations", "name", "version")]
+    names += [f"conditions.{one}" for one in ("humidity", "measured_with", "temperature")]
+    names += ["conditions.warm_up", "number", "opinions", "received", "released_by"]
+    return [
+        {"item": name, "text": STATED.get(name), "unit": "", "required": True, "file": ""}
+        for name in [*names, "traceability"]
+    ]
 
 
 def known() -> Rows:
@@ -55,6 +79,10 @@ def known() -> Rows:
             ("turn_rate", 0.0, 1e-3, "1", "assumed, for table.rate_sigma_ppm is not stated"),
         )
     ]
+
+
+def ideal() -> Rows:
+    return list(ideal_readings({"latitude_deg": 30.5278, "height_m": 24.0}))
 
 
 def sensors() -> Rows:

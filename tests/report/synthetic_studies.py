@@ -12,7 +12,7 @@ RATE = 10 * DEGREE
 
 
 def studies(generator: np.random.Generator) -> dict[str, Rows]:
-    """Rows of the eight tables by name."""
+    """Rows of the nine tables by name."""
     turns = [f"{axis}-{way}" for axis in SCALE for way in ("forward", "backward")]
     return {
         "epochs": [row for name in _parameters() for row in _epochs(*name, generator)],
@@ -37,10 +37,27 @@ def studies(generator: np.random.Generator) -> dict[str, Rows]:
         ],
         "time_angle": [row for turn in turns for row in _angles(turn, generator)],
         "motions": [row for turn in turns for row in _motions(turn)],
+        "encoder": _encoder(turns),
         "not_studied": [
             {"study": "turns", "subject": "z-backward", "reason": "240.38° of 360° recorded"}
         ],
     }
+
+
+def _encoder(turns: list[str]) -> Rows:
+    def row(manoeuvre: str | None, quantity: str, value: float, sigma: float, unit: str) -> dict:
+        own = {"manoeuvre": manoeuvre, "quantity": quantity, "value": value, "sigma": sigma}
+        return own | {"unit": unit, "order": None, "p_value": None}
+
+    eccentric = {"order": 1.0, "p_value": 0.5}
+    return [
+        row(None, "delay", 3.0e-3, 3e-6, "s") | {"p_value": 0.2},
+        row(None, "bandwidth", 53.05, 0.05, "Hz"),
+        row(None, "sine", 5.03e-5, 1.4e-6, "rad") | eccentric,
+        row(None, "cosine", -2.98e-5, 1.4e-6, "rad") | eccentric,
+        *(row(turn, "scale", 5.61e-4, 4e-6, "1") for turn in turns),
+        row(turns[0], "ripple", 1.45e-5, 2e-9, "rad") | {"order": 12.0, "p_value": 1e-9},
+    ]
 
 
 def _parameters() -> list[tuple[str, str, str, float]]:

@@ -1,4 +1,4 @@
-"""The report for print: pages, text, the same bytes, and nothing from outside."""
+"""The report for print: pages, text, PDF/A, the same bytes, and nothing from outside."""
 
 from __future__ import annotations
 
@@ -31,10 +31,13 @@ def page() -> str:
     return synthetic.report_on(synthetic.poor() | {name: whole[name] for name in kept})["html"]
 
 
+ATTACHED = {"a.calibration.json": b'{"bias": [1]}\n' * 50, "a.dcc.xml": b"<dcc/>\n"}
+
+
 @cache
 def printed() -> bytes:
     """The same for print."""
-    return as_pdf(page())
+    return as_pdf(page(), ATTACHED)
 
 
 def unpacked(document: bytes) -> bytes:
@@ -72,13 +75,45 @@ def test_it_holds_text(tmp_path: Path) -> None:
 
 @needs_pango
 def test_a_figure_says_in_words_what_it_shows() -> None:
-    (words,) = re.findall(r'role="img" aria-label="([^"]*)"', page())
-    assert f"/Alt ({words})".encode() in unpacked(printed())
+    figures = re.findall(r'role="img" aria-label="([^"]*)"', page())
+    assert figures
+    for words in figures:
+        assert f"/Alt ({words})".encode() in unpacked(printed())
+
+
+@needs_pango
+def test_it_declares_pdf_a_3a_with_what_this_asks_for() -> None:
+    """ISO 19005-3: part and level in XMP, output intent, language, tags, every font embedded."""
+    content = unpacked(printed())
+    assert re.search(rb'pdfaid:part="3" pdfaid:conformance="A"', content)
+    assert re.search(rb"/S /GTS_PDFA1\b", content)
+    assert b"/DestOutputProfile" in content and b"sRGB" in content
+    assert b"/Lang (en)" in content and b"/Marked true" in content
+    described = len(re.findall(rb"/Type /FontDescriptor\b", content))
+    assert described == len(re.findall(rb"/FontFile[23]? \d+ 0 R", content)) > 0
+    for word in (b"/JavaScript", b"/Encrypt", b"/LZWDecode", b"/Launch"):
+        assert word not in content
+
+
+@needs_pango
+def test_the_files_are_attached_as_they_are(tmp_path: Path) -> None:
+    content = unpacked(printed())
+    assert content.count(b"/AFRelationship /Data") == 2
+    (files,) = re.findall(rb"/AF \[([^\]]*)\]", content)
+    assert len(set(re.findall(rb"\d+ 0 R", files))) == 2
+    for text in ATTACHED.values():
+        assert text in content
+    if shutil.which("pdfdetach") is None:
+        pytest.skip("pdfdetach is not installed (Debian package poppler-utils)")
+    file = tmp_path / "report.pdf"
+    file.write_bytes(printed())
+    subprocess.run(["pdfdetach", "-saveall", "-o", tmp_path, file], check=True)
+    assert {name: (tmp_path / name).read_bytes() for name in ATTACHED} == ATTACHED
 
 
 @needs_pango
 def test_the_same_page_gives_the_same_bytes() -> None:
-    assert as_pdf(page()) == printed()
+    assert as_pdf(page(), ATTACHED) == printed()
 
 
 @needs_pango
@@ -94,8 +129,10 @@ def test_also_where_fonttools_makes_the_subsets_of_fonts(monkeypatch: pytest.Mon
 @needs_pango
 def test_it_tells_neither_the_time_nor_the_machine() -> None:
     content = unpacked(printed())
-    for word in (b"CreationDate", b"ModDate", str(Path.cwd()).encode(), b"file://"):
+    for word in (str(Path.cwd()).encode(), b"file://"):
         assert word not in content
+    dates = re.findall(rb"/(?:CreationDate|ModDate) \(([^)]*)\)", content)
+    assert dates == [b"D:19700101000000Z"] * 4  # those that the two attachments must have
 
 
 @needs_pango

@@ -16,34 +16,42 @@ import pyarrow.parquet as pq
 import pytest
 
 from stages.report.outline import Heading, Paragraph, Part, Section, Table
+from stages.report.sections import certificate, ideal_triad, uncertainty_budget
 from stages.report.sections.parameters import PARAMETERS
-from stages.report.stage import SECTIONS, STAGE
+from stages.report.stage import ANNEXES, EVIDENCE, STAGE
 from tests.report import synthetic, synthetic_faults, synthetic_unmodelled
 from tests.report.synthetic_diagnosis import diagnosed
 from tests.report.synthetic_values import Held
 
 TITLES = [
-    "Verdict",
-    "Parameters",
-    "Unmodelled effects",
-    "What shows each cause",
-    "Undetermined parameters",
+    "Certificate",
+    "What is wrong, and what was done",
+    "Noise",
     "Residuals",
+    "Unmodelled effects",
     "Comparisons",
     "Compensation",
-    "Sensor characteristics",
-    "Earlier calibrations",
-    "Recorded manoeuvres",
-    "Raw data",
-    "Noise",
+    "Worth in navigation",
+    "Alignment and rotation modulation",
+    "Uncertainty budget",
     "Temperature",
+    "Earlier calibrations",
+    "Repeatability and drift",
+    "Parameters",
+    "Undetermined parameters",
+    "What shows each cause",
+    "Sensor characteristics",
     "Parameters against averaging time",
     "Studies",
+    "Recorded manoeuvres",
+    "Raw data",
     "White noise by manoeuvre",
     "Known quantities",
+    "Ideal readings at the site",
     "Data accounting",
     "Provenance",
 ]
+AT_REST = "at rest on the level"
 HOSTILE = '<script>alert("1")</script>&$x_1$</style><img src=x onerror=alert(1)>'
 
 
@@ -96,8 +104,8 @@ def number(cell: str) -> float:
 
 def test_sections_stand_in_their_order() -> None:
     page = Page(synthetic.documents()["html"])
-    headings = [heading.lstrip("0123456789 ") for heading in page.headings]
-    assert headings == TITLES
+    assert [heading.partition(" ")[2] for heading in page.headings] == TITLES
+    assert page.headings[13].startswith("A ")
 
 
 def test_every_determined_parameter_stands_with_its_sigma_and_unit() -> None:
@@ -144,8 +152,8 @@ def test_the_result_that_counts_stands_first_and_once() -> None:
     made["result"]["value"] += made["result"]["sigma"]  # by no method: a mixture
     made["result"]["method"] = "mixture"
     page = Page(synthetic.report_on(made)["html"])
-    first = [row for row in page.rows if row.count("/") == 2 and "bias_x" in row]
-    assert first[:2] == ["diagnosis/accelerometer/bias_x", "diagnosis/gyroscope/bias_x"]
+    first = [row for row in page.rows if re.fullmatch(r"diagnosis/\w+/bias_x", row)]
+    assert first == ["diagnosis/accelerometer/bias_x", "diagnosis/gyroscope/bias_x"]
     # 1.30e-6 rad/s and five sigma of 2.1e-8 (the extended fit moved it by four) are 0.2898 °/h
     assert number(page.rows["diagnosis/gyroscope/bias_x"][1]) == pytest.approx(0.2898, abs=1e-4)
     assert page.text.count("Result: Gyroscope, mean over the members of a class") == 1
@@ -202,8 +210,19 @@ def test_mounts_stand_apart() -> None:
     said = words_of(parameters_of(made))
     assert "Result: Accelerometer, joint fit of all manoeuvres" in said
     assert "Result: Accelerometer (mount lying), joint fit of all manoeuvres" in said
-    page = Page(synthetic.report_on(made)["html"])
-    assert "Accelerometer (mount lying)joint0 of 12" in page.text.replace("\n", "")
+    values = synthetic.section_on(made, certificate.SECTION)
+    assert values.count("frame: case") == 2
+    assert "mount lying, frame: case" in values
+
+
+def test_the_budget_has_the_shares_of_each_kind() -> None:
+    """Parts of 3 and 4 ppm are 36 and 64 % of (5 ppm)²."""
+    shown = synthetic.section_on(synthetic.brief(), uncertainty_budget.SECTION)
+    cells = re.findall(r"<td[^>]*>([^<]*)</td>", shown)
+    assert cells == [
+        *("Accelerometer, scale error", "5.0", "ppm", "36", "64"),
+        *("Gyro, scale error", "5.0", "ppm", "36", "64"),
+    ]
 
 
 def test_an_unmodelled_effect_is_named_with_its_numbers() -> None:
@@ -302,6 +321,22 @@ def test_earlier_calibrations_and_the_archive_are_named() -> None:
     assert "data/history/simulated/NovAtel+SPAN-CPT/SIM-001/2026-11-02-made-up.parquet" in text
 
 
+def test_ideal_readings_stand_in_both_frames() -> None:
+    """At 30.5278°: 15.0411 °/h times cosine and sine; S0 has g = 9.7936174 m/s² there."""
+    html = synthetic.section_on(synthetic.campaign(()), ideal_triad.SECTION)
+    cells = (re.findall(r"<td[^>]*>([^<]*)</td>", line) for line in html.split("<tr"))
+    ned, enu = ([number(cell) for cell in own[1:]] for own in cells if own[:1] == [AT_REST])
+    assert ned == pytest.approx([12.9561, 0, -7.6402, 0, 0, -9.793617], abs=6e-5)
+    assert enu == pytest.approx([0, 12.9561, 7.6402, 0, 0, 9.793617], abs=6e-5)
+
+
+def test_the_gain_by_rotation_stands_with_its_sigma() -> None:
+    """65 s at 6 °/s: half the angle in radians, 3.40."""
+    text = Page(synthetic.documents()["html"]).text
+    assert "21.7 arcmin at rest and by 6.37 arcmin under rotation, 3.40 ± 0.15 times less" in text
+    assert "A turn does: the bias turns with the case" in text
+
+
 def test_texts_from_outside_are_harmless() -> None:
     tables = synthetic.brief("x-up.asc")
     for table in ("campaign", "known", "inputs", "manoeuvres", "accounts", "refused", "performed"):
@@ -375,9 +410,11 @@ def test_the_same_tables_give_the_same_bytes() -> None:
 def test_a_campaign_that_gave_nothing_says_so_in_words() -> None:
     documents = synthetic.report_on(synthetic.poor())
     page = Page(documents["html"])
-    headings = [heading.lstrip("0123456789 ") for heading in page.headings]
+    headings = [heading.partition(" ")[2] for heading in page.headings]
     # Where no parameter depends on the temperature nothing is said of it; so of figures.
     silent = ("Temperature", "Sensor characteristics")
+    silent += ("Worth in navigation", "Alignment and rotation modulation", "Uncertainty budget")
+    silent += ("Repeatability and drift",)
     assert headings == [title for title in TITLES if title not in silent]
     assert "Verdict: not usable" in documents["txt"]
     assert "Nothing was estimated of any sensor." in page.text
@@ -405,7 +442,9 @@ def test_one_sensor_without_time_stamps_or_turns() -> None:
     tables["result"] = tables["result"].query("sensor == 'accel'")
     tables["campaign"]["serial"] = "unknown"
     documents = synthetic.report_on(tables)
-    assert "Gyroscopejoint0 of 12" in Page(documents["html"]).text.replace("\n", "")
+    values = synthetic.section_on(tables, certificate.SECTION)
+    gyros = re.findall(r'data-label="Gyroscope value">([^<]*)</td>', values)
+    assert gyros == ["—"] * 12
     assert "without time stamps" in documents["html"]
     assert "not recorded" in documents["html"]
 
@@ -463,7 +502,7 @@ def write(tables: dict[str, Any], derived: Path) -> None:
 
 def test_a_section_reads_no_table_but_those_it_declares() -> None:
     made = synthetic.campaign(logs=("z-backward.asc",))
-    assert {name for section in SECTIONS for name in section.reads} == set(STAGE.reads)
-    for section in SECTIONS:
+    assert {name for section in (*EVIDENCE, *ANNEXES) for name in section.reads} == set(STAGE.reads)
+    for section in (*EVIDENCE, *ANNEXES):
         own = {name: made[name] for name in (*section.reads, "provenance")}
         assert list(section.parts(synthetic.tables_of(own))), section.key

@@ -93,3 +93,20 @@ def test_a_fencepost_stands_on_top_of_the_published_values():
     assert "Scale factors of the gyros: fencepost." in text(section)
     (_, table) = of(section, Table)
     assert table.rows[0].anchor == named["id"] and table.rows[0].tone == "fair"
+
+
+def test_the_encoder_stands_with_its_delay_and_eccentricity():
+    """50.3 µrad are 10.38 arcsec; 1/(2π 3 ms) is 53.05 Hz."""
+    rows = synthetic.campaign(())["encoder"]
+    section = built(studies.SECTION, synthetic.campaign(()))
+    common, _turns = [
+        part
+        for part in of(section, Table)
+        if "encoder" in part.caption or "Turn by" in part.caption
+    ]
+    cells = {row.cells[1]: row.cells[2:5] for row in common.rows}
+    assert cells["delay of the gyro less that of the encoder"] == ("3.0000", "0.0030", "ms")
+    sine = cells["error of the encoder, sine of 1 times its angle"]
+    assert sine == ("10.38", "0.29", "arcsec")
+    assert len(rows) == len(common.rows) + len(_turns.rows)
+    assert "rest on the encoder's" in text(section)

@@ -15,9 +15,11 @@ NAMES = {
     "composite_error": _("Composite error, over the largest input"),
     "linearity_error": _("Linearity error, over the largest input"),
     "asymmetry": _("Scale factor asymmetry"),
+    "threshold": _("Threshold, at most"),
+    "resolution": _("Resolution, at most"),
     "acceleration_insensitive_drift": _("Acceleration-insensitive drift rate"),
 }
-UNITS = {"1": PPM, "rad/s": DEGREES_PER_HOUR}
+UNITS = {"1": PPM, "rad/s": DEGREES_PER_HOUR, "m/s²": METRES}
 INPUTS = {"rad/s": DEGREES_PER_SECOND, "m/s²": METRES}
 
 
@@ -58,8 +60,11 @@ SECTION = Section(
         "input. The composite error is that of the whole result."
     ),
     _(
-        "A linearity error within the figure for noise alone is an upper limit. The "
-        "acceleration-insensitive drift rate is what a gyro reads whatever force it is under."
+        "A linearity error within the figure for noise alone is an upper limit. Threshold and "
+        "resolution are the least input, and the least change of it, that gave at least half of "
+        "the expected output with 95 % confidence: the sensor may feel less than the plan "
+        "applied. The acceleration-insensitive drift rate is what a gyro reads whatever force it "
+        "is under."
     ),
     ("characteristics",),
     parts,
@@ -74,13 +79,17 @@ def _table_rows(rows: Sequence[Record]) -> Iterator[Row]:
                 continue
             yield head(f"{name}: {SENSOR[sensor]}")
             unit = UNITS[own[0]["unit"]]
-            decimals = numbers.common_decimals([unit.of(row["sigma"]) for row in own])
+            sigmas = [unit.of(row["sigma"]) for row in own if row["sigma"] is not None]
+            decimals = numbers.common_decimals(sigmas)
             for row in own:
                 yield _table_row(row, unit, decimals)
 
 
 def _table_row(row: Record, unit: Unit, decimals: int | None) -> Row:
-    value, sigma = numbers.with_sigma(unit.of(row["value"]), unit.of(row["sigma"]), decimals)
+    if row["sigma"] is None:
+        value, sigma = numbers.significant(unit.of(row["value"]), 2), "–"
+    else:
+        value, sigma = numbers.with_sigma(unit.of(row["value"]), unit.of(row["sigma"]), decimals)
     largest = ""
     if row["largest_input"] is not None:
         given = INPUTS[row["input_unit"]]

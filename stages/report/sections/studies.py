@@ -29,6 +29,7 @@ from stages.report.outline import (
     value_and_sigma,
 )
 from stages.report.sections.averaging import epoch_parts
+from stages.report.sections.encoder import encoder_parts
 from stages.report.tables import Record, Tables
 
 Pair = tuple[str, str, str]  # axis, turn forward, turn backward
@@ -46,6 +47,7 @@ BY = {
     WHOLE_TURN: _("the whole turn"),
     "set rate": _("180° by time, at the set rate"),
     "own angle": _("180° by the time and angle of these turns"),
+    "encoder": _("180° by the encoder of the table"),
     "other turns": _("180° by the speed of turns about other axes"),
 }
 SIGMA = {"scale": "cut_sigma", "bias": "bias_sigma"}
@@ -59,6 +61,7 @@ def parts(tables: Tables) -> Iterator[Part]:
     yield from list(epoch_parts(tables)) or [_none(tables, "rests")]
     yield Heading(_("Turns, window by window"))
     yield from list(_windows(tables)) or [_none(tables, "turns")]
+    yield from encoder_parts(tables)
     yield Heading(_("Angle of the table against time"))
     yield from list(_time_and_angle(tables)) or [_none(tables, "turns")]
     yield _middles(tables)
@@ -85,7 +88,7 @@ SECTION = Section(
     ),
     (
         *("epochs", "spreads", "windows", "growing", "middles"),
-        *("time_angle", "motions", "not_studied"),
+        *("time_angle", "motions", "encoder", "not_studied"),
     ),
     parts,
 )
@@ -115,6 +118,8 @@ def _windows(tables: Tables) -> Iterator[Part]:
     if grows := _by_time(tables.rows("growing"), wholes):
         yield _growing(grows, wholes)
         yield from (Paragraph(_on_angle(own, wholes[pair])) for pair, own in grows.items())
+    if read := _by_time(tables.rows("growing"), wholes, "encoder"):
+        yield _growing(read, wholes, by_encoder=True)
 
 
 def _pair(row: Record) -> Pair:
@@ -125,10 +130,10 @@ def _wholes(tables: Tables) -> dict[Pair, Record]:
     return {_pair(row): row for row in tables.rows("middles") if row["by"] == WHOLE_TURN}
 
 
-def _by_time(rows: Sequence[Record], wholes: Wholes) -> By:
+def _by_time(rows: Sequence[Record], wholes: Wholes, by: str = "set rate") -> By:
     by_pair: By = {}
     for row in rows:
-        if row["by"] == "set rate" and _pair(row) in wholes:
+        if row["by"] == by and _pair(row) in wholes:
             by_pair.setdefault(_pair(row), []).append(row)
     return dict(list(by_pair.items())[:MOST_PAIRS])
 
@@ -159,7 +164,7 @@ def _sliding(slides: By, wholes: Wholes) -> Figure:
     )
 
 
-def _growing(grows: By, wholes: Wholes) -> Figure:
+def _growing(grows: By, wholes: Wholes, *, by_encoder: bool = False) -> Figure:
     with drawing.style():
         figure, axes = drawing.panels(len(grows), 2, 0.95, MARGINS, sharex=False)
         for line, (pair, rows) in zip(axes, grows.items(), strict=True):
@@ -171,7 +176,17 @@ def _growing(grows: By, wholes: Wholes) -> Figure:
                 panel.set_ylim(middle - reach, middle + reach)
         for panel in axes[-1]:
             panel.set_xlabel(_("Angle from the start of the steady part, °"))
-        drawn = drawing.svg(figure, "growing")
+        drawn = drawing.svg(figure, "growing-encoder" if by_encoder else "growing")
+    if by_encoder:
+        return Figure(
+            _(
+                "The same windows by the encoder, whatever the speed of the table, corrected for "
+                "its harmonics. Coloured band: ± σ of noise and of an oscillation cut at any "
+                "phase; grey: the whole turn ± σ."
+            ),
+            drawn,
+            _("Scale factor and bias against the angle of the window, by the encoder."),
+        )
     return Figure(
         "Windows by time from the start of the steady part to an angle that grows. Coloured band: "
         "± σ of noise and of an oscillation cut at any phase, without the table's speed; grey: the "

@@ -1,4 +1,4 @@
-"""Page one: the verdict of each sensor in a sentence, then one card for each cause."""
+"""The verdict of each sensor in a sentence, and one card for each cause."""
 
 from __future__ import annotations
 
@@ -17,16 +17,7 @@ from inertial.text.numbers import (
     significant,
     whole,
 )
-from inertial.text.parameters import JOINT
 from stages.report import outline
-from stages.report.results import (
-    MIXTURE,
-    RESULT_TABLES,
-    Estimate,
-    final_results,
-    kind_of,
-    quantity_of,
-)
 from stages.report.sections.findings import (
     FINDING_TABLES,
     MODEL,
@@ -45,11 +36,6 @@ from stages.report.words import capital
 SIMULATED = _(
     "SIMULATED: recorded by the simulated laboratory. No instrument of this serial was calibrated."
 )
-FITS = {
-    JOINT: _("joint"),
-    MIXTURE: _("mean over a class"),
-}
-KINDS = {"bias": _("bias"), "scale": _("scale error"), "cross": _("cross-axis term")}
 # The verdicts from the worst to the best, with words, tone and meaning.
 LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
     "not_usable": (
@@ -105,7 +91,7 @@ def worst(tables: Tables) -> str:
     return next((level for level in LEVELS if level in given), "not_usable")
 
 
-def _sentences(tables: Tables) -> Iterator[str]:
+def verdict_sentences(tables: Tables) -> Iterator[str]:
     """A sentence for each sensor, the cause first."""
     if not tables.rows("verdict"):
         yield _("Nothing was estimated of any sensor.")
@@ -214,22 +200,11 @@ def _links(tables: Tables, row: Record) -> Iterator[outline.Link]:
         yield outline.Link(_("What shows it in the recording"), f"evidence/{row['id']}")
 
 
-# ---- The plate, the section, and the text.
-
-
-def _largest_sigmas(result: Estimate) -> dict[str, str]:
-    largest: dict[str, str] = {}
-    rows = [row for row in result.calibration.values() if row["sigma"] is not None]
-    for kind in KINDS:
-        if own := [row for row in rows if kind_of(row["parameter"]) == kind]:
-            worst = max(own, key=lambda row: float(row["sigma"]))
-            unit = quantity_of(worst).laboratory
-            largest[kind] = f"{significant(unit.of(worst['sigma']), 2)} {unit.name}"
-    return largest
+# ---- The section, and the text.
 
 
 def facts(tables: Tables) -> outline.Pairs:
-    """What stands on the plate of the report: instrument, serial, dates, site, table."""
+    """What stands below the text: instrument, serial, dates, site, table."""
     campaign = tables.row("campaign")
     dates = sorted({row["recorded_on"] for row in tables.rows("clocks") if row["recorded_on"]})
     known = {row["quantity"]: row["value"] for row in tables.rows("known")}
@@ -270,45 +245,21 @@ def _with_unit(value: float | None, decimals: int, unit: str) -> str:
 
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
-    """The verdict, a sentence per sensor, a card per cause, the results in short, the plate."""
-    word, tone, meaning = LEVELS[worst(tables)]
-    yield outline.Level(word, tone, meaning)
-    yield outline.Sentences(tuple(_sentences(tables)))
+    """A card per cause."""
+    if not causes(tables):
+        yield outline.Paragraph(_("Nothing is wrong that this campaign could show."), "good")
     for row in causes(tables):
         yield _card(tables, row)
-    sigmas = ("Bias σ", "Scale σ", _("Cross-axis σ"))
-    yield outline.Table(
-        _("The result: parameters determined, and the largest σ of each kind."),
-        outline.columns("text", "Sensor", "Fit")
-        + outline.columns("number", "Determined", *sigmas, "p of the fit"),
-        [_in_short(row) for row in final_results(tables)],
-    )
-    yield outline.Facts(facts(tables))
 
 
 SECTION = outline.Section(
     "verdict",
-    "Verdict",
-    _("Whether this calibration can be used, and why: each cause once."),
+    _("What is wrong, and what was done"),
+    _("Each cause once, with its consequences: how sure and how large it is, and its cure."),
     "",
-    (
-        *RESULT_TABLES,
-        *FINDING_TABLES,
-        *("campaign", "known", "clocks"),
-    ),
+    (*FINDING_TABLES, "campaign", "known", "clocks"),
     parts,
 )
-
-
-def _in_short(result: Estimate) -> outline.Row:
-    largest = _largest_sigmas(result)
-    return outline.table_row(
-        result.sensor,
-        FITS.get(result.method, _("with effects")),
-        f"{len(result.calibration)} of 12",
-        *(largest.get(kind, "—") for kind in KINDS),
-        probability(result.fit["p_value"]) if result.fit else "—",
-    )
 
 
 def as_text(tables: Tables) -> str:
@@ -318,7 +269,7 @@ def as_text(tables: Tables) -> str:
     if tables.row("campaign")["simulated"]:
         lines += [*textwrap.wrap(SIMULATED, 80), ""]
     lines += [f"Verdict: {word}", *textwrap.wrap(meaning, 80), ""]
-    for sentence in _sentences(tables):
+    for sentence in verdict_sentences(tables):
         lines += textwrap.wrap(sentence, 80, initial_indent="- ", subsequent_indent="  ")
     for row in causes(tables):
         title = f"{title_of(tables, row)} ({_grade(row)})"
