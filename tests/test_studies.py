@@ -193,6 +193,7 @@ def told(results, folder, scales, window="", **changes) -> list[str]:
         "verdict": tables.VERDICTS.empty(),
         "growing": results["studies/growing"],
         "motions": results["studies/motions"],
+        "blocks": results["segment/blocks"],
     }
     settings = {"archive": [folder / "archive"], "provenance": {}, "level": 0.01}
     made = history(**{**needed, "published": rows, **settings, **changes})

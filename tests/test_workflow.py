@@ -31,7 +31,7 @@ pytestmark = pytest.mark.workflow
 
 PAGE = "reports/demo.html"
 PUBLISHED = "data/raw/demo/published.yaml"
-DIAGNOSED = {"diagnosis", "compensation", "history", "report"}
+DIAGNOSED = {"diagnosis", "compensation", "navigation", "alignment", "history", "report"}
 USING = {"comparison", "simulation", "criticism", "extension", *DIAGNOSED}
 ESTIMATION = {"accelerometer", "gyroscope", "studies", *USING}
 AFTER_DECODE = {"quality", "segment", "noise", *ESTIMATION}
@@ -100,7 +100,8 @@ def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_the_rules_are_the_stages_with_what_they_declare(workflow: Workflow) -> None:
-    summary = workflow.run("--detailed-summary").stdout.splitlines()
+    documents = ["reports/demo.pdf", "reports/demo.calibration.json"]
+    summary = workflow.run("--detailed-summary", "--", *documents).stdout.splitlines()
     names = summary[0].split("\t")
     outputs: dict[str, set[str]] = {}
     for line in summary[1:]:
