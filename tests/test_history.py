@@ -116,6 +116,7 @@ def run(
     verdicts: Sequence[Row] = (),
     published: Sequence[Row] = (),
     settings: Row | None = None,
+    may_change: Sequence[Row] = (),
     **facts: Any,
 ) -> Row:
     """Run the stage on a campaign in `place`, into the archive there; its row of `archived`.
@@ -139,6 +140,7 @@ def run(
             "campaign": (tables.CAMPAIGN, [campaign]),
             "inputs": (tables.INPUTS, [log]),
             "published": (tables.PUBLISHED, published),
+            "allowed_changes": (tables.ALLOWED_CHANGES, may_change),
         },
         "accelerometer": {"parameters": (tables.PARAMETERS, [])},
         "gyroscope": {"parameters": (tables.PARAMETERS, estimates)},

@@ -14,7 +14,9 @@ from inertial.campaign.records import rows_of
 from inertial.estimation.history_of_values import History, drift, jump, predicted
 from inertial.estimation.repeatability import components
 from inertial.tables.parquet import write_once
+from inertial.tables.yaml_file import YamlFile
 from stages.history.repeatability import repeatability_rows, series_of
+from stages.plan.allowed_changes import allowed_changes
 
 sys.path.insert(0, str(Path(__file__).parent / "histories"))
 import history_draws
@@ -151,6 +153,20 @@ def test_without_a_tolerance_nothing_is_due_and_too_few_give_no_interval(tmp_pat
     (row,) = rows_of(pd.read_parquet(tmp_path / "derived/c/history/forecast.parquet"))
     assert row["due"] is None and "config.yaml" in row["reason"]
     assert row["low"] < 1e-5 < row["high"]
+
+
+def test_the_change_that_a_campaign_allows_counts_before_that_of_the_settings(tmp_path):
+    """Half a degree per hour of the campaign file, 2.424e-6 rad/s, not the settings' 1 rad/s."""
+    (tmp_path / "campaign.yaml").write_text("may_change: {gyro: {bias_deg_h: 0.5}}")
+    (stated,) = allowed_changes(YamlFile(tmp_path / "campaign.yaml"))
+    settings = {"level": 0.01, "tolerance": {"gyro_bias": 1.0}}
+    for year, bias in enumerate((1.00e-5, 1.05e-5, 0.98e-5)):
+        date = f"202{year}-03-02"
+        facts = {"campaign": f"c{year}", "date": date, "settings": settings}
+        archive.run(tmp_path, bias, may_change=[stated], **facts)
+    (row,) = rows_of(pd.read_parquet(tmp_path / "derived/c2/history/forecast.parquet"))
+    assert row["tolerance"] == pytest.approx(2.424e-6, rel=1e-3)
+    assert row["due"] >= "2022-03-02"
 
 
 def test_an_archive_of_version_3_is_read(tmp_path):

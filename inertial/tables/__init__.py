@@ -10,7 +10,13 @@ from inertial.tables.calibrated import (
     EARLIER,
     UNCERTAINTY_BUDGET,
 )
-from inertial.tables.certified import CERTIFICATE, CONFORMITY, STANDARDS, TOLERANCES
+from inertial.tables.certified import (
+    ALLOWED_CHANGES,
+    CERTIFICATE,
+    CONFORMITY,
+    STANDARDS,
+    TOLERANCES,
+)
 from inertial.tables.diagnosed import (
     CANDIDATE_EFFECTS,
     CANDIDATES,
@@ -117,6 +123,7 @@ __all__ = [
     "ACCOUNTS",
     "ALIGNMENTS",
     "ALLAN",
+    "ALLOWED_CHANGES",
     "ARCHIVED",
     "ATTITUDE_ERRORS",
     "AVERAGING",

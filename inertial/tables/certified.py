@@ -44,6 +44,21 @@ TOLERANCES = Table(
         Column("decision_rule", TEXT, "", "guard_band or simple_acceptance"),
     ),
 )
+ALLOWED_CHANGES = Table(
+    "allowed_changes",
+    1,
+    (
+        SENSOR,
+        Column("kind", TEXT, "", "bias, scale or cross"),
+        Column(
+            "limit",
+            DOUBLE,
+            "as unit",
+            "by how much it may change until the IMU is due, by may_change of the campaign file",
+        ),
+        Column("unit", TEXT, "", "unit of limit, SI"),
+    ),
+)
 CONFORMITY = Table(
     "conformity",
     1,

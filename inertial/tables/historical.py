@@ -80,7 +80,13 @@ FORECAST = Table(
         Column("low", DOUBLE, "as unit", "lower limit of its 95 % interval", nullable=True),
         Column("median", DOUBLE, "as unit", "median of what it may find", nullable=True),
         Column("high", DOUBLE, "as unit", "upper limit of its 95 % interval", nullable=True),
-        Column("tolerance", DOUBLE, "as unit", "for a change, by config.yaml", nullable=True),
+        Column(
+            "tolerance",
+            DOUBLE,
+            "as unit",
+            "for a change, by campaign or config.yaml",
+            nullable=True,
+        ),
         Column(
             "due",
             TEXT,

@@ -107,6 +107,24 @@ class Archive:
         return Entry(path.relative_to(self.root).as_posix(), row)
 
 
+def results(entry: Entry) -> list[Row]:
+    """The parameters of the result that counted in an archived calibration, with its verdict."""
+    verdicts = {(row["mount"], row["sensor"]): row for row in entry.row["verdicts"]}
+    origin = {"campaign": entry.row["campaign"], "date": entry.row["date"], "file": entry.file}
+    nothing: Row = {"verdict": None, "condition": None}
+    rows = []
+    for row in entry.row["parameters"]:
+        if row["stage"] == RESULT and row["effect"] is None and row["value"] is not None:
+            verdict = verdicts.get((row["mount"], row["sensor"]), nothing)
+            rows.append(
+                origin
+                | {key: row[key] for key in ("id", "mount", "sensor", "value", "sigma", "unit")}
+                | {"quantity": row["parameter"]}
+                | {key: verdict[key] for key in nothing}
+            )
+    return rows
+
+
 def _row(path: Path) -> Row:
     """The one row of a file of the archive, as the newest version has it."""
     try:

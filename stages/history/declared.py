@@ -12,6 +12,7 @@ DECLARED = Declared(
         "result": From("diagnosis", tables.PARAMETERS, "result"),
         "covariance": From("diagnosis", tables.COVARIANCE),
         "verdict": From("diagnosis", tables.VERDICTS, "verdict"),
+        "allowed_changes": From("plan", tables.ALLOWED_CHANGES),
         "published": From("plan", tables.PUBLISHED),
         "growing": From("studies", tables.WINDOWS, "growing"),
         "motions": From("studies", tables.MOTIONS),

@@ -36,7 +36,7 @@ UNKNOWN = "unknown"
 ONE_GROUP = _("all calibrations share one {name}, so nothing is known of it")
 NAMES = {"day": _("day"), "mounting": _("mounting"), "switch_on": _("switch-on")}
 TOO_FEW = _("there are {count} dated calibrations, and a prediction needs {least}")
-NO_TOLERANCE = _("no tolerance is stated in config.yaml, history")
+NO_TOLERANCE = _("no tolerance is stated, by may_change of the campaign or in config.yaml")
 NOT_DUE = _("the interval stays within the tolerance for ten years")
 ALREADY_DUE = _("the tolerance is smaller than what is known to vary by the last calibration")
 ONE_DAY = _("all calibrations are of one day")
@@ -212,6 +212,14 @@ def jump_rows(
                 unit=unit,
             ),
         }
+
+
+def tolerances(settings: Mapping[str, float], stated: Sequence[Row]) -> dict[str, float]:
+    """By how much parameters may change, by sensor_kind: as stated, otherwise by the settings.
+
+    stated : rows of the table of allowed changes
+    """
+    return {**settings, **{f"{row['sensor']}_{row['kind']}": row["limit"] for row in stated}}
 
 
 def forecast_rows(

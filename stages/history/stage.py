@@ -1,7 +1,7 @@
 """This calibration into its IMU's archive, against the earlier ones and what others published."""
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from inertial.campaign.measurement import measurements_of
 from inertial.campaign.records import Row, rows_of
 from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
-from stages.history.archive import RESULT, Archive, Entry
+from stages.history.archive import Archive, results
 from stages.history.declared import DECLARED
 from stages.history.fencepost_error import off_by_a_sample
 from stages.history.published import against_published
@@ -22,6 +22,7 @@ from stages.history.repeatability import (
     jumps_of,
     repeatability_rows,
     series_of,
+    tolerances,
 )
 
 # The inputs whose content is archived.
@@ -45,6 +46,7 @@ def history(
     result: pd.DataFrame,
     covariance: pd.DataFrame,
     verdict: pd.DataFrame,
+    allowed_changes: pd.DataFrame,
     published: pd.DataFrame,
     growing: pd.DataFrame,
     motions: pd.DataFrame,
@@ -56,7 +58,8 @@ def history(
 ) -> Tables:
     """Archive the result that counts; earlier results of the same IMU; published values.
 
-    Where there are earlier results: how well they repeat, jumps, and what the next may be.
+    Where there are earlier results: how well they repeat, jumps, and what the next may be; and
+    when the IMU is due, by `tolerance` where the campaign does not state the allowed changes.
 
     The archive grows with every campaign. Later additions are read when this stage runs, but
     never cause a rerun. The parameters by all methods are kept beside the result.
@@ -86,15 +89,16 @@ def history(
             yield from off_by_a_sample(published, counted.gyro, mount, growing, motions, level)
 
     others = kept.earlier(calibration)
-    series = series_of([(each.row, _results(each)) for each in [*others, entry]])
+    series = series_of([(each.row, results(each)) for each in [*others, entry]])
     jumps = jumps_of(series, level)
+    changes = tolerances(tolerance or {}, rows_of(allowed_changes))
     return {
         "archived": [archived],
-        "earlier": [row for other in others for row in _results(other)],
+        "earlier": [row for other in others for row in results(other)],
         "published_differences": table_of(list(differences()), level),
         "repeatability": list(repeatability_rows(series, blocks)),
         "jumps": list(jump_rows(jumps, len(series))),
-        "forecast": list(forecast_rows(series, jumps, tolerance or {})) if others else [],
+        "forecast": list(forecast_rows(series, jumps, changes)) if others else [],
     }
 
 
@@ -110,28 +114,6 @@ def _made_by(provenance: Iterable[Mapping[str, Any]]) -> list[Row]:
         }
         for stage, made in sorted(by_stage.items())
     ]
-
-
-def _results(entry: Entry) -> list[Row]:
-    """The parameters of the result that counted in an archived calibration, with its verdict."""
-    verdicts = {(row["mount"], row["sensor"]): row for row in _rows(entry, "verdicts")}
-    origin = {"campaign": entry.row["campaign"], "date": entry.row["date"], "file": entry.file}
-    nothing: Row = {"verdict": None, "condition": None}
-    rows = []
-    for row in _rows(entry, "parameters"):
-        if row["stage"] == RESULT and row["effect"] is None and row["value"] is not None:
-            verdict = verdicts.get((row["mount"], row["sensor"]), nothing)
-            rows.append(
-                origin
-                | {key: row[key] for key in ("id", "mount", "sensor", "value", "sigma", "unit")}
-                | {"quantity": row["parameter"]}
-                | {key: verdict[key] for key in nothing}
-            )
-    return rows
-
-
-def _rows(entry: Entry, name: str) -> Sequence[Row]:
-    return list(entry.row[name])
 
 
 STAGE = Stage(history, DECLARED)

@@ -47,6 +47,7 @@ STANDARD = ("name", "identification", "certificate", "issued_by", "valid_until")
 # What the campaign states outside its certificate, too.
 ELSEWHERE = {"laboratory.name": "laboratory", "calibrated_by": "operator", "calibrated": "date"}
 UNKNOWN = "unknown"
+SENSORS = (("accelerometer", "accel"), ("gyro", "gyro"))  # as a file and as tables call them
 LIMITS = {  # by their key: parameter's kind, one unit in SI, and the SI unit
     "bias_micro_g": ("bias", STANDARD_GRAVITY * 1e-6, "m/s²"),
     "bias_deg_h": ("bias", DEGREE / 3600, "rad/s"),
@@ -124,7 +125,7 @@ class Statements:
     def tolerances(self) -> Iterator[Row]:
         """The limits of the parameters of each sensor, in SI."""
         rule, _file = self._stated("tolerances.decision_rule")
-        for key, sensor in (("accelerometer", "accel"), ("gyro", "gyro")):
+        for key, sensor in SENSORS:
             for name, (kind, size, unit) in LIMITS.items():
                 limit, _file = self._stated(f"tolerances.{key}.{name}")
                 if limit is not None:

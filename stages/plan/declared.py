@@ -17,6 +17,7 @@ DECLARED = Declared(
         "certificate": tables.CERTIFICATE,
         "standards": tables.STANDARDS,
         "tolerances": tables.TOLERANCES,
+        "allowed_changes": tables.ALLOWED_CHANGES,
         "manoeuvres": tables.MANOEUVRES,
         "purposes": tables.PURPOSES,
         "repairs": tables.REPAIRS,

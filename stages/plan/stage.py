@@ -15,6 +15,7 @@ from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
+from stages.plan.allowed_changes import allowed_changes
 from stages.plan.certificate import Statements
 from stages.plan.declared import DECLARED
 from stages.plan.ideal_readings import ideal_readings
@@ -112,6 +113,7 @@ def plan(
         "certificate": stated.items,
         "standards": stated.standards(),
         "tolerances": [*stated.tolerances()],
+        "allowed_changes": [*allowed_changes(file)],
         "manoeuvres": pd.DataFrame(manoeuvres)[[c.name for c in tables.MANOEUVRES.columns]],
         "purposes": [
             {"manoeuvre": row["manoeuvre"], "purpose": row["purpose"]}
