@@ -15,9 +15,9 @@ from typing import Any
 
 import pandas as pd
 
-from commands.trace.log_lines import LogLines, RecordRange, UsedPhase, lines_of, used_phases
 from commands.trace.provenance import Campaign, Provenance, StageRun
 from inertial import tables
+from inertial.campaign.log_lines import LogLines, RecordRange, UsedPhase, lines_of, used_phases
 from inertial.campaign.records import Part, Row, labels, parts_of, rows_of
 from inertial.tables.errors import Refusal
 from inertial.tables.table import Table

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from math import pi
 
@@ -14,6 +17,19 @@ ARC_SECOND = DEGREE / 3600
 DEGREE_PER_HOUR = DEGREE / HOUR
 DEGREE_PER_SQRT_HOUR = DEGREE / 60  # rad/√s
 METRE_PER_SECOND_PER_SQRT_HOUR = 1 / 60  # m/s/√s
+
+
+_SYSTEM = ContextVar("_SYSTEM", default="laboratory")
+
+
+@contextmanager
+def written_in(system: str) -> Iterator[None]:
+    """What is written meanwhile uses the units of the `laboratory` or of the `SI`."""
+    token = _SYSTEM.set(system)
+    try:
+        yield
+    finally:
+        _SYSTEM.reset(token)
 
 
 @dataclass(frozen=True)
@@ -34,6 +50,11 @@ class Quantity:
 
     laboratory: Unit
     si: Unit
+
+    @property
+    def shown(self) -> Unit:
+        """The one that what is being written uses."""
+        return self.si if _SYSTEM.get() == "SI" else self.laboratory
 
 
 MICRO_G = Unit("µg", STANDARD_GRAVITY * 1e-6)

@@ -46,11 +46,11 @@ def method_against_method(results: Results, method: str) -> Iterator[Difference]
             place=method,
             remark=(
                 _(
-                    "{words} and the joint estimate use the same data with the same sigma: there "
-                    "is nothing to compare",
+                    "{words} and the joint estimate are not independent: they use the same data "
+                    "with the same sigma",
                     words=WORDS[method],
                 )
                 if alike
-                else _("Both are from the same data, so their variances are subtracted")
+                else ""
             ),
         )

@@ -17,6 +17,7 @@ DECLARED = Declared(
         "accounts": From("decode", tables.ACCOUNTS),
         "refused": From("decode", tables.REFUSED),
         "clocks": From("decode", tables.CLOCKS),
+        "samples": From("decode", tables.SAMPLES),
         "plan_repairs": From("plan", tables.REPAIRS),
         "quality_findings": From("quality", tables.FINDINGS),
         "masks": From("quality", tables.MASKS),
@@ -101,6 +102,6 @@ DECLARED = Declared(
         "forecast": From("history", tables.FORECAST),
         "published_differences": From("history", tables.DIFFERENCES, "published_differences"),
     },
-    streams=("simulated",),  # too long for memory
+    streams=("samples", "simulated"),  # too long for memory
     documents=("html", "txt"),
 )

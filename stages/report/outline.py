@@ -5,7 +5,7 @@ What a part looks like is decided by report.html alone; a part only says what it
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Literal
@@ -48,6 +48,18 @@ def value_and_sigma(group: str = "", value: str = "value", *, unit: bool = False
     """The columns of a value, its sigma, and its unit where that differs from row to row."""
     both = [Column(value, "number", group), Column("± σ", "sigma", group)]
     return [*both, Column("unit", "unit", group)] if unit else both
+
+
+class Traced(str):
+    """A number as a cell, with the identifier by which the page traces it back to the logs."""
+
+    id: str
+
+    def __new__(cls, text: str, id: str) -> Traced:
+        """`text` as it is shown; `id` as the tables have it."""
+        made = super().__new__(cls, text)
+        made.id = id
+        return made
 
 
 @dataclass(frozen=True)
@@ -259,3 +271,4 @@ class Report:
     running: str  # what stands on top of every printed page
     simulated: bool
     chapters: Sequence[Chapter]
+    origins: Mapping[str, Sequence[str]]  # of traced numbers, by their identifier's folder

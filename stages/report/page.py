@@ -42,10 +42,10 @@ ALWAYS = frozenset(
 
 
 def page(report: Report) -> str:
-    """One file: text, tables, figures, style and fonts; no network, no script.
+    """One file: text, tables, figures, style, fonts and one short script; no network.
 
-    Whatever came from outside is escaped; only the figures, which are drawn here,
-    and the style go in as they are.
+    Whatever came from outside is escaped; only the figures, which are drawn here, the style and
+    the script go in as they are.
     """
     environment = Environment(
         loader=FileSystemLoader(FOLDER, encoding="utf-8"),
@@ -56,11 +56,13 @@ def page(report: Report) -> str:
     )
     environment.filters["drawn"] = Markup
     environment.tests["long"] = _long
-    style = Markup((FOLDER / "report.css").read_text(encoding="utf-8"))
+    style, script = (
+        Markup((FOLDER / file).read_text(encoding="utf-8")) for file in ("report.css", "report.js")
+    )
     template = environment.get_template("report.html")
-    plain = unescape(template.render(report=report, style=style, fonts=[]))
+    plain = unescape(template.render(report=report, style=style, script=script, fonts=[]))
     fonts = _fonts("".join(sorted(ALWAYS.union(plain))))
-    return template.render(report=report, style=style, fonts=fonts)
+    return template.render(report=report, style=style, script=script, fonts=fonts)
 
 
 def _long(text: str, kind: str) -> bool:

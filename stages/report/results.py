@@ -127,7 +127,7 @@ class Estimate:
                     p_is=p_is,
                 )
             ), "fair"
-        unit = units.quantity("bias", fit["unit"]).laboratory
+        unit = units.quantity("bias", fit["unit"]).shown
         scatter = f"{numbers.significant(unit.of(fit['scatter']), 2)} {unit.name}"
         return (
             _(
@@ -297,12 +297,9 @@ def _without_effect(parameter: str) -> str:
     return parameter.rpartition(".")[2]
 
 
-def written(group: Sequence[Record]) -> list[tuple[str, ...]]:
-    """Value and sigma of parameters of one kind, in the laboratory's unit and in the SI's."""
-    quantities = [quantity_of(row) for row in group]
-    laboratory = in_units(group, [quantity.laboratory for quantity in quantities])
-    si = in_units(group, [quantity.si for quantity in quantities])
-    return [(*pair, *si_pair) for pair, si_pair in zip(laboratory, si, strict=True)]
+def written(group: Sequence[Record]) -> list[tuple[str, str]]:
+    """Value and sigma of parameters of one kind, with common decimals."""
+    return in_units(group, [quantity_of(row).shown for row in group])
 
 
 def in_units(group: Sequence[Record], each: Sequence[units.Unit]) -> list[tuple[str, str]]:

@@ -43,4 +43,4 @@ def _unit(cause: str, unit: str, size: float) -> units.Unit:
         return LARGE[unit][1]
     if unit == "1" and cause in FACTORS:
         return RATIO
-    return units.quantity(cause, unit).laboratory
+    return units.quantity(cause, unit).shown

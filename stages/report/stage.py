@@ -10,7 +10,9 @@ from typing import Any
 from inertial.tables.stage import Stage
 from inertial.text.messages import _
 from inertial.text.numbers import shortened
+from inertial.text.units import written_in
 from stages.report.declared import DECLARED
+from stages.report.origins import origins
 from stages.report.outline import Chapter, Report, Section
 from stages.report.page import page
 from stages.report.sections import (
@@ -57,6 +59,8 @@ ANNEXES = (
     parameters.PARAMETERS,
     parameters.UNDETERMINED,
     findings.SECTION,
+    residuals.TURNS,
+    compensation.CHECKS,
     characteristics.SECTION,
     averaging.SECTION,
     studies.SECTION,
@@ -70,9 +74,15 @@ ANNEXES = (
 )
 
 
-def report(provenance: Mapping[str, Mapping[str, Any]], **read: Any) -> dict[str, str]:
+def report(
+    provenance: Mapping[str, Mapping[str, Any]], *, units: str = "laboratory", **read: Any
+) -> dict[str, str]:
     """The report of one campaign as a page, and its verdict as plain text."""
-    tables = Tables(read, provenance)
+    with written_in(units):
+        return _report(Tables(read, provenance))
+
+
+def _report(tables: Tables) -> dict[str, str]:
     about = tables.row("campaign")
     name, serial = (shortened(about[key], 80) for key in ("campaign", "serial"))
     instrument = f"{shortened(about['instrument'], 80)} · serial {serial}"
@@ -87,6 +97,7 @@ def report(provenance: Mapping[str, Mapping[str, Any]], **read: Any) -> dict[str
             *_chapters(EVIDENCE, map(str, count(1)), tables),
             *_chapters(ANNEXES, iter(ascii_uppercase), tables),
         ],
+        origins=origins(tables),
     )
     return {"html": page(outline), "txt": verdict.as_text(tables)}
 

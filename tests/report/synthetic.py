@@ -113,6 +113,7 @@ def _campaign(logs: tuple[str, ...] | None) -> dict[str, Any]:
         "uncertainty_budget": rows_as(tables.UNCERTAINTY_BUDGET, estimates.budget()),
         "covariance": tables.COVARIANCE.empty(),
         "blocks": tables.BLOCKS.empty(),
+        "samples": Held(tables.SAMPLES.empty()),
         "sensors": rows_as(tables.SENSORS, plan.sensors()),
         "inputs": rows_as(tables.INPUTS, plan.inputs(manoeuvres)),
         "manoeuvres": rows_as(tables.MANOEUVRES, manoeuvres),
@@ -191,6 +192,6 @@ def poor() -> dict[str, Any]:
     """The same with every table empty but the campaign's own."""
     made = campaign()
     provenance = made.pop("provenance")
-    simulated = Held(made.pop("simulated").frame.iloc[:0])
-    empty = {name: frame.iloc[:0] for name, frame in made.items()} | {"simulated": simulated}
+    streams = {name: Held(made.pop(name).frame.iloc[:0]) for name in ("simulated", "samples")}
+    empty = {name: frame.iloc[:0] for name, frame in made.items()} | streams
     return {**empty, "campaign": made["campaign"], "provenance": provenance}

@@ -38,6 +38,9 @@ def test_the_page_fits_and_every_figure_is_there(tmp_path, width):
     assert b"CONSOLE" not in done.stderr
     found = json.loads(unescape(re.search(r"<title>(.*?)</title>", done.stdout.decode()).group(1)))
     assert found["overflow"] <= 0
+    assert found["origin"].startswith("diagnosis/accelerometer/bias_x")
+    assert "Estimated by stage" in found["origin"]
+    assert found["originFits"]
     assert found["wide"] == []
     assert found["figures"] == found["shown"] > 10
     assert (found["columns"] > 0) == (width == 400)

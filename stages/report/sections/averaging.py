@@ -34,7 +34,7 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
         yield outline.Heading(name)
         groups = _curves(tables.rows(f"{stage}_averaging"))
         for number, (group, curves) in enumerate(groups.items(), 1):
-            units = {name: quantity(name, _unit(stage, name)).laboratory for name in curves}
+            units = {name: quantity(name, _unit(stage, name)).shown for name in curves}
             yield _figure(group, f"averaging-{stage}-{number}", curves, units)
         if not groups:
             yield outline.Paragraph(
@@ -151,7 +151,7 @@ def _wanted(rows: Sequence[Record]) -> outline.Table:
 
 
 def _wanted_row(row: Record) -> outline.Row:
-    unit = quantity(row["quantity"], BIAS_UNIT[STAGE[row["sensor"]]]).laboratory
+    unit = quantity(row["quantity"], BIAS_UNIT[STAGE[row["sensor"]]]).shown
     walk = RANDOM_WALK[row["sensor"]]
     sigma, floor, wanted = (
         significant(unit.of(row[which]), 2) for which in ("sigma", "floor", "wanted")
@@ -185,7 +185,7 @@ def epoch_parts(tables: Tables) -> Iterator[outline.Part]:
 def _epochs(group: Group, key: str, curves: Mapping[str, Sequence[Record]]) -> outline.Figure:
     def panel_of(panel: Axes, name: str) -> None:
         rows = curves[name]
-        unit = quantity(name, rows[0]["unit"]).laboratory
+        unit = quantity(name, rows[0]["unit"]).shown
         seconds, *each = _arrays(rows, "seconds", "single", "running_mean", "running_mean_sigma")
         single, running, sigma = (values / unit.size for values in each)
         final, colour = rows[-1]["running_mean"] / unit.size, _colour(name)
@@ -316,7 +316,7 @@ def _spreads(rows: Sequence[Record]) -> outline.Table:
 
 
 def _spread(row: Record) -> outline.Row:
-    unit = quantity(row["quantity"], row["unit"]).laboratory
+    unit = quantity(row["quantity"], row["unit"]).shown
     single, running, white = (row[f"{of}_variance"] for of in ("single", "running", "white"))
     return outline.table_row(
         plain(row["quantity"]),

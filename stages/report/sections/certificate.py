@@ -31,6 +31,7 @@ from stages.report.outline import (
     Sentences,
     Signatures,
     Table,
+    Traced,
     columns,
     head,
     table_row,
@@ -245,14 +246,14 @@ def _with_uncertainty(rows: Sequence[Record]) -> dict[str, tuple[str, str, str]]
     by_kind: dict[str, list[Record]] = {}
     for row in rows:
         by_kind.setdefault(kind_of(row["parameter"]), []).append(row)
-    written = {}
+    written: dict[str, tuple[str, str, str]] = {}
     for own in by_kind.values():
-        unit = quantity_of(own[0]).laboratory
+        unit = quantity_of(own[0]).shown
         decimals = numbers.common_decimals([_expanded(row, unit) for row in own])
         for row in own:
             if row["value"] is not None:
                 pair = numbers.with_sigma(unit.of(row["value"]), _expanded(row, unit), decimals)
-                written[_name(row)] = (*pair, unit.name)
+                written[_name(row)] = (Traced(pair[0], row["id"]), pair[1], unit.name)
     return written
 
 
@@ -266,12 +267,13 @@ def _effects(rows: Sequence[Record]) -> Table:
         lines.append(head(capital(in_words(effect))))
         for row in rows:
             if row["effect"] == effect and row["value"] is not None:
-                unit = quantity_of(row).laboratory
+                unit = quantity_of(row).shown
                 spread = _expanded(row, unit)
-                pair = numbers.with_sigma(
+                value, spread_text = numbers.with_sigma(
                     unit.of(row["value"]), spread, numbers.decimals_of(spread)
                 )
-                lines.append(table_row(symbol(row["parameter"]), *pair, unit.name, row["meaning"]))
+                cells = (Traced(value, row["id"]), spread_text, unit.name, row["meaning"])
+                lines.append(table_row(symbol(row["parameter"]), *cells))
     return Table(
         _("Effects that the result contains beside them; they hold together with it."),
         (
@@ -310,7 +312,7 @@ def _change(row: Record | None, earlier: Mapping[str, Record]) -> str:
     before = earlier.get(_key(row["sensor"], row["mount"], row["parameter"]))
     if before is None:
         return "—"
-    unit = quantity_of(row).laboratory
+    unit = quantity_of(row).shown
     decimals = numbers.decimals_of(_expanded(row, unit))
     change = unit.of(row["value"] - before["value"])
     text = numbers.significant(change, 2) if decimals is None else numbers.fixed(change, decimals)
@@ -348,7 +350,7 @@ def _in_order(key: tuple[str, str, str]) -> tuple[str, str, int]:
 
 def _assessed(key: tuple[str, str, str], rows: Sequence[Record]) -> Row:
     mount, sensor, kind = key
-    unit = quantity_of({"parameter": rows[0]["quantity"], "unit": rows[0]["unit"]}).laboratory
+    unit = quantity_of({"parameter": rows[0]["quantity"], "unit": rows[0]["unit"]}).shown
     each: dict[str, list[str]] = {}
     for row in rows:
         each.setdefault(row["statement"], []).append(symbol(row["quantity"]))

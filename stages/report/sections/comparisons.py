@@ -74,7 +74,10 @@ COMPARISONS = outline.Section(
     _(
         "Worst first, the difference in units of its σ. p is the probability of a "
         "difference this large if the two are equal; among many comparisons some are "
-        "large by chance, which the verdict takes into account."
+        "large by chance, which the verdict takes into account. Two methods that use the same data "
+        "are correlated: the variance of their difference is the difference of their variances. Rests "
+        "against turns has the σ of noise, table and site alone: what manoeuvres scatter beyond it, "
+        "which the σ of the methods include, is what is compared there."
     ),
     ("differences", "published_differences"),
     comparison_parts,
@@ -96,25 +99,53 @@ def _beyond(row: Record) -> bool:
 
 
 def _differences(rows: Sequence[Record], none: str) -> outline.Table:
+    apart = [row for row in rows if row["in_sigmas"] is None and not _fencepost(row)]
+    rows = [row for row in rows if row not in apart]
     shown = rows[:MOST_DIFFERENCES]
     sigmas = numbers.aligned([numbers.fixed(row["in_sigmas"], 1) for row in shown])
     return outline.Table(
         f"Differences: {numbers.counted(len(rows), 'pair')} of values.",
         (
-            *outline.columns("text", "Compared", "Verdict"),
+            *outline.columns("text", "Compared", "What"),
             *outline.columns("number", "first", "second", group="Values"),
             outline.Column("unit", "unit", "Values"),
             *outline.columns("number", "in σ", "p"),
         ),
         [_difference(row, sigma) for row, sigma in zip(shown, sigmas, strict=True)],
         none,
-        outline.more(len(rows) - len(shown), " in the table of differences"),
+        " ".join(
+            filter(
+                None,
+                (
+                    outline.more(len(rows) - len(shown), " in the table of differences"),
+                    _not_compared(apart),
+                ),
+            )
+        ),
     )
+
+
+def _not_compared(rows: Sequence[Record]) -> str:
+    """What has two values that were not compared, by the reason."""
+    by_reason: dict[str, list[str]] = {}
+    for row in rows:
+        what, _colon, reason = str(row["sentence"]).partition(": ")
+        by_reason.setdefault(reason, []).append(what)
+    each = (
+        f"{capital(reason).rstrip('.')}: {', '.join(own)}." for reason, own in by_reason.items()
+    )
+    return _("Not compared. {each}", each=numbers.shortened(" ".join(each), 900)) if rows else ""
+
+
+def _what(row: Record) -> str:
+    """The parameter, and whole sentences where it differs by more than chance."""
+    sentence = str(row["sentence"])
+    return sentence if _beyond(row) else sentence.partition(": ")[0]
 
 
 def _difference(row: Record, sigma: str) -> outline.Row:
     kind = str(row["kind"])
-    unit = units.quantity(row["quantity"], row["unit"]).laboratory
+    unit = units.quantity(row["quantity"], row["unit"]).shown
     decimals = numbers.decimals_of(unit.of(row["sigma"]))
     first, second = (
         numbers.significant(value, 5) if decimals is None else numbers.fixed(value, decimals)
@@ -122,7 +153,7 @@ def _difference(row: Record, sigma: str) -> outline.Row:
     )
     return outline.table_row(
         with_mount(KINDS.get(kind, numbers.shortened(kind, 60)), row["mount"]),
-        capital(numbers.shortened(row["sentence"], 600)),
+        capital(numbers.shortened(_what(row), 600)),
         *(first, second, unit.name, sigma, numbers.probability(row["p_value"])),
         anchor=row["id"],
         tone="fair" if _beyond(row) else "",
@@ -280,7 +311,7 @@ def _figure(
 
 
 def _panel(panel: Axes, stage: str, kind: str, each: Sequence[Calibration]) -> None:
-    unit = quantity(f"{kind}_x", "1" if kind == "scale" else BIAS_UNIT[stage]).laboratory
+    unit = quantity(f"{kind}_x", "1" if kind == "scale" else BIAS_UNIT[stage]).shown
     for place, axis in enumerate(AXES):
         key = ("", SENSOR_OF[stage], f"{kind}_{axis}")
         points = [

@@ -25,35 +25,30 @@ MOST_ROWS = 60
 
 @dataclass(frozen=True)
 class Checked:
-    """A quantity that is checked: its name, the unit of its value, that of the difference."""
+    """A quantity that is checked: its name, the unit of its value, how a difference is written."""
 
     name: str
     value: units.Unit
-    difference: units.Unit
+    difference: units.Quantity
     in_full: bool = True
 
 
+FORCE, RATE, ANGLE = (units.quantity("", unit) for unit in ("m/s²", "rad/s", "rad"))
 CHECKED = {
-    "gravity": Checked(_("Gravity in every position"), units.METRES, units.MICRO_G),
+    "gravity": Checked(_("Gravity in every position"), units.METRES, FORCE),
     # It is |f| but for the tilt; in full it would say the same again.
-    "force_up": Checked(_("Specific force along up"), units.METRES, units.MICRO_G, in_full=False),
-    "rate_up": Checked(_("Earth's rate along up"), units.DEGREES_PER_HOUR, units.DEGREES_PER_HOUR),
-    "angle": Checked(_("Angle of every whole turn"), units.DEGREES, units.SECONDS_OF_ARC),
+    "force_up": Checked(_("Specific force along up"), units.METRES, FORCE, in_full=False),
+    "rate_up": Checked(_("Earth's rate along up"), units.DEGREES_PER_HOUR, RATE),
+    "angle": Checked(_("Angle of every whole turn"), units.DEGREES, ANGLE),
 }
 
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
-    """The checks by quantity, and up to four figures."""
-    rows = tables.rows("checks")
-    by_quantity = {
-        checked: own
-        for quantity, checked in CHECKED.items()
-        if (own := [row for row in rows if row["quantity"] == quantity])
-    }
+    """The checks in sum, and up to two figures."""
     for row in tables.rows("compensation_findings"):
         yield outline.Paragraph(numbers.shortened(row["sentence"], 900), "fair")
-    yield _summary(by_quantity)
-    for row in rows:
+    yield _summary(_by_quantity(tables))
+    for row in tables.rows("checks"):
         if row["quantity"] not in CHECKED:
             yield outline.Paragraph(numbers.shortened(row["sentence"], 900), "fair")
     yield outline.Heading(_("Before, after and difference"))
@@ -61,10 +56,22 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
     yield from figures
     if not figures:
         yield outline.Paragraph(_("None: no compensated log could be drawn."))
-    for checked, own in by_quantity.items():
+
+
+def check_parts(tables: Tables) -> Iterator[outline.Part]:
+    """Every check of a quantity, a table each."""
+    for checked, own in _by_quantity(tables).items():
         if checked.in_full:
-            yield outline.Heading(checked.name)
             yield _table(checked, own)
+
+
+def _by_quantity(tables: Tables) -> dict[Checked, list[Record]]:
+    rows = tables.rows("checks")
+    return {
+        checked: own
+        for quantity, checked in CHECKED.items()
+        if (own := [row for row in rows if row["quantity"] == quantity])
+    }
 
 
 SECTION = outline.Section(
@@ -87,6 +94,14 @@ SECTION = outline.Section(
     ),
     parts,
 )
+CHECKS = outline.Section(
+    "checks",
+    _("Checks of the compensated readings"),
+    _("The known value and the readings' difference from it, manoeuvre by manoeuvre."),
+    "",
+    ("checks",),
+    check_parts,
+)
 
 
 def _summary(by_quantity: Mapping[Checked, Sequence[Record]]) -> outline.Table:
@@ -105,7 +120,7 @@ def _summary(by_quantity: Mapping[Checked, Sequence[Record]]) -> outline.Table:
 
 
 def _summed(checked: Checked, rows: Sequence[Record]) -> outline.Row:
-    unit = checked.difference
+    unit = checked.difference.shown
     sigmas = [abs(row["in_sigmas_after"]) for row in rows if row["in_sigmas_after"] is not None]
     beyond = sum(size > MAX_SIGMAS for size in sigmas)
     return outline.table_row(
@@ -135,7 +150,7 @@ def _table(checked: Checked, rows: Sequence[Record]) -> outline.Table:
     if left_out > 0:
         shown.sort(key=lambda row: -abs(row["in_sigmas_after"] or 0.0))
         shown = shown[:MOST_ROWS]
-    unit = checked.difference
+    unit = checked.difference.shown
     sigmas = [unit.of(row["after_sigma"]) for row in shown]
     decimals = numbers.common_decimals(sigmas)
     cells = [
@@ -204,7 +219,7 @@ class Compensated:
 
 
 def _figures(tables: Tables) -> Iterator[outline.Figure]:
-    """One axis down, the same up, and both turns about it; of the axis that has most of these."""
+    """A rest with an axis up or down, and a turn about the same, where an axis has both."""
     number = 0
     for view, plan in _chosen(tables).items():
         compensated = _compensated(tables, plan)
@@ -238,12 +253,17 @@ def _chosen(tables: Tables) -> dict[str, Record]:
         for plan in tables.rows("manoeuvres"):
             if plan["manoeuvre"] in there and (view := _view(plan, axis)):
                 views.setdefault(view, plan)
+        rests = (f"{axis} up", f"{axis} down")
         turns = (
             _("turn {way} about {axis}", way=way, axis=axis) for way in ("forward", "backward")
         )
-        order = (f"{axis} down", f"{axis} up", *turns)
-        if len(views) > len(best):
-            best = {view: views[view] for view in order if view in views}
+        shown = [
+            first
+            for some in (rests, turns)
+            for first in [view for view in some if view in views][:1]
+        ]
+        if len(shown) > len(best):
+            best = {view: views[view] for view in shown}
     return best
 
 

@@ -317,7 +317,7 @@ def largest_shift(shifts: Sequence[Shift]) -> str:
         return ""
     most, sigmas = max(moved, key=lambda pair: abs(pair[1]))
     assert most.joint is not None  # for it has moved
-    unit = quantity_of(most.joint).laboratory
+    unit = quantity_of(most.joint).shown
     before, after = (
         " ± ".join(with_sigma(unit.of(row["value"]), sigma, decimals_of(sigma)))
         for row in (most.joint, most.extended)

@@ -39,7 +39,7 @@ TESTS = {
 
 
 def parameters(title: str, rows: Sequence[Record]) -> outline.Table:
-    """Those beyond 3 σ in the units of the laboratory and of the SI; how many others there are."""
+    """Those beyond 3 σ; how many others there are."""
     clear = [row for row in rows if _clear(row)]
     others = sum(row["value"] is not None and bool(row["sigma"]) for row in rows) - len(clear)
     gaps = sum(row["value"] is None for row in rows)
@@ -51,8 +51,7 @@ def parameters(title: str, rows: Sequence[Record]) -> outline.Table:
         f"{capital(title)}: the parameters beyond 3 σ.",
         (
             outline.Column("", "symbol"),
-            *outline.value_and_sigma("Laboratory", unit=True),
-            *outline.value_and_sigma("SI", unit=True),
+            *outline.value_and_sigma(unit=True),
             outline.Column("in σ", "number"),
             outline.Column("Meaning", "note"),
         ),
@@ -68,12 +67,9 @@ def _clear(row: Record) -> bool:
 
 
 def _parameter(row: Record, cells: Sequence[str]) -> outline.Row:
-    value, sigma, si_value, si_sigma = cells
-    unit = quantity_of(row)
     return outline.table_row(
         symbol(row["parameter"]),
-        *(value, sigma, unit.laboratory.name),
-        *(si_value, si_sigma, unit.si.name),
+        *(*cells, quantity_of(row).shown.name),
         numbers.significant(row["value"] / row["sigma"], 3),
         numbers.shortened(row["meaning"] or "", 160),
         anchor=row["id"],
@@ -112,7 +108,7 @@ def _shifts(each: Sequence[Shift]) -> Iterator[outline.Row]:
     for own in kinds.values():
         gap = {"value": None, "sigma": None}
         both = [r for shift in own for r in (shift.extended, shift.joint or shift.extended | gap)]
-        units = [quantity_of(shift.extended).laboratory for shift in own for _ in range(2)]
+        units = [quantity_of(shift.extended).shown for shift in own for _ in range(2)]
         cells += in_units(both, units)
     extended, joint = cells[::2], cells[1::2]
     sides = [column for side in (joint, extended) for column in zip(*side, strict=True)]
@@ -125,7 +121,7 @@ def _shifts(each: Sequence[Shift]) -> Iterator[outline.Row]:
             yield outline.table_row(
                 symbol(shift.extended["parameter"]),
                 *line,
-                quantity_of(shift.extended).laboratory.name,
+                quantity_of(shift.extended).shown.name,
                 text,
                 numbers.shortened(shift.extended["meaning"], 160),
                 anchor=shift.extended["id"],
@@ -166,7 +162,7 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
             outline.Column("best axis", "number", "Detected from"),
             outline.Column("unit", "unit", "Detected from"),
             outline.Column("p", "number"),
-            outline.Column("Meaning", "note"),
+            outline.Column("Remark", "note"),
         ),
         [
             _limit(by_name[name], list(group))
@@ -189,12 +185,11 @@ def _effect(row: Record) -> Effect:
 
 def _limit(tested: Tested, rows: Sequence[Record]) -> outline.Row:
     rows = sorted(rows, key=lambda row: -(row["largest"] or row["limit"]))
-    first, unit = rows[0], quantity_of(rows[0]).laboratory
+    first, unit = rows[0], quantity_of(rows[0]).shown
     worst = numbers.significant(unit.of(max(first["limit"], first["largest"] or 0.0)), 2)
     best = min(min(row["limit"], row["smallest"] or row["limit"]) for row in rows)
     least = numbers.significant(unit.of(best), 2)
     beyond = dict.fromkeys(row["remark"] or "" for row in rows)
-    meaning = f"{capital(numbers.shortened(tested.score['cause'], 160))}."
     return outline.table_row(
         capital(tested.name),
         worst,
@@ -202,7 +197,7 @@ def _limit(tested: Tested, rows: Sequence[Record]) -> outline.Row:
         least if least != worst else "",
         unit.name,
         numbers.probability(tested.score["p_value"]),
-        f"{meaning} {numbers.shortened(' '.join(beyond).strip(), 300)}".strip(),
+        numbers.shortened(" ".join(beyond).strip(), 300),
         anchor="/".join(("limit", *filter(None, _effect(first)), first["parameter"])),
     )
 

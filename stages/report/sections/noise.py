@@ -110,7 +110,7 @@ def _note(terms: Sequence[Record], sheet: Sequence[Record]) -> str:
 
 def _terms_table(sensor: str, rows: Sequence[Record], note: str) -> outline.Table:
     """A row for each axis: value ± σ of each term, or its upper limit; below, the data sheet."""
-    units = {row["term"]: quantity(row["term"], row["unit"]).laboratory for row in rows}
+    units = {row["term"]: quantity(row["term"], row["unit"]).shown for row in rows}
     names = [term for term in SYMBOL if term in units]
     columns = [outline.Column(_("Axis"), "name")]
     cells: list[list[str]] = []

@@ -1,4 +1,4 @@
-"""The parameters, each with its sigma in two units, and what could not be determined."""
+"""The parameters by result and method, each with its sigma, and what could not be determined."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from inertial.tables import AXES
 from inertial.text import units
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import aligned, counted, fixed, shortened, significant
+from inertial.text.numbers import aligned, counted, fixed, shortened, significant, whole
 from stages.report.outline import (
     Column,
     Equation,
@@ -26,6 +26,8 @@ from stages.report.outline import (
     Row,
     Section,
     Table,
+    Tone,
+    Traced,
     columns,
     head,
     table_row,
@@ -34,8 +36,10 @@ from stages.report.outline import (
 from stages.report.results import (
     ESTIMATE_TABLES,
     KIND,
+    METHOD,
     RESULT_TABLES,
     Estimate,
+    by_kind,
     estimates,
     final_results,
     kind_of,
@@ -43,18 +47,21 @@ from stages.report.results import (
     symbol,
     written,
 )
+from stages.report.sections.effect_tables import extended
 from stages.report.tables import Record, Tables
 from stages.report.words import capital
 
 BY_METHOD = _(
-    "What follows is no result of its own: the same parameters by each method, for comparison."
+    "What follows is no result of its own: the same parameters by each method, side by side. How "
+    "they should agree is compared in “Comparisons”."
 )
 MAX_LETTERS = 40  # of an identifier that stays in one line
 MAX_SYMBOLS = 18
+MAX_METHODS = 4  # side by side in one table
 
 
 def parts(tables: Tables) -> Iterator[Part]:
-    """The model, the result that counts, and every method with its fit, parameters and matrices."""
+    """The model, the result that counts with its matrices, then every method side by side."""
     yield Equation(
         _("reading = M · truth + bias"),
         _(
@@ -69,12 +76,15 @@ def parts(tables: Tables) -> Iterator[Part]:
         return
     for result in final_results(tables):
         yield Heading(_("Result: {name}", name=result.name))
-        yield from _estimate(result)
+        yield from _result(result)
     yield Heading(_("By method"))
     yield Paragraph(BY_METHOD)
-    for estimate in estimates(tables):
-        yield Heading(estimate.name)
-        yield from _estimate(estimate)
+    yield _fits(estimates(tables))
+    for _place, own in groupby(estimates(tables), lambda estimate: estimate.place):
+        methods = [estimate for estimate in own if estimate.determined]
+        for first in range(0, len(methods), MAX_METHODS):
+            yield _side_by_side(methods[first : first + MAX_METHODS])
+    yield from extended(tables)
 
 
 PARAMETERS = Section(
@@ -85,35 +95,96 @@ PARAMETERS = Section(
         "each method that the plan allows."
     ),
     _(
-        "Each value stands with its standard deviation σ, first in the unit of the "
-        "laboratory, then in the SI. Specific force: the axis that points up reads +g. "
-        "Rotations follow the right-hand rule. The result is the one that the archive, the export "
-        "and every other section use; it holds under the verdict of page one."
+        "Each value stands with its standard deviation σ. Specific force: the axis that points up "
+        "reads +g. Rotations follow the right-hand rule. The result is the one that the archive, "
+        "the export and every other section use; it holds under the verdict of page one. Bias, "
+        "scale errors and cross-axis terms are estimated; mounting rotation and non-orthogonality "
+        "are derived from them."
     ),
     RESULT_TABLES,
     parts,
 )
 
 
-def _estimate(estimate: Estimate) -> Iterator[Part]:
+def _result(estimate: Estimate) -> Iterator[Part]:
     if estimate.fit is not None:
-        yield _fit(estimate, estimate.fit)
+        yield Paragraph(*_fit(estimate, estimate.fit))
     every = (*estimate.determined, *estimate.effects)
     long = any(len(row["id"]) > MAX_LETTERS for row in every)
     yield Table(
-        f"Determined: {counted(len(estimate.determined), 'parameter')}.",
+        _("{name}: value and sigma of each parameter.", name=estimate.name),
         (
             Column("", "symbol"),
-            *value_and_sigma("Laboratory", unit=True),
-            *value_and_sigma("SI", unit=True),
-            Column("Meaning", "note"),
-            Column("Identifier", "code" if long else "identifier"),
+            *value_and_sigma(unit=True),
+            Column(_("Meaning"), "note"),
+            Column(_("Identifier"), "code" if long else "identifier"),
         ),
         [*_rows(estimate.determined), *_effects(estimate)],
         _reason(estimate),
     )
     if matrices := _matrices(estimate):
         yield matrices
+
+
+def _fits(each: Sequence[Estimate]) -> Table:
+    """How well the model of each method describes its data."""
+    return Table(
+        _("The fit of each method."),
+        (
+            Column(_("Method")),
+            *columns("number", "χ²", _("degrees of freedom")),
+            Column(_("Whether the model describes the data")),
+        ),
+        [
+            table_row(
+                estimate.name,
+                significant(fit["chi_squared"]),
+                whole(fit["degrees"]),
+                capital(_words_of(estimate, fit)),
+                tone=estimate.fit_in_words()[1],
+            )
+            for estimate in each
+            if (fit := estimate.fit) is not None
+        ],
+        _("No fit was made."),
+    )
+
+
+def _side_by_side(methods: Sequence[Estimate]) -> Table:
+    """The parameters of one sensor by several methods, a row each."""
+    of_method = [{row["parameter"]: row for row in estimate.determined} for estimate in methods]
+    first = {name: row for own in reversed(of_method) for name, row in own.items()}
+    lines: list[Row] = []
+    for kind, group in groupby(by_kind(first.values()), lambda row: kind_of(row["parameter"])):
+        names = [row["parameter"] for row in group]
+        lines.append(head(KIND.get(kind, capital(shortened(kind, 60)))))
+        sides = [_column([own.get(name) for name in names]) for own in of_method]
+        for name, *cells in zip(names, *sides, strict=True):
+            unit = quantity_of(first[name]).shown.name
+            lines.append(table_row(symbol(name), *(text for pair in cells for text in pair), unit))
+    return Table(
+        _("{sensor} by {count} of its methods.", sensor=methods[0].sensor, count=len(methods)),
+        (
+            Column("", "symbol"),
+            *(
+                column
+                for estimate in methods
+                for column in value_and_sigma(capital(METHOD.get(estimate.method, estimate.method)))
+            ),
+            Column(_("unit"), "unit"),
+        ),
+        lines,
+    )
+
+
+def _column(rows: Sequence[Record | None]) -> list[tuple[str, str]]:
+    """Value and sigma of some parameters of one kind by one method; a gap where it has none."""
+    there = [row for row in rows if row is not None]
+    pairs = zip(*map(aligned, zip(*written(there), strict=True)), strict=True) if there else ()
+    cells = iter(
+        (Traced(value, row["id"]), sigma) for row, (value, sigma) in zip(there, pairs, strict=True)
+    )
+    return [("", "") if row is None else next(cells) for row in rows]
 
 
 def _reason(estimate: Estimate) -> str:
@@ -124,39 +195,32 @@ def _reason(estimate: Estimate) -> str:
     return _("None is determined; “Undetermined parameters” states the reasons.")
 
 
-def _fit(estimate: Estimate, fit: Record) -> Paragraph:
-    words, tone = estimate.fit_in_words()
-    terms = {
-        "scatter": _("scatter between manoeuvres"),
-        "random_walk": _("random walk of the bias"),
-    }
-    there = [name for size, name in terms.items() if fit[size]]
-    included = f", including {' and '.join(there)}" if there else ""
-    return Paragraph(
-        _(
-            "χ² = {chi_squared} with {degrees} of freedom{included}: {words}.{fit}",
-            chi_squared=significant(fit["chi_squared"]),
-            degrees=counted(fit["degrees"], "degree"),
-            included=included,
-            words=words,
-            fit=_random_walk(fit),
-        ),
-        tone,
-    )
+def _fit(estimate: Estimate, fit: Record) -> tuple[str, Tone]:
+    return _(
+        "χ² = {chi_squared} with {degrees} of freedom: {words}.",
+        chi_squared=significant(fit["chi_squared"]),
+        degrees=counted(fit["degrees"], "degree"),
+        words=_words_of(estimate, fit),
+    ), estimate.fit_in_words()[1]
+
+
+def _words_of(estimate: Estimate, fit: Record) -> str:
+    """Whether its model describes the data, and what its sigmas include."""
+    return estimate.fit_in_words()[0] + _random_walk(fit)
 
 
 def _random_walk(fit: Record) -> str:
     """The random walk of the bias; nothing where it has none."""
     if not fit["random_walk"]:
         return ""
-    unit = units.quantity("bias", fit["unit"]).laboratory
+    unit = units.quantity("bias", fit["unit"]).shown
     size, sigma = (
         significant(unit.of(units.HOUR**0.5 * (fit[key] or 0.0)), 2)
         for key in ("random_walk", "random_walk_sigma")
     )
     return _(
-        " The random walk of the bias is {size} ± {sigma} {name}/√h; the bias is stated "
-        "for the middle of the campaign, and the σ include the random walk.",
+        ". The random walk of the bias is {size} ± {sigma} {name}/√h; the bias is stated "
+        "for the middle of the campaign, and the σ include the random walk",
         size=size,
         sigma=sigma,
         name=unit.name,
@@ -181,12 +245,10 @@ def _rows(
         name = KIND.get(kind, capital(shortened(kind, 60)))
         frames = " and ".join(dict.fromkeys(row["frame"] for row in group))
         yield head(f"{name}; frame: {shortened(frames, 60)}")
-        for row, (value, sigma, si_value, si_sigma) in zip(group, lines, strict=False):
-            unit = quantity_of(row)
+        for row, (value, sigma) in zip(group, lines, strict=False):
             yield table_row(
                 symbol(row["parameter"]),
-                *(value, sigma, unit.laboratory.name),
-                *(si_value, si_sigma, unit.si.name),
+                *(Traced(value, row["id"]), sigma, quantity_of(row).shown.name),
                 shortened(row["meaning"], 160),
                 row["id"],
                 anchor=row["id"],

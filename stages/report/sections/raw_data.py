@@ -150,7 +150,7 @@ def envelope(log: Log, channel: str, points: int) -> tuple[Array, Array, Array]:
 # ---- the section
 
 MOST_POINTS = 45_000  # of all figures together: what a page may weigh
-POINTS_PER_CURVE = (60, 380)
+POINTS_PER_CURVE = (60, 300)
 MANY_LOGS = 24  # from here on the figures are small, x, y and z in one panel
 MOST_LOGS = 110
 MOST_MANOEUVRES = 6  # named below a figure

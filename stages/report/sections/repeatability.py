@@ -61,7 +61,7 @@ SECTION = outline.Section(
 
 
 def _unit(row: Record) -> Unit:
-    return quantity(row["quantity"], row["unit"]).laboratory
+    return quantity(row["quantity"], row["unit"]).shown
 
 
 def _components(rows: Sequence[Record]) -> outline.Table:

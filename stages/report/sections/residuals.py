@@ -44,7 +44,7 @@ from stages.report.outline import (
     table_row,
 )
 from stages.report.sections.periodic_figures import turns_about
-from stages.report.tables import Record, Tables
+from stages.report.tables import Record, Tables, once
 from stages.report.words import SENSORS, capital
 
 AT_REST = _("at rest")
@@ -58,20 +58,40 @@ Ratios = Mapping[tuple[str, str], dict[str, float]]  # by profile and manoeuvre,
 
 
 def parts(tables: Tables) -> Iterator[Part]:
-    """One figure per turn that is drawn, and the residuals over the noise as a table."""
+    """The residuals over the noise as a table, and the turn whose residuals are largest."""
     fidelity = tables.rows("fidelity")
-    turns = drawn_turns(tables)
-    drawn = envelopes(tables.stream("simulated"), turns)
-    for number, envelope in enumerate(drawn, 1):
-        yield _figure(envelope, f"simulated-{number}")
+    drawn = _drawn(tables)
     if not drawn:
         yield Paragraph(_("No whole turn was simulated."), "fair")
+    else:
+        ratios = {row["manoeuvre"]: _largest(row["manoeuvre"], fidelity) for row in fidelity}
+        worst = max(drawn, key=lambda envelope: ratios.get(envelope.turn.name, 0.0))
+        yield _figure(worst, "simulated-worst")
+    yield Heading(_("Ratio of residual to noise"))
+    yield _table(fidelity)
+
+
+def _largest(manoeuvre: str, fidelity: Sequence[Record]) -> float:
+    """The largest ratio of residual to noise of a manoeuvre's channels."""
+    own = (row for row in fidelity if row["manoeuvre"] == manoeuvre and row["noise_rms"])
+    return max((row["residual_rms"] / row["noise_rms"] for row in own), default=0.0)
+
+
+@once
+def _drawn(tables: Tables) -> list[Envelope]:
+    return envelopes(tables.stream("simulated"), drawn_turns(tables))
+
+
+def turn_parts(tables: Tables) -> Iterator[Part]:
+    """One figure per turn that is drawn."""
+    drawn = _drawn(tables)
+    for number, envelope in enumerate(drawn, 1):
+        yield _figure(envelope, f"simulated-{number}")
+    fidelity = tables.rows("fidelity")
     every = {row["manoeuvre"] for row in fidelity if row["profile"] != AT_REST}
     if drawn and len(every) > len(drawn):
         others = counted(len(every) - len(drawn), _("further turn"))
         yield Paragraph(_("{others} simulated but not drawn.", others=others))
-    yield Heading(_("Ratio of residual to noise"))
-    yield _table(fidelity)
 
 
 SECTION = Section(
@@ -92,6 +112,14 @@ SECTION = Section(
     ),
     ("simulated", "fidelity", "manoeuvres", "segments"),
     parts,
+)
+TURNS = Section(
+    "residuals-of-turns",
+    _("Residuals of each turn"),
+    _("The same for each whole turn, drawn as in “Residuals”."),
+    "",
+    ("simulated", "fidelity", "manoeuvres", "segments"),
+    turn_parts,
 )
 
 

@@ -49,7 +49,7 @@ SECTION = outline.Section(
 def _figure(title: str, key: str, curves: Curves) -> outline.Figure:
     def panel_of(panel: Axes, name: str) -> None:
         rows = curves[name]
-        unit = quantity(name, rows[0]["unit"]).laboratory
+        unit = quantity(name, rows[0]["unit"]).shown
         at, value, sigma = (
             np.array([row[of] for row in rows], np.float64)
             for of in ("temperature", "value", "sigma")
@@ -91,7 +91,7 @@ def _table(title: str, curves: Curves) -> outline.Table:
 
 def _row(name: str, rows: Sequence[Record]) -> outline.Row:
     first, last = rows[0], rows[-1]
-    unit = quantity(name, first["unit"]).laboratory
+    unit = quantity(name, first["unit"]).shown
     values = [row["value"] / unit.size for row in rows]
     knot = first["knot"]
     remark = ""

@@ -84,7 +84,7 @@ def _shares(key: tuple[str, str, str], rows: Sequence[Record], there: Sequence[s
     sensor, mount, kind = key
     names = dict.fromkeys(row["quantity"] for row in rows)
     variances = [sum(r["sigma"] ** 2 for r in rows if r["quantity"] == name) for name in names]
-    unit = quantity_of({"parameter": rows[0]["quantity"], "unit": rows[0]["unit"]}).laboratory
+    unit = quantity_of({"parameter": rows[0]["quantity"], "unit": rows[0]["unit"]}).shown
     shares = [
         float(np.mean([row["share"] for row in rows if row["source"] == source] or [0.0]))
         for source in there

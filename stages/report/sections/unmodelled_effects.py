@@ -61,7 +61,6 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
     yield from () if firing else tests
     yield from _blocks(tables)
     yield from tests if firing else ()
-    yield from effect_tables.extended(tables)
     if missed := list(_not_detected(tables)):
         yield outline.Heading(_("Detection limits"))
         yield from effect_tables.detection_limits(tables.rows("detection_limits"), missed)
