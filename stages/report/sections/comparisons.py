@@ -74,10 +74,10 @@ COMPARISONS = outline.Section(
     _(
         "Worst first, the difference in units of its σ. p is the probability of a "
         "difference this large if the two are equal; among many comparisons some are "
-        "large by chance, which the verdict takes into account. Two methods that use the same data "
-        "are correlated: the variance of their difference is the difference of their variances. Rests "
-        "against turns has the σ of noise, table and site alone: what manoeuvres scatter beyond it, "
-        "which the σ of the methods include, is what is compared there."
+        "large by chance, which the verdict takes into account. Two methods that use the same "
+        "data are correlated: the variance of their difference is the difference of their "
+        "variances. Rests against turns has the σ of noise, table and site alone: what manoeuvres "
+        "scatter beyond it, which the σ of the methods include, is what is compared there."
     ),
     ("differences", "published_differences"),
     comparison_parts,
