@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 
 import laboratory
 from inertial.campaign.records import Manoeuvre
-from inertial.estimation.encoder_angle import against_encoder, corrected, ripple
+from inertial.estimation.encoder_angle import against_encoder, corrected, low_pass, ripple
 from stages.decode.table_angle import Continuous
 from stages.segment.encoder import by_encoder
 
@@ -85,8 +85,11 @@ def test_delay_bandwidth_eccentricity_and_ripple_are_found(made):
     # Two ramps of 1 s at 20 °/s², twelve turns: N / (a √(2 T)) each.
     walk, ramp = np.radians(0.012) / 60, np.radians(20)
     assert delay["sigma"] == pytest.approx(walk / ramp / np.sqrt(2 * 6), rel=0.3)
-    hertz = common.loc["bandwidth"].iloc[0]
-    assert hertz["value"] == pytest.approx(1 / (2 * np.pi * 3e-3), abs=3.5 * hertz["sigma"])
+    # Both are late, neither is a low pass: the variance of the delay is 0, and they are one class.
+    spread = common.loc["spread"].iloc[0]
+    assert abs(spread["value"]) < 3.5 * spread["sigma"]
+    assert spread["sigma"] < 4e-6  # (2 ms)²
+    assert not {"low_pass", "dead_time", "bandwidth"} & set(table["quantity"])
     for quantity, true in (("sine", 10 * ARC_SECOND), ("cosine", -6 * ARC_SECOND)):
         row = common.loc[quantity, 1.0]
         assert row["value"] == pytest.approx(true, abs=3.5 * row["sigma"])
@@ -98,7 +101,10 @@ def test_delay_bandwidth_eccentricity_and_ripple_are_found(made):
 
 
 def test_the_sigmas_are_those_of_the_scatter():
-    """400 turns drawn without the laboratory: 30 °/s, ramps of 0.5 s, delay 4 ms, 300 ppm."""
+    """400 turns drawn without the laboratory: 30 °/s, ramps of 0.5 s, delay 4 ms, 300 ppm.
+
+    Between samples of 5 ms the late rate is a mean of two, 1 and 4 ms away: a variance of 4 ms².
+    """
     step, generator = 0.005, np.random.default_rng(4)
     time = step * np.arange(4000)
     rate = np.radians(30) * np.clip(np.minimum(time - 3, 15.5 - time) / 0.5, 0, 1)
@@ -108,23 +114,28 @@ def test_the_sigmas_are_those_of_the_scatter():
     for _ in range(400):
         noise = walk / np.sqrt(step) * generator.standard_normal(len(time))
         found = against_encoder((1 + 3e-4) * late + 2e-5 + noise, angle, step, walk)
-        truth = ((found.delay, 4e-3), (found.scale, 3e-4), (found.bias, 2e-5))
+        truth = ((found.delay, 4e-3), (found.scale, 3e-4), (found.bias, 2e-5), (found.spread, 4e-6))
         off.append([(each.value - true) / each.sigma for each, true in truth])
     assert np.std(off, axis=0) == pytest.approx(1, abs=0.12)
     assert np.mean(off, axis=0) == pytest.approx(0, abs=0.25)
 
 
 @pytest.mark.parametrize("constant", [0.002, 0.008, 0.03])
-def test_the_delay_of_a_low_pass_is_its_time_constant(constant):
+def test_a_low_pass_is_told_from_a_latency_by_its_variance(constant):
     """Rates from 0 to 30 °/s in half a second, through 1 / (1 + τ s), sampled at 1 kHz."""
-    step = 0.001
+    step, latency = 0.001, 0.003
     time = step * np.arange(20_000)
     rate = np.radians(30) * np.clip(np.minimum(time - 3, 15.5 - time) / 0.5, 0, 1)
     share = 1 - np.exp(-step / constant)
     slow = lfilter([share], [1, share - 1], rate)
     late = step * (1 / share - 1)  # in steps it is late by less than the constant
-    found = against_encoder(slow, np.cumsum(rate) * step, step, 1e-6)
-    assert found.delay.value == pytest.approx(late, rel=0.02)
+    variance = step**2 * (1 - share) / share**2  # of that geometric distribution
+    read = np.interp(time - latency, time, np.cumsum(rate) * step)
+    found = against_encoder(slow, read, step, 1e-6)
+    assert found.delay.value == pytest.approx(late - latency, abs=2e-4 + 0.02 * late)
+    assert found.spread.value == pytest.approx(variance, rel=0.04)
+    lag = low_pass(found.spread, 3.0)
+    assert lag.value == pytest.approx(np.sqrt(variance), rel=0.02)
 
 
 def test_an_encoder_that_contradicts_the_gyros_is_not_used():

@@ -253,8 +253,8 @@ def sigmas(data: CampaignData) -> Array:
     inputs = data.gyro_inputs
     turned = gyroscopes.joint(
         inputs.static_rates,
-        inputs.turns,
-        inputs.steady_rates,
+        inputs.segments,
+        inputs.set_rates,
         inputs.earth,
         inputs.position_sigma,
         measured=data.noise.drift("gyro"),
@@ -277,8 +277,8 @@ def information_of_positions(data: CampaignData) -> dict[str, tuple[Array, Array
     gyro, accelerometer = solution.gyro or IDEAL, solution.accelerometer or IDEAL
     gyros = gyroscopes.linearised(
         Linearisation(gyro.matrix, gyro.bias, {}),
-        inputs.turns,
-        inputs.steady_rates,
+        inputs.segments,
+        inputs.set_rates,
         inputs.earth,
         inputs.position_sigma,
     ).with_statics(inputs.static_rates)

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from math import cos, degrees, sin
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,7 @@ from inertial.campaign.static_positions import (
 )
 from inertial.estimation.gyroscope_observations import (
     Earth,
+    EncoderWindow,
     Gap,
     Position,
     RateSegment,
@@ -129,6 +131,57 @@ def _oscillation(name: str, noise: NoiseLevels, about: Array, step: float) -> fl
     return float(np.sqrt(about**2 @ excess))
 
 
+# --- Windows of the angle of a turn, by the table's encoder ---
+
+MAX_WINDOWS = 24  # of a turn: enough for what repeats with each turn of the encoder
+
+
+def windows_of(part: Blocks, about: Array) -> list[EncoderWindow]:
+    """The windows of a turn by its k blocks, none where the encoder is not used in all of them.
+
+    They meet in the steady part alone, where the rate of the table is the same on both sides, so
+    that a delay does not matter there; or they end at a gap.
+    """
+    encoder = part.encoder
+    if not len(part) or not np.isfinite(encoder).all() or (part.phase == "turning").any():
+        return []
+    read = np.nan_to_num(part.gyro) @ about * part.seconds
+    sense = float(np.sign(read @ (encoder[:, 1] - encoder[:, 0])))
+    steady, apart = part.steady, part.missing != 0
+    least = max(1, -(-len(part) // MAX_WINDOWS))
+    edges = [0]
+    for i in range(1, len(part)):
+        if apart[i] or (steady[i - 1] and steady[i] and i - edges[-1] >= least):
+            edges.append(i)
+    angles = sense * encoder[:, :2]
+    windows: list[EncoderWindow] = []
+    for first, after in pairwise([*edges, len(part)]):
+        joins = windows and not apart[first]
+        start = windows[-1].end if joins else float(angles[first, 0])
+        change = sense * float(encoder[after - 1, 3] - encoder[first, 2])
+        windows.append(
+            EncoderWindow(first, after, start, float(angles[after - 1, 1]), change, sense)
+        )
+    return windows
+
+
+def by_windows(segment: RateSegment, part: Blocks, angle_sigma: float) -> RateSegment:
+    """A turn, or a part of one, by the angle of the encoder; as it is where that is not used.
+
+    What the gyros scatter by in motion beyond their noise at rest is an oscillation, of which a
+    window may hold any phase at either end.
+    """
+    windows = windows_of(part, segment.about)
+    if not windows:
+        return segment
+    excess = np.nan_to_num(segment.density**2 - segment.quiet_density**2) @ segment.about**2
+    swing = max(float(excess), 0.0) * float(np.median(part.seconds))
+    angle_sigma = float(np.sqrt(angle_sigma**2 + swing))
+    middle = windows[0].sense * part.encoder[:, :2].mean(axis=1)
+    course = np.asarray(middle - windows[0].start)
+    return replace(segment, windows=windows, course=course, angle_sigma=angle_sigma)
+
+
 # --- The inputs of the equations of the gyros; rotations that cannot be used ---
 
 TURNING = ("spin-up", "steady", "spin-down", "turning")
@@ -136,17 +189,33 @@ TURNING = ("spin-up", "steady", "spin-down", "turning")
 
 @dataclass(frozen=True)
 class Recorded:
-    """A rotation of the plan, its record, its blocks in motion, and why it is refused."""
+    """A rotation of the plan, its record, its blocks in motion, and why it is refused.
+
+    `begun`: whether the rest before it is recorded, so that its start is at the set position.
+    """
 
     plan: Manoeuvre
     done: Performed
     blocks: Blocks
     refusal: str  # empty where it can be used
+    begun: bool = True
 
     @property
     def steady(self) -> Blocks:
         """The blocks at the steady rate."""
         return self.blocks.those(self.blocks.steady)
+
+    @property
+    def in_part(self) -> bool:
+        """Whether it is refused as a turn, but the encoder knows the angle of what is recorded."""
+        lacks = self.done.found and not (self.done.complete or self.done.bridged)
+        whole = self.plan.recorded == "whole" and self.done.angle is not None
+        return bool(lacks and whole and windows_of(self.blocks, self.plan.axis))
+
+    @property
+    def by_encoder(self) -> bool:
+        """Whether the encoder knows the angle of its steady part."""
+        return bool(windows_of(self.steady, self.plan.axis))
 
     @property
     def weights(self) -> Array:
@@ -162,6 +231,9 @@ class GyroInputs:
     recorded: list[Recorded]
     turns: list[RateSegment]  # from rest to rest, with their angle known
     steady_rates: list[SteadyRate]  # at a known rate
+    # As the joint estimate takes them: windows of the encoder where that knows parts of turns.
+    segments: list[RateSegment]
+    set_rates: list[SteadyRate]
     earth: Earth
     position_sigma: float
     heading: float | None
@@ -181,19 +253,23 @@ class GyroInputs:
             recorded=[r for r in self.recorded if r.plan.up is not None],
             turns=[turn for turn in self.turns if turn.position.is_known],
             steady_rates=[steady for steady in self.steady_rates if steady.position.is_known],
+            segments=[part for part in self.segments if part.position.is_known],
+            set_rates=[steady for steady in self.set_rates if steady.position.is_known],
         )
 
     @property
     def used(self) -> list[Part]:
         """The manoeuvres of the equations."""
         return [s.part for s in self.static_positions] + [
-            Part(rotation.plan.name) for rotation in self.usable
+            Part(rotation.plan.name)
+            for rotation in self.recorded
+            if not rotation.refusal or rotation.in_part
         ]
 
     @property
     def is_empty(self) -> bool:
         """Whether there is neither a static position nor a rotation."""
-        return not (self.static_positions or self.turns or self.steady_rates)
+        return not (self.static_positions or self.segments or self.steady_rates)
 
     @cached_property
     def static_rates(self) -> list[StaticRate]:
@@ -214,33 +290,50 @@ def gyro_inputs(data: "CampaignData") -> GyroInputs:
     usable = [rotation for rotation in recorded if not rotation.refusal]
     given = (data.noise, data.heading, data.rate_sigma)
     shared = data.shared_clock
+    angle_sigma = data.known["turn_angle"].scatter if "turn_angle" in data.known else 0.0
+
+    def whole(r: Recorded) -> RateSegment:
+        return replace(
+            rate_segment_of(r, *given), stretch=stretch_of(r.plan.name, r.blocks, shared)
+        )
+
+    turned = [r for r in usable if r.plan.recorded == "whole"]
+    turns = [whole(r) for r in turned]
+    steady = [r for r in usable if r.plan.recorded == "steady"]
+    rates = [
+        replace(steady_rate_of(r, *given), stretch=stretch_of(r.plan.name, r.steady, shared))
+        for r in steady
+    ]
+    parts = [r for r in recorded if r.in_part]
+    parts += [replace(r, blocks=r.steady, begun=True) for r in steady if r.by_encoder]
+    in_windows = parts or any(r.blocks.missing.any() for r in turned)
+    segments = [
+        by_windows(segment, r.blocks, angle_sigma) if in_windows else segment
+        for segment, r in zip([*turns, *map(whole, parts)], [*turned, *parts], strict=True)
+    ]
     return GyroInputs(
         positions,
         recorded,
-        [
-            replace(rate_segment_of(r, *given), stretch=stretch_of(r.plan.name, r.blocks, shared))
-            for r in usable
-            if r.plan.recorded == "whole"
-        ],
-        [
-            replace(steady_rate_of(r, *given), stretch=stretch_of(r.plan.name, r.steady, shared))
-            for r in usable
-            if r.plan.recorded == "steady"
-        ],
+        turns,
+        rates,
+        segments,
+        [rate for r, rate in zip(steady, rates, strict=True) if not r.by_encoder],
         data.earth,
         data.position_sigma,
         data.heading,
-        left_out + [Part(r.plan.name, None, r.refusal) for r in recorded if r.refusal],
+        left_out
+        + [Part(r.plan.name, None, r.refusal) for r in recorded if r.refusal and not r.in_part],
     )
 
 
 def _recorded_turns(data: "CampaignData") -> Iterator[Recorded]:
     """Every turn of the plan."""
     moving = by_manoeuvre(data.blocks[data.blocks["phase"].isin(TURNING)])
+    begun = set(data.blocks.loc[data.blocks["phase"] == "rest-before", "manoeuvre"])
     for m in data.plan:
         if m.do == "turn":
             done, part = data.performed[m.name], moving.get(m.name, NO_BLOCKS)
-            yield Recorded(m, done, part, refusal_of(m, done, part))
+            yield Recorded(m, done, part, refusal_of(m, done, part), m.name in begun)
 
 
 def refusal_of(m: Manoeuvre, done: Performed, part: Blocks) -> str:
@@ -294,12 +387,14 @@ def rate_segment_of(
     """
     m, part = rotation.plan, rotation.blocks
     missing = gaps_of(part)
-    assert m.angle is not None and m.angle_sigma is not None  # otherwise refused
+    position = position_of(m, heading)
+    if not rotation.begun:  # the azimuth at which the record begins is another one
+        position = Position(f"{position.name}, on the way", position.up)
     return RateSegment(
-        position=position_of(m, heading),
+        position=position,
         about=m.axis,
-        angle=m.angle,
-        angle_sigma=m.angle_sigma,
+        angle=np.nan if m.angle is None else m.angle,
+        angle_sigma=np.nan if m.angle_sigma is None else m.angle_sigma,
         sums=part.gyro * part.seconds[:, None],
         seconds=part.seconds,
         density=noise.of(m.name, "steady", GYRO),

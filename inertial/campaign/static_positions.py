@@ -29,7 +29,9 @@ class Blocks:
     """k blocks of one manoeuvre in their order, all of one log.
 
     `log`, `phase`, `counts` of samples, `seconds`, `missing` before each, s, `time` of the middle,
-    s, `temperature`, K: (k,); `gyro`, rad/s, and `accel`, m/s²: (k, 3), NaN where not recorded.
+    s, `temperature`, K: (k,); `gyro`, rad/s, and `accel`, m/s²: (k, 3), NaN where not recorded;
+    `encoder`: (k, 4), the angle of the table's encoder at the beginning and the end of each, rad,
+    and its rate there, rad/s, NaN where it is not used.
     """
 
     log: NDArray[Any]
@@ -41,6 +43,7 @@ class Blocks:
     temperature: Array
     gyro: Array
     accel: Array
+    encoder: Array
 
     def __len__(self) -> int:
         return len(self.phase)
@@ -55,7 +58,8 @@ class Blocks:
         return Blocks(*(getattr(self, field.name).T[..., which].T for field in fields(self)))
 
 
-NO_BLOCKS = Blocks(*(np.empty(0) for _ in range(7)), *(np.empty((0, 3)) for _ in range(2)))
+NO_BLOCKS = Blocks(*(np.empty(0) for _ in range(7)), *(np.empty((0, n)) for n in (3, 3, 4)))
+ENCODER = ["angle_from", "angle_to", "rate_from", "rate_to"]  # columns of the blocks
 
 
 def by_manoeuvre(table: pd.DataFrame) -> dict[str, Blocks]:
@@ -67,11 +71,13 @@ def by_manoeuvre(table: pd.DataFrame) -> dict[str, Blocks]:
 
 def _blocks(table: pd.DataFrame) -> Blocks:
     names = ("count", "seconds", "missing_s", "time", "temperature")
+    triples = [table[list(three)].to_numpy(np.float64) for three in (GYRO, ACCEL)]
+    triples.append(table.reindex(columns=ENCODER).to_numpy(np.float64))
     return Blocks(
         table["log"].to_numpy(),
         table["phase"].to_numpy(),
         *(table[name].to_numpy(np.float64) for name in names),
-        *(table[names].to_numpy(np.float64) for names in (GYRO, ACCEL)),
+        *triples,
     )
 
 

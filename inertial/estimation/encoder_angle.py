@@ -1,20 +1,27 @@
 """A gyro against the encoder of the table, through a turn from rest to rest.
 
-    ∫ω̃ dt = (1 + s) E(t − τ) + b t + c + Σ a_n sin nE + b_n cos nE
+    ∫ω̃ dt = (1 + s) (E(t − τ) + κ/2 Ë(t − τ)) + b t + c + Σ a_n sin nE + b_n cos nE
 
 E is the angle that the encoder reads. s is the scale factor's error of the gyro less that of the
-encoder: of all gyros alike, nothing tells which of the two is off. τ is the delay of the gyro less
-the latency of the encoder, told in the ramps alone; where the encoder is known to be prompt, it is
-the lag of the gyro, of a first-order low pass the time constant, and 1/(2πτ) its bandwidth. The
-harmonics are errors of the encoder that repeat with each turn: its eccentricity is n = 1. A ripple
-of the drive is a motion that both see, and stands in the encoder's own course.
+encoder: of all gyros alike, nothing tells which of the two is off. The two filters, gyro over
+encoder, are known by their cumulants: τ is the mean delay of the gyro less that of the encoder, in
+the ramps alone; κ the variance of the delay. A time by which one of them is read late has none, and
+a first-order low pass of time constant L has the mean L and the variance L². So
+
+    L = √κ,   bandwidth 1/(2πL),   τ − L = dead time of the gyro less latency of the encoder,
+
+where κ is known to be above 0: in a ramp of acceleration a it is an angle of κ a/2. Otherwise low
+pass, dead time and latency are one class, of which τ is known. A dead time and a latency always
+are. The harmonics are errors of the encoder that repeat with each turn: its eccentricity is n = 1.
+A ripple of the drive is a motion that both see, and stands in the encoder's own course.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import make_interp_spline
 
 from inertial.estimation.probability import f_sf
 from inertial.estimation.time_angle import Valued
@@ -22,6 +29,11 @@ from inertial.estimation.time_angle import Valued
 Array = NDArray[np.float64]
 
 BIN_S = 0.05  # s, between edges whose angles are compared
+SETTLED = 5.0  # time constants, after which a low pass has settled
+LONGEST_SETTLING_S = 0.3  # s
+MAX_CHANGE = 0.2  # of the acceleration near an edge, relative to the largest ones
+ACCELERATING = 0.98  # quantile of the accelerations, for the largest one may be an impact
+CURVED_S = 0.01  # s, to either side, of which the acceleration of the table is a difference
 MAX_STEPS = 5  # of Gauss and Newton, for the delay alone is not linear
 ORDERS = (1, 2)  # of the encoder's own errors
 MIN_TURNED = 1.5 * np.pi  # rad, below which these are not told from scale factor and bias
@@ -34,13 +46,15 @@ class AgainstEncoder:
     """What the gyro reads beyond the encoder.
 
     `scale`: 1; `bias`: rad/s, the earth's rate in it; `delay`: s, by which the gyro is later;
-    `harmonics`: rad, by order, sine and cosine; empty for less than three quarters of a turn.
+    `spread`: s², κ, the variance of this delay; `harmonics`: rad, by order, sine and cosine; empty
+    for less than three quarters of a turn.
     `excess`: chi-squared per degree of freedom; where above 1 the sigmas are enlarged.
     """
 
     scale: Valued
     bias: Valued
     delay: Valued
+    spread: Valued
     harmonics: dict[int, tuple[Valued, Valued]]
     excess: float
 
@@ -50,39 +64,75 @@ def against_encoder(rates: Array, angle: Array, step: float, density: float) -> 
 
     `step`: s, of a sample; `density`: rad/√s, white noise of the gyro.
     """
-    length = max(round(BIN_S / step), 1)
-    edges = np.arange(0, len(rates), length)
-    time = step * np.arange(len(rates))
-    summed = np.cumsum(rates) * step
-    read = np.diff(summed[edges])
+    found = _compared(rates, angle, step, density, 0.0)
+    # A slow low pass settles later: the edges shortly after a change of acceleration go out, too.
+    if found.spread.value > found.spread.sigma:
+        settled = SETTLED * float(np.sqrt(found.spread.value))
+        found = _compared(rates, angle, step, density, min(settled, LONGEST_SETTLING_S))
+    return found
+
+
+def _compared(
+    rates: Array, angle: Array, step: float, density: float, settled: float
+) -> AgainstEncoder:
+    """The comparison; `settled`: s, within which the low pass of the gyro settles."""
+    time: Array = step * np.arange(len(rates), dtype=np.float64)
+    near = max(CURVED_S, 2 * step)
+    course = make_interp_spline(time, angle, k=3)
+
+    def curved(at: Array) -> Array:
+        at = np.clip(at, near, time[-1] - near)
+        return np.asarray((course(at + near) - 2 * course(at) + course(at - near)) / near**2)
+
+    edges = np.arange(0, len(rates), max(round(BIN_S / step), 1))
+    edges = edges[_calm(np.asarray(time[edges]), curved, near, settled)]
+    read = np.diff((np.cumsum(rates) * step)[edges])
     speed = np.gradient(angle, step)
     count = float(np.min(np.abs(np.diff(angle))[np.diff(angle) != 0], initial=0.0))
-    sigma = float(np.hypot(density * np.sqrt(length * step), count / np.sqrt(6)))
+    sigma = np.hypot(density * np.sqrt(np.diff(time[edges])), count / np.sqrt(6))
     delay, orders = 0.0, ORDERS if np.ptp(angle) > MIN_TURNED else ()
     for _ in range(MAX_STEPS):
-        late = np.interp(time[edges] - delay, time, angle)
-        rate = np.interp(time[edges] - delay, time, speed)
-        columns = [np.diff(late), np.diff(time[edges]), -np.diff(rate)]
+        at = np.clip(time[edges] - delay, 0.0, time[-1])
+        late, rate, gain = course(at), np.interp(at, time, speed), curved(at)
+        columns = [np.diff(late), np.diff(time[edges]), -np.diff(rate), np.diff(gain) / 2]
         for n in orders:
-            columns += [
-                np.diff(np.sin(n * late)),
-                np.diff(np.cos(n * late)),
-            ]
-        design = np.column_stack(columns)
-        solution, *_rest = np.linalg.lstsq(design, read, rcond=None)
+            columns += [np.diff(np.sin(n * late)), np.diff(np.cos(n * late))]
+        design = np.column_stack(columns) / sigma[:, None]
+        solution, *_rest = np.linalg.lstsq(design, read / sigma, rcond=None)
         delay += float(solution[2])
-    residual = read - design @ solution
+    residual = read / sigma - design @ solution
     freedom = max(len(read) - design.shape[1], 1)
-    excess = float(residual @ residual) / sigma**2 / freedom
-    spread = sigma * np.sqrt(max(excess, 1.0) * np.diag(np.linalg.pinv(design.T @ design)))
+    excess = float(residual @ residual) / freedom
+    spread = np.sqrt(max(excess, 1.0) * np.diag(np.linalg.pinv(design.T @ design)))
     found = [Valued(float(v), float(s)) for v, s in zip(solution, spread, strict=True)]
     return AgainstEncoder(
         Valued(found[0].value - 1, found[0].sigma),
         found[1],
         Valued(delay, found[2].sigma),
-        {n: (found[3 + 2 * i], found[4 + 2 * i]) for i, n in enumerate(orders)},
+        found[3],
+        {n: (found[4 + 2 * i], found[5 + 2 * i]) for i, n in enumerate(orders)},
         excess,
     )
+
+
+def _calm(
+    edges: Array, curved: Callable[[Array], Array], near: float, settled: float
+) -> NDArray[np.bool_]:
+    """The edges, (k,), s, where the acceleration of the table is the same before and after."""
+    size = np.abs(curved(edges))
+    ago = np.arange(0.0, settled + near, near)[:, None]
+    change = np.abs(curved(edges - ago + near) - curved(edges - ago - near)).max(axis=0)
+    calm = change <= MAX_CHANGE * np.quantile(size, ACCELERATING)
+    calm[[0, -1]] = True
+    return np.asarray(calm if calm.sum() > len(calm) / 2 else np.ones(len(calm), bool))
+
+
+def low_pass(spread: Valued, least: float) -> Valued | None:
+    """The time constant, s, of a first-order low pass by κ; none below `least` sigmas of that."""
+    if spread.value <= least * spread.sigma:
+        return None
+    constant = float(np.sqrt(spread.value))
+    return Valued(constant, spread.sigma / (2 * constant))
 
 
 def corrected(angle: Array, harmonics: Mapping[int, tuple[float, float]]) -> Array:

@@ -18,6 +18,15 @@ and noise, earth and bias are those of what was recorded, w times. In a steady p
 same for all, T_missing/T_steady; by the sums S of one gyro that is a recorded angle of
 α / (1 + S_steady/S · T_missing/T_steady), in which its scale factor cancels.
 
+Where the encoder of the table is recorded, known is the angle of each of its windows, of any
+length, E₂ − E₁ by its readings. So no rest is needed at the ends of a window, nor what lies between
+two. The sum over a window has
+
+    M · u (E₂ − E₁ − τ (ω₂ − ω₁) − a (sin E₂ − sin E₁) − b (cos E₂ − cos E₁)),
+
+with the delay τ of the gyros less that of the encoder, and the eccentricity a, b of the encoder:
+unknowns of the table, with those that are eliminated. An edge that two windows share has one error.
+
 The earth's rate has an upward component, known from the latitude, and a horizontal component of
 known size whose direction is known only with `mark` and the table's heading. Else it is an unknown
 of each position, with the size as its sigma. Of a turn in an unknown attitude all three components
@@ -44,7 +53,14 @@ from inertial.physics.motion import all_level_axes, cross, level_axes, turned_al
 
 Array = NDArray[np.float64]
 
+SQRT2 = float(np.sqrt(2))
 UPRIGHT = np.array([0.0, 0.0, 1.0])  # z, for want of a direction
+# What is known of an encoder before: it is read within 50 ms, and off its axis by no more than
+# those of a laboratory are; what the windows say of both counts.
+DELAY_SIGMA = 0.05  # s
+ECCENTRICITY_SIGMA = 1e-4  # rad, 20 arcsec
+DELAY: Name = ("encoder delay", "the table")
+WAVES: tuple[Name, Name] = (("encoder sine", "the table"), ("encoder cosine", "the table"))
 MAX_BLOCKS_PER_PASS = 4000  # so that the memory does not grow with the length of a segment
 
 
@@ -206,9 +222,14 @@ def segment_equations(
     vague = horizontal_sigma(segment.position, earth)
     own = dict.fromkeys(horizontal_names(segment.position), vague)
     own |= {(f"tilt {i}", segment.position.name): position_sigma for i in (0, 1)}
-    own[("angle", name)] = segment.angle_sigma
-    if segment.gaps:
-        own[("gap angle", name)] = segment.gap_sigma
+    if segment.windows:
+        own |= {DELAY: DELAY_SIGMA, **dict.fromkeys(WAVES, ECCENTRICITY_SIGMA)}
+        edges = {edge for w in segment.windows for edge in (w.start, w.end)}
+        own |= dict.fromkeys((_edge(name, e) for e in sorted(edges)), segment.angle_sigma / SQRT2)
+    else:
+        own[("angle", name)] = segment.angle_sigma
+        if segment.gaps:
+            own[("gap angle", name)] = segment.gap_sigma
     sigma |= own
     sums = np.where(recorded, segment.sums, 0.0)
     angle = _block_angles(segment, sums, weight, point, earth)
@@ -221,10 +242,14 @@ def segment_equations(
     blocks = _Blocks(segment, point, earth, prior, effects, list(own), sums, angle, middle)
     whole = np.zeros((3, len(prior) + len(own) + 1))
     unweighted, rows, count = whole.copy(), [whole[:0]], 1
+    of_windows = [whole.copy() for _ in segment.windows]
     for start in range(0, len(sums), MAX_BLOCKS_PER_PASS):
         some = slice(start, start + MAX_BLOCKS_PER_PASS)
         equations = blocks.equations(some)
         whole += np.einsum("k,krc->rc", segment.weights[some], equations)
+        for window, total in zip(segment.windows, of_windows, strict=True):
+            inside = slice(max(window.first - start, 0), max(window.after - start, 0))
+            total += equations[inside].sum(axis=0)
         if segment.by_hand:
             unweighted += equations.sum(axis=0)
             continue
@@ -236,11 +261,13 @@ def segment_equations(
     if segment.by_hand:
         rows.append(across @ unweighted / np.sqrt(segment.seconds.sum()))
         count += len(across)
-    sum_of_blocks = float(segment.weights @ angle)
-    rows.append(_whole_angle(segment, point.matrix, whole, recorded, sum_of_blocks, own))
-    stacked = np.vstack(rows)
-    if not np.isfinite(stacked[-1]).all():
-        stacked, count = stacked[:-1], count - 1
+    if segment.windows:
+        known = _windows(segment, name, point.matrix, of_windows, recorded, angle, list(own))
+    else:
+        sum_of_blocks = float(segment.weights @ angle)
+        known = _whole_angle(segment, point.matrix, whole, recorded, sum_of_blocks, own)
+    known = known[np.isfinite(known).all(axis=1)]
+    stacked, count = np.vstack([*rows, known]), count - 1 + len(known)
     return EquationBlock(compressed(stacked), tuple(own), count, 0.0)
 
 
@@ -328,3 +355,40 @@ def _whole_angle(
     angles = sum(kind in ("angle", "gap angle") for kind, _ in own)
     row[-1 - angles : -1] = along @ (matrix @ segment.about)
     return row[None]
+
+
+def _windows(
+    segment: RateSegment,
+    name: str,
+    matrix: Array,
+    sums: Sequence[Array],  # (3, columns) each, of the blocks of a window
+    recorded: NDArray[np.bool_],  # (3,)
+    angle: Array,  # (k,), rad, of the blocks
+    own: Sequence[Name],
+) -> Array:
+    """The equations of the angles that the encoder reads, a row for each window."""
+    quiet = np.where(recorded, 1 / np.where(recorded, segment.quiet_density, 1.0), 0.0)
+    along = quiet * (matrix @ segment.about)
+    rows = []
+    for window, whole in zip(segment.windows, sums, strict=True):
+        inside = slice(window.first, window.after)
+        factor = quiet * along
+        factor /= np.linalg.norm(along) * np.sqrt(segment.seconds[inside].sum())
+        row = factor @ whole
+        # M multiplies the angle of the encoder, from which that of the blocks differs a little.
+        known = window.end - window.start
+        missing = np.kron(factor, (known - float(angle[inside].sum())) * segment.about)
+        row[:9] += missing
+        row[-1] -= missing @ np.eye(3).ravel()
+        of_angle = factor @ (matrix @ segment.about)
+        errors = {DELAY: -window.change, **dict(zip(WAVES, np.negative(window.waves), strict=True))}
+        errors |= {_edge(name, window.start): -1.0, _edge(name, window.end): 1.0}
+        for error, size in errors.items():
+            row[own.index(error) - len(own) - 1] += of_angle * size
+        rows.append(row)
+    return np.array(rows)
+
+
+def _edge(name: str, angle: float) -> Name:
+    """The error of the encoder at one of its readings."""
+    return ("angle", f"{name} at {angle!r}")

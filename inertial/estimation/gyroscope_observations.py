@@ -68,14 +68,40 @@ class Gap:
 
 
 @dataclass(frozen=True)
+class EncoderWindow:
+    """What the encoder reads while some consecutive blocks last, `first` up to `after`.
+
+    `start`, `end`: rad, its readings; `change`: rad/s, of the rate of the table from its beginning
+    to its end. All about the axis of the turn by the right-hand rule, which the encoder itself
+    counts in the same `sense`, 1, or in the other, -1.
+    """
+
+    first: int
+    after: int
+    start: float
+    end: float
+    change: float
+    sense: float
+
+    @property
+    def waves(self) -> tuple[float, float]:
+        """By how much an error of the encoder in sine and cosine of its angle changes, (2,)."""
+        own = self.sense * np.array([self.start, self.end])
+        sine, cosine = (float(np.diff(wave(own))[0]) for wave in (np.sin, np.cos))
+        return self.sense * sine, self.sense * cosine
+
+
+@dataclass(frozen=True)
 class RateSegment:
-    """A whole turn from rest to rest, in k blocks.
+    """A whole turn from rest to rest, or a part of one that the encoder knows, in k blocks.
 
     `sums`: (k, 3), rad; `seconds`: (k,); `angle`, `angle_sigma`: rad; `density` and
     `quiet_density`: (3,), rad/√s, white noise while turning and at rest. `by_hand`: the
     axis sways on the way, so only the sums over the whole turn are used. `gaps`: missing parts
     between the blocks; `gap_sigma`: rad, of the interpolated angle.
     `unsteady`: blocks in which the amplitude of an oscillation of the case changes.
+    `windows`: by the encoder, with `course`, (k,), rad, which it has turned by at the middle of
+    each block; then `angle` and what is interpolated are not used, and `angle_sigma` is a window's.
     """
 
     position: Position
@@ -92,6 +118,8 @@ class RateSegment:
     unsteady: Sequence[int] = ()
     sensitivities: Sensitivities = NO_SENSITIVITIES
     stretch: Stretch | None = None
+    windows: Sequence[EncoderWindow] = ()
+    course: Array | None = None
 
     @property
     def weights(self) -> Array:
@@ -114,6 +142,8 @@ class RateSegment:
 
     def turned(self, angle: Array) -> Array:
         """The angle of the table at the middle of each block, (k,), from those of the blocks."""
+        if self.course is not None:
+            return self.course
         return self._cumulated(angle, [float(gap.shares @ angle) for gap in self.gaps])
 
     def _cumulated(self, own: Array, missing: Sequence[float]) -> Array:

@@ -26,7 +26,7 @@ STEP = 1e-4  # relative, of a variance: its square is lost, and nothing by round
 # The kinds of the errors and of the known quantities in the equations.
 ERRORS = {
     "position": ("tilt 0", "tilt 1"),
-    "angle": ("angle",),
+    "angle": ("angle", "encoder delay", "encoder sine", "encoder cosine"),
     "interpolation": ("gap angle",),
     "azimuth": ("level 0", "level 1", "earth 0", "earth 1", "earth 2"),
 }

@@ -332,7 +332,7 @@ MOTIONS = Table(
 )
 ENCODER = Table(
     "encoder",
-    1,
+    2,
     (
         MOUNT,
         Column(
@@ -343,7 +343,9 @@ ENCODER = Table(
             TEXT,
             "",
             "scale: scale factor's error of the gyro less that of the encoder; delay of the gyro"
-            " less that of the encoder; bandwidth of a first-order gyro with that delay; sine,"
+            " less that of the encoder; spread: variance of that delay, 0 where both are only late;"
+            " low_pass: time constant of first order with that variance, where it is certain;"
+            " dead_time: delay less low_pass; bandwidth: that of low_pass; sine,"
             " cosine: error of the encoder with its angle times order; ripple:"
             " amplitude in the course of the encoder at the steady rate",
         ),

@@ -276,7 +276,7 @@ PERFORMED = Table(
 )
 BLOCKS = Table(
     "blocks",
-    2,
+    3,
     (
         Column("manoeuvre", TEXT, "", "as in manoeuvres"),
         Column("phase", TEXT, "", PHASES),
@@ -299,6 +299,18 @@ BLOCKS = Table(
         ),
         *channels("mean"),
         Column("table_angle", DOUBLE, "rad", "mean angle of the table", nullable=True),
+        *(
+            Column(
+                f"{what}_{edge}",
+                DOUBLE,
+                unit,
+                f"of a turn: {what} of the table by its encoder at the {place} of the block; none"
+                " where the encoder is not used",
+                nullable=True,
+            )
+            for what, unit in (("angle", "rad"), ("rate", "rad/s"))
+            for edge, place in (("from", "beginning"), ("to", "end"))
+        ),
         Column("temperature", DOUBLE, "K", "mean temperature", nullable=True),
         Column("mask_share", DOUBLE, "1", "share of its records that are masked"),
     ),

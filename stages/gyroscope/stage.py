@@ -42,7 +42,7 @@ def gyroscope(
         if inputs.is_empty:
             estimates.add_nothing("joint", omissions(inputs.left_out))
             continue
-        moving = (inputs.turns, inputs.steady_rates, inputs.earth, inputs.position_sigma)
+        moving = (inputs.segments, inputs.set_rates, inputs.earth, inputs.position_sigma)
         drift = data.noise.drift("gyro")
         fitted = gyroscopes.fit(inputs.static_rates, *moving, data.noise.degrees, drift)
         why = reasons(fitted.estimate.determined, _channels(inputs), "gyro", CURES)
@@ -66,7 +66,7 @@ def _channels(inputs: GyroInputs) -> NDArray[np.bool_]:
     """Which gyros are in the logs, (3,)."""
     readings = [rest.mean for rest in inputs.static_rates]
     readings += [steady.mean for steady in inputs.steady_rates]
-    readings += [turn.sums.sum(axis=0) for turn in inputs.turns]
+    readings += [turn.sums.sum(axis=0) for turn in inputs.segments]
     return np.asarray(np.isfinite(np.array(readings)).any(axis=0))
 
 

@@ -1,6 +1,6 @@
 """The angle of the table's encoder in place of the stated angles and rates of turns."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import degrees
 
@@ -9,6 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.records import Manoeuvre
+from inertial.campaign.static_positions import ENCODER
 from inertial.tables import GYRO, STATIC_PHASES
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
@@ -18,10 +19,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ByEncoder:
-    """A turn as its encoder has it, and what the report says of that, empty without an encoder."""
+    """A turn as its encoder has it, and what the report says of that, empty without an encoder.
+
+    `used`: whether its readings count.
+    """
 
     manoeuvre: Manoeuvre
     remark: str = ""
+    used: bool = True
 
 
 def by_encoder(
@@ -29,24 +34,25 @@ def by_encoder(
 ) -> ByEncoder:
     """A turn with the angle, or of a steady part the rate, that the encoder reads.
 
-    From the mean angle at rest before it to the one after, or by the straight line through the
-    blocks of the steady part. The sigma of an angle stays the stated one of the table, which is
-    that of its encoder. Readings that differ from the gyros' by more than `tolerance`, relative,
-    belong to another axis or have another unit, and are not used. `blocks`: all of the turn;
-    `angle_sigma`: of the table, rad.
+    From the mean angle at rest before it to the one after; of a steady part from its beginning to
+    its end; of a turn that is recorded in part, what it has turned by while it is recorded. The
+    sigma of an angle stays the stated one of the table, which is that of its encoder. Readings that
+    differ from the gyros' by more than `tolerance`, relative, belong to another axis or have
+    another unit, and are not used. `blocks`: all of the turn; `angle_sigma`: of the table, rad.
     """
     steady = m.recorded == "steady"
-    found = _rate(blocks, angle_sigma) if steady else _angle(blocks)
     moving = blocks[~blocks["phase"].isin(STATIC_PHASES)]
+    value = _rate(moving) if steady else _angle(blocks)
+    in_part = not (steady or np.isfinite(value))
+    value = _in_motion(moving) if in_part else value
     seconds = moving["seconds"].to_numpy(np.float64)
     about = moving[GYRO].to_numpy(np.float64)[:, m.axis != 0] @ m.axis[m.axis != 0]
     read = float(np.nansum(about * seconds))
-    if found is None or not np.isfinite(found[0]) or read == 0:
-        return ByEncoder(m)
-    value, sigma = found
+    if not np.isfinite(value) or read == 0:
+        return ByEncoder(m, used=False)
     value = float(np.copysign(value, read))
     by_gyro = read / float(np.nansum(seconds)) if steady else read
-    if (blocks["missing_s"] > 0).any() and m.angle is not None and not steady:
+    if (blocks["missing_s"] > 0).any() and m.angle is not None and not (steady or in_part):
         by_gyro = m.angle  # what the gyros lack lies in a gap
     if abs(value - by_gyro) > tolerance * abs(by_gyro):
         return ByEncoder(
@@ -56,22 +62,28 @@ def by_encoder(
                 value=significant(degrees(value), 4),
                 by_gyro=significant(degrees(by_gyro), 4),
             ),
+            used=False,
         )
+    angle = fixed(degrees(value), 4)
+    if in_part:
+        return ByEncoder(m, _("By the encoder it turned by {angle}° on record.", angle=angle))
     if steady:
+        sigma = np.sqrt(2) * angle_sigma / float(np.sum(seconds))
         return ByEncoder(
             replace(m, rate=value, rate_sigma=sigma),
             _("The rate is the encoder's, {rate} °/s.", rate=fixed(degrees(value), 5)),
         )
     return ByEncoder(
-        replace(m, angle=value),
-        _("The angle is the encoder's, {angle}°.", angle=fixed(degrees(value), 4)),
+        replace(m, angle=value), _("The angle is the encoder's, {angle}°.", angle=angle)
     )
 
 
-def _angle(blocks: pd.DataFrame) -> tuple[float, float] | None:
-    """The angle from rest to rest, rad."""
-    ends = [_mean(blocks[blocks["phase"] == phase]) for phase in ("rest-before", "rest-after")]
-    return (ends[1] - ends[0], 0.0) if np.isfinite(ends).all() else None
+def _angle(blocks: pd.DataFrame) -> float:
+    """The angle from rest to rest, rad; NaN where one of them is not recorded."""
+    before, after = (
+        _mean(blocks[blocks["phase"] == phase]) for phase in ("rest-before", "rest-after")
+    )
+    return after - before
 
 
 def _mean(blocks: pd.DataFrame) -> float:
@@ -80,14 +92,26 @@ def _mean(blocks: pd.DataFrame) -> float:
     return float(np.average(angle[known], weights=count[known])) if known.any() else np.nan
 
 
-def _rate(blocks: pd.DataFrame, angle_sigma: float) -> tuple[float, float] | None:
-    """The rate of the steady part and its sigma, rad/s, by that of the angle at both ends."""
-    own = blocks[blocks["phase"] == "steady"]
-    angle, time = (own[name].to_numpy(np.float64) for name in ("table_angle", "time"))
-    if len(own) < 2 or not (np.isfinite(angle) & np.isfinite(time)).all():
-        return None
-    lasts = float(time[-1] - time[0])
-    return float(np.polyfit(time - time[0], angle, 1)[0]), np.sqrt(2) * angle_sigma / lasts
+def _rate(moving: pd.DataFrame) -> float:
+    """The rate of the steady part, rad/s."""
+    own = moving[moving["phase"] == "steady"]
+    if len(own) < 2:
+        return np.nan
+    start, end = own["angle_from"].iloc[0], own["angle_to"].iloc[-1]
+    return float((end - start) / (own["seconds"].sum() + own["missing_s"].iloc[1:].sum()))
+
+
+def _in_motion(moving: pd.DataFrame) -> float:
+    """The angle of the recorded motion, rad; NaN where the encoder does not know all of it."""
+    return float((moving["angle_to"] - moving["angle_from"]).sum(skipna=False))
+
+
+def without_unused(blocks: pd.DataFrame, turned: Mapping[str, ByEncoder]) -> pd.DataFrame:
+    """The blocks without what the encoder reads in turns in which it is not used."""
+    used = [name for name, turn in turned.items() if turn.used]
+    return blocks.assign(
+        **{name: blocks[name].where(blocks["manoeuvre"].isin(used)) for name in ENCODER}
+    )
 
 
 def plan_by_encoder(

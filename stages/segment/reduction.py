@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from inertial import tables
 from inertial.campaign.masked_samples import Batch, Booleans, Integers, Masks, regular
 from inertial.campaign.records import Clock, Manoeuvre
-from inertial.campaign.sums import ExtremesOver, SumsOver, TimesOver
+from inertial.campaign.static_positions import ENCODER
+from inertial.campaign.sums import EdgesOver, ExtremesOver, SumsOver, TimesOver
 from inertial.tables import STATIC_PHASES
 from stages.segment.matching import BETWEEN, Part
 
@@ -104,6 +105,12 @@ class Blocks(SumsOver):
         self._table = _spans(parts, edges)
         self._spans = _Spans(self._table)
         super().__init__(self._spans.stretches, masks)
+        self._encoder = EdgesOver(self._spans.stretches)
+
+    def add(self, batch: Batch) -> None:
+        """Take in the next batch."""
+        super().add(batch)
+        self._encoder.add(batch)
 
     def clipped(self, name: str) -> dict[str, Booleans]:
         """Which channels are cut off in a manoeuvre, (6,), by phase; that of motion is ""."""
@@ -133,6 +140,11 @@ class Blocks(SumsOver):
         def column(name: str) -> Floats:
             return self._spans.in_order({log: getattr(own, name) for log, own in sums.items()})
 
+        encoder = self._encoder.result()
+        edges = {
+            name: self._spans.in_order({log: getattr(own, name) for log, own in encoder.items()})
+            for name in ENCODER
+        }
         count, records = column("count"), column("records")
         means = column("mean")
         means[self._cut_off()] = np.nan
@@ -143,12 +155,14 @@ class Blocks(SumsOver):
             missing_s=0.0,
             **dict(zip(tables.CHANNELS, means.T, strict=True)),
             table_angle=column("table_angle"),
+            **edges,
             temperature=column("temperature"),
             mask_share=column("masked") / np.maximum(records, 1),
             first=column("first"),
             last=column("last"),
         )
         rest = table["phase"].isin(STATIC_PHASES)
+        table.loc[rest, ENCODER] = np.nan
         table = table[(records > 0) | rest].reset_index(drop=True)
         for _, turn in table[~table["phase"].isin(STATIC_PHASES)].groupby("manoeuvre"):
             log = turn["log"].iloc[0]

@@ -22,7 +22,7 @@ from inertial.text.messages import _
 from stages.segment import completeness, reduction, repair
 from stages.segment.declared import DECLARED
 from stages.segment.detection import ExaminationOfRests, compare, recorded_of
-from stages.segment.encoder import ByEncoder, plan_by_encoder
+from stages.segment.encoder import ByEncoder, plan_by_encoder, without_unused
 from stages.segment.explanations import Explained
 from stages.segment.matching import (
     AS_NAMED,
@@ -129,7 +129,9 @@ def segment(
             block_sums.clipped(m.name).get("", np.zeros(6, bool))[3:],
         )
         as_named = located.axes.gyro == AS_NAMED
-        done = done if as_named else completeness.by_other_axes(done)
+        if not as_named:
+            done, told = completeness.by_other_axes(done), replace(told, used=False)
+        turned[m.name] = told
         performed[m.name] = replace(done, sentence=f"{done.sentence} {told.remark}".rstrip())
     for m in plan:
         performed[m.name] = completeness.with_clipped(performed[m.name], block_sums.clipped(m.name))
@@ -156,7 +158,7 @@ def segment(
         "channel_repairs": list(made.channels),
         "segments": segments,
         "performed": pd.DataFrame([asdict(performed[m.name]) for m in plan]),
-        "blocks": reduction.with_temperatures(blocks, plan),
+        "blocks": reduction.with_temperatures(without_unused(blocks, turned), plan),
         "traces": traces.table(),
         "findings": table_of([each.finding for each in detections]),
         "close_ups": close_ups(samples, index, detections),

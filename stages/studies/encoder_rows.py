@@ -9,17 +9,17 @@ import pandas as pd
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import Recorded
 from inertial.campaign.sample_stretches import Samples, Stretch
-from inertial.estimation.encoder_angle import Ripple, against_encoder, ripple
+from inertial.estimation.encoder_angle import Ripple, against_encoder, low_pass, ripple
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.time_angle import Valued
 from inertial.tables import GYRO
 
 Row = dict[str, Any]
 
-MIN_DELAY_SIGMAS = 3.0  # of a delay that tells a bandwidth
+MIN_SPREAD_SIGMAS = 3.0  # of the variance of a delay that tells a low pass
 MAX_RIPPLE_P = 1e-4  # chance of a ripple, or of a harmonic, that counts
 MIN_SCATTER_P = 0.01  # below which turns differ by more than their sigmas
-COMMON = ("delay", "sine", "cosine")  # what is the same in all turns
+COMMON = ("delay", "spread", "sine", "cosine")  # what is the same in all turns
 
 
 def with_rests(m: str) -> str:
@@ -53,6 +53,7 @@ def of_turn(
         return _row(data.mount, m.name, quantity, value, unit) | more
 
     rows = [row("scale", found.scale, "1"), row("delay", found.delay, "s")]
+    rows.append(row("spread", found.spread, "s²"))
     for order, (sine, cosine) in found.harmonics.items():
         rows += [row("sine", sine, "rad", order=order), row("cosine", cosine, "rad", order=order)]
     inside = (samples.time >= steady[0]) & (samples.time <= steady[1])
@@ -64,21 +65,30 @@ def of_turn(
 
 
 def together(data: CampaignData, rows: Sequence[Row]) -> Iterator[Row]:
-    """What all turns have in common: the delay, the bandwidth that it means, the harmonics."""
+    """What all turns have in common: the delay, its parts where they are told apart, harmonics."""
     alike: dict[tuple[str, int | None], list[Row]] = {}
     for row in rows:
         if row["quantity"] in COMMON:
             alike.setdefault((row["quantity"], row["order"]), []).append(row)
+    common: dict[tuple[str, int | None], Valued] = {}
     for (quantity, order), own in alike.items():
         value, chance = _mean(own)
         yield _row(data.mount, None, quantity, value, own[0]["unit"]) | {
             "order": order,
             "p_value": chance,
         }
-        if quantity == "delay" and value.value > MIN_DELAY_SIGMAS * value.sigma:
-            hertz = 1 / (2 * np.pi * value.value)
-            bandwidth = Valued(hertz, hertz * value.sigma / value.value)
-            yield _row(data.mount, None, "bandwidth", bandwidth, "Hz")
+        common[quantity, order] = value
+    if ("spread", None) not in common:
+        return
+    constant = low_pass(common["spread", None], MIN_SPREAD_SIGMAS)
+    if constant is not None:
+        hertz = 1 / (2 * np.pi * constant.value)
+        delay = common["delay", None]
+        rest = Valued(delay.value - constant.value, float(np.hypot(delay.sigma, constant.sigma)))
+        yield _row(data.mount, None, "low_pass", constant, "s")
+        yield _row(data.mount, None, "dead_time", rest, "s")
+        bandwidth = Valued(hertz, hertz * constant.sigma / constant.value)
+        yield _row(data.mount, None, "bandwidth", bandwidth, "Hz")
 
 
 def _mean(rows: Sequence[Row]) -> tuple[Valued, float | None]:

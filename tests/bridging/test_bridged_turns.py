@@ -87,6 +87,7 @@ def turn(
         temperature=np.full(kept.sum(), np.nan),
         gyro=(sums / seconds[:, None])[kept],
         accel=np.full((kept.sum(), 3), np.nan),
+        encoder=np.full((kept.sum(), 4), np.nan),
     )
     return rate_segment_of(
         Recorded(m, Performed(m.name, ""), blocks, ""), levels(), None, rate_sigma

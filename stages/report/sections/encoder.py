@@ -13,12 +13,21 @@ from stages.report.tables import Record, Tables
 QUANTITIES = {
     "scale": _("scale factor of the gyro less that of the encoder"),
     "delay": _("delay of the gyro less that of the encoder"),
-    "bandwidth": _("bandwidth of a first-order gyro, with a prompt encoder"),
+    "spread": _("variance of this delay: 0 where gyro and encoder are only late"),
+    "low_pass": _("time constant of the gyro's low pass of first order, with that variance"),
+    "dead_time": _("dead time of the gyro less latency of the encoder"),
+    "bandwidth": _("bandwidth of the gyro by that time constant"),
     "sine": _("error of the encoder, sine of {order:g} times its angle"),
     "cosine": _("error of the encoder, cosine of {order:g} times its angle"),
     "ripple": _("ripple of the drive, {order:g} periods in a turn, amplitude"),
 }
-UNITS = {"1": PPM, "rad": SECONDS_OF_ARC, "s": Unit("ms", 1e-3), "Hz": Unit("Hz", 1.0)}
+UNITS = {
+    "1": PPM,
+    "rad": SECONDS_OF_ARC,
+    "s": Unit("ms", 1e-3),
+    "s²": Unit("ms²", 1e-6),
+    "Hz": Unit("Hz", 1.0),
+}
 
 
 def encoder_parts(tables: Tables) -> Iterator[Part]:
@@ -35,14 +44,30 @@ def encoder_parts(tables: Tables) -> Iterator[Part]:
         _(
             "A scale factor that all gyros have in common and one of the encoder are one unknown: "
             "all scale factors of this result rest on the encoder's. A delay is that of the gyro "
-            "less that of the encoder, by the ramps of the rate; which of the two is late needs a "
-            "latency that is known. A ripple of the drive is seen by both, an error of the encoder "
-            "by the gyros alone; windows by the encoder are corrected for the harmonics above."
+            "less that of the encoder, by the ramps of the rate. {apart} A ripple of the drive is "
+            "seen by both, an error of the encoder by the gyros alone; windows by the encoder are "
+            "corrected for the harmonics above.",
+            apart=_apart(common),
         )
     )
 
 
-COMMON = ("delay", "sine", "cosine")  # shown of all turns together
+COMMON = ("delay", "spread", "sine", "cosine")  # shown of all turns together
+
+
+def _apart(common: Sequence[Record]) -> str:
+    """What of the delay is told apart."""
+    if any(row["quantity"] == "low_pass" for row in common):
+        return _(
+            "Its variance tells the low pass of the gyro from times by which something is read "
+            "late; of these, the dead time of the gyro and the latency of the encoder, only the "
+            "difference is known."
+        )
+    return _(
+        "Low pass and dead time of the gyro and latency of the encoder are one class: their sum, "
+        "the encoder's negative, is known, its parts are not, for the variance of the delay is not "
+        "certain. Steeper ramps, or more of them, tell the low pass apart."
+    )
 
 
 def _table(caption: str, rows: Sequence[Record]) -> Table:
