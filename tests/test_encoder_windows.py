@@ -115,8 +115,9 @@ def test_without_the_encoder_they_say_nothing_of_the_scale_factors():
 def test_the_encoder_gives_the_angle_over_a_gap(encoder, low, high):
     """4 s of a steady part are lost: by the set rate, known to 100 ppm, they are 80° to 29 arcsec.
 
-    Two turns give the scale factor to √(N² T/2 + 2″²/2)/2π, 2.03 ppm: N = 0.012 °/√h, T = 19 s. One alone, to which the bias is known by 30 s at rest up and down: √(N² T + N² T²/60 + 2″²)/2π,
-    3.3 ppm, and somewhat less with what the other says of the bias.
+    Two turns give the scale factor to √(N² T/2 + 2″²/2)/2π, 2.03 ppm: N = 0.012 °/√h, T = 19 s.
+    One alone, to which the bias is known by 30 s at rest up and down, to
+    √(N² T + N² T²/60 + 2″²)/2π, 3.3 ppm, and somewhat less with what the other says of the bias.
     """
     document = deepcopy(laboratory.read(chain.ROOT / "data/simulated/encoder.yaml").document)
     plan = document["campaign"]["plan"]
