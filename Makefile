@@ -28,6 +28,9 @@
 #                                 parameters as curves of the temperature with their bound, in
 #                                 docs/temperature.md; two hours on two cores, can be resumed; with
 #                                 DRAWS=100 a tenth of them
+#   make silence                  records 2000 clean campaigns and counts what is named in them, in
+#                                 docs/silence.md; three hours on two cores, can be resumed; with
+#                                 DRAWS=100 so many of them
 #   make noise                    estimates the noise of 3000 simulated recordings, in docs/noise.md; 15
 #                                 minutes on two cores, can be resumed; with DRAWS=100 of each part
 #   make histories                predicts the next calibration and seeks jumps in 3500 simulated histories, in
@@ -48,7 +51,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new design trace test test-slow style bench challenge noise histories temperature designs mutants docs recordings clean setup pango campaign
+.PHONY: report check draft new design trace test test-slow style bench challenge silence noise histories temperature designs mutants docs recordings clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -179,6 +182,9 @@ challenge: .venv/complete
 temperature: .venv/complete
 	PYTHONPATH=tests:tests/hidden:tests/diagnosis:tests/bounds:tests/temperature OPENBLAS_NUM_THREADS=1 \
 		$(BIN)/python -m temperature "$$((DRAWS / 5))" data/derived/temperature
+
+silence: .venv/complete
+	PYTHONPATH=tests:tests/hidden OPENBLAS_NUM_THREADS=1 $(BIN)/python -m silence $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",2000) data/derived/silence
 
 noise: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m noise data/derived/noise $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")

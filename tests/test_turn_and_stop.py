@@ -60,6 +60,15 @@ def test_the_truth_comes_back_by_the_joint_estimate_and_by_the_formulas(
     assert np.sqrt(np.mean(found**2)) < 1.6
 
 
+def test_a_set_position_is_wrong_by_as_much_in_all_its_turns(session):
+    """Each cross-axis term rests on two positions, each off by 2 arcsec: 2/√2 arcsec at best."""
+    for method in ("joint", "turn_and_stop"):
+        sigmas = session.parameters("gyroscope", method)["sigma"]
+        crosses = sigmas[sigmas.index.str.startswith("cross_")] / (np.pi / 180 / 3600)
+        assert len(crosses) == 6
+        assert ((crosses > 2 / np.sqrt(2)) & (crosses < 1.6)).all()
+
+
 def test_the_joint_estimate_costs_no_more_than_the_formulas(session):
     for stage, methods in {
         "accelerometer": ["pooled_positions"],

@@ -191,7 +191,8 @@ TURNING = ("spin-up", "steady", "spin-down", "turning")
 class Recorded:
     """A rotation of the plan, its record, its blocks in motion, and why it is refused.
 
-    `begun`: whether the rest before it is recorded, so that its start is at the set position.
+    `begun`: whether the rest before it is in its record; one that is recorded in part and has
+    none begins at another azimuth than that of the set position.
     """
 
     plan: Manoeuvre
@@ -388,8 +389,8 @@ def rate_segment_of(
     m, part = rotation.plan, rotation.blocks
     missing = gaps_of(part)
     position = position_of(m, heading)
-    if not rotation.begun:  # the azimuth at which the record begins is another one
-        position = Position(f"{position.name}, on the way", position.up)
+    if rotation.in_part and not rotation.begun:
+        position = Position(position.name, position.up, start=f"{m.name}, on the way")
     return RateSegment(
         position=position,
         about=m.axis,

@@ -70,7 +70,7 @@ def horizontal_names(position: Position) -> tuple[Name, ...]:
         return ()
     if not position.is_known:
         return tuple((f"earth {i}", position.name) for i in (0, 1, 2))
-    name = "the table" if position.mark is not None else position.name
+    name = "the table" if position.mark is not None else position.start or position.name
     return tuple((f"level {i}", name) for i in (0, 1))
 
 

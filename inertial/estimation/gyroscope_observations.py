@@ -27,13 +27,15 @@ class Position:
 
     `north` where mark and heading are given; `mark` where only the mark is; else
     the azimuth is an unknown of this position. Where nothing is known of the attitude, `up` is zero
-    and all three components of the earth's rate are unknowns.
+    and all three components of the earth's rate are unknowns. `start`: of a record that begins on
+    the way, the name of the azimuth at which it does; the tilt is that of the position.
     """
 
     name: str
     up: Array
     mark: Array | None = None
     north: Array | None = None
+    start: str = ""
 
     @property
     def is_known(self) -> bool:
