@@ -14,6 +14,10 @@
 #                                 WANT=gyroscope/scale=5e-6, so that wanted sigmas are reached
 #   make trace ID=<number>        from a number of the report, such as gyroscope/joint/bias_x, back to
 #                                 the lines of the logs; also with CAMPAIGN=<name>
+#   make index                    reports/index.html: all campaigns that have a result, to filter and
+#                                 sort; and reports/history/<serial>.html: each IMU over its calibrations
+#   make compare A=<name> B=<name>   two campaigns beside each other: parameters, effects, conditions,
+#                                 settings, with the references that they share; and as a page
 #   make test                     the tests; the same as CI with `make style`
 #   make test-slow                those that draw many campaigns; ten minutes on two cores
 #   make bench                    errors, time and memory compared with other programs, in one run;
@@ -51,7 +55,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new design trace test test-slow style bench challenge silence noise histories temperature designs mutants docs recordings clean setup pango campaign
+.PHONY: report check draft new design trace index compare test test-slow style bench challenge silence noise histories temperature designs mutants docs recordings clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -68,6 +72,8 @@ TABLE ?=
 MINUTES ?= 30
 CRITERION ?= A
 WANT ?=
+A ?=
+B ?=
 override CAMPAIGN := $(value CAMPAIGN)
 override ID := $(value ID)
 override ONLY := $(value ONLY)
@@ -81,7 +87,9 @@ override TABLE := $(value TABLE)
 override MINUTES := $(value MINUTES)
 override CRITERION := $(value CRITERION)
 override WANT := $(value WANT)
-export CAMPAIGN ID ONLY DRAWS LOG NAME RATE PLAN INSTRUMENT TABLE MINUTES CRITERION WANT
+override A := $(value A)
+override B := $(value B)
+export CAMPAIGN ID ONLY DRAWS LOG NAME RATE PLAN INSTRUMENT TABLE MINUTES CRITERION WANT A B
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -148,6 +156,22 @@ campaign:
 		exit 2
 	fi >&2
 
+# The pages of all campaigns that have a result; where one is refused now, a second run is without it.
+index: .venv/complete
+	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
+	for goal in histories reports/index.html; do
+		$(SNAKEMAKE) $$goal || $(SNAKEMAKE) $$goal
+	done
+	echo "All campaigns: reports/index.html; each IMU: reports/history/"
+
+compare: .venv/complete
+	for campaign in "$$A" "$$B"; do $(MAKE) --no-print-directory campaign "CAMPAIGN=$$campaign"; done
+	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
+	$(SNAKEMAKE) "reports/compare-$$A-$$B.html"
+	echo
+	cat "reports/compare-$$A-$$B.txt"
+	echo "The comparison: reports/compare-$$A-$$B.html"
+
 test: setup
 	$(BIN)/python -m pytest
 
@@ -157,7 +181,7 @@ test-slow: setup
 style: setup
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/mypy stages inertial commands laboratory
+	$(BIN)/mypy stages inertial commands overviews laboratory
 	MYPYPATH=tests:tests/bounds:tests/hidden:tests/temperature $(BIN)/mypy benchmarks/*.py benchmarks/own/*.py
 	$(BIN)/snakefmt --check -l 100 Snakefile
 	$(BIN)/lint-imports
@@ -203,7 +227,7 @@ docs: .venv/complete
 	$(BIN)/python -m commands.tables
 	$(BIN)/python -m commands.theory
 	$(BIN)/pybabel -q extract --keywords _ --keywords plural:1,2 --no-wrap --omit-header \
-		--sort-by-file --add-location file --output inertial/text/messages.pot inertial stages commands
+		--sort-by-file --add-location file --output inertial/text/messages.pot inertial stages commands overviews
 
 recordings: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m recordings

@@ -19,7 +19,9 @@ shell.prefix(f"export PATH={Path(sys.executable).parent}:$PATH PYTHONPATH={HOME}
 
 from inertial.tables.campaign_files import campaigns, logs_of
 from inertial.tables.code import code_of, hash_of
+from inertial.tables.errors import Refusal
 from inertial.tables.failed_run import FailedRun
+from overviews.known import kept, pair_of, refuse_reserved, serials, with_result
 
 
 configfile: HOME / "config.yaml"
@@ -39,6 +41,11 @@ RAW = "data/raw/{campaign}"
 SIMULATED = campaigns("data/simulated", "*.yaml")
 LABORATORY = sorted(p for p in (HOME / "laboratory").rglob("*") if p.suffix in {".py", ".yaml"})
 CAMPAIGNS = sorted({*campaigns("data/raw", "*/campaign.yaml"), *SIMULATED})
+ARCHIVE = Path("data/history")
+try:
+    refuse_reserved(CAMPAIGNS)
+except Refusal as refusal:
+    sys.exit(str(refusal))
 
 
 def declared(stage):
@@ -110,8 +117,39 @@ def laboratory():
     return [file for file in ["data/laboratory.yaml"] if Path(file).is_file()]
 
 
+def results(*campaigns):
+    """The tables that are the result of campaigns, on which pages of several rest."""
+    stages = ("plan", "segment", "diagnosis", "compensation", "history")
+    names = [f"{stage}/{name}" for stage in stages for name in declared(stage).writes]
+    return expand("data/derived/{campaign}/{name}.parquet", campaign=campaigns, name=names)
+
+
+def with_serial(wildcards):
+    """The results of the campaigns that the archive has of a serial number, where they are here."""
+    here = with_result(CAMPAIGNS, Path("data/derived"))
+    files = kept(ARCHIVE, wildcards.serial)
+    return results(*(c for c in here if any(f"-{c}-" in Path(file).name for file in files)))
+
+
+def compared(wildcards):
+    """The results of the two campaigns of a comparison."""
+    return results(*pair_of(wildcards.pair, CAMPAIGNS))
+
+
+def pages():
+    """The pages to which others lead, where they are."""
+    return [p for p in map("reports/{}.html".format, CAMPAIGNS) if Path(p).is_file()]
+
+
+def overview_settings():
+    """What pages of several campaigns depend on in config.yaml."""
+    return json.dumps({name: config[name] for name in ("history", "comparison")}, sort_keys=True)
+
+
 wildcard_constraints:
-    campaign="[a-z0-9][a-z0-9-]*",
+    campaign="(?!index$|compare-)[a-z0-9][a-z0-9-]*",
+    pair="[a-z0-9][a-z0-9-]*",
+    serial="[^/]+",
 
 
 rule all:
@@ -494,3 +532,67 @@ rule pdf:
         "{wildcards.campaign}: the report as PDF"
     shell:
         command("pdf")
+
+
+# ---- Pages of several campaigns: of those whose result is there when a run begins; a change of it
+# reruns them.
+
+
+rule index:
+    input:
+        lambda wildcards: results(*with_result(CAMPAIGNS, Path("data/derived"))),
+    output:
+        "reports/index.html",
+    log:
+        "data/derived/.overviews/index.log",
+    params:
+        campaigns=CAMPAIGNS,
+        archive=kept(ARCHIVE),
+        pages=pages() + [f"reports/history/{serial}.html" for serial in serials(ARCHIVE)],
+        settings=overview_settings(),
+        code=hash_of(code_of("index", "overviews")),
+    message:
+        "all campaigns on one page"
+    shell:
+        "python -m overviews.index {params.campaigns:q} --settings {params.settings:q} 2> {log:q}"
+
+
+rule histories:
+    input:
+        [f"reports/history/{serial}.html" for serial in serials(ARCHIVE)],
+
+
+rule history_page:
+    input:
+        with_serial,
+    output:
+        "reports/history/{serial}.html",
+    log:
+        "data/derived/.overviews/history-{serial}.log",
+    params:
+        archive=lambda wildcards: kept(ARCHIVE, wildcards.serial),
+        pages=pages(),
+        settings=overview_settings(),
+        code=hash_of(code_of("history", "overviews")),
+    message:
+        "{wildcards.serial}: the history of an IMU"
+    shell:
+        "python -m overviews.history {wildcards.serial:q} --settings {params.settings:q} 2> {log:q}"
+
+
+rule compare:
+    input:
+        compared,
+    output:
+        "reports/compare-{pair}.html",
+        "reports/compare-{pair}.txt",
+    log:
+        "data/derived/.overviews/compare-{pair}.log",
+    params:
+        both=lambda wildcards: pair_of(wildcards.pair, CAMPAIGNS),
+        settings=overview_settings(),
+        code=hash_of(code_of("compare", "overviews")),
+    message:
+        "{params.both[0]} and {params.both[1]} beside each other"
+    shell:
+        "python -m overviews.compare {params.both:q} --settings {params.settings:q} 2> {log:q}"

@@ -9,26 +9,31 @@ ROOT = Path(__file__).parent.parent.parent
 # `from inertial.physics import site`, over several lines too, or `import inertial.physics`. The
 # text is searched: to parse it takes longer than many a stage works.
 IMPORT = re.compile(
-    r"^[ \t]*(?:from|import) ((?:stages|inertial)[\w.]*)(?: import (\([^)]*\)|.*))?", re.MULTILINE
+    r"^[ \t]*(?:from|import) ((?:overviews|stages|inertial)[\w.]*)(?: import (\([^)]*\)|.*))?",
+    re.MULTILINE,
 )
 DATA = {
     ".yaml",
     ".json",
     ".html",
     ".css",
+    ".js",
     ".pot",
     ".po",
 }  # schemas and templates lie beside the module that reads them
 
 
-def code_of(stage: str) -> list[Path]:
+def code_of(stage: str, room: str = "stages") -> list[Path]:
     """Every file that `python -m stages.<stage>` can reach by its imports, and the lock file.
+
+    `room`: where it lies, which for a page of several campaigns is `overviews`.
 
     The imports are read from the text, so nothing is run. With a module come the
     schemas and templates that lie in its folder.
     """
     reached: set[Path] = set()
-    waiting, seen = [f"stages.{stage}.__main__", "stages", f"stages.{stage}"], set[str]()
+    waiting = [f"{room}.{stage}.__main__", room, f"{room}.{stage}"]
+    seen: set[str] = set()
     while waiting:
         if (module := waiting.pop()) not in seen:
             seen.add(module)

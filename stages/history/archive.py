@@ -93,6 +93,22 @@ class Archive:
         ]
         return sorted(comparable, key=lambda entry: (entry.row["date"], entry.file))
 
+    def of_serial(self, folder: str) -> list[Entry]:
+        """The current entries of a serial number in the order of their dates; unknown ones first.
+
+        `folder`: its `file_name`; instruments of different type may have the same number.
+        """
+        entries = self._entries(self._base.glob(f"*/{glob.escape(folder)}/*.parquet"))
+        current = {
+            entry.file: entry
+            for campaign in {entry.row["campaign"] for entry in entries}
+            for entry in self.current(campaign)
+            if file_name(entry.row["serial"]) == folder
+        }
+        return sorted(
+            current.values(), key=lambda e: (e.row["date"][:1].isdigit(), e.row["date"], e.file)
+        )
+
     def _folder(self, calibration: Row) -> Path:
         return self._base / file_name(calibration["instrument"]) / file_name(calibration["serial"])
 

@@ -6,7 +6,7 @@ What a part looks like is decided by report.html alone; a part only says what it
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import groupby
 from typing import Literal
 
@@ -64,12 +64,18 @@ class Traced(str):
 
 @dataclass(frozen=True)
 class Row:
-    """A row of a table; one with `heads` stands above the rows it names."""
+    """A row of a table; one with `heads` stands above the rows it names.
+
+    `href`: another page that its first cell leads to; `sort`: what its cells are sorted by, where
+    that is not their text.
+    """
 
     cells: tuple[str, ...]
     anchor: str = ""
     tone: Tone = ""
     heads: bool = False
+    href: str = ""
+    sort: tuple[str, ...] = ()
 
 
 def table_row(*cells: str, anchor: str = "", tone: Tone = "") -> Row:
@@ -98,13 +104,17 @@ class Part:
 
 @dataclass(frozen=True)
 class Table(Part):
-    """A table with its caption; without rows, the words in `empty`."""
+    """A table with its caption; without rows, the words in `empty`.
+
+    `sortable`: the script of the page, if it has one, lets its rows be filtered and sorted.
+    """
 
     caption: str
     columns: Sequence[Column]
     rows: Sequence[Row]
     empty: str = "None."
     note: str = ""
+    sortable: bool = False
 
     @property
     def groups(self) -> tuple[tuple[str, int], ...]:
@@ -263,7 +273,10 @@ class Chapter:
 
 @dataclass(frozen=True)
 class Report:
-    """The whole report: its title page and its chapters in order."""
+    """The whole report: its title page and its chapters in order.
+
+    `script`: what runs in the page, written here; `wide`: its tables have many columns.
+    """
 
     title: str
     campaign: str
@@ -271,4 +284,7 @@ class Report:
     running: str  # what stands on top of every printed page
     simulated: bool
     chapters: Sequence[Chapter]
-    origins: Mapping[str, Sequence[str]]  # of traced numbers, by their identifier's folder
+    # Of traced numbers, by their identifier's folder.
+    origins: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    script: str = ""
+    wide: bool = False

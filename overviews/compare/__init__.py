@@ -1,0 +1,1 @@
+"""Two campaigns beside each other: what their results, conditions and settings differ by."""

@@ -1,0 +1,37 @@
+"""`python -m overviews.history <serial>`: the history of an IMU, by the file name of its serial."""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from inertial.tables.code import code_of, hash_of
+from inertial.tables.errors import Refusal
+from inertial.tables.whole_files import write_whole
+from inertial.text.numbers import visible
+from overviews.history.page import history_page
+from overviews.units import imus_of
+
+
+def main() -> None:
+    """Write reports/history/<serial>.html below the current folder."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("serial", help="as its folder in the archive is called")
+    parser.add_argument("--archive", type=Path, default=Path("data/history"))
+    parser.add_argument("--derived", type=Path, default=Path("data/derived"))
+    parser.add_argument("--reports", type=Path, default=Path("reports"))
+    parser.add_argument(
+        "--settings", type=json.loads, required=True, help="sections of config.yaml, JSON"
+    )
+    given = parser.parse_args()
+    settings = {"tolerance": {}} | given.settings["history"]
+    try:
+        imus = imus_of(given.archive, given.serial, given.derived, **settings)
+        code = hash_of(code_of("history", "overviews"))
+        html = history_page(imus, given.archive, given.reports, code)
+        write_whole({given.reports / "history" / f"{given.serial}.html": html.encode()})
+    except Refusal as refusal:
+        sys.exit(visible(f"history: {refusal}"))
+
+
+main()

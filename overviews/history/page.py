@@ -1,0 +1,213 @@
+"""The page of a serial number: its calibrations, every parameter over them, and the next one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from inertial.text import numbers
+from inertial.text.messages import _
+from inertial.text.units import quantity
+from overviews.history.courses import figures
+from overviews.tables_of import made_from
+from overviews.units import Imu
+from stages.history.repeatability import Observed
+from stages.report import outline
+from stages.report.page import page
+from stages.report.sections.repeatability import SECTION as REPEATABILITY
+from stages.report.sections.verdict import LEVELS
+from stages.report.tables import Tables
+from stages.report.words import SENSOR
+
+Parts = Callable[[Tables], Iterator[outline.Part]]
+
+
+def history_page(imus: Sequence[Imu], archive: Path, reports: Path, code: str) -> str:
+    """One HTML page; chapters for each IMU with this serial number, as a rule a single one.
+
+    `reports`: the folder of the pages, to which it leads where a campaign has one.
+    """
+    serial = numbers.shortened(imus[0].last.row["serial"], 80)
+    several = len(imus) > 1
+    tables = Tables({}, {})
+    sections: list[tuple[outline.Section, Tables]] = []
+    for number, imu in enumerate(imus):
+        name = f": {imu.name}" + (_(", simulated") if imu.simulated else "") if several else ""
+        key = f"-{number}" if number else ""
+        sections += [
+            (_summary(imu, reports, name, key), imu.tables),
+            (_courses(imu, name, key), imu.tables),
+            (_renamed(REPEATABILITY, name, key), imu.tables),
+            (_values(imu, name, key), imu.tables),
+        ]
+    files = [archive / entry.file for imu in imus for entry in imu.calibrations]
+    sections.append((made_from(files, code), tables))
+    chapters: list[outline.Chapter] = []
+    for section, own in sections:
+        parts = list(section.parts(own))
+        if parts:
+            chapters.append(outline.Chapter(str(len(chapters) + 1), section, parts))
+    return page(
+        outline.Report(
+            title=_("History of {serial}", serial=serial),
+            campaign=serial,
+            instrument=", ".join(dict.fromkeys(imu.name for imu in imus)),
+            running=_("History of {serial}", serial=serial),
+            simulated=all(imu.simulated for imu in imus),
+            chapters=chapters,
+        )
+    )
+
+
+def _renamed(section: outline.Section, name: str, key: str) -> outline.Section:
+    return outline.Section(
+        section.key + key,
+        section.title + name,
+        section.shows,
+        section.reading,
+        section.reads,
+        section.parts,
+    )
+
+
+def _section(
+    key: str,
+    title: str,
+    shows: str,
+    reading: str,
+    parts: Callable[[Tables], Iterator[outline.Part]],
+) -> outline.Section:
+    return outline.Section(key, title, shows, reading, (), parts)
+
+
+# ---- Calibrations, and when it is due.
+
+
+def due_in_words(imu: Imu) -> tuple[str, outline.Tone]:
+    """When the IMU is due, or why that is not known."""
+    due = imu.due
+    if due is None:
+        return _("No due date: {reason}.", reason=imu.why_not_due or _("nothing is known")), ""
+    rows = [row for row in imu.tables.rows("forecast") if row["due"] == due]
+    of = ", ".join(f"{SENSOR[row['sensor']]} {row['quantity'].replace('_', ' ')}" for row in rows)
+    return _("Due on {due}, by {parameters}.", due=due, parameters=of), "fair"
+
+
+def _summary(imu: Imu, reports: Path, name: str, key: str) -> outline.Section:
+    def parts(_tables: Tables) -> Iterator[outline.Part]:
+        yield outline.Paragraph(*due_in_words(imu))
+        yield outline.Table(
+            _("Calibrations, the newest last."),
+            (
+                outline.Column(_("Campaign")),
+                outline.Column(_("Date"), "name"),
+                outline.Column(_("Mounting")),
+                outline.Column(_("Switch-on")),
+                outline.Column(_("Table")),
+                outline.Column(_("Verdict")),
+            ),
+            [_calibration(entry.row, reports) for entry in imu.calibrations],
+            note=_("Two of them beside each other: make compare A=… B=…"),
+        )
+
+    return _section(
+        f"calibrations{key}",
+        _("Calibrations") + name,
+        _("All current calibrations of this instrument in the archive, and when it is due."),
+        _(
+            "A calibration that another one of the same campaign supersedes is left out. It is due "
+            "on the day from which the 95 % interval of the next calibration leaves the last value "
+            "by more than may_change of the last campaign, or history, tolerance of the settings, "
+            "allows."
+        ),
+        parts,
+    )
+
+
+def _calibration(row: dict[str, Any], reports: Path) -> outline.Row:
+    campaign = row["campaign"]
+    verdicts = [one["verdict"] for one in row["verdicts"]]
+    worst = next((level for level in LEVELS if level in verdicts), "")
+    word, tone = LEVELS[worst][:2] if worst else ("—", "")
+    return outline.Row(
+        (
+            numbers.shortened(campaign, 80),
+            numbers.shortened(row["date"], 20),
+            *(_label(row[which]) for which in ("mounting", "switch_on", "table")),
+            word,
+        ),
+        tone="" if tone == "good" else tone,
+        href=f"../{campaign}.html" if (reports / f"{campaign}.html").is_file() else "",
+    )
+
+
+def _label(text: object) -> str:
+    return numbers.shortened(text, 40) if isinstance(text, str) else "—"
+
+
+# ---- Courses and values.
+
+
+def _courses(imu: Imu, name: str, key: str) -> outline.Section:
+    def parts(_tables: Tables) -> Iterator[outline.Part]:
+        yield from figures(imu)
+
+    return _section(
+        f"courses{key}",
+        _("Parameters over the dates") + name,
+        _("Each of the 24 parameters by the result that counted, over its calibrations."),
+        _(
+            "A point is value ± σ. Calibrations at one table and place share the error of gravity "
+            "and of the table, so that points may differ by less than their σ say."
+        ),
+        parts,
+    )
+
+
+def _values(imu: Imu, name: str, key: str) -> outline.Section:
+    def parts(_tables: Tables) -> Iterator[outline.Part]:
+        for sensor in SENSOR:
+            rows = list(_rows(imu, sensor))
+            if rows:
+                yield outline.Table(
+                    _("Values of the {sensor}s.", sensor=SENSOR[sensor]),
+                    (
+                        outline.Column(_("Date"), "name"),
+                        outline.Column(_("Campaign")),
+                        *outline.value_and_sigma(unit=True),
+                        outline.Column(_("change since the last, σ"), "number"),
+                    ),
+                    rows,
+                )
+
+    return _section(
+        f"values{key}",
+        _("Values") + name,
+        _("The numbers behind the figures."),
+        _("The change since the last is in units of the σ of both, as if these were independent."),
+        parts,
+    )
+
+
+def _rows(imu: Imu, sensor: str) -> Iterator[outline.Row]:
+    for (of, parameter), values in imu.series.items():
+        if of != sensor:
+            continue
+        unit = quantity(parameter, {"accel": "m/s²", "gyro": "rad/s"}[sensor]).laboratory
+        decimals = numbers.common_decimals(value.sigma / unit.size for value in values)
+        yield outline.head(parameter.replace("_", " "))
+        before: Observed | None = None
+        for value in values:
+            change = None
+            if before is not None:
+                both = float((value.sigma**2 + before.sigma**2) ** 0.5)
+                change = (value.value - before.value) / both
+            yield outline.table_row(
+                value.date,
+                numbers.shortened(value.campaign, 80),
+                *numbers.with_sigma(value.value / unit.size, value.sigma / unit.size, decimals),
+                unit.name,
+                numbers.fixed(change, 1),
+            )
+            before = value

@@ -1,0 +1,1 @@
+"""All campaigns on one page, with all IMUs and when they are due."""
