@@ -84,12 +84,12 @@ def _script() -> str:
     words = {
         "filter": _("Filter by words"),
         "sort": _("Sort by"),
-        "shown": _("{shown} of {all} shown"),
+        "shown": _("{shown} of {all} shown", shown="{shown}", all="{all}"),
         "days": _("days"),
         "months": _("months"),
         "years": _("years"),
-        "ago": _("{span} ago"),
-        "ahead": _("in {span}"),
+        "ago": _("{span} ago", span="{span}"),
+        "ahead": _("in {span}", span="{span}"),
         "overdue": _("overdue by"),
     }
     text = json.dumps(words, ensure_ascii=False).replace("<", "\\u003c")

@@ -45,7 +45,7 @@ every("table.sortable").forEach((table, number) => {
   const heads = every("thead tr:last-child th", table);
   const names = rows.length ? [...rows[0].cells].map((cell) => cell.dataset.label) : [];
   const status = made("p", { class: "status", role: "status" });
-  const bar = made("div", { class: "controls", role: "search" });
+  const bar = made("div", { class: "controls" });
   const search = made("input", { type: "search", id: `filter-${number}`, autocomplete: "off" });
   const select = made("select", { id: `sort-${number}` });
   const labelled = (text, control) => {

@@ -14,7 +14,7 @@ from inertial.text.messages import CATALOGUE, translations
 
 ROOT = Path(__file__).parents[2]
 KEYWORDS = {"_": None, "plural": (1, 2)}
-PLACES = ("inertial", "stages", "commands")
+PLACES = ("inertial", "stages", "commands", "overviews")
 
 
 def written() -> dict[str | tuple[str, ...], str]:
