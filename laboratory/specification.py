@@ -143,6 +143,9 @@ class Specification:
     def effects(self) -> dict[str, Effect]:
         """Noise and hidden effects by name, new objects at every call: some have a state."""
         hidden = self._document.get("effects", {})
+        cycles = self.power_cycles
+        if "turn_on_bias" in hidden and any(cycles):
+            hidden = {**hidden, "turn_on_bias": {**hidden["turn_on_bias"], "cycles": cycles}}
         return {
             **{
                 name: specified(hidden[name])
@@ -151,6 +154,16 @@ class Specification:
             },
             **{name: specified(self._document["noise"]) for name, specified in NOISE.items()},
         }
+
+    @property
+    def power_cycles(self) -> list[bool]:
+        """For each log in its order, whether the IMU is switched off and on before it."""
+        campaign = self._document["campaign"]
+        begins: dict[str, bool] = {}
+        for written in campaign["plan"]:
+            log = written.get("log", campaign.get("log"))
+            begins.setdefault(log, bool(written.get("power_cycle", False)))
+        return list(begins.values())
 
     @property
     def faults(self) -> list[Fault]:

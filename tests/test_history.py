@@ -142,8 +142,8 @@ def run(
             "published": (tables.PUBLISHED, published),
             "allowed_changes": (tables.ALLOWED_CHANGES, may_change),
         },
-        "accelerometer": {"parameters": (tables.PARAMETERS, [])},
-        "gyroscope": {"parameters": (tables.PARAMETERS, estimates)},
+        "accelerometer": {"parameters": (tables.PARAMETERS, []), "fit": (tables.FIT, [])},
+        "gyroscope": {"parameters": (tables.PARAMETERS, estimates), "fit": (tables.FIT, [])},
         "segment": {"blocks": (tables.BLOCKS, [])},
         "studies": {"growing": (tables.WINDOWS, []), "motions": (tables.MOTIONS, [])},
         "diagnosis": {

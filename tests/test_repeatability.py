@@ -13,9 +13,10 @@ from inertial import tables
 from inertial.campaign.records import rows_of
 from inertial.estimation.history_of_values import History, drift, jump, predicted
 from inertial.estimation.repeatability import components
+from inertial.estimation.switch_ons import between
 from inertial.tables.parquet import write_once
 from inertial.tables.yaml_file import YamlFile
-from stages.history.repeatability import repeatability_rows, series_of
+from stages.history.repeatability import power_cycle_rows, repeatability_rows, series_of
 from stages.plan.allowed_changes import allowed_changes
 
 sys.path.insert(0, str(Path(__file__).parent / "histories"))
@@ -228,6 +229,56 @@ def test_the_laboratory_s_history_comes_back(tmp_path):
     assert scale["drift_sigma"] < 4e-5
     assert scale["low"] < 7.942e-4 < scale["high"]  # 100 ppm a year later on
     assert scale["at"] == "2026-09-30"  # after 182 days, as the ones before
+
+
+# ---- power cycles within a campaign
+
+
+def test_between_switch_ons_it_is_the_analysis_of_variance():
+    """Nine biases of equal weight about their mean: τ² = s² − σ², var τ² = 2 s⁴/8."""
+    values, sigma = np.array([3.0, -1, 4, 1, -5, 9, -2, -6, 5]), 0.5
+    centred = (np.eye(9) - 1 / 9) / sigma**2
+    tau, error, upper = between(centred, centred @ values)
+    square = values.var(ddof=1)
+    assert tau == pytest.approx(np.sqrt(square - sigma**2), rel=1e-4)
+    assert error == pytest.approx(square * np.sqrt(2 / 8) / (2 * tau), rel=1e-4)
+    assert upper > tau + error
+    nothing = between(centred, centred @ (0.3 * values / values.std()))
+    assert nothing[0] == 0 and np.isnan(nothing[1]) and nothing[2] > 0
+
+
+def test_power_cycles_of_the_laboratory_come_back():
+    """Eight switch-ons, biases of 4 °/h and 100 µg: 21 degrees of freedom for each sensor."""
+    document = chain.laboratory.read(chain.ROOT / "data/simulated/power-cycles.yaml").document
+    made = chain.in_memory_of(document)
+    hidden = {"gyroscope": np.radians(4) / 3600, "accelerometer": 100e-6 * 9.80665}
+    for stage, size in hidden.items():
+        fit = made[f"{stage}/fit"].set_index("method").loc["joint"]
+        found, sigma, upper = (
+            np.array([fit[f"switch_on_{axis}{of}"] for axis in "xyz"], np.float64)
+            for of in ("", "_sigma", "_upper")
+        )
+        assert fit["switch_ons"] == 8 and fit["scatter"] == 0
+        assert 0.5 < np.sqrt(np.mean(found**2)) / size < 1.5  # 99.9 % of χ² / 21
+        assert sigma == pytest.approx(found / np.sqrt(2 * 7), rel=0.1)  # the noise is small
+        assert (np.abs(found - size) < 4 * sigma).all() and (upper > found).all()
+    matrix = np.array(document["truth"]["gyro"]["matrix"])
+    parameters = made.parameters("gyroscope")
+    for i, axis in enumerate("xyz"):
+        scale, bias = parameters.loc[f"scale_{axis}"], parameters.loc[f"bias_{axis}"]
+        assert scale["value"] == pytest.approx(matrix[i, i] - 1, abs=4 * scale["sigma"])
+        assert scale["sigma"] < 5e-6  # the turns of a pair share a switch-on
+        true = document["truth"]["gyro"]["bias_rad_s"][i]
+        assert bias["value"] == pytest.approx(true, abs=4 * bias["sigma"])
+
+
+def test_power_cycles_are_in_the_table_of_repeatability():
+    columns = {"switch_on_x": 2e-5, "switch_on_x_sigma": 5e-6, "switch_on_x_upper": 3e-5}
+    others = {f"switch_on_{a}{of}": None for a in "yz" for of in ("", "_sigma", "_upper")}
+    fit = {"sensor": "gyro", "method": "joint", "switch_ons": 8, **columns, **others}
+    (row,) = power_cycle_rows([fit, fit | {"switch_ons": 1}, fit | {"method": "turns"}])
+    assert (row["quantity"], row["component"], row["groups"]) == ("bias_x", "power_cycle", 8)
+    assert (row["value"], row["upper"], row["unit"]) == (2e-5, 3e-5, "rad/s")
 
 
 # ---- the real case: snu, one IMU in three sessions by hand

@@ -1,7 +1,7 @@
 """One mount of a campaign, as the stages between segment and diagnosis work on it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import pandas as pd
@@ -26,6 +26,7 @@ from inertial.campaign.records import (
 from inertial.campaign.solution import Estimated, Solution, solution_of
 from inertial.campaign.static_positions import StaticPosition, static_positions
 from inertial.estimation.gyroscope_observations import Earth
+from inertial.estimation.random_walk import MeasuredDrift
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +83,11 @@ class CampaignData:
         """The components of the earth's rate at the site, rad/s."""
         up = self.known["earth_rate_up"]
         return Earth(up.number, up.scatter, self.known["earth_rate_level"].number)
+
+    def drift(self, sensor: str) -> MeasuredDrift:
+        """The drift of the biases of a sensor, `gyro` or `accel`, that is known before a fit."""
+        switched = None if self.solution is None else self.solution.switch_ons.get(sensor)
+        return replace(self.noise.drift(sensor), switch_on=switched)
 
     @property
     def result(self) -> Solution:

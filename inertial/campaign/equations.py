@@ -436,7 +436,7 @@ def campaign_of(data: CampaignData) -> Campaign:
         positions_of(data.plan),
         [m.name for m in data.plan],
         _by_hand(data, motions),
-        {sensor: NO_DRIFT if handled else data.noise.drift(sensor) for sensor in SENSORS},
+        {sensor: NO_DRIFT if handled else data.drift(sensor) for sensor in SENSORS},
     )
 
 

@@ -9,10 +9,12 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.records import Manoeuvre, Part, with_mount
+from inertial.campaign.records import Manoeuvre, Part, Row, with_mount
 from inertial.estimation import triad
 from inertial.estimation.least_squares import Estimate
+from inertial.estimation.switch_ons import SwitchOns
 from inertial.estimation.variance_components import ScatterFit
+from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.parameters import CROSS, MOUNTING, PARTS, SCALE, SENSOR_OF, SYMMETRIC
 
@@ -195,6 +197,7 @@ class Estimates:
                 "random_walk": fitted.random_walk,
                 "random_walk_sigma": fitted.random_walk_sigma,
             }
+            | switch_on_columns(fitted.switch_ons)
         )
 
     def add_averaging(self, method: str, seconds: float, estimate: Estimate) -> None:
@@ -300,3 +303,13 @@ def described(stage: str, name: str) -> tuple[str, str, str]:
         "sensor triad",
         _("symmetric part of M without the mounting rotation, P_{axes} − I", axes=axes),
     )
+
+
+def switch_on_columns(found: SwitchOns | None) -> Row:
+    """What biases differ by between switch-ons, as columns of the table of fits."""
+    row: Row = {"switch_ons": 1 if found is None else found.count}
+    for i, axis in enumerate(AXES):
+        for of in ("", "_sigma", "_upper"):
+            value = np.nan if found is None else float(getattr(found, of[1:] or "value")[i])
+            row[f"switch_on_{axis}{of}"] = value if np.isfinite(value) else None
+    return row

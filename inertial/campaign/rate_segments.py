@@ -294,15 +294,13 @@ def gyro_inputs(data: "CampaignData") -> GyroInputs:
     angle_sigma = data.known["turn_angle"].scatter if "turn_angle" in data.known else 0.0
 
     def whole(r: Recorded) -> RateSegment:
-        return replace(
-            rate_segment_of(r, *given), stretch=stretch_of(r.plan.name, r.blocks, shared)
-        )
+        return replace(rate_segment_of(r, *given), stretch=stretch_of(r.plan, r.blocks, shared))
 
     turned = [r for r in usable if r.plan.recorded == "whole"]
     turns = [whole(r) for r in turned]
     steady = [r for r in usable if r.plan.recorded == "steady"]
     rates = [
-        replace(steady_rate_of(r, *given), stretch=stretch_of(r.plan.name, r.steady, shared))
+        replace(steady_rate_of(r, *given), stretch=stretch_of(r.plan, r.steady, shared))
         for r in steady
     ]
     parts = [r for r in recorded if r.in_part]

@@ -53,6 +53,7 @@ class Manoeuvre:
     temperature: float | None = None
     temperature_sigma: float | None = None
     rate_sigma: float | None = None
+    switch_on: int = 0
 
     @property
     def selected(self) -> bool:
@@ -91,6 +92,7 @@ def manoeuvres_of(table: pd.DataFrame) -> list[Manoeuvre]:
             *(row[key] for key in ("acceleration", "seconds", "recorded")),
             *(row[key] for key in ("from_s", "to_s", "from_row", "to_row", "label")),
             *(row[key] for key in ("temperature", "temperature_sigma", "rate_sigma")),
+            *(row[key] for key in ("switch_on",)),
         )
         for row in rows_of(table)
     ]

@@ -42,7 +42,7 @@ def turning_rests(data: CampaignData) -> list[tuple[Part, StaticForce]]:
         usable = performed[m.name].complete and not refusal_of(m, performed[m.name], part)
         if usable and m.name in quiet and bool(part.steady.any()):
             density = data.noise.of(m.name, "steady", ACCEL)
-            stretch = stretch_of(m.name, part.those(part.steady), data.shared_clock)
+            stretch = stretch_of(m, part.those(part.steady), data.shared_clock)
             forces += [
                 (Part(m.name, "steady"), replace(rest, stretch=stretch))
                 for rest in _steady(m, part, quiet[m.name], density)

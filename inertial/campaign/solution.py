@@ -1,7 +1,7 @@
 """The joint result of one mount as the forward model takes it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
@@ -24,7 +24,8 @@ class Solution:
 
     A triad that is not wholly determined is None. `random_walks`: of the biases of gyros and
     accelerometers, rad/s/√s and m/s²/√s. `free`: the sensors, gyro or accel, whose triad is that of
-    static positions of unknown attitude.
+    static positions of unknown attitude. `switch_ons`: by sensor, by what the biases differ between
+    switch-ons, (3,), rad/s or m/s².
     """
 
     gyro: Triad | None
@@ -33,6 +34,7 @@ class Solution:
     position_parameters: Mapping[tuple[str, str, int], float]  # position, quantity, component; SI
     random_walks: tuple[float, float] = (0.0, 0.0)
     free: frozenset[str] = frozenset()
+    switch_ons: Mapping[str, Array | None] = field(default_factory=dict)
 
     def upright(self, m: Manoeuvre) -> Array:
         """The direction that points up at the start of a manoeuvre, its tilt included, (3,)."""
@@ -75,6 +77,14 @@ class Estimated:
             if row["quantity"] == quantity and row["sigma"] < below
         }
 
+    def switch_ons(self, mount: str) -> Array | None:
+        """By what the biases differ between switch-ons by the joint fit, (3,); None: one."""
+        for row in [] if self.fit is None else joint_rows(self.fit, mount):
+            if row["switch_ons"] > 1:
+                sizes = [row[f"switch_on_{axis}"] or 0.0 for axis in AXES]
+                return np.nan_to_num(np.array(sizes, np.float64))
+        return None
+
     def random_walk(self, mount: str) -> float:
         """The random walk of the bias by the joint fit."""
         rows = [] if self.fit is None else joint_rows(self.fit, mount)
@@ -109,6 +119,7 @@ def solution_of(
         tilts | levels,
         (gyro.random_walk(mount), accelerometer.random_walk(mount)),
         frozenset(free),
+        {"gyro": gyro.switch_ons(mount), "accel": accelerometer.switch_ons(mount)},
     )
 
 

@@ -150,7 +150,8 @@ class StaticPosition:
 
     def _piece(self, indices: slice, number: int) -> "StaticPosition":
         start, end = _ends(self.time[indices], self.seconds[indices])
-        stretch = Stretch(f"{self.label} {number}", self.stretch.clock, start, end - start)
+        name = f"{self.label} {number}"
+        stretch = replace(self.stretch, name=name, start=start, seconds=end - start)
         columns = {name: getattr(self, name)[indices] for name in PER_BLOCK}
         return replace(self, stretch=stretch, **columns)
 
@@ -225,8 +226,11 @@ def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosi
                         time,
                         temperature,
                         density,
-                        stretch_between(
-                            part.label, str(logs[indices[0]]), time, seconds, data.shared_clock
+                        replace(
+                            stretch_between(
+                                part.label, str(logs[indices[0]]), time, seconds, data.shared_clock
+                            ),
+                            switch_on=m.switch_on,
                         ),
                     )
                 )
@@ -242,9 +246,11 @@ def _refusal(m: Manoeuvre, done: Performed, phase: str, seconds: Array, density:
     return ""
 
 
-def stretch_of(name: str, part: Blocks, shared_clock: bool) -> Stretch:
-    """The stretch of time of some blocks in their order."""
-    return stretch_between(name, str(part.log[0]), part.time, part.seconds, shared_clock)
+def stretch_of(m: Manoeuvre, part: Blocks, shared_clock: bool) -> Stretch:
+    """The stretch of time of some blocks of a manoeuvre in their order."""
+    log = str(part.log[0])
+    stretch = stretch_between(m.name, log, part.time, part.seconds, shared_clock)
+    return replace(stretch, switch_on=m.switch_on)
 
 
 def stretch_between(

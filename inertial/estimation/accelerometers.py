@@ -102,6 +102,10 @@ def fit(
 
     each = list(range(len(statics)))  # has a block of its own, and so a scatter of its own
     likelihood = _drifting(statics, *known, about, effect_sigma, each, 0.0, measured).likelihood
+    if measured.switch_on is None and (switched := likelihood.switch_ons()) is not None:
+        then = replace(measured, switch_on=np.nan_to_num(switched.value))
+        result = fit(statics, *known, noise_degrees, effect_sigma, then)
+        return replace(result, switch_ons=switched)
     stretches = [static.stretch for static in statics if static.stretch is not None]
     alternatives = [
         likelihood.of_scatter([static.position for static in statics]),
@@ -140,7 +144,10 @@ def equations(
     Unknowns: M by rows, bias, gravity, effects; eliminated: the tilts.
     """
     known = (gravity, gravity_sigma, position_sigma, about, effect_sigma)
-    if walk or measured:  # else each static position has a scatter of its own
+    stretches = [static.stretch for static in statics if static.stretch is not None]
+    if (
+        walk or measured or measured.differs(stretches)
+    ):  # else each static position has a scatter of its own
         drifts = drifting(statics, *known, walking=True, measured=measured)
         return drifts.system(scatter, walk)
     return drifting(statics, *known, scatter, walking=False).system()

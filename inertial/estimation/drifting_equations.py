@@ -35,6 +35,7 @@ from inertial.estimation.random_walk import (
     walk_covariance,
     with_drifts,
 )
+from inertial.estimation.switch_ons import SwitchOns, between
 from inertial.estimation.triad import UNKNOWNS
 
 Array = NDArray[np.float64]
@@ -125,7 +126,7 @@ class DriftLikelihood:
 
     def beyond(self, measured: MeasuredDrift) -> "DriftLikelihood":
         """The same of what is beyond a drift that was measured."""
-        if not measured:
+        if not (measured or measured.differs(self.stretches)):
             return self
         spread = np.zeros_like(self.information)
         for axis, covariance in enumerate(measured_covariance(self.stretches, measured)):
@@ -160,6 +161,22 @@ class DriftLikelihood:
     def of_both(self, scatter: float, walk: float) -> float:
         """With a scatter of each stretch and a random walk."""
         return self._of(self._spread(scatter, walk))(1.0)
+
+    def switch_ons(self) -> "SwitchOns | None":
+        """By what the bias of each axis differs between switch-ons; None where there is one."""
+        parts = [stretch.switch_on for stretch in self.stretches]
+        count = len(set(parts))
+        if count < 2:
+            return None
+        factor = _shared(parts)
+        found = [
+            between(
+                factor.T @ self.information[axis::3, axis::3] @ factor,
+                factor.T @ self.right[axis::3],
+            )
+            for axis in range(3)
+        ]
+        return SwitchOns(count, *np.array(found).T)
 
     def _spread(self, scatter: float, walk: float) -> Array:
         """B of the drifts of the blocks with a scatter of each stretch and a random walk."""

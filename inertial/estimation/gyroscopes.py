@@ -104,6 +104,9 @@ def fit(
 
     drifting = equations.with_statics(statics).drifting()
     likelihood = drifting.likelihood
+    if measured.switch_on is None and (switched := likelihood.switch_ons()) is not None:
+        known = replace(measured, switch_on=np.nan_to_num(switched.value))
+        return replace(fit(statics, *others, noise_degrees, known), switch_ons=switched)
 
     def fit_with(scatter: float, walk: float) -> Estimate:
         return drifting.system(scatter, walk).solve_shared()

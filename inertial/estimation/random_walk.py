@@ -19,7 +19,7 @@ Source: IEEE Std 952-2020, rate random walk.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +38,7 @@ class Stretch:
     """A stretch of time with one drift of the bias: a static position, a rate segment.
 
     `start`, `seconds`: s, NaN where not known; `clock`: of these times; `weight`: of the drift of
-    this name in the equations of the stretch.
+    this name in the equations of the stretch; `switch_on`: since which the sensor has been running.
     """
 
     name: str
@@ -46,6 +46,7 @@ class Stretch:
     start: float = np.nan
     seconds: float = np.nan
     weight: float = 1.0
+    switch_on: int = 0
 
     @property
     def end(self) -> float:
@@ -57,14 +58,21 @@ class Stretch:
 class MeasuredDrift:
     """What the noise within static stretches says of the drift of each axis, (3,), 0 if nothing.
 
-    `instability`: B, unit of the readings; `walk`: K, the same per √s.
+    `instability`: B, unit of the readings; `walk`: K, the same per √s; `switch_on`: by what the
+    bias differs from one switch-on to the next, (3,), unit of the readings, none: not yet known.
     """
 
     instability: Array
     walk: Array
+    switch_on: Array | None = None
 
     def __bool__(self) -> bool:
         return bool(self.instability.any() or self.walk.any())
+
+    def differs(self, stretches: Sequence[Stretch]) -> bool:
+        """Whether the bias differs from one switch-on to the next in some stretches."""
+        parts = {stretch.switch_on for stretch in stretches}
+        return len(parts) > 1 and self.switch_on is not None and bool(self.switch_on.any())
 
 
 NO_DRIFT = MeasuredDrift(np.zeros(3), np.zeros(3))
@@ -102,15 +110,16 @@ def with_drifts(
     -------
     the blocks, and the sigmas of those errors that are observations of zero
     """
+    blocks, switched = _with_switch_ons(blocks, bias, measured)
     if not (scatter or walk or measured):
-        return [block for block, _ in blocks], {}
+        return [block for block, _ in blocks], switched
     own: dict[Stretch, list[EquationBlock]] = {}
     for block, stretch in blocks:
         own.setdefault(stretch, []).append(_with_drift(block, stretch, bias))
     timed = [s for s in own if (walk or measured) and np.isfinite(s.end)]
     scattered = [s for s in own if not ((walk or measured) and np.isfinite(s.end))]
     result = [block for stretch in scattered for block in own[stretch]]
-    sigma = {name: scatter for stretch in scattered for name in _drifts(stretch)}
+    sigma = switched | {name: scatter for stretch in scattered for name in _drifts(stretch)}
     recorded = sum(stretch.seconds for stretch in timed)
     drifts = _drifts_of_axes(timed, scatter, walk, measured)
     for clock, path, nearest, gaps in _paths(timed):
@@ -142,6 +151,22 @@ def _drifts_of_axes(
 
 def _drifts(stretch: Stretch) -> tuple[Name, ...]:
     return tuple((f"drift {i}", stretch.name) for i in range(3))
+
+
+def _with_switch_ons(
+    blocks: Sequence[tuple[EquationBlock, Stretch]], bias: int, measured: MeasuredDrift
+) -> tuple[Sequence[tuple[EquationBlock, Stretch]], dict[Name, float]]:
+    """The blocks with a bias of each switch-on as further errors, and the sigmas of these."""
+    sizes = measured.switch_on
+    if sizes is None or not measured.differs([stretch for _, stretch in blocks]):
+        return blocks, {}
+    result, sigma = [], dict[Name, float]()
+    for block, stretch in blocks:
+        names = tuple((f"switch-on {i}", str(stretch.switch_on)) for i in range(3))
+        sigma |= dict(zip(names, sizes.tolist(), strict=True))
+        rows = np.hstack([block.rows[:, :-1], block.rows[:, bias : bias + 3], block.rows[:, -1:]])
+        result.append((replace(block, rows=rows, own=(*block.own, *names)), stretch))
+    return result, sigma
 
 
 def _with_drift(block: EquationBlock, stretch: Stretch, bias: int) -> EquationBlock:
@@ -306,6 +331,9 @@ def measured_covariance(stretches: Sequence[Stretch], measured: MeasuredDrift) -
     """The covariance of the drifts of each axis by what is measured, (3, n, n); 0 without times."""
     timed = [i for i, stretch in enumerate(stretches) if np.isfinite(stretch.end)]
     covariance = np.zeros((3, len(stretches), len(stretches)))
+    if measured.switch_on is not None and measured.differs(stretches):
+        parts = np.array([stretch.switch_on for stretch in stretches])
+        covariance += np.multiply.outer(measured.switch_on**2, np.equal.outer(parts, parts))
     if not (timed and measured):
         return covariance
     own = list(dict.fromkeys(stretches[i] for i in timed))
@@ -319,5 +347,5 @@ def measured_covariance(stretches: Sequence[Stretch], measured: MeasuredDrift) -
     walks = measured.walk**2 + squares * processes.walk**2
     each = np.multiply.outer(walks, walk) + np.multiply.outer(squares, flicker)
     of = [place[stretches[i]] for i in timed]
-    covariance[np.ix_(range(3), timed, timed)] = each[np.ix_(range(3), of, of)]
+    covariance[np.ix_(range(3), timed, timed)] += each[np.ix_(range(3), of, of)]
     return covariance

@@ -64,7 +64,8 @@ class Model:
             return replace(self, equations=replace(equations, blocks=blocks))
         if source == DRIFT:
             drift = equations.measured
-            larger = MeasuredDrift(factor * drift.instability, factor * drift.walk)
+            switched = None if drift.switch_on is None else factor * drift.switch_on
+            larger = MeasuredDrift(factor * drift.instability, factor * drift.walk, switched)
             return replace(self, equations=replace(equations, measured=larger))
         sigma = {
             name: (factor if name[0] in own else 1.0) * size

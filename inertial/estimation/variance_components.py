@@ -20,6 +20,7 @@ from scipy.optimize import minimize, minimize_scalar
 
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
+from inertial.estimation.switch_ons import SwitchOns
 
 Array = NDArray[np.float64]
 Deviance = Callable[[float], float]  # as a function of one size
@@ -39,7 +40,8 @@ MIN_STRETCHES = 4  # for a random walk
 class ScatterFit:
     """An estimate with its variance components, and the p-value of the fit with noise alone.
 
-    `scatter`, in the unit of the readings; `random_walk`: of the bias, per √s, and its sigma.
+    `scatter`, in the unit of the readings; `random_walk`: of the bias, per √s, and its sigma;
+    `switch_ons`: what biases differ by between them, None where the sensor ran on.
     """
 
     estimate: Estimate
@@ -47,6 +49,7 @@ class ScatterFit:
     p_value: float
     random_walk: float = 0.0
     random_walk_sigma: float = 0.0
+    switch_ons: SwitchOns | None = None
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """Noise, parameters, covariance, fits, studies and comparisons."""
 
-from inertial.tables.shared import BODY, METHOD, MOUNT, QUANTITY, SENSOR
+from inertial.tables.shared import AXES, BODY, METHOD, MOUNT, QUANTITY, SENSOR
 from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
 
 # --- Noise, parameters, covariance, fits and positions ---
@@ -150,7 +150,7 @@ COVARIANCE = Table(
 )
 FIT = Table(
     "fit",
-    5,
+    6,
     (
         MOUNT,
         SENSOR,
@@ -174,6 +174,18 @@ FIT = Table(
             "of the bias, which is that of the middle, beyond that of levels; 0: none",
         ),
         Column("random_walk_sigma", DOUBLE, "unit/√s", "its standard deviation", nullable=True),
+        Column(
+            "switch_ons", INTEGER, "1", "between which biases may differ: parts of the campaign"
+        ),
+        *(
+            Column(f"switch_on_{axis}{of}", DOUBLE, "as unit", meaning, nullable=True)
+            for axis in AXES
+            for of, meaning in (
+                ("", "standard deviation of the bias between them, beside the noise; none for one"),
+                ("_sigma", "its standard deviation; none where 0 is the likeliest value"),
+                ("_upper", "its upper limit, one-sided 95 %"),
+            )
+        ),
     ),
 )
 FIT_MANOEUVRES = Table(

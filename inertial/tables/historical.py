@@ -19,7 +19,8 @@ REPEATABILITY = Table(
             "within: rms of the sigmas that the calibrations state; repeatability: standard"
             " deviation of all values (JJF 1535-2015, 3.2; IEEE Std 528); day, mounting, switch_on:"
             " what values that share one have in common, beyond within; with + what the"
-            " calibrations do not tell apart; stability: of means over 10 s in the longest rest of"
+            " calibrations do not tell apart; power_cycle: between the switch-ons of this campaign,"
+            " beside the noise; stability: of means over 10 s in the longest rest of"
             " this campaign (JJF 1535-2015, 3.3)",
         ),
         Column("calibrations", INTEGER, "1", "values, one for each calibration and mount"),

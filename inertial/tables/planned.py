@@ -142,13 +142,14 @@ INPUTS = Table(
 )
 MANOEUVRES = Table(
     "manoeuvres",
-    3,
+    4,
     (
         Column("manoeuvre", TEXT, "", "identifier, unique in the campaign"),
         Column("do", TEXT, "", "rest, turn or positions"),
         LOG,
         Column("position", TEXT, "", "manoeuvres of one position share its error"),
         Column("mount", TEXT, "", "how the IMU sits on the table"),
+        Column("switch_on", INTEGER, "1", "how often the IMU was switched off and on before"),
         *vector("up", "1", "unit vector that points up at the start"),
         *vector("mark", "1", "unit vector to the table's zero mark at the start"),
         *vector("about", "1", "unit vector of the axis of the turn"),

@@ -223,7 +223,8 @@ def system_of(
     unknowns += [*(("effect", name) for name in shown), *columns]
     observed = np.array([mean.residual[channel] for mean in some])
     rows = np.column_stack([design, observed]) / sigma[:, None]
-    if random_walk or measured:  # from one stretch to the next, in units of the noise
+    switched = measured.differs([mean.stretch for mean in some])
+    if random_walk or measured or switched:  # from one stretch to the next, in units of the noise
         covariance = measured_covariance([mean.stretch for mean in some], measured)[channel]
         covariance = (covariance + random_walk**2 * _common_time(some)) / np.outer(sigma, sigma)
         lower = np.linalg.cholesky(np.eye(len(some)) + covariance)

@@ -9,7 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.estimates import UNIT, described
+from inertial.campaign.estimates import UNIT, described, switch_on_columns
 from inertial.campaign.records import with_mount
 from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.triad import UNKNOWNS, errors_of, linear_names
@@ -91,6 +91,7 @@ class Solved:
             "unit": UNIT[self.stage],
             "random_walk": self.random_walk,
             "random_walk_sigma": None,
+            **switch_on_columns(None),
         }
 
 

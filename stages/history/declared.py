@@ -9,6 +9,8 @@ DECLARED = Declared(
         "inputs": From("plan", tables.INPUTS),
         "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
         "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
+        "accelerometer_fit": From("accelerometer", tables.FIT),
+        "gyroscope_fit": From("gyroscope", tables.FIT),
         "result": From("diagnosis", tables.PARAMETERS, "result"),
         "covariance": From("diagnosis", tables.COVARIANCE),
         "verdict": From("diagnosis", tables.VERDICTS, "verdict"),

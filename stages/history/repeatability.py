@@ -22,7 +22,7 @@ from inertial.estimation.repeatability import Component, components
 from inertial.tables import AXES, STATIC_PHASES, UNITS
 from inertial.text.messages import _
 from inertial.text.numbers import significant
-from inertial.text.parameters import PARTS
+from inertial.text.parameters import JOINT, PARTS
 
 Array = NDArray[np.float64]
 
@@ -134,6 +134,19 @@ def _component(component: Component) -> Row:
         "sigma": component.sigma if np.isfinite(component.sigma) else None,
         "upper": component.upper if np.isfinite(component.upper) else None,
     }
+
+
+def power_cycle_rows(fits: Sequence[Row]) -> Iterator[Row]:
+    """What biases differ by between the switch-ons of this campaign; `fits`: of both sensors."""
+    for fit in fits:
+        for axis in AXES if fit["switch_ons"] > 1 and fit["method"] == JOINT else ():
+            value, sigma, upper = (fit[f"switch_on_{axis}{of}"] for of in ("", "_sigma", "_upper"))
+            if value is not None:
+                yield (
+                    _key(fit["sensor"], f"bias_{axis}", 1)
+                    | {"component": "power_cycle", "groups": fit["switch_ons"]}
+                    | {"value": value, "sigma": sigma, "upper": upper}
+                )
 
 
 def _stability(blocks: pd.DataFrame) -> Iterator[Row]:

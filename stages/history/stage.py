@@ -20,6 +20,7 @@ from stages.history.repeatability import (
     forecast_rows,
     jump_rows,
     jumps_of,
+    power_cycle_rows,
     repeatability_rows,
     series_of,
     tolerances,
@@ -43,6 +44,8 @@ def history(
     inputs: pd.DataFrame,
     accelerometer_parameters: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
+    accelerometer_fit: pd.DataFrame,
+    gyroscope_fit: pd.DataFrame,
     result: pd.DataFrame,
     covariance: pd.DataFrame,
     verdict: pd.DataFrame,
@@ -96,7 +99,10 @@ def history(
         "archived": [archived],
         "earlier": [row for other in others for row in results(other)],
         "published_differences": table_of(list(differences()), level),
-        "repeatability": list(repeatability_rows(series, blocks)),
+        "repeatability": [
+            *repeatability_rows(series, blocks),
+            *power_cycle_rows([*rows_of(gyroscope_fit), *rows_of(accelerometer_fit)]),
+        ],
         "jumps": list(jump_rows(jumps, len(series))),
         "forecast": list(forecast_rows(series, jumps, changes)) if others else [],
     }

@@ -18,7 +18,19 @@ AXES = np.eye(3)
 Row = dict[str, Any]
 
 
-_ALWAYS = {"id", "do", "log", "format", "span", "rows", "where", "mount", "position", "gyro"}
+_ALWAYS = {
+    "id",
+    "do",
+    "log",
+    "format",
+    "span",
+    "rows",
+    "where",
+    "mount",
+    "position",
+    "gyro",
+    "power_cycle",
+}
 _ALWAYS |= {"temperature_deg_c", "temperature_sigma_k"}
 _ALLOWED = {
     "rest": {"up", "mark", "seconds"},
@@ -43,6 +55,7 @@ def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
         "purpose": purpose,
         "position": item.get("position", item["id"]),
         "mount": item.get("mount", "as mounted"),
+        "power_cycle": item.get("power_cycle", False),
         "recorded": item.get("recorded", "whole"),
         "seconds": item.get("seconds"),
         "angle": None,

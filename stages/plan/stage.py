@@ -167,7 +167,9 @@ def _manoeuvres(file: YamlFile, entry: dict[str, Any], listed: YamlFile) -> list
     """The plan with every shorthand expanded, in its order, each with its log."""
     rows: dict[str, Row] = {}
     rate = StatedRate.of(file, listed)
+    cycles = 0
     for number, item in enumerate(file.content["plan"]):
+        cycles += bool(rows and item.get("power_cycle"))  # before the first there is no part
         for row in expanded(file, ["plan", number], item):
             if row["manoeuvre"] in rows:
                 raise file.refuse(
@@ -178,7 +180,7 @@ def _manoeuvres(file: YamlFile, entry: dict[str, Any], listed: YamlFile) -> list
                 )
             where = recording(file, ["plan", number], item, entry, rate)
             for each in one_by_one(row | where):
-                rows[each["manoeuvre"]] = each | {"number": number}
+                rows[each["manoeuvre"]] = each | {"number": number, "switch_on": cycles}
     for first, *others in by_log(list(rows.values())).values():
         for row in others:
             if row["layout"] != first["layout"]:

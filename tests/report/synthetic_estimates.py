@@ -69,7 +69,7 @@ def parameters(stage: str, method: str) -> Rows:
 def fit(stage: str, other: str) -> Rows:
     p_value = 2.4e-9 if stage == "gyroscope" else 0.41
     chi_squared = 812.4 if stage == "gyroscope" else 603.1
-    noise = {"scatter": 0.0, "random_walk": 0.0, "random_walk_sigma": 0.0}
+    noise = {"scatter": 0.0, "random_walk": 0.0, "random_walk_sigma": 0.0, "switch_ons": 1}
     noise |= {"unit": tables.UNITS["accel" if stage == "accelerometer" else "gyro"]}
     row = {"chi_squared": chi_squared, "degrees": 594, "p_value": p_value}
     plain = {"chi_squared": 5.1, "degrees": 6, "p_value": 0.53}
@@ -278,6 +278,7 @@ def repeated() -> dict[str, Rows]:
         {"component": "repeatability", "value": 6e-7, "sigma": 2e-7},
         {"component": "day + switch_on", "value": 5e-7, "sigma": 2e-7, "upper": 1.2e-6},
         {"component": "mounting", "groups": 1, "reason": "all share one mounting"},
+        {"component": "power_cycle", "groups": 8, "value": 5e-7, "sigma": 1e-7, "upper": 8e-7},
         {"component": "stability", "groups": 30, "value": 2e-7, "sigma": 3e-8},
     ]
     dates = {"from_date": "2025-01-02", "to_date": "2026-01-02", "at": "2026-07-02"}

@@ -20,6 +20,7 @@ NAMES = {
     "switch_on": _("switch-on"),
     "stability": _("bias stability"),
 }
+WITHIN = ("stability", "power_cycle")  # components within this campaign
 Series = tuple[str, str]  # sensor and quantity
 
 
@@ -28,7 +29,7 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
     rows = tables.rows("repeatability")
     for row in tables.rows("jumps"):
         yield outline.Paragraph(row["sentence"], "fair")
-    between = [row for row in rows if row["component"] != "stability"]
+    between = [row for row in rows if row["component"] not in WITHIN]
     if between:
         yield _components(between)
         reasons = dict.fromkeys(row["reason"] for row in between if row["reason"])
@@ -36,6 +37,8 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
             yield outline.Sentences(tuple(f"{reason.capitalize()}." for reason in reasons))
     if forecast := tables.rows("forecast"):
         yield from _forecast(forecast)
+    if cycles := [row for row in rows if row["component"] == "power_cycle"]:
+        yield _power_cycles(cycles)
     if stability := [row for row in rows if row["component"] == "stability"]:
         yield _stability(stability)
 
@@ -47,13 +50,14 @@ SECTION = outline.Section(
         "How the calibrations of this instrument differ beyond their own sigmas: from day to day, "
         "from mounting to mounting, from switch-on to switch-on; and what the next one may find. "
         "Repeatability is the standard deviation of all values, stability that of means over 10 s "
-        "in the longest rest (IEEE Std 528; for gyros JJF 1535-2015, 3.2 and 3.3)."
+        "in the longest rest (IEEE Std 528; for gyros JJF 1535-2015, 3.2 and 3.3). Where a "
+        "campaign states power cycles, turn-on to turn-on is what biases differ by between them."
     ),
     _(
         "A component is value ± σ by restricted likelihood, the sigmas within campaigns taken off, "
         "or below its 95 % limit. Components joined by + divide these calibrations in the same "
         "way, so they are one number. Campaigns that share a mounting or a switch-on say so in "
-        "their files; parts of one campaign are not told apart."
+        "their files; parts of one campaign are those between its power cycles."
     ),
     ("repeatability", "jumps", "forecast"),
     parts,
@@ -146,6 +150,37 @@ def _forecast_row(row: Record) -> outline.Row:
         unit.name,
         row["due"] or "—",
         tone="fair" if row["due"] is not None and row["reason"] else "",
+    )
+
+
+def _power_cycles(rows: Sequence[Record]) -> outline.Table:
+    return outline.Table(
+        _(
+            "Turn-on to turn-on: what the biases differ by between the power cycles of this "
+            "campaign."
+        ),
+        (
+            outline.Column(_("Parameter"), "name"),
+            outline.Column(_("standard deviation"), "number"),
+            outline.Column(_("at most (95 %)"), "number"),
+            outline.Column(_("unit"), "unit"),
+            outline.Column(_("switch-ons"), "number"),
+        ),
+        [
+            outline.table_row(
+                f"{SENSOR[row['sensor']]} {row['quantity']}",
+                _cell(row, _unit(row)),
+                numbers.significant(_unit(row).of(row["upper"]), 2),
+                _unit(row).name,
+                numbers.whole(row["groups"]),
+            )
+            for row in rows
+        ],
+        note=_(
+            "The noise is taken off. The σ of a bias of the result contains it: it is that of the "
+            "mean over these switch-ons, and the bias of the next one differs by the standard "
+            "deviation of this table."
+        ),
     )
 
 
