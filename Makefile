@@ -226,7 +226,7 @@ mutants: .venv/complete
 docs: .venv/complete
 	$(BIN)/python -m commands.tables
 	$(BIN)/python -m commands.theory
-	$(BIN)/pybabel -q extract --keywords _ --keywords plural:1,2 --no-wrap --omit-header \
+	$(BIN)/pybabel -q extract --keywords _ --keywords plural:1,2 --keywords counted:2 --no-wrap --omit-header \
 		--sort-by-file --add-location file --output inertial/text/messages.pot inertial stages commands overviews
 
 recordings: .venv/complete

@@ -14,7 +14,7 @@ from inertial.text.numbers import decimals_of, fixed, p_is, with_sigma
 from inertial.text.parameters import PARTS, SENSOR_OF
 from inertial.text.units import quantity
 
-SENSORS = {"accelerometer": ("accelerometer", "force"), "gyroscope": ("gyro", "rate")}
+SENSORS = {"accelerometer": (_("accelerometer"), _("force")), "gyroscope": (_("gyro"), _("rate"))}
 FORMS = {
     "cubic": _("what all gyros read beyond a straight line, with the cube of the rate"),
     "asymmetry": _("what all gyros read beyond a straight line, with the size of the rate"),
@@ -83,7 +83,12 @@ class Difference:
         unit = quantity(self.quantity, self.unit).laboratory
         sigma = unit.of(self.sigma)
         size = " ± ".join(with_sigma(unit.of(self.value), sigma, decimals_of(sigma)))
-        far = f"{size} {unit.name}, {fixed(abs(self.in_sigmas), 1)} sigma"
+        far = _(
+            "{size} {name}, {fixed} sigma",
+            size=size,
+            name=unit.name,
+            fixed=fixed(abs(self.in_sigmas), 1),
+        )
         chance = f"({p_is(self.p_value)})"
         remark = f" {self.remark}." if self.remark else ""
         if beyond:
@@ -129,7 +134,7 @@ def named(stage: str, name: str) -> str:
             input=input_,
             axes_2=axes[1],
         )
-    what = {"bias": "bias", "scale": "scale factor"}[kind]
+    what = {"bias": _("bias"), "scale": _("scale factor")}[kind]
     return _("{what} of the {axes} {sensor}", what=what, axes=axes, sensor=sensor)
 
 

@@ -55,7 +55,7 @@ Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
 NAMES = triad.linear_names()
-SENSED = {"accelerometer": "specific force", "gyroscope": "angular rate"}
+SENSED = {"accelerometer": _("specific force"), "gyroscope": _("angular rate")}
 # The estimated parameters of a position, by the names of unknowns: quantity, component, unit.
 OF_POSITIONS = {
     f"{kind} {component}": ((quantity, component, unit),)

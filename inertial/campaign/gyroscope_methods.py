@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 
 NO_TURNS = _("no axis {axis} was turned about both ways over the same known angle: add such turns")
 MIN_SIGMA = 1e-15  # rad/s, in place of zero
-NOT_RECORDED = "the {axis} gyro is not recorded"
+NOT_RECORDED = _("the {axis} gyro is not recorded")
 
 
 def add_formulas(

@@ -97,8 +97,8 @@ def free_static_positions(data: "CampaignData") -> tuple[list[FreeStaticPosition
         recorded = np.isfinite(force.means).any(axis=0)
         first, after = int(rows["from_record"].min()), int(rows["to_record"].max())
         if not recorded.all():
-            missing = " and ".join(np.array(AXES)[~recorded])
-            left_out.append(replace(part, reason=f"|f| = g needs {missing} too"))
+            missing = _(" and ").join(np.array(AXES)[~recorded])
+            left_out.append(replace(part, reason=_("|f| = g needs {missing} too", missing=missing)))
         elif not np.isfinite(force.over()).all():
             left_out.append(replace(part, reason=NO_NOISE))
         else:
@@ -219,7 +219,7 @@ def _attitude_name(up: Array) -> str:
     signs = dict(zip(AXES, up.tolist(), strict=True))
     axes = [f"{'+' if sign > 0 else '-'}{axis}" for axis, sign in signs.items() if sign]
     if len(axes) == 1:
-        return f"{axes[0]} up"
+        return _("{axes} up", axes=axes[0])
     if len(axes) == 2:
         level = next(axis for axis, sign in signs.items() if not sign)
         return _(

@@ -127,7 +127,7 @@ class ClockJitter(Detector):
                 "{significant} ppm, so every rate of this log is off by as much the other way.",
                 significant=significant(facts.biased * 1000000.0, 2),
             )
-            action = "Nothing is corrected."
+            action = _("Nothing is corrected.")
         return Description(
             sentence,
             consequence,

@@ -161,21 +161,23 @@ class ClockScale(Detector):
         if facts.evidence.stamps:
             off = _(
                 "the stamps run {value} by {size}",
-                value="fast" if event.size > 0 else "slow",
+                value=_("fast") if event.size > 0 else _("slow"),
                 size=size,
             )
         else:
             off = _(
                 "the interval by the stamps is {size} {value}",
                 size=size,
-                value="longer" if event.size > 0 else "shorter",
+                value=_("longer") if event.size > 0 else _("shorter"),
             )
         if not name:
             sentence = _(
                 "In most logs of the campaign {off}: {intervals}.", off=off, intervals=intervals
             )
         elif facts.part:
-            seconds = f"{fixed(event.from_s, 3)} s to {fixed(event.to_s, 3)} s"
+            seconds = _(
+                "{from_s} s to {to_s} s", from_s=fixed(event.from_s, 3), to_s=fixed(event.to_s, 3)
+            )
             sentence = _(
                 "{name}: in {counted} from line {line}, {seconds}, {off}: {intervals}.",
                 name=name,

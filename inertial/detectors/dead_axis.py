@@ -111,7 +111,12 @@ class DeadAxis(Detector):
                 seconds=facts.seconds,
             )
         return Description(
-            f"{name}: {channel_name(event.channel)} reads {level} "
+            _(
+                "{name}: {channel_name} reads {level} ",
+                name=name,
+                channel_name=channel_name(event.channel),
+                level=level,
+            )
             + (
                 _("in all {number} readings of the log.", number=number)
                 if facts.always

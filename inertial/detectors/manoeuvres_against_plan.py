@@ -98,7 +98,7 @@ def _left(recorded: Recorded, i: int) -> str:
         names = [recorded.name[k] for k in np.flatnonzero(others)[:4]]
         return _(
             "The same {value} is seen in {names}.",
-            value="direction" if rest else "axis",
+            value=_("direction") if rest else _("axis"),
             names=", ".join(names),
         )
     axis = _axis(own)

@@ -89,11 +89,16 @@ class Oscillation(Detector):
         ringing: Ringing = event.facts
         tone = ringing.tone
         (scale, unit), rate = read_in(tone.channel), tone.rate
-        others = " and ".join(
-            f"{channel_name(i)} by {significant(read_in(i)[0] * size, 2)} {read_in(i)[1]}"
+        others = _(" and ").join(
+            _(
+                "{channel_name} by {significant} {value}",
+                channel_name=channel_name(i),
+                significant=significant(read_in(i)[0] * size, 2),
+                value=read_in(i)[1],
+            )
             for i, size in tone.others
         )
-        besides = " and ".join(f"{frequency:.2f} Hz" for frequency in ringing.besides)
+        besides = _(" and ").join(f"{frequency:.2f} Hz" for frequency in ringing.besides)
         return Description(
             _(
                 "{name}: {channel} oscillates at {frequency:.2f} Hz by {size} {unit}, from "
@@ -134,7 +139,7 @@ def _when(ringing: Ringing) -> str:
     if ringing.turning > MIN_MAJORITY:
         return _(", while the IMU turns") + (_(", and not at rest") if ringing.not_at_rest else "")
     return (
-        ", at rest"
+        _(", at rest")
         if ringing.turning < 1 - MIN_MAJORITY
         else _(", at rest and while the IMU turns")
     )
@@ -160,7 +165,7 @@ def _consequence(tone: Tone, only_turning: bool) -> str:
         swing=significant(scale * swing, 3),
         parts=parts[0],
         parts_2=parts[1],
-        value=" Summed from rest to rest it adds nothing." if only_turning else "",
+        value=_(" Summed from rest to rest it adds nothing.") if only_turning else "",
         mean=mean,
     )
 

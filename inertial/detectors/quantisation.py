@@ -114,7 +114,7 @@ class Quantisation(Detector):
                 of_stated=of_stated,
             ),
             consequence,
-            "Nothing is changed. "
+            _("Nothing is changed. ")
             + (
                 _("Compare the count size with the data sheet and the range that was set.")
                 if of_stated

@@ -54,13 +54,20 @@ class Duplicate(Detector):
             counted=counted(int(event.size), "record"),
             line=event.line,
         )
-        does = "repeats" if single else "repeat"
+        does = _("repeats") if single else _("repeat")
         where = (
             _("earlier ones, stamps and all") if event.facts else _("the one before, stamp and all")
         )
-        many = "it" if single else "them"
+        many = _("it") if single else "them"
         return Description(
-            f"{name}: {what} {does} {where}, at {fixed(event.from_s, 3)} s.",
+            _(
+                "{name}: {what} {does} {where}, at {from_s} s.",
+                name=name,
+                what=what,
+                does=does,
+                where=where,
+                from_s=fixed(event.from_s, 3),
+            ),
             _(
                 "A sum over time would count {value} twice: the angle of a turn by the rate "
                 "times {counted}; the mean of a rest hardly moves.",
@@ -69,7 +76,7 @@ class Duplicate(Detector):
             ),
             _(
                 "{value} masked, and no time is counted for {value_2}.",
-                value="It is" if single else "They are",
+                value=_("It is") if single else _("They are"),
                 value_2=many,
             ),
         )
@@ -167,7 +174,7 @@ class HeldRecord(Detector):
                 records=records,
                 line=event.line,
                 at=at,
-                value="has" if single else "have",
+                value=_("has") if single else _("have"),
                 facts=event.facts,
                 p_value=p_is(event.p_value),
             ),
@@ -180,8 +187,8 @@ class HeldRecord(Detector):
             _(
                 "{value} masked; time passes with {value_2}. Look at the logger's buffer and "
                 "cable.",
-                value="It is" if single else "They are",
-                value_2="it" if single else "them",
+                value=_("It is") if single else _("They are"),
+                value_2=_("it") if single else _("them"),
             ),
         )
 

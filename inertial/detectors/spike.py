@@ -120,7 +120,7 @@ class Spikes(Detector):
                 name=name,
                 readings=counted(facts.readings, "reading"),
                 channel=channel_name(event.channel),
-                value="are" if many else "is",
+                value=_("are") if many else _("is"),
                 size=_signed(scale * event.size),
                 unit=unit,
                 line=event.line,
@@ -128,13 +128,13 @@ class Spikes(Detector):
             _(
                 "Used, {value} would move a mean: that of 1 s by {signed} {unit}, and that of "
                 "all {in_log} readings by {signed_2} {unit}.",
-                value="they" if many else "it",
+                value=_("they") if many else _("it"),
                 signed=_signed(moves / facts.in_second),
                 unit=unit,
                 in_log=whole(facts.in_log),
                 signed_2=_signed(moves / facts.in_log),
             ),
-            f"{'The readings are' if many else 'The reading is'} masked.",
+            _("{value} masked.", value=_("The readings are") if many else _("The reading is")),
         )
 
     def describe_many(self, events: Sequence[tuple[str, Event]]) -> Description:

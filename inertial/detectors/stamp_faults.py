@@ -114,7 +114,9 @@ class TimeBackwards(Detector):
                 _("None beyond that of the repetition."),
                 _("The repetition is masked. Look for logs that were joined."),
             )
-        masked = _("What repeats earlier ones is masked") if facts.replayed else "Nothing is masked"
+        masked = (
+            _("What repeats earlier ones is masked") if facts.replayed else _("Nothing is masked")
+        )
         return Description(
             sentence,
             _(
@@ -298,7 +300,7 @@ def _factor(factor: float) -> str:
             return f"×{whole}"
         if abs(factor * whole - 1) < MAX_RATE_ERROR:
             return _("÷{whole}, as if only one record in {whole} were written", whole=whole)
-    return f"factor {significant(factor)}"
+    return _("factor {factor}", factor=significant(factor))
 
 
 MAX_ZONE_DAYS = 1  # day: between UTC and the laboratory's own time

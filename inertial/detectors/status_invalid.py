@@ -37,10 +37,16 @@ class StatusInvalid(Detector):
             _(
                 "{lacks} {value} not set",
                 lacks=_bits(lacks),
-                value="is" if lacks.bit_count() == 1 else "are",
+                value=_("is") if lacks.bit_count() == 1 else _("are"),
             )
         ] * bool(lacks)
-        why += [f"{_bits(has)} {'is' if has.bit_count() == 1 else 'are'} set"] * bool(has)
+        why += [
+            _(
+                "{bits} {value} set",
+                bits=_bits(has),
+                value=_("is") if has.bit_count() == 1 else _("are"),
+            )
+        ] * bool(has)
         return Description(
             _(
                 "{name}: the instrument marks {counted} from line {line}{at} as invalid: status "
@@ -50,13 +56,13 @@ class StatusInvalid(Detector):
                 line=event.line,
                 at=at,
                 status=status,
-                why=" and ".join(why),
+                why=_(" and ").join(why),
             ),
             _("Their readings are not to be trusted, by up to the full range of the sensor."),
             _(
                 "{value} masked; the time is counted. See the status word in the instrument's "
                 "manual.",
-                value="It is" if single else "They are",
+                value=_("It is") if single else _("They are"),
             ),
         )
 

@@ -137,13 +137,13 @@ class TableMoving(Detector):
                 "accelerometers do by themselves"
             )
         )
-        kind = "tilts" if motion.kind == "tilt" else "creeps"
+        kind = _("tilts") if motion.kind == "tilt" else _("creeps")
         off = motion.off / ARC_SECOND
         times = _(
             ", {significant} times the stated uncertainty of a",
             significant=significant(motion.off / moved.position, 2),
         )
-        times = times + " position" if moved.position > 0 else ""
+        times = times + _(" position") if moved.position > 0 else ""
         return Description(
             _(
                 "{name}: the table {kind} by {size} {span}, while it should rest: the direction "

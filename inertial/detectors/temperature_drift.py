@@ -110,8 +110,8 @@ class TemperatureDrift(Detector):
                 moved=", ".join(moved),
             )
         force, rate, scale = CONSUMER
-        forces = " to ".join(significant(each * kelvin, 2) for each in force)
-        rates = " to ".join(significant(each * kelvin / DEGREE, 2) for each in rate)
+        forces = _(" to ").join(significant(each * kelvin, 2) for each in force)
+        rates = _(" to ").join(significant(each * kelvin / DEGREE, 2) for each in rate)
         tactical = significant(TACTICAL[0] * kelvin, 2)
         slow = significant(TACTICAL[1] * kelvin / DEGREE * 3600, 2)
         return Description(

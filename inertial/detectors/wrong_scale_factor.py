@@ -133,9 +133,9 @@ class WrongScaleOfTurns(PlanDetector):
         if np.isfinite(angle[i]):
             far = _(" and by {fixed}°", fixed=fixed(float(np.degrees(recorded.moved[i])), 3))
         turns = (
-            "The turn" if deviation.count == 1 else _("All {count} turns", count=deviation.count)
+            _("The turn") if deviation.count == 1 else _("All {count} turns", count=deviation.count)
         )
-        verb = "is" if deviation.count == 1 else "are"
+        verb = _("is") if deviation.count == 1 else _("are")
         return Description(
             _(
                 "{turns} {verb} {ratio} times as fast and as far as planned ({name}: {read} "

@@ -13,6 +13,7 @@ from inertial.estimation.least_squares import pseudo_inverse
 from inertial.estimation.regression import NestedTest, nested_test
 from inertial.estimation.triad import linear_names
 from inertial.physics.motion import cross, level_axes
+from inertial.text.messages import _
 from inertial.text.parameters import AXES, PARTS
 
 # ---- The gyros from many steady runs of a rate table: S4's least squares, with sigma and rank.
@@ -70,13 +71,18 @@ class RateTable:
             if there:
                 continue
             if not runs:
-                refusals[name] = f"the {gyro} gyro is not recorded in any steady run"
+                refusals[name] = _("the {gyro} gyro is not recorded in any steady run", gyro=gyro)
                 continue
-            what = f"the inputs of the {gyro} gyro have rank {rank} of {COLUMNS}"
+            what = _(
+                "the inputs of the {gyro} gyro have rank {rank} of {COLUMNS}",
+                gyro=gyro,
+                rank=rank,
+                COLUMNS=COLUMNS,
+            )
             cure = (
-                "add a run of another rate"
+                _("add a run of another rate")
                 if parts.kind == "bias"
-                else f"record all three gyros while the table turns about {about}"
+                else _("record all three gyros while the table turns about {about}", about=about)
             )
             refusals[name] = f"{what}: {cure}"
         return refusals
@@ -110,7 +116,7 @@ def rate_table(
         for run in runs
     ]
     matrix = np.eye(3)
-    for _ in range(EARTH_ITERATIONS):
+    for _iteration in range(EARTH_ITERATIONS):
         values = means - np.array([rate.known for rate in earth_rates]) @ matrix.T
         solved = np.einsum("rkj,jr->rk", weights, np.nan_to_num(values))
         matrix = np.where(determined[:, :3], solved[:, :3], np.eye(3))

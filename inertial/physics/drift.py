@@ -16,11 +16,11 @@ Array = NDArray[np.float64]
 
 THERMOMETER_ERROR = 1.0  # K beyond the coldest and the warmest mean; resolution of many
 
-NO_CLOCK = (
+NO_CLOCK = _(
     "The logs share no clock, so nothing tells how long after one another they were recorded."
 )
-NO_TEMPERATURE = "No temperature is recorded."
-NOT_EVERYWHERE = "The temperature is not recorded everywhere."
+NO_TEMPERATURE = _("No temperature is recorded.")
+NOT_EVERYWHERE = _("The temperature is not recorded everywhere.")
 
 
 def without_clock(motion: Motion) -> str:

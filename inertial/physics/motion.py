@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from inertial.text.messages import _
+
 # ---- Products of vectors.
 
 Array = NDArray[np.float64]
@@ -165,7 +167,7 @@ def without_north(motion: Motion) -> str:
     """Why directions fixed to the laboratory are not known; empty where they are."""
     if np.isfinite(motion.north).any():
         return ""
-    return "Neither a heading nor the earth's rate tells the azimuth of the positions."
+    return _("Neither a heading nor the earth's rate tells the azimuth of the positions.")
 
 
 def turning(

@@ -58,7 +58,11 @@ class Permutation:
         """In words: x reads z and z reads −x."""
         both = zip(self.sources, self.signs, strict=True)
         reads = [f"{'' if sign > 0 else '−'}{AXES[source]}" for source, sign in both]
-        return " and ".join(f"{AXES[i]} reads {reads[i]}" for i in range(3) if self.changed[i])
+        return _(" and ").join(
+            _("{axes} reads {reads}", axes=AXES[i], reads=reads[i])
+            for i in range(3)
+            if self.changed[i]
+        )
 
     @property
     def in_place(self) -> bool:
@@ -145,7 +149,7 @@ def describe_exchange(event: Event, name: str, sensor: str) -> Description:
             "does that from one record to the next.",
             name=name,
             line=event.line,
-            value="to the end, " if exchange.lasting else "",
+            value=_("to the end, ") if exchange.lasting else "",
             size=whole(event.size),
             what=what,
             in_words=exchange.permutation.in_words,

@@ -14,13 +14,13 @@ from inertial.text.units import in_degrees
 if TYPE_CHECKING:
     from inertial.signal.phase_folding import Glitch
 
-SENSOR_NAMES = {"accel": "accelerometer", "gyro": "gyro"}
+SENSOR_NAMES = {"accel": _("accelerometer"), "gyro": _("gyro")}
 
 
 def channel_name(channel: int) -> str:
     """Its sensor and axis: accelerometer x, gyro z."""
-    sensor, _, axis = CHANNELS[channel].partition("_")
-    return f"{SENSOR_NAMES[sensor]} {axis}"
+    sensor, _underscore, axis = CHANNELS[channel].partition("_")
+    return _("{sensor} {axis}", sensor=SENSOR_NAMES[sensor], axis=axis)
 
 
 def read_in(channel: int) -> tuple[float, str]:
@@ -286,7 +286,7 @@ def occurrences(events: Sequence[tuple[str, Event]]) -> str:
 
 def names_of_logs(events: Sequence[tuple[str, Event]]) -> str:
     """The logs or rests of events in words; of many, how many they are."""
-    names = list(dict.fromkeys(name for name, _ in events))
+    names = list(dict.fromkeys(name for name, _event in events))
     if len(names) > MAX_NAMED_LOGS:
         return _("{count} logs", count=len(names))
     return ", ".join(names)
@@ -294,7 +294,10 @@ def names_of_logs(events: Sequence[tuple[str, Event]]) -> str:
 
 def names_of_axes(events: Sequence[tuple[str, Event]]) -> str:
     """The sensor of events and its axes, in words: gyros x, y."""
-    channels = sorted({event.channel for _, event in events if event.channel is not None})
-    sensor = SENSOR_NAMES[CHANNELS[channels[0]].partition("_")[0]]
+    channels = sorted({event.channel for _name, event in events if event.channel is not None})
     axes = ", ".join(CHANNELS[channel][-1] for channel in channels)
-    return f"{sensor}{'s' if len(channels) > 1 else ''} {axes}"
+    if CHANNELS[channels[0]].startswith("gyro"):
+        return _("gyros {axes}", axes=axes) if axes[1:] else _("gyro {axes}", axes=axes)
+    return (
+        _("accelerometers {axes}", axes=axes) if axes[1:] else _("accelerometer {axes}", axes=axes)
+    )

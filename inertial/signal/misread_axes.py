@@ -42,7 +42,7 @@ def deviation(misread: Misread, recorded: Recorded) -> Deviation:
 def describe_misread(misread: Misread, recorded: Recorded) -> Description:
     """A misread sensor in words."""
     sensor = SENSOR_NAMES[misread.sensor]
-    where = f"in {misread.log}" if misread.log else "in all logs"
+    where = _("in {log}", log=misread.log) if misread.log else "in all logs"
     names = ", ".join(misread.explains[:MAX_NAMES])
     names += (
         _(" and {explains} more", explains=len(misread.explains) - MAX_NAMES)
@@ -126,7 +126,12 @@ def reads_in_words(axes: Permutation) -> str:
     """Which axis reads what: x reads −y and y reads x."""
     back = axes.inverse
     parts = [
-        f"{AXES[i]} reads {'−' if back.signs[i] < 0 else ''}{AXES[back.sources[i]]}"
+        _(
+            "{axes} reads {value}{axes_2}",
+            axes=AXES[i],
+            value="−" if back.signs[i] < 0 else "",
+            axes_2=AXES[back.sources[i]],
+        )
         for i in range(3)
         if back.changed[i]
     ]

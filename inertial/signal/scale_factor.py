@@ -121,7 +121,7 @@ def _known_factors(sensor: str, given: Given, count: float) -> Iterator[tuple[fl
             # Slightly beside the factor itself, which may be that of a unit as well.
             yield (
                 factor * (1 + 1e-12),
-                _("the counts are those of {names}", names=" or ".join(names)),
+                _("the counts are those of {names}", names=_(" or ").join(names)),
             )
 
 

@@ -1,7 +1,17 @@
 """Compensated samples, their checks, and the archive of calibrations."""
 
 from inertial.tables.shared import AXIS, MOUNT, QUANTITY, SENSOR, channels
-from inertial.tables.table import DOUBLE, INTEGER, LABEL, TEXT, TEXTS, TRUTH, Column, Table
+from inertial.tables.table import (
+    DOUBLE,
+    INTEGER,
+    LABEL,
+    SENTENCE,
+    TEXT,
+    TEXTS,
+    TRUTH,
+    Column,
+    Table,
+)
 
 # ---- Samples with the errors taken out, and the checks of them.
 
@@ -51,7 +61,7 @@ CHECKS = Table(
             nullable=True,
         ),
         Column("in_sigmas_after", DOUBLE, "1", "after less expected, in sigmas", nullable=True),
-        Column("sentence", TEXT, "", "the check in words"),
+        Column("sentence", SENTENCE, "", "the check in words"),
     ),
 )
 
@@ -96,7 +106,7 @@ CHARACTERISTICS = Table(
         Column("largest_input", DOUBLE, "as input_unit", "largest that was applied", nullable=True),
         Column("input_unit", TEXT, "", "its unit, SI"),
         Column("points", INTEGER, "1", "inputs that were applied, or static positions"),
-        Column("reason", TEXT, "", "why there is no value"),
+        Column("reason", SENTENCE, "", "why there is no value"),
     ),
 )
 
@@ -243,6 +253,6 @@ EARLIER = Table(
         Column("sigma", DOUBLE, "as unit", "standard deviation of the estimate"),
         Column("unit", TEXT, "", "unit of value and sigma"),
         Column("verdict", TEXT, "", "of its sensor, as in verdict; older: none", nullable=True),
-        Column("condition", TEXT, "", "on which it is valid, in words", nullable=True),
+        Column("condition", SENTENCE, "", "on which it is valid, in words", nullable=True),
     ),
 )

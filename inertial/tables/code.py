@@ -12,15 +12,10 @@ IMPORT = re.compile(
     r"^[ \t]*(?:from|import) ((?:overviews|stages|inertial)[\w.]*)(?: import (\([^)]*\)|.*))?",
     re.MULTILINE,
 )
-DATA = {
-    ".yaml",
-    ".json",
-    ".html",
-    ".css",
-    ".js",
-    ".pot",
-    ".po",
-}  # schemas and templates lie beside the module that reads them
+# Schemas and templates lie beside the module that reads them.
+DATA = {".yaml", ".json", ".html", ".css", ".js"}
+TRANSLATIONS = "inertial/text/*.po"
+SPEAKS = "import ENGLISH, speak"  # stands in __main__.py of a stage that speaks other languages
 
 
 def code_of(stage: str, room: str = "stages") -> list[Path]:
@@ -42,6 +37,11 @@ def code_of(stage: str, room: str = "stages") -> list[Path]:
                 waiting += _imports(file)
     folders = {file.parent for file in reached} - {ROOT / "stages", ROOT / "inertial"}
     beside = {file for folder in folders for file in _data(folder)}
+    if any(
+        SPEAKS in file.read_text(encoding="utf-8")
+        for file in _files(ROOT, f"stages.{stage}.__main__")
+    ):
+        beside |= set(ROOT.glob(TRANSLATIONS))
     return sorted(reached | beside | {ROOT / "requirements.lock"})
 
 

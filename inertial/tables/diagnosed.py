@@ -1,7 +1,7 @@
 """Repairs of a recording, candidates for the result, and the diagnosis: causes and verdict."""
 
 from inertial.tables.shared import BODY, MOUNT
-from inertial.tables.table import DOUBLE, INTEGER, TEXT, Column, Table
+from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, Column, Table
 
 SENSOR = Column("sensor", TEXT, "", "accel or gyro, where one is concerned", nullable=True)
 AXIS = Column("axis", TEXT, "", BODY, nullable=True)
@@ -46,8 +46,8 @@ REPAIRS = Table(
         ),
         Column("observations", INTEGER, "1", "observations that were compared", nullable=True),
         Column("finding", TEXT, "", "id of the finding that it removes", nullable=True),
-        Column("condition", TEXT, "", "what must be true for it to be right, in words"),
-        Column("sentence", TEXT, "", "what was set right, in words"),
+        Column("condition", SENTENCE, "", "what must be true for it to be right, in words"),
+        Column("sentence", SENTENCE, "", "what was set right, in words"),
     ),
 )
 CHANNEL_REPAIRS = Table(
@@ -104,7 +104,7 @@ CANDIDATES = Table(
             "1",
             "parameters of the sensor that the joint model determines and this one does not",
         ),
-        Column("sentence", TEXT, "", "the gain in words"),
+        Column("sentence", SENTENCE, "", "the gain in words"),
     ),
 )
 CANDIDATE_EFFECTS = Table(
@@ -144,7 +144,7 @@ CAUSES = Table(
         Column("log", TEXT, "", "as in logs, where one is concerned", nullable=True),
         Column("manoeuvre", TEXT, "", "as in manoeuvres, where one is concerned", nullable=True),
         Column("count", INTEGER, "1", "how many equal ones this stands for"),
-        Column("sentence", TEXT, "", "the cause in words, with how large and how sure"),
+        Column("sentence", SENTENCE, "", "the cause in words, with how large and how sure"),
         Column("size", DOUBLE, "as unit", "how large", nullable=True),
         Column("sigma", DOUBLE, "as unit", "standard deviation of size", nullable=True),
         Column("unit", TEXT, "", "unit of size and sigma"),
@@ -157,7 +157,7 @@ CAUSES = Table(
             "repaired, modelled, curve: of the temperature, masked, interpolated, left_out; none:"
             " nothing removes it here",
         ),
-        Column("gain", TEXT, "", "what the cure brought, in words", nullable=True),
+        Column("gain", SENTENCE, "", "what the cure brought, in words", nullable=True),
         Column("fitting_before", INTEGER, "1", "as in repairs", nullable=True),
         Column("fitting_after", INTEGER, "1", "as in repairs", nullable=True),
         Column(
@@ -175,10 +175,10 @@ CAUSES = Table(
             " none: not known",
             nullable=True,
         ),
-        Column("condition", TEXT, "", "on which the result is valid, in words", nullable=True),
-        Column("consequence", TEXT, "", "what it does to the result, in words"),
-        Column("done", TEXT, "", "what was done about it, in words"),
-        Column("action", TEXT, "", "what to do in the laboratory, in words"),
+        Column("condition", SENTENCE, "", "on which the result is valid, in words", nullable=True),
+        Column("consequence", SENTENCE, "", "what it does to the result, in words"),
+        Column("done", SENTENCE, "", "what was done about it, in words"),
+        Column("action", SENTENCE, "", "what to do in the laboratory, in words"),
     ),
 )
 CAUSE_MEMBERS = Table(
@@ -209,10 +209,10 @@ VERDICTS = Table(
         MOUNT,
         Column("sensor", TEXT, "", "gyro or accel"),
         Column("verdict", TEXT, "", "usable, usable_within_limits, on_condition, or not_usable"),
-        Column("sentence", TEXT, "", "the verdict in words, the cause first"),
+        Column("sentence", SENTENCE, "", "the verdict in words, the cause first"),
         Column("method", TEXT, "", "method of the result: joint, extended, or mixture"),
-        Column("condition", TEXT, "", "on which the result is valid, in words", nullable=True),
-        Column("reason", TEXT, "", "why this method, in words"),
+        Column("condition", SENTENCE, "", "on which the result is valid, in words", nullable=True),
+        Column("reason", SENTENCE, "", "why this method, in words"),
     ),
 )
 
@@ -265,6 +265,6 @@ WARM_UP = Table(
             nullable=True,
         ),
         Column("sigma", DOUBLE, "s", "its standard deviation; none at the start", nullable=True),
-        Column("sentence", TEXT, "", "the same in words"),
+        Column("sentence", SENTENCE, "", "the same in words"),
     ),
 )

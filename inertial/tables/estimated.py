@@ -1,7 +1,7 @@
 """Noise, parameters, covariance, fits, studies and comparisons."""
 
 from inertial.tables.shared import AXES, BODY, METHOD, MOUNT, QUANTITY, SENSOR
-from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
+from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
 
 # --- Noise, parameters, covariance, fits and positions ---
 
@@ -135,8 +135,10 @@ PARAMETERS = Table(
         Column("sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
         Column("unit", TEXT, "", "unit of value and sigma"),
         Column("frame", TEXT, "", "frame it is expressed in"),
-        Column("meaning", TEXT, "", "what it is, in words"),
-        Column("reason", TEXT, "", "why it is not determined, and the manoeuvre that would help"),
+        Column("meaning", SENTENCE, "", "what it is, in words"),
+        Column(
+            "reason", SENTENCE, "", "why it is not determined, and the manoeuvre that would help"
+        ),
     ),
 )
 COVARIANCE = Table(
@@ -198,7 +200,7 @@ FIT_MANOEUVRES = Table(
         Column("manoeuvre", TEXT, "", "as in manoeuvres, or as in blocks where it was found"),
         Column("phase", TEXT, "", "as in blocks; none: all that the method uses", nullable=True),
         Column("used", TRUTH, "", "in the fit"),
-        Column("reason", TEXT, "", "why it is not", nullable=True),
+        Column("reason", SENTENCE, "", "why it is not", nullable=True),
     ),
 )
 POSITIONS = Table(
@@ -380,8 +382,8 @@ NOT_STUDIED = Table(
     (
         Column("study", TEXT, "", "rests, or turns"),
         MOUNT,
-        Column("subject", TEXT, "", "manoeuvres or parameters, in words"),
-        Column("reason", TEXT, "", "why there is nothing of it"),
+        Column("subject", SENTENCE, "", "manoeuvres or parameters, in words"),
+        Column("reason", SENTENCE, "", "why there is nothing of it"),
     ),
 )
 
@@ -404,8 +406,8 @@ DIFFERENCES = Table(
             " fencepost, straight_line",
         ),
         Column("unit", TEXT, "", "unit of the values, SI"),
-        Column("first", TEXT, "", "what is compared: id of a parameter, or in words"),
-        Column("second", TEXT, "", "with what: id of a parameter, or in words"),
+        Column("first", SENTENCE, "", "what is compared: id of a parameter, or in words"),
+        Column("second", SENTENCE, "", "with what: id of a parameter, or in words"),
         Column("first_value", DOUBLE, "as unit", "none where not determined", nullable=True),
         Column("second_value", DOUBLE, "as unit", "none where not determined", nullable=True),
         Column("difference", DOUBLE, "as unit", "first less second", nullable=True),
@@ -419,6 +421,6 @@ DIFFERENCES = Table(
             "more than chance among all comparisons; none where there is no p_value",
             nullable=True,
         ),
-        Column("sentence", TEXT, "", "the difference and the verdict in words"),
+        Column("sentence", SENTENCE, "", "the difference and the verdict in words"),
     ),
 )

@@ -1,7 +1,7 @@
 """How well calibrations of one IMU repeat, jumps between them, and what the next may be."""
 
 from inertial.tables.shared import QUANTITY, SENSOR
-from inertial.tables.table import DOUBLE, INTEGER, TEXT, Column, Table
+from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, Column, Table
 
 UNIT = Column("unit", TEXT, "", "unit of the parameter, SI")
 
@@ -34,7 +34,7 @@ REPEATABILITY = Table(
             nullable=True,
         ),
         Column("upper", DOUBLE, "as unit", "upper limit, one-sided 95 %", nullable=True),
-        Column("reason", TEXT, "", "why there is no value"),
+        Column("reason", SENTENCE, "", "why there is no value"),
     ),
 )
 JUMPS = Table(
@@ -56,7 +56,7 @@ JUMPS = Table(
             "1",
             "chance of such a jump of any parameter at any date in histories that have none",
         ),
-        Column("sentence", TEXT, "", "the jump in words"),
+        Column("sentence", SENTENCE, "", "the jump in words"),
     ),
 )
 FORECAST = Table(
@@ -95,6 +95,6 @@ FORECAST = Table(
             "date from which the 95 % interval leaves the last value ± tolerance",
             nullable=True,
         ),
-        Column("reason", TEXT, "", "why there is no prediction, or no due date"),
+        Column("reason", SENTENCE, "", "why there is no prediction, or no due date"),
     ),
 )

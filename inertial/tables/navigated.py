@@ -1,7 +1,7 @@
 """Free inertial navigation with the readings before and after calibration."""
 
 from inertial.tables.shared import MOUNT
-from inertial.tables.table import DOUBLE, TEXT, Column, Table
+from inertial.tables.table import DOUBLE, SENTENCE, TEXT, Column, Table
 
 MOTION = Column("motion", TEXT, "", "rest, or turn: a whole one, from rest to rest")
 SECONDS = Column("seconds", DOUBLE, "s", "of free inertial navigation, from the end of alignment")
@@ -65,7 +65,7 @@ NAVIGATION_ERRORS = Table(
             "plan: known; gyros: aligned by the earth's rate; unknown: the level earth rate stays"
             " in the rates",
         ),
-        Column("reason", TEXT, "", "why nothing was navigated for so long, or predicted"),
+        Column("reason", SENTENCE, "", "why nothing was navigated for so long, or predicted"),
     ),
 )
 NAVIGATION_COURSES = Table(

@@ -18,6 +18,8 @@ import pyarrow.parquet as pq
 
 from inertial.tables.errors import Refusal
 from inertial.tables.table import Column, Table
+from inertial.text.messages import ENGLISH, in_this_language, language
+from inertial.text.recipes import learn, needed
 
 if TYPE_CHECKING:  # decode streams record batches and starts faster without pandas
     import pandas as pd
@@ -34,7 +36,11 @@ TYPES: dict[str, pa.DataType] = {
     "bool": pa.bool_(),
     "label": pa.dictionary(pa.int32(), pa.string()),
     "texts": pa.list_(pa.string()),
+    "sentence": pa.string(),
 }
+WORDS = ("string", "label", "sentence")
+MESSAGES = b"messages"  # what the sentences of a file were made of
+MOST_SENTENCES = 1000  # of a table, whose messages are kept
 # Rows of a table: as a frame, as a batch of Arrow, or one mapping for each.
 Rows: TypeAlias = "pd.DataFrame | pa.RecordBatch | Sequence[Mapping[str, Any]]"
 
@@ -55,7 +61,7 @@ def _field(column: Column) -> pa.Field:
 
 def _written(table: Table) -> dict[str, Any]:
     """How Parquet writes a table: texts as dictionaries; of measured numbers there are too many."""
-    texts = [column.name for column in table.columns if column.type in ("string", "label")]
+    texts = [column.name for column in table.columns if column.type in WORDS]
     return {"compression": "zstd", "use_dictionary": texts, "write_statistics": False}
 
 
@@ -64,7 +70,21 @@ def read(table: Table, path: Path) -> pd.DataFrame:
     with _readable(path):
         _check(table, path)
         frame: pd.DataFrame = pq.read_table(path).to_pandas()
+        if any(column.type == "sentence" for column in table.columns):
+            _understand(table, pq.read_metadata(path).metadata or {}, frame)
     return frame
+
+
+def _understand(table: Table, metadata: Mapping[bytes, bytes], frame: pd.DataFrame) -> None:
+    """The sentences of a table in the language of this process; it can write them again."""
+    if MESSAGES in metadata:
+        learn(json.loads(metadata[MESSAGES]))
+    if language() != ENGLISH:
+        for column in table.columns:
+            if column.type == "sentence":
+                texts = frame[column.name].dropna().unique()
+                said = {text: in_this_language(text) for text in texts}
+                frame[column.name] = frame[column.name].map(said)
 
 
 def stream(table: Table, path: Path) -> Stream:
@@ -193,6 +213,7 @@ class Writer:
         self._tables = tables
         self._made_by = made_by
         self._files: dict[str, pq.ParquetWriter] = {}
+        self._sentences: dict[str, set[str]] = {name: set() for name in tables}
         self._open = ExitStack()
 
     def __enter__(self) -> Self:
@@ -208,7 +229,11 @@ class Writer:
 
     def write(self, name: str, rows: Rows) -> None:
         """Add `rows` to the table `name`."""
-        self._files[name].write_table(arrow(self._tables[name], rows))
+        table = arrow(self._tables[name], rows)
+        self._files[name].write_table(table)
+        for column in self._tables[name].columns:
+            if column.type == "sentence" and len(self._sentences[name]) < MOST_SENTENCES:
+                self._sentences[name].update(filter(None, table[column.name].unique().to_pylist()))
 
     def __exit__(
         self,
@@ -220,8 +245,11 @@ class Writer:
             with self._open:
                 if kind is None:
                     made_by = json.dumps(self._made_by(), sort_keys=True).encode()
-                    for file in self._files.values():
+                    for name, file in self._files.items():
                         file.add_key_value_metadata({b"made_by": made_by})
+                        if texts := sorted(self._sentences[name])[:MOST_SENTENCES]:
+                            messages = json.dumps(needed(texts), ensure_ascii=False, sort_keys=True)
+                            file.add_key_value_metadata({MESSAGES: messages.encode()})
             if kind is None:
                 for name in self._tables:
                     self._part(name).replace(self._folder / f"{name}.parquet")

@@ -1,7 +1,7 @@
 """The plan: campaign, what is known, manoeuvres, what others published."""
 
 from inertial.tables.shared import AS_CHANNEL, AXIS, BODY, LOG, QUANTITY, SENSOR, vector
-from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
+from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
 
 CAMPAIGN = Table(
     "campaign",
@@ -34,7 +34,9 @@ KNOWN = Table(
         Column("value", DOUBLE, "as unit", "its value; none where it is not known", nullable=True),
         Column("sigma", DOUBLE, "as unit", "standard deviation of the value", nullable=True),
         Column("unit", TEXT, "", "unit of value and sigma"),
-        Column("origin", TEXT, "", "stated in the campaign, computed, or assumed, and from what"),
+        Column(
+            "origin", SENTENCE, "", "stated in the campaign, computed, or assumed, and from what"
+        ),
         Column("assumed", TRUTH, "", "the campaign states nothing that it could be computed from"),
     ),
 )

@@ -11,7 +11,7 @@ from inertial.tables.shared import (
     SENSOR,
     channels,
 )
-from inertial.tables.table import DOUBLE, INTEGER, LABEL, TEXT, TRUTH, WORD, Column, Table
+from inertial.tables.table import DOUBLE, INTEGER, LABEL, SENTENCE, TEXT, TRUTH, WORD, Column, Table
 
 SAMPLES = Table(
     "samples",
@@ -50,7 +50,7 @@ REFUSED = Table(
         Column("line", INTEGER, "1", "number of the line, from 1"),
         Column("offset", INTEGER, "byte", "where the line begins in the file"),
         Column("bytes", INTEGER, "byte", "its length with its line end"),
-        Column("reason", TEXT, "", "what was found and what was expected"),
+        Column("reason", SENTENCE, "", "what was found and what was expected"),
         Column("text", TEXT, "", "its beginning"),
     ),
 )
@@ -151,9 +151,9 @@ FINDINGS = Table(
         Column("unit", TEXT, "", "unit of size"),
         Column("p_value", DOUBLE, "1", "chance of such a size if nothing is wrong", nullable=True),
         Column("severity", INTEGER, "", "3 spoils a result, 2 weakens it, 1 is good to know"),
-        Column("consequence", TEXT, "", "what it does to the result"),
-        Column("action", TEXT, "", "what the pipeline did, or what the laboratory should do"),
-        Column("sentence", TEXT, "", "the finding in words"),
+        Column("consequence", SENTENCE, "", "what it does to the result"),
+        Column("action", SENTENCE, "", "what the pipeline did, or what the laboratory should do"),
+        Column("sentence", SENTENCE, "", "the finding in words"),
     ),
 )
 MASKS = Table(
@@ -271,7 +271,7 @@ PERFORMED = Table(
             )
             for axis in AXES
         ),
-        Column("sentence", TEXT, "", "what was recorded of it, in words"),
+        Column("sentence", SENTENCE, "", "what was recorded of it, in words"),
     ),
 )
 BLOCKS = Table(

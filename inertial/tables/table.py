@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 DOUBLE, TEXT, INTEGER, TRUTH, WORD = "double", "string", "int64", "bool", "uint32"
 LABEL = "label"  # one of few texts: a dictionary
+SENTENCE = "sentence"  # English for a person; the file keeps its messages, for other languages
 TEXTS = "texts"  # a list of texts
 
 

@@ -2,7 +2,7 @@
 
 from inertial.tables.recorded import FINDINGS
 from inertial.tables.shared import BODY, LOG, MOUNT, PHASES, channels
-from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
+from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
 
 # ---- The simulated readings and their residuals.
 
@@ -157,9 +157,9 @@ DETECTION_LIMITS = Table(
             "",
             "visible; or why there is none: not_excited, absorbed, only_together",
         ),
-        Column("explanation", TEXT, "", "why there is none, in words", nullable=True),
-        Column("remark", TEXT, "", "what else to know of it, in words", nullable=True),
-        Column("sentence", TEXT, "", "all of this in words"),
+        Column("explanation", SENTENCE, "", "why there is none, in words", nullable=True),
+        Column("remark", SENTENCE, "", "what else to know of it, in words", nullable=True),
+        Column("sentence", SENTENCE, "", "all of this in words"),
     ),
 )
 SCORES = Table(
@@ -168,7 +168,7 @@ SCORES = Table(
     (
         MOUNT,
         Column("effect", TEXT, "", "name in the catalogue"),
-        Column("cause", TEXT, "", "its physical cause"),
+        Column("cause", SENTENCE, "", "its physical cause"),
         Column("sought_in", TEXT, "", "blocks, spectrum, noise or quality"),
         FINDING,
         Column(
@@ -204,7 +204,7 @@ SCORES = Table(
             nullable=True,
         ),
         Column("scan_unit", TEXT, "", "unit of the scanned variable", nullable=True),
-        Column("sentence", TEXT, "", "the verdict in words"),
+        Column("sentence", SENTENCE, "", "the verdict in words"),
     ),
 )
 EFFECTS = Table(
@@ -240,7 +240,7 @@ EFFECTS = Table(
             nullable=True,
         ),
         Column("unit", TEXT, "", "unit of value, sigma and detection limit"),
-        Column("meaning", TEXT, "", "what it is"),
+        Column("meaning", SENTENCE, "", "what it is"),
     ),
 )
 LINES = Table(

@@ -4,16 +4,23 @@
 
 The English sentence is its own key. `messages.pot`, beside this file, lists all of them; `make
 docs` writes it anew, and a test fails where it lacks one. Another language is a file
-`<language>.po` beside it, chosen by the environment variable REPORT_LANGUAGE.
+`<language>.po` beside it. A process speaks English unless it says `speak` before it imports what
+has sentences in it; then the sentences of the tables that it reads are in that language too.
 """
 
-import os
+from __future__ import annotations
+
+from collections.abc import Mapping
 from gettext import GNUTranslations, NullTranslations
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+from inertial.text.recipes import Recipe, filled, remember, rendered, values_in
+
 CATALOGUE = Path(__file__).with_name("messages.pot")
+ENGLISH = "en"
+LOCALES = {"en": "en", "zh": "zh-CN"}  # as a page states it
 
 
 def translations(language: str, folder: Path = CATALOGUE.parent) -> NullTranslations:
@@ -31,15 +38,70 @@ def translations(language: str, folder: Path = CATALOGUE.parent) -> NullTranslat
     return GNUTranslations(compiled)
 
 
-_chosen = translations(os.environ.get("REPORT_LANGUAGE", "en"))
+class Message(str):
+    """A sentence with braces, whose values come later; what it was makes them a recipe."""
+
+    __slots__ = ("message",)
+    message: str
+
+    def format(self, *args: object, **values: object) -> str:
+        """The sentence with these values."""
+        return self.format_map(values)
+
+    def format_map(self, values: Mapping[str, object]) -> str:  # type: ignore[override]
+        """The same."""
+        return _remembered(str.format_map(self, values), self.message, values)
+
+
+_language = ENGLISH
+_chosen = NullTranslations()
+
+
+def speak(language: str) -> None:
+    """What follows in this process is said in a language of `LOCALES`."""
+    global _language, _chosen
+    _language, _chosen = language, translations(language)
+
+
+def language() -> str:
+    """The language of this process."""
+    return _language
 
 
 def _(message: str, **values: Any) -> str:
     """A sentence in the language of this process, its `{names}` replaced by the values."""
     sentence = _chosen.gettext(message)
-    return sentence.format(**values) if values else sentence
+    if values:
+        return _remembered(sentence.format_map(values), message, values)
+    if "{" not in message:
+        return _remembered(sentence, message, {})
+    later = Message(sentence)
+    later.message = message
+    return later
 
 
 def plural(one: str, many: str, count: int, **values: Any) -> str:
     """The same in the form that goes with a count, which the sentence names as `{count}`."""
-    return _chosen.ngettext(one, many, count).format(count=count, **values)
+    values = values | {"count": count}
+    text = _chosen.ngettext(one, many, count).format_map(values)
+    if _language == ENGLISH:
+        used = one if count == 1 else many
+        remember(text, Recipe((one, many), values_in(used, values), count))
+    return text
+
+
+def _remembered(text: str, message: str, values: Mapping[str, object]) -> str:
+    if _language == ENGLISH:
+        remember(text, Recipe((message,), values_in(message, values)))
+    return text
+
+
+def in_this_language(text: str) -> str:
+    """An English text of a table in the language of this process."""
+    return rendered(text, _said)
+
+
+def _said(recipe: Recipe) -> str:
+    if recipe.count is None:
+        return filled(_chosen.gettext(recipe.message[0]), recipe.values)
+    return filled(_chosen.ngettext(*recipe.message, recipe.count), recipe.values)

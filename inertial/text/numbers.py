@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from math import floor, isfinite, log10
 
+from inertial.text.messages import ENGLISH, _, language
+from inertial.text.recipes import Recipe, remember
+
 FIGURE_SPACE = "\u2007"  # as wide as a digit
 POINT_SPACE = "\u2008"  # as wide as a decimal point
 THIN_SPACE = "\u202f"
@@ -103,10 +106,29 @@ def p_is(p_value: float | None) -> str:
     return f"p {text}" if text.startswith("<") else f"p = {text}"
 
 
+NOUNS = (  # that are counted where no one sees them: inside of other strings, or by a name
+    _("check"),
+    _("day"),
+    _("manoeuvre"),
+    _("pair"),
+    _("position"),
+    _("reading"),
+    _("record"),
+    _("refused line"),
+    _("sample"),
+    _("cause"),
+    _("value"),
+)
+
+
 def counted(count: int, one: str, many: str = "") -> str:
-    """`count` with its noun: 1 finding, 3 findings, no findings."""
-    noun = one if count == 1 else many or f"{one}s"
-    return f"{whole(count) if count else 'no'} {noun}"
+    """`count` with its noun, a message: 1 finding, 3 findings, no findings."""
+    number = whole(count) if count else _("no")
+    if language() != ENGLISH:
+        return _("{number} {noun}", number=number, noun=_(one))
+    text = f"{number} {one if count == 1 else many or f'{one}s'}"
+    remember(text, Recipe(("{number} {noun}",), {"number": number, "noun": _(one)}))
+    return text
 
 
 def shortened(text: str, most: int) -> str:

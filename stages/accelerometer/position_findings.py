@@ -33,7 +33,7 @@ WORDS = {
 def findings(off: OffPosition, sigma: Array, mount: str) -> Iterator[Finding]:
     """One finding; `sigma`: (12,), of the parameters without the scatter."""
     cause, several = "table_position_error", len(off.positions) > 1
-    names = " or ".join(off.positions)
+    names = _(" or ").join(off.positions)
     axis = int(np.argmax(np.abs(off.about)))
     affected = [
         _change(name, float(off.moved[i]))

@@ -42,7 +42,7 @@ def method_against_method(results: Results, method: str) -> Iterator[Difference]
             first_value=other["value"],
             second_value=joint["value"],
             sigma=None if alike else sigma,
-            between=(WORDS[method], "the joint estimate"),
+            between=(WORDS[method], _("the joint estimate")),
             place=method,
             remark=(
                 _(

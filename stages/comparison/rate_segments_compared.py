@@ -111,7 +111,7 @@ def static_against_turns(data: CampaignData, gyro: Results) -> Iterator[Differen
                 first_value=value,
                 second_value=float(turns.values[column]),
                 sigma=float(np.hypot(sigma, turns.sigma[column])),
-                between=("rests", "turns"),
+                between=(_("rests"), _("turns")),
             )
 
 
@@ -163,7 +163,7 @@ def straight_line(
                 second_value=0.0,
                 sigma=float(test.sigma[0]),
                 degrees=test.degrees,
-                between=("the steady runs", "straight lines"),
+                between=(_("the steady runs"), _("straight lines")),
                 remark=_(
                     "Left out, for they do not belong to the others: {left_out}", left_out=left_out
                 )

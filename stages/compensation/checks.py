@@ -35,9 +35,9 @@ Array = NDArray[np.float64]
 UNITS = {
     # quantity: (its name in a sentence, unit of the value, unit of the difference)
     "gravity": ("|f|", Unit("m/s²", 1.0), MICRO_G),
-    "force_up": ("f along up", Unit("m/s²", 1.0), MICRO_G),
+    "force_up": (_("f along up"), Unit("m/s²", 1.0), MICRO_G),
     "rate_up": (_("the rate along up"), DEGREES_PER_HOUR, DEGREES_PER_HOUR),
-    "angle": ("the angle", DEGREES, SECONDS_OF_ARC),
+    "angle": (_("the angle"), DEGREES, SECONDS_OF_ARC),
 }
 SI = {"gravity": "m/s²", "force_up": "m/s²", "rate_up": "rad/s", "angle": "rad"}
 SENSORS = {"accel": "accelerometer", "gyro": "gyro"}
@@ -66,9 +66,9 @@ class Check:
         before = fixed(fine.of(self.before - self.expected), decimals_of(sigma) or 0)
         far = (self.after - self.expected) / self.sigma
         verdict = (
-            "within its sigma"
+            _("within its sigma")
             if abs(far) <= 1
-            else f"{fixed(abs(far), 1)} sigma"
+            else _("{fixed} sigma", fixed=fixed(abs(far), 1))
             if abs(far) <= MAX_EXPECTED_SIGMAS
             else _(
                 "{fixed} sigma, so these parameters are not all there is", fixed=fixed(abs(far), 1)

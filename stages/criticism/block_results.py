@@ -40,7 +40,7 @@ WALK_UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
 SHARED_EFFECTS = {"gyro": ("earth", "latitude", "heading"), "accel": ("lever", "size", "table")}
 MIN_EXCESS = 1.2  # of chi-squared per degree; the uncertainty of the noise level explains less
 
-NOT_TESTED = "Not detected."
+NOT_TESTED = _("Not detected.")
 NO_FLICKER = _("The noise at rest does not show it.")
 FLICKER = _("The noise at rest shows {sizes} in the order of the axes, which the sigmas allow for.")
 OF_QUALITY = _("Sought in the quality of the samples: findings “{finding}”.")
@@ -341,7 +341,7 @@ def random_walk_rows(
     sentence = (WALK_OR if others else WALK_ALONE).format(
         sensors=SENSORS[sensor],
         size=_walk_size(sensor, walk),
-        others=" or ".join(in_words(name) for name in others),
+        others=_(" or ").join(in_words(name) for name in others),
     )
     unit = WALK_UNITS[sensor]
     yield (

@@ -85,7 +85,7 @@ def cause_sentence(
     others = [in_words(member) for member in cause.members if member != cause.effect]
     if effect is None and cause.effect in PER_LOG:
         return PER_LOG[cause.effect].format(
-            others=_(" Or it is {others}.", others=" or ".join(others)) if others else ""
+            others=_(" Or it is {others}.", others=_(" or ").join(others)) if others else ""
         )
     if effect is None:
         return DRIFT.format(
@@ -93,16 +93,16 @@ def cause_sentence(
         )
     values = {
         "effect": title,
-        "place": f" at {' or '.join(positions)}" if positions else "",
+        "place": _(" at {positions}", positions=_(" or ").join(positions)) if positions else "",
         "cause": effect.cause,
-        "others": " or ".join(others),
+        "others": _(" or ").join(others),
         "numbers": "; ".join(map(_number, _significant(parameters))) or NO_NUMBER,
     }
     if cause.verdict == FOUND:
         return DETECTED.format_map(values)
     if cause.verdict == ONE_OF_CLASS:
         return DETECTED_CLASS.format_map(values)
-    values["effects"] = " or ".join([title + values["place"], *others])
+    values["effects"] = _(" or ").join([title + values["place"], *others])
     return CONSISTENT.format_map(values)
 
 
@@ -133,7 +133,7 @@ def limit_sentence(effect: Effect, limit: Visible, why: str | None) -> str:
         return LIMIT.format_map(values)
     values |= {"smallest": significant(unit.of(limit.best), 2)}
     values |= {"largest": significant(unit.of(limit.worst), 2)}
-    values["scanned"] = "the scanned value" if effect.scan is None else effect.scan.meaning
+    values["scanned"] = _("the scanned value") if effect.scan is None else effect.scan.meaning
     return LIMIT_SCANNED.format_map(values)
 
 

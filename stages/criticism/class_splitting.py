@@ -82,7 +82,7 @@ def extended_plans(
             for sign in (1, -1)
         ]
         diagonal = [
-            replace(_named(first, f"at 45° {number}"), up=up, mark=None)
+            replace(_named(first, _("at 45° {number}", number=number)), up=up, mark=None)
             for number, up in enumerate(ups, 1)
         ]
         plans[BETWEEN_AXES] = partial(added, [(first, copy, 1.0) for copy in diagonal])

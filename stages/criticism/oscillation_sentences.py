@@ -39,8 +39,8 @@ RIPPLE = _("The table's rate has a ripple {order} per revolution, of {size} of i
 ECCENTRIC = _("The angle of the table has an error once per revolution, of {size}, {turns}.")
 SAME_IN_TURNS = _("the same in {count} turns against the table's angle")
 OWN_IN_TURNS = _("rms, of its own amplitude or phase in each of {count} turns")
-IN_ONE_TURN = "in one turn"
-AT_RATES = " That is {each}."
+IN_ONE_TURN = _("in one turn")
+AT_RATES = _(" That is {each}.")
 AT_RATE = _("{frequency} Hz and {amplitude} °/s at {rate} °/s")
 
 UNDECIDED = _(
@@ -54,7 +54,7 @@ NOT_IN_ANGLE = _(
     " As a ripple of order {orders} of the table's angle it would be {odds} less likely."
 )
 MULTIPLES = _(" Lines at {each} have the same cause.")
-VERY_LARGE_ODDS = "more than 10¹⁷ times"
+VERY_LARGE_ODDS = _("more than 10¹⁷ times")
 
 COUPLED_UNKNOWN = _(" Through their cross terms the other axes contain it too.")
 COUPLED = _(" Of it the cross terms predict {each}.")
@@ -104,7 +104,7 @@ def of_oscillation(oscillation: Oscillation) -> str:
     """An oscillation in time, or of an axis of the case against the table's angle."""
     mean, axis = oscillation.mean, oscillation.likeliest.axis
     sentence = VIBRATION.format(
-        axis="the table's axis" if axis == TABLE else axis,
+        axis=_("the table's axis") if axis == TABLE else axis,
         frequency=_with_sigma(mean.frequency, mean.frequency_sigma),
         amplitude=_with_sigma(degrees(mean.amplitude), degrees(mean.amplitude_sigma)),
         arc=degrees(mean.amplitude / (2 * pi * mean.frequency)) * 3600,
@@ -192,7 +192,10 @@ def would_be(detected: str) -> str:
 
 def limit(effect: str, parameter: str, detected: str, why: str | None) -> str:
     """The size from which a parameter is detected, or `why` it is not."""
-    return f"{in_words(effect)}, {parameter}: {detected if why is None else f'not detected. {why}'}"
+    value = detected if why is None else _("not detected. {why}", why=why)
+    return _(
+        "{effect}, {parameter}: {value}", effect=in_words(effect), parameter=parameter, value=value
+    )
 
 
 def from_amplitude(size: float) -> str:
@@ -232,8 +235,8 @@ def _order(ripple: Ripple) -> str:
     order, sigma = ripple.order, ripple.order_sigma
     text = _with_sigma(order, sigma)
     if abs(order - round(order)) < MAX_INTEGER_SIGMAS * sigma < 0.5:
-        return f"{round(order)} times ({text})"
-    return f"{text} times"
+        return _("{round} times ({text})", round=round(order), text=text)
+    return _("{text} times", text=text)
 
 
 def _at_rates(oscillation: Oscillation, ripple: Ripple, turns: Sequence[SteadyTurn]) -> str:
@@ -257,7 +260,7 @@ def _at_rates(oscillation: Oscillation, ripple: Ripple, turns: Sequence[SteadyTu
 def _multiples(oscillation: Oscillation) -> str:
     """Further lines of the same cause."""
     numbers = [part.number(oscillation.effects[0]) for part in oscillation.multiples]
-    unit = " Hz" if oscillation.effects[0] == IN_TIME else " per revolution"
+    unit = " Hz" if oscillation.effects[0] == IN_TIME else _(" per revolution")
     each = [_with_sigma(*number) + unit for number in numbers if number]
     return MULTIPLES.format(each=", ".join(each)) if each else ""
 
@@ -268,7 +271,7 @@ def _other_explanation(oscillation: Oscillation) -> str:
         return ""
     odds = VERY_LARGE_ODDS
     if oscillation.log_odds <= MAX_LOG_ODDS:
-        odds = f"{significant(exp(oscillation.log_odds), 1)} times"
+        odds = _("{significant} times", significant=significant(exp(oscillation.log_odds), 1))
     if len(oscillation.effects) > 1:
         return UNDECIDED.format(odds=odds)
     if oscillation.effects[0] != IN_TIME:

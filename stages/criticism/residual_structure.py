@@ -227,15 +227,16 @@ CONSEQUENCE = _(
 )
 ACTION = _("Look at the picture of the residuals; record the manoeuvres concerned again.")
 DESCRIPTIONS = {  # by the kind of the test, and whether a value of a scan is known
-    ("time", True): "about {axis} they oscillate in time, every {period} s",
-    ("time", False): "about {axis} they drift smoothly with time",
-    ("angle", True): "about {axis} they depend on the angle of the table, {value:g} times per"
-    " revolution",
-    ("angle", False): "about {axis} they depend on the angle of the table",
-    ("rate", False): "on {axis} they depend on the rate of the turns",
-    ("attitude", False): "on {axis} they depend on the attitude",
-    ("temperature", False): "on {axis} they depend on the temperature",
-    ("change", True): "on {axis} they change at {value:.0f} s",
+    ("time", True): _("about {axis} they oscillate in time, every {period} s"),
+    ("time", False): _("about {axis} they drift smoothly with time"),
+    ("angle", True): _(
+        "about {axis} they depend on the angle of the table, {value:g} times per revolution"
+    ),
+    ("angle", False): _("about {axis} they depend on the angle of the table"),
+    ("rate", False): _("on {axis} they depend on the rate of the turns"),
+    ("attitude", False): _("on {axis} they depend on the attitude"),
+    ("temperature", False): _("on {axis} they depend on the temperature"),
+    ("change", True): _("on {axis} they change at {value:.0f} s"),
 }
 
 
@@ -282,9 +283,9 @@ def _finding(
         NOT_NOISE.format(sensors=words, description=_description(best), p_value=p_is(best.p_value))
     ]
     if others := [_name(test) for test in tests[1:]]:
-        sentence.append(ALSO.format(others=" and in ".join(others)))
+        sentence.append(ALSO.format(others=_(" and in ").join(others)))
     if consistent:
-        names = " and ".join(in_words(name) for name in consistent)
+        names = _(" and ").join(in_words(name) for name in consistent)
         sentence.append(ONLY_CONSISTENT.format(effects=names))
     identifier = finding_id(f"{CAUSE}/{sensor}", mount)
     yield (

@@ -42,9 +42,9 @@ from stages.criticism.temperature_models import (
 from stages.criticism.temperature_sweeps import curve_rows
 
 MIN_UPRIGHT = 0.99  # cosine from which an accelerometer is taken to be along the vertical
-CURVES = {1: "a straight line", 2: "a parabola", 3: "a cubic"}
+CURVES = {1: _("a straight line"), 2: _("a parabola"), 3: _("a cubic")}
 
-CHANGE = "From {cold} to {warm} °C ({manoeuvre}) {readings} change, {axis} by {change},"
+CHANGE = _("From {cold} to {warm} °C ({manoeuvre}) {readings} change, {axis} by {change},")
 NO_LAW = _(
     "but not along a straight line nor {curve} ({p_value}): {curve} leaves "
     "{residual}, neighbours scatter by {noise}."
@@ -54,7 +54,7 @@ KNEE = _(
     "A knee at {at} °C ({low} to {high}) fits better: {below} below, {above} above; "
     "it leaves {residual}."
 )
-LAW = "along {curve} ({p_value}): {slope} at {at} °C."
+LAW = _("along {curve} ({p_value}): {slope} at {at} °C.")
 SLOPES = _(
     "The slope goes from {cold} in the cold to {warm} in the warm; a straight line "
     "would leave {residual}, neighbours scatter by {noise}."
@@ -113,7 +113,7 @@ class Kind:
 
 
 KINDS = {
-    ACCELEROMETERS: Kind("the accelerometers", "m/s²", "mg", STANDARD_GRAVITY * 1e-3),
+    ACCELEROMETERS: Kind(_("the accelerometers"), "m/s²", "mg", STANDARD_GRAVITY * 1e-3),
     GYROS: Kind(_("the gyros at rest"), "rad/s", "°/s", DEGREE),
     SCALE: Kind(_("the scale factors of the gyros"), "1", "ppm", 1e-6),
 }
@@ -291,7 +291,7 @@ def _causes(dependence: TemperatureDependence, effects: Mapping[str, Sequence[st
             angle = degrees(sqrt(sum(tilt**2 for tilt in dependence.tilts.values())))
             where = f" ({', '.join(axes)}: {significant(angle, 2)}°)"
         names.append(f"{in_words(effect)}{where}")
-    listed = " or ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
+    listed = _(" or ").join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
     if dependence.structured:
         return ONLY_CONSISTENT.format(effects=listed)
     return (IDENTIFIED if len(names) == 1 else AMBIGUOUS).format(effects=listed)

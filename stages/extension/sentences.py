@@ -52,4 +52,8 @@ def sentence_of(
 
 def _listed(causes: Sequence[str]) -> str:
     names = [in_words(cause) for cause in causes]
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+    return (
+        names[0]
+        if len(names) == 1
+        else _("{names} and {names_2}", names=", ".join(names[:-1]), names_2=names[-1])
+    )

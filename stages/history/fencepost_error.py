@@ -66,7 +66,7 @@ def off_by_a_sample(
         first_value=None,
         second_value=None,
         sigma=None,
-        between=("this calibration", "the published values"),
+        between=(_("this calibration"), _("the published values")),
         remark=_words(result, samples, is_stated, speed),
     )
 
@@ -111,7 +111,9 @@ def _words(
 ) -> str:
     ratios = ", ".join(fixed(PPM.of(ratio), 0) for ratio in result.ratios)
     counts = sorted({round(n) for n in samples})
-    each = ", ".join(f"{whole(n + result.whole)} samples for {whole(n)}" for n in counts)
+    each = ", ".join(
+        _("{whole} samples for {n}", whole=whole(n + result.whole), n=whole(n)) for n in counts
+    )
     factor = f"{fixed(result.cause.amount, 2)} ± {fixed(result.cause.sigma, 2)}"
     sentence = _(
         "fencepost: the published ones differ from ours by {ratios} ppm, {factor} "

@@ -46,7 +46,10 @@ def against_published(
                 if ours is None or value is None
                 else float(np.hypot(ours["sigma"], 0.0 if alone else row["sigma"]))
             ),
-            between=("this calibration", _("the published value ({source})", source=row["source"])),
+            between=(
+                _("this calibration"),
+                _("the published value ({source})", source=row["source"]),
+            ),
             remark=(
                 _(
                     "it has no value here, so {source} cannot be judged: {reason}",

@@ -17,10 +17,11 @@ from types import ModuleType
 from inertial.tables.errors import Refusal
 from inertial.tables.stage import Stage
 from inertial.text.messages import _
+from stages.pdf.chinese_font import font_faces
 from stages.pdf.declared import DECLARED
 
 FIGURE = re.compile(r'<div role="img" aria-label=("[^"]*")>(<svg .*?</svg>).*?</div>', re.DOTALL)
-PACKAGES = _("libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0")
+PACKAGES = "libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
 VARIANT = "pdf/a-3a"
 # A PDF/A wants the day of an attachment; the tables know none, and the same page must give the
 # same bytes.
@@ -50,6 +51,10 @@ def as_pdf(page: str, attached: Mapping[str, bytes] | None = None) -> bytes:
     # The date of the fonts, where fontTools makes the subsets of them; else it would be now.
     os.environ.setdefault("SOURCE_DATE_EPOCH", "0")
     nothing_outside = weasyprint.urls.URLFetcher(allowed_protocols=("data",))
+    fonts = weasyprint.text.fonts.FontConfiguration()
+    chinese = weasyprint.CSS(
+        string=font_faces(page), font_config=fonts, url_fetcher=nothing_outside
+    )
     document = weasyprint.HTML(string=FIGURE.sub(_image, page), url_fetcher=nothing_outside)
     attachments = [
         weasyprint.Attachment(
@@ -62,7 +67,14 @@ def as_pdf(page: str, attached: Mapping[str, bytes] | None = None) -> bytes:
         )
         for name, content in sorted((attached or {}).items())
     ]
-    return bytes(document.write_pdf(pdf_variant=VARIANT, attachments=attachments))
+    return bytes(
+        document.write_pdf(
+            pdf_variant=VARIANT,
+            attachments=attachments,
+            stylesheets=[chinese],
+            font_config=fonts,
+        )
+    )
 
 
 def _image(figure: re.Match[str]) -> str:

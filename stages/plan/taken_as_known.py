@@ -99,7 +99,7 @@ def known(file: YamlFile, repairs: Sequence[Row] = ()) -> Iterator[Row]:
         None if heading is None else radians(heading),
         None,
         "rad",
-        "not known" if heading is None else _("stated: table.heading_deg"),
+        _("not known") if heading is None else _("stated: table.heading_deg"),
     )
     if _sets_positions(file) or "position_sigma_arcsec" in table:
         yield table_row("position", "position_sigma_arcsec", ARC_SECOND, ASSUMED_POSITION, "rad")
@@ -184,7 +184,7 @@ def _other_latitude(stated: float, latitude: float, height: float) -> str:
 
 def _gravity_origin(site: dict[str, Any]) -> str:
     if "gravity_m_s2" in site:
-        stated = "stated: site.gravity_m_s2"
+        stated = _("stated: site.gravity_m_s2")
         return (
             stated
             if "gravity_sigma_m_s2" in site

@@ -8,6 +8,7 @@ a random identifier enters.
 from __future__ import annotations
 
 import io
+import re
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -23,6 +24,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocato
 from numpy.typing import NDArray
 
 from inertial.tables import STATIC_PHASES
+from inertial.text.typography import typeset
 from inertial.text.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, MILLIMETRES, Unit
 from stages.report.light_svg import light
 from stages.report.tables import Record
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+LETTERS = re.compile(r"(<text[^>]*>)([^<]*)")
 WIDTH = 7.1  # inches: the text width of the printed page
 
 INK = "#1f2933"
@@ -227,7 +230,7 @@ def svg(figure: Figure, key: str) -> str:
     with mpl.rc_context({"svg.hashsalt": key}):
         nothing = dict.fromkeys(("Date", "Creator", "Format", "Type"))
         figure.savefig(text, format="svg", metadata=nothing, transparent=True)
-    drawn = light(text.getvalue(), key)
+    drawn = LETTERS.sub(lambda part: part[1] + typeset(part[2]), light(text.getvalue(), key))
     edges = _columns(figure)
     if len(edges) < 3:
         return drawn

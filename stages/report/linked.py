@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from inertial.text.messages import _
 from inertial.text.parameters import EXTENDED
 from stages.report.tables import Record, Tables, once
 
@@ -34,7 +35,7 @@ def effect_causes(tables: Tables) -> list[Record]:
             | {
                 "members": [one["effect"] for one in _listed(members, ["finding"], of)],
                 "parameters": _listed(parameters, ["finding"], of),
-                "manoeuvre": row["manoeuvre"] or " or ".join(places) or None,
+                "manoeuvre": row["manoeuvre"] or _(" or ").join(places) or None,
             }
         )
     return causes

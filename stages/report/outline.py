@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from itertools import groupby
 from typing import Literal
 
+from inertial.text.messages import _
 from inertial.text.numbers import whole
 from stages.report.tables import Tables
 
@@ -44,10 +45,12 @@ def columns(kind: Kind, *headings: str, group: str = "") -> tuple[Column, ...]:
     return tuple(Column(heading, kind, group) for heading in headings)
 
 
-def value_and_sigma(group: str = "", value: str = "value", *, unit: bool = False) -> list[Column]:
+def value_and_sigma(
+    group: str = "", value: str = _("value"), *, unit: bool = False
+) -> list[Column]:
     """The columns of a value, its sigma, and its unit where that differs from row to row."""
     both = [Column(value, "number", group), Column("± σ", "sigma", group)]
-    return [*both, Column("unit", "unit", group)] if unit else both
+    return [*both, Column(_("unit"), "unit", group)] if unit else both
 
 
 class Traced(str):
@@ -90,7 +93,7 @@ def head(name: str) -> Row:
 
 def more(count: int, where: str) -> str:
     """That `count` rows are left out, `where` says which; or nothing."""
-    return f"{whole(count)} more{where}." if count > 0 else ""
+    return _("{number} more{where}.", number=whole(count), where=where) if count > 0 else ""
 
 
 class Part:
@@ -112,7 +115,7 @@ class Table(Part):
     caption: str
     columns: Sequence[Column]
     rows: Sequence[Row]
-    empty: str = "None."
+    empty: str = _("None.")
     note: str = ""
     sortable: bool = False
 
@@ -283,6 +286,7 @@ class Report:
     instrument: str  # with its serial
     running: str  # what stands on top of every printed page
     simulated: bool
+    language: str  # as HTML names it: zh-CN
     chapters: Sequence[Chapter]
     # Of traced numbers, by their identifier's folder.
     origins: Mapping[str, Sequence[str]] = field(default_factory=dict)

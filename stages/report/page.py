@@ -21,7 +21,8 @@ from fontTools.ttLib import TTFont  # type: ignore[import-untyped]
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from inertial.text.messages import _
+from inertial.text.messages import LOCALES, _
+from inertial.text.typography import typeset
 from stages.report.outline import Report
 
 FOLDER = Path(__file__).parent
@@ -31,8 +32,18 @@ FONTS = (
     ("Report", 400, "normal", "DejaVuSans.ttf"),
     ("Report", 700, "normal", "DejaVuSans-Bold.ttf"),
     ("Report", 400, "italic", "DejaVuSans-Oblique.ttf"),
-    (_("Report Mono"), 400, "normal", "DejaVuSansMono.ttf"),
+    ("Report Mono", 400, "normal", "DejaVuSansMono.ttf"),
 )
+WORDS = {  # of the template
+    "See also": _("See also"),
+    "Contents": _("Contents"),
+    "How to read it.": _("How to read it."),
+    "Simulated": _("Simulated"),
+    "No instrument of this serial was calibrated: the simulated laboratory recorded it.": _(
+        "No instrument of this serial was calibrated: the simulated laboratory recorded it."
+    ),
+}
+FULL_WIDTH_QUOTES = frozenset("“”‘’")
 # In every report, whether its words happen to need them or not.
 ALWAYS = frozenset(
     string.printable
@@ -54,14 +65,19 @@ def page(report: Report) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.finalize = lambda text: typeset(text) if type(text) is str else text
     environment.filters["drawn"] = Markup
+    environment.globals["words"] = WORDS
     environment.tests["long"] = _long
     style, script = (
         Markup((FOLDER / file).read_text(encoding="utf-8")) for file in ("report.css", "report.js")
     )
     template = environment.get_template("report.html")
     plain = unescape(template.render(report=report, style=style, script=script, fonts=[]))
-    fonts = _fonts("".join(sorted(ALWAYS.union(plain))))
+    letters = ALWAYS.union(plain)
+    if report.language == LOCALES["zh"]:
+        letters -= FULL_WIDTH_QUOTES  # as wide as a character, hence of the Chinese font
+    fonts = _fonts("".join(sorted(letters)))
     return template.render(report=report, style=style, script=script, fonts=fonts)
 
 

@@ -8,7 +8,7 @@ from string import ascii_uppercase
 from typing import Any
 
 from inertial.tables.stage import Stage
-from inertial.text.messages import _
+from inertial.text.messages import ENGLISH, LOCALES, _
 from inertial.text.numbers import shortened
 from inertial.text.units import written_in
 from stages.report.declared import DECLARED
@@ -75,24 +75,36 @@ ANNEXES = (
 
 
 def report(
-    provenance: Mapping[str, Mapping[str, Any]], *, units: str = "laboratory", **read: Any
+    provenance: Mapping[str, Mapping[str, Any]],
+    *,
+    units: str = "laboratory",
+    language: str = ENGLISH,
+    **read: Any,
 ) -> dict[str, str]:
-    """The report of one campaign as a page, and its verdict as plain text."""
+    """The report of one campaign as a page, and its verdict as plain text.
+
+    `language`: that of the process, which `__main__` has set before anything was imported.
+    """
     with written_in(units):
-        return _report(Tables(read, provenance))
+        return _report(Tables(read, provenance), LOCALES[language])
 
 
-def _report(tables: Tables) -> dict[str, str]:
+def _report(tables: Tables, language: str) -> dict[str, str]:
     about = tables.row("campaign")
     name, serial = (shortened(about[key], 80) for key in ("campaign", "serial"))
-    instrument = f"{shortened(about['instrument'], 80)} · serial {serial}"
+    instrument = _(
+        "{instrument} · serial {serial}",
+        instrument=shortened(about["instrument"], 80),
+        serial=serial,
+    )
     number = shortened(certificate.certificate_number(tables), 80)
     outline = Report(
         title=_("Calibration certificate {number}", number=number),
         campaign=name,
         instrument=instrument,
-        running=f"{number} · {instrument}" + (" · simulated" if about["simulated"] else ""),
+        running=f"{number} · {instrument}" + (_(" · simulated") if about["simulated"] else ""),
         simulated=bool(about["simulated"]),
+        language=language,
         chapters=[
             *_chapters(EVIDENCE, map(str, count(1)), tables),
             *_chapters(ANNEXES, iter(ascii_uppercase), tables),

@@ -4,17 +4,47 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from inertial.text.messages import ENGLISH, _, language
 from inertial.text.numbers import shortened
 
-SENSOR = {"gyro": "gyro", "accel": "accelerometer"}
-SENSORS = {"gyro": "gyros", "accel": "accelerometers"}
-SENSOR_OF_STAGE = {"accelerometer": "Accelerometer", "gyroscope": "Gyroscope"}
+SENSOR = {"gyro": _("gyro"), "accel": _("accelerometer")}
+SENSORS = {"gyro": _("gyros"), "accel": _("accelerometers")}
+SENSOR_OF_STAGE = {"accelerometer": _("Accelerometer"), "gyroscope": _("Gyroscope")}
+KINDS = {
+    "bias": _("bias"),
+    "scale": _("scale"),
+    "cross": _("cross"),
+    "mounting": _("mounting"),
+    "symmetric": _("symmetric"),
+}
+# What tables say in a word, as a sentence has it.
+TERMS = {
+    "as the gyros have it": _("as the gyros have it"),
+    "at rest": _("at rest"),
+    "body": _("body"),
+    "compensated": _("compensated"),
+    "gravity": _("gravity"),
+    "latitude": _("latitude"),
+    "recorded": _("recorded"),
+    "rest": _("rest"),
+    "rest-after": _("rest-after"),
+    "rest-before": _("rest-before"),
+    "sensor triad": _("sensor triad"),
+    "spin-down": _("spin-down"),
+    "spin-up": _("spin-up"),
+    "steady": _("steady"),
+    "trapezoid": _("trapezoid"),
+    "turn": _("turn"),
+    "unknown": _("unknown"),
+}
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 
 def listed(names: Sequence[str], last: str = "and") -> str:
     """Names as part of a sentence: a, b and c."""
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {last} {names[-1]}"
+    if len(names) == 1:
+        return names[0]
+    return _(", ").join(names[:-1]) + (_(" and ") if last == "and" else _(" or ")) + names[-1]
 
 
 def capital(text: str) -> str:
@@ -24,12 +54,17 @@ def capital(text: str) -> str:
 
 def with_mount(name: str, mount: str | None) -> str:
     """A name with the mount it is of, where there are several."""
-    return f"{name} (mount {shortened(mount, 60)})" if mount else name
+    return _("{name} (mount {mount})", name=name, mount=shortened(mount, 60)) if mount else name
 
 
 def count_in_words(count: int) -> str:
-    """A small count as a word."""
-    return COUNTS[count] if count < len(COUNTS) else str(count)
+    """A small count as a word, where it is usual."""
+    return COUNTS[count] if count < len(COUNTS) and language() == ENGLISH else str(count)
+
+
+def term(word: str) -> str:
+    """A word of the tables as it is read."""
+    return TERMS.get(word, word)
 
 
 def sensor_of_stage(stage: str) -> str:
@@ -39,4 +74,5 @@ def sensor_of_stage(stage: str) -> str:
 
 def plain(parameter: str) -> str:
     """bias_x as it is read: bias x."""
-    return parameter.replace("_", " ")
+    kind, _underscore, axes = parameter.partition("_")
+    return " ".join(filter(None, (KINDS.get(kind, kind), axes.replace("_", " "))))

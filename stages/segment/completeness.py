@@ -157,7 +157,7 @@ def left_out(explained: Explained, plan: Sequence[Manoeuvre]) -> Iterator[tuple[
             *zip(exchanged.names, exchanged.names[half:] + exchanged.names[:half], strict=True)
         ]
         for name, other in pairs:
-            what = "its log holds" if len(exchanged.logs) == 2 else _("in its place stands")
+            what = _("its log holds") if len(exchanged.logs) == 2 else _("in its place stands")
             why[name] = _("{name} is left out: {what} {other}.", name=name, what=what, other=other)
     for m in plan:
         if m.log in explained.misread:
@@ -231,7 +231,9 @@ def turn(
         reasons += [lacking.hindrance] if lacking.hindrance else []
         whole = lacking.seconds == 0 and not (reasons and m.recorded == "whole")
         sentence = _("turned, by an angle that is not measured")
-        sentence = f"{sentence}{remark}: {', and '.join(reasons)}." if reasons else f"{sentence}."
+        sentence = (
+            f"{sentence}{remark}: {_(', and ').join(reasons)}." if reasons else f"{sentence}."
+        )
         bridged = not whole and not reasons
         return Performed(
             m.name,
@@ -253,7 +255,7 @@ def turn(
         sentence = (
             _("steady at {signed} °/s.", signed=_signed(degrees(rate), 4))
             if rate is not None
-            else "no steady rate."
+            else _("no steady rate.")
         )
         whole = lacking.seconds == 0
         return Performed(m.name, sentence, True, whole, angle, None, lacking.seconds, rate, seconds)
@@ -261,7 +263,7 @@ def turn(
     if angle is None:
         return Performed(m.name, _("it turns, but has no time."), True, False, rate=rate)
     of = f"{_signed(degrees(angle), 2)}°"
-    of += f" of {_signed(degrees(m.angle), 0)}°" if m.angle else ""
+    of += _(" of {signed}°", signed=_signed(degrees(m.angle), 0)) if m.angle else ""
     reasons, remark = _cut_off(binned, first, after, binned.about(m.axis, level), m)
     remark = interpolated + remark
     known = 0.0 if lacking.hindrance else lacking.angle
@@ -279,7 +281,12 @@ def turn(
         return Performed(m.name, sentence, True, True, angle, 0.0, 0.0, rate, seconds)
     bridged = not reasons and not lacking.hindrance
     missing = lacking.angle if bridged else m.angle - angle if m.angle is not None else None
-    sentence = f"{of} recorded{remark}: {', and '.join([*lost, *reasons])}"
+    sentence = _(
+        "{of} recorded{remark}: {why}",
+        of=of,
+        remark=remark,
+        why=_(", and ").join([*lost, *reasons]),
+    )
     sentence += (
         _("; {signed}° are missing.", signed=_signed(degrees(missing), 2))
         if missing is not None

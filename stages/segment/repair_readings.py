@@ -24,6 +24,7 @@ from inertial.signal.scale_factor import (
     MAX_SCALE_ERROR,
     factors_near,
 )
+from inertial.text.messages import _
 from stages.segment.explanations import Explained, Step, axes_step
 from stages.segment.matching import AS_NAMED, Located, motion
 from stages.segment.windows import Binned
@@ -184,7 +185,7 @@ def _scale(
         return None
     others = [other for other in near if abs(other / factor - 1) > MAX_ROUNDING]
     # The unit itself is exact, where the count of an instrument is the same to its last digits.
-    return Scale(sensor, log, factor, others, ", or ".join(near.values()), seen, ratio)
+    return Scale(sensor, log, factor, others, _(", or ").join(near.values()), seen, ratio)
 
 
 def _is_full_scale(factor: float) -> bool:

@@ -131,22 +131,25 @@ def _colour(parameter: str) -> str:
 def _wanted(rows: Sequence[Record]) -> outline.Table:
     """How long each static position must last for a bias of a required sigma."""
     return outline.Table(
-        "Duration of each static position for a required σ of the bias, by the formulas of S0.",
+        _("Duration of each static position for a required σ of the bias, by the formulas of S0."),
         (
-            outline.Column("Bias"),
-            outline.Column("random walk", "number"),
-            outline.Column("unit", "unit"),
-            *outline.columns("number", "σ", "duration", group="Recorded"),
-            outline.Column("floor", "number"),
-            outline.Column("σ", "number", "Required"),
-            outline.Column("unit", "unit", "Required"),
-            outline.Column("duration", "number", "Required"),
+            outline.Column(_("Bias")),
+            outline.Column(_("random walk"), "number"),
+            outline.Column(_("unit"), "unit"),
+            *outline.columns("number", "σ", _("duration"), group=_("Recorded")),
+            outline.Column(_("floor"), "number"),
+            outline.Column("σ", "number", _("Required")),
+            outline.Column(_("unit"), "unit", _("Required")),
+            outline.Column(_("duration"), "number", _("Required")),
         ),
         [_wanted_row(row) for row in rows],
-        "None: no formula of S0 gives a bias here.",
-        "σ² = N²/T + floor², with the random walk N of the bias and positions of duration T. The "
-        "floor is what averaging does not reduce: tilts of the positions, gravity, an unknown "
-        "azimuth, and the scatter between manoeuvres.",
+        _("None: no formula of S0 gives a bias here."),
+        _(
+            "σ² = N²/T + floor², with the random walk N of the bias and positions of "
+            "duration T. The "
+            "floor is what averaging does not reduce: tilts of the positions, gravity, an unknown "
+            "azimuth, and the scatter between manoeuvres."
+        ),
     )
 
 
@@ -238,13 +241,17 @@ def _scatter(rows: Sequence[Record]) -> outline.Figure:
         for panel, (stage, kind) in zip(axes, places, strict=True):
             _scatter_panel(panel, panels_of[stage, kind])
             panel.set_title(f"{sensor_of_stage(stage)}, {KINDS[kind]}", pad=3, fontsize=6.8)
-            panel.set_xlabel("Epoch, s")
+            panel.set_xlabel(_("Epoch, s"))
         axes[0].set_ylabel(_("σ / σ of white noise"))
         drawn = drawing.svg(figure, "spreads")
     return outline.Figure(
-        "Standard deviation of the values by single epochs over what white noise gives, against "
-        "the length of an epoch; band: ± 2 σ of chance alone. A rise with the length is drift; a "
-        "fall to 1 is an oscillation that averages out.",
+        _(
+            "Standard deviation of the values by single epochs over what white noise "
+            "gives, against "
+            "the length of an epoch; band: ± 2 σ of chance alone. A rise with the "
+            "length is drift; a "
+            "fall to 1 is an oscillation that averages out."
+        ),
         drawn,
         _("Scatter of single epochs in units of that of white noise."),
     )
@@ -284,7 +291,7 @@ def _scatter_at(rows: Sequence[Record], seconds: float) -> str:
         smallest=fixed(smallest, 2),
         largest=fixed(largest, 2),
         name=plain(name),
-        stage=stage,
+        stage=sensor_of_stage(stage).lower(),
         chance=fixed(chance, 3 if chance < 0.01 else 2),
     )
 
@@ -296,22 +303,26 @@ def _spreads(rows: Sequence[Record]) -> outline.Table:
     named = by_kind(row | {"parameter": row["quantity"]} for row in shortest.values())
     epoch = significant(min(row["seconds"] for row in rows), 3)
     return outline.Table(
-        f"Scatter of the values epoch by epoch, epochs of one sample ({epoch} s).",
+        _("Scatter of the values epoch by epoch, epochs of one sample ({epoch} s).", epoch=epoch),
         (
-            *outline.columns("name", "Parameter", "Sensor"),
-            outline.Column("unit", "unit", "Standard deviation"),
+            *outline.columns("name", _("Parameter"), _("Sensor")),
+            outline.Column(_("unit"), "unit", _("Standard deviation")),
             *outline.columns(
                 "number",
-                "single epochs",
-                "white noise",
-                "running means",
-                group="Standard deviation",
+                _("single epochs"),
+                _("white noise"),
+                _("running means"),
+                group=_("Standard deviation"),
             ),
-            *outline.columns("number", "single epochs", "running means", group="Variance, SI"),
+            *outline.columns(
+                "number", _("single epochs"), _("running means"), group=_("Variance, SI")
+            ),
         ),
         [_spread(row) for row in named],
-        note="The variance of the running means describes their variation on the way, not the "
-        "uncertainty of the last one: its σ is that of white noise over the whole position.",
+        note=_(
+            "The variance of the running means describes their variation on the way, not the "
+            "uncertainty of the last one: its σ is that of white noise over the whole position."
+        ),
     )
 
 

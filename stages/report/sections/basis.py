@@ -25,6 +25,7 @@ from stages.report.outline import (
     table_row,
 )
 from stages.report.tables import Record, Tables
+from stages.report.words import term
 
 KINDS = ("decoded", "other message", "header", "blank", "not selected", "refused")
 MOST_LINES = 20
@@ -41,20 +42,20 @@ def recorded_parts(tables: Tables) -> Iterator[Part]:
         numbers.aligned(column) for column in zip(*(r.cells[NUMBERS] for r in rows), strict=True)
     ]
     yield Table(
-        f"{numbers.counted(len(rows), 'manoeuvre')} of the plan.".capitalize(),
+        _("{counted} of the plan.", counted=numbers.counted(len(rows), "manoeuvre")).capitalize(),
         (
             Column("", "mark"),
-            *columns("name", "Manoeuvre", "Set"),
-            *columns("number", "plan", "recorded", "missing", group="Angle, °"),
-            *columns("number", "plan", "recorded", group="Rate, °/s"),
-            *columns("number", "plan", "recorded", group="Time, s"),
-            Column("Remarks", "note"),
+            *columns("name", _("Manoeuvre"), _("Set")),
+            *columns("number", _("plan"), _("recorded"), _("missing"), group=_("Angle, °")),
+            *columns("number", _("plan"), _("recorded"), group=_("Rate, °/s")),
+            *columns("number", _("plan"), _("recorded"), group=_("Time, s")),
+            Column(_("Remarks"), "note"),
         ),
         [
             table_row(*line.cells[:3], *own, *line.cells[10:], tone=line.tone)
             for line, own in zip(rows, zip(*cells, strict=True), strict=True)
         ],
-        "None: the plan has no manoeuvre.",
+        _("None: the plan has no manoeuvre."),
     )
 
 
@@ -108,14 +109,14 @@ def attitude(plan: Record) -> str:
         return _("turn about {plan}", plan=_direction(plan, "about"))
     if plan["do"] == "positions":
         return _("positions, attitudes unknown")
-    return f"{plan['do']}, {_direction(plan, 'up')} up"
+    return _("{do}, {direction} up", do=term(plan["do"]), direction=_direction(plan, "up"))
 
 
 def _direction(plan: Record, stem: str) -> str:
     """A unit vector in words: +x, or its three components; unknown where it is not stated."""
     vector = [plan[f"{stem}_{axis}"] for axis in AXES]
     if any(value is None for value in vector):
-        return "unknown"
+        return term("unknown")
     for axis, value in zip(AXES, vector, strict=True):
         if abs(abs(value) - 1) < UNIT_VECTOR:
             return ("+" if value > 0 else "−") + axis
@@ -131,14 +132,16 @@ def account_parts(tables: Tables) -> Iterator[Part]:
     by_file = {row["file"]: row["size"] for row in tables.rows("inputs")}
     size = {row["log"]: by_file.get(row["file"]) for row in tables.rows("logs")}
     yield Table(
-        "Lines of each log by kind.",
+        _("Lines of each log by kind."),
         (
-            Column("Log"),
-            *columns("number", *(kind.capitalize() for kind in KINDS), "Bytes", "Size of the file"),
+            Column(_("Log")),
+            *columns(
+                "number", *(kind.capitalize() for kind in KINDS), _("Bytes"), _("Size of the file")
+            ),
             Column("", "mark"),
         ),
         [_log(log, rows, size) for log in dict.fromkeys(row["log"] for row in rows)],
-        "None: no log was read.",
+        _("None: no log was read."),
     )
     if others := [row for row in rows if row["kind"] == "other message"]:
         yield _other_messages(others)
@@ -186,8 +189,8 @@ def _other_messages(rows: Sequence[Record]) -> Table:
         lines[name] += row["lines"]
         size[name] += row["bytes"]
     return Table(
-        "Messages that the calibration does not use, all logs together.",
-        (Column("Message"), *columns("number", "Lines", "Bytes")),
+        _("Messages that the calibration does not use, all logs together."),
+        (Column(_("Message")), *columns("number", _("Lines"), _("Bytes"))),
         [
             table_row(
                 numbers.shortened(name, 60), numbers.whole(lines[name]), numbers.whole(size[name])
@@ -201,8 +204,8 @@ def _refused(lines: Sequence[Record]) -> Iterator[Table]:
     where = _(" in the table of refused lines")
     reasons = Counter((row["log"], row["reason"]) for row in lines)
     yield Table(
-        f"{numbers.counted(len(lines), 'refused line')}, by log and reason.",
-        (*columns("text", "Log", "Reason"), Column("Lines", "number")),
+        _("{counted}, by log and reason.", counted=numbers.counted(len(lines), "refused line")),
+        (*columns("text", _("Log"), _("Reason")), Column(_("Lines"), "number")),
         [
             table_row(
                 numbers.shortened(log, 60), numbers.shortened(reason, 300), numbers.whole(count)
@@ -212,14 +215,14 @@ def _refused(lines: Sequence[Record]) -> Iterator[Table]:
         note=more(len(reasons) - MOST_REASONS, where),
     )
     yield Table(
-        "The first of them, as they begin.",
-        (Column("Log"), *columns("number", "Line", "Byte"), Column("Text", "code")),
+        _("The first of them, as they begin."),
+        (Column(_("Log")), *columns("number", _("Line"), _("Byte")), Column(_("Text"), "code")),
         [
             table_row(
                 numbers.shortened(row["log"], 60),
                 numbers.whole(row["line"]),
                 numbers.whole(row["offset"]),
-                numbers.shortened(row["text"], 110) or "(empty)",
+                numbers.shortened(row["text"], 110) or _("(empty)"),
             )
             for row in lines[:MOST_LINES]
         ],
@@ -253,13 +256,13 @@ ERRORS = ("position", "turn_angle", "turn_rate")
 def known_parts(tables: Tables) -> Iterator[Part]:
     """One row per quantity."""
     yield Table(
-        "Known quantities.",
+        _("Known quantities."),
         (
-            Column("Quantity"),
-            Column("Value", "number"),
+            Column(_("Quantity")),
+            Column(_("Value"), "number"),
             Column("± σ", "sigma"),
-            Column("Unit", "unit"),
-            Column("Origin"),
+            Column(_("Unit"), "unit"),
+            Column(_("Origin")),
         ),
         list(_quantities(tables.rows("known"))),
     )
@@ -269,9 +272,12 @@ KNOWN = Section(
     "known",
     _("Known quantities"),
     _("The quantities that were given to the estimation."),
-    "The σ of the parameters include those of these quantities; one without σ is taken as exact. "
-    "Stated: by the campaign file; computed: from what is stated; assumed: by the pipeline, "
-    "in the absence of a statement.",
+    _(
+        "The σ of the parameters include those of these quantities; one without σ is "
+        "taken as exact. "
+        "Stated: by the campaign file; computed: from what is stated; assumed: by the pipeline, "
+        "in the absence of a statement."
+    ),
     ("known",),
     known_parts,
 )
@@ -312,8 +318,8 @@ def _cells(row: Record) -> tuple[str, str]:
 def provenance_parts(tables: Tables) -> Iterator[Part]:
     """The inputs with their SHA-256; the stages with settings and code."""
     yield Table(
-        "Inputs.",
-        (Column("File"), Column("Bytes", "number"), Column("SHA-256", "code")),
+        _("Inputs."),
+        (Column(_("File")), Column(_("Bytes"), "number"), Column("SHA-256", "code")),
         [
             table_row(numbers.shortened(row["file"], 60), numbers.whole(row["size"]), row["sha256"])
             for row in tables.rows("inputs")
@@ -324,11 +330,11 @@ def provenance_parts(tables: Tables) -> Iterator[Part]:
         maker = tables.maker(name)
         stages.setdefault(str(maker.get("stage", "unknown")), (maker, []))[1].append(name)
     yield Table(
-        "Stages.",
+        _("Stages."),
         (
-            Column("Stage", "name"),
-            *columns("text", "Tables in this report", "Settings"),
-            Column("SHA-256 of its code", "code"),
+            Column(_("Stage"), "name"),
+            *columns("text", _("Tables in this report"), _("Settings")),
+            Column(_("SHA-256 of its code"), "code"),
         ),
         [
             table_row(
@@ -344,7 +350,7 @@ def provenance_parts(tables: Tables) -> Iterator[Part]:
 
 PROVENANCE = Section(
     "provenance",
-    "Provenance",
+    _("Provenance"),
     _("The inputs, and per stage its settings and the hash of its code."),
     _(
         "The same inputs, settings and code give this report again, byte for byte. A "

@@ -47,7 +47,7 @@ from stages.report.results import (
 from stages.report.sections.axes_of_case import axes_of_case
 from stages.report.sections.verdict import LEVELS, verdict_sentences, worst
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSOR, capital
+from stages.report.words import SENSOR, capital, term
 
 ITEMS = {  # of the left and of the right column, each with the items that it joins
     _("Laboratory"): ("laboratory.name", "laboratory.address", "laboratory.accreditation"),
@@ -176,7 +176,7 @@ def _standards(tables: Tables) -> Table:
         rows.append(table_row(_("Angle, rotation rate"), table, NOT_STATED, NOT_STATED))
     for row in tables.rows("known"):
         if row["quantity"] in KNOWN and row["value"] is not None:
-            rows.append(table_row(capital(row["quantity"]), _known(row), row["origin"], "–"))
+            rows.append(table_row(capital(term(row["quantity"])), _known(row), row["origin"], "–"))
     return Table(
         _("Standards used, and quantities taken as known."),
         columns("text", _("Quantity"), _("Standard or value"), _("Certificate or origin"))

@@ -47,7 +47,7 @@ def _judged(rows: Sequence[Record]) -> Iterator[outline.Paragraph]:
     compared = [row for row in rows if row["in_sigmas"] is not None]
     beyond = sum(map(_beyond, compared))
     if compared:
-        verb = "differs" if beyond == 1 else "differ"
+        verb = _("differs") if beyond == 1 else _("differ")
         values = capital(numbers.counted(beyond, "value"))
         pairs = numbers.counted(len(compared), "comparison")
         yield outline.Paragraph(
@@ -65,7 +65,7 @@ def _judged(rows: Sequence[Record]) -> Iterator[outline.Paragraph]:
 
 COMPARISONS = outline.Section(
     "comparisons",
-    "Comparisons",
+    _("Comparisons"),
     _(
         "Static against rotation, forward against backward, method against method: the same "
         "parameter by two ways that should agree. Then published values against the result that "
@@ -104,12 +104,12 @@ def _differences(rows: Sequence[Record], none: str) -> outline.Table:
     shown = rows[:MOST_DIFFERENCES]
     sigmas = numbers.aligned([numbers.fixed(row["in_sigmas"], 1) for row in shown])
     return outline.Table(
-        f"Differences: {numbers.counted(len(rows), 'pair')} of values.",
+        _("Differences: {counted} of values.", counted=numbers.counted(len(rows), "pair")),
         (
-            *outline.columns("text", "Compared", "What"),
-            *outline.columns("number", "first", "second", group="Values"),
-            outline.Column("unit", "unit", "Values"),
-            *outline.columns("number", "in σ", "p"),
+            *outline.columns("text", _("Compared"), _("What")),
+            *outline.columns("number", _("first"), _("second"), group=_("Values")),
+            outline.Column(_("unit"), "unit", _("Values")),
+            *outline.columns("number", _("in σ"), "p"),
         ),
         [_difference(row, sigma) for row, sigma in zip(shown, sigmas, strict=True)],
         none,
@@ -117,7 +117,7 @@ def _differences(rows: Sequence[Record], none: str) -> outline.Table:
             filter(
                 None,
                 (
-                    outline.more(len(rows) - len(shown), " in the table of differences"),
+                    outline.more(len(rows) - len(shown), _(" in the table of differences")),
                     _not_compared(apart),
                 ),
             )
@@ -242,17 +242,17 @@ def _date(rows: Sequence[Record]) -> tuple[bool, str, str]:
 def _calibrations(calibrations: Sequence[Sequence[Record]], now: Calibration) -> outline.Table:
     count = numbers.counted(len(calibrations), _("earlier calibration")).capitalize()
     return outline.Table(
-        f"{count}, the latest last.",
+        _("{count_}, the latest last.", count_=count),
         (
-            outline.Column("Date", "name"),
-            outline.Column("Campaign"),
-            *outline.columns("number", "Parameters", "Largest change since, in σ"),
-            outline.Column("of"),
-            outline.Column("Verdict"),
-            outline.Column("File", "code"),
+            outline.Column(_("Date"), "name"),
+            outline.Column(_("Campaign")),
+            *outline.columns("number", _("Parameters"), _("Largest change since, in σ")),
+            outline.Column(_("of")),
+            outline.Column(_("Verdict")),
+            outline.Column(_("File"), "code"),
         ),
         [_calibration(rows, now) for rows in calibrations[-MOST_CALIBRATIONS:]],
-        note=outline.more(len(calibrations) - MOST_CALIBRATIONS, " before these"),
+        note=outline.more(len(calibrations) - MOST_CALIBRATIONS, _(" before these")),
     )
 
 

@@ -76,7 +76,7 @@ def _by_quantity(tables: Tables) -> dict[Checked, list[Record]]:
 
 SECTION = outline.Section(
     "compensation",
-    "Compensation",
+    _("Compensation"),
     _(
         "The readings corrected with the result that counts, its effects included, and whether "
         "they then agree with what is known: gravity in every position, the earth's rate, the "
@@ -106,16 +106,16 @@ CHECKS = outline.Section(
 
 def _summary(by_quantity: Mapping[Checked, Sequence[Record]]) -> outline.Table:
     return outline.Table(
-        "Root mean square of the difference from the known value, before and after.",
+        _("Root mean square of the difference from the known value, before and after."),
         (
-            outline.Column("Quantity"),
-            outline.Column("Checks", "number"),
-            *outline.columns("number", "before", "after", group="rms"),
-            outline.Column("unit", "unit", "rms"),
-            *outline.columns("number", "Largest, in σ", "Beyond 3 σ"),
+            outline.Column(_("Quantity")),
+            outline.Column(_("Checks"), "number"),
+            *outline.columns("number", _("before"), _("after"), group=_("rms")),
+            outline.Column(_("unit"), "unit", _("rms")),
+            *outline.columns("number", _("Largest, in σ"), _("Beyond 3 σ")),
         ),
         [_summed(checked, own) for checked, own in by_quantity.items()],
-        "None: no compensated reading could be checked.",
+        _("None: no compensated reading could be checked."),
     )
 
 
@@ -163,15 +163,15 @@ def _table(checked: Checked, rows: Sequence[Record]) -> outline.Table:
         for row, sigma in zip(shown, sigmas, strict=True)
     ]
     lines = zip(*map(numbers.aligned, zip(*cells, strict=True)), strict=True)
-    group = f"Difference, {unit.name}"
+    group = _("Difference, {name}", name=unit.name)
     return outline.Table(
         f"{checked.name}: {numbers.counted(len(rows), 'check')}.",
         (
-            outline.Column("Manoeuvre"),
-            outline.Column(f"Known, {checked.value.name}", "number"),
-            *outline.columns("number", "before", "after", group=group),
+            outline.Column(_("Manoeuvre")),
+            outline.Column(_("Known, {name}", name=checked.value.name), "number"),
+            *outline.columns("number", _("before"), _("after"), group=group),
             outline.Column("± σ", "sigma", group),
-            outline.Column("in σ", "number"),
+            outline.Column(_("in σ"), "number"),
         ),
         [
             outline.table_row(
@@ -182,7 +182,7 @@ def _table(checked: Checked, rows: Sequence[Record]) -> outline.Table:
             )
             for row, line in zip(shown, lines, strict=True)
         ],
-        note=outline.more(left_out, ", closer to the known value"),
+        note=outline.more(left_out, _(", closer to the known value")),
     )
 
 
@@ -253,7 +253,7 @@ def _chosen(tables: Tables) -> dict[str, Record]:
         for plan in tables.rows("manoeuvres"):
             if plan["manoeuvre"] in there and (view := _view(plan, axis)):
                 views.setdefault(view, plan)
-        rests = (f"{axis} up", f"{axis} down")
+        rests = (_("{axis} up", axis=axis), _("{axis} down", axis=axis))
         turns = (
             _("turn {way} about {axis}", way=way, axis=axis) for way in ("forward", "backward")
         )
@@ -347,9 +347,9 @@ def _draw(compensated: Compensated, key: str) -> str:
                 _draw_both(panel, compensated, sensor, axis, unit)
                 _draw_correction(beside, compensated, sensor, axis, fine)
             both[0].set_title(f"{capital(SENSOR[sensor])}, {unit.name}", loc="left", pad=2)
-            corrections[0].set_title(f"difference, {fine.name}", loc="left", pad=2)
+            corrections[0].set_title(_("difference, {name}", name=fine.name), loc="left", pad=2)
         for panel in axes[-1]:
-            panel.set_xlabel("Time, s" if compensated.timed else "Record")
+            panel.set_xlabel(_("Time, s") if compensated.timed else _("Record"))
         if len(compensated.x) > 1:
             axes[0][0].set_xlim(float(compensated.x[0]), float(compensated.x[-1]))
         return drawing.svg(figure, key)

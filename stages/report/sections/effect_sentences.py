@@ -17,7 +17,7 @@ from stages.report.words import SENSORS, listed, with_mount
 Kind = Literal["found", "class", "structure", "consistent", "walk", "unexplained"]
 # The clearest first, each with its words in a line.
 GRADES: dict[Kind, str] = {
-    "found": "identified",
+    "found": _("identified"),
     "class": _("one of a class"),
     "structure": _("not identified"),
     "consistent": _("consistent, not identified"),
@@ -151,7 +151,7 @@ def summary(rows: Sequence[Record]) -> Iterator[str]:
     """The unmodelled effects, a sentence for each degree of certainty; none where none are."""
     groups = {kind: [row for row in rows if kind_of(row) == kind] for kind in GRADES}
     if own := groups["found"]:
-        yield f"Detected: {_names(own)}."
+        yield _("Detected: {names}.", names=_names(own))
     for row in groups["class"]:
         either = _or(name_of(row), row)
         yield _("Detected: {either}, which this campaign cannot distinguish.", either=either)
@@ -186,7 +186,7 @@ def _names(rows: Sequence[Record]) -> str:
 
 
 def _or(name: str, row: Record) -> str:
-    return " or ".join([name, *map(in_words, alternatives(row))])
+    return _(" or ").join([name, *map(in_words, alternatives(row))])
 
 
 def _sensors(rows: Sequence[Record]) -> str:
@@ -218,7 +218,7 @@ def reductions(effect: str, mount: str, gain: Sequence[Record]) -> Iterator[str]
             yield _("In the fit, χ² {by_scope}.", by_scope=_change(by_scope[FITTED]))
     for row in own:
         if row["unit"] != "sigma" and row["scope"] == HELD_OUT:
-            gyro = f"{row['axis']} gyro" if row["axis"] else "gyros"
+            gyro = _("{axis} gyro", axis=row["axis"]) if row["axis"] else "gyros"
             before, after = (significant(row[f"rms_{at}"], 3) for at in ("before", "after"))
             unit = shortened(row["unit"], 20)
             yield (
@@ -266,7 +266,7 @@ def _on_held_out(row: Record) -> str:
 
 def _change(row: Record) -> str:
     size = abs(row["drop"])
-    way = "falls" if row["drop"] >= 0 else "grows"
+    way = _("falls") if row["drop"] >= 0 else _("grows")
     return _(
         "{way} by {value} of {before}",
         way=way,
@@ -284,8 +284,8 @@ def worth(effects: Sequence[str], rows: Sequence[Record]) -> str:
         shown = [pair for pair in ERRORS if any(row[f"{pair[0]}_joint"] for row in own)]
         if shown:
             pairs = [_largest(own, *pair) for pair in shown]
-            joint.append(" and ".join(before for before, _unused in pairs) + f" {where}")
-            remaining.append(" and ".join(after for _unused, after in pairs) + f" {where}")
+            joint.append(_(" and ").join(before for before, _unused in pairs) + f" {where}")
+            remaining.append(_(" and ").join(after for _unused, after in pairs) + f" {where}")
     if not joint:
         return ""
     names = listed([in_words(name) for name in effects])

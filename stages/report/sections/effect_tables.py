@@ -48,15 +48,15 @@ def parameters(title: str, rows: Sequence[Record]) -> outline.Table:
     ] * bool(others)
     notes += [_("{gaps} not determined", gaps=numbers.counted(gaps, "parameter"))] * bool(gaps)
     return outline.Table(
-        f"{capital(title)}: the parameters beyond 3 σ.",
+        _("{title}: the parameters beyond 3 σ.", title=capital(title)),
         (
             outline.Column("", "symbol"),
             *outline.value_and_sigma(unit=True),
-            outline.Column("in σ", "number"),
-            outline.Column("Meaning", "note"),
+            outline.Column(_("in σ"), "number"),
+            outline.Column(_("Meaning"), "note"),
         ),
         [_parameter(row, cells) for row, cells in zip(clear, written(clear), strict=True)],
-        "None individually: the parameters are significant only together.",
+        _("None individually: the parameters are significant only together."),
         capital("; ".join(notes) + ".") if notes else "",
     )
 
@@ -86,14 +86,17 @@ def extended(tables: Tables) -> Iterator[outline.Part]:
         yield outline.Heading(_("Parameters with the effects in the model"))
     for own in by_sensor.values():
         yield outline.Table(
-            f"{own[0].sensor}: the joint fit, and the fit with the effects in the model.",
+            _(
+                "{sensor}: the joint fit, and the fit with the effects in the model.",
+                sensor=own[0].sensor,
+            ),
             (
                 outline.Column("", "symbol"),
-                *outline.value_and_sigma("Joint fit"),
-                *outline.value_and_sigma("Extended"),
-                outline.Column("unit", "unit"),
-                outline.Column("Shift, in σ of the joint fit", "number"),
-                outline.Column("Meaning", "note"),
+                *outline.value_and_sigma(_("Joint fit")),
+                *outline.value_and_sigma(_("Extended")),
+                outline.Column(_("unit"), "unit"),
+                outline.Column(_("Shift, in σ of the joint fit"), "number"),
+                outline.Column(_("Meaning"), "note"),
             ),
             list(_shifts(own)),
         )
@@ -153,28 +156,33 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
         if name not in {_effect(row) for row in own}
     ]
     yield outline.Table(
-        "Of each effect that was tested and not detected, the smallest size that this campaign "
-        "would have detected (5 σ), along the least and the most sensitive axis.",
+        _(
+            "Of each effect that was tested and not detected, the smallest size that this campaign "
+            "would have detected (5 σ), along the least and the most sensitive axis."
+        ),
         (
-            outline.Column("Effect"),
-            outline.Column("worst axis", "number", "Detected from"),
-            outline.Column("parameter", "symbol", "Detected from"),
-            outline.Column("best axis", "number", "Detected from"),
-            outline.Column("unit", "unit", "Detected from"),
+            outline.Column(_("Effect")),
+            outline.Column(_("worst axis"), "number", _("Detected from")),
+            outline.Column(_("parameter"), "symbol", _("Detected from")),
+            outline.Column(_("best axis"), "number", _("Detected from")),
+            outline.Column(_("unit"), "unit", _("Detected from")),
             outline.Column("p", "number"),
-            outline.Column("Remark", "note"),
+            outline.Column(_("Remark"), "note"),
         ),
         [
             _limit(by_name[name], list(group))
             for (name, _), group in groupby(seen, lambda row: (_effect(row), row["unit"]))
         ],
-        "None: every effect that this campaign makes observable was detected.",
-        "p: the probability of such data under noise alone.",
+        _("None: every effect that this campaign makes observable was detected."),
+        _("p: the probability of such data under noise alone."),
     )
     if hidden:
         yield outline.Table(
-            "Effects that this campaign does not make observable, or that are reported elsewhere.",
-            outline.columns("text", "Reason", "Effects"),
+            _(
+                "Effects that this campaign does not make observable, or that are "
+                "reported elsewhere."
+            ),
+            outline.columns("text", _("Reason"), _("Effects")),
             list(_hidden(hidden, [*seen, *hidden])),
         )
 
@@ -268,12 +276,17 @@ def _count(rows: Sequence[Record]) -> str:
 def _tests(rows: Sequence[Record], where: str) -> outline.Table:
     """The tests, the significant ones first."""
     return outline.Table(
-        f"{_count(rows)} tests for structure in the residuals of the model with the identified "
-        f"effects{where}. By chance one of them is significant in one campaign of a hundred.",
+        _(
+            "{count_} tests for structure in the residuals of the model with the "
+            "identified effects{where}. By chance one of them is significant in "
+            "one campaign of a hundred.",
+            count_=_count(rows),
+            where=where,
+        ),
         (
-            *outline.columns("text", "Against", "Most significant in", "Place"),
-            *outline.columns("number", "Reduction of χ²", "p"),
-            outline.Column("Outcome"),
+            *outline.columns("text", _("Against"), _("Most significant in"), _("Place")),
+            *outline.columns("number", _("Reduction of χ²"), "p"),
+            outline.Column(_("Outcome")),
         ),
         [
             outline.table_row(
@@ -319,5 +332,9 @@ def place(row: Record) -> str:
     if row["kind"] == "angle":
         return _("{at} times in a turn", at=numbers.significant(at, 3)) if at > 0 else "smooth"
     if row["kind"] == "time":
-        return f"every {numbers.significant(1 / at, 3)} s" if at > 0 else "smooth"
+        return (
+            _("every {significant} s", significant=numbers.significant(1 / at, 3))
+            if at > 0
+            else "smooth"
+        )
     return "—"

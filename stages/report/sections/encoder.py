@@ -25,7 +25,7 @@ UNITS = {
     "1": PPM,
     "rad": SECONDS_OF_ARC,
     "s": Unit("ms", 1e-3),
-    "s²": Unit("ms²", 1e-6),
+    "s²": Unit(_("ms²"), 1e-6),
     "Hz": Unit("Hz", 1.0),
 }
 

@@ -34,7 +34,7 @@ MOST_PICTURES = 25
 OF_GAPS = frozenset({"gap", "incomplete_turn"})
 OF_RATE = frozenset({"wrong_rate", "wrong_direction"})
 # As many decimals as show a count of a good instrument.
-SENSORS = (("gyro", "Gyro", DEGREES_PER_SECOND, 4), ("accel", "Accelerometer", METRES, 5))
+SENSORS = (("gyro", _("Gyro"), DEGREES_PER_SECOND, 4), ("accel", _("Accelerometer"), METRES, 5))
 Samples = tuple[str | int, ...]  # log, first and last record, channels
 
 
@@ -107,7 +107,7 @@ def _two_records(close_up: CloseUp, gaps: Sequence[int]) -> Iterator[Table]:
         return
     after = close_up.longest_gap(gaps)
     places = [after - 1, after]
-    columns = [Column(""), Column("Line", "number"), Column("Time, s", "number")]
+    columns = [Column(""), Column(_("Line"), "number"), Column(_("Time, s"), "number")]
     cells = [["before", "after"]]
     cells.append([whole(int(close_up.line[place])) for place in places])
     cells.append([fixed(float(close_up.time[place]), 3) for place in places])
@@ -118,7 +118,7 @@ def _two_records(close_up: CloseUp, gaps: Sequence[int]) -> Iterator[Table]:
                 columns.append(Column(axis, "number", f"{name}, {unit.name}"))
                 cells.append([fixed(float(value), decimals) for value in values])
     rows = [table_row(*texts) for texts in zip(*cells, strict=True)]
-    yield Table("The record before the gap and the record after it.", columns, rows)
+    yield Table(_("The record before the gap and the record after it."), columns, rows)
 
 
 # ---- two numbers: measured or stated, and expected
@@ -200,7 +200,13 @@ def _of_manoeuvre(tables: Tables, table: str, row: Record) -> Mapping[str, Any]:
 def _comparison(shown: Compared, key: str) -> Figure:
     """Two bars, one below the other; or two dots, where bars would look alike."""
     expected, value = shown.written(shown.expected), shown.written(shown.value)
-    caption = f"{shown.quantity.capitalize()}: {value} {shown.origin}, {expected} expected."
+    caption = _(
+        "{capitalize}: {value} {origin}, {expected} expected.",
+        capitalize=shown.quantity.capitalize(),
+        value=value,
+        origin=shown.origin,
+        expected=expected,
+    )
     if shown.missing:
         caption += _(" Hatched: {missing} not recorded.", missing=shown.written(shown.missing))
     with style():
@@ -215,7 +221,7 @@ def _comparison(shown: Compared, key: str) -> Figure:
             panel.annotate(
                 text,
                 (1.0, side),
-                xycoords=(_("axes fraction"), "data"),
+                xycoords=("axes fraction", "data"),
                 xytext=(4, 0),
                 textcoords="offset points",
                 va="center",

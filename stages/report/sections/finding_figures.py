@@ -366,7 +366,7 @@ def _whole_log(panel: Axes, place: Place, unit: Unit, *, points: int) -> None:
     panel.set_xlim(start, end if end > start else start + 1.0)
     panel.set_title(f"{place.name}, {unit.name}", loc="left", pad=PAD)
     _plain_ticks(panel)
-    panel.set_xlabel("Time, s" if log.timed else "Record")
+    panel.set_xlabel(_("Time, s") if log.timed else _("Record"))
 
 
 def _plain_ticks(panel: Axes) -> None:
@@ -405,7 +405,7 @@ def _samples(panel: Axes, place: Place, close_up: CloseUp, unit: Unit) -> None:
     panel.set_xlim(places[0] - room, places[-1] + room)
     ticks(panel, 4)
     panel.ticklabel_format(axis="y", useOffset=False, style="plain")
-    panel.set_xlabel("Time, s" if close_up.timed else "Line")
+    panel.set_xlabel(_("Time, s") if close_up.timed else _("Line"))
     panel.set_title(_title(close_up, after_gaps), loc="left", pad=PAD)
 
 
@@ -441,7 +441,7 @@ def _steps_of_time(panel: Axes, close_up: CloseUp) -> None:
     if 0 < inside.sum() <= MAX_RINGED:
         panel.plot(line[inside], steps[inside], "o", markersize=5, color=MISSING, fillstyle="none")
     _plain_ticks(panel)
-    panel.set_xlabel("Line")
+    panel.set_xlabel(_("Line"))
     panel.set_title(_("time since the previous record, ms"), loc="left", pad=PAD)
 
 

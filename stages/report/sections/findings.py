@@ -162,9 +162,9 @@ def _shown(finding: Record, shown: dict[str, list[Figure | Table]]) -> Iterator[
 def _table(findings: list[Record]) -> Table:
     return Table(
         _("The findings behind it."),
-        columns("text", "Finding", "Where")
-        + columns("number", "Time", "Size", "Times", "p")
-        + columns("identifier", "Identifier"),
+        columns("text", _("Finding"), _("Where"))
+        + columns("number", _("Time"), _("Size"), _("Times"), "p")
+        + columns("identifier", _("Identifier")),
         [
             table_row(
                 capital(in_words(row["cause"])),

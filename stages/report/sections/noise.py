@@ -62,7 +62,7 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
 
 SECTION = outline.Section(
     "noise",
-    "Noise",
+    _("Noise"),
     _("The noise of each channel at rest, as averaging time grows, and the terms it consists of."),
     _(
         "Left to right: quantisation falls with slope −1, white noise (random walk of angle or "
@@ -185,11 +185,11 @@ def _levels(levels: Sequence[Record], sheet: Sequence[Record]) -> outline.Table:
     return outline.Table(
         _("White noise by channel, of all manoeuvres together."),
         (
-            outline.Column("Channel"),
+            outline.Column(_("Channel")),
             *outline.value_and_sigma(),
             *outline.columns("number", _("Data sheet")),
-            outline.Column("Unit", "unit"),
+            outline.Column(_("Unit"), "unit"),
         ),
         [outline.table_row(*line) for line in lines],
-        "None: no manoeuvre is long enough to estimate the noise.",
+        _("None: no manoeuvre is long enough to estimate the noise."),
     )

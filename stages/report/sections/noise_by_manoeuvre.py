@@ -13,6 +13,7 @@ from inertial.text.numbers import aligned, common_decimals, shortened, significa
 from inertial.text.units import RANDOM_WALK
 from stages.report import drawing, outline
 from stages.report.tables import Record, Tables
+from stages.report.words import term
 
 NAME = {"gyro": _("Angle random walk"), "accel": _("Velocity random walk")}
 SENSOR = {"gyro": "gyroscope", "accel": "accelerometer"}
@@ -76,7 +77,7 @@ def _figure(rows: Sequence[Record], sheet: Sheet) -> outline.Figure:
         )
         drawn = drawing.svg(figure, "noise")
     return outline.Figure(
-        "White noise by manoeuvre, with its σ; dashed: the data sheet.",
+        _("White noise by manoeuvre, with its σ; dashed: the data sheet."),
         drawn,
         _("White noise of the six channels by manoeuvre; gyroscope above, accelerometer below."),
     )
@@ -109,7 +110,7 @@ def _panel(
 
 def _named(place: Place, most: int) -> str:
     manoeuvre, phase = place
-    return shortened(manoeuvre if phase == "rest" else f"{manoeuvre}, {phase}", most)
+    return shortened(manoeuvre if phase == "rest" else f"{manoeuvre}, {term(phase)}", most)
 
 
 def _summary(rows: Sequence[Record], sheet: Sheet, sources: Sequence[str]) -> outline.Table:
@@ -120,20 +121,25 @@ def _summary(rows: Sequence[Record], sheet: Sheet, sources: Sequence[str]) -> ou
     }
     cells = zip(*map(aligned, zip(*lines.values(), strict=True)), strict=True)
     return outline.Table(
-        "White noise by channel, over all manoeuvres.",
+        _("White noise by channel, over all manoeuvres."),
         (
-            outline.Column("Channel"),
+            outline.Column(_("Channel")),
             *outline.columns(
-                "number", "Median", "Lowest", "Highest", "Data sheet", "Median ÷ data sheet"
+                "number",
+                _("Median"),
+                _("Lowest"),
+                _("Highest"),
+                _("Data sheet"),
+                _("Median ÷ data sheet"),
             ),
-            outline.Column("Unit", "unit"),
+            outline.Column(_("Unit"), "unit"),
         ),
         [
             outline.table_row(_channel(channel), *own)
             for channel, own in zip(lines, cells, strict=True)
         ],
-        "None: no manoeuvre is long enough to estimate the noise.",
-        "Data sheet: " + shortened("; ".join(sources), 400) + "." if sources else "",
+        _("None: no manoeuvre is long enough to estimate the noise."),
+        _("Data sheet: ") + shortened("; ".join(sources), 400) + "." if sources else "",
     )
 
 
@@ -167,11 +173,11 @@ def _by_manoeuvre(rows: Sequence[Record], sensor: str) -> outline.Table:
             yield from with_sigma(unit.of(row["white_noise"]), unit.of(row["sigma"]), decimals)
 
     return outline.Table(
-        f"{NAME[sensor]} by manoeuvre, {unit.name}.",
+        _("{name} by manoeuvre, {name_2}.", name=NAME[sensor], name_2=unit.name),
         (
-            outline.Column("Manoeuvre", "name"),
+            outline.Column(_("Manoeuvre"), "name"),
             *(each for axis in AXES for each in outline.value_and_sigma(axis)),
         ),
         [outline.table_row(_named(place, 40), *cells(place)) for place in places[:MOST_ROWS]],
-        note=outline.more(len(places) - MOST_ROWS, " in the noise table of the campaign"),
+        note=outline.more(len(places) - MOST_ROWS, _(" in the noise table of the campaign")),
     )

@@ -49,7 +49,7 @@ from stages.report.results import (
 )
 from stages.report.sections.effect_tables import extended
 from stages.report.tables import Record, Tables
-from stages.report.words import capital
+from stages.report.words import capital, term
 
 BY_METHOD = _(
     "What follows is no result of its own: the same parameters by each method, side by side. How "
@@ -89,7 +89,7 @@ def parts(tables: Tables) -> Iterator[Part]:
 
 PARAMETERS = Section(
     "parameters",
-    "Parameters",
+    _("Parameters"),
     _(
         "Bias, scale error and cross-axis terms of both sensors: the result that counts, then "
         "each method that the plan allows."
@@ -243,8 +243,8 @@ def _rows(
     lines = iter(zip(*map(aligned, zip(*cells, strict=True)), strict=True))
     for kind, group in groups.items():
         name = KIND.get(kind, capital(shortened(kind, 60)))
-        frames = " and ".join(dict.fromkeys(row["frame"] for row in group))
-        yield head(f"{name}; frame: {shortened(frames, 60)}")
+        frames = _(" and ").join(dict.fromkeys(term(row["frame"]) for row in group))
+        yield head(_("{name}; frame: {frames}", name=name, frames=shortened(frames, 60)))
         for row, (value, sigma) in zip(group, lines, strict=False):
             yield table_row(
                 symbol(row["parameter"]),
@@ -294,18 +294,18 @@ def undetermined_parts(tables: Tables) -> Iterator[Part]:
         )
         return
     yield Table(
-        "Parameters that are not determined.",
+        _("Parameters that are not determined."),
         (
-            Column("Sensor, method"),
-            Column("Parameters", "symbol"),
-            Column("Reason, and what would help"),
+            Column(_("Sensor, method")),
+            Column(_("Parameters"), "symbol"),
+            Column(_("Reason, and what would help")),
         ),
         [line for estimate in estimates(tables) for line in _undetermined(estimate)],
-        "None: every parameter of every method has a value.",
+        _("None: every parameter of every method has a value."),
     )
     yield Table(
-        "Manoeuvres by fit.",
-        columns("text", "Sensor, method", "Used", "Excluded, with the reason"),
+        _("Manoeuvres by fit."),
+        columns("text", _("Sensor, method"), _("Used"), _("Excluded, with the reason")),
         [
             table_row(
                 estimate.name,
@@ -316,7 +316,7 @@ def undetermined_parts(tables: Tables) -> Iterator[Part]:
             for estimate in estimates(tables)
             if estimate.fit
         ],
-        "No fit was made.",
+        _("No fit was made."),
     )
 
 

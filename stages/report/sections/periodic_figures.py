@@ -130,7 +130,9 @@ def over_time(tables: Tables, effect: str, key: str) -> Figure | None:
         picture = drawing.svg(drawn, key)
     return Figure(
         _("One second of the steady part as measured by the gyros, the mean removed: ")
-        + "; ".join(f"{view.title}, a turn about {view.about}" for view in shown)
+        + "; ".join(
+            _("{title}, a turn about {about}", title=view.title, about=view.about) for view in shown
+        )
         + _(
             ". Dashed: the amplitude of the line, where it is significant; single samples "
             "miss its peaks."
@@ -177,7 +179,7 @@ def _curve(panel: Axes, view: View, samples: Mapping[str, Array]) -> None:
             amplitude=significant(line["amplitude"], 3),
         )
     panel.set_title(f"{view.title}\n{label}", loc="left", pad=3, fontsize=6.8)
-    panel.set_xlabel("Time, s")
+    panel.set_xlabel(_("Time, s"))
     drawing.ticks(panel, 4, 4)
 
 
@@ -240,7 +242,7 @@ def over_angle(tables: Tables, order: float, key: str) -> Figure | None:
             panel.set_xlabel(_("Angle turned, °"))
             panel.set_xlim(0, span)
             drawing.ticks(panel, 4, 5)
-        panels[0].set_ylabel("Residual, °/h", labelpad=2)
+        panels[0].set_ylabel(_("Residual, °/h"), labelpad=2)
         picture = drawing.svg(drawn, key)
     return Figure(
         _(

@@ -177,10 +177,12 @@ SECTION = Section(
     "raw-data",
     _("Raw data"),
     _("Gyroscope and accelerometer of every log, as recorded."),
-    "Each band runs from the smallest to the largest sample of a short stretch, so no spike is "
-    "lost. Logs at rest are drawn relative to the median, so that deviations show. Behind the "
-    "curves, x orange, y green, z blue: rest grey, spin-up and spin-down yellow, steady turn "
-    "blue; hatched: not recorded, close up among the findings.",
+    _(
+        "Each band runs from the smallest to the largest sample of a short stretch, so no spike is "
+        "lost. Logs at rest are drawn relative to the median, so that deviations show. Behind the "
+        "curves, x orange, y green, z blue: rest grey, spin-up and spin-down yellow, steady turn "
+        "blue; hatched: not recorded, close up among the findings."
+    ),
     ("traces", "segments", "clocks", "gaps"),
     parts,
 )
@@ -195,7 +197,7 @@ def _figure(log: Log, key: str, points: int, *, small: bool) -> Figure:
     lasting = f", {fixed(length, 1)} s" if log.timed else _(", without time stamps")
     view = _("each channel relative to its median") if log.static else _("as recorded")
     caption = (
-        f"{shortened(log.name, 80)}: {shortened(named, 160) or 'no manoeuvre found'}; "
+        f"{shortened(log.name, 80)}: {shortened(named, 160) or _('no manoeuvre found')}; "
         f"{counted(log.records, 'sample')}{lasting}; {view}."
     )
     if log.missing:
@@ -230,7 +232,7 @@ def _draw(log: Log, key: str, points: int, *, small: bool) -> str:
                 if not small:
                     drawing.name_axis(panel, axis, _label(axis, middles[axis], sensor, log))
             own[0].set_title(f"{NAMES[sensor]}, {unit.name}", loc="left", pad=2)
-            own[-1].set_xlabel("Time, s" if log.timed else "Record")
+            own[-1].set_xlabel(_("Time, s") if log.timed else _("Record"))
         if len(log.start):
             left, right = log.extent
             axes[0][0].set_xlim(left, right if right > left else left + 1.0)
@@ -257,7 +259,9 @@ def _label(axis: str, middle: float, sensor: str, log: Log) -> str:
     if not log.static or not np.isfinite(middle):
         return axis
     unit = ABSOLUTE[sensor]
-    return f"{axis}, about {fixed(unit.of(middle), 5)} {unit.name}"
+    return _(
+        "{axis}, about {fixed} {name}", axis=axis, fixed=fixed(unit.of(middle), 5), name=unit.name
+    )
 
 
 def _middle(log: Log, channel: str) -> float:

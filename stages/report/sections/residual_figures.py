@@ -31,12 +31,12 @@ MOST_STRUCTURES = 3
 MAX_USUAL_SIGMAS = 3.0  # from which a point does not stretch the picture
 # What a picture of each test goes along, its unit, and where that begins in SI.
 ALONG = {
-    "time": ("Time", Unit("min", 60.0), 0.0),
+    "time": (_("Time"), Unit("min", 60.0), 0.0),
     "angle": (_("Angle of the table"), Unit("°", DEGREE), 0.0),
-    "rate": ("Rate", Unit("°/s", DEGREE), 0.0),
+    "rate": (_("Rate"), Unit("°/s", DEGREE), 0.0),
     "attitude": (_("Angle of the axis from the vertical"), Unit("°", DEGREE), 0.0),
-    "temperature": ("Temperature", Unit("°C", 1.0), ICE_POINT),
-    "change": ("Time", Unit("min", 60.0), 0.0),
+    "temperature": (_("Temperature"), Unit("°C", 1.0), ICE_POINT),
+    "change": (_("Time"), Unit("min", 60.0), 0.0),
 }
 
 
@@ -110,12 +110,15 @@ def by_manoeuvre(tables: Tables, finding: Record, mount: str, key: str) -> Figur
     )
     if changes:
         scope = (
-            _("held out") if any(row["scope"] == HELD_OUT for row in changes.values()) else FITTED
+            _("held out")
+            if any(row["scope"] == HELD_OUT for row in changes.values())
+            else _("fitted")
         )
-        caption += (
-            " Right: the residuals of each axis without (hollow) and with effects in the model "
-            f"(filled), root mean square over static positions and whole turns that were {scope}; "
-            "dashed: noise alone."
+        caption += _(
+            " Right: the residuals of each axis without (hollow) and with effects in "
+            "the model (filled), root mean square over static positions and whole "
+            "turns that were {scope}; dashed: noise alone.",
+            scope=scope,
         )
     named = len(shown) <= MOST_NAMES
     margins = drawing.Margins(top=0.2, bottom=0.75 if named else 0.4, left=0.5, across=0.5)
@@ -160,7 +163,7 @@ def _manoeuvres(panel: Axes, sensor: str, shown: Sequence[Residual], named: bool
                 label="_" if number else axis,
             )
     panel.axhline(0, color=drawing.QUIET, linewidth=0.5)
-    panel.set_title(f"Residual, {unit.name}", pad=4)
+    panel.set_title(_("Residual, {name}", name=unit.name), pad=4)
     panel.legend(loc="lower right", bbox_to_anchor=(1.0, 0.97), ncols=3, handletextpad=0.1)
     drawing.ticks(panel, 5)
     panel.set_xlim(-0.6, len(shown) - 0.4)
@@ -212,9 +215,15 @@ def _structure(row: Record, points: Sequence[Record], key: str) -> Figure:
     along, at = TESTS[row["kind"]], place(row)
     where = f" ({at})" if at not in ("—", "smooth") else ""
     return Figure(
-        f"Residuals of the {channel(row)} against {along}{where}: points ± σ, one for each bin of "
-        "readings, all other terms as fitted; line: the structure that the test detects "
-        f"({p_is(row['p_value'])}).",
+        _(
+            "Residuals of the {channel} against {along}{where}: points ± σ, one for "
+            "each bin of readings, all other terms as fitted; line: the structure "
+            "that the test detects ({p_is}).",
+            channel=channel(row),
+            along=along,
+            where=where,
+            p_is=p_is(row["p_value"]),
+        ),
         _draw_structure(row, points, key),
         _(
             "Residuals of the {row} against {along}, and the structure in them.",
@@ -255,6 +264,6 @@ def _draw_structure(row: Record, points: Sequence[Record], key: str) -> str:
         if most > 0:
             panel.set_ylim(-1.1 * most, 1.1 * most)
         drawing.ticks(panel, 5, 9)
-        panel.set_ylabel(f"Residual, {size.name}", labelpad=2)
+        panel.set_ylabel(_("Residual, {name}", name=size.name), labelpad=2)
         panel.set_xlabel(f"{name}, {unit.name}")
         return drawing.svg(drawn, key)

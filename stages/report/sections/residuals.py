@@ -45,7 +45,7 @@ from stages.report.outline import (
 )
 from stages.report.sections.periodic_figures import turns_about
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSORS, capital
+from stages.report.words import SENSORS, capital, term
 
 AT_REST = _("at rest")
 MOST_TURNS = 6
@@ -96,7 +96,7 @@ def turn_parts(tables: Tables) -> Iterator[Part]:
 
 SECTION = Section(
     "residuals",
-    "Residuals",
+    _("Residuals"),
     _(
         "Measured readings less those simulated from the joint parameters and the "
         "motion of the table."
@@ -239,7 +239,7 @@ def _figure(envelope: Envelope, key: str) -> Figure:
             "gyros and accelerometers. Profile of the turn: {profile}.",
             name=name,
             axis=turn.axis,
-            profile=shortened(turn.profile, 60),
+            profile=shortened(term(turn.profile), 60),
         ),
         _draw(envelope, key),
         _(
@@ -251,7 +251,7 @@ def _figure(envelope: Envelope, key: str) -> Figure:
 
 def _draw(envelope: Envelope, key: str) -> str:
     turn, x = envelope.turn, envelope.x
-    label = "Time, s" if envelope.timed else "Record"
+    label = _("Time, s") if envelope.timed else _("Record")
     with style():
         figure, axes = panels(3, 3, 0.44, Margins(across=0.5, down=0.17))
         whole = _merged([line[0] for line in axes])
@@ -260,9 +260,11 @@ def _draw(envelope: Envelope, key: str) -> str:
         low, high = envelope.curve("simulated")
         middle = (low + high) / 2 / DEGREES_PER_SECOND.size
         whole.plot(x, middle, color=INK, linewidth=0.7, dashes=(4, 2))
-        whole.set_title(f"{turn.axis} gyro, {DEGREES_PER_SECOND.name}", pad=2)
+        whole.set_title(
+            _("{axis} gyro, {name}", axis=turn.axis, name=DEGREES_PER_SECOND.name), pad=2
+        )
         whole.set_xlabel(label)
-        for column, sensor, title in ((1, "gyro", "Gyro"), (2, "accel", "Accel.")):
+        for column, sensor, title in ((1, "gyro", _("Gyro")), (2, "accel", _("Accel."))):
             unit = _unit(envelope, sensor)
             own = [line[column] for line in axes]
             for panel, axis in zip(own, AXES, strict=True):
@@ -270,7 +272,9 @@ def _draw(envelope: Envelope, key: str) -> str:
                 _band(panel, envelope, f"residual_{sensor}_{axis}", axis, unit)
                 panel.axhline(0, color=INK, linewidth=0.4)
                 name_axis(panel, axis)
-            own[0].set_title(f"{title} residual, {unit.name}", loc="left", pad=2)
+            own[0].set_title(
+                _("{title} residual, {name}", title=title, name=unit.name), loc="left", pad=2
+            )
             own[-1].set_xlabel(label)
         there = x[np.isfinite(x)]
         if len(there) > 1:
@@ -324,15 +328,15 @@ def _table(rows: Sequence[Record]) -> Table:
     # turns first: they are what the figures show
     keys.sort(key=lambda key: (key[0] == AT_REST, key[0]))
     return Table(
-        "Ratio of the root mean square of the residuals to that of the noise.",
+        _("Ratio of the root mean square of the residuals to that of the noise."),
         (
-            Column("Manoeuvre"),
+            Column(_("Manoeuvre")),
             *columns("number", *AXES, group=capital(SENSORS["accel"])),
             *columns("number", *AXES, group=capital(SENSORS["gyro"])),
         ),
         list(_rows(keys, ratios)),
-        "None: nothing was simulated, since the joint fits determine no model.",
-        more(left_out, ", closer to the noise than these"),
+        _("None: nothing was simulated, since the joint fits determine no model."),
+        more(left_out, _(", closer to the noise than these")),
     )
 
 
@@ -343,7 +347,7 @@ def _rows(keys: Sequence[tuple[str, str]], ratios: Ratios) -> Iterator[Row]:
     for (profile, manoeuvre), *own in zip(keys, *cells, strict=True):
         if profile != headed:
             headed = profile
-            turns = f"Turns, by samples; profile: {shortened(profile, 60)}"
+            turns = _("Turns, by samples; profile: {profile}", profile=shortened(term(profile), 60))
             yield head(_("Static positions, by means of blocks") if profile == AT_REST else turns)
         yield table_row(shortened(manoeuvre, 60), *own)
 

@@ -75,7 +75,7 @@ def parts(tables: Tables) -> Iterator[Part]:
 
 SECTION = Section(
     "studies",
-    "Studies",
+    _("Studies"),
     _(
         "The parameters by single epochs and running means of static positions, by a "
         "window that slides through the turns and by one that grows, and the angle of "
@@ -156,9 +156,14 @@ def _sliding(slides: By, wholes: Wholes) -> Figure:
         drawn = drawing.svg(figure, "windows")
     count = numbers.whole(next(iter(slides.values()))[0]["samples"])
     return Figure(
-        f"Windows of 180° by time ({count} samples at the set rate) against where they start: over "
-        "the steady part, its first second close up, and the bias. Coloured band: ± σ of noise and "
-        f"oscillation, without the table's speed; grey: the whole turn ± σ. {ALIAS}",
+        _(
+            "Windows of 180° by time ({count_} samples at the set rate) against "
+            "where they start: over the steady part, its first second close up, and "
+            "the bias. Coloured band: ± σ of noise and oscillation, without the "
+            "table's speed; grey: the whole turn ± σ. {ALIAS}",
+            count_=count,
+            ALIAS=ALIAS,
+        ),
         drawn,
         _("Scale factor and bias by a window of 180° against its start."),
     )
@@ -188,9 +193,12 @@ def _growing(grows: By, wholes: Wholes, *, by_encoder: bool = False) -> Figure:
             _("Scale factor and bias against the angle of the window, by the encoder."),
         )
     return Figure(
-        "Windows by time from the start of the steady part to an angle that grows. Coloured band: "
-        "± σ of noise and of an oscillation cut at any phase, without the table's speed; grey: the "
-        f"whole turn ± σ. {ALIAS}",
+        _(
+            "Windows by time from the start of the steady part to an angle that "
+            "grows. Coloured band: ± σ of noise and of an oscillation cut at any "
+            "phase, without the table's speed; grey: the whole turn ± σ. {ALIAS}",
+            ALIAS=ALIAS,
+        ),
         drawn,
         _("Scale factor and bias against the angle of the window."),
     )
@@ -210,7 +218,7 @@ def _panel(
     middle, reach = whole_turn[key] / unit.size, whole_turn[f"{key}_sigma"] / unit.size
     panel.axhspan(middle - reach, middle + reach, color=drawing.QUIET, alpha=0.2, linewidth=0)
     panel.axhline(middle, color=drawing.INK, linewidth=0.7)
-    panel.set_title(f"{axis} gyro: {key}, {unit.name}", pad=3)
+    panel.set_title(_("{axis} gyro: {key}, {name}", axis=axis, key=key, name=unit.name), pad=3)
 
 
 def _on_place(rows: Sequence[Record], whole_turn: Record) -> str:
@@ -270,24 +278,32 @@ def _on_angle(rows: Sequence[Record], whole_turn: Record) -> str:
 
 
 def _names(row: Record) -> str:
-    return f"{numbers.shortened(row['forward'], 30)} and {numbers.shortened(row['backward'], 30)}"
+    return _(
+        "{forward} and {backward}",
+        forward=numbers.shortened(row["forward"], 30),
+        backward=numbers.shortened(row["backward"], 30),
+    )
 
 
 def _middles(tables: Tables) -> Table:
     """The scale factor of each gyro by the whole turn and by the middle 180°."""
     wholes = _wholes(tables)
     return Table(
-        "Scale factor by the whole turn, and by the middle 180° of the same turns.",
+        _("Scale factor by the whole turn, and by the middle 180° of the same turns."),
         (
-            Column("Turns", "name"),
-            Column("Angle of the table"),
-            *value_and_sigma("ppm", "scale"),
-            *value_and_sigma("ppm", "less whole turn"),
+            Column(_("Turns"), "name"),
+            Column(_("Angle of the table")),
+            *value_and_sigma(_("ppm"), _("scale")),
+            *value_and_sigma(_("ppm"), _("less whole turn")),
         ),
         [_middle(row, wholes[_pair(row)]) for row in tables.rows("middles")],
-        "None: no pair of whole turns forward and backward was recorded.",
-        "By time, σ includes that of the table's rate; the last column includes only noise and the "
-        "remainder of an oscillation, so a difference far beyond it is due to the table's speed.",
+        _("None: no pair of whole turns forward and backward was recorded."),
+        _(
+            "By time, σ includes that of the table's rate; the last column includes "
+            "only noise and the "
+            "remainder of an oscillation, so a difference far beyond it is due to "
+            "the table's speed."
+        ),
     )
 
 
@@ -310,7 +326,7 @@ def _middle(row: Record, whole_turn: Record) -> Row:
 
 MOST_TURNS = 9
 COLOUR = "#0072b2"
-RAMPS = (("Spin-up", "spin-up"), ("Spin-down", "spin-down"))
+RAMPS = ((_("Spin-up"), "spin-up"), (_("Spin-down"), "spin-down"))
 SET = (
     ("speed", DEGREE, "°/s"),
     ("spin-up acceleration", DEGREE, "°/s²"),
@@ -344,7 +360,7 @@ def _time_and_angle(tables: Tables) -> Iterator[Part]:
         return
     yield Equation(
         "θ(t) = A · C(t) / C(T)",
-        "C: what the gyro along the axis summed, less bias and earth; A: the known whole angle.",
+        _("C: what the gyro along the axis summed, less bias and earth; A: the known whole angle."),
     )
 
     def draw(panel: Axes, name: str) -> None:
@@ -361,7 +377,7 @@ def _time_and_angle(tables: Tables) -> Iterator[Part]:
             "faster than the line resolves. {rest}",
             rest=rest,
         ).rstrip(),
-        drawing.grid(names, draw, 0.95, margins, "Time, s", "time-angle"),
+        drawing.grid(names, draw, 0.95, margins, _("Time, s"), "time-angle"),
         _("The table's angle against time, less the trapezoid that was set."),
     )
     yield from map(Paragraph, _sentences(turns, tables.rows("motions")))
@@ -427,8 +443,8 @@ def _motions(rows: Sequence[Record]) -> Table:
         ramps += [*value_and_sigma(name, "s"), *value_and_sigma(name, "°/s²")]
         quantities += [f"{ramp} seconds", f"{ramp} acceleration"]
     return Table(
-        "Speed and ramps by time and angle; the ramps as if their acceleration were constant.",
-        (Column("Turn", "name"), *value_and_sigma("Speed", "°/s"), *ramps),
+        _("Speed and ramps by time and angle; the ramps as if their acceleration were constant."),
+        (Column(_("Turn"), "name"), *value_and_sigma(_("Speed"), "°/s"), *ramps),
         [
             table_row(numbers.shortened(turn, 40), *_cells(own, quantities))
             for turn, own in turns.items()
@@ -455,4 +471,4 @@ def _was_set(rows: Sequence[Record]) -> str:
         values = {row["set_value"] for row in rows if row["quantity"] == quantity}
         if len(values) == 1 and None not in values:
             settings.append(f"{numbers.significant(values.pop() / size, 4)} {unit}")
-    return f"Set: {', '.join(settings)}." if settings else ""
+    return _("Set: {settings}.", settings=", ".join(settings)) if settings else ""

@@ -131,7 +131,7 @@ def _decisions(tables: Tables) -> Iterator[outline.Paragraph]:
     """Which result of a sensor that shows an effect is final, and why."""
     for row in decisions(tables):
         if row["effects"]:
-            mount = f"Mount {row['mount']}: " if row["mount"] else ""
+            mount = _("Mount {mount}: ", mount=row["mount"]) if row["mount"] else ""
             tone: outline.Tone = "fair" if row["method"] == JOINT else "good"
             yield outline.Paragraph(shortened(mount + row["reason"], 900), tone)
 
@@ -220,22 +220,22 @@ def _answers(tables: Tables, row: Record) -> outline.Pairs:
     mount, kind = row["mount"], kind_of(row)
     answers: list[tuple[str, str]] = []
     if kind in ("consistent", "walk") and (what := _meaning(tables, row["cause"], mount)):
-        answers.append(("Cause", f"{capital(what)}."))
+        answers.append((_("Cause"), f"{capital(what)}."))
     if others := alternatives(row):
         each = (
             in_words(name) + (f" ({what})" if (what := _meaning(tables, name, mount)) else "")
             for name in others
         )
-        label = "Candidates" if kind == "structure" else "Alternatives"
+        label = _("Candidates") if kind == "structure" else _("Alternatives")
         answers.append((label, f"{capital('; '.join(each))}."))
     answers += [
         (_("Ruled out"), " ".join(_positions(tables, row, mount))),
         (_("To distinguish"), _split(row) if row["split_manoeuvre"] else ""),
-        ("Improvement", " ".join(_gain(tables, row, mount))),
+        (_("Improvement"), " ".join(_gain(tables, row, mount))),
     ]
     if row["cause"] == "oscillation" and effect_of(tables, row):
-        answers.append(("Magnitude", " ".join(periodic_figures.angle(tables, row["cause"]))))
-    answers.append(("Navigation", _worth(tables, row, mount)))
+        answers.append((_("Magnitude"), " ".join(periodic_figures.angle(tables, row["cause"]))))
+    answers.append((_("Navigation"), _worth(tables, row, mount)))
     return tuple((name, text) for name, text in answers if text)
 
 
@@ -257,7 +257,7 @@ def _positions(tables: Tables, row: Record, mount: str) -> Iterator[str]:
                 _(
                     "The joint fit attributes it to a position error in {shortened}; with the "
                     "effect in the model no position error is significant ({p_value}).",
-                    shortened=shortened(off["manoeuvre"] or "a manoeuvre", 60),
+                    shortened=shortened(off["manoeuvre"] or _("a manoeuvre"), 60),
                     p_value=p_is(tested.score["p_value"]),
                 )
             )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections import Counter
 from collections.abc import Iterator
 from math import degrees
@@ -17,6 +16,7 @@ from inertial.text.numbers import (
     significant,
     whole,
 )
+from inertial.text.typography import columns_of, typeset, wrapped
 from stages.report import outline
 from stages.report.sections.findings import (
     FINDING_TABLES,
@@ -219,21 +219,21 @@ def facts(tables: Tables) -> outline.Pairs:
         recorded = " … ".join(dict.fromkeys((dates[0], dates[-1])))
         recorded += _(" (UTC, by the clock of the logs)")
     pairs = {
-        "Campaign": campaign["campaign"],
-        "Instrument": campaign["instrument"],
-        "Serial": campaign["serial"],
-        "Date stated": campaign["date"],
-        "Date recorded": recorded,
-        "Site": _(
+        _("Campaign"): campaign["campaign"],
+        _("Instrument"): campaign["instrument"],
+        _("Serial"): campaign["serial"],
+        _("Date stated"): campaign["date"],
+        _("Date recorded"): recorded,
+        _("Site"): _(
             "latitude {latitude}, height {height}, gravity {gravity}",
             latitude=latitude,
             height=height,
             gravity=gravity,
         ),
-        "Table": campaign["table"],
-        "Laboratory": campaign["laboratory"],
-        "Operator": campaign["operator"],
-        "Remarks": campaign["notes"],
+        _("Table"): campaign["table"],
+        _("Laboratory"): campaign["laboratory"],
+        _("Operator"): campaign["operator"],
+        _("Remarks"): campaign["notes"],
     }
     return tuple(
         (name, shortened(str(text), 900)) for name, text in pairs.items() if text is not None
@@ -241,7 +241,7 @@ def facts(tables: Tables) -> outline.Pairs:
 
 
 def _with_unit(value: float | None, decimals: int, unit: str) -> str:
-    return "unknown" if value is None else f"{fixed(value, decimals)}{unit}"
+    return _("unknown") if value is None else f"{fixed(value, decimals)}{unit}"
 
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
@@ -267,23 +267,23 @@ def as_text(tables: Tables) -> str:
     word, _tone, meaning = LEVELS[worst(tables)]
     lines = []
     if tables.row("campaign")["simulated"]:
-        lines += [*textwrap.wrap(SIMULATED, 80), ""]
-    lines += [f"Verdict: {word}", *textwrap.wrap(meaning, 80), ""]
+        lines += [*wrapped(SIMULATED, 80), ""]
+    lines += [_("Verdict: {word}", word=word), *wrapped(meaning, 80), ""]
     for sentence in verdict_sentences(tables):
-        lines += textwrap.wrap(sentence, 80, initial_indent="- ", subsequent_indent="  ")
+        lines += wrapped(typeset(sentence), 80, "- ", "  ")
     for row in causes(tables):
         title = f"{title_of(tables, row)} ({_grade(row)})"
-        lines += ["", *textwrap.wrap(title, 80)]
+        lines += ["", *wrapped(typeset(title), 80)]
         lines += _indented(row["sentence"])
         for name, text in _answers(tables, row):
             lines += _indented(f"{name}: {text}")
     lines.append("")
     for name, text in facts(tables):
-        lines += textwrap.wrap(
-            f"{name + ':':<15}{text}", 80, subsequent_indent=" " * 15, break_on_hyphens=False
-        )
+        head = typeset(f"{name}:")
+        padded = head + " " * (15 - columns_of(head))
+        lines += wrapped(padded + typeset(text), 80, "", " " * 15)
     return "\n".join(lines) + "\n"
 
 
 def _indented(text: str) -> list[str]:
-    return textwrap.wrap(shortened(text, 700), 80, initial_indent="  ", subsequent_indent="  ")
+    return wrapped(typeset(shortened(text, 700)), 80, "  ", "  ")

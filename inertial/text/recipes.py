@@ -1,0 +1,134 @@
+"""What sentences are made of: the message of the catalogue, and the values in it.
+
+Stages write their tables in English. Of each sentence the table keeps beside it from which messages
+and values it was made (`needed`), so whoever reads the table can have it in another language
+(`rendered`), and no stage runs again for it. A text that is put together from several sentences is
+taken apart at the places where they are known to begin and to end.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from string import Formatter
+from typing import Any
+
+WORDS = re.compile(r"[A-Za-z]{2}")  # what has none is a number, a unit or a sign
+MOST_KNOWN = 100_000  # sentences; what a damaged log has more stays English
+BESIDE = r"A-Za-z0-9_/\-"  # what a part of a longer word or identifier stands beside
+
+# (message, forms of its plural): the English is the key of the catalogue.
+Key = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """One sentence: its message, singular first, the count that chose the form, and its values.
+
+    `values`: by what stands in the braces, as they stand in the sentence.
+    """
+
+    message: Key
+    values: Mapping[str, str] = field(default_factory=dict)
+    count: int | None = None
+
+
+_known: dict[str, Recipe] = {}
+_by_length: list[str] = []
+
+
+def values_in(message: str, values: Mapping[str, Any]) -> dict[str, str]:
+    """The values of a message, each as it stands in the sentence, by what its braces hold."""
+    found = {}
+    for _before, name, form, conversion in Formatter().parse(message):
+        if name is not None:
+            key = f"{name}!{conversion}" if conversion else name
+            key = f"{key}:{form}" if form else key
+            found[key] = f"{{{key}}}".format_map(values)
+    return found
+
+
+def filled(message: str, values: Mapping[str, str]) -> str:
+    """A message with values that stand by what its braces hold; unknown braces stay."""
+    parts = []
+    for before, name, form, conversion in Formatter().parse(message):
+        parts.append(before)
+        if name is not None:
+            key = f"{name}!{conversion}" if conversion else name
+            key = f"{key}:{form}" if form else key
+            parts.append(values.get(key, f"{{{key}}}"))
+    return "".join(parts)
+
+
+def remember(text: str, recipe: Recipe) -> None:
+    """`text` was made by this recipe."""
+    if text not in _known and len(_known) < MOST_KNOWN:
+        _known[text] = recipe
+        _by_length.clear()
+
+
+def learn(stored: Mapping[str, Any]) -> None:
+    """What a table keeps of its sentences, as `needed` gave it."""
+    for text, (message, values, count) in stored.items():
+        remember(text, Recipe(tuple(message), values, count))
+
+
+def needed(texts: Iterable[str]) -> dict[str, Any]:
+    """The recipes of these texts and of the values in them, for JSON."""
+    found: dict[str, Any] = {}
+    waiting = list(dict.fromkeys(texts))
+    while waiting:
+        for part in parts_of(waiting.pop()):
+            if part in _known and part not in found:
+                recipe = _known[part]
+                found[part] = [list(recipe.message), dict(recipe.values), recipe.count]
+                waiting += recipe.values.values()
+    return found
+
+
+def rendered(text: str, in_language: Callable[[Recipe], str]) -> str:
+    """The text with every sentence in it that is known said by `in_language`."""
+    said = []
+    for part in parts_of(text):
+        recipe = _known.get(part)
+        if recipe is None:
+            said.append(part)
+        else:
+            values = {name: rendered(each, in_language) for name, each in recipe.values.items()}
+            said.append(in_language(Recipe(recipe.message, values, recipe.count)))
+    return "".join(said)
+
+
+def parts_of(text: str) -> Iterator[str]:
+    """The known sentences of a text, the longest first taken, and what is between them."""
+    if not WORDS.search(text):
+        yield text
+        return
+    if text in _known:
+        yield text
+        return
+    if not _by_length:
+        _by_length.extend(sorted((k for k in _known if WORDS.search(k)), key=len, reverse=True))
+    yield from _parts(text, [known for known in _by_length if known in text])
+
+
+def _parts(text: str, candidates: list[str]) -> Iterator[str]:
+    for number, known in enumerate(candidates):
+        if known in text and (found := _alone(known).search(text)):
+            rest = candidates[number:]
+            if found.start():
+                yield from _parts(text[: found.start()], rest)
+            yield known
+            if found.end() < len(text):
+                yield from _parts(text[found.end() :], rest)
+            return
+    if text:
+        yield text
+
+
+def _alone(known: str) -> re.Pattern[str]:
+    """A known text that is no part of a longer word."""
+    before = rf"(?<![{BESIDE}])" if re.match(r"\w", known) else ""
+    after = rf"(?![{BESIDE}])" if re.search(r"\w$", known) else ""
+    return re.compile(before + re.escape(known) + after)

@@ -1,0 +1,75 @@
+"""Chinese type: full-width marks, no spaces between characters, columns as wide as they look.
+
+Sentences are put together with the marks and spaces of English; where they meet Chinese
+characters these become those of Chinese (GB/T 15834-2011). Text without Chinese stays as it is.
+"""
+
+import re
+import textwrap
+from itertools import groupby
+from unicodedata import east_asian_width
+
+HAN = "\u3400-\u9fff"
+MARKS = "，。；：、？！（）《》“”"
+CHINESE = re.compile(f"[{HAN}]")
+NOTHING = "\u200b"  # a word of English that Chinese does not have
+FULL_WIDTH = {",": "，", ";": "；", ":": "："}
+RULES = (
+    (re.compile(rf" *\(([^()]*[{HAN}][^()]*)\) *"), r"（\1）"),
+    (re.compile(rf"(?<=[{HAN}”）]) *\(([^()]*)\)"), r"（\1）"),
+    (re.compile(rf"(?<=[{HAN}”）])\.(?=$|[^\d\w])"), "。"),
+    (re.compile(rf"([%σ°\dA-Za-z)])\.(?= *[{HAN}])"), r"\1。"),
+    (re.compile(r"。\.|。。"), "。"),
+    (re.compile(rf"(?<=[{HAN}{MARKS}]) +(?=[{HAN}{MARKS}])"), ""),
+    (re.compile(rf"(?<=[{MARKS}]) +| +(?=[，。；：、？！（）])"), ""),
+)
+BEHIND = re.compile(rf"(?<=[{HAN}”）])([,;:])(?=\s|$)\s*")
+BEFORE = re.compile(rf"([,;:]) +(?=[{HAN}“（])")
+NO_BEGINNING = "，。；：、？！）》”"  # what no line begins with
+
+
+def typeset(text: str) -> str:
+    """A text with the marks of Chinese where it is Chinese."""
+    text = text.replace(NOTHING, "")
+    if not CHINESE.search(text):
+        return text
+    text = BEHIND.sub(lambda mark: FULL_WIDTH[mark[1]], text)
+    text = BEFORE.sub(lambda mark: FULL_WIDTH[mark[1]], text)
+    for pattern, marks in RULES:
+        text = pattern.sub(marks, text)
+    return text
+
+
+def wrapped(text: str, width: int, initial: str = "", subsequent: str = "") -> list[str]:
+    """Lines of at most `width` columns, of which a Chinese character takes two."""
+    if not CHINESE.search(text):
+        return textwrap.wrap(
+            text,
+            width,
+            initial_indent=initial,
+            subsequent_indent=subsequent,
+            break_on_hyphens=False,
+        )
+    lines, line = [], initial
+    for piece in _pieces(text):
+        full = columns_of(line + piece.rstrip()) > width and piece[0] not in NO_BEGINNING
+        if full and line.strip():
+            lines.append(line.rstrip())
+            line = subsequent + piece.lstrip()
+        else:
+            line += piece
+    return [*lines, line.rstrip()]
+
+
+def columns_of(text: str) -> int:
+    """The columns that a text takes on a terminal."""
+    return sum(2 if east_asian_width(letter) in "WF" else 1 for letter in text)
+
+
+def _pieces(text: str) -> list[str]:
+    """What stays together: a word with the space before it, or one Chinese character."""
+    pieces = []
+    for chinese, letters in groupby(text, lambda letter: east_asian_width(letter) in "WF"):
+        own = "".join(letters)
+        pieces += list(own) if chinese else re.findall(r"\s*\S+|\s+", own)
+    return pieces
