@@ -45,7 +45,7 @@
 #   make mutants                  puts faults into the physics, one at a time, and reports which of them the
 #                                 tests see, in docs/mutants.md; 1200 faults take an hour on two cores,
 #                                 can be resumed; with DRAWS=100 so many of them
-#   make docs                     docs/tables.md, docs/theory.md and the catalogue of messages, from the code
+#   make docs                     docs/tables.md, docs/theory.md and the catalogues of messages, from the code
 #   make recordings               docs/recordings.md: the real recordings, which are not part of the
 #                                 project, drafted and compared with what is known of them; 15 minutes
 #   make clean                    deletes what can be computed again from the raw logs; reports stay
@@ -228,6 +228,10 @@ docs: .venv/complete
 	$(BIN)/python -m commands.theory
 	$(BIN)/pybabel -q extract --keywords _ --keywords plural:1,2 --keywords counted:2 --no-wrap --omit-header \
 		--sort-by-file --add-location file --output inertial/text/messages.pot inertial stages commands overviews
+	for language in zh; do # what is new there has an empty translation
+		$(BIN)/pybabel -q update --no-fuzzy-matching --ignore-obsolete --no-wrap --ignore-pot-creation-date \
+			--input-file inertial/text/messages.pot --locale $$language --output-file inertial/text/$$language.po
+	done
 
 recordings: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m recordings

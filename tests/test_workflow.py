@@ -165,6 +165,7 @@ def test_a_changed_setting_reruns_its_stage_and_what_follows(
             marks=pytest.mark.slow,
         ),
         ("stages/report/report.css", {"report"}),
+        ("inertial/text/zh.po", {"report"}),
         ("laboratory/counts.py", {"laboratory_demo", "plan", "decode", *AFTER_DECODE}),
     ],
 )
@@ -173,6 +174,20 @@ def test_a_changed_line_of_code_reruns_what_rests_on_it(
 ) -> None:
     with one_more_line(workflow.home / file):
         assert workflow.planned() == rerun
+
+
+def test_the_language_is_a_setting_of_the_report_alone(workflow: Workflow) -> None:
+    assert workflow.planned("--config", "report={language: zh}") == {"report"}
+
+
+def test_the_report_in_chinese_has_no_english(workflow: Workflow, tmp_path: Path) -> None:
+    said = [sys.executable, "-m", "stages.report", str(workflow.data / "data/derived/demo")]
+    said += ["--settings", '{"language": "zh"}', "--documents", str(tmp_path / "demo")]
+    subprocess.run(said, cwd=workflow.home, check=True)
+    page = (tmp_path / "demo.html").read_text(encoding="utf-8")
+    assert '<html lang="zh-CN">' in page
+    assert not english_left(page)
+    assert not english_left((tmp_path / "demo.txt").read_text(encoding="utf-8"))
 
 
 @pytest.mark.slow

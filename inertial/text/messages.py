@@ -80,6 +80,11 @@ def _(message: str, **values: Any) -> str:
     return later
 
 
+def noun(name: str) -> str:
+    """A message without values, whose text comes from elsewhere in the code."""
+    return _remembered(_chosen.gettext(name), name, {})
+
+
 def plural(one: str, many: str, count: int, **values: Any) -> str:
     """The same in the form that goes with a count, which the sentence names as `{count}`."""
     values = values | {"count": count}

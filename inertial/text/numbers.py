@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from math import floor, isfinite, log10
 
-from inertial.text.messages import ENGLISH, _, language
+from inertial.text.messages import ENGLISH, _, language, noun
 from inertial.text.recipes import Recipe, remember
 
 FIGURE_SPACE = "\u2007"  # as wide as a digit
@@ -125,9 +125,9 @@ def counted(count: int, one: str, many: str = "") -> str:
     """`count` with its noun, a message: 1 finding, 3 findings, no findings."""
     number = whole(count) if count else _("no")
     if language() != ENGLISH:
-        return _("{number} {noun}", number=number, noun=_(one))
+        return _("{number} {noun}", number=number, noun=noun(one))
     text = f"{number} {one if count == 1 else many or f'{one}s'}"
-    remember(text, Recipe(("{number} {noun}",), {"number": number, "noun": _(one)}))
+    remember(text, Recipe(("{number} {noun}",), {"number": number, "noun": noun(one)}))
     return text
 
 

@@ -19,7 +19,7 @@ RULES = (
     (re.compile(rf"(?<=[{HAN}”）]) *\(([^()]*)\)"), r"（\1）"),
     (re.compile(rf"(?<=[{HAN}”）])\.(?=$|[^\d\w])"), "。"),
     (re.compile(rf"([%σ°\dA-Za-z)])\.(?= *[{HAN}])"), r"\1。"),
-    (re.compile(r"。\.|。。"), "。"),
+    (re.compile(r"(?<!\.)\.$|。\.|。。"), "。"),
     (re.compile(rf"(?<=[{HAN}{MARKS}]) +(?=[{HAN}{MARKS}])"), ""),
     (re.compile(rf"(?<=[{MARKS}]) +| +(?=[，。；：、？！（）])"), ""),
 )

@@ -39,6 +39,7 @@ WORDS = {  # of the template
     "Contents": _("Contents"),
     "How to read it.": _("How to read it."),
     "Simulated": _("Simulated"),
+    "Where this number comes from": _("Where this number comes from"),
     "No instrument of this serial was calibrated: the simulated laboratory recorded it.": _(
         "No instrument of this serial was calibrated: the simulated laboratory recorded it."
     ),

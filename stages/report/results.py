@@ -13,7 +13,7 @@ from inertial.text.parameters import EXTENDED, JOINT, PARTS, SENSOR_OF, STAGES
 from stages.report.linked import DECISION_TABLES
 from stages.report.outline import Tone
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSOR_OF_STAGE, capital, sensor_of_stage, with_mount
+from stages.report.words import SENSOR_OF_STAGE, capital, sensor_of_stage, term, with_mount
 
 ESTIMATE_TABLES = (
     "accelerometer_parameters",
@@ -42,7 +42,7 @@ METHOD = {
     "rate_table": _("rate table, S4"),
 }
 KIND = {
-    "bias": "Bias",
+    "bias": _("Bias"),
     "scale": _("Scale error"),
     "cross": _("Cross-axis terms"),
     "mounting": _("Mounting rotation of the sensor triad against the case"),
@@ -282,7 +282,7 @@ def by_kind(rows: Iterable[Record]) -> list[Record]:
 def symbol(parameter: str) -> str:
     """The parameter's sign with its axes: b_x, s_x, m_xy; its name where it has none."""
     if parameter not in PARTS:
-        return _without_effect(parameter)
+        return term(_without_effect(parameter))
     kind, axes = PARTS[parameter]
     return f"{SYMBOL[kind]}_{axes}"
 

@@ -10,6 +10,7 @@ from typing import Any
 from inertial.tables.stage import Stage
 from inertial.text.messages import ENGLISH, LOCALES, _
 from inertial.text.numbers import shortened
+from inertial.text.typography import typeset
 from inertial.text.units import written_in
 from stages.report.declared import DECLARED
 from stages.report.origins import origins
@@ -109,7 +110,7 @@ def _report(tables: Tables, language: str) -> dict[str, str]:
             *_chapters(EVIDENCE, map(str, count(1)), tables),
             *_chapters(ANNEXES, iter(ascii_uppercase), tables),
         ],
-        origins=origins(tables),
+        origins={key: [*map(typeset, said)] for key, said in origins(tables).items()},
     )
     return {"html": page(outline), "txt": verdict.as_text(tables)}
 

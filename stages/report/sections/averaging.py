@@ -24,7 +24,7 @@ BIAS_UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 SENSOR = {"accelerometer": "accel", "gyroscope": "gyro"}
 STAGE = {sensor: stage for stage, sensor in SENSOR.items()}
 Group = tuple[str, str, str]  # sensor, mount, method
-KINDS = {"bias": "bias", "scale": "scale", "cross": _("cross-axis terms")}
+KINDS = {"bias": _("bias"), "scale": _("scale"), "cross": _("cross-axis terms")}
 SHOWN_SIGMAS = 4  # of a single epoch
 
 

@@ -136,7 +136,10 @@ def account_parts(tables: Tables) -> Iterator[Part]:
         (
             Column(_("Log")),
             *columns(
-                "number", *(kind.capitalize() for kind in KINDS), _("Bytes"), _("Size of the file")
+                "number",
+                *(term(kind).capitalize() for kind in KINDS),
+                _("Bytes"),
+                _("Size of the file"),
             ),
             Column("", "mark"),
         ),
@@ -233,7 +236,7 @@ def _refused(lines: Sequence[Record]) -> Iterator[Table]:
 # ---- known quantities and provenance
 
 NAME = {
-    "gravity": "gravity",
+    "gravity": _("gravity"),
     "earth_rate_up": _("earth rate, vertical component"),
     "earth_rate_level": _("earth rate, horizontal component"),
     "heading": _("azimuth of the table's zero mark"),

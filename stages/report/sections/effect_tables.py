@@ -27,7 +27,7 @@ MIN_SIGMAS = 3.0  # from which a parameter is listed and a shift is marked
 VISIBLE = "visible"
 Effect = tuple[str, str]  # its name in the catalogue, and the mount
 TESTS = {
-    "time": "time",
+    "time": _("time"),
     "angle": _("the angle of the table"),
     "rate": _("the rate of the turns"),
     "attitude": _("the attitude"),
@@ -319,7 +319,9 @@ def test_name(row: Record) -> str:
 
 def channel(row: Record) -> str:
     """Sensor and axis in words: x gyro."""
-    return f"{row['axis']} {SENSOR.get(row['sensor'], row['sensor'])}" if row["axis"] else "—"
+    if not row["axis"]:
+        return "—"
+    return _("{axis} {sensor}", axis=row["axis"], sensor=SENSOR.get(row["sensor"], row["sensor"]))
 
 
 def place(row: Record) -> str:

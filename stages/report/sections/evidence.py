@@ -108,7 +108,7 @@ def _two_records(close_up: CloseUp, gaps: Sequence[int]) -> Iterator[Table]:
     after = close_up.longest_gap(gaps)
     places = [after - 1, after]
     columns = [Column(""), Column(_("Line"), "number"), Column(_("Time, s"), "number")]
-    cells = [["before", "after"]]
+    cells = [[_("before"), _("after")]]
     cells.append([whole(int(close_up.line[place])) for place in places])
     cells.append([fixed(float(close_up.time[place]), 3) for place in places])
     for sensor, name, unit, decimals in SENSORS:

@@ -156,7 +156,7 @@ def _line(channel: str, own: Sequence[Record], sheet: Sheet) -> tuple[str, ...]:
 
 def _channel(channel: str) -> str:
     sensor, axis = CHANNEL_PARTS[channel]
-    return f"{SENSOR[sensor]} {axis}"
+    return _("{sensor} {axis}", sensor=SENSOR[sensor], axis=axis)
 
 
 def _by_manoeuvre(rows: Sequence[Record], sensor: str) -> outline.Table:

@@ -274,7 +274,7 @@ def _matrices(estimate: Estimate) -> Matrices | None:
         (
             Matrix("M", _entries(matrix, 7)),
             Matrix("M⁻¹", _entries(inverse, 7)),
-            Matrix("bias", _entries(bias[:, np.newaxis], 7 if unit == "m/s²" else 10), unit),
+            Matrix(_("bias"), _entries(bias[:, np.newaxis], 7 if unit == "m/s²" else 10), unit),
         ),
     )
 

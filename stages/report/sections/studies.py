@@ -330,7 +330,7 @@ RAMPS = ((_("Spin-up"), "spin-up"), (_("Spin-down"), "spin-down"))
 SET = (
     ("speed", DEGREE, "°/s"),
     ("spin-up acceleration", DEGREE, "°/s²"),
-    ("spin-up seconds", 1.0, "s a ramp"),
+    ("spin-up seconds", 1.0, _("s a ramp")),
 )
 LIMITS = (
     _(
