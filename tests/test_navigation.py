@@ -14,8 +14,10 @@ from inertial.campaign.records import rows_of
 from inertial.physics.error_growth import Growth, of_alignment
 from inertial.physics.forward import Site
 from inertial.physics.strapdown import Start, aligned, navigated
+from inertial.text.parameters import PARTS
 from stages.navigation.corridor import uncertain
 from stages.navigation.navigator import Navigator
+from stages.navigation.not_determined import why_not
 from stages.navigation.stage import published_triads
 from stages.navigation.windows import readings, windows
 
@@ -316,3 +318,23 @@ def test_without_a_result_it_says_so(clean):
     (row,) = rows_of(made["navigation_errors"])
     assert row["predicted"] is None and "not determined" in row["reason"]
     assert made["navigation_shares"].empty
+
+
+def test_what_is_not_determined_is_named_and_the_biases_bound_what_they_can():
+    """b t = 1e-6 · 60 rad = 12.4″, g b t³/6 = 0.353 m, b t²/2 = 0.18 m."""
+
+    def row(sensor, name, value, sigma, reason=""):
+        own = {"sensor": sensor, "parameter": name, "value": value, "sigma": sigma}
+        return own | {"reason": reason}
+
+    names = [name for name in PARTS if PARTS[name].kind in ("bias", "scale", "cross")]
+    rows = [row("accel", name, 0.0, 1e-4) for name in names]
+    open_ = "no whole turn about x"
+    rows += [
+        row("gyro", name, *((None, None, open_) if name == "scale_x" else (0.0, 1e-6)))
+        for name in names
+    ]
+    sentence = why_not(rows, G)
+    assert "of the gyros scale_x are not determined (no whole turn about x)" in sentence
+    assert "12″" in sentence and "0.35 m" in sentence and "0.18 m" in sentence
+    assert "accelerometers" not in sentence

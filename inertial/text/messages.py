@@ -109,4 +109,5 @@ def in_this_language(text: str) -> str:
 def _said(recipe: Recipe) -> str:
     if recipe.count is None:
         return filled(_chosen.gettext(recipe.message[0]), recipe.values)
-    return filled(_chosen.ngettext(*recipe.message, recipe.count), recipe.values)
+    one, many = recipe.message
+    return filled(_chosen.ngettext(one, many, recipe.count), recipe.values)

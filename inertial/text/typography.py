@@ -68,7 +68,7 @@ def columns_of(text: str) -> int:
 
 def _pieces(text: str) -> list[str]:
     """What stays together: a word with the space before it, or one Chinese character."""
-    pieces = []
+    pieces: list[str] = []
     for chinese, letters in groupby(text, lambda letter: east_asian_width(letter) in "WF"):
         own = "".join(letters)
         pieces += list(own) if chinese else re.findall(r"\s*\S+|\s+", own)

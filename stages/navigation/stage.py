@@ -25,9 +25,9 @@ from inertial.text.messages import _
 from stages.navigation.corridor import uncertain
 from stages.navigation.declared import DECLARED
 from stages.navigation.navigator import Navigator, reason_rows
+from stages.navigation.not_determined import why_not
 from stages.navigation.windows import readings, windows
 
-NO_RESULT = _("M and bias of both sensors are not determined, so nothing is navigated")
 ALREADY = _("the logs are compensated already, so there is nothing before calibration")
 
 
@@ -51,7 +51,7 @@ def navigation(
         own = [row for row in rows_of(result) if row["mount"] == data.mount]
         known = None if facts["compensated"] else uncertain(own, covariance, _along(data))
         if known is None:
-            reason = ALREADY if facts["compensated"] else NO_RESULT
+            reason = ALREADY if facts["compensated"] else why_not(own, data.gravity.number)
             rows["navigation_errors"] += reason_rows([Part("", None, reason)], data.mount)
             continue
         wanted, short = windows(data, segments)

@@ -126,6 +126,7 @@ def _manoeuvre(name: str, axis: int, sign: float, what: dict[str, Any]) -> dict[
     return {
         "manoeuvre": name,
         "position": name,
+        "switch_on": 0,
         "log": f"{name}.asc",
         "mount": "as mounted",
         "recorded": "whole",
