@@ -26,6 +26,7 @@ from commands.check import main as check
 from inertial.tables.declared import Declared
 from stages import ORDER
 from tests.chain import ROOT, short, simulate
+from tests.text.test_chinese import english_left
 
 pytestmark = pytest.mark.workflow
 

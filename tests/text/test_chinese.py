@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import string
 from collections.abc import Iterator
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -60,6 +62,14 @@ def test_every_message_is_translated() -> None:
     alike = {english[0] for english, own in map(forms, every) if english[0] == own[0]}
     plain = {text for text in alike if text not in SAME and not text.startswith(("#", "lib"))}
     assert not plain
+
+
+def english_left(page: str) -> list[str]:
+    """Sentences of the catalogue, of four words and more, that a page has in English."""
+    shown = re.sub(r"<(script|style).*?</\1>|<[^>]+>", " ", page, flags=re.DOTALL)
+    plain = " ".join(unescape(shown).split())
+    every = (english[0] for english, _own in map(forms, translated()))
+    return [one for one in every if len(one.split()) > 3 and not holes(one) and one in plain]
 
 
 def test_a_translation_has_the_values_of_its_message() -> None:
