@@ -286,9 +286,9 @@ class Report:
     instrument: str  # with its serial
     running: str  # what stands on top of every printed page
     simulated: bool
-    language: str  # as HTML names it: zh-CN
     chapters: Sequence[Chapter]
     # Of traced numbers, by their identifier's folder.
     origins: Mapping[str, Sequence[str]] = field(default_factory=dict)
     script: str = ""
     wide: bool = False
+    language: str = "en"  # as HTML names it: zh-CN
