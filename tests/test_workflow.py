@@ -6,6 +6,7 @@ campaigns of the simulated laboratory.
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import shutil
@@ -357,6 +358,55 @@ def test_a_log_of_another_kind_is_refused_by_make(workflow: Workflow, target: st
     assert refused.returncode == 2
     assert "decode: x-up.asc\n  found:    a page of HTML" in refused.stderr
     assert_it_is_the_last_on_the_screen(refused.stderr)
+
+
+@pytest.mark.slow
+def test_the_pages_of_several_campaigns_are_made_again_when_a_result_changes(
+    workflow: Workflow,
+) -> None:
+    pages = ["reports/index.html", "reports/history/SIM-001.html"]
+
+    def planned() -> set[str]:
+        dry = workflow.run("--dry-run", "--", *pages)
+        assert dry.returncode == 0, dry.stderr
+        return set(re.findall(r"^(\w+) +\d+$", dry.stdout + dry.stderr, re.MULTILINE)) - {"total"}
+
+    made = make(workflow.home, "index")
+    assert made.returncode == 0, made.stderr
+    assert '<a href="demo.html">demo</a>' in (workflow.home / pages[0]).read_text()
+    assert (workflow.home / pages[1]).stat().st_size > 100_000
+    assert planned() == set()
+    with one_more_line(workflow.home / "overviews/index/sorted_tables.js"):
+        assert planned() == {"index"}
+    with one_more_line(workflow.home / "stages/diagnosis/stage.py"):
+        assert {"diagnosis", "history", "index", "history_page"} <= planned()
+    # A campaign that is refused now does not keep the others from the page.
+    campaign = workflow.home / "data/raw/refused/campaign.yaml"
+    campaign.parent.mkdir()
+    campaign.write_text("campaign: 1\n")
+    try:
+        assert make(workflow.home, "index").returncode == 0
+        assert "refused</td>" in (workflow.home / pages[0]).read_text()
+    finally:
+        shutil.rmtree(campaign.parent)
+
+
+def test_the_queries_of_the_readme_run_on_the_demo(
+    workflow: Workflow, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    duckdb = pytest.importorskip("duckdb")
+    monkeypatch.chdir(workflow.data)
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    queries = re.findall(r"^    -- .*\n((?:    .*\n)+?(?=\n))", readme, re.MULTILINE)
+    assert len(queries) == 4
+    result, biases, causes, archive = (duckdb.sql(query).df() for query in queries)
+    assert len(result) == 24 and result["sigma"].gt(0).all()
+    assert sorted(biases["parameter"]) == ["bias_x", "bias_y", "bias_z"]
+    own = result[(result["sensor"] == "gyro") & (result["parameter"] == "bias_x")]["value"].item()
+    shown = biases.set_index("parameter").loc["bias_x", "value"]
+    assert shown == pytest.approx(own * 180 / math.pi * 3600)
+    assert {"gap", "gyro_g_sensitivity", "oscillation"} <= set(causes["cause"])
+    assert list(archive["campaign"]) == ["demo"]
 
 
 def has_pango() -> bool:
