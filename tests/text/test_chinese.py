@@ -21,7 +21,7 @@ from inertial.text.typography import CHINESE, columns_of, typeset, wrapped
 
 FILE = CATALOGUE.with_name("zh.po")
 # What is the same in both languages: names of parameters, units, parts of files.
-SAME = {"ppm", "s", "ms²", "PDF", "Kalibr (imu.yaml)", "positions", "{seconds:.1f} s"}
+SAME = {"IMU", "ppm", "s", "ms²", "PDF", "Kalibr (imu.yaml)", "positions", "{seconds:.1f} s"}
 
 
 @pytest.fixture
