@@ -28,7 +28,7 @@ def write(outcomes: Sequence[Outcome], draws: int, page: Path = PAGE) -> str:
     figures = {
         "campaigns": len(outcomes),
         "wanted": WANTED,
-        "false": len(false),
+        "falsely": len(false),
         "bound": f"{100 * upper(len(false), len(outcomes)):.1f}",
         "by_sort": list(_rates(outcomes, "sort")),
         "by_plan": list(_rates(outcomes, "plan")),
