@@ -84,7 +84,7 @@ def test_a_table_keeps_what_its_sentences_were_made_of(tmp_path: Path) -> None:
     several = kept + " " + plural("{count} spike", "{count} spikes", 1) + _(" or ") + _("gap")
     row = dict.fromkeys((column.name for column in FINDINGS.columns), "")
     row |= {"severity": 1, "count": 1, "from_s": None, "to_s": None, "size": None, "p_value": None}
-    row |= {"sentence": several, "consequence": "a text of the laboratory"}
+    row |= {"sentence": several, "consequence": "Messraum 3, Keller"}
     with Writer(tmp_path, {"findings": FINDINGS}, dict) as writer:
         writer.write("findings", FINDINGS.frame([row]))
     path = tmp_path / "findings.parquet"
@@ -96,7 +96,7 @@ def test_a_table_keeps_what_its_sentences_were_made_of(tmp_path: Path) -> None:
         speak("en")
     # The two messages that no catalogue has stay English; what stands in them does not.
     assert typeset(read["sentence"][0]) == "x-up.asc: 3 个记录 of 9. 1 spike或数据中断"
-    assert read["consequence"][0] == "a text of the laboratory"
+    assert read["consequence"][0] == "Messraum 3, Keller"
 
 
 def test_a_process_speaks_the_language_that_it_is_told(chinese: None) -> None:
