@@ -143,7 +143,9 @@ def pages():
 
 def overview_settings():
     """What pages of several campaigns depend on in config.yaml."""
-    return json.dumps({name: config[name] for name in ("history", "comparison")}, sort_keys=True)
+    language = {"language": config.get("report", {}).get("language", "en")}
+    own = {name: config[name] for name in ("history", "comparison")}
+    return json.dumps(own | language, sort_keys=True)
 
 
 wildcard_constraints:

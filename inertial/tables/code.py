@@ -15,7 +15,7 @@ IMPORT = re.compile(
 # Schemas and templates lie beside the module that reads them.
 DATA = {".yaml", ".json", ".html", ".css", ".js"}
 TRANSLATIONS = "inertial/text/*.po"
-SPEAKS = "import ENGLISH, speak"  # stands in __main__.py of a stage that speaks other languages
+SPEAKS = "speak_as_set("  # stands in __main__.py of what speaks other languages
 
 
 def code_of(stage: str, room: str = "stages") -> list[Path]:
@@ -39,7 +39,7 @@ def code_of(stage: str, room: str = "stages") -> list[Path]:
     beside = {file for folder in folders for file in _data(folder)}
     if any(
         SPEAKS in file.read_text(encoding="utf-8")
-        for file in _files(ROOT, f"stages.{stage}.__main__")
+        for file in _files(ROOT, f"{room}.{stage}.__main__")
     ):
         beside |= set(ROOT.glob(TRANSLATIONS))
     return sorted(reached | beside | {ROOT / "requirements.lock"})

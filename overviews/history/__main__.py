@@ -5,6 +5,11 @@ import json
 import sys
 from pathlib import Path
 
+from inertial.text.spoken import speak_as_set
+
+if __name__ == "__main__":
+    speak_as_set(sys.argv)
+
 from inertial.tables.code import code_of, hash_of
 from inertial.tables.errors import Refusal
 from inertial.tables.whole_files import write_whole

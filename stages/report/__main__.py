@@ -1,12 +1,11 @@
 """`python -m stages.report`: the stage on the command line, in the language of its settings."""
 
-import json
 import sys
 
-from inertial.text.messages import ENGLISH, speak
+from inertial.text.spoken import speak_as_set
 
-if "--settings" in sys.argv[:-1]:
-    speak(json.loads(sys.argv[sys.argv.index("--settings") + 1]).get("language", ENGLISH))
+if __name__ == "__main__":
+    speak_as_set(sys.argv)
 
 from stages.report.stage import STAGE
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from itertools import groupby
 from typing import Literal
 
-from inertial.text.messages import _
+from inertial.text.messages import LOCALES, _, language
 from inertial.text.numbers import whole
 from stages.report.tables import Tables
 
@@ -291,4 +291,4 @@ class Report:
     origins: Mapping[str, Sequence[str]] = field(default_factory=dict)
     script: str = ""
     wide: bool = False
-    language: str = "en"  # as HTML names it: zh-CN
+    language: str = field(default_factory=lambda: LOCALES[language()])  # as HTML names it: zh-CN
