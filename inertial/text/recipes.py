@@ -18,6 +18,9 @@ WORDS = re.compile(r"[A-Za-z]{2}")  # what has none is a number, a unit or a sig
 MOST_KNOWN = 100_000  # sentences; what a damaged log has more stays English
 BESIDE = r"A-Za-z0-9_/\-"  # what a part of a longer word or identifier stands beside
 
+ENGLISH = re.compile(r"\b[a-z]{2,}\b")
+ONE_WORD = re.compile(r"[A-Za-z]+")
+ENDS, BEGINS = re.compile(r"(?<![\w.-])[a-z]+ $"), re.compile(r" [a-z]+(?![\w.-])")
 # (message, forms of its plural): the English is the key of the catalogue.
 Key = tuple[str, ...]
 
@@ -110,7 +113,11 @@ def parts_of(text: str) -> Iterator[str]:
         return
     if not _by_length:
         _by_length.extend(sorted((k for k in _known if WORDS.search(k)), key=len, reverse=True))
-    yield from _parts(text, [known for known in _by_length if known in text])
+    parts = [*_parts(text, [known for known in _by_length if known in text])]
+    if any(part not in _known and ENGLISH.search(part) for part in parts):
+        # Of a text from outside no word is a sentence: “a text of the laboratory”.
+        parts = _joined(parts)
+    yield from parts
 
 
 def _parts(text: str, candidates: list[str]) -> Iterator[str]:
@@ -125,6 +132,21 @@ def _parts(text: str, candidates: list[str]) -> Iterator[str]:
             return
     if text:
         yield text
+
+
+def _joined(parts: list[str]) -> list[str]:
+    """Parts of one word that stand beside an English word that is no part, joined with it."""
+    joined: list[str] = []
+    for part in parts:
+        last = joined[-1] if joined else ""
+        unknown = last and last not in _known
+        if (unknown and ONE_WORD.fullmatch(part) and ENDS.search(last)) or (
+            last and ONE_WORD.fullmatch(last) and part not in _known and BEGINS.match(part)
+        ) or (unknown and part not in _known):
+            joined[-1] += part
+        else:
+            joined.append(part)
+    return joined
 
 
 def _alone(known: str) -> re.Pattern[str]:
