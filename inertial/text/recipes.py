@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from string import Formatter
 from typing import Any
 
@@ -35,6 +35,7 @@ class Recipe:
     message: Key
     values: Mapping[str, str] = field(default_factory=dict)
     count: int | None = None
+    cut: bool = False  # its full stop is taken off
 
 
 _known: dict[str, Recipe] = {}
@@ -65,7 +66,14 @@ def filled(message: str, values: Mapping[str, str]) -> str:
 
 
 def remember(text: str, recipe: Recipe) -> None:
-    """`text` was made by this recipe."""
+    """`text` was made by this recipe; so was it with another first letter, or without its end."""
+    for start in (text[:1], text[:1].swapcase()):
+        _keep(start + text[1:], recipe)
+        if text.endswith(".") and len(text) > 1:
+            _keep(start + text[1:-1], replace(recipe, cut=True))
+
+
+def _keep(text: str, recipe: Recipe) -> None:
     if text not in _known and len(_known) < MOST_KNOWN:
         _known[text] = recipe
         _by_length.clear()
@@ -73,8 +81,8 @@ def remember(text: str, recipe: Recipe) -> None:
 
 def learn(stored: Mapping[str, Any]) -> None:
     """What a table keeps of its sentences, as `needed` gave it."""
-    for text, (message, values, count) in stored.items():
-        remember(text, Recipe(tuple(message), values, count))
+    for text, (message, values, count, cut) in stored.items():
+        _keep(text, Recipe(tuple(message), values, count, cut))
 
 
 def needed(texts: Iterable[str]) -> dict[str, Any]:
@@ -85,7 +93,7 @@ def needed(texts: Iterable[str]) -> dict[str, Any]:
         for part in parts_of(waiting.pop()):
             if part in _known and part not in found:
                 recipe = _known[part]
-                found[part] = [list(recipe.message), dict(recipe.values), recipe.count]
+                found[part] = [list(recipe.message), dict(recipe.values), recipe.count, recipe.cut]
                 waiting += recipe.values.values()
     return found
 
@@ -99,7 +107,8 @@ def rendered(text: str, in_language: Callable[[Recipe], str]) -> str:
             said.append(part)
         else:
             values = {name: rendered(each, in_language) for name, each in recipe.values.items()}
-            said.append(in_language(Recipe(recipe.message, values, recipe.count)))
+            sentence = in_language(replace(recipe, values=values))
+            said.append(sentence.rstrip(".。") if recipe.cut else sentence)
     return "".join(said)
 
 
@@ -140,9 +149,11 @@ def _joined(parts: list[str]) -> list[str]:
     for part in parts:
         last = joined[-1] if joined else ""
         unknown = last and last not in _known
-        if (unknown and ONE_WORD.fullmatch(part) and ENDS.search(last)) or (
-            last and ONE_WORD.fullmatch(last) and part not in _known and BEGINS.match(part)
-        ) or (unknown and part not in _known):
+        if (
+            (unknown and ONE_WORD.fullmatch(part) and ENDS.search(last))
+            or (last and ONE_WORD.fullmatch(last) and part not in _known and BEGINS.match(part))
+            or (unknown and part not in _known)
+        ):
             joined[-1] += part
         else:
             joined.append(part)

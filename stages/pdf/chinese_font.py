@@ -7,6 +7,7 @@ the same everywhere.
 from __future__ import annotations
 
 import io
+import string
 from base64 import b64encode
 from collections.abc import Iterator
 from functools import lru_cache
@@ -23,6 +24,7 @@ PACKAGE = "justmytype_intl_cjk"
 FILE = "fonts/ofl/notosanssc/NotoSansSC[wght].ttf"
 WEIGHTS = (400, 700)
 FIRST, LAST = "\u2e80", "\uffef"  # Chinese characters and full-width marks lie between
+SPACES = "\u00a0\u2007\u2008\u202f"
 MARKS = "“”‘’…—·"  # as wide as a character in Chinese
 
 
@@ -31,7 +33,8 @@ def font_faces(page: str) -> str:
     letters = {letter for letter in unescape(page) if FIRST <= letter <= LAST}
     if not letters:
         return ""
-    return "".join(_faces("".join(sorted(letters.union(MARKS)))))
+    # Spaces and letters between Chinese ones may be set in the font of these.
+    return "".join(_faces("".join(sorted(letters.union(MARKS, string.printable, SPACES)))))
 
 
 @lru_cache(maxsize=2)
