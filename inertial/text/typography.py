@@ -25,6 +25,8 @@ RULES = (
 )
 BEHIND = re.compile(rf"(?<=[{HAN}”）])([,;:])(?=\s|$)\s*")
 BEFORE = re.compile(rf"([,;:]) +(?=[{HAN}“（])")
+# A space between Chinese characters and letters or numbers, whoever put them beside each other.
+APART = re.compile(rf"(?<=[{HAN}])(?=[A-Za-z0-9−±<])|(?<=[A-Za-z0-9%°σ″])(?=[{HAN}])")
 NO_BEGINNING = "，。；：、？！）》”"  # what no line begins with
 
 
@@ -37,7 +39,7 @@ def typeset(text: str) -> str:
     text = BEFORE.sub(lambda mark: FULL_WIDTH[mark[1]], text)
     for pattern, marks in RULES:
         text = pattern.sub(marks, text)
-    return text
+    return APART.sub(" ", text)
 
 
 def wrapped(text: str, width: int, initial: str = "", subsequent: str = "") -> list[str]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from inertial.text.messages import ENGLISH, _, language
 from inertial.text.numbers import shortened
+from inertial.text.typography import CHINESE
 
 SENSOR = {"gyro": _("gyro"), "accel": _("accelerometer")}
 SENSORS = {"gyro": _("gyros"), "accel": _("accelerometers")}
@@ -60,7 +61,7 @@ def listed(names: Sequence[str], last: str = "and") -> str:
 
 def capital(text: str) -> str:
     """A sentence with its first letter large."""
-    return text[:1].upper() + text[1:]
+    return text if CHINESE.search(text) else text[:1].upper() + text[1:]
 
 
 def with_mount(name: str, mount: str | None) -> str:

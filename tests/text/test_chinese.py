@@ -95,7 +95,7 @@ def test_a_table_keeps_what_its_sentences_were_made_of(tmp_path: Path) -> None:
     finally:
         speak("en")
     # The two messages that no catalogue has stay English; what stands in them does not.
-    assert typeset(read["sentence"][0]) == "x-up.asc: 3 个记录 of 9. 1 spike或数据中断"
+    assert typeset(read["sentence"][0]) == "x-up.asc: 3 个记录 of 9. 1 spike 或数据中断"
     assert read["consequence"][0] == "Messraum 3, Keller"
 
 

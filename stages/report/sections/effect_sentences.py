@@ -284,8 +284,10 @@ def worth(effects: Sequence[str], rows: Sequence[Record]) -> str:
         shown = [pair for pair in ERRORS if any(row[f"{pair[0]}_joint"] for row in own)]
         if shown:
             pairs = [_largest(own, *pair) for pair in shown]
-            joint.append(_(" and ").join(before for before, _unused in pairs) + f" {where}")
-            remaining.append(_(" and ").join(after for _unused, after in pairs) + f" {where}")
+            errors = _(" and ").join(before for before, _unused in pairs)
+            joint.append(_("{errors} {where}", errors=errors, where=where))
+            errors = _(" and ").join(after for _unused, after in pairs)
+            remaining.append(_("{errors} {where}", errors=errors, where=where))
     if not joint:
         return ""
     names = listed([in_words(name) for name in effects])

@@ -16,7 +16,7 @@ from stages.report.tables import Record, Tables
 from stages.report.words import term
 
 NAME = {"gyro": _("Angle random walk"), "accel": _("Velocity random walk")}
-SENSOR = {"gyro": "gyroscope", "accel": "accelerometer"}
+SENSOR = {"gyro": _("gyroscope"), "accel": _("accelerometer")}
 DATA_SHEET = _("data sheet")
 MOST_ROWS = 48
 MOST_NAMES = 30

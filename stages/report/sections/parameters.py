@@ -309,8 +309,8 @@ def undetermined_parts(tables: Tables) -> Iterator[Part]:
         [
             table_row(
                 estimate.name,
-                shortened(labels(estimate.manoeuvres) or "none", 1500),
-                shortened(omissions(estimate.manoeuvres) or "none", 1500),
+                shortened(labels(estimate.manoeuvres) or _("none"), 1500),
+                shortened(omissions(estimate.manoeuvres) or _("none"), 1500),
                 tone="fair" if omissions(estimate.manoeuvres) else "",
             )
             for estimate in estimates(tables)

@@ -31,6 +31,7 @@ from stages.report.outline import (
 from stages.report.sections.averaging import epoch_parts
 from stages.report.sections.encoder import encoder_parts
 from stages.report.tables import Record, Tables
+from stages.report.words import plain
 
 Pair = tuple[str, str, str]  # axis, turn forward, turn backward
 By = dict[Pair, list[Record]]
@@ -218,7 +219,9 @@ def _panel(
     middle, reach = whole_turn[key] / unit.size, whole_turn[f"{key}_sigma"] / unit.size
     panel.axhspan(middle - reach, middle + reach, color=drawing.QUIET, alpha=0.2, linewidth=0)
     panel.axhline(middle, color=drawing.INK, linewidth=0.7)
-    panel.set_title(_("{axis} gyro: {key}, {name}", axis=axis, key=key, name=unit.name), pad=3)
+    panel.set_title(
+        _("{axis} gyro: {key}, {name}", axis=axis, key=plain(key), name=unit.name), pad=3
+    )
 
 
 def _on_place(rows: Sequence[Record], whole_turn: Record) -> str:
