@@ -28,6 +28,7 @@ BEFORE = re.compile(rf"([,;:]) +(?=[{HAN}“（])")
 # A space between Chinese characters and letters or numbers, whoever put them beside each other.
 APART = re.compile(rf"(?<=[{HAN}])(?=[A-Za-z0-9−±<])|(?<=[A-Za-z0-9%°σ″])(?=[{HAN}])")
 NO_BEGINNING = "，。；：、？！）》”"  # what no line begins with
+NO_END = "（《“"  # what no line ends with
 
 
 def typeset(text: str) -> str:
@@ -56,8 +57,10 @@ def wrapped(text: str, width: int, initial: str = "", subsequent: str = "") -> l
     for piece in _pieces(text):
         full = columns_of(line + piece.rstrip()) > width and piece[0] not in NO_BEGINNING
         if full and line.strip():
-            lines.append(line.rstrip())
-            line = subsequent + piece.lstrip()
+            ends = line.rstrip()
+            kept = ends.rstrip(NO_END)
+            lines.append(kept.rstrip())
+            line = subsequent + ends[len(kept) :] + piece.lstrip()
         else:
             line += piece
     return [*lines, line.rstrip()]

@@ -367,6 +367,6 @@ PROVENANCE = Section(
 
 def _settings(settings: object) -> str:
     if not isinstance(settings, Mapping) or not settings:
-        return "none"
+        return _("none")
     stated = "; ".join(f"{name}: {json.dumps(value)}" for name, value in settings.items())
     return numbers.shortened(stated, 400)
