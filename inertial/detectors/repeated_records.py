@@ -58,7 +58,7 @@ class Duplicate(Detector):
         where = (
             _("earlier ones, stamps and all") if event.facts else _("the one before, stamp and all")
         )
-        many = _("it") if single else "them"
+        many = _("it") if single else _("them")
         return Description(
             _(
                 "{name}: {what} {does} {where}, at {from_s} s.",

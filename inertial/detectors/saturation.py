@@ -263,7 +263,7 @@ class Saturation(Detector):
         where = _("{name} from line {line} on", name=name, line=largest.line)
         if len({log for log, _ in events}) > 1:
             where = _("{logs}, most of them in {where}", logs=names_of_logs(events), where=where)
-        what, unit = ("velocity", "m/s") if largest.channel < 3 else ("angle", "°")
+        what, unit = (_("velocity"), "m/s") if largest.channel < 3 else (_("angle"), "°")
         scale, _unit = read_in(largest.channel)
         visit = largest.facts
         percent = scale * abs(visit.limit) * visit.seconds / 100

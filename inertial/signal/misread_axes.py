@@ -50,7 +50,7 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
         else ""
     )
     number = len(misread.explains)
-    agree = f"{counted(number, 'manoeuvre')} {'agrees' if number == 1 else 'agree'}"
+    agree = counted(number, "manoeuvre") + (_(" agrees") if number == 1 else _(" agree"))
     if misread.spans:
         sentence = _(
             "Of the {sensor}, {where}, {axes}: only so do the gyros turn gravity as the "

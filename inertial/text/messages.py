@@ -20,6 +20,7 @@ from inertial.text.recipes import Recipe, filled, remember, rendered, values_in
 
 CATALOGUE = Path(__file__).with_name("messages.pot")
 ENGLISH = "en"
+NOTHING = "\u200b"  # in place of a word that another language does not have; "" is no translation
 LOCALES = {"en": "en", "zh": "zh-CN"}  # as a page states it
 
 
@@ -70,7 +71,7 @@ def language() -> str:
 
 def _(message: str, **values: Any) -> str:
     """A sentence in the language of this process, its `{names}` replaced by the values."""
-    sentence = _chosen.gettext(message)
+    sentence = _translated(message)
     if values:
         return _remembered(sentence.format_map(values), message, values)
     if "{" not in message:
@@ -80,9 +81,14 @@ def _(message: str, **values: Any) -> str:
     return later
 
 
+def _translated(message: str) -> str:
+    sentence = _chosen.gettext(message)
+    return "" if sentence == NOTHING else sentence
+
+
 def noun(name: str) -> str:
     """A message without values, whose text comes from elsewhere in the code."""
-    return _remembered(_chosen.gettext(name), name, {})
+    return _remembered(_translated(name), name, {})
 
 
 def plural(one: str, many: str, count: int, **values: Any) -> str:
@@ -108,6 +114,6 @@ def in_this_language(text: str) -> str:
 
 def _said(recipe: Recipe) -> str:
     if recipe.count is None:
-        return filled(_chosen.gettext(recipe.message[0]), recipe.values)
+        return filled(_translated(recipe.message[0]), recipe.values)
     one, many = recipe.message
     return filled(_chosen.ngettext(one, many, recipe.count), recipe.values)

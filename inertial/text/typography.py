@@ -12,7 +12,6 @@ from unicodedata import east_asian_width
 HAN = "\u3400-\u9fff"
 MARKS = "，。；：、？！（）《》“”"
 CHINESE = re.compile(f"[{HAN}]")
-NOTHING = "\u200b"  # a word of English that Chinese does not have
 FULL_WIDTH = {",": "，", ";": "；", ":": "："}
 RULES = (
     (re.compile(rf" *\(([^()]*[{HAN}][^()]*)\) *"), r"（\1）"),
@@ -33,7 +32,6 @@ NO_END = "（《“"  # what no line ends with
 
 def typeset(text: str) -> str:
     """A text with the marks of Chinese where it is Chinese."""
-    text = text.replace(NOTHING, "")
     if not CHINESE.search(text):
         return text
     text = BEHIND.sub(lambda mark: FULL_WIDTH[mark[1]], text)

@@ -308,7 +308,7 @@ def _significant_first(row: Record) -> tuple[bool, float]:
 def _outcome(row: Record) -> tuple[str, str, str]:
     if not row["degrees"]:
         return "—", "—", _("not recorded")
-    outcome = "significant" if row["detected"] else _("not significant")
+    outcome = _("significant") if row["detected"] else _("not significant")
     return numbers.significant(row["statistic"]), numbers.probability(row["p_value"]), outcome
 
 

@@ -140,7 +140,7 @@ class Compared:
     expected: float
     value: float
     missing: float = 0.0
-    origin: str = "measured"  # of the value
+    origin: str = _("measured")  # of the value
 
     @property
     def near(self) -> bool:
@@ -161,10 +161,10 @@ def _compared(tables: Tables, row: Record) -> Compared | None:
     if cause == "incomplete_turn" and plan.get("angle") and done.get("angle"):
         short = (done.get("missing_angle") or 0.0) / DEGREES.size
         planned, measured = plan["angle"] / DEGREES.size, done["angle"] / DEGREES.size
-        return Compared("angle", "°", planned, measured, short)
+        return Compared(_("angle"), "°", planned, measured, short)
     if cause in OF_RATE and plan.get("rate") and done.get("rate"):
         rates = (plan["rate"], done["rate"])
-        return Compared("rate", "°/s", *(rate / DEGREES_PER_SECOND.size for rate in rates))
+        return Compared(_("rate"), "°/s", *(rate / DEGREES_PER_SECOND.size for rate in rates))
     return None if size is None else _by_size(tables, row, size)
 
 
@@ -175,14 +175,14 @@ def _by_size(tables: Tables, entry: Record, size: float) -> Compared | None:
     known = {row["quantity"]: row["value"] for row in tables.rows("known")}
     gravity = known.get("gravity")
     if entry["cause"] == "unexplained":
-        return Compared("residuals", SIGMA, NOISE_ALONE, size)
+        return Compared(_("residuals"), SIGMA, NOISE_ALONE, size)
     if entry["cause"] == "rate_off" and rate:
         return Compared(_("samples per second"), "Hz", rate, rate * size)
     if entry["cause"] == "wrong_scale_factor" and entry["sensor"] == "accel" and gravity:
         return Compared(_("specific force at rest"), "m/s²", gravity, gravity * size)
     if entry["cause"] == "gravity_error" and gravity:
         normal = gravity if _gravity_set_right(tables) else gravity - size
-        return Compared("gravity", "m/s²", normal, normal + size, origin="stated")
+        return Compared(_("gravity"), "m/s²", normal, normal + size, origin=_("stated"))
     return None
 
 
@@ -215,7 +215,7 @@ def _comparison(shown: Compared, key: str) -> Figure:
             _dots(panel, shown)
         else:
             _bars(panel, shown)
-        panel.set_yticks([1, 0], ["expected", shown.origin])
+        panel.set_yticks([1, 0], [_("expected"), shown.origin])
         panel.set_ylim(*SIDES)
         for side, text in ((1, expected), (0, value)):
             panel.annotate(

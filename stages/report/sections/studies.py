@@ -43,7 +43,7 @@ MAX_OFF = 5.0  # °, of a window that stands for one of a round angle
 SHOWN_SIGMAS = 5.0  # of a half turn that a panel of growing windows shows
 ALIAS = _("Not every sample is drawn: a fast oscillation shows its size here, not its frequency.")
 WHOLE_TURN = "whole turn"
-STUDIED = {"rests": _("static positions"), "turns": "turns"}
+STUDIED = {"rests": _("static positions"), "turns": _("turns")}
 BY = {
     WHOLE_TURN: _("the whole turn"),
     "set rate": _("180° by time, at the set rate"),
