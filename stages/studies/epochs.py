@@ -113,7 +113,7 @@ def studied(
             min_samples=MIN_SAMPLES,
         )
         reason = short if length < MIN_SAMPLES else _("the rests differ in their sample interval")
-        rows["not_studied"].append(_not_studied(data.mount, data.named("rests"), reason))
+        rows["not_studied"].append(_not_studied(data.mount, data.named(_("rests")), reason))
         return rows
     ups = np.array([m.up for m, _unused in there.values()])
     found = formulas(ups, data.gravity.number)
