@@ -3,7 +3,9 @@
 # declared in stages/<stage>/declared.py, and taken from there.
 
 import json
+import os
 import sys
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -82,6 +84,23 @@ def settings(stage):
     return json.dumps(config.get(stage, {}), sort_keys=True)
 
 
+def needs(stage):
+    """Memory, MB, and time, minutes, of a stage: where it reads samples, by the size of the logs.
+
+    Both with room to spare against what `benchmark:` measures (docs/scale.md), and twice as much
+    for a second attempt.
+    """
+    reads_samples = bool("raw" in declared(stage).files or declared(stage).streams)
+
+    def mem_mb(wildcards, attempt):
+        return attempt * (1000 + reads_samples * 2 * logs_mb(wildcards.campaign))
+
+    def runtime(wildcards, attempt):
+        return attempt * (2 + reads_samples * logs_mb(wildcards.campaign) // 100)
+
+    return {"mem_mb": mem_mb, "runtime": runtime}
+
+
 def files(stage, **more):
     """The options of a stage that name files: inputs that are no tables, and its documents."""
 
@@ -99,11 +118,24 @@ def files(stage, **more):
 
 def logs(wildcards):
     """The logs of a campaign: of a simulated one by its description, for they may not be there yet."""
-    simulated = wildcards.campaign in SIMULATED
-    source = "data/simulated/{campaign}.yaml" if simulated else f"{RAW}/campaign.yaml"
-    files = [f"{RAW}/{log}" for log in logs_of(Path(source.format(**wildcards)))]
-    files = [file.format(**wildcards) for file in files]
+    return campaign_logs(wildcards.campaign)
+
+
+@cache
+def campaign_logs(campaign):
+    """The same, by the name of the campaign."""
+    simulated = campaign in SIMULATED
+    raw = Path("data/raw", campaign)
+    source = f"data/simulated/{campaign}.yaml" if simulated else raw / "campaign.yaml"
+    files = [str(raw / log) for log in logs_of(Path(source))]
     return [file for file in files if simulated or Path(file).is_file()]
+
+
+@cache
+def logs_mb(campaign):
+    """The size of the logs, MB; of a simulated campaign that is not recorded yet, none."""
+    sizes = (os.path.getsize(log) for log in campaign_logs(campaign) if os.path.isfile(log))
+    return round(sum(sizes) / 1e6)
 
 
 def published(wildcards):
@@ -177,6 +209,14 @@ for simulated in SIMULATED:
             f"data/raw/{simulated}/campaign.yaml",
         log:
             f"data/derived/{simulated}/laboratory/stage.log",
+        benchmark:
+            f"data/derived/{simulated}/laboratory/benchmark.tsv"
+        group:
+            "campaign"
+        threads: 1
+        resources:
+            mem_mb=2000,
+            runtime=10,
         params:
             output=lambda wildcards, output: Path(output[-1]).parent,
             code=hash_of(LABORATORY),
@@ -198,6 +238,13 @@ rule plan:
         writes("plan"),
     log:
         f"{DERIVED}/plan/stage.log",
+    benchmark:
+        f"{DERIVED}/plan/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("plan"),
     params:
         settings=settings("plan"),
         files=files("plan"),
@@ -216,6 +263,13 @@ rule decode:
         writes("decode"),
     log:
         f"{DERIVED}/decode/stage.log",
+    benchmark:
+        f"{DERIVED}/decode/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("decode"),
     params:
         settings=settings("decode"),
         files=files("decode"),
@@ -233,6 +287,13 @@ rule quality:
         writes("quality"),
     log:
         f"{DERIVED}/quality/stage.log",
+    benchmark:
+        f"{DERIVED}/quality/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("quality"),
     params:
         settings=settings("quality"),
         files=files("quality"),
@@ -250,6 +311,13 @@ rule segment:
         writes("segment"),
     log:
         f"{DERIVED}/segment/stage.log",
+    benchmark:
+        f"{DERIVED}/segment/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("segment"),
     params:
         settings=settings("segment"),
         files=files("segment"),
@@ -267,6 +335,13 @@ rule noise:
         writes("noise"),
     log:
         f"{DERIVED}/noise/stage.log",
+    benchmark:
+        f"{DERIVED}/noise/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("noise"),
     params:
         settings=settings("noise"),
         files=files("noise"),
@@ -284,6 +359,13 @@ rule accelerometer:
         writes("accelerometer"),
     log:
         f"{DERIVED}/accelerometer/stage.log",
+    benchmark:
+        f"{DERIVED}/accelerometer/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("accelerometer"),
     params:
         settings=settings("accelerometer"),
         files=files("accelerometer"),
@@ -301,6 +383,13 @@ rule gyroscope:
         writes("gyroscope"),
     log:
         f"{DERIVED}/gyroscope/stage.log",
+    benchmark:
+        f"{DERIVED}/gyroscope/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("gyroscope"),
     params:
         settings=settings("gyroscope"),
         files=files("gyroscope"),
@@ -318,6 +407,13 @@ rule studies:
         writes("studies"),
     log:
         f"{DERIVED}/studies/stage.log",
+    benchmark:
+        f"{DERIVED}/studies/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("studies"),
     params:
         settings=settings("studies"),
         files=files("studies"),
@@ -335,6 +431,13 @@ rule comparison:
         writes("comparison"),
     log:
         f"{DERIVED}/comparison/stage.log",
+    benchmark:
+        f"{DERIVED}/comparison/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("comparison"),
     params:
         settings=settings("comparison"),
         files=files("comparison"),
@@ -352,7 +455,14 @@ rule simulation:
         writes("simulation"),
     log:
         f"{DERIVED}/simulation/stage.log",
+    benchmark:
+        f"{DERIVED}/simulation/benchmark.tsv"
     priority: 1  # the longest way to the report leads here
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("simulation"),
     params:
         settings=settings("simulation"),
         files=files("simulation"),
@@ -370,7 +480,14 @@ rule criticism:
         writes("criticism"),
     log:
         f"{DERIVED}/criticism/stage.log",
+    benchmark:
+        f"{DERIVED}/criticism/benchmark.tsv"
     priority: 1  # the longest way to the report leads here
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("criticism"),
     params:
         settings=settings("criticism"),
         files=files("criticism"),
@@ -388,7 +505,14 @@ rule extension:
         writes("extension"),
     log:
         f"{DERIVED}/extension/stage.log",
+    benchmark:
+        f"{DERIVED}/extension/benchmark.tsv"
     priority: 1  # the longest way to the report leads here
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("extension"),
     params:
         settings=settings("extension"),
         files=files("extension"),
@@ -406,6 +530,13 @@ rule diagnosis:
         writes("diagnosis"),
     log:
         f"{DERIVED}/diagnosis/stage.log",
+    benchmark:
+        f"{DERIVED}/diagnosis/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("diagnosis"),
     params:
         settings=settings("diagnosis"),
         files=files("diagnosis"),
@@ -423,6 +554,13 @@ rule compensation:
         writes("compensation"),
     log:
         f"{DERIVED}/compensation/stage.log",
+    benchmark:
+        f"{DERIVED}/compensation/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("compensation"),
     params:
         settings=settings("compensation"),
         files=files("compensation"),
@@ -440,6 +578,13 @@ rule navigation:
         writes("navigation"),
     log:
         f"{DERIVED}/navigation/stage.log",
+    benchmark:
+        f"{DERIVED}/navigation/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("navigation"),
     params:
         settings=settings("navigation"),
         files=files("navigation"),
@@ -457,6 +602,13 @@ rule alignment:
         writes("alignment"),
     log:
         f"{DERIVED}/alignment/stage.log",
+    benchmark:
+        f"{DERIVED}/alignment/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("alignment"),
     params:
         settings=settings("alignment"),
         files=files("alignment"),
@@ -474,6 +626,13 @@ rule history:
         writes("history"),
     log:
         f"{DERIVED}/history/stage.log",
+    benchmark:
+        f"{DERIVED}/history/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("history"),
     params:
         settings=settings("history"),
         files=files("history", archive="data/history"),
@@ -491,6 +650,13 @@ rule export:
         writes("export"),
     log:
         f"{DERIVED}/export/stage.log",
+    benchmark:
+        f"{DERIVED}/export/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("export"),
     params:
         settings=settings("export"),
         files=files("export"),
@@ -508,6 +674,13 @@ rule report:
         writes("report"),
     log:
         f"{DERIVED}/report/stage.log",
+    benchmark:
+        f"{DERIVED}/report/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("report"),
     params:
         settings=settings("report"),
         files=files("report"),
@@ -526,6 +699,13 @@ rule pdf:
         writes("pdf"),
     log:
         f"{DERIVED}/pdf/stage.log",
+    benchmark:
+        f"{DERIVED}/pdf/benchmark.tsv"
+    group:
+        "campaign"
+    threads: 1
+    resources:
+        **needs("pdf"),
     params:
         settings=settings("pdf"),
         files=files("pdf"),
@@ -547,6 +727,10 @@ rule index:
         "reports/index.html",
     log:
         "data/derived/.overviews/index.log",
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=10,
     params:
         campaigns=CAMPAIGNS,
         archive=kept(ARCHIVE),
@@ -571,6 +755,10 @@ rule history_page:
         "reports/history/{serial}.html",
     log:
         "data/derived/.overviews/history-{serial}.log",
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=10,
     params:
         archive=lambda wildcards: kept(ARCHIVE, wildcards.serial),
         pages=pages(),
@@ -590,6 +778,10 @@ rule compare:
         "reports/compare-{pair}.txt",
     log:
         "data/derived/.overviews/compare-{pair}.log",
+    threads: 1
+    resources:
+        mem_mb=2000,
+        runtime=10,
     params:
         both=lambda wildcards: pair_of(wildcards.pair, CAMPAIGNS),
         settings=overview_settings(),

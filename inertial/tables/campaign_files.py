@@ -5,9 +5,17 @@ campaign is said by its plan, so that one bad campaign does not stop the others.
 """
 
 from pathlib import Path
+from typing import Any
 
-from inertial.tables.errors import Refusal
-from inertial.tables.yaml_file import YamlFile
+import yaml
+
+from inertial.tables.yaml_file import MAX_BYTES, MAX_DEPTH
+
+
+class _Texts(yaml.CSafeLoader):
+    """YAML read by a library in C, every scalar as text: names need no types, many files time."""
+
+    yaml_implicit_resolvers = {"<": yaml.CSafeLoader.yaml_implicit_resolvers["<"]}  # merged keys
 
 
 def campaigns(folder: str, pattern: str) -> list[str]:
@@ -18,10 +26,7 @@ def campaigns(folder: str, pattern: str) -> list[str]:
 
 def logs_of(path: Path) -> list[str]:
     """The log files that a campaign names, or the campaign inside a simulated one's description."""
-    try:
-        content = YamlFile(path).content
-    except (Refusal, OSError):
-        return []
+    content = _texts(path)
     if isinstance(content, dict) and isinstance(content.get("campaign"), dict):
         content = content["campaign"]
     if not isinstance(content, dict) or not isinstance(content.get("plan"), list):
@@ -31,3 +36,18 @@ def logs_of(path: Path) -> list[str]:
     apart = [content.get("encoder"), content.get("gyro"), *(m.get("gyro") for m in manoeuvres)]
     logs += [other.get("log") for other in apart if isinstance(other, dict)]
     return sorted({log for log in logs if isinstance(log, str) and Path(log).name == log})
+
+
+def _texts(path: Path) -> Any:
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            return None
+        text, depth = path.read_bytes(), 0
+        for event in yaml.parse(text, _Texts):  # to load it the library calls itself for each level
+            depth += isinstance(event, yaml.CollectionStartEvent)
+            depth -= isinstance(event, yaml.CollectionEndEvent)
+            if depth > MAX_DEPTH:
+                return None
+        return yaml.load(text, _Texts)
+    except (yaml.YAMLError, OSError, ValueError):
+        return None
