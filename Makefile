@@ -45,6 +45,8 @@
 #   make mutants                  puts faults into the physics, one at a time, and reports which of them the
 #                                 tests see, in docs/mutants.md; 1200 faults take an hour on two cores,
 #                                 can be resumed; with DRAWS=100 so many of them
+#   make cluster-test             docs/scale.md: campaigns through a Slurm of two nodes on this machine, one
+#                                 of which dies, and the cost of a year; also with DRAWS=6 campaigns
 #   make docs                     docs/tables.md, docs/theory.md and the catalogues of messages, from the code
 #   make recordings               docs/recordings.md: the real recordings, which are not part of the
 #                                 project, drafted and compared with what is known of them; 15 minutes
@@ -55,7 +57,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new design trace index compare test test-slow style bench challenge silence noise histories temperature designs mutants docs recordings clean setup pango campaign
+.PHONY: report check draft new design trace index compare test test-slow style bench challenge silence noise histories temperature designs mutants docs recordings cluster-test clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -94,46 +96,18 @@ export CAMPAIGN ID ONLY DRAWS LOG NAME RATE PLAN INSTRUMENT TABLE MINUTES CRITER
 PYTHON ?= python3
 BIN := .venv/bin
 PANGO := libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0
-# The kernel releases the lock of flock when a run is killed; Snakemake's own would stay and stop
-# the next run.
-SNAKEMAKE := flock Snakefile $(BIN)/snakemake --nolock --cores 2 --quiet host reason --
+COMMAND := $(BIN)/python -m turntable_calibration
 
-# Behind a recipe that fails GNU make says "Error 1". What a person calls is therefore done by try-…,
-# whose failure is ignored, in silence, and remembered by $(try); $(ended) then stops make with
-# status 2, and its one line is the place of the full log, where there is one.
-CALLED := report check draft new design trace index compare
-ENDED := $(shell mktemp --dry-run --suffix=.make)
-export ENDED
-try = $(ended)-trap '(( $$? == 0 )) || [[ -s $$ENDED ]] || echo "what is wrong stands above" > $$ENDED' EXIT
-ended = $(if $(file < $(ENDED)),$(error $(shell cat $(ENDED); rm $(ENDED))))
+report: campaign setup
+	$(COMMAND) report "$$CAMPAIGN"
 
-.PHONY: $(CALLED:%=try-%)
-$(CALLED): %: try-%
-	$(ended)
-
-try-report: campaign setup
-	$(try)
-	kinds=(html)
-	if [[ -e .venv/pango ]]; then kinds+=(pdf); fi
-	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
-	$(SNAKEMAKE) "$${kinds[@]/#/reports/$$CAMPAIGN.}" "reports/$$CAMPAIGN.calibration.json"
-	echo
-	sed '/^Campaign:/,$$d' "reports/$$CAMPAIGN.txt"
-	echo "For other programs:" reports/$$CAMPAIGN.{calibration.json,calibration.yaml,calibration.h,dcc.xml,kalibr.yaml,ros.yaml,px4.params,ardupilot.param}
-	echo "The report:" "$${kinds[@]/#/reports/$$CAMPAIGN.}"
-
-# By hand `python -m commands.check --campaign=<name>` ends with 1 where something spoils a result or
-# a sensor gets none, as make does with its 2.
-try-check: campaign .venv/complete
-	$(try)
-	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
-	$(SNAKEMAKE) data/derived/$$CAMPAIGN/{accelerometer,gyroscope}/parameters.parquet
-	echo
-	$(BIN)/python -m commands.check "--campaign=$$CAMPAIGN"
+# By hand it ends with 1 where something spoils a result or a sensor gets none; make turns that into
+# its own 2.
+check: campaign .venv/complete
+	$(COMMAND) check "$$CAMPAIGN"
 
 # A name with a blank is quoted: LOG="'my log.csv' other.csv"; a pattern is expanded: LOG="june/*.csv".
-try-draft: .venv/complete
-	$(try)
+draft: .venv/complete
 	mapfile -t words < <(xargs --no-run-if-empty printf '%s\n' <<< "$$LOG")
 	logs=()
 	for word in "$${words[@]}"; do
@@ -145,26 +119,20 @@ try-draft: .venv/complete
 	if [[ $$RATE ]]; then options+=("--rate=$$RATE"); fi
 	$(BIN)/python -m commands.draft "$${options[@]}" "--name=$$NAME" -- "$${logs[@]}"
 
-try-new: .venv/complete
-	$(try)
+new: .venv/complete
 	$(BIN)/python -m commands.new "--plan=$$PLAN" "--name=$$NAME"
 
-try-design: campaign .venv/complete
-	$(try)
+design: campaign .venv/complete
+	of=("--campaign=$$CAMPAIGN" "--want=$$WANT")
 	if [[ $$INSTRUMENT ]]; then
 		of=("--instrument=$$INSTRUMENT" "--minutes=$$MINUTES" "--criterion=$$CRITERION")
-	else
-		$(SNAKEMAKE) data/derived/$$CAMPAIGN/criticism/findings.parquet
-		of=("--campaign=$$CAMPAIGN" "--want=$$WANT")
 	fi
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m commands.design "$${of[@]}" "--table=$$TABLE" "--name=$$NAME"
+	$(COMMAND) design "$${of[@]}" "--table=$$TABLE" "--name=$$NAME"
 
-try-trace: campaign setup
-	$(try)
+trace: campaign setup
 	$(BIN)/python -m commands.trace "--campaign=$$CAMPAIGN" "--id=$$ID"
 
-# Ends with 2 where $$CAMPAIGN is no name of a campaign, or there is none of this name.
-define named
+campaign:
 	LC_ALL=C # a-z without ä
 	if [[ ! $$CAMPAIGN =~ ^[a-z0-9][a-z0-9-]*$$ ]]; then
 		printf 'make: CAMPAIGN=%q is no name of a campaign: ' "$$CAMPAIGN"
@@ -175,31 +143,13 @@ define named
 		echo "make: there is no campaign $$CAMPAIGN: data/raw/$$CAMPAIGN/campaign.yaml is missing"
 		exit 2
 	fi >&2
-endef
 
-campaign:
-	$(try)
-	$(named)
+index: .venv/complete
+	$(COMMAND) index
 
-# The pages of all campaigns that have a result; where one is refused now, a second run is without it.
-try-index: .venv/complete
-	$(try)
-	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
-	for goal in histories reports/index.html; do
-		$(SNAKEMAKE) $$goal || $(SNAKEMAKE) $$goal
-	done
-	echo "All campaigns: reports/index.html; each IMU: reports/history/"
-
-try-compare: .venv/complete
-	$(try)
-	for CAMPAIGN in "$$A" "$$B"; do
-	$(named)
-	done
-	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
-	$(SNAKEMAKE) "reports/compare-$$A-$$B.html"
-	echo
-	cat "reports/compare-$$A-$$B.txt"
-	echo "The comparison: reports/compare-$$A-$$B.html"
+compare: .venv/complete
+	for campaign in "$$A" "$$B"; do $(MAKE) --no-print-directory campaign "CAMPAIGN=$$campaign"; done
+	$(COMMAND) compare "$$A" "$$B"
 
 test: setup
 	$(BIN)/python -m pytest
@@ -210,7 +160,7 @@ test-slow: setup
 style: setup
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/mypy stages inertial commands overviews laboratory
+	$(BIN)/mypy stages inertial commands overviews laboratory turntable_calibration
 	MYPYPATH=tests:tests/bounds:tests/hidden:tests/temperature $(BIN)/mypy benchmarks/*.py benchmarks/own/*.py
 	$(BIN)/snakefmt --check -l 100 Snakefile
 	$(BIN)/lint-imports
@@ -261,6 +211,15 @@ docs: .venv/complete
 		$(BIN)/pybabel -q update --no-fuzzy-matching --ignore-obsolete --no-wrap --ignore-pot-creation-date \
 			--input-file inertial/text/messages.pot --locale $$language --output-file inertial/text/$$language.po
 	done
+
+# Slurm and munge are Debian's, installed where that is permitted.
+cluster-test: .venv/complete
+	if ! PATH=$$PATH:/usr/sbin command -v slurmctld munged > /dev/null; then
+		if [[ $$(id -u) == 0 ]]; then may=(env); else may=(sudo -n); fi
+		"$${may[@]}" DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends \
+			slurm-wlm munge > /dev/null || true
+	fi
+	PYTHONPATH=tests:tests/cluster OPENBLAS_NUM_THREADS=1 $(BIN)/python -m cluster $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",40)
 
 recordings: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m recordings

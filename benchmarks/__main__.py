@@ -1,10 +1,11 @@
 """The command line of `make bench`: all parts, or those that are named.
 
-    python -m benchmarks [bounds calibration faults cost campaigns noise temperature decoding scale
-        kills]
+    python -m benchmarks [bounds calibration faults cost campaigns noise temperature decoding
+        dry_run scale kills]
 
 Prints the tables; a run of all parts also writes them to benchmarks/results.md. BENCH_LOG_MB is the
-size of the log in `decoding`, in units of 10⁶ byte; BENCH_SAMPLES bounds the campaigns of `scale`.
+size of the log in `decoding`, in units of 10⁶ byte; BENCH_SAMPLES bounds the campaigns of `scale`,
+BENCH_CAMPAIGNS sets the numbers of campaigns of `dry_run`.
 """
 
 import sys
@@ -23,6 +24,7 @@ PARTS = (
     "noise",
     "temperature",
     "decoding",
+    "dry_run",
     "scale",
     "kills",
 )

@@ -14,6 +14,7 @@ from inertial.campaign.foreseen import Pace, stated_noise
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Known
 from inertial.physics.site import EARTH_RATE, earth_rate
+from inertial.tables.code import ROOT
 from inertial.tables.errors import Refusal
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.campaign_units import ARC_SECOND, DEGREE, PER_ROOT_HOUR, in_si
@@ -79,10 +80,15 @@ def turntable(name: str, data: Path) -> Turntable:
     Refusal
         where there is none, or its entry breaks the schema
     """
-    file = YamlFile(data / "tables.yaml")
+    file = _entries(data / "tables.yaml")
     file.check("turntables")
     entry = _entry(file, name, "TABLE")
     return Turntable(entry, _ups(entry["attitudes"]), _known(entry))
+
+
+def _entries(file: Path) -> YamlFile:
+    """The file of a folder of data, or where it has none that of the project."""
+    return YamlFile(file if file.is_file() else ROOT / "data" / file.name)
 
 
 def _known(entry: Entry) -> dict[str, Known]:
@@ -108,7 +114,7 @@ def instrument(name: str, data: Path) -> Instrument:
     Refusal
         where there is none, or it states no noise
     """
-    file = YamlFile(data / "instruments.yaml")
+    file = _entries(data / "instruments.yaml")
     file.check("campaign", "instrument")
     entry = _entry(file, name, "INSTRUMENT")
     accelerometer, gyro = entry.get("accelerometer", {}), entry.get("gyro", {})

@@ -15,7 +15,8 @@ from inertial.tables.yaml_file import MAX_BYTES, MAX_DEPTH
 class _Texts(yaml.CSafeLoader):
     """YAML read by a library in C, every scalar as text: names need no types, many files time."""
 
-    yaml_implicit_resolvers = {"<": yaml.CSafeLoader.yaml_implicit_resolvers["<"]}  # merged keys
+
+_Texts.yaml_implicit_resolvers = {"<": yaml.CSafeLoader.yaml_implicit_resolvers["<"]}  # merged keys
 
 
 def campaigns(folder: str, pattern: str) -> list[str]:
@@ -48,6 +49,6 @@ def _texts(path: Path) -> Any:
             depth -= isinstance(event, yaml.CollectionEndEvent)
             if depth > MAX_DEPTH:
                 return None
-        return yaml.load(text, _Texts)
+        return _Texts(text).get_single_data()
     except (yaml.YAMLError, OSError, ValueError):
         return None

@@ -1,0 +1,161 @@
+"""Campaigns through a real Slurm: a node dies in the middle, a job needs more than it asked for.
+
+Two runs of Snakemake submit to the same Slurm, as two users do. What came out is compared with a
+run on this machine without Slurm.
+"""
+
+import re
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import chain
+import pandas as pd
+import pyarrow.parquet as pq
+from slurm import Slurm
+
+from stages import ORDER
+
+DYING = "n1"
+GREEDY = "greedy"
+SMALL_MB = 300  # too little for any stage with the two processes of Snakemake that start it
+EVERY = 1.0  # s
+SUMMED = ("s", "cpu_time", "max_rss")  # s, s, MB: columns of Snakemake's benchmarks
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What happened: seconds, jobs begun again, jobs ended for their memory, differing tables."""
+
+    campaigns: int
+    exit_codes: tuple[int, ...]
+    seconds: float
+    lost_processes: int
+    requeued: int
+    over_memory: int
+    again: str  # what a further run finds to do
+    different: tuple[str, ...]
+    benchmarks: pd.DataFrame  # a row for each campaign and stage
+
+    @property
+    def lossless(self) -> bool:
+        """Whether all is there as if nothing had happened."""
+        return (
+            not any(self.exit_codes) and not self.different and "Nothing to be done" in self.again
+        )
+
+
+def through_slurm(
+    folder: Path, campaigns: int, goals: Sequence[str], compared: int, patience: float
+) -> Outcome:
+    """Run so many campaigns and a greedy one up to `goals`, names with `{campaign}`.
+
+    `compared`: how many of them are run without Slurm too; `patience`: s, until all is ended.
+    """
+    names = [f"c{number:03}" for number in range(campaigns)]
+    for seed, name in enumerate(names):
+        chain.simulate(chain.short(seed=seed), folder / "many/data/raw" / name)
+    chain.simulate(chain.short(seed=campaigns), folder / "one/data/raw" / GREEDY)
+    wanted = [goal.format(campaign=name) for name in names for goal in goals]
+    greedy = [goal.format(campaign=GREEDY) for goal in goals]
+
+    start = time.monotonic()
+    with Slurm(folder / "slurm") as slurm:
+        until = start + patience
+        runs = [_submitting(slurm, folder / "many", "--", *wanted)]
+        try:
+            _wait(lambda: _at_work(slurm, folder / "many"), until, runs)
+            lost = slurm.kill(DYING)
+            small = [f"{stage}:mem_mb=attempt * attempt * {SMALL_MB}" for stage in ORDER]
+            runs += [_submitting(slurm, folder / "one", "--set-resources", *small, "--", *greedy)]
+            _wait(lambda: slurm.states()[DYING].startswith("down"), until, runs)
+            slurm.start_node(DYING)
+            for job in slurm.asked("squeue", "--noheader", "--format=%i %r").splitlines():
+                if job.endswith("BeginTime"):  # begun again, which Slurm holds for two minutes
+                    slurm.asked("scontrol", "update", f"JobId={job.split()[0]}", "StartTime=now")
+            codes = tuple(run.wait(timeout=max(1.0, until - time.monotonic())) for run in runs)
+        finally:
+            for run in runs:
+                run.kill()
+                run.wait()
+        seconds = time.monotonic() - start
+        log = (folder / "slurm/slurmctld.log").read_text()
+    again = _local(folder / "many", "--dry-run", "--", *wanted)
+    logs = (folder / "one/.snakemake/slurm_logs").rglob("*.log")
+    return Outcome(
+        campaigns + 1,
+        codes,
+        seconds,
+        lost,
+        len(set(re.findall(rf"requeue job JobId=(\d+) due to failure of node {DYING}", log))),
+        sum("exceeded memory limit" in path.read_text("utf-8", "replace") for path in logs),
+        again.stdout + again.stderr,
+        tuple(_different(folder, names[:compared], goals)),
+        _benchmarks(folder),
+    )
+
+
+def _submitting(slurm: Slurm, folder: Path, *arguments: str) -> subprocess.Popen[bytes]:
+    """Snakemake with the profile of the project, as a user runs it."""
+    command = [
+        *_snakemake(folder),
+        *("--profile", str(chain.ROOT / "profiles/slurm")),
+        *("--slurm-init-seconds-before-status-checks", "5"),
+        *arguments,
+    ]
+    with (folder / "said.txt").open("wb") as said:
+        return subprocess.Popen(command, env=slurm.env, stdout=said, stderr=said)
+
+
+def _local(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [*_snakemake(folder), "--cores", "1", *arguments]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+def _snakemake(folder: Path) -> list[str]:
+    where = ["--snakefile", str(chain.ROOT / "Snakefile"), "--directory", str(folder)]
+    return [sys.executable, "-m", "snakemake", "--nolock", *where]
+
+
+def _at_work(slurm: Slurm, folder: Path) -> bool:
+    """Whether a job is on the node that will die, and the stage after decoding has begun."""
+    begun = folder.glob("data/derived/*/quality/stage.log")
+    return any(begun) and bool(slurm.jobs_on(DYING))
+
+
+def _wait(done: Callable[[], bool], until: float, runs: Sequence[subprocess.Popen[bytes]]) -> None:
+    while not done():
+        if time.monotonic() > until or all(run.poll() is not None for run in runs):
+            raise TimeoutError("what was waited for on the cluster did not happen")
+        time.sleep(EVERY)
+
+
+def _different(folder: Path, names: Sequence[str], goals: Sequence[str]) -> list[str]:
+    """Tables of these campaigns that a run without Slurm makes otherwise."""
+    beside = folder / "beside"
+    for name in names:
+        (beside / "data/raw").mkdir(parents=True, exist_ok=True)
+        (beside / "data/raw" / name).symlink_to(folder / "many/data/raw" / name)
+    done = _local(beside, "--", *(goal.format(campaign=name) for name in names for goal in goals))
+    if done.returncode:
+        raise RuntimeError(done.stderr)
+    tables = sorted(path.relative_to(beside) for path in beside.rglob("data/derived/**/*.parquet"))
+    return [
+        str(table)
+        for table in tables
+        if not (folder / "many" / table).is_file()
+        or not pq.read_table(beside / table).equals(pq.read_table(folder / "many" / table))
+    ]
+
+
+def _benchmarks(folder: Path) -> pd.DataFrame:
+    rows = [
+        {"campaign": file.parts[-3], "stage": file.parts[-2]}
+        | pd.read_csv(file, sep="\t")[list(SUMMED)].iloc[-1].to_dict()
+        for file in folder.glob("*/data/derived/*/*/benchmark.tsv")
+        if "beside" not in file.parts
+    ]
+    return pd.DataFrame(rows)

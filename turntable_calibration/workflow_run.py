@@ -1,0 +1,53 @@
+"""Where the workflow lies, and a run of it by Snakemake on the folder of a user."""
+
+import fcntl
+import importlib
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import click
+
+HERE = Path(__file__).parent
+# A wheel ships the tree beside this file; in a checkout it is the checkout.
+WORKFLOW = HERE / "workflow" if (HERE / "workflow").is_dir() else HERE.parent
+LOCK = ".snakemake/turntable-calibration.lock"
+
+
+def snakemake(folder: Path, cores: int, targets: Sequence[str], more: Sequence[str] = ()) -> int:
+    """Make the targets on a folder that holds data/; its exit status.
+
+    Two runs on one folder wait for each other. The kernel releases the lock when a run is killed;
+    Snakemake's own would stay and stop the next run. What Snakemake started has it too.
+    """
+    lock = folder / LOCK
+    lock.parent.mkdir(parents=True, exist_ok=True)
+    with lock.open("a") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            click.echo("Another run is at work here; this one waits for it.")
+            fcntl.flock(file, fcntl.LOCK_EX)
+        command = [
+            *(sys.executable, "-m", "snakemake", "--nolock"),
+            *("--snakefile", str(WORKFLOW / "Snakefile"), "--directory", str(folder)),
+            *("--cores", str(cores), "--quiet", "host", "reason", *more, "--", *targets),
+        ]
+        return subprocess.run(command, pass_fds=[file.fileno()], check=False).returncode
+
+
+def command(module: str, arguments: Sequence[str], folder: Path) -> int:
+    """What `python -m commands.<module>` does, on a folder that holds data/; its exit status."""
+    if str(WORKFLOW) not in sys.path:
+        sys.path.insert(0, str(WORKFLOW))
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy is loaded: matrices are small
+    main: Callable[[Sequence[str]], int] = importlib.import_module(f"commands.{module}").main
+    return main(["--data", str(folder / "data"), *arguments])
+
+
+def campaigns(folder: Path) -> list[str]:
+    """The campaigns of a folder, recorded and simulated."""
+    recorded = {path.parent.name for path in folder.glob("data/raw/*/campaign.yaml")}
+    return sorted(recorded | {path.stem for path in folder.glob("data/simulated/*.yaml")})
