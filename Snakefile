@@ -14,7 +14,7 @@ from snakemake.utils import min_version, validate
 
 min_version("9.0")
 
-HOME = Path(workflow.basedir)
+HOME = Path(str(workflow.current_basedir))  # of this file, included or a module of another
 sys.path.insert(0, str(HOME))
 # The data may lie elsewhere (--directory), and the environment need not be activated.
 shell.prefix(f"export PATH={Path(sys.executable).parent}:$PATH PYTHONPATH={HOME}; ")
@@ -63,7 +63,13 @@ def reads(stage):
 def writes(stage):
     """The tables that a stage writes, or its documents."""
     tables = [f"{DERIVED}/{stage}/{name}.parquet" for name in declared(stage).writes]
-    return tables + [f"reports/{{campaign}}.{ending}" for ending in declared(stage).documents]
+    documents = [f"reports/{{campaign}}.{ending}" for ending in declared(stage).documents]
+    return tables + [shown(document) for document in documents]
+
+
+def shown(document, category="{campaign}"):
+    """A document as snakemake --report shows it, under the campaign."""
+    return report(document, category=category, labels={"document": document.partition(".")[2]})
 
 
 def code(stage):
@@ -87,8 +93,8 @@ def settings(stage):
 def needs(stage):
     """Memory, MB, and time, minutes, of a stage: where it reads samples, by the size of the logs.
 
-    Both with room to spare against what `benchmark:` measures (docs/scale.md), and twice as much
-    for a second attempt.
+    Both with room to spare against what `benchmark:` measures, and twice as much for a second
+    attempt.
     """
     reads_samples = bool("raw" in declared(stage).files or declared(stage).streams)
 
@@ -724,7 +730,7 @@ rule index:
     input:
         lambda wildcards: results(*with_result(CAMPAIGNS, Path("data/derived"))),
     output:
-        "reports/index.html",
+        shown("reports/index.html", "all campaigns"),
     log:
         "data/derived/.overviews/index.log",
     threads: 1
@@ -752,7 +758,7 @@ rule history_page:
     input:
         with_serial,
     output:
-        "reports/history/{serial}.html",
+        shown("reports/history/{serial}.html", "{serial}"),
     log:
         "data/derived/.overviews/history-{serial}.log",
     threads: 1
@@ -774,7 +780,7 @@ rule compare:
     input:
         compared,
     output:
-        "reports/compare-{pair}.html",
+        shown("reports/compare-{pair}.html", "{pair}"),
         "reports/compare-{pair}.txt",
     log:
         "data/derived/.overviews/compare-{pair}.log",

@@ -32,19 +32,25 @@ def measured() -> list[Table]:
     )
     worst = 0.0
     for campaigns in map(int, os.environ.get("BENCH_CAMPAIGNS", "1000").split()):
-        with TemporaryDirectory() as name:
-            folder = Path(name)
-            logs = _campaigns(folder, campaigns)
-            (folder / "Snakefile").write_text(_bare(logs), encoding="utf-8")
-            own, jobs = _dry_run(folder, ROOT / "Snakefile")
-            bare, same = _dry_run(folder, folder / "Snakefile")
-        if jobs != same:
-            raise RuntimeError(f"the bare Snakefile plans {same} jobs, the workflow {jobs}")
+        own, bare, jobs = planned(campaigns)
         worst = max(worst, own / bare)
         table.add(f"{campaigns:,}", f"{jobs:,}", digits(own), digits(bare), f"{own / bare:.2f}")
     kept = "kept" if worst <= BAR else "MISSED"
     table.remarks.append(f"Processor time of Snakemake and all it starts. Bar: {BAR}, {kept}.")
     return [table]
+
+
+def planned(campaigns: int) -> tuple[float, float, int]:
+    """Processor time, s, of a dry run of the workflow and of the bare Snakefile; their jobs."""
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        logs = _campaigns(folder, campaigns)
+        (folder / "Snakefile").write_text(_bare(logs), encoding="utf-8")
+        own, jobs = _dry_run(folder, ROOT / "Snakefile")
+        bare, same = _dry_run(folder, folder / "Snakefile")
+    if jobs != same:
+        raise RuntimeError(f"the bare Snakefile plans {same} jobs, the workflow {jobs}")
+    return own, bare, jobs
 
 
 def _campaigns(folder: Path, number: int) -> list[str]:

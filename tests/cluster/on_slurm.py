@@ -5,6 +5,7 @@ run on this machine without Slurm.
 """
 
 import re
+import resource
 import subprocess
 import sys
 import time
@@ -23,7 +24,7 @@ DYING = "n1"
 GREEDY = "greedy"
 SMALL_MB = 300  # too little for any stage with the two processes of Snakemake that start it
 EVERY = 1.0  # s
-SUMMED = ("s", "cpu_time", "max_rss")  # s, s, MB: columns of Snakemake's benchmarks
+MEASURED = ("s", "cpu_time", "max_rss")  # s, s, MB: columns of Snakemake's benchmarks
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,7 @@ class Outcome:
     over_memory: int
     again: str  # what a further run finds to do
     different: tuple[str, ...]
+    share: float  # of the processor time of the run without Slurm, that of the stages
     benchmarks: pd.DataFrame  # a row for each campaign and stage
 
     @property
@@ -83,7 +85,8 @@ def through_slurm(
                 run.wait()
         seconds = time.monotonic() - start
         log = (folder / "slurm/slurmctld.log").read_text()
-    again = _local(folder / "many", "--dry-run", "--", *wanted)
+    again = local(folder / "many", "--dry-run", "--", *wanted)
+    share = _beside(folder, names[:compared], goals)
     logs = (folder / "one/.snakemake/slurm_logs").rglob("*.log")
     return Outcome(
         campaigns + 1,
@@ -93,8 +96,9 @@ def through_slurm(
         len(set(re.findall(rf"requeue job JobId=(\d+) due to failure of node {DYING}", log))),
         sum("exceeded memory limit" in path.read_text("utf-8", "replace") for path in logs),
         again.stdout + again.stderr,
-        tuple(_different(folder, names[:compared], goals)),
-        _benchmarks(folder),
+        tuple(_different(folder)),
+        share,
+        benchmarks(folder / "many"),
     )
 
 
@@ -110,7 +114,8 @@ def _submitting(slurm: Slurm, folder: Path, *arguments: str) -> subprocess.Popen
         return subprocess.Popen(command, env=slurm.env, stdout=said, stderr=said)
 
 
-def _local(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+def local(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Snakemake on this machine alone."""
     command = [*_snakemake(folder), "--cores", "1", *arguments]
     return subprocess.run(command, capture_output=True, text=True)
 
@@ -133,29 +138,50 @@ def _wait(done: Callable[[], bool], until: float, runs: Sequence[subprocess.Pope
         time.sleep(EVERY)
 
 
-def _different(folder: Path, names: Sequence[str], goals: Sequence[str]) -> list[str]:
-    """Tables of these campaigns that a run without Slurm makes otherwise."""
+def _beside(folder: Path, names: Sequence[str], goals: Sequence[str]) -> float:
+    """Run these campaigns without Slurm; the share of the stages in the processor time."""
     beside = folder / "beside"
+    (beside / "data/raw").mkdir(parents=True)
     for name in names:
-        (beside / "data/raw").mkdir(parents=True, exist_ok=True)
         (beside / "data/raw" / name).symlink_to(folder / "many/data/raw" / name)
-    done = _local(beside, "--", *(goal.format(campaign=name) for name in names for goal in goals))
+    before = _spent()
+    done = local(beside, "--", *(goal.format(campaign=name) for name in names for goal in goals))
     if done.returncode:
         raise RuntimeError(done.stderr)
-    tables = sorted(path.relative_to(beside) for path in beside.rglob("data/derived/**/*.parquet"))
+    return float(benchmarks(beside)["cpu_time"].sum() / (_spent() - before))
+
+
+def _spent() -> float:
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def _different(folder: Path) -> list[str]:
+    """Tables that the run without Slurm made otherwise, but for rounding, or that are missing."""
+    beside, many = folder / "beside", folder / "many"
+    tables = sorted(path.relative_to(beside) for path in beside.glob("data/derived/*/*/*.parquet"))
     return [
         str(table)
         for table in tables
-        if not (folder / "many" / table).is_file()
-        or not pq.read_table(beside / table).equals(pq.read_table(folder / "many" / table))
+        if not (many / table).is_file() or not _equal(beside / table, many / table)
     ]
 
 
-def _benchmarks(folder: Path) -> pd.DataFrame:
+def _equal(first: Path, second: Path) -> bool:
+    try:
+        pd.testing.assert_frame_equal(
+            *(pq.read_table(path).to_pandas() for path in (first, second)), rtol=1e-9, atol=0.0
+        )
+    except AssertionError:
+        return False
+    return True
+
+
+def benchmarks(folder: Path) -> pd.DataFrame:
+    """What `benchmark:` measured: a row for each campaign and stage."""
     rows = [
         {"campaign": file.parts[-3], "stage": file.parts[-2]}
-        | pd.read_csv(file, sep="\t")[list(SUMMED)].iloc[-1].to_dict()
-        for file in folder.glob("*/data/derived/*/*/benchmark.tsv")
-        if "beside" not in file.parts
+        | pd.read_csv(file, sep="\t")[list(MEASURED)].iloc[-1].to_dict()
+        for file in folder.glob("data/derived/*/*/benchmark.tsv")
     ]
     return pd.DataFrame(rows)

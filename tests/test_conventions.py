@@ -1,0 +1,90 @@
+"""What users of Snakemake expect of a workflow: its layout, use as a module, description."""
+
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import chain
+import pytest
+from ruamel.yaml import YAML
+
+from stages import ORDER
+
+GOAL = "reports/june.html"
+
+
+def snakemake(snakefile: Path, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    where = ["--snakefile", str(snakefile), "--directory", str(folder)]
+    command = [sys.executable, "-m", "snakemake", "--nolock", "--cores", "1", *where, *arguments]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+def planned(snakefile: Path, folder: Path, *goals: str) -> set[str]:
+    done = snakemake(snakefile, folder, "--dry-run", "--", *goals)
+    assert done.returncode == 0, done.stderr
+    return set(re.findall(r"^(\w+) +\d+$", done.stdout + done.stderr, re.MULTILINE)) - {"total"}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("june")
+    chain.simulate(chain.short(), folder / "data/raw/june")
+    return folder
+
+
+def test_where_the_catalogue_looks_is_the_same_workflow(folder: Path) -> None:
+    rules = set(ORDER) - {"export", "pdf"}
+    assert planned(chain.ROOT / "workflow/Snakefile", folder, GOAL) == rules
+    config = [chain.ROOT / name for name in ("config.yaml", "config/config.yaml")]
+    assert config[0].samefile(config[1])
+
+
+def test_another_workflow_uses_it_as_a_module(folder: Path) -> None:
+    other = folder / "Snakefile"
+    other.write_text(
+        f"""
+module calibration:
+    snakefile:
+        "{chain.ROOT}/Snakefile"
+
+
+use rule * from calibration exclude all as calibration_*
+
+
+rule summary:
+    default_target: True
+    input:
+        "data/derived/june/plan/manoeuvres.parquet",
+    output:
+        "rows.txt",
+    run:
+        import pyarrow.parquet
+
+        Path(output[0]).write_text(str(pyarrow.parquet.read_metadata(input[0]).num_rows))
+"""
+    )
+    done = snakemake(other, folder)
+    assert done.returncode == 0, done.stderr
+    assert (folder / "rows.txt").read_text() == "12"
+    assert planned(other, folder, GOAL) == {
+        f"calibration_{stage}" for stage in set(ORDER) - {"plan", "export", "pdf"}
+    }
+
+
+def test_the_citation_is_that_of_this_version() -> None:
+    citation = YAML(typ="safe").load(chain.ROOT / "CITATION.cff")
+    project = tomllib.loads((chain.ROOT / "pyproject.toml").read_text())["project"]
+    assert citation["version"] == project["version"]
+    assert {"cff-version", "message", "title", "authors"} <= set(citation)
+
+
+def test_containers_install_the_lock_file_and_the_packages_of_make() -> None:
+    makefile = (chain.ROOT / "Makefile").read_text()
+    (packages,) = re.findall(r"^PANGO := (.*)$", makefile, re.MULTILINE)
+    for name in ("Containerfile", "apptainer.def"):
+        text = (chain.ROOT / "containers" / name).read_text()
+        assert f"--no-install-recommends {packages}" in text
+        assert re.search(r"--require-hashes -r \S+/requirements\.lock", text)
+        assert "python:3.11-slim-bookworm" in text
