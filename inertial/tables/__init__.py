@@ -8,6 +8,7 @@ from inertial.tables.calibrated import (
     CHECKS,
     COMPENSATED,
     EARLIER,
+    RESIDUALS,
     UNCERTAINTY_BUDGET,
 )
 from inertial.tables.certified import (
@@ -198,6 +199,7 @@ __all__ = [
     "REFUSED",
     "REPAIRS",
     "REPEATABILITY",
+    "RESIDUALS",
     "SAMPLES",
     "SCORES",
     "SEGMENTS",

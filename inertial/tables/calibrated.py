@@ -1,6 +1,6 @@
 """Compensated samples, their checks, and the archive of calibrations."""
 
-from inertial.tables.shared import AXIS, MOUNT, QUANTITY, SENSOR, channels
+from inertial.tables.shared import AXIS, MOUNT, PHASES, QUANTITY, SENSOR, channels
 from inertial.tables.table import (
     DOUBLE,
     INTEGER,
@@ -62,6 +62,20 @@ CHECKS = Table(
         ),
         Column("in_sigmas_after", DOUBLE, "1", "after less expected, in sigmas", nullable=True),
         Column("sentence", SENTENCE, "", "the check in words"),
+    ),
+)
+
+RESIDUALS = Table(
+    "residuals",
+    1,
+    (
+        MOUNT,
+        Column("manoeuvre", TEXT, "", "as in manoeuvres; a rest in blocks, a turn in seconds"),
+        Column("phase", TEXT, "", PHASES),
+        Column("time", DOUBLE, "s", "middle of the mean", nullable=True),
+        Column("seconds", DOUBLE, "s", "recorded in it"),
+        *channels("read less predicted by the result that counts", prefix="residual_"),
+        *channels("of white noise alone in such a mean", prefix="sigma_"),
     ),
 )
 

@@ -25,14 +25,16 @@ DECLARED = Declared(
         "gyroscope_positions": From("gyroscope", tables.POSITIONS),
         "extended_fit": From("extension", tables.FIT),
         "result": From("diagnosis", tables.PARAMETERS, "result"),
+        "simulated": From("simulation", tables.SIMULATED),
     },
     writes={
         "compensated": tables.COMPENSATED,
         "checks": tables.CHECKS,
+        "residuals": tables.RESIDUALS,
         "characteristics": tables.CHARACTERISTICS,
         "uncertainty_budget": tables.UNCERTAINTY_BUDGET,
         "compensated_traces": tables.TRACES,
         "findings": tables.FINDINGS,
     },
-    streams=("samples",),
+    streams=("samples", "simulated"),
 )

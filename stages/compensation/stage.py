@@ -23,6 +23,7 @@ from stages.compensation.characteristics import characteristics
 from stages.compensation.checks import NO_SCATTER, checks, not_compensated, table_of
 from stages.compensation.correction import NOTHING, CompensatedStream, envelope, mounted
 from stages.compensation.declared import DECLARED
+from stages.compensation.residuals import residuals
 from stages.compensation.uncertainty_budget import budget_rows
 
 ALREADY = Finding(
@@ -45,6 +46,7 @@ ALREADY = Finding(
 def compensation(
     mounts: Sequence[CampaignData],
     samples: Stream,
+    simulated: Stream,
     traces: pd.DataFrame,
     masks: pd.DataFrame,
     channel_repairs: pd.DataFrame,
@@ -85,9 +87,9 @@ def compensation(
         if data.mount in measurements:
             course = (data.blocks[name].to_numpy(np.float64) for name in ("time", "temperature"))
             measurements[data.mount] = measurements[data.mount].along(*course)
-    for data in mounts:
+    attitudes = [_by_hand(data, measurements.get(data.mount, NOTHING)) for data in mounts]
+    for data, by_hand in zip(mounts, attitudes, strict=True):
         measurement = measurements.get(data.mount, NOTHING)
-        by_hand = _by_hand(data, measurement)
         scatter = _scatters(fits, data.mount) if by_hand.by_hand else NO_SCATTER
         rows += [check.row(data.mount) for check in checks(by_hand, measurement, scatter)]
         figures += characteristics(data, measurement)
@@ -97,6 +99,8 @@ def compensation(
     yield "checks", table_of(rows)
     yield "characteristics", tables.CHARACTERISTICS.frame(figures)
     yield "uncertainty_budget", tables.UNCERTAINTY_BUDGET.frame(shares)
+    for left in residuals(attitudes, measurements, simulated):
+        yield "residuals", left
     repairs = Repairs(channel_repairs)
     parts = mounted(mounts, measurements, segments)
     compensated = CompensatedStream(samples.path, parts, Masks(masks, repairs), repairs)

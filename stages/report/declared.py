@@ -85,6 +85,7 @@ DECLARED = Declared(
         "warm_up": From("extension", tables.WARM_UP),
         "differences": From("comparison", tables.DIFFERENCES),
         "checks": From("compensation", tables.CHECKS),
+        "residuals": From("compensation", tables.RESIDUALS),
         "alignments": From("alignment", tables.ALIGNMENTS),
         "attitude_errors": From("alignment", tables.ATTITUDE_ERRORS),
         "modulation_gains": From("alignment", tables.MODULATION_GAINS),
