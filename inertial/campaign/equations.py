@@ -25,7 +25,8 @@ from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.between_positions import CarriedEquations
 from inertial.estimation.drifting_equations import DriftingEquations
-from inertial.estimation.gyroscope_equations import Linearisation
+from inertial.estimation.elimination import Name
+from inertial.estimation.gyroscope_equations import Linearisation, is_upright
 from inertial.estimation.gyroscopes import LinearisedEquations
 from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import System
@@ -184,16 +185,38 @@ class Campaign:
         return sum(system.solve_shared().deviance for system in systems if system is not None)
 
     def systems(
-        self, effects: Sequence[Effect], prior_sigma: float, only: set[str] | None = None
+        self,
+        effects: Sequence[Effect],
+        prior_sigma: float,
+        only: set[str] | None = None,
+        sharing: Sequence[Name] = (),
     ) -> tuple[System | None, System | None]:
         """The equations of gyros and accelerometers with the effects as further unknowns.
 
         `prior_sigma`: of the effects' parameters, in their typical sizes; `only`: the
-        manoeuvres that are used.
+        manoeuvres that are used; `sharing`: errors that are not eliminated, but the last effects.
         """
         sigmas = _prior_sigmas(effects, prior_sigma)
-        gyro, accel = (self._system(s, effects, sigmas, only) for s in SENSORS)
+        gyro, accel = (self._system(s, effects, sigmas, only, sharing) for s in SENSORS)
         return gyro, accel
+
+    @property
+    def shared_tilts(self) -> tuple[Name, ...]:
+        """The tilts of positions that gyros and accelerometers both sense: of upright turns."""
+        both = self.solution.gyro is not None and self.solution.accelerometer is not None
+        if self.by_hand or not both or not self.position_sigma:
+            return ()
+        upright: dict[str, bool] = {}
+        for turn in self.inputs.turns:
+            own = is_upright(turn.position, turn.about)
+            upright[turn.position.name] = upright.get(turn.position.name, True) and own
+        stood = {rest.position for _, rest, _ in self.static_forces}
+        return tuple(
+            (f"tilt {i}", position)
+            for position, there in upright.items()
+            if there and position in stood
+            for i in (0, 1)
+        )
 
     def system(self, sensor: str, effects: Sequence[Effect], prior_sigma: float) -> System | None:
         """The equations of one sensor, `gyro` or `accel`; arguments as in `systems`."""
@@ -232,9 +255,12 @@ class Campaign:
         effects: Sequence[Effect],
         prior_sigmas: Mapping[str, float],
         only: set[str] | None,
+        sharing: Sequence[Name] = (),
     ) -> System | None:
         walk = self.solution.random_walks[SENSORS.index(sensor)]
         drifting = self._drifting(sensor, effects, prior_sigmas, only, walking=bool(walk))
+        if drifting and sharing:
+            drifting = drifting.sharing(sharing)
         return drifting.system(walk=walk) if drifting else None
 
     def _drifting(
