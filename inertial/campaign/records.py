@@ -66,6 +66,10 @@ class Manoeuvre:
         assert self.about is not None
         return self.about
 
+    def detected_rest(self, number: int) -> str:
+        """The name of a rest that was detected within it, in their order from 1."""
+        return f"{self.name}-{number:02d}"
+
 
 def with_mount(name: str, mount: str) -> str:
     """A part of an identifier, with the mount where the campaign has several; else it is empty."""
