@@ -315,7 +315,7 @@ def test_power_cycles_are_simulated_and_are_no_finding():
     rests = fidelity[(fidelity["profile"] == "at rest") & (fidelity["samples"] >= 6)]
     ratio = rests["residual_rms"] / rests["noise_rms"]
     assert 0.8 < np.sqrt(np.mean(ratio**2)) < 1.2  # 60 means of six: 1 with 4 % of one sigma
-    # What the laboratory drew is not in the campaign's tables; biases after switch-ons differ by it.
+    # Biases after switch-ons differ by more than ten times what a minute of noise leaves open.
     own = made["gyroscope/switch_ons"].pivot(index="switch_on", columns="axis", values="value")
     assert len(own) == 8 and own.abs().to_numpy().max() > 10 * np.radians(0.012) / 60 / np.sqrt(60)
 
