@@ -336,6 +336,29 @@ def test_beside_power_cycles_an_effect_is_found_and_they_are_estimated_beside_it
     assert 0.5 < size / (np.radians(4) / 3600) < 1.5
 
 
+def test_what_rests_on_one_bias_allows_for_that_of_each_switch_on(tmp_path):
+    """Checks and navigation have it in their sigmas; figures of the sensors are without it."""
+    document = chain.laboratory.read(chain.ROOT / "data/simulated/power-cycles.yaml").document
+    raw = chain.simulate(document, tmp_path / "raw/power-cycles")
+    made = chain.run(raw, tmp_path / "derived/power-cycles", "navigation", chain.BESIDE)
+    checks = made["compensation/checks"].dropna(subset=["in_sigmas_after"])
+    off = checks.groupby("quantity")["in_sigmas_after"]
+    # 24 deviations of the sensors, each in several checks; Student's sigma is 1.2 of one.
+    assert (off.apply(lambda own: np.sqrt(np.mean(own**2))) < 1.6).all()
+    figures = made["compensation/characteristics"]
+    composite = figures[figures["quantity"] == "composite_error"]
+    assert len(composite) == 6 and (composite["value"].abs() < composite["by_noise"]).all()
+    drifts = figures[figures["quantity"] == "acceleration_insensitive_drift"].set_index("axis")
+    for axis, true in zip("xyz", document["truth"]["gyro"]["bias_rad_s"], strict=True):
+        own = made.parameters("gyroscope").loc[f"bias_{axis}"]
+        assert drifts.loc[axis, "value"] == pytest.approx(own["value"], abs=own["sigma"] / 4)
+        assert drifts.loc[axis, "value"] == pytest.approx(true, abs=4 * own["sigma"])
+    errors = made["navigation/navigation_errors"]
+    turns = errors[(errors["motion"] == "turn") & (errors["quantity"] == "attitude")]
+    assert len(turns) == 6
+    assert 0.1 < np.mean((turns["calibrated"] / turns["predicted"]) ** 2) < 2
+
+
 def test_power_cycles_are_in_the_table_of_repeatability():
     columns = {"switch_on_x": 2e-5, "switch_on_x_sigma": 5e-6, "switch_on_x_upper": 3e-5}
     others = {f"switch_on_{a}{of}": None for a in "yz" for of in ("", "_sigma", "_upper")}

@@ -93,14 +93,6 @@ class Estimated:
             if row["quantity"] == quantity and row["sigma"] < below
         }
 
-    def switch_ons(self, mount: str) -> Array | None:
-        """By what the biases differ between switch-ons by the joint fit, (3,); None: one."""
-        for row in [] if self.fit is None else joint_rows(self.fit, mount):
-            if row["switch_ons"] > 1:
-                sizes = [row[f"switch_on_{axis}"] for axis in AXES]
-                return covering(np.array(sizes, np.float64), row["switch_ons"])
-        return None
-
     def deviations(self, mount: str) -> dict[int, Array]:
         """The bias after each switch-on by the joint fit, less that of the campaign, (3,)."""
         table = self.switch_on_biases
@@ -144,7 +136,10 @@ def solution_of(
         tilts | levels,
         (gyro.random_walk(mount), accelerometer.random_walk(mount)),
         frozenset(free),
-        {"gyro": gyro.switch_ons(mount), "accel": accelerometer.switch_ons(mount)},
+        {
+            "gyro": switch_ons_of(gyro.fit, mount),
+            "accel": switch_ons_of(accelerometer.fit, mount),
+        },
         {
             (sensor, switch_on): bias
             for sensor, of in (("gyro", gyro), ("accel", accelerometer))
@@ -156,6 +151,15 @@ def solution_of(
 def joint_rows(table: pd.DataFrame, mount: str, method: str = JOINT) -> list[Row]:
     """The rows of a method of a mount, whose name is empty where there is a single one."""
     return [row for row in rows_of(table) if (row["method"], row["mount"]) == (method, mount)]
+
+
+def switch_ons_of(fit: pd.DataFrame | None, mount: str) -> Array | None:
+    """By what the biases differ between switch-ons by the joint fit, (3,); None: there is one."""
+    for row in [] if fit is None else joint_rows(fit, mount):
+        if row["switch_ons"] > 1:
+            sizes = [row[f"switch_on_{axis}"] for axis in AXES]
+            return covering(np.array(sizes, np.float64), row["switch_ons"])
+    return None
 
 
 def scatter_by_mount(fit: pd.DataFrame) -> dict[str, float]:
