@@ -43,7 +43,7 @@ def at_rest(data: CampaignData, position: StaticPosition, time: float) -> Motion
 
 def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) -> Motion:
     """A rotation in the k blocks of its sums, with the angles that the gyros measured."""
-    solution, set_position = data.result, position_of(m, data.heading)
+    solution, set_position = data.result.since(m.switch_on), position_of(m, data.heading)
     up, north = solution.upright(m), solution.north(set_position)
     gyro, site = solution.gyro, solution.site
     assert gyro is not None  # else nothing is simulated
@@ -102,7 +102,7 @@ def in_samples(
     steady : (n,), which samples are at the steady rate
     time : (n,), s; where it jumps at the steady rate, samples were lost
     """
-    solution = data.result
+    solution = data.result.since(m.switch_on)
     up, north = solution.upright(m), solution.north(position_of(m, data.heading))
     assert solution.gyro is not None and m.angle is not None  # else it is not simulated
     passed = np.round(np.diff(time, prepend=time[0] - step) / step)  # samples, 0 where one repeats

@@ -69,6 +69,11 @@ class MeasuredDrift:
     def __bool__(self) -> bool:
         return bool(self.instability.any() or self.walk.any())
 
+    @property
+    def between_switch_ons(self) -> "MeasuredDrift":
+        """The same without what the noise within static stretches says."""
+        return replace(NO_DRIFT, switch_on=self.switch_on)
+
     def differs(self, stretches: Sequence[Stretch]) -> bool:
         """Whether the bias differs from one switch-on to the next in some stretches."""
         parts = {stretch.switch_on for stretch in stretches}

@@ -72,7 +72,7 @@ def _of_mount(
     # A jump or a warm-up within a stretch looks like a random walk there. So effects are weighed
     # against a random walk between stretches that is estimated beside them, see `select_effects`.
     measured = campaign_of(replace(data, blocks=quiet))
-    campaign = replace(measured, drifts=dict.fromkeys(SENSORS, NO_DRIFT))
+    campaign = measured.without_drift_at_rest()
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
     selection = select_with_temperature(
         campaign,

@@ -9,7 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.estimates import UNIT, described, switch_on_columns
+from inertial.campaign.estimates import UNIT, described
 from inertial.campaign.records import with_mount
 from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.triad import UNKNOWNS, errors_of, linear_names
@@ -78,7 +78,7 @@ class Solved:
             columns=[column.name for column in tables.COVARIANCE.columns],
         )
 
-    def fit_row(self, noise_degrees: float, scatter: float) -> Row:
+    def fit_row(self, noise_degrees: float, scatter: float) -> dict[str, Any]:
         """How well the model describes the data, with a scatter beyond noise."""
         return {
             "mount": self.mount,
@@ -91,7 +91,6 @@ class Solved:
             "unit": UNIT[self.stage],
             "random_walk": self.random_walk,
             "random_walk_sigma": None,
-            **switch_on_columns(None),
         }
 
 

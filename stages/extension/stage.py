@@ -9,12 +9,13 @@ import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.equations import campaign_of
+from inertial.campaign.estimates import switch_on_columns
 from inertial.campaign.records import rows_of
 from inertial.campaign.scatter_of_positions import scattered
 from inertial.campaign.solution import joint_rows
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.estimation.least_squares import System
-from inertial.estimation.random_walk import NO_DRIFT
+from inertial.estimation.switch_ons import SwitchOns
 from inertial.estimation.triad import linear_names
 from inertial.physics.motion import Motion
 from inertial.tables.parquet import Stream
@@ -144,6 +145,7 @@ class Extension:
         self.data, self.named, self.joint, self.bands = data, named, joint, bands
         self.random_walks = random_walks
         self.scatters: dict[str, float] = {}
+        self.switch_ons: dict[str, SwitchOns] = {}
 
     def rows(self, simulated: Stream) -> Iterator[tuple[str, Any]]:
         """The rows of all tables; of `covariance` tables."""
@@ -159,10 +161,12 @@ class Extension:
         data, mount = self.data, self.data.mount
         # The random walks of criticism were estimated beside the effects, without the drift that is
         # measured at rest: a jump or a warm-up within a stretch would be counted again in it.
-        campaign = replace(campaign_of(data), drifts=dict.fromkeys(SENSORS, NO_DRIFT))
+        campaign = campaign_of(data).without_drift_at_rest()
+        named = [c.members[0].effect for c in self.named.classes]
+        known = [effect for effect in named if effect.scan is None or effect.at is not None]
+        self.switch_ons = campaign.switch_ons(known)
+        campaign = campaign.with_switch_ons(self.switch_ons)
         if campaign.by_hand:
-            named = [c.members[0].effect for c in self.named.classes]
-            known = [effect for effect in named if effect.scan is None or effect.at is not None]
             campaign = scattered(campaign, known, data.noise.degrees)
         if by_hand := campaign.by_hand:
             self.scatters = {"gyro": by_hand.scatter.rate, "accel": by_hand.force_scatter}
@@ -223,7 +227,9 @@ class Extension:
         sensor, mount = solution.sensor, self.data.mount
         yield "covariance", solution.covariance_rows()
         yield from (("parameters", row) for row in (*solution.rows, *solution.constants))
-        yield "fit", solution.fit_row(self.data.noise.degrees, self.scatters.get(sensor, 0.0))
+        between = switch_on_columns(self.switch_ons.get(sensor))
+        scatter = self.scatters.get(sensor, 0.0)
+        yield "fit", solution.fit_row(self.data.noise.degrees, scatter) | between
         for row in self.joint[sensor].manoeuvres:
             yield "fit_manoeuvres", {**row, "method": solution.method}
         if solution.method == EXTENDED:
