@@ -9,7 +9,7 @@ their decimals; all else of the log keeps its bytes.
 import os
 import tempfile
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -25,7 +25,6 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign, campaign_of
 from inertial.effects import CATALOGUE
-from inertial.estimation.random_walk import NO_DRIFT
 from inertial.model_selection.naming import law_of
 from inertial.model_selection.null_simulation import power
 from inertial.physics.effect import Effect
@@ -34,7 +33,7 @@ from inertial.tables.code import code_of, hash_of
 from injections.rewritten_logs import lines_of, rewritten, unit_of, write
 from laboratory.effects import EFFECTS
 from laboratory.sensor import Sensors, Triad
-from stages.criticism.selection import SENSORS, Selection, select_with_scatter
+from stages.criticism.selection import Selection, select_with_scatter
 
 SEED = 104_729
 # Logs of text with whole manoeuvres, by hand; the others are means, containers, or in pieces.
@@ -150,7 +149,7 @@ def as_it_is(name: str, place: Path) -> Recording:
 
 def _selected(data: CampaignData) -> Selection:
     """What criticism selects among the effects of block means."""
-    campaign = replace(campaign_of(data), drifts=dict.fromkeys(SENSORS, NO_DRIFT))
+    campaign = campaign_of(data).without_drift_at_rest()
     effects = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
     return select_with_scatter(campaign, effects, LEVEL, data.noise.degrees)
 
