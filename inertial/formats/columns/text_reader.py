@@ -37,6 +37,7 @@ from inertial.formats.columns.column_layout import (
 )
 from inertial.formats.columns.column_values import ColumnValues, NumberValues, TextValues
 from inertial.formats.columns.data_rows import Place, Reading, sort_rows
+from inertial.formats.columns.labelled_fields import LabelledLines
 from inertial.formats.columns.text_lines import (
     CHUNK_BYTES,
     MAX_LINE_BYTES,
@@ -62,6 +63,8 @@ class _Sorter(Protocol):
 def _sorter(layout: Mapping[str, Any]) -> _Sorter:
     if "message" in layout:
         return vectornav_lines.MessageLines(layout)
+    if layout.get("labelled"):
+        return LabelledLines(layout)
     return HeaderLines(layout)
 
 
