@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from commands.draft.raw_log import Name, RawLog
 from commands.draft.scales import sphere
+from inertial.signal.signed_counts import bits_without_sign, signed
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 
@@ -44,11 +45,15 @@ AXIS = re.compile(r"^(.*?)([xyz0-9])([^xyz0-9]*)$")
 
 @dataclass(frozen=True)
 class Triad:
-    """Three columns of one log, and the word in a column of the rows that hold them, if any do."""
+    """Three columns of one log, and the word in a column of the rows that hold them, if any do.
+
+    `bits`: of counts that are written without their sign.
+    """
 
     file: int  # which log of those recorded together
     columns: tuple[Name, ...]
     rows: tuple[Name, str] | None = None
+    bits: int | None = None
 
     def of(self, together: Sequence[RawLog]) -> Array:
         """The readings, (n, 3), of rows without a gap."""
@@ -57,7 +62,16 @@ class Triad:
         if self.rows is not None:
             column, word = self.rows
             values = values[np.array(log.words[column])[: len(values)] == word]
+        if self.bits is not None:
+            values = signed(values, self.bits)
         return np.asarray(values[np.isfinite(values).all(axis=1)])
+
+
+def _with_sign(triad: Triad | None, group: Sequence[Sequence[RawLog]]) -> Triad | None:
+    """The same with the bits of its counts, where these are written without their sign."""
+    if triad is None:
+        return None
+    return replace(triad, bits=bits_without_sign([triad.of(together) for together in group]))
 
 
 @dataclass(frozen=True)
@@ -169,7 +183,8 @@ def columns_of(group: Sequence[Sequence[RawLog]]) -> Columns:
         free = [n for n in log.columns if n not in clocks | constant]
         for rows in interleaved or (None,):
             candidates += [Triad(file, three, rows) for three in _threes(free)]
-    accel, gyro, evidence, guessed = _sensors(group, candidates)
+    *both, evidence, guessed = _sensors(group, candidates)
+    accel, gyro = (_with_sign(triad, group) for triad in both)
     used: set[Name | None] = {
         name for triad in (accel, gyro) if triad and not triad.file for name in triad.columns
     }
