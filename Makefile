@@ -2,7 +2,7 @@
 #
 #   make report                   the demo, recorded by the simulated laboratory
 #   make report CAMPAIGN=<name>   the campaign in data/raw/<name>/
-#   make check                    faults of the recording within seconds, before the set-up is
+#   make check                    faults of the recording within a minute, before the set-up is
 #                                 dismantled; also with CAMPAIGN=<name>
 #   make draft LOG="<logs>"       a first campaign file from the logs alone, data/raw/<name>/; also with
 #                                 NAME=<name>, and RATE=<Hz> where no log has a clock
@@ -127,7 +127,7 @@ try-report: campaign setup
 try-check: campaign .venv/complete
 	$(try)
 	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
-	$(SNAKEMAKE) data/derived/$$CAMPAIGN/{accelerometer,gyroscope}/parameters.parquet
+	$(SNAKEMAKE) "data/derived/$$CAMPAIGN/diagnosis/verdict.parquet"
 	echo
 	$(BIN)/python -m commands.check "--campaign=$$CAMPAIGN"
 
