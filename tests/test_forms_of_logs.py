@@ -55,9 +55,14 @@ def labels_of_counts(log: ByHand) -> Files:
 
 
 def json_lines(log: ByHand) -> Files:
-    names = ("t", "ax", "ay", "az", "gx", "gy", "gz")
-    columns = [stamps(log), *axes(log.force), *axes(log.rate)]
-    lines = [json.dumps(dict(zip(names, row, strict=True))) for row in np.transpose(columns)]
+    """An object a line, its time a date."""
+    names = ("ax", "ay", "az", "gx", "gy", "gz")
+    start = np.datetime64("2026-03-01T10:00:00.000")
+    dates = start + np.rint(stamps(log, 1e3)).astype("timedelta64[ms]")
+    lines = [
+        json.dumps({"time": str(date)} | dict(zip(names, row, strict=True)))
+        for date, row in zip(dates, np.hstack([log.force, log.rate]).tolist(), strict=True)
+    ]
     return {"log.jsonl": "\n".join(lines)}
 
 

@@ -1,7 +1,8 @@
 """Rows whose fields carry their names, as many a serial port prints them.
 
 `ax:123 ay:-4`, `gx = 0.1, gy = 0.2` and one JSON object a line: {"t": 0.01, "ax": 9.8}. The names,
-quotation marks and braces become blanks, so that every byte stays in its place.
+quotation marks and braces become blanks, so that every byte stays in its place. The T of a date
+begins no name.
 """
 
 import re
@@ -12,7 +13,7 @@ from typing import Any
 from inertial.formats.columns.text_lines import Chunk, HeaderLines, RowLines
 
 _NAME = rb"[A-Za-z_][^\s:=,;\"]*(?:[ ][A-Za-z_(\[][^\s:=,;\"]*)*"
-_FIELD_NAME = re.compile(rb"\"?(" + _NAME + rb")\"?[ \t]*[:=]")
+_FIELD_NAME = re.compile(rb"(?<![\w.+-])\"?(" + _NAME + rb")\"?[ \t]*[:=]")
 _MARKS = bytes.maketrans(b'"{}[]', b"     ")
 
 
