@@ -113,6 +113,13 @@ def units_in_header(log: ByHand) -> Files:
     return {"st.csv": b"\xef\xbb\xbf" + text.encode()}
 
 
+def quoted(log: ByHand) -> Files:
+    """Numbers in quotation marks, and degrees in the header as Windows writes them."""
+    head = "time;ax (g);ay (g);az (g);gx (°/s);gy (°/s);gz (°/s)"
+    columns = [stamps(log), *axes(log.force, G), *axes(np.degrees(log.rate))]
+    return {"export.csv": rows(";".join(['"%.5f"'] * 7), *columns, head=head).encode("cp1252")}
+
+
 def ros_export(log: ByHand) -> Files:
     """rostopic echo -p: orientation before the rates, covariances, a name of the frame."""
     field = "field.{}.x,field.{}.y,field.{}.z"
@@ -161,6 +168,7 @@ FORMS: dict[Callable[[ByHand], Files], bool] = {  # whether the quick tests have
     micros: True,
     without_sign: True,
     units_in_header: False,
+    quoted: False,
     ros_export: False,
     beside_others: False,
     damaged: True,
@@ -198,6 +206,17 @@ def assert_truth(results: chain.Results, log: ByHand) -> None:
     right = log.imu.rates - np.append(np.eye(3).ravel(), np.zeros(3))
     assert np.abs((gyro["value"] - right) / gyro["sigma"]).max() < MAX_SIGMA
     assert (gyro["sigma"] < 0.01).all()
+
+
+def test_accelerations_without_gravity_are_refused(tmp_path):
+    """What phones call linear acceleration."""
+    log = by_hand_log(7)
+    moved = 0.3 * np.random.default_rng(0).standard_normal(log.force.shape)
+    head = "time,lin_acc_x,lin_acc_y,lin_acc_z,gx,gy,gz"
+    text = rows("%.3f" + ",%.6f" * 6, stamps(log), *axes(moved), *axes(log.rate), head=head)
+    (tmp_path / "linear.csv").write_text(text)
+    with pytest.raises(Refusal, match="no gravity"):
+        draft([tmp_path / "linear.csv"], "drafted", tmp_path / "data")
 
 
 def test_counts_without_sign_that_are_not_said_to_be_are_refused(tmp_path):

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from inertial.formats.columns import column_reader, vectornav_lines
 from inertial.formats.columns.labelled_fields import names_in, without_names
+from inertial.formats.columns.text_lines import BYTE_ORDER_MARK
 from inertial.formats.file_type import FileType, file_type_of
 from inertial.formats.gps_time import NANOSECONDS
 from inertial.formats.novatel import novatel_reader
@@ -50,7 +51,7 @@ def text_layout(path: Path) -> TextLayout | None:
     """The layout of the text at `path`; None where no row holds enough numbers."""
     with path.open("rb") as file:
         head = file.read(HEAD_BYTES)
-    lines = head.decode("utf-8-sig", errors="replace").splitlines()
+    lines = [_decoded(line) for line in head.removeprefix(BYTE_ORDER_MARK).splitlines()]
     if len(head) == HEAD_BYTES:
         lines = lines[:-1]  # the last one is cut off
     plain = _separated(lines)
@@ -60,6 +61,14 @@ def text_layout(path: Path) -> TextLayout | None:
         bare = [without_names(line.encode()).decode() for line in lines]
         return _layout(bare, _separated(bare), labels)
     return _layout(lines, plain) if plain.rows else None
+
+
+def _decoded(line: bytes) -> str:
+    """A line as the reader has it, of a program for Windows too."""
+    try:
+        return line.decode("utf-8")
+    except UnicodeDecodeError:
+        return line.decode("cp1252", "backslashreplace")
 
 
 @dataclass(frozen=True)
@@ -88,7 +97,7 @@ def _separated(lines: Sequence[str]) -> _Separated:
 
 def is_number(text: str, decimal: str = ".") -> bool:
     """Whether a field of a log is a number."""
-    text = text.strip()
+    text = text.strip(' \t"')
     if decimal == ",":
         text = text.replace(".", "_").replace(",", ".")
     return bool(_NUMBER.fullmatch(text))
@@ -110,7 +119,8 @@ def _layout(
     rows = [_fields(line, delimiter) for line in lines]
     data = [len(row) == length and _is_data(row, decimal) for row in rows]
     first = data.index(True)
-    fields = list(zip(*(row for row, good in zip(rows, data, strict=True) if good), strict=True))
+    good_rows = (row for row, good in zip(rows, data, strict=True) if good)
+    fields = [[text.strip(' "') for text in own] for own in zip(*good_rows, strict=True)]
 
     def holding(good: Any) -> list[int]:
         return [

@@ -90,6 +90,7 @@ def _kind(group: Sequence[Sequence[RawLog]], rate: float | None) -> Kind:
         receiver = receiver_of(own, timing.rate)
         return Kind(columns, timing, receiver.accel, receiver.gyro, parts, own, receiver)
     accel = accel_scale(own) if columns.accel else None
+    _refuse_without_gravity(accel, columns, group)
     turned = turning(own, accel) if accel and columns.gyro else None
     gyro = None
     if columns.gyro:
@@ -110,6 +111,21 @@ def _refuse_few(group: Sequence[Sequence[RawLog]]) -> None:
             _("samples, at least {rows}, or the means of positions", rows=MIN_ROWS),
             _("name the log of the samples; means are stated by hand, with mean_of"),
         )
+
+
+def _refuse_without_gravity(
+    accel: Scale | None, columns: Columns, group: Sequence[Sequence[RawLog]]
+) -> None:
+    """Refuse accelerations from which a phone has taken gravity: less than a count would be 1 g."""
+    if accel is None or columns.accel is None or (accel.counts or 1.0) >= 1:
+        return
+    raise Refusal(
+        group[0][columns.accel.file].path.name,
+        ", ".join(map(str, columns.accel.columns)),
+        _("no gravity: {evidence}", evidence=accel.evidence),
+        _("what accelerometers read, 9.8 m/s² or 1 g at rest"),
+        _("name the log of the accelerometers themselves, not that of the linear acceleration"),
+    )
 
 
 def are_means(values: Array) -> bool:
