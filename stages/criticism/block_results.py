@@ -354,6 +354,7 @@ def random_walk_rows(
             "count": 1,
             "size": walk.size,
             "unit": unit,
+            "p_value": walk.p_value,
             "severity": 1,
             "sentence": sentence,
             "consequence": WALK_CONSEQUENCE,
