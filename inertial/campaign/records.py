@@ -96,8 +96,8 @@ def manoeuvres_of(table: pd.DataFrame) -> list[Manoeuvre]:
             *(row[key] for key in ("acceleration", "seconds", "recorded")),
             *(row[key] for key in ("from_s", "to_s", "from_row", "to_row", "label")),
             *(row[key] for key in ("temperature", "temperature_sigma", "rate_sigma")),
-            row["switch_on"],
-            _vector(row, "tumbled"),
+            *(row[key] for key in ("switch_on",)),
+            *(_vector(row, stem) for stem in ("tumbled",)),
         )
         for row in rows_of(table)
     ]

@@ -230,9 +230,7 @@ class Structure:
         ) @ self.equations.right[chosen]
 
 
-def structures(
-    equations: Sequence[ScoreEquations], level: float, seed: int = 0
-) -> list[Structure]:
+def structures(equations: Sequence[ScoreEquations], level: float, seed: int = 0) -> list[Structure]:
     """The six tests; any detects in a share `level` of the campaigns whose model is right."""
     tests: dict[str, list[Structure]] = {kind: [] for kind in TESTS}
     for of_axis in equations:

@@ -82,9 +82,7 @@ def _of_mount(
         level * TEMPERATURE_SHARE,
         degrees,
     )
-    tested = structure_tests(
-        selection.campaign, selection.fitted, degrees, level * STRUCTURE_SHARE
-    )
+    tested = structure_tests(selection.campaign, selection.fitted, degrees, level * STRUCTURE_SHARE)
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
     random_walks = random_walks_with_sigmas(selection.campaign, selection.fitted)
     plans = {} if data.by_hand else extended_plans(data.plan, data.performed, quiet)

@@ -26,7 +26,7 @@ from stages.extension.cross_validation import CrossValidation, Trainings, cross_
 from stages.extension.declared import DECLARED
 from stages.extension.estimates import Solved, moved, solved
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
-from stages.extension.models import SENSORS, Models, models_of, with_columns
+from stages.extension.models import SENSORS, Models, given, models_of, with_columns
 from stages.extension.named_effects import Named, named_of
 from stages.extension.navigation_error import change_of, worth
 from stages.extension.selected_sizes import SelectedSizes, selected_sizes
@@ -174,29 +174,43 @@ class Extension:
         sizes = selected_sizes(trainings.whole, classes)
         likeliest: dict[str, Solved] = {}
         validated: dict[str, CrossValidation] = {}
-        for number, (sensor, system) in enumerate(zip(SENSORS, models.systems(), strict=True)):
-            candidates = candidates_of(combinations, models.shown[number])
+        solutions: dict[str, Solved] = {}
+        tested: dict[str, CrossValidation] = {}
+        systems = models.complete()
+        # A sensor that absorbs an effect comes after the one that shows how large it is.
+        for number in sorted(range(len(SENSORS)), key=lambda n: len(models.absorbed[n])):
+            sensor, system = SENSORS[number], systems[number]
+            candidates = candidates_of(combinations, models.shown[number], models.absorbed[number])
+            shown, of_shown = solutions, tested
             solutions = {
                 candidate.method: solution
                 for candidate in candidates
                 if system is not None
-                and candidate.columns
+                and candidate.effects
                 and (
-                    solution := self._solved(sensor, system, candidate, campaign.motion, sizes)
+                    solution := self._solved(
+                        sensor, system, candidate, campaign.motion, sizes, shown
+                    )
                 ).effects
             }
             tested = {
                 candidate.method: validation
                 for candidate in candidates
                 if candidate.method in solutions
-                and (validation := cross_validate(trainings, sensor, candidate.columns))
+                and (
+                    validation := cross_validate(trainings, sensor, candidate.columns)
+                    if candidate.columns
+                    else of_shown.get(candidate.method)
+                )
             }
             there = [c for c in candidates if c.method in (JOINT, *solutions)]
             yield from self._candidates(sensor, there, solutions, tested, trainings)
             for solution in solutions.values():
                 yield from self._solution(solution)
             if EXTENDED in solutions:
-                likeliest[sensor], validated[sensor] = solutions[EXTENDED], tested[EXTENDED]
+                likeliest[sensor] = solutions[EXTENDED]
+                if tested[EXTENDED].sensor == sensor:
+                    validated[sensor] = tested[EXTENDED]
                 (own,) = (each.effects for each in candidates if each.method == EXTENDED)
                 for row in warm_up_rows(
                     solutions[EXTENDED], own, campaign.motion, self.bands[sensor]
@@ -213,8 +227,13 @@ class Extension:
         candidate: Candidate,
         motion: Motion,
         sizes: SelectedSizes,
+        shown: Mapping[str, Solved],
     ) -> Solved:
-        own = with_columns(system, frozenset(candidate.columns))
+        """`shown`: by method the fits of the sensor that shows what this one absorbs."""
+        told = shown[candidate.method].of_effects if candidate.method in shown else []
+        sized = {row["parameter"]: (row["value"], row["sigma"]) for row in told if row["sigma"]}
+        sized = {name: sized[name] for name in candidate.absorbed if name in sized}
+        own = given(with_columns(system, frozenset({*candidate.columns, *sized})), sized)
         walk = self.random_walks[SENSORS.index(sensor)]
         return solved(sensor, own, candidate, motion, walk, sizes, self.data.mount)
 

@@ -249,5 +249,5 @@ def _tumble(
             name = f"{item['id']}{way}-{number:02d}"
             position = f"{item['position']}-{number:02d}" if "position" in item else name
             named = {"manoeuvre": name, "position": position, "do": "rest"}
-            tumbled = {f"tumbled_{i}": float(x) for i, x in zip(tables.AXES, angle * about)}
+            tumbled = {f"tumbled_{axis}": angle * about[i] for i, axis in enumerate(tables.AXES)}
             yield row | named | tumbled | _vectors(ups, marks, None)

@@ -131,7 +131,6 @@ ABSORBED: Mapping[str, Callable[[float], dict[str, Any]]] = {
 }
 
 
-
 def absorbed(name: str, plan: str) -> bool:
     """Whether an effect is a decoy in a plan."""
     return name in ABSORBED and not (name in WAYS and plan in WAYS[name].plans)
