@@ -7,6 +7,7 @@ import chain
 import jinja2
 import numpy as np
 from diagnosis_bars import bars, good, of, pulls, shares
+from diagnosis_left import left
 from diagnosis_outcomes import Outcome
 
 PAGE = chain.ROOT / "docs/diagnosis.md"
@@ -25,6 +26,7 @@ def write(outcomes: Sequence[Outcome], page: Path = PAGE) -> str:
         "hours": f"{sum(one['seconds'] for one in outcomes) / 3600:.1f}",
         "bars": [(bar.words, bar.wanted, bar.measured, bar.verdict) for bar in told],
         "shares": list(shares(outcomes)),
+        "left": list(left()),
         "effects": list(_by_size(of(outcomes, "effect"))),
         "faults": list(_by_size(of(outcomes, "fault"))),
         "absorbed": list(_by_size(of(outcomes, "absorbed"), sized=False)),
