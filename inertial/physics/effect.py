@@ -78,13 +78,15 @@ class Parameter:
 class Scan:
     """A nonlinear parameter of an effect, searched over a grid.
 
-    `between`: whether the true value may lie between two values of the grid.
+    `between`: whether the true value may lie between two values of the grid; `smooth`: whether what
+    the effect adds to the readings, the same whatever is sensed, has a derivative by it.
     """
 
     name: str
     unit: str
     meaning: str
     between: bool = True
+    smooth: bool = False
 
 
 @dataclass(frozen=True)

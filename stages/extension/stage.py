@@ -16,7 +16,7 @@ from inertial.campaign.steady_residuals import steady_turns
 from inertial.estimation.least_squares import System
 from inertial.estimation.random_walk import NO_DRIFT
 from inertial.estimation.triad import linear_names
-from inertial.physics.motion import Motion
+from inertial.physics.effect import Effect
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.parameters import EXTENDED, FREE, JOINT
@@ -26,9 +26,18 @@ from stages.extension.cross_validation import CrossValidation, Trainings, cross_
 from stages.extension.declared import DECLARED
 from stages.extension.estimates import Solved, moved, solved
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
-from stages.extension.models import SENSORS, Models, given, models_of, with_columns
+from stages.extension.models import (
+    PRIOR_SIGMA,
+    SENSORS,
+    Models,
+    given,
+    models_of,
+    names_of,
+    with_columns,
+)
 from stages.extension.named_effects import Named, named_of
 from stages.extension.navigation_error import change_of, worth
+from stages.extension.scanned_values import with_scanned_values
 from stages.extension.selected_sizes import SelectedSizes, selected_sizes
 from stages.extension.sentences import sentence_of
 from stages.extension.warm_up import warm_up_rows
@@ -188,9 +197,7 @@ class Extension:
                 if system is not None
                 and candidate.effects
                 and (
-                    solution := self._solved(
-                        sensor, system, candidate, campaign.motion, sizes, shown
-                    )
+                    solution := self._solved(sensor, system, candidate, models, sizes, shown)
                 ).effects
             }
             tested = {
@@ -225,7 +232,7 @@ class Extension:
         sensor: str,
         system: System,
         candidate: Candidate,
-        motion: Motion,
+        models: Models,
         sizes: SelectedSizes,
         shown: Mapping[str, Solved],
     ) -> Solved:
@@ -233,9 +240,19 @@ class Extension:
         told = shown[candidate.method].of_effects if candidate.method in shown else []
         sized = {row["parameter"]: (row["value"], row["sigma"]) for row in told if row["sigma"]}
         sized = {name: sized[name] for name in candidate.absorbed if name in sized}
-        own = given(with_columns(system, frozenset({*candidate.columns, *sized})), sized)
+        columns = frozenset({*candidate.columns, *sized})
+        own = given(with_columns(system, columns), sized)
         walk = self.random_walks[SENSORS.index(sensor)]
-        return solved(sensor, own, candidate, motion, walk, sizes, self.data.mount)
+        motion = models.extended.motion
+        solution = solved(sensor, own, candidate, motion, walk, sizes, self.data.mount)
+
+        def system_of(further: Sequence[Effect]) -> System:
+            every = models.extended.system(sensor, [*candidate.effects, *further], PRIOR_SIGMA)
+            assert every is not None  # there is one without them
+            names = {name for effect in further for name in names_of(effect)}
+            return given(with_columns(every, columns | names), sized)
+
+        return with_scanned_values(solution, candidate.effects, system_of)
 
     def _solution(self, solution: Solved) -> Iterator[tuple[str, Any]]:
         """The rows of a fit, and of the likeliest how far its parameters move."""
