@@ -179,6 +179,13 @@ class Effect(ABC):
         """The reading with this effect in it; `values` follow `parameters`."""
         return reading
 
+    def added(self, truth: Truth, motion: Motion) -> Reading | None:
+        """What `reads` adds per unit of each parameter, where it is in proportion to them.
+
+        gyro and accel, (n, 3, number of parameters) each; none: differences tell.
+        """
+        return None
+
     def signature(self, motion: Motion) -> Reading | None:
         """Change of the readings per unit of each parameter, where it needs no forward model.
 
