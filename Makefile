@@ -26,8 +26,9 @@
 #   make challenge                hides effects in many campaigns and reports what is detected, in
 #                                 docs/challenge.md; three hours on two cores, can be resumed; with
 #                                 DRAWS=100 a tenth of them; with ONLY=diagnosis only what the
-#                                 diagnosis says of 690 of them, in docs/diagnosis.md; with
-#                                 ONLY="diagnosis fault spikes" those that have these words
+#                                 diagnosis says of 688 of them, in docs/diagnosis.md, an hour of
+#                                 one core; with ONLY="diagnosis fault spikes" those that have
+#                                 these words; this and what follows with CORES=1 in one process
 #   make temperature              records campaigns in a simulated temperature chamber and compares
 #                                 parameters as curves of the temperature with their bound, in
 #                                 docs/temperature.md; two hours on two cores, can be resumed; with

@@ -111,14 +111,14 @@ class Campaign:
         """All stretches of the equations: gyros at rest, gyros in rotation, accelerometers."""
         return joined(self._motions)
 
-    @property
+    @cached_property
     def _motions(self) -> list[Motion]:
         return [
             *self.gyro_motions,
             *(motion for _, _, motion in self.static_forces),
         ]
 
-    @property
+    @cached_property
     def gyro_motions(self) -> list[Motion]:
         """Those of the gyros: static positions, rotations, passages by hand."""
         passages = self.by_hand.motions if self.by_hand else ()

@@ -38,7 +38,9 @@ def at_rest(data: CampaignData, position: StaticPosition, time: float) -> Motion
         np.array([time]),
         np.array([position.seconds.sum()]),
     )
-    return replace(rest, surveyed=np.array([set_position.north is not None]))
+    tumbled = np.zeros(3) if m.tumbled is None else m.tumbled
+    surveyed = np.array([set_position.north is not None])
+    return replace(rest, surveyed=surveyed, tumbled=tumbled[None])
 
 
 def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) -> Motion:
@@ -262,7 +264,7 @@ def mean_motions(motion: Motion, merged: Merged) -> list[Motion]:
     # The acceleration at a lever arm is quadratic in the rate, so the rate is the rms.
     means["rate"] = np.sign(means["rate"]) * np.sqrt(merged.mean(motion.rate**2))
     means["seconds"] = merged.seconds
-    for name in ("surveyed", "position", "run", "peaks", "senses"):
+    for name in ("surveyed", "position", "run", "peaks", "senses", "tumbled"):
         means[name] = getattr(motion, name)[merged.starts]
     return [
         Motion(about=motion.about, **{name: values[i : i + 1] for name, values in means.items()})

@@ -114,8 +114,9 @@ def solved(
     unknowns = [(name, *described(stage, name)) for name in linear_names()]
     for effect in candidate.effects:
         for parameter in effect.parameters:
-            place = system.column("effect", f"{effect.label}.{parameter.name}")
-            if place is not None and estimate.determined[place]:
+            label = f"{effect.label}.{parameter.name}"
+            place = system.column("effect", label)
+            if place is not None and (estimate.determined[place] or label in candidate.absorbed):
                 places.append(place)
                 effects.append(effect.name)
                 name = f"{effect.name}.{parameter.name}"
@@ -145,7 +146,7 @@ def solved(
     rows: list[Row] = []
     for place, described_as in zip(places, unknowns, strict=True):
         rows.append(row(*described_as, effect_of.get(place)))
-        if estimate.determined[place]:
+        if estimate.determined[place] or place in effect_of:
             value, sigma = float(values[place]), float(estimate.sigma[place])
             rows[-1] = {**rows[-1], "value": value, "sigma": sigma, "reason": ""}
     constants = [
