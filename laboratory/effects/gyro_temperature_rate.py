@@ -1,7 +1,5 @@
 """A bias of the gyros that follows the rate of the temperature."""
 
-import numpy as np
-
 from laboratory.effects.effect import ArrayEffect
 from laboratory.sensor import Reading, Sensors
 from laboratory.truth import Truth

@@ -1,0 +1,331 @@
+"""The law of what no effect of the catalogue explains in one sensor.
+
+Weighed are: a law, with all, one or none of the effects that were named in this sensor beside it;
+these effects alone; a random walk of the biases, with these effects and without. All by evidence in
+the same equations, without a random walk in their covariance. Every effect of the catalogue is as
+likely beforehand, and so is every law.
+"""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from inertial.campaign.equations import Campaign
+from inertial.effects import LAWS
+from inertial.effects.law import ALL, Law, law_name
+from inertial.model_selection import walk_odds
+from inertial.model_selection.evidence import SearchedEffect, searched_effect
+from inertial.model_selection.laws import (
+    LawOdds,
+    best_paths,
+    chance_of,
+    law_class,
+    law_odds,
+    log_paths,
+)
+from inertial.model_selection.walk_odds import Equations
+from inertial.physics import laws
+from inertial.physics.effect import Array, Effect
+from stages.criticism.bias_drift import half_waves, likely_random_walk, walk_evidence
+from stages.criticism.residual_structure import MIN_INFORMATION, PRIOR_SIGMA, Functions
+from stages.criticism.selection import (
+    MAX_LOG_ODDS,
+    SENSORS,
+    Selection,
+    columns_of,
+    evidence_of,
+    walk_name,
+)
+
+AXES = "xyz"
+TELEGRAPH = ("telegraph", "time")
+FINER = (-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75)  # of the step of a grid
+ROUNDS = 3
+Shape = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class FoundLaw:
+    """A law of one sensor.
+
+    `members`: the laws that may replace it, the most probable first, with their shares and what
+    they capture of it; `p_value`: probability that noise alone reaches such odds; `odds`:
+    logarithm, against everything else; `walk`: the random walk that is as likely, or none.
+    """
+
+    law: Law
+    members: tuple[str, ...]
+    weights: tuple[float, ...]
+    captured: tuple[float, ...]
+    p_value: float
+    odds: float
+    walk: str = ""
+
+
+@dataclass(frozen=True)
+class Columns:
+    """The equations of a sensor on all laws.
+
+    `laws`, `shapes`: the columns and the shapes of the candidates of each; `steps`: the columns of
+    a step at each of `times`, h, in each axis; `waves`: of the half waves of each axis.
+    """
+
+    equations: Equations
+    place: dict[str, int]
+    laws: tuple[SearchedEffect, ...]
+    shapes: tuple[Sequence[Shape], ...]
+    steps: tuple[Sequence[int], ...]
+    times: Array
+    waves: tuple[Sequence[int], ...]
+
+    def of(self, effects: Sequence[Effect]) -> list[int]:
+        """The columns of effects."""
+        return [self.place[name] for effect in effects for name in columns_of(effect)]
+
+
+def find_law(selection: Selection, sensor: str, level: float, degrees: float) -> FoundLaw | None:
+    """The law of a sensor; None where something else is likelier, or noise."""
+    campaign = selection.campaign.without_random_walks()
+    if campaign.by_hand is not None or not np.isfinite(campaign.motion.time).all():
+        return None
+    if sensor not in selection.evidence.labels:
+        return None
+    equations, _ = evidence_of(campaign, selection.families, degrees)
+    plain = replace(selection, campaign=campaign, evidence=equations)
+    own = [c.effect for c in plain.named.causes if plain.sensor(c) == sensor]
+    named = [effect for effect in plain.effects if effect.name in own]
+    others = [effect for effect in plain.fitted if effect not in named]
+    columns = columns_with(campaign, sensor, others, named)
+    names = [effect.name for effect in named]
+    tried = []
+    for kept in {frozenset(some) for some in ([], names, *([name] for name in names))}:
+        beside = [effect for effect in named if effect.name in kept]
+        found = searched(columns, columns.equations.given(columns.of(beside)))
+        tried.append((_catalogue(plain, own, kept) + found.odds.total, found, beside))
+    score, found, beside = max(tried, key=lambda one: one[0])
+    walk, alone = _walk(plain, columns, sensor, own, named), _catalogue(plain, own, own)
+    if score - alone < MAX_LOG_ODDS or score - walk < -MAX_LOG_ODDS:
+        return None
+    p_value = chance_of(found.equations, found.odds, found.paths)
+    if p_value > level:
+        return None
+    group = law_class(found.equations, found.odds)
+    first = group.members[0]
+    shape = found.shapes[first][int(found.odds.candidates.value[found.odds.best[first]])]
+    law = _shaped(LAWS[found.laws[first].name], shape)
+    return FoundLaw(
+        refined(campaign, law, [*others, *beside]),
+        tuple(found.laws[i].name for i in group.members),
+        group.weights,
+        group.captured,
+        p_value,
+        score - max(walk, alone),
+        walk_name(SENSORS.index(sensor)) if score - walk < MAX_LOG_ODDS else "",
+    )
+
+
+def _shaped(law: Law, shape: Shape) -> Law:
+    return Law(law.sensor, law.axis, law.family, law.state, shape)
+
+
+# ---- The equations on all laws.
+
+
+def columns_with(
+    campaign: Campaign, sensor: str, others: Sequence[Effect], named: Sequence[Effect]
+) -> Columns:
+    """The equations given the `others`; on named effects, half waves, and laws."""
+    motion, part = campaign.motion, campaign.stretches(sensor)
+    times, waves = laws.steps(motion, laws.STEPS), list(half_waves(sensor))
+    before = [*others, *named, *waves]
+    first = sum(len(effect.parameters) for effect in before)
+    found: list[Functions] = []
+    steps: list[Sequence[int]] = []
+    places: dict[tuple[str, str], dict[str, list[list[int]]]] = {}  # by axis, of each shape
+    shapes: dict[tuple[str, str], Sequence[Shape]] = {}
+    for i, axis in enumerate(AXES):
+        values: list[Array] = []
+        for law in laws.LAWS:
+            if law == TELEGRAPH or not laws.known(law[1], motion, i):
+                continue
+            shapes[law] = laws.grid(*law, motion, i)
+            own = places.setdefault(law, {}).setdefault(axis, [])
+            for shape in shapes[law]:
+                values.append(laws.functions(*law, shape, motion, i))
+                own.append(list(range(first, first + values[-1].shape[1])))
+                first += values[-1].shape[1]
+        values += [laws.after(motion, float(time))[:, None] for time in times]
+        steps.append(range(first, first + len(times)))
+        first += len(times)
+        found.append(_functions(sensor, i, values, part))
+    equations, place = _equations(campaign, sensor, [*before, *found])
+    made: list[SearchedEffect] = []
+    of_each: list[Sequence[Shape]] = []
+    for law, axes in places.items():
+        joint = [[i for one in every for i in one] for every in zip(*axes.values(), strict=True)]
+        together = {ALL: joint} if len(axes) == len(AXES) else {}
+        for axis, candidates in (axes | together).items():
+            made.append(searched_effect(law_name(sensor, axis, *law), *candidates))
+            of_each.append(shapes[law])
+    known = [place[name] for effect in others for name in columns_of(effect)]
+    return Columns(
+        equations.given(known),
+        place,
+        tuple(made),
+        tuple(of_each),
+        tuple(steps),
+        times,
+        tuple([place[f"{wave.label}.c_{axis}"] for wave in waves] for axis in AXES),
+    )
+
+
+def _functions(sensor: str, axis: int, values: Sequence[Array], part: slice) -> Functions:
+    """The functions, of the stretches of the sensor."""
+    every = np.hstack(values)
+    whole = np.zeros_like(every)
+    whole[part] = every[part]
+    return Functions(sensor, axis, f"law_{AXES[axis]}", whole)
+
+
+def _equations(
+    campaign: Campaign, sensor: str, effects: Sequence[Effect]
+) -> tuple[Equations, dict[str, int]]:
+    """The normal equations of a sensor on effects, zero of what is fitted already."""
+    system = campaign.system(sensor, effects, PRIOR_SIGMA)
+    assert system is not None  # the sensor has equations
+    reduced, raw = system.effect_information(), system.raw_information()
+    kept = np.diag(reduced.information) > MIN_INFORMATION * raw
+    equations = Equations(reduced.information * np.outer(kept, kept), reduced.right * kept)
+    return equations, {name: i for i, name in enumerate(reduced.names)}
+
+
+# ---- The search, given some effects.
+
+
+@dataclass(frozen=True)
+class Searched:
+    """The odds of all laws, with the best paths of telegraphs as further columns; see `Columns`."""
+
+    equations: Equations
+    laws: tuple[SearchedEffect, ...]
+    shapes: tuple[Sequence[Shape], ...]
+    paths: Array
+    odds: LawOdds
+
+
+def searched(columns: Columns, equations: Equations) -> Searched:
+    """The odds of all laws in these equations."""
+    made, shapes = list(columns.laws), list(columns.shapes)
+    paths, added = [0.0] * len(made), [np.zeros((0, len(equations.right)))]
+    sensor, size = made[0].name.partition("_")[0], len(equations.right)
+    for axis in (*AXES, ALL):
+        steps = columns.steps if axis == ALL else [columns.steps[AXES.index(axis)]]
+        path, ways = _path(equations, steps, len(columns.times))
+        own = np.zeros((len(steps), size))
+        for row, columns_of_axis in enumerate(steps):
+            own[row, [columns_of_axis[i] for i in path]] = (-1.0) ** np.arange(len(path))
+        first = size + sum(len(one) for one in added)
+        places = range(first, first + len(own))
+        made.append(searched_effect(law_name(sensor, axis, *TELEGRAPH), places))
+        shapes.append([tuple(float(columns.times[i]) for i in path)])
+        paths.append(ways)
+        added.append(own)
+    wider = np.vstack([np.eye(size), *added])
+    equations = Equations(wider @ equations.information @ wider.T, wider @ equations.right)
+    number = np.array(paths)
+    odds = law_odds(equations, made, number)
+    return Searched(equations, tuple(made), tuple(shapes), number, odds)
+
+
+def _path(
+    equations: Equations, steps: Sequence[Sequence[int]], count: int
+) -> tuple[tuple[int, ...], float]:
+    """The most probable path of a telegraph, and the logarithm of the number of its kind."""
+    found = best_paths(equations, steps)
+    changes = max(found, key=lambda k: found[k][1] / 2 - log_paths(count, k))
+    return found[changes][0], log_paths(count, changes)
+
+
+# ---- The rivals.
+
+
+def _catalogue(selection: Selection, own: Sequence[str], kept: Collection[str]) -> float:
+    """The log evidence of some of the named effects of the sensor, without the others.
+
+    `own`: all of them; every effect of the catalogue is as likely.
+    """
+    start = walk_odds.Explained(0.0, selection.equations_without(own))
+    odds = selection.explained(kept, start) if kept else 0.0
+    return odds - len(kept) * float(np.log(len(selection.searched)))
+
+
+def _walk(
+    selection: Selection,
+    columns: Columns,
+    sensor: str,
+    own: Sequence[str],
+    named: Sequence[Effect],
+) -> float:
+    """The log evidence of a random walk, with the named effects of the sensor or without."""
+    campaign, found = selection.campaign, []
+    for kept in ([], named) if named else ([],):
+        rest = columns.equations.given(columns.of(kept))
+        odds = walk_odds.walk(rest, columns.waves).log_evidence
+        others = [e for e in selection.fitted if e not in named]
+        if size := likely_random_walk(campaign, sensor, [*others, *kept]):
+            odds = max(odds, walk_evidence(campaign, sensor, size, [*others, *kept]))
+        found.append(odds + _catalogue(selection, own, [e.name for e in kept]))
+    return max(found)
+
+
+# ---- The shape of a law between the values of its grid.
+
+
+def refined(campaign: Campaign, law: Law, beside: Sequence[Effect]) -> Law:
+    """The law with each value of its shape moved within a step of its grid while that is better."""
+    part, axes = campaign.stretches(law.sensor), [AXES.index(axis) for axis in law.axes]
+    grid = (
+        [(float(time),) for time in laws.steps(campaign.motion, laws.STEPS)]
+        if law.family == TELEGRAPH[0]
+        else laws.grid(law.family, law.state, campaign.motion, axes[0])
+    )
+    if not law.shape or law.family == "polynomial" or len(grid) < 2:
+        return law
+    values = np.array(grid)[:, 0]
+    scale = 1.0
+    for _round in range(ROUNDS):
+        for k in range(len(law.shape)):
+            near = np.sort(np.abs(values - law.shape[k]))
+            step = scale * float(near[near > 1e-9 * np.ptp(values)][0])
+            tried = [
+                _shaped(law, (*law.shape[:k], law.shape[k] + share * step, *law.shape[k + 1 :]))
+                for share in FINER
+            ]
+            law = _best(campaign, tried, beside, part, axes)
+        scale /= 4
+    return law
+
+
+def _best(
+    campaign: Campaign,
+    tried: Sequence[Law],
+    beside: Sequence[Effect],
+    part: slice,
+    axes: Sequence[int],
+) -> Law:
+    """The one that explains most."""
+    motion, found, first = campaign.motion, [], sum(len(e.parameters) for e in beside)
+    columns: list[list[int]] = [[] for _ in tried]
+    for axis in axes:
+        values = [laws.functions(o.family, o.state, o.shape, motion, axis) for o in tried]
+        for own, one in zip(columns, values, strict=True):
+            own += range(first, first + one.shape[1])
+            first += one.shape[1]
+        found.append(_functions(tried[0].sensor, axis, values, part))
+    equations, place = _equations(campaign, tried[0].sensor, [*beside, *found])
+    equations = equations.given([place[n] for e in beside for n in columns_of(e)])
+    candidates = law_odds(
+        equations, [searched_effect("", own) for own in columns], np.zeros(len(tried))
+    )
+    return tried[int(np.argmax(candidates.of_each))]

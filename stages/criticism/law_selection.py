@@ -1,0 +1,78 @@
+"""Laws in place of what is unexplained, and the effects of the catalogue beside them."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.campaign.equations import Campaign
+from inertial.effects import TEMPERATURE_MODELS
+from inertial.effects.law import Law
+from inertial.model_selection.cause import LAW, ONE_OF_CLASS, Cause
+from inertial.physics.effect import Effect
+from stages.criticism.bias_drift import drift_name
+from stages.criticism.law_search import FoundLaw, find_law
+from stages.criticism.residual_structure import Tested, structure_tests
+from stages.criticism.selection import SENSORS, Selection, select_with_scatter
+
+
+def with_laws(
+    selection: Selection,
+    tested: Tested,
+    campaign: Campaign,
+    effects: Sequence[Effect],
+    level: float,
+    degrees: float,
+) -> tuple[Selection, Tested]:
+    """The selection with a law in each sensor that is unexplained and has one.
+
+    A law counts where the residuals of the sensor have no structure beside it. `campaign`,
+    `effects`, `level`: of the selection.
+    """
+    for sensor in unexplained(selection, tested):
+        found = find_law(selection, sensor, level, degrees)
+        if found is None:
+            continue
+        before = [e for e in selection.effects if e.name in TEMPERATURE_MODELS or _is_law(e)]
+        again = select_with_scatter(campaign, effects, level, degrees, [*before, found.law])
+        checked = structure_tests(again.campaign, again.fitted, degrees)
+        if not checked.of(sensor):
+            known = {c.effect: c for c in selection.named.causes if c.verdict == LAW}
+            selection, tested = _named(again, found, known), checked
+    return selection, tested
+
+
+def unexplained(selection: Selection, tested: Tested) -> list[str]:
+    """The sensors with a structure, a random walk, or a drift without a law."""
+    drifts: Collection[str] = {cause.effect for cause in selection.named.causes}
+    walks = zip(SENSORS, selection.random_walks, strict=True)
+    return [s for s, walk in walks if walk or tested.of(s) or drift_name(s) in drifts]
+
+
+def _is_law(effect: Effect) -> bool:
+    return isinstance(effect, Law)
+
+
+def _named(selection: Selection, found: FoundLaw, known: dict[str, Cause]) -> Selection:
+    """The selection in which the law is named with its class; `known`: laws of other sensors."""
+
+    def named(cause: Cause) -> Cause:
+        if cause.effect in known:
+            old = known[cause.effect]
+            return replace(cause, verdict=LAW, members=old.members, p_value=old.p_value)
+        if cause.effect != found.law.name:
+            return cause
+        share = 1 / (1 + float(np.exp(found.odds))) if found.walk else 0.0
+        walk = (found.walk,) if found.walk else ()
+        return replace(
+            cause,
+            verdict=ONE_OF_CLASS if found.walk else LAW,
+            members=(*found.members, *walk),
+            member_values=(0,) * (len(found.members) + len(walk)),
+            weights=(*(w * (1 - share) for w in found.weights), *([share] if walk else [])),
+            captured=(*found.captured, *([1.0] if walk else [])),
+            p_value=found.p_value,
+        )
+
+    causes = tuple(named(cause) for cause in selection.named.causes)
+    return replace(selection, named=replace(selection.named, causes=causes))
