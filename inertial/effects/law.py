@@ -14,6 +14,7 @@ from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
 
 SENSORS = {"gyro": ("rad/s", DEGREE_PER_HOUR), "accel": ("m/s²", 1e-5 * STANDARD_GRAVITY)}
+WIDE = 1e3  # of the usual size, which of a shape that is far from 1 says nothing
 ALL = "all"  # axes, each with a size of its own
 
 
@@ -37,7 +38,9 @@ class Law(Effect):
         unit, size = SENSORS[sensor]
         self.sizes = by_grade(size, 0.1, 1, 10, 100)  # type: ignore[misc]
         self.parameters = tuple(  # type: ignore[misc]
-            Parameter(f"k{j}_{i}", unit, size, _("size of the law in the {axis} reading", axis=i))
+            Parameter(
+                f"k{j}_{i}", unit, WIDE * size, _("size of the law in the {axis} reading", axis=i)
+            )
             for i in self.axes
             for j in self._terms
         )

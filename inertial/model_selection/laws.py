@@ -34,7 +34,9 @@ from inertial.model_selection.walk_odds import LOG_RANGE, Equations
 Array = NDArray[np.float64]
 
 DRAWS = 1000
-MAX_CHANGES = 8  # of a telegraph
+MAX_CHANGES = 12  # of a telegraph
+COARSE = 3  # times of a change, of which one is tried first
+JITTER = 1e-6  # of the information of a column
 MIN_DRAWN = 10  # draws that reach the odds, for a number
 
 
@@ -74,7 +76,9 @@ def chance_of(equations: Equations, odds: LawOdds, paths: Array, seed: int = 0) 
     """
     simple = [i for i, number in enumerate(paths) if not number]
     candidates = Candidates([odds.candidates.effects[i] for i in simple])
-    right = noise(equations.information, DRAWS, np.random.default_rng(seed))
+    # Columns that are nearly the same are a little apart then.
+    apart = JITTER * np.diag(np.diag(equations.information))
+    right = noise(equations.information + apart, DRAWS, np.random.default_rng(seed))
     drops, degrees = candidates.drops(equations.information, right)
     grid = np.arange(0.0, drops.max() + 1)
     each = np.full(drops.shape, -np.inf)
@@ -134,9 +138,7 @@ def law_class(equations: Equations, odds: LawOdds) -> LawClass:
 Path = tuple[int, ...]  # at which of the times it changes
 
 
-def best_paths(
-    equations: Equations, steps: Sequence[Sequence[int]]
-) -> dict[int, tuple[Path, float]]:
+def best_paths(equations: Equations, steps: Sequence[Sequence[int]]) -> dict[Path, float]:
     """The best paths of 2, 3, … changes, and their drops.
 
     `steps`: of each axis that has it, the columns of a step at each of n times; the path is one for
@@ -160,27 +162,34 @@ def best_paths(
         scaled = along / size
         return np.asarray(np.einsum("pa,pab,pb->p", scaled, inverse, scaled))
 
-    pairs = list(combinations(range(count), 2))
-    values = drops(pairs)
-    found: dict[int, tuple[Path, float]] = {2: (pairs[int(np.argmax(values))], float(values.max()))}
-    for changes in range(3, MAX_CHANGES + 1):
-        before = found[changes - 1][0]
-        starts = [tuple(sorted({*before, i})) for i in range(count) if i not in before]
-        path = _exchanged(starts[int(np.argmax(drops(starts)))], count, drops)
-        found[changes] = path, float(drops([path])[0])
-    return found
+    coarse = range(0, count, COARSE)
+    pairs = list(combinations(coarse, 2))
+    found: dict[int, Path] = {0: ()}
+    for changes in range(2, MAX_CHANGES + 1):
+        # Another level for a while, or from then on.
+        grown = {_toggled(found.get(changes - 2, ()), pair) for pair in pairs}
+        grown |= {_toggled(found.get(changes - 1, ()), (place,)) for place in coarse}
+        starts = [path for path in grown if len(path) == changes]
+        found[changes] = _moved(starts[int(np.argmax(drops(starts)))], count, drops)
+    paths = [found[changes] for changes in range(2, MAX_CHANGES + 1)]
+    return dict(zip(paths, drops(paths).tolist(), strict=True))
 
 
-def _exchanged(path: Path, count: int, drops: Callable[[Sequence[Path]], Array]) -> Path:
+def _toggled(path: Path, places: Path) -> Path:
+    return tuple(sorted({*path} ^ {*places}))
+
+
+def _moved(path: Path, count: int, drops: Callable[[Sequence[Path]], Array]) -> Path:
     """The path with single changes moved as long as that is better."""
     best = float(drops([path])[0])
     while True:
-        moved = [
-            tuple(sorted({*path, new} - {old}))
+        tried = {
+            _toggled(path, (old, new))
             for old in path
-            for new in range(count)
-            if new not in path
-        ]
+            for new in {*range(0, count, COARSE), *range(max(old - COARSE, 0), old + COARSE + 1)}
+            if new not in path and new < count
+        }
+        moved = list(tried)
         values = drops(moved)
         if values.max() <= best * (1 + 1e-9):
             return path

@@ -137,7 +137,7 @@ CAUSES = Table(
     (
         Column("id", TEXT, "", "stable identifier; no code reads anything from it"),
         Column("cause", TEXT, "", "what is wrong: an effect of the catalogue or a fault"),
-        Column("verdict", TEXT, "", "found, one_of_class, or unknown_structure"),
+        Column("verdict", TEXT, "", "found, one_of_class, law, or unknown_structure"),
         MOUNT,
         SENSOR,
         AXIS,

@@ -243,8 +243,8 @@ def _path(
 ) -> tuple[tuple[int, ...], float]:
     """The most probable path of a telegraph, and the logarithm of the number of its kind."""
     found = best_paths(equations, steps)
-    changes = max(found, key=lambda k: found[k][1] / 2 - log_paths(count, k))
-    return found[changes][0], log_paths(count, changes)
+    path = max(found, key=lambda path: found[path] / 2 - log_paths(count, len(path)))
+    return path, log_paths(count, len(path))
 
 
 # ---- The rivals.
@@ -268,15 +268,13 @@ def _walk(
     named: Sequence[Effect],
 ) -> float:
     """The log evidence of a random walk, with the named effects of the sensor or without."""
-    campaign, found = selection.campaign, []
-    for kept in ([], named) if named else ([],):
-        rest = columns.equations.given(columns.of(kept))
-        odds = walk_odds.walk(rest, columns.waves).log_evidence
-        others = [e for e in selection.fitted if e not in named]
-        if size := likely_random_walk(campaign, sensor, [*others, *kept]):
-            odds = max(odds, walk_evidence(campaign, sensor, size, [*others, *kept]))
-        found.append(odds + _catalogue(selection, own, [e.name for e in kept]))
-    return max(found)
+    others = [effect for effect in selection.fitted if effect not in named]
+    alone = walk_odds.walk(columns.equations, columns.waves).log_evidence
+    if size := likely_random_walk(selection.campaign, sensor, others):
+        alone = max(alone, walk_evidence(selection.campaign, sensor, size, others))
+    rest = columns.equations.given(columns.of(named))
+    beside = walk_odds.walk(rest, columns.waves).log_evidence
+    return max(alone, beside + _catalogue(selection, own, own))
 
 
 # ---- The shape of a law between the values of its grid.

@@ -43,10 +43,18 @@ def with_laws(
 
 
 def unexplained(selection: Selection, tested: Tested) -> list[str]:
-    """The sensors with a structure, a random walk, or a drift without a law."""
+    """The sensors with a structure, a random walk, a drift without a law, or several effects.
+
+    Several effects of the catalogue together may imitate one that is in none.
+    """
+    own = [selection.sensor(cause) for cause in selection.named.causes]
     drifts: Collection[str] = {cause.effect for cause in selection.named.causes}
     walks = zip(SENSORS, selection.random_walks, strict=True)
-    return [s for s, walk in walks if walk or tested.of(s) or drift_name(s) in drifts]
+    return [
+        sensor
+        for sensor, walk in walks
+        if walk or tested.of(sensor) or drift_name(sensor) in drifts or own.count(sensor) > 1
+    ]
 
 
 def _is_law(effect: Effect) -> bool:
