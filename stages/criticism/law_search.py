@@ -79,9 +79,10 @@ class Columns:
     times: Array
     waves: tuple[Sequence[int], ...]
 
-    def of(self, effects: Sequence[Effect]) -> list[int]:
-        """The columns of effects."""
-        return [self.place[name] for effect in effects for name in columns_of(effect)]
+    def given(self, effects: Sequence[Effect]) -> Equations:
+        """The equations given some effects, without what these contain."""
+        own = [self.place[name] for effect in effects for name in columns_of(effect)]
+        return without(self.equations, own)
 
 
 def find_law(selection: Selection, sensor: str, level: float, degrees: float) -> FoundLaw | None:
@@ -101,7 +102,7 @@ def find_law(selection: Selection, sensor: str, level: float, degrees: float) ->
     tried = []
     for kept in {frozenset(some) for some in ([], names, *([name] for name in names))}:
         beside = [effect for effect in named if effect.name in kept]
-        found = searched(columns, columns.equations.given(columns.of(beside)))
+        found = searched(columns, columns.given(beside))
         tried.append((_catalogue(plain, own, kept) + found.odds.total, found, beside))
     score, found, beside = max(tried, key=lambda one: one[0])
     walk, alone = _walk(plain, columns, sensor, own, named), _catalogue(plain, own, own)
@@ -170,7 +171,7 @@ def columns_with(
             of_each.append(shapes[law])
     known = [place[name] for effect in others for name in columns_of(effect)]
     return Columns(
-        equations.given(known),
+        without(equations, known),
         place,
         tuple(made),
         tuple(of_each),
@@ -198,6 +199,13 @@ def _equations(
     kept = np.diag(reduced.information) > MIN_INFORMATION * raw
     equations = Equations(reduced.information * np.outer(kept, kept), reduced.right * kept)
     return equations, {name: i for i, name in enumerate(reduced.names)}
+
+
+def without(equations: Equations, columns: Sequence[int]) -> Equations:
+    """The equations given some columns, zero of what these contain."""
+    rest = equations.given(columns)
+    kept = np.diag(rest.information) > MIN_INFORMATION * np.diag(equations.information)
+    return Equations(rest.information * np.outer(kept, kept), rest.right * kept)
 
 
 # ---- The search, given some effects.
@@ -272,7 +280,7 @@ def _walk(
     alone = walk_odds.walk(columns.equations, columns.waves).log_evidence
     if size := likely_random_walk(selection.campaign, sensor, others):
         alone = max(alone, walk_evidence(selection.campaign, sensor, size, others))
-    rest = columns.equations.given(columns.of(named))
+    rest = columns.given(named)
     beside = walk_odds.walk(rest, columns.waves).log_evidence
     return max(alone, beside + _catalogue(selection, own, own))
 
@@ -322,7 +330,7 @@ def _best(
             first += one.shape[1]
         found.append(_functions(tried[0].sensor, axis, values, part))
     equations, place = _equations(campaign, tried[0].sensor, [*beside, *found])
-    equations = equations.given([place[n] for e in beside for n in columns_of(e)])
+    equations = without(equations, [place[n] for e in beside for n in columns_of(e)])
     candidates = law_odds(
         equations, [searched_effect("", own) for own in columns], np.zeros(len(tried))
     )
