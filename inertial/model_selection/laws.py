@@ -28,7 +28,7 @@ from inertial.model_selection.effect_classes import (
 )
 from inertial.model_selection.evidence import SearchedEffect
 from inertial.model_selection.null_simulation import noise
-from inertial.model_selection.scan import Candidates
+from inertial.model_selection.scan import MIN_EIGENVALUE, Candidates
 from inertial.model_selection.walk_odds import LOG_RANGE, Equations
 
 Array = NDArray[np.float64]
@@ -138,29 +138,22 @@ def law_class(equations: Equations, odds: LawOdds) -> LawClass:
 Path = tuple[int, ...]  # at which of the times it changes
 
 
-def best_paths(equations: Equations, steps: Sequence[Sequence[int]]) -> dict[Path, float]:
-    """The best paths of 2, 3, … changes, and their drops.
+def best_paths(equations: Equations, steps: Sequence[int]) -> dict[Path, float]:
+    """The best paths of 2, 3, … changes of one axis, and their drops.
 
-    `steps`: of each axis that has it, the columns of a step at each of n times; the path is one for
-    all axes, the sizes are their own.
+    `steps`: the columns of a step at each of n times.
     """
-    count = len(steps[0])
-    blocks = np.array(
-        [[equations.information[np.ix_(a, b)] for b in steps] for a in steps]
-    )  # (axes, axes, n, n)
-    right = np.array([equations.right[list(a)] for a in steps])
+    count = len(steps)
+    block = equations.information[np.ix_(steps, steps)]
+    right = equations.right[list(steps)]
 
     def drops(paths: Sequence[Path]) -> Array:
         signs = np.zeros((len(paths), count))
         for row, path in enumerate(paths):
             signs[row, list(path)] = (-1.0) ** np.arange(len(path))
-        along = signs @ right.T
-        among = np.einsum("pi,abij,pj->pab", signs, blocks, signs, optimize=True)
-        size = np.sqrt(np.maximum(np.einsum("paa->pa", among), np.finfo(float).tiny))
-        unit = among / (size[:, :, None] * size[:, None, :])
-        inverse = np.linalg.pinv(unit, rcond=1e-6, hermitian=True)
-        scaled = along / size
-        return np.asarray(np.einsum("pa,pab,pb->p", scaled, inverse, scaled))
+        information = np.sum((signs @ block) * signs, axis=1)
+        known = information > MIN_EIGENVALUE * block.max()
+        return np.where(known, (signs @ right) ** 2 / np.where(known, information, 1.0), 0.0)
 
     coarse = range(0, count, COARSE)
     pairs = list(combinations(coarse, 2))

@@ -41,6 +41,7 @@ from stages.criticism.selection import (
 AXES = "xyz"
 TELEGRAPH = ("telegraph", "time")
 FINER = (-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75)  # of the step of a grid
+UNMOVED = FINER.index(0.0)
 ROUNDS = 3
 Shape = tuple[float, ...]
 
@@ -223,36 +224,38 @@ class Searched:
 
 
 def searched(columns: Columns, equations: Equations) -> Searched:
-    """The odds of all laws in these equations."""
+    """The odds of all laws in these equations.
+
+    Two levels in all axes have the path of one of them.
+    """
+    sensor, size = columns.laws[0].name.partition("_")[0], len(equations.right)
+    count = len(columns.times)
+    paths = {axis: _path(equations, steps) for axis, steps in zip(AXES, columns.steps, strict=True)}
     made, shapes = list(columns.laws), list(columns.shapes)
-    paths, added = [0.0] * len(made), [np.zeros((0, len(equations.right)))]
-    sensor, size = made[0].name.partition("_")[0], len(equations.right)
-    for axis in (*AXES, ALL):
-        steps = columns.steps if axis == ALL else [columns.steps[AXES.index(axis)]]
-        path, ways = _path(equations, steps, len(columns.times))
-        own = np.zeros((len(steps), size))
-        for row, columns_of_axis in enumerate(steps):
-            own[row, [columns_of_axis[i] for i in path]] = (-1.0) ** np.arange(len(path))
-        first = size + sum(len(one) for one in added)
-        places = range(first, first + len(own))
-        made.append(searched_effect(law_name(sensor, axis, *TELEGRAPH), places))
-        shapes.append([tuple(float(columns.times[i]) for i in path)])
-        paths.append(ways)
-        added.append(own)
-    wider = np.vstack([np.eye(size), *added])
-    equations = Equations(wider @ equations.information @ wider.T, wider @ equations.right)
-    number = np.array(paths)
-    odds = law_odds(equations, made, number)
-    return Searched(equations, tuple(made), tuple(shapes), number, odds)
+    ways = [0.0] * len(made)
+    added = np.zeros((len(AXES) ** 2, size))
+    for number, (axis, path) in enumerate(paths.items()):
+        first = len(AXES) * number
+        for row, steps in enumerate(columns.steps, first):
+            added[row, [steps[i] for i in path]] = (-1.0) ** np.arange(len(path))
+        own, every = [size + first + number], range(size + first, size + first + len(AXES))
+        for name, places in ((axis, own), (ALL, every)):
+            made.append(searched_effect(law_name(sensor, name, *TELEGRAPH), places))
+            shapes.append([tuple(float(columns.times[i]) for i in path)])
+            ways.append(log_paths(count, len(path)))
+    across = added @ equations.information
+    equations = Equations(
+        np.block([[equations.information, across.T], [across, across @ added.T]]),
+        np.append(equations.right, added @ equations.right),
+    )
+    odds = law_odds(equations, made, np.array(ways))
+    return Searched(equations, tuple(made), tuple(shapes), np.array(ways), odds)
 
 
-def _path(
-    equations: Equations, steps: Sequence[Sequence[int]], count: int
-) -> tuple[tuple[int, ...], float]:
-    """The most probable path of a telegraph, and the logarithm of the number of its kind."""
+def _path(equations: Equations, steps: Sequence[int]) -> tuple[int, ...]:
+    """The most probable path of a telegraph."""
     found = best_paths(equations, steps)
-    path = max(found, key=lambda path: found[path] / 2 - log_paths(count, len(path)))
-    return path, log_paths(count, len(path))
+    return max(found, key=lambda path: found[path] / 2 - log_paths(len(steps), len(path)))
 
 
 # ---- The rivals.
@@ -334,4 +337,8 @@ def _best(
     candidates = law_odds(
         equations, [searched_effect("", own) for own in columns], np.zeros(len(tried))
     )
-    return tried[int(np.argmax(candidates.of_each))]
+    odds = candidates.of_each
+    best = int(np.argmax(odds))
+    # A power of the grid, such as 3, is simpler than one between.
+    simple = tried[best].family.endswith("power") and odds[best] < odds[UNMOVED] + MAX_LOG_ODDS
+    return tried[UNMOVED if simple else best]
