@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 
 from inertial.physics.effect import Array, Constant, Effect, Parameter, Reading, Truth, by_grade
-from inertial.physics.laws import AXES, LAWS, functions
+from inertial.physics.laws import AXES, LAWS, functions, unknown
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
@@ -64,6 +64,9 @@ class Law(Effect):
     @property
     def label(self) -> str:
         return f"{self.name}@{','.join(f'{value:.6g}' for value in self.shape)}"
+
+    def blind(self, motion: Motion) -> str:
+        return unknown(self.state, motion)
 
     def constants(self, motion: Motion) -> Sequence[Constant]:
         return [

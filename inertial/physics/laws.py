@@ -7,6 +7,7 @@ in g, temperature in K, its rate in K/min; an angle is in rad, and known only in
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.physics.drift import without_clock, without_temperature
 from inertial.physics.motion import Motion
 from inertial.text.units import DEGREE, HOUR
 
@@ -187,6 +188,13 @@ LAWS = (
     *((family, name) for name, families in OF_STATE.items() for family in families),
     *(("product", name) for name in PRODUCTS),
 )
+
+
+def unknown(name: str, motion: Motion) -> str:
+    """Why a state is not known in this motion, in a sentence; empty where it is."""
+    if "temperature" in name and (why := without_temperature(motion)):
+        return why
+    return without_clock(motion) if "time" in name or "temperature_rate" in name else ""
 
 
 def known(name: str, motion: Motion, axis: int) -> bool:

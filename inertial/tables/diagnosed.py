@@ -268,3 +268,14 @@ WARM_UP = Table(
         Column("sentence", SENTENCE, "", "the same in words"),
     ),
 )
+
+PROPOSED = Table(
+    "proposed",
+    1,
+    (
+        MOUNT,
+        Column("effect", TEXT, "", "the law, as in effects"),
+        Column("file", TEXT, "", "name of its file in extension/proposed"),
+        Column("text", TEXT, "", "the file: an effect in the form of the catalogue"),
+    ),
+)

@@ -36,6 +36,7 @@ from stages.criticism.finding_rows import (
     member_rows,
     parameter_row,
 )
+from stages.criticism.law_sentences import law_action
 from stages.criticism.selection import Selection
 from stages.criticism.without_law import WithoutLaw
 
@@ -184,6 +185,8 @@ class BlockResults:
         identifier = finding_id(cause.effect, self.mount)
         clear = cause.verdict in NAMED
         action = sentences.ACTION + sentences.split_sentence(split)
+        if cause.effect in LAWS:
+            action = law_action(cause.effect, self.mount)
         yield (
             "findings",
             {

@@ -18,6 +18,10 @@ LAW_OR_WALK = _(
     "this campaign cannot distinguish them."
 )
 ONE = {"gyro": _("{axis} gyro"), "accel": _("{axis} accelerometer")}
+ACTION = _(
+    "Look for its physical cause: {file} proposes it as an effect, in the form of the catalogue. "
+    "Readings are not compensated by it."
+)
 POWERS = {2: _("quadratic in {state}"), 3: _("cubic in {state}"), 4: _("quartic in {state}")}
 FORMS = {
     "polynomial": _("a polynomial of degree {first} in {state}"),
@@ -52,6 +56,11 @@ def law_sentence(cause: Cause, law: Law, parameters: Sequence[Estimated]) -> str
     if cause.verdict == ONE_OF_CLASS:
         return LAW_OR_WALK.format(walk=in_words(cause.members[-1]), **values)
     return LAW.format_map(values)
+
+
+def law_action(name: str, mount: str) -> str:
+    """What to do about a law."""
+    return ACTION.format(file=f"extension/proposed/{name}{f'-{mount}' if mount else ''}.py")
 
 
 def form_of(law: Law) -> str:

@@ -29,6 +29,7 @@ from stages.extension.gain import gain, gain_of_line, gain_of_ripple
 from stages.extension.models import SENSORS, Models, models_of, with_columns
 from stages.extension.named_effects import Named, named_of
 from stages.extension.navigation_error import change_of, worth
+from stages.extension.proposed import proposed_rows
 from stages.extension.selected_sizes import SelectedSizes, selected_sizes
 from stages.extension.sentences import sentence_of
 from stages.extension.warm_up import warm_up_rows
@@ -147,6 +148,8 @@ class Extension:
 
     def rows(self, simulated: Stream) -> Iterator[tuple[str, Any]]:
         """The rows of all tables; of `covariance` tables."""
+        for row in proposed_rows(self.named.classes, self.data.mount):
+            yield "proposed", row
         if self.named.classes:
             yield from self._of_blocks()
         else:
