@@ -19,7 +19,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
+import pyarrow.parquet as pq
 
 from inertial.tables.code import code_of, hash_of, hash_of_file
 from inertial.tables.declared import Declared
@@ -136,7 +136,7 @@ class Stage:
                 for name, rows in result.items() if isinstance(result, Mapping) else result:
                     writer.write(name, rows)
             for name in self.declared.unfolded:
-                _unfold(output / name, self.writes[name].read(output / f"{name}.parquet"))
+                _unfold(output / name)
 
     def command_line(self, arguments: Sequence[str] | None = None) -> None:
         """The folder of the campaign, `--settings JSON`, and `--NAME PATH` for files."""
@@ -168,11 +168,11 @@ def _hashes(files: Sequence[Path]) -> dict[str, str]:
     }
 
 
-def _unfold(folder: Path, table: pd.DataFrame) -> None:
-    """The rows of a table as files, in place of those of an earlier run."""
+def _unfold(folder: Path) -> None:
+    """The rows of a table beside the folder as files in it, in place of those of an earlier run."""
     for old in folder.glob("*"):
         old.unlink()
-    if len(table):
+    rows = pq.read_table(f"{folder}.parquet", columns=["file", "text"]).to_pylist()
+    if rows:
         folder.mkdir(exist_ok=True)
-        files = zip(table["file"], table["text"], strict=True)
-        write_whole({folder / file: text.encode() for file, text in files})
+        write_whole({folder / row["file"]: row["text"].encode() for row in rows})

@@ -94,7 +94,12 @@ FAMILIES = (
         lambda u, t: {"order": _between(u[0], 1.3, 9.7), "phase_deg": 360 * float(u[1])},
     ),
     Family(
-        "product of two forces", "gyro_anisoelasticity", "k_deg_h_g2", ("rates",), 0, lambda u, t: {}
+        "product of two forces",
+        "gyro_anisoelasticity",
+        "k_deg_h_g2",
+        ("rates",),
+        0,
+        lambda u, t: {},
     ),
     Family(
         "rate of the temperature",
