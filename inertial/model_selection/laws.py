@@ -92,7 +92,9 @@ def chance_of(equations: Equations, odds: LawOdds, paths: Array, seed: int = 0) 
     nulls = logsumexp(shares, axis=0) - np.log(len(paths))
     bound = float(np.exp(-max(odds.total, 0.0)))
     drawn = float(np.mean(nulls >= odds.total))
-    return bound if drawn < MIN_DRAWN / DRAWS else min(drawn + bound, 1.0)
+    if drawn < MIN_DRAWN / DRAWS:
+        return bound
+    return min(drawn + bound, 1.0) if len(simple) < len(paths) else drawn
 
 
 # ---- The class of a law: what the data do not distinguish from it.

@@ -19,14 +19,15 @@ from laboratory.units import DEGREE, HOUR
 class GyroStrayField(Effect):
     """ω̃ += a sin(n θ + φ) while the table turns, θ its angle since the start of the turn.
 
-    The motor turns n times as fast as the table, by a friction drive or a belt, so n is no integer.
+    The motor, whose current flows as it turns, turns n times as fast as the table: by a friction
+    drive or a belt, so n is no integer.
     size: a, (3,), rad/s; order: n; phase: φ, rad.
     """
 
     size: Array
     order: float
     phase: float
-    _angle: Array | None = field(default=None, init=False)  # rad, (m,), of this segment
+    _table: Turning | None = field(default=None, init=False)  # of this segment
 
     @classmethod
     def specified(cls, parameters: Mapping[str, Any]) -> Self:
@@ -36,11 +37,11 @@ class GyroStrayField(Effect):
     def change_rotations(
         self, turnings: Sequence[Turning], instants: Instants
     ) -> Sequence[Turning]:
-        self._angle = turnings[0].angle if turnings and turnings[0].planned else None
+        self._table = turnings[0] if turnings and turnings[0].planned else None
         return turnings
 
     def reading_error(self, truth: Truth, sensors: Sensors) -> Reading | None:
-        if self._angle is None:
+        if self._table is None:
             return None
-        wave = np.sin(self.order * self._angle + self.phase)
+        wave = np.sin(self.order * self._table.angle + self.phase) * (self._table.rate != 0)
         return Reading.of_gyros(wave[:, None] * self.size)

@@ -15,6 +15,8 @@ from stages.criticism.law_search import FoundLaw, find_law
 from stages.criticism.residual_structure import Tested, structure_tests
 from stages.criticism.selection import SENSORS, Selection, select_with_scatter
 
+OF_CLASS = ("members", "member_values", "weights", "captured", "p_value")  # fields of a cause
+
 
 def with_laws(
     selection: Selection,
@@ -67,7 +69,8 @@ def _named(selection: Selection, found: FoundLaw, known: dict[str, Cause]) -> Se
     def named(cause: Cause) -> Cause:
         if cause.effect in known:
             old = known[cause.effect]
-            return replace(cause, verdict=LAW, members=old.members, p_value=old.p_value)
+            again = {name: getattr(old, name) for name in OF_CLASS}
+            return replace(cause, verdict=LAW, **again)
         if cause.effect != found.law.name:
             return cause
         share = 1 / (1 + float(np.exp(found.odds))) if found.walk else 0.0

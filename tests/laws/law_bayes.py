@@ -10,11 +10,7 @@ from functools import cache
 
 import numpy as np
 from hidden_courses import Course
-from law_families import (
-    FAMILIES,
-    Family,
-    Random,  # noqa: F401  (the type of a draw)
-)
+from law_families import FAMILIES, Family
 from law_reference import course
 from numpy.typing import NDArray
 
