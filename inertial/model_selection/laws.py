@@ -35,7 +35,7 @@ Array = NDArray[np.float64]
 
 DRAWS = 1000
 MAX_CHANGES = 12  # of a telegraph
-COARSE = 3  # times of a change, of which one is tried first
+COARSE = 9  # times of a change, of which one is tried first
 JITTER = 1e-6  # of the information of a column
 MIN_DRAWN = 10  # draws that reach the odds, for a number
 

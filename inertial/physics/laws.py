@@ -169,7 +169,7 @@ def grid(family: str, name: str, motion: Motion, axis: int) -> list[tuple[float,
     return [()]
 
 
-MAX_CYCLES, RAMPS, STEPS = 20.0, 24, 120  # of a campaign
+MAX_CYCLES, RAMPS, STEPS = 20.0, 24, 360  # of a campaign
 OF_STATE = {
     "time": ("power", "polynomial", "harmonic", "exponential", "ramp", "telegraph"),
     "run_time": ("power", "polynomial", "exponential"),

@@ -6,8 +6,8 @@ the same equations, without a random walk in their covariance. Every effect of t
 likely beforehand, and so is every law.
 """
 
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -34,7 +34,6 @@ from stages.criticism.selection import (
     SENSORS,
     Selection,
     columns_of,
-    evidence_of,
     walk_name,
 )
 
@@ -86,27 +85,25 @@ class Columns:
         return without(self.equations, own)
 
 
-def find_law(selection: Selection, sensor: str, level: float, degrees: float) -> FoundLaw | None:
+def find_law(selection: Selection, sensor: str, level: float) -> FoundLaw | None:
     """The law of a sensor; None where something else is likelier, or noise."""
     campaign = selection.campaign.without_random_walks()
     if campaign.by_hand is not None or not np.isfinite(campaign.motion.time).all():
         return None
     if sensor not in selection.evidence.labels:
         return None
-    equations, _ = evidence_of(campaign, selection.families, degrees)
-    plain = replace(selection, campaign=campaign, evidence=equations)
-    own = [c.effect for c in plain.named.causes if plain.sensor(c) == sensor]
-    named = [effect for effect in plain.effects if effect.name in own]
-    others = [effect for effect in plain.fitted if effect not in named]
+    own = [c.effect for c in selection.named.causes if selection.sensor(c) == sensor]
+    named = [effect for effect in selection.effects if effect.name in own]
+    others = [effect for effect in selection.fitted if effect not in named]
     columns = columns_with(campaign, sensor, others, named)
-    names = [effect.name for effect in named]
+    prior = {e.name: _prior(e, campaign, len(selection.searched)) for e in named}
     tried = []
-    for kept in {frozenset(some) for some in ([], names, *([name] for name in names))}:
-        beside = [effect for effect in named if effect.name in kept]
+    for beside in _subsets(named):
         found = searched(columns, columns.given(beside))
-        tried.append((_catalogue(plain, own, kept) + found.odds.total, found, beside))
+        tried.append((_catalogue(columns, beside, prior) + found.odds.total, found, beside))
     score, found, beside = max(tried, key=lambda one: one[0])
-    walk, alone = _walk(plain, columns, sensor, own, named), _catalogue(plain, own, own)
+    alone = _catalogue(columns, named, prior)
+    walk = max(_walk(campaign, columns, sensor, others), alone + _walk_beside(columns, named))
     if score - alone < MAX_LOG_ODDS or score - walk < -MAX_LOG_ODDS:
         return None
     p_value = chance_of(found.equations, found.odds, found.paths)
@@ -261,31 +258,37 @@ def _path(equations: Equations, steps: Sequence[int]) -> tuple[int, ...]:
 # ---- The rivals.
 
 
-def _catalogue(selection: Selection, own: Sequence[str], kept: Collection[str]) -> float:
-    """The log evidence of some of the named effects of the sensor, without the others.
-
-    `own`: all of them; every effect of the catalogue is as likely.
-    """
-    start = walk_odds.Explained(0.0, selection.equations_without(own))
-    odds = selection.explained(kept, start) if kept else 0.0
-    return odds - len(kept) * float(np.log(len(selection.searched)))
+def _subsets(named: Sequence[Effect]) -> list[Sequence[Effect]]:
+    """None of the effects, each, and all."""
+    return [[], *([effect] for effect in named), *([named] if len(named) > 1 else [])]
 
 
-def _walk(
-    selection: Selection,
-    columns: Columns,
-    sensor: str,
-    own: Sequence[str],
-    named: Sequence[Effect],
-) -> float:
-    """The log evidence of a random walk, with the named effects of the sensor or without."""
-    others = [effect for effect in selection.fitted if effect not in named]
-    alone = walk_odds.walk(columns.equations, columns.waves).log_evidence
-    if size := likely_random_walk(selection.campaign, sensor, others):
-        alone = max(alone, walk_evidence(selection.campaign, sensor, size, others))
-    rest = columns.given(named)
-    beside = walk_odds.walk(rest, columns.waves).log_evidence
-    return max(alone, beside + _catalogue(selection, own, own))
+def _prior(effect: Effect, campaign: Campaign, count: int) -> float:
+    """Log prior of an effect of the catalogue of `count`, and of the value of what it scans."""
+    return -float(np.log(count * max(len(effect.grid(campaign.motion)), 1)))
+
+
+def _catalogue(columns: Columns, kept: Sequence[Effect], prior: Mapping[str, float]) -> float:
+    """The log evidence of some of the named effects."""
+    total, rest = 0.0, columns.equations
+    for effect in kept:
+        own = [columns.place[name] for name in columns_of(effect)]
+        odds = walk_odds.law(rest, [own], np.ones(1))
+        total, rest = total + odds.log_evidence + prior[effect.name], odds.rest
+    return total
+
+
+def _walk(campaign: Campaign, columns: Columns, sensor: str, others: Sequence[Effect]) -> float:
+    """The log evidence of a random walk alone, by half waves or by the readings themselves."""
+    odds = walk_odds.walk(columns.equations, columns.waves).log_evidence
+    if size := likely_random_walk(campaign, sensor, others):
+        odds = max(odds, walk_evidence(campaign, sensor, size, others))
+    return odds
+
+
+def _walk_beside(columns: Columns, named: Sequence[Effect]) -> float:
+    """That of a random walk beside the named effects."""
+    return walk_odds.walk(columns.given(named), columns.waves).log_evidence
 
 
 # ---- The shape of a law between the values of its grid.

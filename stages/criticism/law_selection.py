@@ -32,7 +32,7 @@ def with_laws(
     `effects`, `level`: of the selection.
     """
     for sensor in unexplained(selection, tested):
-        found = find_law(selection, sensor, level, degrees)
+        found = find_law(selection, sensor, level)
         if found is None:
             continue
         before = [e for e in selection.effects if e.name in TEMPERATURE_MODELS or _is_law(e)]

@@ -45,7 +45,7 @@ def forms(family: Family) -> list[list[tuple[float, float]]]:
         return [[(0.5, 0.5)]]
     ways = family.form((0.5, 0.5), 1.0)
     if "phase_deg" in ways:
-        return [[((k + 0.5) / 40, 0.0), ((k + 0.5) / 40, 0.25)] for k in range(40)]
+        return [[((k + 0.5) / 80, 0.0), ((k + 0.5) / 80, 0.25)] for k in range(80)]
     first = [(k + 0.5) / 12 for k in range(12)]
     return [[(a, b)] for a in first for b in (first[::2] if family.numbers == 2 else [0.5])]
 
