@@ -35,6 +35,9 @@
 #   make silence                  records 2000 clean campaigns and counts what is named in them, in
 #                                 docs/silence.md; three hours on two cores, can be resumed; with
 #                                 DRAWS=100 so many of them
+#   make laws                     hides laws of no effect of the catalogue, and nothing, in 1000 campaigns
+#                                 each, in docs/laws.md; eight hours on two cores, can be resumed; with
+#                                 DRAWS=100 so many of each
 #   make noise                    estimates the noise of 3000 simulated recordings, in docs/noise.md; 15
 #                                 minutes on two cores, can be resumed; with DRAWS=100 of each part
 #   make histories                predicts the next calibration and seeks jumps in 3500 simulated histories, in
@@ -55,7 +58,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new design trace index compare test test-slow style bench challenge silence noise histories temperature designs mutants docs recordings clean setup pango campaign
+.PHONY: report check draft new design trace index compare test test-slow style bench challenge silence laws noise histories temperature designs mutants docs recordings clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -209,6 +212,9 @@ temperature: .venv/complete
 
 silence: .venv/complete
 	PYTHONPATH=tests:tests/hidden OPENBLAS_NUM_THREADS=1 $(BIN)/python -m silence $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",2000) data/derived/silence
+
+laws: .venv/complete
+	PYTHONPATH=tests:tests/hidden:tests/laws OPENBLAS_NUM_THREADS=1 $(BIN)/python -m laws $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",1000) data/derived/laws
 
 noise: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m noise data/derived/noise $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
