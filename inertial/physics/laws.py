@@ -18,17 +18,31 @@ RATE = 10 * DEGREE  # rad/s
 MINUTE = 60.0  # s
 SLOPE_SECONDS = 20.0  # s, over which the rate of a temperature is taken
 AXES = "xyz"
-
-STATES = (
-    "time", "run_time", "angle", "rate", "force_x", "force_y", "force_z", "temperature",
-    "temperature_rate",
+MAX_CYCLES, RAMPS, STEPS = 20.0, 24, 360  # of a campaign
+OF_STATE = {
+    "time": ("power", "polynomial", "harmonic", "exponential", "ramp", "telegraph"),
+    "run_time": ("power", "polynomial", "exponential"),
+    "angle": ("harmonic",),
+    "rate": ("power", "odd_power", "polynomial", "exponential"),
+    "temperature": ("polynomial", "exponential", "hysteresis"),
+    "temperature_rate": ("odd_power", "product"),
+} | dict.fromkeys(
+    ("force_x", "force_y", "force_z"), ("power", "odd_power", "polynomial", "hysteresis")
 )  # fmt: skip
+FACTORS = ("time", "rate", "force_x", "force_y", "force_z", "temperature", "temperature_rate")
+PRODUCTS = tuple(
+    f"{first}*{second}" for i, first in enumerate(FACTORS) for second in FACTORS[i + 1 :]
+)
+LAWS = (
+    *((family, name) for name, families in OF_STATE.items() for family in families),
+    *(("product", name) for name in PRODUCTS),
+)
 
 
 def state(name: str, motion: Motion, axis: int) -> Array:
     """A state at the nodes of each stretch, (n, 5), NaN where not known.
 
-    `axis`: of the sensor, whose rate is that about its own axis; `name`: of `STATES`, or two of
+    `axis`: of the sensor, whose rate is that about its own axis; `name`: of `OF_STATE`, or two of
     them with a * between, their product.
     """
     if "*" in name:
@@ -167,27 +181,6 @@ def grid(family: str, name: str, motion: Motion, axis: int) -> list[tuple[float,
     if family == "hysteresis":
         return [(share * span / 2,) for share in (0.25, 0.5, 0.75, 0.9)]
     return [()]
-
-
-MAX_CYCLES, RAMPS, STEPS = 20.0, 24, 360  # of a campaign
-OF_STATE = {
-    "time": ("power", "polynomial", "harmonic", "exponential", "ramp", "telegraph"),
-    "run_time": ("power", "polynomial", "exponential"),
-    "angle": ("harmonic",),
-    "rate": ("power", "odd_power", "polynomial", "exponential"),
-    "temperature": ("polynomial", "exponential", "hysteresis"),
-    "temperature_rate": ("odd_power", "product"),
-} | dict.fromkeys(
-    ("force_x", "force_y", "force_z"), ("power", "odd_power", "polynomial", "hysteresis")
-)  # fmt: skip
-FACTORS = ("time", "rate", "force_x", "force_y", "force_z", "temperature", "temperature_rate")
-PRODUCTS = tuple(
-    f"{first}*{second}" for i, first in enumerate(FACTORS) for second in FACTORS[i + 1 :]
-)
-LAWS = (
-    *((family, name) for name, families in OF_STATE.items() for family in families),
-    *(("product", name) for name in PRODUCTS),
-)
 
 
 def unknown(name: str, motion: Motion) -> str:
