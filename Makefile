@@ -39,6 +39,9 @@
 #   make injections               puts effects and faults into the bytes of the real recordings, which are not
 #                                 part of the project, and reports what is detected, in docs/injections.md; an
 #                                 hour of one core, can be resumed; with DRAWS=40 so many of them
+#   make laws                     hides laws of no effect of the catalogue, and nothing, in 1000 campaigns
+#                                 each, in docs/laws.md; eight hours on two cores, can be resumed; with
+#                                 DRAWS=100 so many of each
 #   make noise                    estimates the noise of 3000 simulated recordings, in docs/noise.md; 15
 #                                 minutes on two cores, can be resumed; with DRAWS=100 of each part
 #   make histories                predicts the next calibration and seeks jumps in 3500 simulated histories, in
@@ -59,7 +62,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new design trace index compare test test-slow style bench challenge silence injections noise histories temperature designs mutants docs recordings clean setup pango campaign
+.PHONY: report check draft new design trace index compare test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -245,6 +248,9 @@ silence: .venv/complete
 
 injections: .venv/complete
 	PYTHONPATH=tests:tests/hidden OPENBLAS_NUM_THREADS=1 $(BIN)/python -m injections $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",400) data/derived/injections
+
+laws: .venv/complete
+	PYTHONPATH=tests:tests/hidden:tests/laws OPENBLAS_NUM_THREADS=1 $(BIN)/python -m laws $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",1000) data/derived/laws
 
 noise: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m noise data/derived/noise $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")

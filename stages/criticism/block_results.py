@@ -5,9 +5,16 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from inertial.campaign.equations import Campaign
-from inertial.effects import CATALOGUE, KNOWN, TEMPERATURE_MODELS
+from inertial.effects import CATALOGUE, KNOWN, LAWS, TEMPERATURE_MODELS
 from inertial.estimation.random_walk import MeasuredDrift
-from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause, EffectTest
+from inertial.model_selection.cause import (
+    FOUND,
+    LAW,
+    ONE_OF_CLASS,
+    UNKNOWN_STRUCTURE,
+    Cause,
+    EffectTest,
+)
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.model_selection.size_after_selection import corrected
 from inertial.physics.effect import Array, Effect
@@ -28,10 +35,11 @@ from stages.criticism.finding_rows import (
     member_rows,
     parameter_row,
 )
+from stages.criticism.law_sentences import law_action
 from stages.criticism.selection import Selection
 from stages.criticism.without_law import WithoutLaw
 
-NAMED = (FOUND, ONE_OF_CLASS)
+NAMED = (FOUND, ONE_OF_CLASS, LAW)
 MAX_RIVAL_DROP = 6.0  # of chi-squared between two positions that are both possible: 95 % of 2
 WALK = "gyro_random_walk"
 WALK_UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
@@ -168,7 +176,7 @@ class BlockResults:
             )
 
     def _finding(self, number: int, cause: Cause) -> Iterator[TableRow]:
-        split = self.extended.splitting(number)
+        split = None if cause.effect in LAWS else self.extended.splitting(number)
         free = cause.effect not in self.selection.families
         effect = None if free else self.selection.effect(cause.effect, cause.value)
         parameters = [] if effect is None else self._parameters(effect, cause.value)
@@ -176,6 +184,8 @@ class BlockResults:
         identifier = finding_id(cause.effect, self.mount)
         clear = cause.verdict in NAMED
         action = sentences.ACTION + sentences.split_sentence(split)
+        if cause.effect in LAWS:
+            action = law_action(cause.effect, self.mount)
         yield (
             "findings",
             {
@@ -271,7 +281,7 @@ class BlockResults:
             step = min(filter(None, distances), default=0.0)
             sigma = step / 12**0.5 if scan.between else None  # uniform within a step
             parameters.append(Estimated(scan.name, scan.unit, scan.meaning, at, sigma))
-        elif effect.name in TEMPERATURE_MODELS:
+        elif effect.name in TEMPERATURE_MODELS or effect.name in LAWS:
             parameters += [
                 Estimated(one.name, one.unit, one.meaning, one.value)
                 for one in effect.constants(self.campaign.motion)

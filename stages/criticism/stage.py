@@ -25,6 +25,7 @@ from stages.criticism.block_results import (
 from stages.criticism.class_splitting import ExtendedCampaigns, ExtendedPlan, extended_plans
 from stages.criticism.declared import DECLARED
 from stages.criticism.finding_rows import Row, TableRow
+from stages.criticism.law_selection import with_laws
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations, shifts, without_lines
 from stages.criticism.residual_structure import structure_rows, structure_tests
@@ -83,6 +84,8 @@ def _of_mount(
         degrees,
     )
     tested = structure_tests(selection.campaign, selection.fitted, degrees, level * STRUCTURE_SHARE)
+    levels = (level * BLOCKS_SHARE, level * STRUCTURE_SHARE)
+    selection, tested = with_laws(selection, tested, campaign, in_blocks, *levels, degrees)
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
     random_walks = random_walks_with_sigmas(selection.campaign, selection.fitted)
     plans = {} if data.by_hand else extended_plans(data.plan, data.performed, quiet)

@@ -41,6 +41,8 @@ DECLARED = Declared(
         "candidates": tables.CANDIDATES,
         "candidate_effects": tables.CANDIDATE_EFFECTS,
         "warm_up": tables.WARM_UP,
+        "proposed": tables.PROPOSED,
     },
+    unfolded=("proposed",),
     streams=("simulated",),
 )

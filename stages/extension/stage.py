@@ -38,6 +38,7 @@ from stages.extension.models import (
 )
 from stages.extension.named_effects import Named, named_of
 from stages.extension.navigation_error import change_of, worth
+from stages.extension.proposed import proposed_rows
 from stages.extension.scanned_values import with_scanned_values
 from stages.extension.selected_sizes import SelectedSizes, selected_sizes
 from stages.extension.sentences import sentence_of
@@ -158,6 +159,8 @@ class Extension:
 
     def rows(self, simulated: Stream) -> Iterator[tuple[str, Any]]:
         """The rows of all tables; of `covariance` tables."""
+        for row in proposed_rows(self.named.classes, self.data.mount):
+            yield "proposed", row
         if self.named.classes:
             yield from self._of_blocks()
         else:
