@@ -33,7 +33,7 @@ FAILED = FailedRun(logger)
 
 
 onerror:
-    sys.stderr.write(FAILED.shown())
+    sys.stderr.write(FAILED.shown(*log))
 
 
 DERIVED = "data/derived/{campaign}"

@@ -44,7 +44,7 @@ EFFECT_FINDINGS = Table(
     5,
     (
         *FINDINGS.columns,
-        Column("verdict", TEXT, "", "found, one_of_class, unknown_structure", nullable=True),
+        Column("verdict", TEXT, "", "found, one_of_class, law, unknown_structure", nullable=True),
         Column(
             "statistic",
             DOUBLE,
@@ -194,7 +194,9 @@ SCORES = Table(
             nullable=True,
         ),
         Column("named", TRUTH, "", "whether the effect is named"),
-        Column("verdict", TEXT, "", "found, one_of_class, unknown_structure; empty: not needed"),
+        Column(
+            "verdict", TEXT, "", "found, one_of_class, law, unknown_structure; empty: not needed"
+        ),
         Column("snr", DOUBLE, "1", "signal-to-noise ratio of a named effect", nullable=True),
         Column(
             "scan_value",

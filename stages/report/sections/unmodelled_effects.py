@@ -37,7 +37,7 @@ from stages.report.words import capital, count_in_words
 POSITION = "table_position_error"  # what an effect of the accelerometers may look like
 LINES = {"oscillation", "table_ripple", "table_eccentricity"}  # periodic in turns, all of them
 MIN_SPLIT_SIGMA = 3.3  # at which the likelier member is right in 95 of 100 campaigns
-IDENTIFIED = frozenset({"found", "class"})
+IDENTIFIED = frozenset({"found", "class", "law"})
 
 
 @once
