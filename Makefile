@@ -49,6 +49,8 @@
 #   make designs                  designs recorded by the simulated laboratory, in docs/design.md: sigmas
 #                                 foreseen and realised, classes split; 45 minutes on two cores, can be
 #                                 resumed; with DRAWS=4 so many of each part
+#   make screenshots              a campaign's report as a person sees it, wide and narrow, light, dark and
+#                                 printed, into reports/screenshots/; also with CAMPAIGN=<name>
 #   make mutants                  puts faults into the physics, one at a time, and reports which of them the
 #                                 tests see, in docs/mutants.md; 1200 faults take an hour on two cores,
 #                                 can be resumed; with DRAWS=100 so many of them
@@ -62,7 +64,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new design trace index compare test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings clean setup pango campaign
+.PHONY: report check draft new design trace index compare test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings screenshots clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -277,6 +279,9 @@ docs: .venv/complete
 
 recordings: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m recordings
+
+screenshots: report
+	$(BIN)/python -m commands.screenshots "--campaign=$$CAMPAIGN"
 
 clean:
 	rm -rf data/derived .snakemake

@@ -6,6 +6,7 @@ several, one below the other. Palette PNG, for a report has few colours.
 
 import argparse
 import io
+import sys
 from pathlib import Path
 
 from PIL import Image
@@ -46,7 +47,7 @@ def main() -> None:
     folder = options.reports / "screenshots" / options.campaign
     with browser() as page:
         screenshots(page, options.reports / f"{options.campaign}.html", folder)
-    print(f"{len(list(folder.glob('*.png')))} pictures in {folder}")
+    sys.stdout.write(f"{len(list(folder.glob('*.png')))} pictures in {folder}\n")
 
 
 if __name__ == "__main__":
