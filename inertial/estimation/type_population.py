@@ -153,7 +153,7 @@ def _tests(campaigns: Campaigns, found: Sequence[Population | None]) -> Iterator
         if len(shown) < MIN_IMUS:
             continue
         # Of each IMU alone, other parameters as its own covariance has them.
-        inverse: Array = np.linalg.pinv(information[shown], hermitian=True)
+        inverse = np.asarray(np.linalg.pinv(information[shown], hermitian=True), np.float64)
         values = np.einsum("inm,im->in", inverse, score[shown])[:, number]
         between = spread_of(fitted, ("imu",))
         sizes, chances = _studentised(values, inverse[:, number, number], between)

@@ -18,10 +18,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.estimation.sharing import LEVELS, Sharing
+
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-LEVELS = ("type", "table", "imu", "campaign")
 MIN_EIGENVALUE = 1e-6  # of the information scaled to unit diagonal; below: not observable
 EVERY = -1  # for the group of a hypothesis: each group of its level has a size of its own
 
@@ -163,6 +164,25 @@ class FleetEvidence:
         information, right = self.joint(model)
         white = _white(information)
         return white @ (white.T @ right), white @ white.T
+
+    def sharing(self, model: Sequence[Shared], effect: int) -> Sharing:
+        """What the campaigns say of an effect, the other effects of a model as they are fitted."""
+        values, _ = self.estimate(model)
+        sizes = np.zeros_like(self.right)
+        first = 0
+        for one in model:
+            columns, of = self.columns[one.effect], self.levels[one.level].of
+            for group in self.groups_of(one):
+                if one.effect != effect:
+                    members = np.flatnonzero(of == group)
+                    sizes[np.ix_(members, columns)] += values[first : first + len(columns)]
+                first += len(columns)
+        own = self.columns[effect]
+        right = self.right[:, own] - np.einsum("cpk,ck->cp", self.information[:, own], sizes)
+        labels = {
+            level: [groups.labels[i] for i in groups.of] for level, groups in self.levels.items()
+        }
+        return Sharing(self.information[:, own[:, None], own], right, labels)
 
     # ---- What each hypothesis explains beside a model.
 

@@ -25,9 +25,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.estimation.probability import chi2_isf, chi2_sf
+from inertial.estimation.sharing import LEVELS
 from inertial.model_selection.fleet_evidence import (
     EVERY,
-    LEVELS,
     MIN_EIGENVALUE,
     FleetEvidence,
     Given,
