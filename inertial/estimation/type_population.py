@@ -105,9 +105,20 @@ def spread_of(found: Population, levels: Sequence[str]) -> float:
     return float(np.sqrt(sum(s.value**2 for s in found.spreads if set(s.levels) & set(levels))))
 
 
-def of_new_imu(found: Population) -> float:
-    """Sigma of what a campaign of a new IMU of the type will find, beside its own sigma."""
-    return float(np.hypot(spread_of(found, ("table", "imu", "campaign")), found.mean_sigma))
+def of_new_imu(found: Population) -> tuple[float, float] | None:
+    """Sigma of a new IMU of the type about the mean, and its degrees of freedom (Satterthwaite).
+
+    In one campaign on one table, beside the sigma of that campaign; None for a single IMU, of
+    which the spread of the type is not known.
+    """
+    if not any("imu" in spread.levels for spread in found.spreads):
+        return None
+    variance = sum(s.value**2 for s in found.spreads)
+    whole = variance + found.mean_sigma**2
+    # The variance of the mean is that of the components over their groups, and no surer.
+    parts = [(s.value**2 * (1 + 1 / s.groups), s.groups - 1) for s in found.spreads if s.value]
+    uncertain = sum(part**2 / degrees for part, degrees in parts)
+    return float(np.sqrt(whole)), float(whole**2 / uncertain) if uncertain else np.inf
 
 
 def _imu_means(

@@ -98,7 +98,16 @@ FLEET = {
                     DOUBLE,
                     "as unit",
                     "standard deviation of a new IMU of the type about the mean, in one campaign on"
-                    " one table, beside the sigma of that campaign",
+                    " one table, beside the sigma of that campaign; none: of a single IMU",
+                    nullable=True,
+                ),
+                Column(
+                    "prior_degrees",
+                    DOUBLE,
+                    "1",
+                    "degrees of freedom of prior_sigma, for Student's t; none: of a single IMU, or"
+                    " the differences are no larger than the sigmas",
+                    nullable=True,
                 ),
             ),
         ),

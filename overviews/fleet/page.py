@@ -254,9 +254,11 @@ def _populations(rows: Rows) -> outline.Section:
         _("The population of each type"),
         _("Mean and spread of the parameters, correlations, and IMUs that differ from the others."),
         _(
-            "A new IMU of the type is expected at mean ± σ of a new IMU. Spreads are of largest "
-            "restricted likelihood; 0: the σ of the campaigns explains all differences. Outliers "
-            "are in no number."
+            "A new IMU of the type is expected at mean ± σ of a new IMU, with so many degrees of "
+            "freedom. Spreads are of largest restricted likelihood; 0: the σ of the campaigns "
+            "explains all differences. Outliers are in no number. The errors of the campaigns "
+            "count as independent: an error that all contain alike, such as that of a gravity that "
+            "is taken as known, is in each mean besides."
         ),
         parts,
     )
@@ -275,6 +277,7 @@ def _parameters(sensor: str, rows: Sequence[Row], spreads: Sequence[Row]) -> out
                 *_both(unit.of(row["mean"]), unit.of(row["mean_sigma"])),
                 *cells,
                 numbers.significant(unit.of(row["prior_sigma"]), 3),
+                numbers.significant(row["prior_degrees"], 2),
                 unit.name,
                 str(row["imus"]),
             )
@@ -292,6 +295,7 @@ def _parameters(sensor: str, rows: Sequence[Row], spreads: Sequence[Row]) -> out
                 )
             ),
             outline.Column(_("σ of a new IMU"), "number"),
+            outline.Column(_("degrees"), "number"),
             outline.Column(_("unit"), "unit"),
             outline.Column(_("IMUs"), "number"),
         ),

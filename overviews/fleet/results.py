@@ -150,17 +150,11 @@ def _population(members: Sequence[Member], level: float) -> Iterator[tuple[str, 
             for m, value in zip(members, values, strict=True)
             if np.isfinite(value) and m.imu not in left_out
         }
-        yield (
-            "population",
-            {
-                **_place(kind, place),
-                "imus": len(imus),
-                "unit": unit,
-                "mean": of.mean,
-                "mean_sigma": of.mean_sigma,
-                "prior_sigma": of_new_imu(of),
-            },
-        )
+        row = _place(kind, place) | {"imus": len(imus), "unit": unit}
+        row |= {"mean": of.mean, "mean_sigma": of.mean_sigma}
+        sigma, degrees = of_new_imu(of) or (None, np.inf)
+        row |= {"prior_sigma": sigma, "prior_degrees": degrees if np.isfinite(degrees) else None}
+        yield "population", row
         for spread in of.spreads:
             row = _place(kind, place) | {"levels": _levels(spread.levels), "unit": unit}
             row |= {"groups": spread.groups, "value": spread.value}
