@@ -25,8 +25,10 @@ SMALLEST, LARGEST = 1e-7, 1e3  # variances that are sought, in variances of the 
 STARTS = (0.01, 0.3)
 STEP = 0.05  # relative, of standard deviations, for the curvature of the likelihood
 MIN_SHOWN = 1e-5  # of the variance of the values: a component of less is zero
-DRAWS = 1500
-TOTALS = (0.02, 50.0)  # range of the mean square of an effect, in units of its first estimate
+ADAPTING, DRAWS = 1000, 4000  # of the sampler
+ACCEPTED = 0.3  # share of its steps
+SCALES = (0.2, 1.0, 3.0)  # of its steps, by chance: components differ in how well they are known
+TOTALS = (1e-3, 1e3)  # range of the mean square of an effect, in units of its first estimate
 
 
 @dataclass(frozen=True)
@@ -133,33 +135,50 @@ def shares(sharing: Sharing, seed: int = 0) -> dict[tuple[str, ...], tuple[float
 
     Levels that divide the campaigns in the same way have one share together. Mean and standard
     deviation of the posterior, all shares being equally probable beforehand and the mean square
-    uniform in its logarithm; by importance sampling.
+    uniform in its logarithm; by random-walk Metropolis sampling, the steps adapted at first.
     """
     levels = sharing.distinct()
     random = np.random.default_rng(seed)
-    parts = random.dirichlet(np.ones(len(levels)), DRAWS)
-    quantities = sharing.right.shape[1]
-    information = np.trace(sharing.information.sum(axis=0)) / quantities
-    alone = np.linalg.pinv(sharing.information, hermitian=True)
-    excess = float(np.einsum("cp,cpq,cq->", sharing.right, alone, sharing.right))
-    first = max(excess / sharing.right.size - 1, 1.0 / len(sharing.right)) * (
-        len(sharing.right) / information
-    )
-    totals = first * np.exp(random.uniform(np.log(TOTALS[0]), np.log(TOTALS[1]), DRAWS))
-    deviances = np.array(
-        [
-            sharing.solved(dict(zip(levels, total * part, strict=True))).deviance
-            for total, part in zip(totals, parts, strict=True)
-        ]
-    )
-    weights = np.exp(-(deviances - deviances.min()) / 2)
-    weights /= weights.sum()
-    mean = weights @ parts
-    sigma = np.sqrt(weights @ (parts - mean) ** 2)
+    first = _mean_square(sharing)
+    low, high = np.log(first) + np.log(TOTALS)
+
+    def logarithm(sizes: Array) -> float:
+        """Of the posterior density of the logarithms of the variances."""
+        total = float(np.logaddexp.reduce(sizes))
+        if not low < total < high:
+            return -np.inf
+        deviance = sharing.solved(dict(zip(levels, np.exp(sizes).tolist(), strict=True))).deviance
+        return float(np.sum(sizes - total)) - deviance / 2
+
+    place = np.full(len(levels), np.log(first / len(levels)))
+    here, step = logarithm(place), 1.0
+    drawn = []
+    for number in range(ADAPTING + DRAWS):
+        trial = place + step * random.normal(size=len(place)) * random.choice(SCALES, len(place))
+        there = logarithm(trial)
+        accepted = np.log(random.random()) < there - here
+        if accepted:
+            place, here = trial, there
+        if number < ADAPTING:
+            step *= np.exp((float(accepted) - ACCEPTED) / np.sqrt(number + 1))
+        else:
+            drawn.append(np.exp(place - np.logaddexp.reduce(place)))
+    mean, sigma = np.mean(drawn, axis=0), np.std(drawn, axis=0)
     return {
         names: (float(m), float(s))
         for names, m, s in zip(levels.values(), mean, sigma, strict=True)
     }
+
+
+def _mean_square(sharing: Sharing) -> float:
+    """A first estimate of the mean square of a parameter of the effect."""
+    count, quantities = sharing.right.shape
+    alone = np.linalg.pinv(sharing.information, hermitian=True)
+    excess = float(np.einsum("cp,cpq,cq->", sharing.right, alone, sharing.right)) / (
+        count * quantities
+    )
+    information = float(np.trace(sharing.information.sum(axis=0))) / (count * quantities)
+    return float(max(excess - 1, 1 / count) / information)
 
 
 # ---- Mean and spread of a quantity.

@@ -23,6 +23,7 @@ Booleans = NDArray[np.bool_]
 
 MIN_IMUS = 4  # for correlations and outliers: of less none could be significant
 ROUNDS = 300  # of EM
+MIN_EIGENVALUE = 1e-6  # of a correlation matrix; what is smaller is known no better
 MAX_OUTLIERS_SHARE = 0.25  # of the IMUs
 
 
@@ -145,11 +146,25 @@ def _imu_means(
     for row, imu in enumerate(campaigns.labels["imu"]):
         kept = np.flatnonzero(np.isfinite(values[row]))
         block = campaigns.covariance[row][np.ix_(kept, kept)] + np.diag(own[kept])
-        inverse = np.linalg.inv(block)
+        inverse = _inverse(block)
         number = names.index(imu)
         information[number][np.ix_(kept, kept)] += inverse
         score[number][kept] += inverse @ values[row, kept]
     return names, information, score
+
+
+def _inverse(matrix: Array) -> Array:
+    """Of positive matrices (…, n, n), zero where a row is; a convention may leave them singular.
+
+    The triads of a campaign by hand are symmetric, so their cross terms are equal in pairs.
+    """
+    size = np.sqrt(np.diagonal(matrix, axis1=-2, axis2=-1))
+    safe = np.where(size > 0, size, 1.0)
+    scale = safe[..., :, None] * safe[..., None, :]
+    values, vectors = np.linalg.eigh(matrix / scale)
+    kept = (1 / np.maximum(values, MIN_EIGENVALUE))[..., None, :]
+    shown = (size > 0)[..., :, None] & (size > 0)[..., None, :]
+    return np.where(shown, (vectors * kept) @ np.swapaxes(vectors, -1, -2) / scale, 0.0)
 
 
 def _tests(campaigns: Campaigns, found: Sequence[Population | None]) -> Iterator[Outlier]:
@@ -164,7 +179,7 @@ def _tests(campaigns: Campaigns, found: Sequence[Population | None]) -> Iterator
         if len(shown) < MIN_IMUS:
             continue
         # Of each IMU alone, other parameters as its own covariance has them.
-        inverse = np.asarray(np.linalg.pinv(information[shown], hermitian=True), np.float64)
+        inverse = _inverse(information[shown])
         values = np.einsum("inm,im->in", inverse, score[shown])[:, number]
         between = spread_of(fitted, ("imu",))
         sizes, chances = _studentised(values, inverse[:, number, number], between)

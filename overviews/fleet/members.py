@@ -17,6 +17,7 @@ from inertial.estimation.type_population import Campaigns
 from inertial.model_selection.fleet_evidence import FleetEvidence
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
+from inertial.text.parameters import SCALE
 
 Array = NDArray[np.float64]
 Place = tuple[str, str]  # an effect and its parameter; or a sensor and its parameter
@@ -24,6 +25,7 @@ Place = tuple[str, str]  # an effect and its parameter; or a sensor and its para
 READ = {
     "campaign": ("plan/campaign.parquet", tables.CAMPAIGN),
     "inputs": ("plan/inputs.parquet", tables.INPUTS),
+    "known": ("plan/known.parquet", tables.KNOWN),
     "score": ("criticism/score_vector.parquet", tables.SCORE_VECTOR),
     "information": ("criticism/information_matrix.parquet", tables.INFORMATION_MATRIX),
     "result": ("diagnosis/result.parquet", tables.PARAMETERS),
@@ -35,13 +37,17 @@ PARAMETERS: tuple[Place, ...] = tuple(
     (sensor, name) for sensor in ("accel", "gyro") for name in linear_names()
 )
 
+ACCEL_SCALES = {("accel", name) for name in SCALE}
+MAX_GRAVITY_SHARE = 0.9999  # of the variance of a scale factor
+
 
 @dataclass(frozen=True)
 class Member:
     """One mount of one campaign.
 
     `score` by effect and parameter, `information` rows of the table; `values`: (24,) in the order
-    of PARAMETERS, NaN where not determined, with `covariance`; `reason`: why it is not pooled.
+    of PARAMETERS, NaN where not determined, with `covariance`; `gravity`: as the campaign takes it
+    as known, m/s², with sigma; `reason`: why it is not pooled.
     """
 
     campaign: str
@@ -56,6 +62,7 @@ class Member:
     information: pd.DataFrame
     values: Array
     covariance: Array
+    gravity: tuple[float, float]
     reason: str = ""
 
     @property
@@ -133,6 +140,7 @@ def _members(name: str, folder: Path) -> Iterator[Member]:
             dict(zip(places, score["unit"], strict=True)),
             information,
             *_parameters(own, covariance),
+            _gravity(frames["known"]),
         )
 
 
@@ -147,6 +155,11 @@ def _parameters(rows: pd.DataFrame, known: Mapping[tuple[str, str], float]) -> t
                 covariance[i, j] = known.get((one.id, other.id), 0.0)
         covariance[i, i] = one.sigma**2 if one is not None else 1.0
     return values, covariance
+
+
+def _gravity(known: pd.DataFrame) -> tuple[float, float]:
+    row = known[known["quantity"] == "gravity"].iloc[0]
+    return float(row["value"]), float(np.nan_to_num(row["sigma"]))
 
 
 def labels_of(members: Sequence[Member]) -> dict[str, list[str]]:
@@ -183,10 +196,34 @@ def evidence_of(members: Sequence[Member]) -> tuple[FleetEvidence, dict[str, lis
     return FleetEvidence(of_effect, information, right, labels_of(members)), places
 
 
+# ---- The error of gravity: campaigns that take the same value as known contain it alike.
+
+
 def campaigns_of_type(members: Sequence[Member]) -> Campaigns:
-    """The parameters of the campaigns of one type."""
+    """The parameters of the campaigns of one type, the error of gravity taken out of their sigmas.
+
+    A relative error ε of gravity is −ε of each scale factor of the accelerometers.
+    """
+    covariance = np.array([m.covariance for m in members])
+    moved = np.array([_by_gravity(m) for m in members])
     return Campaigns(
         np.array([m.values for m in members]),
-        np.array([m.covariance for m in members]),
+        covariance - moved[:, :, None] * moved[:, None, :],
         labels_of(members),
     )
+
+
+def of_gravity(members: Sequence[Member]) -> Array:
+    """Sigma of the means by the error of gravity, (24,): one for each value that is known."""
+    variance = np.zeros(len(PARAMETERS))
+    for gravity in {m.gravity for m in members}:
+        own = np.array([_by_gravity(m) * (m.gravity == gravity) for m in members])
+        variance += own.mean(axis=0) ** 2
+    return np.sqrt(variance)
+
+
+def _by_gravity(member: Member) -> Array:
+    value, sigma = member.gravity
+    most = np.sqrt(np.diag(member.covariance) * MAX_GRAVITY_SHARE)
+    of = np.array([place in ACCEL_SCALES for place in PARAMETERS])
+    return np.where(of & np.isfinite(member.values), np.minimum(sigma / value, most), 0.0)

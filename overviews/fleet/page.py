@@ -256,9 +256,8 @@ def _populations(rows: Rows) -> outline.Section:
         _(
             "A new IMU of the type is expected at mean ± σ of a new IMU, with so many degrees of "
             "freedom. Spreads are of largest restricted likelihood; 0: the σ of the campaigns "
-            "explains all differences. Outliers are in no number. The errors of the campaigns "
-            "count as independent: an error that all contain alike, such as that of a gravity that "
-            "is taken as known, is in each mean besides."
+            "explains all differences. Outliers are in no number. An error of gravity is one of "
+            "all campaigns that take the same value as known, and is in σ of the mean alone."
         ),
         parts,
     )

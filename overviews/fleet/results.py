@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from math import atanh, sqrt
 from typing import Any
 
@@ -15,10 +16,18 @@ from inertial.model_selection.fleet_evidence import EVERY, FleetEvidence, Shared
 from inertial.model_selection.fleet_search import Finding, FleetSearch, fleet_law
 from inertial.tables.fleet import FLEET
 from inertial.tables.shared import UNITS
-from overviews.fleet.members import PARAMETERS, Member, Place, campaigns_of_type, evidence_of
+from overviews.fleet.members import (
+    PARAMETERS,
+    Member,
+    Place,
+    campaigns_of_type,
+    evidence_of,
+    of_gravity,
+)
 
 Row = dict[str, Any]
 Rows = dict[str, list[Row]]
+EQUAL = 0.9999  # a correlation of what is equal by a convention, as the axes of a case by hand
 OF_FISHER_Z = 3  # degrees of freedom that a correlation takes
 
 
@@ -136,20 +145,22 @@ def _population(members: Sequence[Member], level: float) -> Iterator[tuple[str, 
     kind = members[0].type
     found = type_population(campaigns_of_type(members), level)
     left_out = {one.imu for one in found.outliers}
-    for one in found.outliers:
-        row = _place(kind, PARAMETERS[one.parameter])
-        yield "outliers", row | {"imu": one.imu, "size": one.size, "p_value": one.p_value}
-    for place, of, values in zip(
-        PARAMETERS, found.parameters, np.array([m.values for m in members]).T, strict=True
+    for odd in found.outliers:
+        row = _place(kind, PARAMETERS[odd.parameter])
+        yield "outliers", row | {"imu": odd.imu, "size": odd.size, "p_value": odd.p_value}
+    kept = [member for member in members if member.imu not in left_out]
+    for place, one, common, values in zip(
+        PARAMETERS,
+        found.parameters,
+        of_gravity(kept),
+        np.array([m.values for m in kept]).T,
+        strict=True,
     ):
-        if of is None:
+        if one is None:
             continue
+        of = replace(one, mean_sigma=float(np.hypot(one.mean_sigma, common)))
         unit = UNITS[place[0]] if place[1].startswith("bias") else "1"
-        imus = {
-            m.imu
-            for m, value in zip(members, values, strict=True)
-            if np.isfinite(value) and m.imu not in left_out
-        }
+        imus = {m.imu for m, value in zip(kept, values, strict=True) if np.isfinite(value)}
         row = _place(kind, place) | {"imus": len(imus), "unit": unit}
         row |= {"mean": of.mean, "mean_sigma": of.mean_sigma}
         sigma, degrees = of_new_imu(of) or (None, np.inf)
@@ -161,7 +172,7 @@ def _population(members: Sequence[Member], level: float) -> Iterator[tuple[str, 
             yield "spreads", row | {"sigma": None if np.isnan(spread.sigma) else spread.sigma}
     for i, j in zip(*np.triu_indices(len(PARAMETERS), 1), strict=True):
         r = float(found.correlation[i, j])
-        if np.isfinite(r) and abs(r) < 1 and found.imus > OF_FISHER_Z:
+        if np.isfinite(r) and abs(r) < EQUAL and found.imus > OF_FISHER_Z:
             row = {"instrument": kind, "first": " ".join(PARAMETERS[i])}
             row |= {"second": " ".join(PARAMETERS[j]), "correlation": r}
             row |= {"sigma": (1 - r**2) / sqrt(found.imus - 1)}
