@@ -4,9 +4,8 @@
 
 with the covariance C_j that campaign j states. Spreads are of largest restricted likelihood, one
 parameter at a time, see `sharing`; correlations of v by EM (Dempster, Laird & Rubin 1977) with
-these spreads. An outlier is an IMU that the others do not predict: by a parameter (externally
-studentised residual), or by all together (Mahalanobis distance; Wilks 1963). The clearest is left
-out and the others are tried again.
+these spreads. An outlier is an IMU of which the others do not predict a parameter (externally
+studentised residual, Cook & Weisberg 1982); the clearest is left out, the others are tried again.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -129,8 +128,8 @@ def _imu_means(
 
     Without the parts of the tables; the campaigns' own spread is in it.
     """
-    names = list(dict.fromkeys(campaigns.labels["imu"]))
-    n = campaigns.values.shape[1]
+    place = {imu: i for i, imu in enumerate(dict.fromkeys(campaigns.labels["imu"]))}
+    names, n = list(place), campaigns.values.shape[1]
     information, score = np.zeros((len(names), n, n)), np.zeros((len(names), n))
     own = np.zeros(n)
     values = campaigns.values.copy()
@@ -141,15 +140,14 @@ def _imu_means(
         own[number] = sum(s.value**2 for s in fitted.spreads if s.levels == ("campaign",))
         kept = np.flatnonzero(np.isfinite(values[:, number]))
         tables = np.array(campaigns.labels["table"])[kept]
-        place = np.unique(tables, return_inverse=True)[1]
-        values[kept, number] -= fitted.mean + fitted.tables[place]
+        of_table = np.unique(tables, return_inverse=True)[1]
+        values[kept, number] -= fitted.mean + fitted.tables[of_table]
     for row, imu in enumerate(campaigns.labels["imu"]):
         kept = np.flatnonzero(np.isfinite(values[row]))
         block = campaigns.covariance[row][np.ix_(kept, kept)] + np.diag(own[kept])
         inverse = _inverse(block)
-        number = names.index(imu)
-        information[number][np.ix_(kept, kept)] += inverse
-        score[number][kept] += inverse @ values[row, kept]
+        information[place[imu]][np.ix_(kept, kept)] += inverse
+        score[place[imu]][kept] += inverse @ values[row, kept]
     return names, information, score
 
 

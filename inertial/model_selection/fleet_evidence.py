@@ -13,7 +13,6 @@ groups share, so that every campaign is read once and costs the same.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,33 +80,13 @@ class FleetEvidence:
         self.levels = {level: self._summed(labels[level]) for level in LEVELS}
 
     def _summed(self, labels: Sequence[str]) -> Groups:
-        names = tuple(dict.fromkeys(labels))
-        of = np.array([names.index(label) for label in labels], np.int64)
+        place = {label: i for i, label in enumerate(dict.fromkeys(labels))}
+        names, of = tuple(place), np.array([place[label] for label in labels], np.int64)
         information = np.zeros((len(names), *self.information.shape[1:]))
         right = np.zeros((len(names), self.right.shape[1]))
         np.add.at(information, of, self.information)
         np.add.at(right, of, self.right)
         return Groups(of, names, information, right)
-
-    def with_right(self, right: Array) -> "FleetEvidence":
-        """The same campaigns with other scores, (c, k)."""
-        labels = {
-            level: [groups.labels[i] for i in groups.of] for level, groups in self.levels.items()
-        }
-        effects = dict(zip(self.names, map(list, self.columns), strict=True))
-        return FleetEvidence(effects, self.information, right, labels)
-
-    @cached_property
-    def alike(self) -> Mapping[str, tuple[str, ...]]:
-        """Of each level the levels that divide the campaigns in the same way, itself among them."""
-        return {
-            level: tuple(
-                other
-                for other in LEVELS
-                if np.array_equal(self.levels[level].of, self.levels[other].of)
-            )
-            for level in LEVELS
-        }
 
     def groups_of(self, one: Shared) -> range:
         """The groups of a hypothesis."""
@@ -116,11 +95,8 @@ class FleetEvidence:
 
     # ---- Joint models.
 
-    def joint(self, model: Sequence[Shared]) -> tuple[Array, Array]:
-        """F (s, s) and b (s,) of all parameters of a model, in the order of `places`."""
-        return self._joint(model, {level: self._across(level, model) for level in LEVELS})
-
     def _joint(self, model: Sequence[Shared], across: Mapping[str, Array]) -> tuple[Array, Array]:
+        """F (s, s) and b (s,) of all parameters of a model, group by group of each hypothesis."""
         parts = [(one, group) for one in model for group in self.groups_of(one)]
         information = [across[one.level][g][self.columns[one.effect]] for one, g in parts]
         right = [self.levels[one.level].right[g][self.columns[one.effect]] for one, g in parts]
@@ -161,7 +137,8 @@ class FleetEvidence:
 
     def estimate(self, model: Sequence[Shared]) -> tuple[Array, Array]:
         """Values (s,) and covariance (s, s) of all parameters of a model."""
-        information, right = self.joint(model)
+        across = {level: self._across(level, model) for level in LEVELS}
+        information, right = self._joint(model, across)
         white = _white(information)
         return white @ (white.T @ right), white @ white.T
 

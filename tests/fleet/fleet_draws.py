@@ -59,7 +59,10 @@ def found_in(shape: str, beta: Array, random: np.random.Generator) -> list[Findi
     evidence, law, roots = fleet(shape)
     right = np.einsum("ckl,cl->ck", evidence.information, beta)
     right += np.einsum("ckl,cl->ck", roots, random.standard_normal(beta.shape))
-    return FleetSearch(evidence.with_right(right), law).found()
+    effects = dict(zip(evidence.names, evidence.columns, strict=True))
+    labels = {level: [own.labels[i] for i in own.of] for level, own in evidence.levels.items()}
+    drawn = FleetEvidence(effects, evidence.information, right, labels)
+    return FleetSearch(drawn, law).found()
 
 
 def limit(share: float, degrees: int, ratio: float) -> float:
