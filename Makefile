@@ -2,7 +2,7 @@
 #
 #   make report                   the demo, recorded by the simulated laboratory
 #   make report CAMPAIGN=<name>   the campaign in data/raw/<name>/
-#   make check                    faults of the recording within seconds, before the set-up is
+#   make check                    faults of the recording within a minute, before the set-up is
 #                                 dismantled; also with CAMPAIGN=<name>
 #   make draft LOG="<logs>"       a first campaign file from the logs alone, data/raw/<name>/; also with
 #                                 NAME=<name>, and RATE=<Hz> where no log has a clock
@@ -29,8 +29,9 @@
 #   make challenge                hides effects in many campaigns and reports what is detected, in
 #                                 docs/challenge.md; three hours on two cores, can be resumed; with
 #                                 DRAWS=100 a tenth of them; with ONLY=diagnosis only what the
-#                                 diagnosis says of 690 of them, in docs/diagnosis.md; with
-#                                 ONLY="diagnosis fault spikes" those that have these words
+#                                 diagnosis says of 688 of them, in docs/diagnosis.md, an hour of
+#                                 one core; with ONLY="diagnosis fault spikes" those that have
+#                                 these words; this and what follows with CORES=1 in one process
 #   make temperature              records campaigns in a simulated temperature chamber and compares
 #                                 parameters as curves of the temperature with their bound, in
 #                                 docs/temperature.md; two hours on two cores, can be resumed; with
@@ -38,6 +39,9 @@
 #   make silence                  records 2000 clean campaigns and counts what is named in them, in
 #                                 docs/silence.md; three hours on two cores, can be resumed; with
 #                                 DRAWS=100 so many of them
+#   make injections               puts effects and faults into the bytes of the real recordings, which are not
+#                                 part of the project, and reports what is detected, in docs/injections.md; an
+#                                 hour of one core, can be resumed; with DRAWS=40 so many of them
 #   make noise                    estimates the noise of 3000 simulated recordings, in docs/noise.md; 15
 #                                 minutes on two cores, can be resumed; with DRAWS=100 of each part
 #   make histories                predicts the next calibration and seeks jumps in 3500 simulated histories, in
@@ -61,7 +65,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new design trace index compare fleet fleets test test-slow style bench challenge silence noise histories temperature designs mutants docs recordings clean setup pango campaign
+.PHONY: report check draft new design trace index compare fleet fleets test test-slow style bench challenge silence injections noise histories temperature designs mutants docs recordings clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -106,7 +110,21 @@ PANGO := libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0
 # the next run.
 SNAKEMAKE := flock Snakefile $(BIN)/snakemake --nolock --cores 2 --quiet host reason --
 
-report: campaign setup
+# Behind a recipe that fails GNU make says "Error 1". What a person calls is therefore done by try-…,
+# whose failure is ignored, in silence, and remembered by $(try); $(ended) then stops make with
+# status 2, and its one line is the place of the full log, where there is one.
+CALLED := report check draft new design trace index compare fleet campaign
+ENDED := $(shell mktemp --dry-run --suffix=.make)
+export ENDED
+try = -trap '(( $$? == 0 )) || [[ -s $$ENDED ]] || echo "what is wrong stands above" > $$ENDED' EXIT
+ended = $(if $(file < $(ENDED)),$(error $(shell cat $(ENDED); rm $(ENDED))))
+
+.PHONY: $(CALLED:%=try-%)
+$(CALLED): %: try-%
+	$(ended)
+
+try-report: campaign setup
+	$(try)
 	kinds=(html)
 	if [[ -e .venv/pango ]]; then kinds+=(pdf); fi
 	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
@@ -117,15 +135,17 @@ report: campaign setup
 	echo "The report:" "$${kinds[@]/#/reports/$$CAMPAIGN.}"
 
 # By hand `python -m commands.check --campaign=<name>` ends with 1 where something spoils a result or
-# a sensor gets none; make turns that into its own 2.
-check: campaign .venv/complete
+# a sensor gets none, as make does with its 2.
+try-check: campaign .venv/complete
+	$(try)
 	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
-	$(SNAKEMAKE) data/derived/$$CAMPAIGN/{accelerometer,gyroscope}/parameters.parquet
+	$(SNAKEMAKE) "data/derived/$$CAMPAIGN/diagnosis/verdict.parquet"
 	echo
 	$(BIN)/python -m commands.check "--campaign=$$CAMPAIGN"
 
 # A name with a blank is quoted: LOG="'my log.csv' other.csv"; a pattern is expanded: LOG="june/*.csv".
-draft: .venv/complete
+try-draft: .venv/complete
+	$(try)
 	mapfile -t words < <(xargs --no-run-if-empty printf '%s\n' <<< "$$LOG")
 	logs=()
 	for word in "$${words[@]}"; do
@@ -137,10 +157,12 @@ draft: .venv/complete
 	if [[ $$RATE ]]; then options+=("--rate=$$RATE"); fi
 	$(BIN)/python -m commands.draft "$${options[@]}" "--name=$$NAME" -- "$${logs[@]}"
 
-new: .venv/complete
+try-new: .venv/complete
+	$(try)
 	$(BIN)/python -m commands.new "--plan=$$PLAN" "--name=$$NAME"
 
-design: campaign .venv/complete
+try-design: campaign .venv/complete
+	$(try)
 	if [[ $$INSTRUMENT ]]; then
 		of=("--instrument=$$INSTRUMENT" "--minutes=$$MINUTES" "--criterion=$$CRITERION")
 	else
@@ -149,10 +171,12 @@ design: campaign .venv/complete
 	fi
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m commands.design "$${of[@]}" "--table=$$TABLE" "--name=$$NAME"
 
-trace: campaign setup
+try-trace: campaign setup
+	$(try)
 	$(BIN)/python -m commands.trace "--campaign=$$CAMPAIGN" "--id=$$ID"
 
-campaign:
+# Ends with 2 where $$CAMPAIGN is no name of a campaign, or there is none of this name.
+define named
 	LC_ALL=C # a-z without ä
 	if [[ ! $$CAMPAIGN =~ ^[a-z0-9][a-z0-9-]*$$ ]]; then
 		printf 'make: CAMPAIGN=%q is no name of a campaign: ' "$$CAMPAIGN"
@@ -163,24 +187,34 @@ campaign:
 		echo "make: there is no campaign $$CAMPAIGN: data/raw/$$CAMPAIGN/campaign.yaml is missing"
 		exit 2
 	fi >&2
+endef
+
+try-campaign:
+	$(try)
+	$(named)
 
 # The pages of all campaigns that have a result; where one is refused now, a second run is without it.
-index: .venv/complete
+try-index: .venv/complete
+	$(try)
 	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
 	for goal in histories reports/index.html; do
 		$(SNAKEMAKE) $$goal || $(SNAKEMAKE) $$goal
 	done
 	echo "All campaigns: reports/index.html; each IMU: reports/history/"
 
-compare: .venv/complete
-	for campaign in "$$A" "$$B"; do $(MAKE) --no-print-directory campaign "CAMPAIGN=$$campaign"; done
+try-compare: .venv/complete
+	$(try)
+	for CAMPAIGN in "$$A" "$$B"; do
+	$(named)
+	done
 	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
 	$(SNAKEMAKE) "reports/compare-$$A-$$B.html"
 	echo
 	cat "reports/compare-$$A-$$B.txt"
 	echo "The comparison: reports/compare-$$A-$$B.html"
 
-fleet: .venv/complete
+try-fleet: .venv/complete
+	$(try)
 	fleet=$$($(BIN)/python -m overviews.fleet.selection "$$SELECT" "--name=$$NAME")
 	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
 	$(SNAKEMAKE) "reports/fleet-$$fleet.html"
@@ -223,6 +257,9 @@ temperature: .venv/complete
 
 silence: .venv/complete
 	PYTHONPATH=tests:tests/hidden OPENBLAS_NUM_THREADS=1 $(BIN)/python -m silence $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",2000) data/derived/silence
+
+injections: .venv/complete
+	PYTHONPATH=tests:tests/hidden OPENBLAS_NUM_THREADS=1 $(BIN)/python -m injections $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",400) data/derived/injections
 
 noise: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m noise data/derived/noise $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")

@@ -35,7 +35,7 @@ FAILED = FailedRun(logger)
 
 
 onerror:
-    sys.stderr.write(FAILED.shown())
+    sys.stderr.write(FAILED.shown(*log))
 
 
 DERIVED = "data/derived/{campaign}"

@@ -33,6 +33,7 @@ from inertial.estimation.least_squares import System
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.estimation.scatter_by_hand import Scatter
 from inertial.estimation.sensitivities import Sensitivities
+from inertial.estimation.switch_ons import SwitchOns
 from inertial.physics.effect import Effect, Reading
 from inertial.physics.forward import Triad, signatures
 from inertial.physics.motion import Motion, joined, mean_turned
@@ -110,14 +111,14 @@ class Campaign:
         """All stretches of the equations: gyros at rest, gyros in rotation, accelerometers."""
         return joined(self._motions)
 
-    @property
+    @cached_property
     def _motions(self) -> list[Motion]:
         return [
             *self.gyro_motions,
             *(motion for _, _, motion in self.static_forces),
         ]
 
-    @property
+    @cached_property
     def gyro_motions(self) -> list[Motion]:
         """Those of the gyros: static positions, rotations, passages by hand."""
         passages = self.by_hand.motions if self.by_hand else ()
@@ -168,6 +169,31 @@ class Campaign:
     def without_random_walks(self) -> "Campaign":
         """The same with constant biases."""
         return self.with_random_walks((0.0, 0.0))
+
+    def without_drift_at_rest(self) -> "Campaign":
+        """The same without the drift that the noise at rest shows; switch-ons remain."""
+        drifts = {sensor: drift.between_switch_ons for sensor, drift in self.drifts.items()}
+        return replace(self, drifts=drifts)
+
+    def switch_ons(self, effects: Sequence[Effect]) -> dict[str, SwitchOns]:
+        """By what biases differ between switch-ons, beside effects; of sensors with several."""
+        found: dict[str, SwitchOns] = {}
+        for sensor, drift in self.drifts.items():
+            equations = self.equations(sensor, effects, PRIOR_SIZE)
+            if equations is not None and drift.switch_on is not None:
+                unknown = replace(equations, measured=replace(drift, switch_on=None))
+                if (between := unknown.likelihood.switch_ons()) is not None:
+                    found[sensor] = between
+        return found
+
+    def with_switch_ons(self, found: Mapping[str, SwitchOns]) -> "Campaign":
+        """The same with biases that differ by so much between switch-ons."""
+        sizes = {sensor: between.covering for sensor, between in found.items()}
+        drifts = {
+            sensor: replace(drift, switch_on=sizes.get(sensor, drift.switch_on))
+            for sensor, drift in self.drifts.items()
+        }
+        return replace(self, drifts=drifts)
 
     def noise_degrees(self, sensor: str, of_noise: float) -> float:
         """Degrees of freedom of the noise of a sensor, a scatter by hand included."""
@@ -293,7 +319,9 @@ class Campaign:
         used = [only is None or name in only for name in names]
         if not any(used):
             return None
-        equations = replace(self._linearised(effects), effect_sigma=prior_sigmas)
+        equations = replace(
+            self._linearised(effects), effect_sigma=prior_sigmas, measured=self.drifts["gyro"]
+        )
         return equations.only(used).drifting()
 
     def _carried(
@@ -346,8 +374,7 @@ class Campaign:
         )
         known = (self.inputs.earth, self.position_sigma)
         columns = _prior_sigmas(effects, 1.0)
-        drift = self.drifts["gyro"]
-        return gyroscopes.linearised(point, turns, [], *known, columns, drift).with_statics(rests)
+        return gyroscopes.linearised(point, turns, [], *known, columns).with_statics(rests)
 
     def _accelerometer(
         self,

@@ -122,9 +122,10 @@ UNCERTAINTY_BUDGET = Table(
             "source",
             TEXT,
             "",
-            "noise: white noise; drift: bias instability and random walk by the noise; scatter,"
-            " random_walk: between manoeuvres, by the fit; position, angle: of the table;"
-            " interpolation: of gaps; azimuth: unknown direction of north; gravity; latitude",
+            "noise: white noise; drift: bias instability and random walk by the noise; switch_on:"
+            " bias from switch-on to switch-on; scatter, random_walk: between manoeuvres, by the"
+            " fit; position, angle: of the table; interpolation: of gaps; azimuth: unknown"
+            " direction of north; gravity; latitude",
         ),
         Column("sigma", DOUBLE, "as unit", "its part of the standard deviation, root of variance"),
         Column("unit", TEXT, "", "unit of sigma, SI"),
@@ -145,7 +146,7 @@ def _rows(*fields: tuple[str, str, str]) -> tuple[Column, ...]:
 # version up writes how the older files are read.
 CALIBRATION = Table(
     "calibration",
-    4,
+    5,
     (
         Column("campaign", TEXT, "", "name of the campaign's folder"),
         Column("simulated", TRUTH, "", "recorded by the simulated laboratory"),
@@ -188,6 +189,18 @@ CALIBRATION = Table(
             ),
             "product of the units",
             "of the result that counts",
+        ),
+        Column(
+            "references",
+            _rows(
+                ("mount", TEXT, "as in parameters"),
+                ("sensor", TEXT, "accel or gyro"),
+                ("parameter", TEXT, "of the result that counts"),
+                ("reference", TEXT, "its name, the same wherever its error is in both alike"),
+                ("sigma", DOUBLE, "what of the parameter's sigma is its error"),
+            ),
+            "as unit",
+            "what of the sigmas other calibrations may contain alike; none in older ones",
         ),
         Column(
             "verdicts",

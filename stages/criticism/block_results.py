@@ -7,7 +7,6 @@ import numpy as np
 from inertial.campaign.equations import Campaign
 from inertial.effects import CATALOGUE, KNOWN, TEMPERATURE_MODELS
 from inertial.estimation.random_walk import MeasuredDrift
-from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause, EffectTest
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.model_selection.size_after_selection import corrected
@@ -354,6 +353,7 @@ def random_walk_rows(
             "count": 1,
             "size": walk.size,
             "unit": unit,
+            "p_value": walk.p_value,
             "severity": 1,
             "sentence": sentence,
             "consequence": WALK_CONSEQUENCE,
@@ -421,14 +421,19 @@ def _walk_size(sensor: str, walk: Walk) -> str:
     return f"{' ± '.join(with_sigma(value, sigma, decimals_of(sigma)))} {unit.name}"
 
 
-def unexplained_rows(selection: Selection, lawless: WithoutLaw, mount: str) -> Iterator[TableRow]:
-    """A finding for each sensor whose residuals nothing explains, with a law or without."""
+def unexplained_rows(
+    selection: Selection, lawless: WithoutLaw, level: float, mount: str
+) -> Iterator[TableRow]:
+    """A finding for each sensor whose residuals nothing explains, with a law or without.
+
+    `level`: accepted probability of any where there is none.
+    """
     chosen = list(dict.fromkeys(i for cause in selection.named.causes for i in cause.columns))
     for sensor, reduced in zip(selection.evidence.labels, selection.evidence.sensors, strict=True):
         if sensor in lawless.owner:
             continue
         rest, degrees, p_value = selection.evidence.residual(reduced, chosen)
-        if p_value >= MIN_CONSISTENT_P_VALUE or rest <= MIN_EXCESS * degrees:
+        if p_value * len(SENSORS) >= level or rest <= MIN_EXCESS * degrees:
             continue
         ratio = float(np.sqrt(rest / degrees))
         yield (
