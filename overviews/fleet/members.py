@@ -12,6 +12,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
+from inertial.campaign.references import NAMELESS
 from inertial.estimation.triad import linear_names
 from inertial.estimation.type_population import Campaigns
 from inertial.model_selection.fleet_evidence import FleetEvidence
@@ -31,7 +32,6 @@ READ = {
     "result": ("diagnosis/result.parquet", tables.PARAMETERS),
     "covariance": ("diagnosis/covariance.parquet", tables.COVARIANCE),
 }
-NAMELESS = ("by hand", "not named")  # of the column table: it may be any
 UNKNOWN = "unknown"  # serial number
 PARAMETERS: tuple[Place, ...] = tuple(
     (sensor, name) for sensor in ("accel", "gyro") for name in linear_names()

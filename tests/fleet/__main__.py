@@ -43,7 +43,7 @@ def page(singles: Outcomes, mixes: Outcomes, populations: Outcomes) -> str:
         "fleets": len(mixes),
         "wanted_fleets": FLEETS,
         "wanted_false": 100 * WANTED_FALSE,
-        "false": _discoveries(mixes, "false"),
+        "misnamed": _discoveries(mixes, "false"),
         "astray": _discoveries(mixes, "astray"),
         "by_shape": [_of_shape(name, [m for m in mixes if m["shape"] == name]) for name in SHAPES],
         "populations": len(populations),
