@@ -18,6 +18,9 @@
 #                                 sort; and reports/history/<serial>.html: each IMU over its calibrations
 #   make compare A=<name> B=<name>   two campaigns beside each other: parameters, effects, conditions,
 #                                 settings, with the references that they share; and as a page
+#   make fleet SELECT="table=<name>"   several campaigns together: by serial=, instrument= or table=, or
+#                                 their names: effects too small for one, what belongs to sensor, table
+#                                 or type, the population of each type; reports/fleet-<name>.html
 #   make test                     the tests; the same as CI with `make style`
 #   make test-slow                those that draw many campaigns; ten minutes on two cores
 #   make bench                    errors, time and memory compared with other programs, in one run;
@@ -46,6 +49,9 @@
 #                                 minutes on two cores, can be resumed; with DRAWS=100 of each part
 #   make histories                predicts the next calibration and seeks jumps in 3500 simulated histories, in
 #                                 docs/repeatability.md; two minutes, can be resumed
+#   make fleets                   simulated fleets: power, what an effect belongs to, false findings, cover
+#                                 of populations, in docs/fleet.md; 15 minutes on two cores, can be
+#                                 resumed; with DRAWS=100 of each part
 #   make designs                  designs recorded by the simulated laboratory, in docs/design.md: sigmas
 #                                 foreseen and realised, classes split; 45 minutes on two cores, can be
 #                                 resumed; with DRAWS=4 so many of each part
@@ -64,7 +70,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new design trace index compare test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings screenshots clean setup pango campaign
+.PHONY: report check draft new design trace index compare fleet fleets test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings screenshots clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -83,6 +89,7 @@ CRITERION ?= A
 WANT ?=
 A ?=
 B ?=
+SELECT ?=
 override CAMPAIGN := $(value CAMPAIGN)
 override ID := $(value ID)
 override ONLY := $(value ONLY)
@@ -98,7 +105,8 @@ override CRITERION := $(value CRITERION)
 override WANT := $(value WANT)
 override A := $(value A)
 override B := $(value B)
-export CAMPAIGN ID ONLY DRAWS LOG NAME RATE PLAN INSTRUMENT TABLE MINUTES CRITERION WANT A B
+override SELECT := $(value SELECT)
+export CAMPAIGN ID ONLY DRAWS LOG NAME RATE PLAN INSTRUMENT TABLE MINUTES CRITERION WANT A B SELECT
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -110,7 +118,7 @@ SNAKEMAKE := flock Snakefile $(BIN)/snakemake --nolock --cores 2 --quiet host re
 # Behind a recipe that fails GNU make says "Error 1". What a person calls is therefore done by try-…,
 # whose failure is ignored, in silence, and remembered by $(try); $(ended) then stops make with
 # status 2, and its one line is the place of the full log, where there is one.
-CALLED := report check draft new design trace index compare campaign
+CALLED := report check draft new design trace index compare fleet campaign
 ENDED := $(shell mktemp --dry-run --suffix=.make)
 export ENDED
 try = -trap '(( $$? == 0 )) || [[ -s $$ENDED ]] || echo "what is wrong stands above" > $$ENDED' EXIT
@@ -210,6 +218,13 @@ try-compare: .venv/complete
 	cat "reports/compare-$$A-$$B.txt"
 	echo "The comparison: reports/compare-$$A-$$B.html"
 
+try-fleet: .venv/complete
+	$(try)
+	fleet=$$($(BIN)/python -m overviews.fleet.selection "$$SELECT" "--name=$$NAME")
+	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
+	$(SNAKEMAKE) "reports/fleet-$$fleet.html"
+	echo "The fleet: reports/fleet-$$fleet.html; its tables: data/derived/.fleets/$$fleet/"
+
 test: setup
 	$(BIN)/python -m pytest
 
@@ -259,6 +274,9 @@ noise: .venv/complete
 
 histories: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m histories data/derived/histories $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
+
+fleets: .venv/complete
+	PYTHONPATH=tests:tests/hidden OPENBLAS_NUM_THREADS=1 $(BIN)/python -m fleet data/derived/fleets $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
 
 designs: .venv/complete
 	PYTHONPATH=tests:tests/hidden:tests/bounds OPENBLAS_NUM_THREADS=1 $(BIN)/python -m design data/derived/design $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")

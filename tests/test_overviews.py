@@ -43,7 +43,7 @@ def test_an_ambiguous_or_unknown_pair_is_refused(names):
         pair_of("a-b-c", names)
 
 
-@pytest.mark.parametrize("name", ["index", "compare-1-2"])
+@pytest.mark.parametrize("name", ["index", "compare-1-2", "fleet-1"])
 def test_a_campaign_cannot_have_the_name_of_another_page(name):
     with pytest.raises(Refusal, match="rename"):
         refuse_reserved(["demo", name])

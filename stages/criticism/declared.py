@@ -33,6 +33,8 @@ DECLARED = Declared(
         "members": tables.MEMBERS,
         "cause_positions": tables.CAUSE_POSITIONS,
         "temperature_curves": tables.TEMPERATURE_CURVES,
+        "score_vector": tables.SCORE_VECTOR,
+        "information_matrix": tables.INFORMATION_MATRIX,
     },
     streams=("simulated",),
 )

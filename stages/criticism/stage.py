@@ -28,6 +28,7 @@ from stages.criticism.finding_rows import Row, TableRow
 from stages.criticism.law_selection import with_laws
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations, shifts, without_lines
+from stages.criticism.pooled_evidence import pooled_evidence_rows
 from stages.criticism.residual_structure import structure_rows, structure_tests
 from stages.criticism.selection import SENSORS
 from stages.criticism.temperature_findings import temperature_rows
@@ -109,6 +110,7 @@ def _of_mount(
     yield from structure_rows(tested, lawless.reported_structures, mount)
     yield from unexplained_rows(selection, lawless, level * UNEXPLAINED_SHARE, mount)
     yield from temperature_rows(data.blocks, data.plan, level, mount)
+    yield from pooled_evidence_rows(selection, mount)
 
 
 def _with(plan: Callable[[], ExtendedPlan], data: CampaignData) -> Campaign:
