@@ -145,10 +145,15 @@ class Campaign:
             for effect in effects
         }
 
+    @property
+    def handled(self) -> bool:
+        """Whether it was moved by hand, which never stands still."""
+        return self.by_hand is not None or any(turn.by_hand for turn in self.inputs.turns)
+
     def excludes(self, effect: Effect) -> bool:
         """Whether an effect is none of this campaign: of a table, or of stillness, by hand."""
         if effect.of_stillness:
-            return self.by_hand is not None or any(turn.by_hand for turn in self.inputs.turns)
+            return self.handled
         return self.by_hand is not None and of_a_table(effect)
 
     def places(self, effect: Effect) -> Sequence[str]:

@@ -384,7 +384,8 @@ def walk_at_rest_rows(
 ) -> Iterator[TableRow]:
     """The random walk that the noise at rest shows, where the stretches differ by no more.
 
-    `sizes`: K of the three axes. That of the equations is beyond it, and 0.
+    `sizes`: K of the three axes. That of the equations is beyond it, and 0. Where it stands for a
+    structure of the residuals, the p-value is that of the structure.
     """
     cause, unit = f"{sensor}_random_walk", WALK_UNITS[sensor]
     identifier = finding_id(cause, mount)
@@ -399,6 +400,7 @@ def walk_at_rest_rows(
             "count": 1,
             "size": size,
             "unit": unit,
+            "p_value": lawless.structured.get(sensor),
             "severity": 1,
             "sentence": WALK_AT_REST.format(sensors=SENSORS[sensor], sizes=_sizes(sizes, unit)),
             "consequence": WALK_CONSEQUENCE,

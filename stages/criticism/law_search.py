@@ -88,7 +88,7 @@ class Columns:
 def find_law(selection: Selection, sensor: str, level: float) -> FoundLaw | None:
     """The law of a sensor; None where something else is likelier, or noise."""
     campaign = selection.campaign.without_random_walks()
-    if campaign.by_hand is not None or not np.isfinite(campaign.motion.time).all():
+    if campaign.handled or not np.isfinite(campaign.motion.time).all():
         return None
     if sensor not in selection.evidence.labels:
         return None
