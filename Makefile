@@ -14,8 +14,6 @@
 #                                 WANT=gyroscope/scale=5e-6, so that wanted sigmas are reached
 #   make trace ID=<number>        from a number of the report, such as gyroscope/joint/bias_x, back to
 #                                 the lines of the logs; also with CAMPAIGN=<name>
-#   make screenshots              the report in headless Chromium at 1400 and 400 pixels, light, dark and
-#                                 as printed, as pictures in reports/screenshots/<name>/
 #   make index                    reports/index.html: all campaigns that have a result, to filter and
 #                                 sort; and reports/history/<serial>.html: each IMU over its calibrations
 #   make compare A=<name> B=<name>   two campaigns beside each other: parameters, effects, conditions,
@@ -72,7 +70,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report screenshots check draft new design trace index compare test test-slow style bench challenge silence noise histories temperature designs mutants docs recordings clean setup pango campaign
+.PHONY: report check draft new design trace index compare fleet fleets test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings screenshots clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -182,11 +180,8 @@ try-trace: campaign setup
 	$(try)
 	$(BIN)/python -m commands.trace "--campaign=$$CAMPAIGN" "--id=$$ID"
 
-screenshots: campaign .venv/complete
-	$(SNAKEMAKE) "reports/$$CAMPAIGN.html"
-	$(BIN)/python -m commands.screenshots "--campaign=$$CAMPAIGN"
-
-campaign:
+# Ends with 2 where $$CAMPAIGN is no name of a campaign, or there is none of this name.
+define named
 	LC_ALL=C # a-z without ä
 	if [[ ! $$CAMPAIGN =~ ^[a-z0-9][a-z0-9-]*$$ ]]; then
 		printf 'make: CAMPAIGN=%q is no name of a campaign: ' "$$CAMPAIGN"
