@@ -2,7 +2,7 @@
 #
 #   make report                   the demo, recorded by the simulated laboratory
 #   make report CAMPAIGN=<name>   the campaign in data/raw/<name>/
-#   make check                    faults of the recording within seconds, before the set-up is
+#   make check                    faults of the recording within a minute, before the set-up is
 #                                 dismantled; also with CAMPAIGN=<name>
 #   make draft LOG="<logs>"       a first campaign file from the logs alone, data/raw/<name>/; also with
 #                                 NAME=<name>, and RATE=<Hz> where no log has a clock
@@ -18,6 +18,9 @@
 #                                 sort; and reports/history/<serial>.html: each IMU over its calibrations
 #   make compare A=<name> B=<name>   two campaigns beside each other: parameters, effects, conditions,
 #                                 settings, with the references that they share; and as a page
+#   make fleet SELECT="table=<name>"   several campaigns together: by serial=, instrument= or table=, or
+#                                 their names: effects too small for one, what belongs to sensor, table
+#                                 or type, the population of each type; reports/fleet-<name>.html
 #   make test                     the tests; the same as CI with `make style`
 #   make test-slow                those that draw many campaigns; ten minutes on two cores
 #   make bench                    errors, time and memory compared with other programs, in one run;
@@ -26,8 +29,9 @@
 #   make challenge                hides effects in many campaigns and reports what is detected, in
 #                                 docs/challenge.md; three hours on two cores, can be resumed; with
 #                                 DRAWS=100 a tenth of them; with ONLY=diagnosis only what the
-#                                 diagnosis says of 690 of them, in docs/diagnosis.md; with
-#                                 ONLY="diagnosis fault spikes" those that have these words
+#                                 diagnosis says of 688 of them, in docs/diagnosis.md, an hour of
+#                                 one core; with ONLY="diagnosis fault spikes" those that have
+#                                 these words; this and what follows with CORES=1 in one process
 #   make temperature              records campaigns in a simulated temperature chamber and compares
 #                                 parameters as curves of the temperature with their bound, in
 #                                 docs/temperature.md; two hours on two cores, can be resumed; with
@@ -35,13 +39,24 @@
 #   make silence                  records 2000 clean campaigns and counts what is named in them, in
 #                                 docs/silence.md; three hours on two cores, can be resumed; with
 #                                 DRAWS=100 so many of them
+#   make injections               puts effects and faults into the bytes of the real recordings, which are not
+#                                 part of the project, and reports what is detected, in docs/injections.md; an
+#                                 hour of one core, can be resumed; with DRAWS=40 so many of them
+#   make laws                     hides laws of no effect of the catalogue, and nothing, in 1000 campaigns
+#                                 each, in docs/laws.md; eight hours on two cores, can be resumed; with
+#                                 DRAWS=100 so many of each
 #   make noise                    estimates the noise of 3000 simulated recordings, in docs/noise.md; 15
 #                                 minutes on two cores, can be resumed; with DRAWS=100 of each part
 #   make histories                predicts the next calibration and seeks jumps in 3500 simulated histories, in
 #                                 docs/repeatability.md; two minutes, can be resumed
+#   make fleets                   simulated fleets: power, what an effect belongs to, false findings, cover
+#                                 of populations, in docs/fleet.md; 15 minutes on two cores, can be
+#                                 resumed; with DRAWS=100 of each part
 #   make designs                  designs recorded by the simulated laboratory, in docs/design.md: sigmas
 #                                 foreseen and realised, classes split; 45 minutes on two cores, can be
 #                                 resumed; with DRAWS=4 so many of each part
+#   make screenshots              a campaign's report as a person sees it, wide and narrow, light, dark and
+#                                 printed, into reports/screenshots/; also with CAMPAIGN=<name>
 #   make mutants                  puts faults into the physics, one at a time, and reports which of them the
 #                                 tests see, in docs/mutants.md; 1200 faults take an hour on two cores,
 #                                 can be resumed; with DRAWS=100 so many of them
@@ -57,7 +72,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new design trace index compare test test-slow style bench challenge silence noise histories temperature designs mutants docs recordings cluster-test clean setup pango campaign
+.PHONY: report check draft new design trace index compare fleet fleets test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings screenshots cluster-test clean setup pango campaign
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -76,6 +91,7 @@ CRITERION ?= A
 WANT ?=
 A ?=
 B ?=
+SELECT ?=
 override CAMPAIGN := $(value CAMPAIGN)
 override ID := $(value ID)
 override ONLY := $(value ONLY)
@@ -91,23 +107,52 @@ override CRITERION := $(value CRITERION)
 override WANT := $(value WANT)
 override A := $(value A)
 override B := $(value B)
-export CAMPAIGN ID ONLY DRAWS LOG NAME RATE PLAN INSTRUMENT TABLE MINUTES CRITERION WANT A B
+override SELECT := $(value SELECT)
+export CAMPAIGN ID ONLY DRAWS LOG NAME RATE PLAN INSTRUMENT TABLE MINUTES CRITERION WANT A B SELECT
 
 PYTHON ?= python3
 BIN := .venv/bin
 PANGO := libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0
-COMMAND := $(BIN)/python -m turntable_calibration
+# The kernel releases the lock of flock when a run is killed; Snakemake's own would stay and stop
+# the next run.
+SNAKEMAKE := flock Snakefile $(BIN)/snakemake --nolock --cores 2 --quiet host reason --
 
-report: campaign setup
-	$(COMMAND) report "$$CAMPAIGN"
+# Behind a recipe that fails GNU make says "Error 1". What a person calls is therefore done by try-…,
+# whose failure is ignored, in silence, and remembered by $(try); $(ended) then stops make with
+# status 2, and its one line is the place of the full log, where there is one.
+CALLED := report check draft new design trace index compare fleet campaign
+ENDED := $(shell mktemp --dry-run --suffix=.make)
+export ENDED
+try = -trap '(( $$? == 0 )) || [[ -s $$ENDED ]] || echo "what is wrong stands above" > $$ENDED' EXIT
+ended = $(if $(file < $(ENDED)),$(error $(shell cat $(ENDED); rm $(ENDED))))
 
-# By hand it ends with 1 where something spoils a result or a sensor gets none; make turns that into
-# its own 2.
-check: campaign .venv/complete
-	$(COMMAND) check "$$CAMPAIGN"
+.PHONY: $(CALLED:%=try-%)
+$(CALLED): %: try-%
+	$(ended)
+
+try-report: campaign setup
+	$(try)
+	kinds=(html)
+	if [[ -e .venv/pango ]]; then kinds+=(pdf); fi
+	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
+	$(SNAKEMAKE) "$${kinds[@]/#/reports/$$CAMPAIGN.}" "reports/$$CAMPAIGN.calibration.json"
+	echo
+	sed '/^Campaign:/,$$d' "reports/$$CAMPAIGN.txt"
+	echo "For other programs:" reports/$$CAMPAIGN.{calibration.json,calibration.yaml,calibration.h,dcc.xml,kalibr.yaml,ros.yaml,px4.params,ardupilot.param}
+	echo "The report:" "$${kinds[@]/#/reports/$$CAMPAIGN.}"
+
+# By hand `python -m commands.check --campaign=<name>` ends with 1 where something spoils a result or
+# a sensor gets none, as make does with its 2.
+try-check: campaign .venv/complete
+	$(try)
+	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
+	$(SNAKEMAKE) "data/derived/$$CAMPAIGN/diagnosis/verdict.parquet"
+	echo
+	$(BIN)/python -m commands.check "--campaign=$$CAMPAIGN"
 
 # A name with a blank is quoted: LOG="'my log.csv' other.csv"; a pattern is expanded: LOG="june/*.csv".
-draft: .venv/complete
+try-draft: .venv/complete
+	$(try)
 	mapfile -t words < <(xargs --no-run-if-empty printf '%s\n' <<< "$$LOG")
 	logs=()
 	for word in "$${words[@]}"; do
@@ -119,20 +164,26 @@ draft: .venv/complete
 	if [[ $$RATE ]]; then options+=("--rate=$$RATE"); fi
 	$(BIN)/python -m commands.draft "$${options[@]}" "--name=$$NAME" -- "$${logs[@]}"
 
-new: .venv/complete
+try-new: .venv/complete
+	$(try)
 	$(BIN)/python -m commands.new "--plan=$$PLAN" "--name=$$NAME"
 
-design: campaign .venv/complete
-	of=("--campaign=$$CAMPAIGN" "--want=$$WANT")
+try-design: campaign .venv/complete
+	$(try)
 	if [[ $$INSTRUMENT ]]; then
 		of=("--instrument=$$INSTRUMENT" "--minutes=$$MINUTES" "--criterion=$$CRITERION")
+	else
+		$(SNAKEMAKE) data/derived/$$CAMPAIGN/criticism/findings.parquet
+		of=("--campaign=$$CAMPAIGN" "--want=$$WANT")
 	fi
-	$(COMMAND) design "$${of[@]}" "--table=$$TABLE" "--name=$$NAME"
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m commands.design "$${of[@]}" "--table=$$TABLE" "--name=$$NAME"
 
-trace: campaign setup
+try-trace: campaign setup
+	$(try)
 	$(BIN)/python -m commands.trace "--campaign=$$CAMPAIGN" "--id=$$ID"
 
-campaign:
+# Ends with 2 where $$CAMPAIGN is no name of a campaign, or there is none of this name.
+define named
 	LC_ALL=C # a-z without ä
 	if [[ ! $$CAMPAIGN =~ ^[a-z0-9][a-z0-9-]*$$ ]]; then
 		printf 'make: CAMPAIGN=%q is no name of a campaign: ' "$$CAMPAIGN"
@@ -143,13 +194,38 @@ campaign:
 		echo "make: there is no campaign $$CAMPAIGN: data/raw/$$CAMPAIGN/campaign.yaml is missing"
 		exit 2
 	fi >&2
+endef
 
-index: .venv/complete
-	$(COMMAND) index
+try-campaign:
+	$(try)
+	$(named)
 
-compare: .venv/complete
-	for campaign in "$$A" "$$B"; do $(MAKE) --no-print-directory campaign "CAMPAIGN=$$campaign"; done
-	$(COMMAND) compare "$$A" "$$B"
+# The pages of all campaigns that have a result; where one is refused now, a second run is without it.
+try-index: .venv/complete
+	$(try)
+	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
+	for goal in histories reports/index.html; do
+		$(SNAKEMAKE) $$goal || $(SNAKEMAKE) $$goal
+	done
+	echo "All campaigns: reports/index.html; each IMU: reports/history/"
+
+try-compare: .venv/complete
+	$(try)
+	for CAMPAIGN in "$$A" "$$B"; do
+	$(named)
+	done
+	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
+	$(SNAKEMAKE) "reports/compare-$$A-$$B.html"
+	echo
+	cat "reports/compare-$$A-$$B.txt"
+	echo "The comparison: reports/compare-$$A-$$B.html"
+
+try-fleet: .venv/complete
+	$(try)
+	fleet=$$($(BIN)/python -m overviews.fleet.selection "$$SELECT" "--name=$$NAME")
+	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
+	$(SNAKEMAKE) "reports/fleet-$$fleet.html"
+	echo "The fleet: reports/fleet-$$fleet.html; its tables: data/derived/.fleets/$$fleet/"
 
 test: setup
 	$(BIN)/python -m pytest
@@ -189,11 +265,20 @@ temperature: .venv/complete
 silence: .venv/complete
 	PYTHONPATH=tests:tests/hidden OPENBLAS_NUM_THREADS=1 $(BIN)/python -m silence $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",2000) data/derived/silence
 
+injections: .venv/complete
+	PYTHONPATH=tests:tests/hidden OPENBLAS_NUM_THREADS=1 $(BIN)/python -m injections $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",400) data/derived/injections
+
+laws: .venv/complete
+	PYTHONPATH=tests:tests/hidden:tests/laws OPENBLAS_NUM_THREADS=1 $(BIN)/python -m laws $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",1000) data/derived/laws
+
 noise: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m noise data/derived/noise $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
 
 histories: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m histories data/derived/histories $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
+
+fleets: .venv/complete
+	PYTHONPATH=tests:tests/hidden OPENBLAS_NUM_THREADS=1 $(BIN)/python -m fleet data/derived/fleets $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
 
 designs: .venv/complete
 	PYTHONPATH=tests:tests/hidden:tests/bounds OPENBLAS_NUM_THREADS=1 $(BIN)/python -m design data/derived/design $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
@@ -223,6 +308,9 @@ cluster-test: .venv/complete
 
 recordings: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m recordings
+
+screenshots: report
+	$(BIN)/python -m commands.screenshots "--campaign=$$CAMPAIGN"
 
 clean:
 	rm -rf data/derived .snakemake

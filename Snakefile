@@ -23,6 +23,8 @@ from inertial.tables.campaign_files import campaigns, logs_of
 from inertial.tables.code import code_of, hash_of
 from inertial.tables.errors import Refusal
 from inertial.tables.failed_run import FailedRun
+from overviews.fleet.members import READ as READ_BY_FLEET
+from overviews.fleet.selection import selected
 from overviews.known import kept, pair_of, refuse_reserved, serials, with_result
 
 
@@ -35,7 +37,7 @@ FAILED = FailedRun(logger)
 
 
 onerror:
-    sys.stderr.write(FAILED.shown())
+    sys.stderr.write(FAILED.shown(*log))
 
 
 DERIVED = "data/derived/{campaign}"
@@ -174,6 +176,14 @@ def compared(wildcards):
     return results(*pair_of(wildcards.pair, CAMPAIGNS))
 
 
+def in_fleet(wildcards):
+    """The campaigns of a fleet: that are named, or whose results are there and are as wanted."""
+    try:
+        return selected(wildcards.fleet, CAMPAIGNS, Path("data/derived"))
+    except Refusal as refusal:
+        sys.exit(str(refusal))
+
+
 def pages():
     """The pages to which others lead, where they are."""
     return [p for p in map("reports/{}.html".format, CAMPAIGNS) if Path(p).is_file()]
@@ -182,13 +192,14 @@ def pages():
 def overview_settings():
     """What pages of several campaigns depend on in config.yaml."""
     language = {"language": config.get("report", {}).get("language", "en")}
-    own = {name: config[name] for name in ("history", "comparison")}
+    own = {name: config[name] for name in ("history", "comparison", "fleet")}
     return json.dumps(own | language, sort_keys=True)
 
 
 wildcard_constraints:
-    campaign="(?!index$|compare-)[a-z0-9][a-z0-9-]*",
+    campaign="(?!index$|compare-|fleet-)[a-z0-9][a-z0-9-]*",
     pair="[a-z0-9][a-z0-9-]*",
+    fleet="[a-z0-9][a-z0-9-]*",
     serial="[^/]+",
 
 
@@ -796,3 +807,26 @@ rule compare:
         "{params.both[0]} and {params.both[1]} beside each other"
     shell:
         "python -m overviews.compare {params.both:q} --settings {params.settings:q} 2> {log:q}"
+
+
+rule fleet:
+    input:
+        "data/fleets/{fleet}.txt",
+        lambda wildcards: [
+            f"data/derived/{campaign}/{place}"
+            for campaign in in_fleet(wildcards)
+            for place, _table in READ_BY_FLEET.values()
+        ],
+    output:
+        "reports/fleet-{fleet}.html",
+    log:
+        "data/derived/.overviews/fleet-{fleet}.log",
+    params:
+        campaigns=in_fleet,
+        settings=overview_settings(),
+        code=hash_of(code_of("fleet", "overviews")),
+    message:
+        "{wildcards.fleet}: what the campaigns of a fleet show together"
+    shell:
+        "python -m overviews.fleet {wildcards.fleet:q} {params.campaigns:q}"
+        " --settings {params.settings:q} 2> {log:q}"

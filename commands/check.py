@@ -2,8 +2,9 @@
 
     python -m commands.check --campaign demo
 
-It reads the findings of quality, segment, accelerometer and gyroscope, and which parameters these
-determine, all of which `make check` lets the workflow make first. It states what gets no result,
+It reads the findings of quality, segment, accelerometer and gyroscope, which parameters these
+determine, and the verdict of the diagnosis where there is one, all of which `make check` lets the
+workflow make first. It states what gets no result,
 and each cause with what follows from it. It ends with 0 where nothing spoils a result, with 1 where
 something does or a sensor gets none, and with 2 where the tables are missing.
 """

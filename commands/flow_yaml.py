@@ -27,6 +27,8 @@ def scalar(value: Any) -> str:
     """Text, a number or nothing, in quotes where it would be read as something else."""
     if value is None:
         return "null"
+    if isinstance(value, bool):
+        return "true" if value else "false"
     if isinstance(value, float):
         return f"{value:.10g}"
     if (

@@ -17,6 +17,7 @@ TWELVE = linear_names()
 MIN_NEW_POSITION_DEG = 5.0  # degrees: less than this from the rest before is no new position
 MAX_SPLIT = 0.5  # share of rests that are no new position
 MAX_REASONS = 4
+SEE_REPORT = _("the report shows the residuals: make report")
 
 
 @dataclass(frozen=True)
@@ -44,13 +45,25 @@ def no_results(derived: Path) -> Iterator[NoResult]:
     plan = tables.MANOEUVRES.read(derived / "plan/manoeuvres.parquet")
     if only_noise(plan, tables.NOISE_TERMS.read(derived / "noise/terms.parquet")):
         return
+    verdicts = _not_usable(derived / "diagnosis/verdict.parquet")
     for stage in sensors:
         if recorded[stage] or not any(recorded.values()):
+            subject = _("gyros") if stage == "gyroscope" else _("accelerometers")
             parameters = tables.PARAMETERS.read(derived / f"{stage}/parameters.parquet")
-            yield from _undetermined(
-                _("gyros") if stage == "gyroscope" else _("accelerometers"), parameters
-            )
+            found = list(_undetermined(subject, parameters))
+            if not found and (sentence := verdicts.get(sensors[stage])) is not None:
+                found = [NoResult(subject, sentence, SEE_REPORT)]
+            yield from found
     yield from _split_rests(plan, blocks)
+
+
+def _not_usable(verdicts: Path) -> dict[str, str]:
+    """By sensor, `gyro` or `accel`, why the report has no result of it, where it is diagnosed."""
+    if not verdicts.exists():
+        return {}
+    rows = tables.VERDICTS.read(verdicts)
+    rows = rows[rows["verdict"] == "not_usable"]
+    return dict(zip(rows["sensor"], rows["sentence"], strict=True))
 
 
 def _undetermined(sensors: str, parameters: pd.DataFrame) -> Iterator[NoResult]:

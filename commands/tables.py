@@ -8,6 +8,7 @@ from importlib import import_module
 from pathlib import Path
 
 from inertial.tables.declared import Declared
+from inertial.tables.fleet import FLEET
 from inertial.tables.table import Column, Table
 from stages import ORDER
 
@@ -24,7 +25,7 @@ known, not tested, or not applicable.
 
 def page() -> str:
     """The whole page."""
-    return "\n".join([HEAD, *_stages()])
+    return "\n".join([HEAD, *_stages(), *_fleet()])
 
 
 def _stages() -> Iterator[str]:
@@ -36,6 +37,13 @@ def _stages() -> Iterator[str]:
         yield f"Reads {_reads(declared)}.\n" if declared.reads else "Reads no table.\n"
         for name, table in declared.writes.items():
             yield from _table(name, table)
+
+
+def _fleet() -> Iterator[str]:
+    yield "## fleet\n"
+    yield "What several campaigns show together, `data/derived/.fleets/<name>/<table>.parquet`.\n"
+    for name, table in FLEET.items():
+        yield from _table(name, table)
 
 
 def _reads(declared: Declared) -> str:

@@ -10,7 +10,11 @@ from stages import ORDER
 
 LAST = "history"  # stage by which a result is complete
 SIMULATED, UNKNOWN = "simulated", "unknown"  # folders of the archive that are no instrument, no IMU
-RESERVED = ("index", "compare-")  # what reports of a campaign cannot be called, or begin with
+RESERVED = (
+    "index",
+    "compare-",
+    "fleet-",
+)  # what reports of a campaign cannot be called, or begin with
 
 
 def with_result(campaigns: Sequence[str], derived: Path) -> list[str]:
@@ -73,11 +77,11 @@ def refuse_reserved(campaigns: Sequence[str]) -> None:
         for the first such campaign
     """
     for campaign in campaigns:
-        if campaign == RESERVED[0] or campaign.startswith(RESERVED[1]):
+        if campaign == RESERVED[0] or campaign.startswith(RESERVED[1:]):
             raise Refusal(
                 f"data/raw/{campaign}",
                 "",
                 _("a campaign named {campaign}", campaign=campaign),
-                _("another name: reports/index.html and reports/compare-… are other pages"),
+                _("another name: reports/index.html, compare-… and fleet-… are other pages"),
                 _("rename its folder"),
             )

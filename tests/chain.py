@@ -177,7 +177,8 @@ def mounts(results: Results, **changes: Any) -> list[CampaignData]:
     for stage in ("accelerometer", "gyroscope"):
         if f"{stage}/parameters" in results:
             tables |= {
-                f"{stage}_{of}": f"{stage}/{of}" for of in ("parameters", "positions", "fit")
+                f"{stage}_{of}": f"{stage}/{of}"
+                for of in ("parameters", "positions", "switch_ons", "fit")
             }
     return campaigns_of(**{name: results[table] for name, table in tables.items()} | changes)
 

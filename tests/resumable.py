@@ -1,6 +1,7 @@
 """Outcomes of many draws, a line of JSON each: what the same code has drawn is not drawn again."""
 
 import json
+import os
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -13,7 +14,7 @@ import chain
 
 Outcome = dict[str, Any]
 
-CORES = 2
+CORES = int(os.environ.get("CORES", "2"))
 EVERY = 20  # draws, of which one is told
 
 

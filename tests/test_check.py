@@ -15,6 +15,7 @@ from chain import ROOT, Results
 
 from commands.check import LINE_WIDTH, main
 from inertial import tables
+from inertial.tables.parquet import write_once
 
 NAME = "demo"
 SENSORS = ("accelerometer", "gyroscope")
@@ -76,6 +77,24 @@ def test_the_worst_comes_first(data: Path, capsys: pytest.CaptureFixture[str]) -
     check(data)
     said = capsys.readouterr().out
     assert said.index("WEAKENS A RESULT · gap") < said.index("IS GOOD TO KNOW · oscillation")
+
+
+def test_a_sensor_that_the_diagnosis_leaves_not_usable_has_no_result(
+    data: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Though nothing is wrong with the recording: its residuals have a structure without a name."""
+    row = {"mount": "", "method": "joint", "condition": None, "reason": "as a test has it"}
+    sentences = {"gyro": "Gyros: structure without a name. Not usable.", "accel": "Usable."}
+    verdicts = [
+        row | {"sensor": sensor, "verdict": verdict, "sentence": sentences[sensor]}
+        for sensor, verdict in (("gyro", "not_usable"), ("accel", "usable"))
+    ]
+    (data / f"derived/{NAME}/diagnosis").mkdir()
+    write_once(tables.VERDICTS, data / f"derived/{NAME}/diagnosis/verdict.parquet", verdicts)
+    assert check(data) == 1
+    said = capsys.readouterr().out
+    assert "NO RESULT · gyros" in said and "NO RESULT · accelerometers" not in said
+    assert "structure without a name" in said
 
 
 @pytest.fixture(scope="module")

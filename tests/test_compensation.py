@@ -131,6 +131,38 @@ def test_a_hidden_g_sensitivity_is_taken_out(coupled):
     assert "not all there is" in plain.loc["x-up", "sentence"]
 
 
+# ---- what the result leaves over
+
+
+def in_sigmas(residuals: pd.DataFrame, *phases: str) -> pd.DataFrame:
+    own = residuals[residuals["phase"].isin(phases)]
+    return pd.DataFrame({c: own[f"residual_{c}"] / own[f"sigma_{c}"] for c in CHANNELS})
+
+
+def test_the_result_leaves_the_noise_over_in_every_channel(clean):
+    for results in clean:
+        table = results["compensation/residuals"]
+        rest = in_sigmas(table, "rest", "rest-before", "rest-after")
+        # Of some 400 blocks a ratio of 1 is known to 4 %; a few parameters are from these data.
+        assert np.sqrt((rest**2).mean()).between(0.85, 1.15).all()
+        turn = in_sigmas(table, "steady")
+        assert turn[ACCEL].isna().all(axis=None)  # they are not fitted while the table turns
+        assert np.sqrt((turn[GYRO] ** 2).mean()).between(0.75, 1.25).all()
+        assert (rest.abs() > 3).mean().max() < 0.02
+
+
+def test_what_the_result_has_wrong_is_left_over(coupled):
+    """Without its g-sensitivity, 14 °/h under gravity, the x gyro is off by that with x up."""
+    result = coupled["diagnosis/result"]
+    plain = chain.again(coupled, "compensation", result=result[result["effect"].isna()])
+    off = [
+        made.query("manoeuvre == 'x-up'")["residual_gyro_x"].mean() / DEGREE_PER_HOUR
+        for made in (plain["residuals"], coupled["compensation/residuals"])
+    ]
+    assert off[0] == pytest.approx(14, abs=0.5)
+    assert abs(off[1]) < 0.5
+
+
 # ---- the stream
 
 

@@ -91,6 +91,7 @@ def calibration(
         **facts,
         "parameters": [parameter("bias_x", bias, 1e-7), parameter("bias_y", None, None)],
         "covariance": [],
+        "references": [],
         "verdicts": [verdict()],
         "inputs": [{"file": "x-up.asc", "size": 9, "sha256": "ab"}],
         "made_by": [maker],
@@ -141,10 +142,12 @@ def run(
             "inputs": (tables.INPUTS, [log]),
             "published": (tables.PUBLISHED, published),
             "allowed_changes": (tables.ALLOWED_CHANGES, may_change),
+            "known": (tables.KNOWN, []),
         },
         "accelerometer": {"parameters": (tables.PARAMETERS, []), "fit": (tables.FIT, [])},
         "gyroscope": {"parameters": (tables.PARAMETERS, estimates), "fit": (tables.FIT, [])},
-        "segment": {"blocks": (tables.BLOCKS, [])},
+        "segment": {"blocks": (tables.BLOCKS, []), "manoeuvres": (tables.MANOEUVRES, [])},
+        "compensation": {"uncertainty_budget": (tables.UNCERTAINTY_BUDGET, [])},
         "studies": {"growing": (tables.WINDOWS, []), "motions": (tables.MOTIONS, [])},
         "diagnosis": {
             "result": (tables.PARAMETERS, [*result, effect]),
@@ -264,7 +267,7 @@ def older(version: int, *lacking: str) -> Table:
             if column.name == "parameters"
             else column
             for column in tables.CALIBRATION.columns
-            if column.name != "verdicts"
+            if column.name not in ("verdicts", "references")
         ),
     )
 
@@ -272,7 +275,7 @@ def older(version: int, *lacking: str) -> Table:
 def archived_as(version: Table, place: Path, parameters: Sequence[Row]) -> None:
     """A calibration of spring in the archive as an older version wrote it."""
     facts = calibration(campaign="spring", date="2026-03-02") | {"content": "", "supersedes": []}
-    del facts["verdicts"]
+    del facts["verdicts"], facts["references"]
     file = place / "history/span-cpt/A-017/2026-03-02-spring-0123456789ab.parquet"
     write_once(version, file, [facts | {"parameters": parameters}])
 

@@ -248,7 +248,7 @@ def test_parameters_drawn_from_their_covariance_fill_the_corridor(clean):
             own = result["sensor"] == sensor
             result.loc[own, "value"] = result.loc[own, "parameter"].map(true_values(truth[name]))
         rows = [row for row in rows_of(result) if row["effect"] is None]
-        known = uncertain(rows, covariance, lambda measurement: measurement)
+        known = uncertain(rows, covariance, lambda measurement: measurement, {})
         navigator = Navigator(data, known, {})
         wanted, _ = windows(data, results["segment/segments"])
         for one in readings(*streams(results), wanted, Repairs(results["segment/channel_repairs"])):

@@ -1,6 +1,7 @@
 """Pages of several campaigns: what they compare, by numbers that do not come from the code."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import chain
@@ -9,6 +10,7 @@ import pytest
 import test_history as archive
 from scipy import stats
 
+from inertial.campaign.references import References
 from inertial.tables.errors import Refusal
 from overviews.compare.page import as_text, comparison_page
 from overviews.compare.pair import READ, pair_of_campaigns
@@ -41,7 +43,7 @@ def test_an_ambiguous_or_unknown_pair_is_refused(names):
         pair_of("a-b-c", names)
 
 
-@pytest.mark.parametrize("name", ["index", "compare-1-2"])
+@pytest.mark.parametrize("name", ["index", "compare-1-2", "fleet-1"])
 def test_a_campaign_cannot_have_the_name_of_another_page(name):
     with pytest.raises(Refusal, match="rename"):
         refuse_reserved(["demo", name])
@@ -212,8 +214,9 @@ def test_the_same_logs_are_not_compared_as_independent_ones():
 def test_other_parameters_share_it_only_where_the_plans_are_the_same():
     key = ("", "accel", "bias_x")
     shares = {(key, "gravity"): 0.25}
-    for same_plan, expected in ((True, 0.25 * 6.0), (False, 0.0)):
-        shared = Shared(("gravity",), False, same_plan, (shares, shares))
+    first = References({"gravity": "here"}, None, "six positions")
+    for plan, expected in (("six positions", 0.25 * 6.0), ("a tumble", 0.0)):
+        shared = Shared((first, replace(first, plan=plan)), (shares, shares))
         assert shared.covariance(key, (2.0, 3.0)) == pytest.approx(expected)
 
 

@@ -66,6 +66,9 @@ def test_a_tumble_turns_the_body_under_the_plumb_line(tmp_path):
     ups = np.array([r.up for r in rests[:18]])
     np.testing.assert_allclose(ups[:, 1], np.sin(np.radians(quarter)), atol=1e-12)
     np.testing.assert_allclose(ups[:, 2], np.cos(np.radians(quarter)), atol=1e-12)
+    tumbled = np.array([r.tumbled for r in rests])
+    np.testing.assert_allclose(np.degrees(tumbled[:18]), quarter[:, None] * [1, 0, 0], atol=1e-9)
+    np.testing.assert_allclose(tumbled[18:], tumbled[17::-1])
 
 
 def test_normal_gravity_is_taken_where_none_is_stated_and_said_so(tmp_path):

@@ -1,6 +1,7 @@
 """How calibrations repeat: components against closed forms, intervals that hold, jumps by date."""
 
 import sys
+from copy import deepcopy
 from pathlib import Path
 
 import chain
@@ -100,6 +101,31 @@ def test_a_jump_is_named_with_its_place_and_nothing_else_is():
     assert not any(one["named"] for one in none)
     assert all(one["right"] for one in large if one["named"])
     assert np.mean([one["right"] for one in large]) > 0.75
+
+
+def test_an_error_that_all_calibrations_share_is_in_no_difference():
+    """It moves all values alike, so intervals, drift and jumps are those without it."""
+    generator = np.random.default_rng(5)
+    values, times, sigma = generator.normal(size=7), np.arange(7.0), np.full(7, 1.0)
+    alone = History(values, sigma, times)
+    alike = History(values + 400, sigma, times, shared=np.full((7, 1), 1000.0))
+    ahead = np.array([7.0, 9.0])
+    one, other = (predicted(history, ahead, 1.0) for history in (alone, alike))
+    assert other.low == pytest.approx(one.low + 400, abs=1e-3)
+    assert other.high == pytest.approx(one.high + 400, abs=1e-3)
+    assert drift(alike).rate == pytest.approx(drift(alone).rate, abs=1e-6)
+    assert drift(alike).sigma == pytest.approx(drift(alone).sigma, rel=1e-6)
+    each = {"day": [str(day) for day in times]}
+    found = [components(values, sigma, each, h.shared).found[0] for h in (alone, alike)]
+    assert found[1].upper == pytest.approx(found[0].upper, rel=1e-3)
+
+
+def test_an_error_that_two_of_three_calibrations_share_is_in_the_difference_from_the_third():
+    """y₃ − (y₁ + y₂)/2 has the variance 1 + 1/2 and that of both references, 9 + 9."""
+    values, shared = np.array([0.0, 0.0, 6.0]), np.array([[3.0, 0], [3, 0], [0, 3]])
+    history = History(values, np.ones(3), np.array([0.0, 0.0, 1.0]), shared=shared)
+    found = drift(history)
+    assert found.rate == pytest.approx(6) and found.sigma == pytest.approx(np.sqrt(19.5))
 
 
 def test_a_drift_is_no_jump():
@@ -229,6 +255,13 @@ def test_the_laboratory_s_history_comes_back(tmp_path):
     assert scale["drift_sigma"] < 4e-5
     assert scale["low"] < 7.942e-4 < scale["high"]  # 100 ppm a year later on
     assert scale["at"] == "2026-09-30"  # after 182 days, as the ones before
+    # Their gravity is one: its 50 ppm are in no difference of the scale factors over time.
+    accel = forecast.loc["accel"].loc[["scale_x", "scale_y", "scale_z"]]
+    assert (accel["high"] - accel["low"] < 4e-5).all() and (accel["drift_sigma"] < 1.5e-5).all()
+    truth = np.diag(documents[-1]["truth"]["accelerometer"]["matrix"]) - 1
+    sigma = made.parameters("accelerometer").loc[accel.index, "sigma"].to_numpy()
+    assert (sigma > 4e-5).all()
+    assert (np.abs(accel["median"].to_numpy() - truth) < 4 * sigma).all()
 
 
 # ---- power cycles within a campaign
@@ -270,6 +303,60 @@ def test_power_cycles_of_the_laboratory_come_back():
         assert scale["sigma"] < 5e-6  # the turns of a pair share a switch-on
         true = document["truth"]["gyro"]["bias_rad_s"][i]
         assert bias["value"] == pytest.approx(true, abs=4 * bias["sigma"])
+
+
+def test_power_cycles_are_simulated_and_are_no_finding():
+    document = chain.laboratory.read(chain.ROOT / "data/simulated/power-cycles.yaml").document
+    made = chain.in_memory_of(document, "diagnosis", chain.BESIDE)
+    assert made["diagnosis/causes"].empty
+    assert set(made["diagnosis/verdict"]["verdict"]) == {"usable"}
+    fidelity = made["simulation/fidelity"]
+    assert len(fidelity) == (10 + 3 * 6) * 6  # rests; of a turn that before, itself, that after
+    rests = fidelity[(fidelity["profile"] == "at rest") & (fidelity["samples"] >= 6)]
+    ratio = rests["residual_rms"] / rests["noise_rms"]
+    assert 0.8 < np.sqrt(np.mean(ratio**2)) < 1.2  # 60 means of six: 1 with 4 % of one sigma
+    # Biases after switch-ons differ by more than ten times what a minute of noise leaves open.
+    own = made["gyroscope/switch_ons"].pivot(index="switch_on", columns="axis", values="value")
+    assert len(own) == 8 and own.abs().to_numpy().max() > 10 * np.radians(0.012) / 60 / np.sqrt(60)
+
+
+def test_beside_power_cycles_an_effect_is_found_and_they_are_estimated_beside_it():
+    document = deepcopy(
+        chain.laboratory.read(chain.ROOT / "data/simulated/power-cycles.yaml").document
+    )
+    document["effects"]["gyro_g_sensitivity"] = {
+        "matrix_deg_h_g": [[4.0, 0, 0], [0, -3.0, 0], [0, 0, 4.0]]
+    }
+    made = chain.in_memory_of(document, "extension", chain.BESIDE)
+    (finding,) = rows_of(made["criticism/findings"])
+    assert finding["cause"] == "gyro_g_sensitivity"
+    extended = made["extension/fit"].set_index(["sensor", "method"]).loc[("gyro", "extended")]
+    assert extended["switch_ons"] == 8
+    size = np.sqrt(np.mean([extended[f"switch_on_{axis}"] ** 2 for axis in "xyz"]))
+    assert 0.5 < size / (np.radians(4) / 3600) < 1.5
+
+
+def test_what_rests_on_one_bias_allows_for_that_of_each_switch_on(tmp_path):
+    """Checks and navigation have it in their sigmas; figures of the sensors are without it."""
+    document = chain.laboratory.read(chain.ROOT / "data/simulated/power-cycles.yaml").document
+    raw = chain.simulate(document, tmp_path / "raw/power-cycles")
+    made = chain.run(raw, tmp_path / "derived/power-cycles", "navigation", chain.BESIDE)
+    checks = made["compensation/checks"].dropna(subset=["in_sigmas_after"])
+    off = checks.groupby("quantity")["in_sigmas_after"]
+    # 24 deviations of the sensors, each in several checks; Student's sigma is 1.2 of one.
+    assert (off.apply(lambda own: np.sqrt(np.mean(own**2))) < 1.6).all()
+    figures = made["compensation/characteristics"]
+    composite = figures[figures["quantity"] == "composite_error"]
+    assert len(composite) == 6 and (composite["value"].abs() < composite["by_noise"]).all()
+    drifts = figures[figures["quantity"] == "acceleration_insensitive_drift"].set_index("axis")
+    for axis, true in zip("xyz", document["truth"]["gyro"]["bias_rad_s"], strict=True):
+        own = made.parameters("gyroscope").loc[f"bias_{axis}"]
+        assert drifts.loc[axis, "value"] == pytest.approx(own["value"], abs=own["sigma"] / 4)
+        assert drifts.loc[axis, "value"] == pytest.approx(true, abs=4 * own["sigma"])
+    errors = made["navigation/navigation_errors"]
+    turns = errors[(errors["motion"] == "turn") & (errors["quantity"] == "attitude")]
+    assert len(turns) == 6
+    assert 0.1 < np.mean((turns["calibrated"] / turns["predicted"]) ** 2) < 2
 
 
 def test_power_cycles_are_in_the_table_of_repeatability():

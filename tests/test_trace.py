@@ -69,6 +69,11 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with Writer(derived / "diagnosis", none, lambda: made_by) as writer:
         for name, table in none.items():
             writer.write(name, table.empty())
+    budget = {"uncertainty_budget": tables.UNCERTAINTY_BUDGET}
+    with Writer(
+        derived / "compensation", budget, lambda: made_by | {"stage": "compensation"}
+    ) as writer:
+        writer.write("uncertainty_budget", tables.UNCERTAINTY_BUDGET.empty())
     history.STAGE.run(derived, {"archive": [data / "history"]}, {"level": 0.01})
     return data
 

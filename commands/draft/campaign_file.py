@@ -268,6 +268,8 @@ def _triad(kind: Kind, triad: Triad, scale: Scale) -> dict[str, Any]:
     keys: dict[str, Any] = {"columns": list(triad.columns), "unit": scale.unit}
     if scale.counts is not None:
         keys["counts_per_unit"] = scale.counts
+    if triad.bits is not None:
+        keys["signed_bits"] = triad.bits
     if scale.zero:
         keys["zero_counts"] = scale.zero
     if _clips(kind, triad):

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from commands.draft.raw_log import Name, RawLog
 from commands.draft.scales import sphere
+from inertial.signal.signed_counts import bits_without_sign, signed
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 
@@ -28,6 +29,7 @@ BIN_ROWS = 10  # of a short mean
 MIN_BINS = 60  # of them for the motion to say anything: three times its unknowns
 MIN_EXPLAINED = 0.3  # share of the change of each axis of a direction that the gyros must explain
 MAX_RESETS = 0.01  # share of steps in which a clock may stand or go back
+MIN_SHARED_TIME = 0.8  # of two logs of one recording, which were not begun at the same moment
 CLOCK_PARTS = 20  # of a log, in each of which a clock advances alike
 INTERLEAVED_ROWS = 3  # mean length of runs of one word, up to which rows alternate
 NAMED = {
@@ -43,11 +45,15 @@ AXIS = re.compile(r"^(.*?)([xyz0-9])([^xyz0-9]*)$")
 
 @dataclass(frozen=True)
 class Triad:
-    """Three columns of one log, and the word in a column of the rows that hold them, if any do."""
+    """Three columns of one log, and the word in a column of the rows that hold them, if any do.
+
+    `bits`: of counts that are written without their sign.
+    """
 
     file: int  # which log of those recorded together
     columns: tuple[Name, ...]
     rows: tuple[Name, str] | None = None
+    bits: int | None = None
 
     def of(self, together: Sequence[RawLog]) -> Array:
         """The readings, (n, 3), of rows without a gap."""
@@ -56,7 +62,16 @@ class Triad:
         if self.rows is not None:
             column, word = self.rows
             values = values[np.array(log.words[column])[: len(values)] == word]
+        if self.bits is not None:
+            values = signed(values, self.bits)
         return np.asarray(values[np.isfinite(values).all(axis=1)])
+
+
+def _with_sign(triad: Triad | None, group: Sequence[Sequence[RawLog]]) -> Triad | None:
+    """The same with the bits of its counts, where these are written without their sign."""
+    if triad is None:
+        return None
+    return replace(triad, bits=bits_without_sign([triad.of(together) for together in group]))
 
 
 @dataclass(frozen=True)
@@ -107,20 +122,41 @@ def runs_of(log: RawLog) -> list[RawLog]:
 
 
 def recorded_together(logs: Sequence[RawLog]) -> list[tuple[RawLog, ...]]:
-    """Logs of the same stamps are one recording of two sensors, each in a file of its own."""
+    """Logs of two sensors, each in a file of its own, that are one recording by their stamps.
+
+    They have the same stamps, or they name one sensor each and cover the same time.
+    """
     groups: list[list[RawLog]] = []
     for log in logs:
-        name = time_of(log)
-        for group in groups:
-            other = time_of(group[0])
-            if name is not None and other is not None and len(group) == 1:
-                ours, theirs = log.columns[name], group[0].columns[other]
-                if len(ours) == len(theirs) and np.array_equal(ours, theirs, equal_nan=True):
-                    group.append(log)
-                    break
+        alone = [group for group in groups if len(group) == 1]
+        shared = [_shared(group[0], log) for group in alone]
+        best = int(np.argmax(shared)) if shared else 0
+        if shared and shared[best] > MIN_SHARED_TIME:
+            alone[best].append(log)
         else:
             groups.append([log])
     return [tuple(group) for group in groups]
+
+
+def _shared(one: RawLog, other: RawLog) -> float:
+    """The share of the time of two logs that both cover; 0 where they are no pair of sensors."""
+    names = time_of(one), time_of(other)
+    if names[0] is None or names[1] is None:
+        return 0.0
+    ours, theirs = _finite(one.columns[names[0]]), _finite(other.columns[names[1]])
+    if np.array_equal(ours, theirs):
+        return 1.0
+    if names[0] != names[1] or {_only_sensor(one), _only_sensor(other)} != {"accel", "gyro"}:
+        return 0.0
+    both = min(ours.max(), theirs.max()) - max(ours.min(), theirs.min())
+    either = max(ours.max(), theirs.max()) - min(ours.min(), theirs.min())
+    return float(both / either)
+
+
+def _only_sensor(log: RawLog) -> str | None:
+    """The one sensor that the columns of a log name, or else its file does."""
+    named = {kind for name in log.columns if (kind := _kind(str(name)))} & {"accel", "gyro"}
+    return named.pop() if len(named) == 1 else None if named else _kind(log.path.stem)
 
 
 def columns_of(group: Sequence[Sequence[RawLog]]) -> Columns:
@@ -143,10 +179,12 @@ def columns_of(group: Sequence[Sequence[RawLog]]) -> Columns:
             for name in log.columns
             if all(np.ptp(_finite(together[file].columns[name])) == 0 for together in group)
         }
-        free = [n for n in log.columns if n != times[file] and n not in constant]
+        clocks = {name for name, values in log.columns.items() if _grows(values)}
+        free = [n for n in log.columns if n not in clocks | constant]
         for rows in interleaved or (None,):
             candidates += [Triad(file, three, rows) for three in _threes(free)]
-    accel, gyro, evidence, guessed = _sensors(group, candidates)
+    *both, evidence, guessed = _sensors(group, candidates)
+    accel, gyro = (_with_sign(triad, group) for triad in both)
     used: set[Name | None] = {
         name for triad in (accel, gyro) if triad and not triad.file for name in triad.columns
     }
@@ -203,7 +241,7 @@ def _plain(name: str) -> str:
 def _threes(names: Sequence[Name]) -> Iterator[tuple[Name, ...]]:
     """Three neighbours that may be the axes of a sensor: by their names, else all that could."""
     windows = [tuple(names[i : i + 3]) for i in range(len(names) - 2)]
-    named = [three for three in windows if _axes_named(three)]
+    named = [axes for three in windows if (axes := _axes_named(three))]
     if named:
         yield from named
     elif len(names) % 3 == 0:
@@ -212,13 +250,16 @@ def _threes(names: Sequence[Name]) -> Iterator[tuple[Name, ...]]:
         yield from windows
 
 
-def _axes_named(three: Sequence[Name]) -> bool:
+def _axes_named(three: Sequence[Name]) -> tuple[Name, ...]:
+    """Those that are named x, y, z, or by three numbers, of one sensor, in this order; or none."""
     parts = [AXIS.match(_plain(name)) for name in three if isinstance(name, str)]
     found = [part for part in parts if part]
     if len(found) < 3 or len({(p[1], p[3]) for p in found}) > 1:
-        return False
+        return ()
     axes = "".join(p[2] for p in found)
-    return axes in ("xyz", *("".join(map(str, range(i, i + 3))) for i in range(8)))
+    if axes in ("".join(map(str, range(i, i + 3))) for i in range(8)):
+        return tuple(three)
+    return tuple(three[axes.index(axis)] for axis in "xyz") if sorted(axes) == list("xyz") else ()
 
 
 def _sensors(

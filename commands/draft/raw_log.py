@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.formats.columns import column_reader, vectornav_lines
+from inertial.formats.columns.labelled_fields import names_in, without_names
+from inertial.formats.columns.text_lines import BYTE_ORDER_MARK
 from inertial.formats.file_type import FileType, file_type_of
 from inertial.formats.gps_time import NANOSECONDS
 from inertial.formats.novatel import novatel_reader
@@ -33,8 +35,8 @@ _DATE = re.compile(
 class TextLayout:
     """What the format of a campaign file states of a text, its header, and columns from 0 by kind.
 
-    `stated`: delimiter, decimal, comment, header_lines; `header`: the lines before the data;
-    `names`: of the columns as the reader has them; none where it does not name each of them once.
+    `stated`: delimiter, decimal, comment, labelled, header_lines; `header`: the lines before the
+    data; `names`: of the columns as the reader has them; none where not each has one of its own.
     """
 
     stated: dict[str, Any]
@@ -49,24 +51,53 @@ def text_layout(path: Path) -> TextLayout | None:
     """The layout of the text at `path`; None where no row holds enough numbers."""
     with path.open("rb") as file:
         head = file.read(HEAD_BYTES)
-    lines = head.decode("utf-8-sig", errors="replace").splitlines()
+    lines = [_decoded(line) for line in head.removeprefix(BYTE_ORDER_MARK).splitlines()]
     if len(head) == HEAD_BYTES:
         lines = lines[:-1]  # the last one is cut off
-    best: tuple[tuple[int, int], str | None, str] = ((0, 0), None, ".")
+    plain = _separated(lines)
+    labels = [names_in(line.encode()) for line in lines]
+    labelled = sum(len(names) >= MIN_NUMBERS for names in labels)
+    if labelled and labelled >= plain.rows:
+        bare = [without_names(line.encode()).decode() for line in lines]
+        return _layout(bare, _separated(bare), labels)
+    return _layout(lines, plain) if plain.rows else None
+
+
+def _decoded(line: bytes) -> str:
+    """A line as the reader has it, of a program for Windows too."""
+    try:
+        return line.decode("utf-8")
+    except UnicodeDecodeError:
+        return line.decode("cp1252", "backslashreplace")
+
+
+@dataclass(frozen=True)
+class _Separated:
+    """What stands between the fields, within numbers, and how many fields most rows have."""
+
+    rows: int = 0  # that hold enough numbers
+    length: int = 0
+    delimiter: str | None = None
+    decimal: str = "."
+
+
+def _separated(lines: Sequence[str]) -> _Separated:
+    """How most lines are separated that hold enough numbers."""
+    best = _Separated()
     for delimiter, decimal in product(DELIMITERS, DECIMALS):
         if delimiter != decimal:
             rows = [_fields(line, delimiter) for line in lines]
             lengths = Counter(len(row) for row in rows if _is_data(row, decimal))
             if lengths:
                 length, count = lengths.most_common(1)[0]
-                best = max(best, ((count, length), delimiter, decimal), key=lambda found: found[0])
-    (count, length), delimiter, decimal = best
-    return _layout(lines, delimiter, decimal, length) if count else None
+                if (count, length) > (best.rows, best.length):
+                    best = _Separated(count, length, delimiter, decimal)
+    return best
 
 
 def is_number(text: str, decimal: str = ".") -> bool:
     """Whether a field of a log is a number."""
-    text = text.strip()
+    text = text.strip(' \t"')
     if decimal == ",":
         text = text.replace(".", "_").replace(",", ".")
     return bool(_NUMBER.fullmatch(text))
@@ -80,11 +111,16 @@ def _fields(line: str, delimiter: str | None) -> list[str]:
     return [field.strip() for field in line.split(delimiter)]
 
 
-def _layout(lines: Sequence[str], delimiter: str | None, decimal: str, length: int) -> TextLayout:
+def _layout(
+    lines: Sequence[str], separated: _Separated, labels: Sequence[Sequence[bytes]] = ()
+) -> TextLayout:
+    """`labels`: of the fields of each line, where every field has one before it."""
+    delimiter, decimal, length = separated.delimiter, separated.decimal, separated.length
     rows = [_fields(line, delimiter) for line in lines]
     data = [len(row) == length and _is_data(row, decimal) for row in rows]
     first = data.index(True)
-    fields = list(zip(*(row for row, good in zip(rows, data, strict=True) if good), strict=True))
+    good_rows = (row for row, good in zip(rows, data, strict=True) if good)
+    fields = [[text.strip(' "') for text in own] for own in zip(*good_rows, strict=True)]
 
     def holding(good: Any) -> list[int]:
         return [
@@ -107,6 +143,10 @@ def _layout(lines: Sequence[str], delimiter: str | None, decimal: str, length: i
     }
     named = (others or header)[-1] if header else ""
     names = _names(named, delimiter, length)
+    if labels:
+        stated["labelled"] = True
+        own = [name.decode() for name in labels[first]]
+        names = own if len(own) == length and len(set(own)) == length else []
     stated = {key: value for key, value in stated.items() if value is not None}
     return TextLayout(stated, header, names, numbers, dates, words)
 

@@ -46,6 +46,7 @@ GYRO_UNIT = {
     "deg/s": re.compile(r"deg|dps|°", re.IGNORECASE),
     "rad/s": re.compile(r"rad", re.IGNORECASE),
 }
+THOUSANDTH = re.compile(r"\bm(dps|deg|rad)|milli", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -280,10 +281,11 @@ def gyro_scale(
         (u for u, p in GYRO_UNIT.items() if any(isinstance(n, str) and p.search(n) for n in names)),
         None,
     )
+    thousandths = any(isinstance(n, str) and THOUSANDTH.search(n) for n in names)
     axes = AS_NAMED if turns is None else turns.axes
     if turns is None:
         if named is not None:
-            return Scale(named, None, zero, _("by their names"), False)
+            return Scale(named, 1000.0 if thousandths else None, zero, _("by their names"), False)
         if (found := _by_turns(recordings, are_counts(values))) is not None:
             return Scale("deg/s" if found[1] else found[2], found[1], zero, found[0], True)
         unit = "deg/s" if np.abs(values - zero).max() > MAX_RAD_S else "rad/s"
@@ -294,9 +296,11 @@ def gyro_scale(
         factor=significant(turns.factor),
         percent=100 * turns.sigma,
     )
+    thousand = 1000.0 if thousandths else None
     for unit, size in (("rad/s", 1.0), ("deg/s", DEGREE)):
-        if abs(turns.factor / size - 1) < 2 * MAX_UNIT_ERROR and not are_counts(values):
-            return Scale(unit, None, zero, seen, False, axes)
+        error = abs(turns.factor * (thousand or 1.0) / size - 1)
+        if error < 2 * MAX_UNIT_ERROR and (thousandths or not are_counts(values)):
+            return Scale(unit, thousand, zero, seen, False, axes)
     per_degree = DEGREE / turns.factor
     most = max(MAX_COUNT_ERROR, 2 * turns.sigma)
     near = [each for each in USUAL_GYRO_COUNTS if abs(each / per_degree - 1) < most]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from commands.draft.columns import Columns, alike, columns_of, recorded_together, runs_of
+from commands.draft.columns import Columns, Triad, alike, columns_of, recorded_together, runs_of
 from commands.draft.raw_log import RawLog
 from commands.draft.scales import (
     Receiver,
@@ -73,7 +73,9 @@ def kinds_of(logs: Sequence[RawLog], rate: float | None = None) -> list[Kind]:
 def _kind(group: Sequence[Sequence[RawLog]], rate: float | None) -> Kind:
     """Logs of one kind, their readings as they stand in the files."""
     columns = columns_of(group)
-    timing = timing_of([together[0] for together in group], columns.time[0])
+    triad = columns.accel or columns.gyro
+    rows = triad.rows if triad is not None and triad.file == 0 else None
+    timing = timing_of([together[0] for together in group], columns.time[0], rows)
     if rate is not None and timing.unit in (None, "sample"):
         timing = replace(timing, rate=rate, guessed=False, evidence=_("the rate is stated"))
     if columns.accel and columns.time[0] is None and columns.label is None:
@@ -88,6 +90,7 @@ def _kind(group: Sequence[Sequence[RawLog]], rate: float | None) -> Kind:
         receiver = receiver_of(own, timing.rate)
         return Kind(columns, timing, receiver.accel, receiver.gyro, parts, own, receiver)
     accel = accel_scale(own) if columns.accel else None
+    _refuse_without_gravity(accel, columns, group)
     turned = turning(own, accel) if accel and columns.gyro else None
     gyro = None
     if columns.gyro:
@@ -108,6 +111,21 @@ def _refuse_few(group: Sequence[Sequence[RawLog]]) -> None:
             _("samples, at least {rows}, or the means of positions", rows=MIN_ROWS),
             _("name the log of the samples; means are stated by hand, with mean_of"),
         )
+
+
+def _refuse_without_gravity(
+    accel: Scale | None, columns: Columns, group: Sequence[Sequence[RawLog]]
+) -> None:
+    """Refuse accelerations from which a phone has taken gravity: less than a count would be 1 g."""
+    if accel is None or columns.accel is None or (accel.counts or 1.0) >= 1:
+        return
+    raise Refusal(
+        group[0][columns.accel.file].path.name,
+        ", ".join(map(str, columns.accel.columns)),
+        _("no gravity: {evidence}", evidence=accel.evidence),
+        _("what accelerometers read, 9.8 m/s² or 1 g at rest"),
+        _("name the log of the accelerometers themselves, not that of the linear acceleration"),
+    )
 
 
 def are_means(values: Array) -> bool:
@@ -137,25 +155,41 @@ def _kind_of_means(columns: Columns, timing: Timing, group: Sequence[Sequence[Ra
 
 def _parts(kind: Kind, together: Sequence[RawLog]) -> list[Part]:
     """A recording, or one for each label."""
-    columns = kind.columns
-    rate = kind.timing.rate / (2 if kind.interleaved else 1)
+    columns, rate = kind.columns, kind.timing.rate
 
-    def values(triad: object, rows: slice) -> Array:
-        return np.empty((0, 3)) if triad is None else triad.of(together)[rows]  # type: ignore[attr-defined]
+    def values(triad: Triad | None, rows: slice) -> Array:
+        return np.empty((0, 3)) if triad is None else triad.of(together)[rows]
 
-    def series(rows: slice) -> Series:
-        return Series(values(columns.accel, rows), values(columns.gyro, rows), rate, rate)
+    def series(of_accel: slice, of_gyro: slice) -> Series:
+        forces, rates = values(columns.accel, of_accel), values(columns.gyro, of_gyro)
+        apart = len(together) > 1 or kind.interleaved
+        ratio = len(rates) / len(forces) if apart and len(forces) and len(rates) else 1.0
+        return Series(forces, rates, rate, rate * ratio)
 
+    if len(together) > 1 and columns.accel and columns.gyro:
+        accel, gyro = columns.accel, columns.gyro
+        common = _common_rows(columns, together)
+        both = series(common[accel.file], common[gyro.file])
+        return [Part(together, None, (common[0].start, common[0].stop), both)]
     if columns.label is None:
-        return [Part(together, None, (0, together[0].rows), series(slice(None)))]
+        return [Part(together, None, (0, together[0].rows), series(*[slice(None)] * 2))]
     words = np.array(together[0].words[columns.label])
     parts = []
     for word in dict.fromkeys(words.tolist()):
         places = np.flatnonzero(words == word)
         rows = (int(places[0]), int(places[-1]) + 1)
         if rows[1] - rows[0] == len(places):
-            parts.append(Part(together, word, rows, series(slice(*rows))))
+            parts.append(Part(together, word, rows, series(*[slice(*rows)] * 2)))
     return parts
+
+
+def _common_rows(columns: Columns, together: Sequence[RawLog]) -> list[slice]:
+    """The rows of each file in the time that all of them cover."""
+    stamps = [log.columns[name] for log, name in zip(together, columns.time, strict=True) if name]
+    first = max(float(np.nanmin(own)) for own in stamps)
+    last = min(float(np.nanmax(own)) for own in stamps)
+    inside = [np.flatnonzero((own >= first) & (own <= last)) for own in stamps]
+    return [slice(int(rows[0]), int(rows[-1]) + 1) for rows in inside]
 
 
 def _divided(parts: Sequence[Part], *, known_units: bool) -> list[Divided]:
@@ -205,7 +239,7 @@ def _in_si(kind: Kind, others: Sequence[Kind]) -> Kind:
         gyro = replace(gyro, axes=moved[0])  # all logs are of one instrument
     if kind.means:
         return kind
-    rate = kind.timing.rate / (2 if kind.interleaved else 1)
+    rate = kind.timing.rate
     parts = [
         replace(
             part,
@@ -213,7 +247,7 @@ def _in_si(kind: Kind, others: Sequence[Kind]) -> Kind:
                 accel.in_si(part.series.accel) if accel else part.series.accel,
                 gyro.in_si(part.series.gyro) if gyro else part.series.gyro,
                 rate,
-                rate,
+                rate * part.series.gyro_hz / part.series.accel_hz,
             ),
         )
         for part in kind.parts

@@ -23,6 +23,8 @@ COMMON_RATES = np.array(
     ]
 )  # Hz
 MAX_RATE_ERROR = 0.05  # of a rate that is taken to be a common one
+MAX_STEP = 3.0  # usual steps, that a counter may be off by where it begins again
+MIN_PERIOD = 255  # of a counter: fewer ticks are no clock
 STATED = re.compile(
     r"(?:\bfs|\brate|\bfreq\w*|\bodr|\bhz)\b[^0-9\n]{0,20}([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE
 )
@@ -45,18 +47,24 @@ class Timing:
         return replace(self, rate=rate, guessed=True, evidence=evidence)
 
 
-def timing_of(logs: Sequence[RawLog], column: Name | None) -> Timing:
-    """The clock of logs of one kind; `column` holds the time, None where rows are counted."""
+def timing_of(
+    logs: Sequence[RawLog], column: Name | None, rows: tuple[Name, str] | None = None
+) -> Timing:
+    """The clock of logs of one kind; `column` holds the time, None where rows are counted.
+
+    `rows`: the column and the word of those that are samples, where not all are.
+    """
     stated = next(
         (float(m[1]) for log in logs for line in log.header if (m := STATED.search(line))), None
     )
     if column is None:
         return _without_time(None, None, stated, _("no column is a time"))
-    steps = [np.diff(_finite(log.columns[column])) for log in logs]
-    ticks = float(np.median([_step(log.columns[column]) for log in logs]))
+    counters = [_finite(_selected(log, column, rows)) for log in logs]
+    steps = [np.diff(counter) for counter in counters]
+    ticks = float(np.median([_step(counter) for counter in counters]))
     if ticks == 1 and all(np.mean(own == 1) > 0.95 for own in steps):
         timing = _without_time(column, "sample", stated, _("it counts samples"))
-        return replace(timing, wraps_at=_wraps_at([log.columns[column] for log in logs]))
+        return replace(timing, wraps_at=_wraps_at(counters))
     named = IN_NAME.search(str(column))
     units = {"us": "us", "µs": "us", "sec": "s", "seconds": "s"}
     if column in logs[0].dates:
@@ -77,7 +85,10 @@ def timing_of(logs: Sequence[RawLog], column: Name | None) -> Timing:
     positive = np.concatenate([own[own > 0] for own in steps])
     if np.median(positive) < 0.5 * ticks:
         why += _("; stamps come in bursts: the rate is their number in the whole time")
-    return Timing(column, unit, rate, named is None and unit != "iso8601", why)
+    wraps_at = None if column in logs[0].dates else _period(counters)
+    if wraps_at is not None:
+        why += _("; it begins again after {period} ticks", period=wraps_at)
+    return Timing(column, unit, rate, named is None and unit != "iso8601", why, wraps_at)
 
 
 def _without_time(column: Name | None, unit: str | None, stated: float | None, why: str) -> Timing:
@@ -94,13 +105,36 @@ def _wraps_at(counters: Sequence[Array]) -> int | None:
     return last.pop() if len(last) == 1 and np.log2(min(last)).is_integer() else None
 
 
+def _period(counters: Sequence[Array]) -> int | None:
+    """The power of two after which counters of ticks go on from 0; None where they do not.
+
+    With it the step back is a step on like the others.
+    """
+    periods = set()
+    for counter in counters:
+        steps = np.diff(counter)
+        usual = np.median(steps)
+        for back in steps[steps < 0].tolist():
+            period = 2.0 ** np.round(np.log2(usual - back))
+            periods.add(period if abs(back + period - usual) < MAX_STEP * usual else np.nan)
+    period = periods.pop() if len(periods) == 1 else np.nan
+    return int(period) if period > MIN_PERIOD else None
+
+
+def _selected(log: RawLog, column: Name, rows: tuple[Name, str] | None) -> Array:
+    values = log.columns[column]
+    if rows is None:
+        return values
+    name, word = rows
+    return np.asarray(values[np.array(log.words[name])[: len(values)] == word])
+
+
 def _finite(values: Array) -> Array:
     return values[np.isfinite(values)]
 
 
 def _step(values: Array) -> float:
     """Ticks from row to row: of most parts of the log, so that gaps do not count."""
-    values = _finite(values)
     places = np.linspace(0, len(values) - 1, CLOCK_PARTS + 1).astype(int)
     step = float(np.median(np.diff(values[places]) / np.diff(places)))
     whole = float(np.median(np.diff(values)))

@@ -122,6 +122,8 @@ def campaigns_of(
     gyroscope_parameters: pd.DataFrame | None = None,
     accelerometer_positions: pd.DataFrame | None = None,
     gyroscope_positions: pd.DataFrame | None = None,
+    accelerometer_switch_ons: pd.DataFrame | None = None,
+    gyroscope_switch_ons: pd.DataFrame | None = None,
     accelerometer_fit: pd.DataFrame | None = None,
     gyroscope_fit: pd.DataFrame | None = None,
 ) -> list[CampaignData]:
@@ -139,8 +141,15 @@ def campaigns_of(
             solution = solution_of(
                 mount,
                 given,
-                Estimated(accelerometer_parameters, accelerometer_positions, accelerometer_fit),
-                Estimated(gyroscope_parameters, gyroscope_positions, gyroscope_fit),
+                Estimated(
+                    accelerometer_parameters,
+                    accelerometer_positions,
+                    accelerometer_fit,
+                    accelerometer_switch_ons,
+                ),
+                Estimated(
+                    gyroscope_parameters, gyroscope_positions, gyroscope_fit, gyroscope_switch_ons
+                ),
             )
         data = CampaignData(plan, done, blocks, noise, given, mount, times, shared, solution)
         if solution is not None and solution.free and solution.accelerometer is not None:

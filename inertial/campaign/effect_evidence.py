@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.campaign.equations import Campaign
+from inertial.campaign.equations import SENSORS, Campaign
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.evidence import Evidence
 from inertial.physics.effect import Effect
@@ -21,14 +21,22 @@ def evidence(
 ) -> Evidence:
     """The information of gyros and accelerometers on the effects, other unknowns eliminated.
 
-    The two are independent but for the tilts of the positions, which each estimates separately.
-    The columns are named by label and parameter of an effect. The information is zero for an
-    effect that is sought elsewhere, and where it is not observable at its largest size: there it
-    could only absorb rounding errors. `noise_degrees`: of freedom of the noise estimate.
+    The two share the tilts of the positions. That of the gyros is what they add to the
+    accelerometers, so that the two are independent. The columns are named by label and parameter of
+    an effect. The information is zero for an effect that is sought elsewhere, and where it is not
+    observable at its largest size: there it could only absorb rounding errors. `noise_degrees`: of
+    freedom of the noise estimate.
     """
-    pairs = zip(("gyro", "accel"), campaign.systems(effects, 1.0), strict=True)
+    tilts = campaign.shared_tilts
+    pairs = zip(SENSORS, campaign.systems(effects, 1.0, sharing=tilts), strict=True)
     systems = [(sensor, system) for sensor, system in pairs if system is not None]
     informative = [(sensor, system.effect_information()) for sensor, system in systems]
+    if tilts:
+        gyro, accel = (information for _, information in informative)
+        prior = np.full(len(tilts), campaign.position_sigma**-2)
+        informative = list(
+            zip(SENSORS, (gyro.following(accel, prior), accel.eliminated(prior)), strict=True)
+        )
     largest = np.array(
         [
             effect.largest_of(parameter)
@@ -44,7 +52,7 @@ def evidence(
         tuple(_restricted(reduced, observable) for _, reduced in informative),
         tuple(sensor for sensor, _ in informative),
         tuple(campaign.noise_degrees(sensor, noise_degrees) for sensor, _ in informative),
-        sum((system.raw_information() for _, system in systems), np.zeros(1)),
+        sum((system.raw_information()[: len(largest)] for _, system in systems), np.zeros(1)),
     )
 
 

@@ -25,13 +25,15 @@ from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.between_positions import CarriedEquations
 from inertial.estimation.drifting_equations import DriftingEquations
-from inertial.estimation.gyroscope_equations import Linearisation
+from inertial.estimation.elimination import Name
+from inertial.estimation.gyroscope_equations import Linearisation, is_upright
 from inertial.estimation.gyroscopes import LinearisedEquations
 from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import System
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.estimation.scatter_by_hand import Scatter
 from inertial.estimation.sensitivities import Sensitivities
+from inertial.estimation.switch_ons import SwitchOns
 from inertial.physics.effect import Effect, Reading
 from inertial.physics.forward import Triad, signatures
 from inertial.physics.motion import Motion, joined, mean_turned
@@ -109,14 +111,14 @@ class Campaign:
         """All stretches of the equations: gyros at rest, gyros in rotation, accelerometers."""
         return joined(self._motions)
 
-    @property
+    @cached_property
     def _motions(self) -> list[Motion]:
         return [
             *self.gyro_motions,
             *(motion for _, _, motion in self.static_forces),
         ]
 
-    @property
+    @cached_property
     def gyro_motions(self) -> list[Motion]:
         """Those of the gyros: static positions, rotations, passages by hand."""
         passages = self.by_hand.motions if self.by_hand else ()
@@ -143,10 +145,15 @@ class Campaign:
             for effect in effects
         }
 
+    @property
+    def handled(self) -> bool:
+        """Whether it was moved by hand, which never stands still."""
+        return self.by_hand is not None or any(turn.by_hand for turn in self.inputs.turns)
+
     def excludes(self, effect: Effect) -> bool:
         """Whether an effect is none of this campaign: of a table, or of stillness, by hand."""
         if effect.of_stillness:
-            return self.by_hand is not None or any(turn.by_hand for turn in self.inputs.turns)
+            return self.handled
         return self.by_hand is not None and of_a_table(effect)
 
     def places(self, effect: Effect) -> Sequence[str]:
@@ -168,6 +175,31 @@ class Campaign:
         """The same with constant biases."""
         return self.with_random_walks((0.0, 0.0))
 
+    def without_drift_at_rest(self) -> "Campaign":
+        """The same without the drift that the noise at rest shows; switch-ons remain."""
+        drifts = {sensor: drift.between_switch_ons for sensor, drift in self.drifts.items()}
+        return replace(self, drifts=drifts)
+
+    def switch_ons(self, effects: Sequence[Effect]) -> dict[str, SwitchOns]:
+        """By what biases differ between switch-ons, beside effects; of sensors with several."""
+        found: dict[str, SwitchOns] = {}
+        for sensor, drift in self.drifts.items():
+            equations = self.equations(sensor, effects, PRIOR_SIZE)
+            if equations is not None and drift.switch_on is not None:
+                unknown = replace(equations, measured=replace(drift, switch_on=None))
+                if (between := unknown.likelihood.switch_ons()) is not None:
+                    found[sensor] = between
+        return found
+
+    def with_switch_ons(self, found: Mapping[str, SwitchOns]) -> "Campaign":
+        """The same with biases that differ by so much between switch-ons."""
+        sizes = {sensor: between.covering for sensor, between in found.items()}
+        drifts = {
+            sensor: replace(drift, switch_on=sizes.get(sensor, drift.switch_on))
+            for sensor, drift in self.drifts.items()
+        }
+        return replace(self, drifts=drifts)
+
     def noise_degrees(self, sensor: str, of_noise: float) -> float:
         """Degrees of freedom of the noise of a sensor, a scatter by hand included."""
         own = self.by_hand.degrees.get(sensor, np.inf) if self.by_hand else np.inf
@@ -184,16 +216,38 @@ class Campaign:
         return sum(system.solve_shared().deviance for system in systems if system is not None)
 
     def systems(
-        self, effects: Sequence[Effect], prior_sigma: float, only: set[str] | None = None
+        self,
+        effects: Sequence[Effect],
+        prior_sigma: float,
+        only: set[str] | None = None,
+        sharing: Sequence[Name] = (),
     ) -> tuple[System | None, System | None]:
         """The equations of gyros and accelerometers with the effects as further unknowns.
 
         `prior_sigma`: of the effects' parameters, in their typical sizes; `only`: the
-        manoeuvres that are used.
+        manoeuvres that are used; `sharing`: errors that are not eliminated, but the last effects.
         """
         sigmas = _prior_sigmas(effects, prior_sigma)
-        gyro, accel = (self._system(s, effects, sigmas, only) for s in SENSORS)
+        gyro, accel = (self._system(s, effects, sigmas, only, sharing) for s in SENSORS)
         return gyro, accel
+
+    @property
+    def shared_tilts(self) -> tuple[Name, ...]:
+        """The tilts of positions that gyros and accelerometers both sense: of upright turns."""
+        both = self.solution.gyro is not None and self.solution.accelerometer is not None
+        if self.by_hand or not both or not self.position_sigma:
+            return ()
+        upright: dict[str, bool] = {}
+        for turn in self.inputs.turns:
+            own = is_upright(turn.position, turn.about)
+            upright[turn.position.name] = upright.get(turn.position.name, True) and own
+        stood = {rest.position for _, rest, _ in self.static_forces}
+        return tuple(
+            (f"tilt {i}", position)
+            for position, there in upright.items()
+            if there and position in stood
+            for i in (0, 1)
+        )
 
     def system(self, sensor: str, effects: Sequence[Effect], prior_sigma: float) -> System | None:
         """The equations of one sensor, `gyro` or `accel`; arguments as in `systems`."""
@@ -232,9 +286,12 @@ class Campaign:
         effects: Sequence[Effect],
         prior_sigmas: Mapping[str, float],
         only: set[str] | None,
+        sharing: Sequence[Name] = (),
     ) -> System | None:
         walk = self.solution.random_walks[SENSORS.index(sensor)]
         drifting = self._drifting(sensor, effects, prior_sigmas, only, walking=bool(walk))
+        if drifting and sharing:
+            drifting = drifting.sharing(sharing)
         return drifting.system(walk=walk) if drifting else None
 
     def _drifting(
@@ -267,7 +324,9 @@ class Campaign:
         used = [only is None or name in only for name in names]
         if not any(used):
             return None
-        equations = replace(self._linearised(effects), effect_sigma=prior_sigmas)
+        equations = replace(
+            self._linearised(effects), effect_sigma=prior_sigmas, measured=self.drifts["gyro"]
+        )
         return equations.only(used).drifting()
 
     def _carried(
@@ -320,8 +379,7 @@ class Campaign:
         )
         known = (self.inputs.earth, self.position_sigma)
         columns = _prior_sigmas(effects, 1.0)
-        drift = self.drifts["gyro"]
-        return gyroscopes.linearised(point, turns, [], *known, columns, drift).with_statics(rests)
+        return gyroscopes.linearised(point, turns, [], *known, columns).with_statics(rests)
 
     def _accelerometer(
         self,

@@ -159,4 +159,5 @@ def motion_of(
         vibration=np.zeros((n, 3)),
         peaks=unknown,
         senses=unknown,
+        tumbled=np.zeros((n, 3)),
     )

@@ -62,6 +62,7 @@ OF_POSITIONS = {
     for kind, quantity, unit in (("tilt", "tilt", "rad"), ("level", "horizontal", "rad/s"))
     for component in (0, 1)
 }
+OF_SWITCH_ONS = {f"switch-on {i}": axis for i, axis in enumerate(AXES)}
 UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 TABLES = {
     "parameters": tables.PARAMETERS,
@@ -69,6 +70,7 @@ TABLES = {
     "fit_manoeuvres": tables.FIT_MANOEUVRES,
     "averaging": tables.AVERAGING,
     "positions": tables.POSITIONS,
+    "switch_ons": tables.SWITCH_ONS,
     "wanted": tables.WANTED,
 }
 
@@ -166,20 +168,17 @@ class Estimates:
         used: Sequence[Part],
         left_out: Sequence[Part],
     ) -> None:
-        """Goodness of fit, the manoeuvres used, and what was estimated of the positions."""
-        self.rows["positions"] += [
-            self._key(method)
-            | {
-                "position": position,
-                "quantity": quantity,
-                "component": component,
-                "value": float(fitted.estimate.values[column]),
-                "sigma": float(fitted.estimate.sigma[column]),
-                "unit": unit,
-            }
-            for column, (kind, position) in enumerate(fitted.estimate.names)
-            for quantity, component, unit in OF_POSITIONS.get(kind, ())
-        ]
+        """Goodness of fit, the manoeuvres used, what was estimated of positions and switch-ons."""
+        estimate = fitted.estimate
+        found = zip(estimate.names, estimate.values.tolist(), estimate.sigma.tolist(), strict=True)
+        for (kind, name), value, sigma in found:
+            row = self._key(method) | {"value": value, "sigma": sigma}
+            for quantity, component, unit in OF_POSITIONS.get(kind, ()):
+                of = {"position": name, "quantity": quantity, "component": component}
+                self.rows["positions"].append(row | of | {"unit": unit})
+            if kind in OF_SWITCH_ONS:
+                of = {"switch_on": int(name), "axis": OF_SWITCH_ONS[kind]}
+                self.rows["switch_ons"].append(row | of | {"unit": UNIT[self.stage]})
         self.rows["fit_manoeuvres"] += [
             self._key(method)
             | {"manoeuvre": part.manoeuvre, "phase": part.phase}

@@ -76,6 +76,7 @@ _KIND = {
 }
 # What a recording shows of its circumstances: no fault, and whether it matters the model tells.
 CIRCUMSTANCES = ("temperature_drift",)
+MAX_WALK_P = 0.005  # as of all names together, of a random walk that is a cause and no mere noise
 MISFITS = ("unexplained", "unknown_structure")
 PERFORMANCE = (
     "incomplete_turn",
@@ -295,9 +296,20 @@ def compete(hypotheses: Sequence[Hypothesis]) -> Iterator[Explained]:
         for other in explained[cause.id]:
             if other.id not in owner and _root(cause.id, owner) != other.id:
                 owner[other.id] = cause.id
-    roots = [h for h in hypotheses if h.id not in owner]
-    for root in roots:
-        yield Explained(root, tuple(h for h in hypotheses if _root(h.id, owner) == root.id))
+    for root in (h for h in hypotheses if h.id not in owner):
+        own = tuple(h for h in hypotheses if _root(h.id, owner) == root.id)
+        if len(own) > 1 or not _is_noise(root):
+            yield Explained(root, own)
+
+
+def _is_noise(finding: Hypothesis) -> bool:
+    """Whether it is a random walk at rest, or one that chance may make: a term of the noise.
+
+    It is in the sigmas and among the terms of the noise; the result lacks nothing by it.
+    """
+    p_value = finding.row.get("p_value")
+    walk = finding.cause.endswith("_random_walk") and not finding.members[1:]
+    return walk and (p_value is None or p_value >= MAX_WALK_P)
 
 
 def _root(finding: str, owner: dict[str, str]) -> str:

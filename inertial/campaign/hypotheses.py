@@ -11,6 +11,7 @@ import pandas as pd
 from inertial.campaign.records import Row, rows_of
 
 FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE = "found", "one_of_class", "unknown_structure"
+LAW = "law"  # of no effect of the catalogue
 RECORDING, PLAN, POSITIONS, MODEL = "quality", "segment", "accelerometer", "criticism"
 COUNTS = "gyroscope"  # the stage that finds counts of another size than stated
 RIVAL = "rival"  # state of a repair that others explain as well
@@ -61,7 +62,7 @@ class Hypothesis:
     @property
     def named(self) -> bool:
         """Whether it is an effect that criticism names, or a class of effects."""
-        return self.stage == MODEL and self.verdict in (FOUND, ONE_OF_CLASS)
+        return self.stage == MODEL and self.verdict in (FOUND, ONE_OF_CLASS, LAW)
 
     @property
     def causes(self) -> frozenset[str]:

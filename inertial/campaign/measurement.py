@@ -63,6 +63,16 @@ class SensorResult:
         numbers = np.array(values, dtype=np.float64)
         return Triad(np.eye(3) + numbers[: -len(BIAS)].reshape(3, 3), numbers[-len(BIAS) :])
 
+    def shifted(self, bias: Array | None) -> "SensorResult":
+        """The same with a bias that is larger by (3,); or the same."""
+        if bias is None or self.triad is None:
+            return self
+        moved = {
+            name: self.rows[name] | {"value": self.rows[name]["value"] + change}
+            for name, change in zip(BIAS, bias.tolist(), strict=True)
+        }
+        return replace(self, rows={**self.rows, **moved})
+
     @property
     def missing(self) -> dict[str, list[str]]:
         """Why parameters have no value: reason → their names."""
@@ -100,6 +110,14 @@ class Measurement:
             return replace(own, effects=effects)
 
         return Measurement(sensor(self.accelerometer), sensor(self.gyro))
+
+    def since(self, switch_on: int, deviations: Mapping[tuple[str, int], Array]) -> "Measurement":
+        """The same with the biases after a switch-on; `deviations`: see `Solution`."""
+        accelerometer, gyro = (
+            own.shifted(deviations.get((own.sensor, switch_on)))
+            for own in (self.accelerometer, self.gyro)
+        )
+        return Measurement(accelerometer, gyro)
 
     def force(self, readings: Array, motion: Motion) -> Array:
         """Specific force from the readings of the accelerometers, (n, 3), m/s²."""

@@ -38,12 +38,14 @@ def at_rest(data: CampaignData, position: StaticPosition, time: float) -> Motion
         np.array([time]),
         np.array([position.seconds.sum()]),
     )
-    return replace(rest, surveyed=np.array([set_position.north is not None]))
+    tumbled = np.zeros(3) if m.tumbled is None else m.tumbled
+    surveyed = np.array([set_position.north is not None])
+    return replace(rest, surveyed=surveyed, tumbled=tumbled[None])
 
 
 def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) -> Motion:
     """A rotation in the k blocks of its sums, with the angles that the gyros measured."""
-    solution, set_position = data.result, position_of(m, data.heading)
+    solution, set_position = data.result.since(m.switch_on), position_of(m, data.heading)
     up, north = solution.upright(m), solution.north(set_position)
     gyro, site = solution.gyro, solution.site
     assert gyro is not None  # else nothing is simulated
@@ -102,7 +104,7 @@ def in_samples(
     steady : (n,), which samples are at the steady rate
     time : (n,), s; where it jumps at the steady rate, samples were lost
     """
-    solution = data.result
+    solution = data.result.since(m.switch_on)
     up, north = solution.upright(m), solution.north(position_of(m, data.heading))
     assert solution.gyro is not None and m.angle is not None  # else it is not simulated
     passed = np.round(np.diff(time, prepend=time[0] - step) / step)  # samples, 0 where one repeats
@@ -262,7 +264,7 @@ def mean_motions(motion: Motion, merged: Merged) -> list[Motion]:
     # The acceleration at a lever arm is quadratic in the rate, so the rate is the rms.
     means["rate"] = np.sign(means["rate"]) * np.sqrt(merged.mean(motion.rate**2))
     means["seconds"] = merged.seconds
-    for name in ("surveyed", "position", "run", "peaks", "senses"):
+    for name in ("surveyed", "position", "run", "peaks", "senses", "tumbled"):
         means[name] = getattr(motion, name)[merged.starts]
     return [
         Motion(about=motion.about, **{name: values[i : i + 1] for name, values in means.items()})

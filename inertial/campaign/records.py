@@ -29,7 +29,10 @@ def rows_of(table: pd.DataFrame) -> list[Row]:
 
 @dataclass(frozen=True)
 class Manoeuvre:
-    """One manoeuvre of the plan; vectors (3,) in body axes, SI and radians, None where unknown."""
+    """One manoeuvre of the plan; vectors (3,) in body axes, SI and radians, None where unknown.
+
+    `tumbled`: of a rest of a tumble, the angle since its start, along its axis, (3,).
+    """
 
     name: str
     do: str
@@ -54,6 +57,7 @@ class Manoeuvre:
     temperature_sigma: float | None = None
     rate_sigma: float | None = None
     switch_on: int = 0
+    tumbled: Array | None = None
 
     @property
     def selected(self) -> bool:
@@ -65,6 +69,10 @@ class Manoeuvre:
         """The axis of a turn; the plan refuses a turn without one."""
         assert self.about is not None
         return self.about
+
+    def detected_rest(self, number: int) -> str:
+        """The name of a rest that was detected within it, in their order from 1."""
+        return f"{self.name}-{number:02d}"
 
 
 def with_mount(name: str, mount: str) -> str:
@@ -93,6 +101,7 @@ def manoeuvres_of(table: pd.DataFrame) -> list[Manoeuvre]:
             *(row[key] for key in ("from_s", "to_s", "from_row", "to_row", "label")),
             *(row[key] for key in ("temperature", "temperature_sigma", "rate_sigma")),
             *(row[key] for key in ("switch_on",)),
+            *(_vector(row, stem) for stem in ("tumbled",)),
         )
         for row in rows_of(table)
     ]

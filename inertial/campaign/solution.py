@@ -1,7 +1,7 @@
 """The joint result of one mount as the forward model takes it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from inertial.campaign.records import Known, Manoeuvre, Row, rows_of
 from inertial.estimation.gyroscope_observations import Position
+from inertial.estimation.switch_ons import covering
 from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import cross, level_axes
@@ -25,7 +26,8 @@ class Solution:
     A triad that is not wholly determined is None. `random_walks`: of the biases of gyros and
     accelerometers, rad/s/√s and m/s²/√s. `free`: the sensors, gyro or accel, whose triad is that of
     static positions of unknown attitude. `switch_ons`: by sensor, by what the biases differ between
-    switch-ons, (3,), rad/s or m/s².
+    switch-ons, (3,), rad/s or m/s²; `deviations`: by sensor and switch-on, the bias after it less
+    that of the campaign, the same.
     """
 
     gyro: Triad | None
@@ -35,6 +37,19 @@ class Solution:
     random_walks: tuple[float, float] = (0.0, 0.0)
     free: frozenset[str] = frozenset()
     switch_ons: Mapping[str, Array | None] = field(default_factory=dict)
+    deviations: Mapping[tuple[str, int], Array] = field(default_factory=dict)
+
+    def since(self, switch_on: int) -> "Solution":
+        """The same with the biases that the sensors have after a switch-on."""
+
+        def of(sensor: str, triad: Triad | None) -> Triad | None:
+            deviation = self.deviations.get((sensor, switch_on))
+            if triad is None or deviation is None:
+                return triad
+            return replace(triad, bias=triad.bias + deviation)
+
+        gyro, accelerometer = of("gyro", self.gyro), of("accel", self.accelerometer)
+        return replace(self, gyro=gyro, accelerometer=accelerometer)
 
     def upright(self, m: Manoeuvre) -> Array:
         """The direction that points up at the start of a manoeuvre, its tilt included, (3,)."""
@@ -65,6 +80,7 @@ class Estimated:
     parameters: pd.DataFrame
     positions: pd.DataFrame | None = None
     fit: pd.DataFrame | None = None
+    switch_on_biases: pd.DataFrame | None = None
 
     def position_parameters(
         self, mount: str, quantity: str, below: float
@@ -77,13 +93,14 @@ class Estimated:
             if row["quantity"] == quantity and row["sigma"] < below
         }
 
-    def switch_ons(self, mount: str) -> Array | None:
-        """By what the biases differ between switch-ons by the joint fit, (3,); None: one."""
-        for row in [] if self.fit is None else joint_rows(self.fit, mount):
-            if row["switch_ons"] > 1:
-                sizes = [row[f"switch_on_{axis}"] or 0.0 for axis in AXES]
-                return np.nan_to_num(np.array(sizes, np.float64))
-        return None
+    def deviations(self, mount: str) -> dict[int, Array]:
+        """The bias after each switch-on by the joint fit, less that of the campaign, (3,)."""
+        table = self.switch_on_biases
+        found: dict[int, Array] = {}
+        for row in [] if table is None else joint_rows(table, mount):
+            bias = found.setdefault(row["switch_on"], np.zeros(len(AXES)))
+            bias[AXES.index(row["axis"])] = row["value"]
+        return found
 
     def random_walk(self, mount: str) -> float:
         """The random walk of the bias by the joint fit."""
@@ -119,13 +136,30 @@ def solution_of(
         tilts | levels,
         (gyro.random_walk(mount), accelerometer.random_walk(mount)),
         frozenset(free),
-        {"gyro": gyro.switch_ons(mount), "accel": accelerometer.switch_ons(mount)},
+        {
+            "gyro": switch_ons_of(gyro.fit, mount),
+            "accel": switch_ons_of(accelerometer.fit, mount),
+        },
+        {
+            (sensor, switch_on): bias
+            for sensor, of in (("gyro", gyro), ("accel", accelerometer))
+            for switch_on, bias in of.deviations(mount).items()
+        },
     )
 
 
 def joint_rows(table: pd.DataFrame, mount: str, method: str = JOINT) -> list[Row]:
     """The rows of a method of a mount, whose name is empty where there is a single one."""
     return [row for row in rows_of(table) if (row["method"], row["mount"]) == (method, mount)]
+
+
+def switch_ons_of(fit: pd.DataFrame | None, mount: str) -> Array | None:
+    """By what the biases differ between switch-ons by the joint fit, (3,); None: there is one."""
+    for row in [] if fit is None else joint_rows(fit, mount):
+        if row["switch_ons"] > 1:
+            sizes = [row[f"switch_on_{axis}"] for axis in AXES]
+            return covering(np.array(sizes, np.float64), row["switch_ons"])
+    return None
 
 
 def scatter_by_mount(fit: pd.DataFrame) -> dict[str, float]:

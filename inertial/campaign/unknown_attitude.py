@@ -84,12 +84,14 @@ def free_static_positions(data: "CampaignData") -> tuple[list[FreeStaticPosition
         return [], []
     positions: list[FreeStaticPosition] = []
     left_out: list[Part] = []
-    by_name = {m.name: m for m in plan}
     at_rest = blocks[blocks["phase"].isin(STATIC_PHASES) & (blocks["count"] > 0)]
     at_rest = at_rest.sort_values(["log", "from_record"])
+    most = blocks["manoeuvre"].nunique()
+    by_name = {m.detected_rest(number): m for m in plan for number in range(1, most + 1)}
+    by_name |= {m.name: m for m in plan}
     for (key, phase), rows in at_rest.groupby(["manoeuvre", "phase"], sort=False):
         name = str(key)
-        m = by_name.get(name) or by_name.get(name.rpartition("-")[0])  # detected rests have -01
+        m = by_name.get(name)
         if m is None:
             continue
         part = Part(name, str(phase))

@@ -100,7 +100,7 @@ class TimeBackwards(Detector):
         else:
             sentence = _(
                 "{name}: at line {line} time goes back by {size:.6f} s, from {before} s to "
-                "{from_s} s; {records} lie behind.",
+                "{from_s} s; after it: {records}.",
                 name=name,
                 line=event.line,
                 size=event.size,

@@ -40,6 +40,7 @@ from inertial.effects.gyro_warm_up import GyroWarmUp
 from inertial.effects.heading_error import HeadingError
 from inertial.effects.latitude_error import LatitudeError
 from inertial.effects.latitude_sign import LatitudeSign
+from inertial.effects.law import Law, every_law
 from inertial.effects.lever_arm import LeverArm
 from inertial.effects.oscillation import Oscillation
 from inertial.effects.size_effect import SizeEffect
@@ -123,4 +124,11 @@ TEMPERATURE_MODELS: dict[str, TemperatureModel] = {
 OF_TEMPERATURE_CYCLES: dict[str, Effect] = {
     effect.name: effect for effect in (ThermalHysteresis("gyro"), ThermalHysteresis("accel"))
 }
-KNOWN: dict[str, Effect] = {**CATALOGUE, **TEMPERATURE_MODELS, **OF_TEMPERATURE_CYCLES}
+# Searched only where no effect of the catalogue explains what remains.
+LAWS: dict[str, Law] = every_law()
+KNOWN: dict[str, Effect] = {
+    **CATALOGUE,
+    **TEMPERATURE_MODELS,
+    **OF_TEMPERATURE_CYCLES,
+    **LAWS,
+}

@@ -65,6 +65,9 @@ class AccelHysteresis(Effect):
     stays = _("it depends on the forces before the reading, which the reading does not tell")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 5, 20, 50, 500)
 
+    def added(self, truth: Truth, motion: Motion) -> Reading:
+        accel = hysteresis(truth.force, motion.visit, motion.peaks)[:, :, None] * np.eye(3)
+        return Reading(np.zeros_like(accel), accel)
+
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        loop = hysteresis(truth.force, motion.visit, motion.peaks)
-        return replace(reading, accel=reading.accel + values * loop)
+        return replace(reading, accel=reading.accel + self.added(truth, motion).accel @ values)

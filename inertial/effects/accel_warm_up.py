@@ -44,7 +44,7 @@ class AccelWarmUp(Effect):
     )
     terms = on_each_axis("accel", "b_{i}", "exp(-t / tau)")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 20, 100, 100, 1000)
-    scan = Scan("tau", "s", _("time constant of the settling"))
+    scan = Scan("tau", "s", _("time constant of the settling"), smooth=True)
 
     def blind(self, motion: Motion) -> str:
         return without_clock(motion)

@@ -20,7 +20,7 @@ class GyroG2Sensitivity(Effect):
     cause = _(
         "the suspension of the gyro yields unlike in its directions under load (anisoelastic)"
     )
-    source = "IEEE Std 528-2019, 'drift rate, acceleration-squared-sensitive'"
+    source = "IEEE Std 528-2019, 'acceleration-squared-sensitive drift rate'"
     parameters = tuple(
         Parameter(f"g2_{axis}", "(rad/s)/(m/s²)²", 1.0 * UNIT, _("of the {axis} gyro", axis=axis))
         for axis in "xyz"

@@ -20,7 +20,7 @@ class GyroGSensitivity(Effect):
 
     name = "gyro_g_sensitivity"
     cause = _("mass unbalance, or stress of the package, pulls the gyro off null under load")
-    source = "IEEE Std 528-2019, 'drift rate, acceleration-sensitive'"
+    source = "IEEE Std 528-2019, 'acceleration-sensitive drift rate'"
     parameters = tuple(
         Parameter(
             f"g_{i}{j}", "(rad/s)/(m/s²)", 1.0 * UNIT, _("{i} gyro per force along {j}", i=i, j=j)

@@ -63,6 +63,10 @@ class GyroHysteresis(Effect):
     stays = _("it depends on the rates before the reading, which the reading does not tell")
     sizes = by_grade(DEGREE_PER_HOUR, 0.05, 1, 10, 50)
 
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+    def added(self, truth: Truth, motion: Motion) -> Reading:
         friction = course(truth.rate, motion.visit, motion.senses)
-        return replace(reading, gyro=reading.gyro - values * friction)
+        gyro = -friction[:, :, None] * np.eye(3)
+        return Reading(gyro, np.zeros_like(gyro))
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        return replace(reading, gyro=reading.gyro + self.added(truth, motion).gyro @ values)

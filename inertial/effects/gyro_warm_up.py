@@ -44,7 +44,7 @@ class GyroWarmUp(Effect):
     )
     terms = on_each_axis("gyro", "b_{i}", "exp(-t / tau)")
     sizes = by_grade(DEGREE_PER_HOUR, 0.3, 5, 30, 300)
-    scan = Scan("tau", "s", _("time constant of the settling"))
+    scan = Scan("tau", "s", _("time constant of the settling"), smooth=True)
 
     def blind(self, motion: Motion) -> str:
         return without_clock(motion)

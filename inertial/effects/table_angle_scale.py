@@ -1,18 +1,17 @@
 """A table whose angles are all too large by the same share."""
 
-from dataclasses import replace
-
 from inertial.physics.effect import Array, Effect, Parameter, Truth, of_tables
-from inertial.physics.motion import Motion
+from inertial.physics.motion import Motion, cross
 from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND, DEGREE
 
 
 class TableAngleScale(Effect):
-    """θ becomes (1 + e) θ.
+    """θ becomes (1 + e) θ:   ω += e Ω,   and after a tumble by ϑ   f −= e ϑ × f, ω −= e ϑ × ω.
 
-    A scale factor that all gyros have in common. Nothing in the campaign tells them apart: it
-    takes an encoder that closes after a whole turn, or another table.
+    Of turns it is a scale factor that all gyros have in common, and nothing tells the two apart but
+    an encoder that closes after a whole turn, or another table. A rest of a tumble stands e ϑ too
+    far from where it began, which the accelerometers see.
     """
 
     name = "table_angle_scale"
@@ -23,4 +22,8 @@ class TableAngleScale(Effect):
     absorbed_by = _("the scale factors of the gyros")
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
-        return replace(truth, rate=truth.rate + values[0] * motion.omega)
+        further = values[0] * motion.tumbled
+        return Truth(
+            rate=truth.rate + values[0] * motion.omega - cross(further, truth.rate),
+            force=truth.force - cross(further, truth.force),
+        )

@@ -103,7 +103,7 @@ def fit(
     each = list(range(len(statics)))  # has a block of its own, and so a scatter of its own
     likelihood = _drifting(statics, *known, about, effect_sigma, each, 0.0, measured).likelihood
     if measured.switch_on is None and (switched := likelihood.switch_ons()) is not None:
-        then = replace(measured, switch_on=np.nan_to_num(switched.value))
+        then = replace(measured, switch_on=switched.covering)
         result = fit(statics, *known, noise_degrees, effect_sigma, then)
         return replace(result, switch_ons=switched)
     stretches = [static.stretch for static in statics if static.stretch is not None]

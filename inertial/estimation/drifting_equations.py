@@ -79,6 +79,29 @@ class DriftingEquations:
             eliminated,
         )
 
+    def sharing(self, errors: Sequence[Name]) -> "DriftingEquations":
+        """The same with these errors as the last effects, so that they are not eliminated."""
+        shared, count = len(self.prior), len(errors)
+        blocks = []
+        for block, stretch in self.blocks:
+            own = [i for i, name in enumerate(block.own) if name not in errors]
+            rows = np.zeros((len(block.rows), shared + count + len(own) + 1))
+            rows[:, :shared], rows[:, -1] = block.rows[:, :shared], block.rows[:, -1]
+            rows[:, shared + count : -1] = block.rows[:, [shared + i for i in own]]
+            for i, name in enumerate(block.own):
+                if name in errors:
+                    rows[:, shared + errors.index(name)] = block.rows[:, shared + i]
+            names = tuple(block.own[i] for i in own)
+            blocks.append((replace(block, rows=rows, own=names), stretch))
+        return replace(
+            self,
+            blocks=blocks,
+            sigma={name: size for name, size in self.sigma.items() if name not in errors},
+            prior=np.append(self.prior, np.zeros(count)),
+            prior_sigma=np.append(self.prior_sigma, [self.sigma.get(name, 1.0) for name in errors]),
+            names=(*self.names, *(("effect", " ".join(name)) for name in errors)),
+        )
+
     @cached_property
     def likelihood(self) -> "DriftLikelihood":
         """The likelihood of drifts, one in each block."""

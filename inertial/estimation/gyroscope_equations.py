@@ -55,6 +55,7 @@ Array = NDArray[np.float64]
 
 SQRT2 = float(np.sqrt(2))
 UPRIGHT = np.array([0.0, 0.0, 1.0])  # z, for want of a direction
+MIN_UPRIGHT_COSINE = 1 - 1e-6  # of the angle from an axis to the vertical: 0.1 degrees
 # What is known of an encoder before: it is read within 50 ms, and off its axis by no more than
 # those of a laboratory are; what the windows say of both counts.
 DELAY_SIGMA = 0.05  # s
@@ -91,6 +92,20 @@ def horizontal_sigma(position: Position, earth: Earth) -> float:
     if position.is_known:
         return float(earth.level / np.sqrt(2))
     return float(np.linalg.norm([earth.up, earth.up_sigma, earth.level]) / np.sqrt(3))
+
+
+def is_upright(position: Position, about: Array) -> bool:
+    """Whether the table turns about the vertical of this position."""
+    return bool(position.is_known and abs(position.up @ about) > MIN_UPRIGHT_COSINE)
+
+
+def tilt_axes(position: Position, about: Array) -> tuple[Array, Array]:
+    """The two directions about which the axis of a turn may be tilted, in body axes.
+
+    Of a turn about the vertical they are those of the position, so that its tilt is that which the
+    accelerometers have there, in whichever sense the table turns.
+    """
+    return level_axes(position.up if is_upright(position, about) else about)
 
 
 @dataclass(frozen=True)
@@ -184,7 +199,7 @@ def steady_equations(
         axes = horizontal_axes(steady.position)
         means = [shares @ turned_all(axis, steady.about, angles) for axis in axes]
         columns.append(matrix @ np.column_stack(means))
-    for i, axis in enumerate(level_axes(steady.about)):
+    for i, axis in enumerate(tilt_axes(steady.position, steady.about)):
         tilt = (f"tilt {i}", steady.position.name)
         sigma[tilt], names = position_sigma, (*names, tilt)
         columns.append((steady.rate * (matrix @ cross(axis, steady.about)))[:, None])
@@ -326,7 +341,7 @@ class _Blocks:
                 level = turned_all(axis, about, middle) @ matrix.T
                 rows[:, :, column] = level * seconds[:, None]
                 column += 1
-        for axis in level_axes(about):
+        for axis in tilt_axes(position, about):
             rows[:, :, column] = np.outer(angle, matrix @ cross(axis, about))
             column += 1
         observed = self.sums[some] + rows[:, :, UNKNOWNS] * earth.up

@@ -105,7 +105,7 @@ def fit(
     drifting = equations.with_statics(statics).drifting()
     likelihood = drifting.likelihood
     if measured.switch_on is None and (switched := likelihood.switch_ons()) is not None:
-        known = replace(measured, switch_on=np.nan_to_num(switched.value))
+        known = replace(measured, switch_on=switched.covering)
         return replace(fit(statics, *others, noise_degrees, known), switch_ons=switched)
 
     def fit_with(scatter: float, walk: float) -> Estimate:

@@ -4,14 +4,15 @@ Each of n calibrations has a value y with a known sigma of its own, at a time t,
 
     y = a + b t + w(t) + d + e        e: its own error, d: of the day, N(0, τ²)
 
-w is a random walk, K² per time, and b N(0, s²). What is not known is integrated over: a with equal
-density everywhere; τ, K and s each absent with a probability, else with the density 1/(x + u), u
-the size that would be as large as the sigmas, on a grid of the restricted likelihood (Patterson &
-Thompson 1971). So an interval for the next calibration is as wide as what few of them leave open:
-where only the days differ it is about Student's, whose origin is the density 1/x (Box & Tiao,
-Bayesian Inference in Statistical Analysis, 1973, 2.8); where the sigmas explain all, a normal one.
-The probabilities of absence are such that intervals of 95 % hold in 95 of 100 histories
-(docs/repeatability.md).
+e of several calibrations have in common what is the error of a reference that they share, and the
+next shares those of the last. w is a random walk, K² per time, and b N(0, s²). What is not known is
+integrated over: a with equal density everywhere; τ, K and s each absent with a probability, else
+with the density 1/(x + u), u the size that would be as large as the sigmas, on a grid of the
+restricted likelihood (Patterson & Thompson 1971). So an interval for the next calibration is as
+wide as what few of them leave open: where only the days differ it is about Student's, whose origin
+is the density 1/x (Box & Tiao, Bayesian Inference in Statistical Analysis, 1973, 2.8); where the
+sigmas explain all, a normal one. The probabilities of absence are such that intervals of 95 % hold
+in 95 of 100 histories (docs/repeatability.md).
 """
 
 from dataclasses import dataclass
@@ -36,13 +37,21 @@ TAIL = 0.1  # of them, by whose excess the chance of a rarer one is extrapolated
 class History:
     """n values in the order of their times: (n,) each; `step`: (n,), 1 after a jump that is known.
 
-    `times` in years, or any other unit.
+    `times` in years, or any other unit. `sigma`: of the own errors; `shared`: (n, r), by how much
+    a standard deviation of the error of each of r references moves each value.
     """
 
     values: Array
     sigma: Array
     times: Array
     step: Array | None = None
+    shared: Array | None = None
+
+    @property
+    def errors(self) -> Array:
+        """The covariance of the errors of all calibrations, (n, n)."""
+        own = np.diag(self.sigma**2)
+        return own if self.shared is None else own + self.shared @ self.shared.T
 
     @property
     def design(self) -> Array:
@@ -117,8 +126,15 @@ def predicted(
     x, y = history.design, history.values
     at = np.concatenate([history.times, times])
     covariance = sizes.covariance(at, at)
+    place = np.append(np.arange(n), np.full(len(times), n - 1))
+    shared = np.zeros((n, 0)) if history.shared is None else history.shared
     own = np.diag(np.append(history.sigma**2, np.full(len(times), sigma**2)))
-    covariance = covariance + own + sizes.day[:, None, None] ** 2 * np.eye(len(at))
+    covariance = (
+        covariance
+        + own
+        + shared[place] @ shared[place].T
+        + sizes.day[:, None, None] ** 2 * np.eye(len(at))
+    )
     inner, across = covariance[:, :n, :n], covariance[:, :n, n:]
     solved = np.linalg.solve(inner, np.concatenate([np.broadcast_to(x, (len(inner), *x.shape)),
         np.broadcast_to(y[:, None], (len(inner), n, 1)), across], axis=2))  # fmt: skip
@@ -170,14 +186,17 @@ def drift(history: History) -> Drift:
     design = np.column_stack([history.design, history.times - history.times.mean()])
     spread = float(np.ptp(history.values)) + history.unit
     sizes = np.append(0.0, np.geomspace(0.05 * history.unit, spread, 60))
-    variances = sizes[:, None] ** 2 + history.sigma**2  # (g, n)
     best, smallest = None, np.inf
-    for variance in variances:
-        information = design.T @ (design / variance[:, None])
+    for size in sizes:
+        covariance = history.errors + size**2 * np.eye(len(design))
+        weighted = np.linalg.solve(covariance, design)
+        information = design.T @ weighted
         inverse = np.linalg.inv(information)
-        estimate = inverse @ (design.T @ (history.values / variance))
-        misfit = float(np.sum((history.values - design @ estimate) ** 2 / variance))
-        deviance = misfit + np.log(variance).sum() + np.linalg.slogdet(information)[1]
+        estimate = inverse @ (weighted.T @ history.values)
+        residual = history.values - design @ estimate
+        misfit = float(residual @ np.linalg.solve(covariance, residual))
+        logarithms = np.linalg.slogdet(covariance)[1] + np.linalg.slogdet(information)[1]
+        deviance = misfit + logarithms
         if deviance < smallest:
             smallest = deviance
             best = Drift(float(estimate[-1]), float(np.sqrt(inverse[-1, -1])))
@@ -206,7 +225,7 @@ class _Steps:
         day, walk = (each.ravel() for each in np.meshgrid(days, walks, indexing="ij"))
         sizes = _Sizes(day, walk, np.zeros(len(day)), np.ones(len(day)))
         self.covariance = sizes.covariance(history.times, history.times) + (
-            np.diag(history.sigma**2) + day[:, None, None] ** 2 * np.eye(n)
+            history.errors + day[:, None, None] ** 2 * np.eye(n)
         )
         self.plain = np.column_stack([np.ones(n), history.times - history.times.mean()])
         place = np.arange(n)

@@ -282,6 +282,48 @@ class EffectInformation:
             degrees=self.degrees - used,
         )
 
+    def eliminated(self, prior: Array) -> "EffectInformation":
+        """The same without the last columns, errors with the information `prior` each, (t,)."""
+        k = len(self.names) - len(prior)
+        own = self.information[k:, k:] + np.diag(prior)
+        across = np.linalg.solve(own, np.column_stack([self.information[k:, :k], self.right[k:]]))
+        drop = self.information[:k, k:] @ across
+        return replace(
+            self,
+            names=self.names[:k],
+            information=self.information[:k, :k] - drop[:, :-1],
+            right=self.right[:k] - drop[:, -1],
+            chi_squared=self.chi_squared - float(self.right[k:] @ across[:, -1]),
+        )
+
+    def following(self, other: "EffectInformation", prior: Array) -> "EffectInformation":
+        """What these equations add to those of another sensor that has the same errors.
+
+        The errors δ are the last columns. The others say δ ~ (S⁻¹ b − S⁻¹ F β, S⁻¹) for effects β,
+        with S their information on δ and its `prior`, (t,). About that these equations have
+        columns and residuals of their own, and what remains of δ is eliminated from them; so the
+        information of both adds up as that of independent equations.
+        """
+        k = len(self.names) - len(prior)
+        of_errors = other.information[k:, k:] + np.diag(prior)
+        other_right = np.column_stack([other.information[k:, :k], other.right[k:]])
+        known = np.linalg.solve(of_errors, other_right)
+        change, centre = known[:, :-1], known[:, -1]
+        own, mixed = self.information[k:, k:], self.information[:k, k:]
+        turned = mixed - change.T @ own
+        information = self.information.copy()
+        information[:k, :k] += change.T @ own @ change - mixed @ change - change.T @ mixed.T
+        information[:k, k:], information[k:, :k] = turned, turned.T
+        information[k:, k:] += other.information[k:, k:]
+        right = np.append(
+            self.right[:k] - change.T @ self.right[k:] - turned @ centre,
+            self.right[k:] - own @ centre,
+        )
+        chi_squared = self.chi_squared + float(centre @ (own @ centre - 2 * self.right[k:]))
+        return replace(
+            self, information=information, right=right, chi_squared=chi_squared
+        ).eliminated(prior)
+
     def estimate(self, chosen: Sequence[int]) -> tuple[Array, Array]:
         """Values and covariance of the chosen columns; NaN for unobservable ones."""
         values, directions, unobservable = self._modes(chosen)

@@ -23,7 +23,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
 
 from inertial.estimation.bias_instability import Instability, moments
 from inertial.estimation.elimination import EquationBlock, Name
@@ -68,6 +67,11 @@ class MeasuredDrift:
 
     def __bool__(self) -> bool:
         return bool(self.instability.any() or self.walk.any())
+
+    @property
+    def between_switch_ons(self) -> "MeasuredDrift":
+        """The same without what the noise within static stretches says."""
+        return replace(NO_DRIFT, switch_on=self.switch_on)
 
     def differs(self, stretches: Sequence[Stretch]) -> bool:
         """Whether the bias differs from one switch-on to the next in some stretches."""
@@ -128,11 +132,11 @@ def with_drifts(
             sigma |= drift.at_start(before, clock, recorded)
             if not drift.size:
                 sigma |= {_drifts(stretch)[drift.axis]: scatter for stretch in path}
-        for stretch, gap in zip(path, gaps, strict=True):
-            zero = nearest.name if clock == COMMON_CLOCK else None
-            result += [d.relation(before, stretch, gap, zero, shared) for d in drifts if d.size]
+        zero = nearest.name if clock == COMMON_CLOCK else ""
+        related = [d.relations(before, path, gaps, zero, shared) for d in drifts if d.size]
+        for number, stretch in enumerate(path):
+            result += [blocks[number] for blocks in related]
             result += own[stretch]
-            before = stretch.name
     return result, sigma
 
 
@@ -219,48 +223,62 @@ class _Drift:
             sigma[names[0]] = self.walk * float(np.sqrt(recorded))
         return sigma
 
-    def relation(
-        self, before: str, stretch: Stretch, gap: float, zero: str | None, shared: int
-    ) -> EquationBlock:
-        """Of the mean drift and the states at the end to the states before, in units of sigma.
+    def relations(
+        self, start: str, path: Sequence[Stretch], gaps: Sequence[float], zero: str, shared: int
+    ) -> list[EquationBlock]:
+        """Of each mean drift and the states at the end to the states before, in units of sigma.
 
-        `zero`: the stretch at whose end the random walk is 0.
+        `start`: before the first stretch of the path; `zero`: the stretch at whose end the random
+        walk is 0, if any.
         """
-        mean, kept, covariance = self._step(stretch.seconds, gap)
-        size = self.size
-        change = np.zeros((1 + size, 2 * size + 1))
-        change[0, :size], change[1:, :size] = -mean, -np.diag(kept)
-        change[:, size:] = np.eye(1 + size)
+        mean, kept, covariance = self._steps(np.array([s.seconds for s in path]), np.array(gaps))
+        size, states = self.size, np.arange(self.size)
+        change = np.zeros((len(path), 1 + size, 2 * size + 1))
+        change[:, 0, :size] = -mean
+        change[:, 1 + states, states] = -kept
+        change[:, :, size:] = np.eye(1 + size)
         lower = np.linalg.cholesky(covariance)
-        rows = solve_triangular(lower, change, lower=True)
-        names = (*self._names(before), _drifts(stretch)[self.axis], *self._names(stretch.name))
-        walks = [0] * (before == zero) + [size + 1] * (stretch.name == zero) if self.walk else []
-        there = [i for i in range(len(names)) if i not in walks]
-        padded = np.zeros((len(rows), shared + len(there) + 1))
-        padded[:, shared:-1] = rows[:, there]
-        deviance = 2 * float(np.sum(np.log(np.diag(lower))))
-        return EquationBlock(padded, tuple(names[i] for i in there), 0, deviance)
+        deviances = 2 * np.log(np.diagonal(lower, axis1=1, axis2=2)).sum(axis=1)
+        padded = np.zeros((len(path), 1 + size, shared + 2 * size + 2))
+        padded[:, :, shared:-1] = np.linalg.solve(lower, change)
+        blocks, before = [], start
+        for rows, stretch, deviance in zip(padded, path, deviances.tolist(), strict=True):
+            names = (*self._names(before), _drifts(stretch)[self.axis], *self._names(stretch.name))
+            if self.walk and zero in (before, stretch.name):
+                walk = (before == zero, stretch.name == zero).index(True) * (size + 1)
+                rows = np.delete(rows, shared + walk, axis=1)
+                names = names[:walk] + names[walk + 1 :]
+            blocks.append(EquationBlock(rows, names, 0, deviance))
+            before = stretch.name
+        return blocks
 
-    def _step(self, seconds: float, gap: float) -> tuple[Array, Array, Array]:
-        """How the mean and the states at the end follow from those before: factors, covariance."""
+    def _steps(self, seconds: Array, gaps: Array) -> tuple[Array, Array, Array]:
+        """How the mean and the states at the end follow from those before, of n stretches.
+
+        The factors of the mean and of the states, (n, size) each, and the covariance of what is
+        added to them, (n, 1 + size, 1 + size).
+        """
         own, variance = self._constants, self._variance
-        pause = np.exp(-gap / own)
-        within, mixed, kept = moments(seconds, own)
+        pause = np.exp(-gaps[:, None] / own)
+        within, mixed, kept = moments(seconds[:, None], own)
         of_mean = variance * (within - mixed**2 + mixed**2 * (1 - pause**2))
         of_both = variance * (mixed - mixed * kept + mixed * kept * (1 - pause**2))
-        of_end = variance * -np.expm1(-2 * (seconds + gap) / own)
+        of_end = variance * -np.expm1(-2 * (seconds + gaps)[:, None] / own)
         mean, end = mixed * pause, kept * pause
         if self.walk:
-            of_walk = self.walk**2 * np.array([gap + seconds / 3, gap + seconds / 2, gap + seconds])
+            parts = [self.walk**2 * part[:, None] for part in _increments(seconds, gaps)]
             of_mean, of_both, of_end = (
-                np.append(walk, rest)
-                for walk, rest in zip(of_walk, (of_mean, of_both, of_end), strict=True)
+                np.hstack(each) for each in zip(parts, (of_mean, of_both, of_end), strict=True)
             )
-            mean, end = np.append(1.0, mean), np.append(1.0, end)
-        covariance = np.diag(np.append(self.scatter**2 + of_mean.sum(), of_end))
+            one = np.ones((len(seconds), 1))
+            mean, end = np.hstack([one, mean]), np.hstack([one, end])
+        covariance = np.zeros((len(seconds), 1 + self.size, 1 + self.size))
+        covariance[:, 0, 0] = self.scatter**2 + of_mean.sum(axis=1)
         if self.processes is not None:
-            covariance[0, 0] += self.instability**2 * self.processes.white(seconds)
-        covariance[0, 1:] = covariance[1:, 0] = of_both
+            covariance[:, 0, 0] += self.instability**2 * self.processes.white(seconds)
+        states = 1 + np.arange(self.size)
+        covariance[:, states, states] = of_end
+        covariance[:, 0, 1:] = covariance[:, 1:, 0] = of_both
         return mean, end, covariance
 
 
@@ -283,10 +301,9 @@ def _paths(
         yield clock, path, nearest, gaps
 
 
-def _increments(stretch: Stretch, gap: float) -> tuple[float, float, float]:
+def _increments(seconds: Array, gaps: Array) -> tuple[Array, Array, Array]:
     """Of m − p and e − p per K²: variance of the first, covariance, variance of the second."""
-    seconds = stretch.seconds
-    return gap + seconds / 3, gap + seconds / 2, gap + seconds
+    return gaps + seconds / 3, gaps + seconds / 2, gaps + seconds
 
 
 def walk_covariance(stretches: Sequence[Stretch]) -> Array:
@@ -296,8 +313,8 @@ def walk_covariance(stretches: Sequence[Stretch]) -> Array:
     recorded = sum(stretch.seconds for stretch in stretches)
     for clock, path, nearest, gaps in _paths(stretches):
         some = np.array([place[stretch] for stretch in path])
-        parts = [_increments(stretch, gap) for stretch, gap in zip(path, gaps, strict=True)]
-        mean, mixed, end = np.array(parts).T
+        seconds = np.array([stretch.seconds for stretch in path])
+        mean, mixed, end = _increments(seconds, np.array(gaps))
         # Forward from the end `first` − 1, and backward from it: what two means have in common is
         # all between there and the nearer one.
         first = path.index(nearest) + 1 if clock == COMMON_CLOCK else 0

@@ -3,11 +3,12 @@
 n values y with known sigmas of their own differ by more than these: by the day, the mounting, the
 switch-on, as groups of calibrations that share one. With Z_c the groups of a component,
 
-    V = diag(σ²) + Σ τ_c² Z_c Z_cᵀ
+    V = diag(σ²) + L Lᵀ + Σ τ_c² Z_c Z_cᵀ
 
-the τ_c are those of largest restricted likelihood (Patterson & Thompson 1971), with the sigma of
-the expected information, ½ tr(P Z_c Z_cᵀ P Z_d Z_dᵀ), and an upper limit by the profile of the
-likelihood (Searle, Casella & McCulloch, Variance Components, 1992, chapter 6).
+L is what the errors of references that several of them share move each by; the τ_c are those of
+largest restricted likelihood (Patterson & Thompson 1971), with the sigma of the expected
+information, ½ tr(P Z_c Z_cᵀ P Z_d Z_dᵀ), and an upper limit by the profile of the likelihood
+(Searle, Casella & McCulloch, Variance Components, 1992, chapter 6).
 """
 
 from collections.abc import Mapping, Sequence
@@ -47,7 +48,12 @@ class Components:
     one: tuple[str, ...]
 
 
-def components(values: Array, sigma: Array, alike: Mapping[str, Sequence[str]]) -> Components:
+def components(
+    values: Array,
+    sigma: Array,
+    alike: Mapping[str, Sequence[str]],
+    shared: Array | None = None,
+) -> Components:
     """The components of n values with their sigmas, (n,).
 
     What divides the values in the same way is one component: nothing tells its parts apart.
@@ -55,6 +61,7 @@ def components(values: Array, sigma: Array, alike: Mapping[str, Sequence[str]]) 
     Parameters
     ----------
     alike : name of a component → the group of each value
+    shared : (n, r), by how much a standard deviation of r common errors moves each value
     """
     divisions: dict[tuple[int, ...], list[str]] = {}
     for name, labels in alike.items():
@@ -65,7 +72,9 @@ def components(values: Array, sigma: Array, alike: Mapping[str, Sequence[str]]) 
     if not squares or len(values) < MIN_VALUES:
         return Components([], one)
     spread = float(np.ptp(values) + np.sqrt(np.mean(sigma**2)))
-    model = _Restricted(values / spread, sigma / spread, squares)
+    common = np.zeros((len(values), 0)) if shared is None else shared
+    errors = (np.diag(sigma**2) + common @ common.T) / spread**2
+    model = _Restricted(values / spread, errors, squares)
     best, smallest = model.largest()
     errors = model.sigmas(best)
     found = [
@@ -84,8 +93,8 @@ def components(values: Array, sigma: Array, alike: Mapping[str, Sequence[str]]) 
 class _Restricted:
     """The restricted likelihood of values about a common mean; sizes in units of the spread."""
 
-    def __init__(self, values: Array, sigma: Array, squares: Sequence[Array]) -> None:
-        self.values, self.own, self.squares = values, np.diag(sigma**2), squares
+    def __init__(self, values: Array, errors: Array, squares: Sequence[Array]) -> None:
+        self.values, self.own, self.squares = values, errors, squares
 
     def projection(self, sizes: Array) -> tuple[Array, float]:
         """P = V⁻¹ less the mean, and log |V| + log (1ᵀ V⁻¹ 1)."""

@@ -8,6 +8,9 @@ With the eigenvalues λ and vectors V of N and s = Vᵀ r, −2 log of the restr
 
 and the expected information of τ² is ½ Σ λ²/(1 + τ² λ)² (Patterson & Thompson 1971; Searle, Casella
 & McCulloch 1992). One eigenvalue is 0, for a common deviation is the bias: so q − 1 are free.
+
+τ of few switch-ons is not well known, so a bias is off by Student's distribution of q − 1 degrees.
+The covariance gets the normal one with the same interval of 95 % (GUM G.3).
 """
 
 from dataclasses import dataclass
@@ -15,9 +18,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
+from scipy.special import ndtri, stdtrit
 
 Array = NDArray[np.float64]
 
+TWO_SIDED = 0.975  # quantile at the end of an interval of 95 %
 ONE_SIDED = 2.706  # rise of the deviance at the one-sided limit of 95 %
 NO_INFORMATION = 1e-9  # relative to the largest eigenvalue
 RANGE = (1e-8, 1e4)  # of the variance that is sought, relative to that of the deviations
@@ -35,6 +40,16 @@ class SwitchOns:
     value: Array
     sigma: Array
     upper: Array
+
+    @property
+    def covering(self) -> Array:
+        """The standard deviation in the covariance, (3,); 0 where none is known."""
+        return covering(self.value, self.count)
+
+
+def covering(value: Array, count: int) -> Array:
+    """The normal standard deviation whose interval of 95 % is that of Student's distribution."""
+    return np.nan_to_num(value) * float(stdtrit(count - 1, TWO_SIDED) / ndtri(TWO_SIDED))
 
 
 def between(information: Array, right: Array) -> tuple[float, float, float]:

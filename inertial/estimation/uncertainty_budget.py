@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.estimation.drifting_equations import DriftingEquations
-from inertial.estimation.random_walk import MeasuredDrift
 from inertial.estimation.triad import UNKNOWNS
 
 Array = NDArray[np.float64]
@@ -32,7 +31,8 @@ ERRORS = {
 }
 QUANTITIES = {"gravity": "gravity", "latitude": "earth"}
 NOISE, DRIFT, SCATTER, WALK = "noise", "drift", "scatter", "random_walk"
-SOURCES = (NOISE, DRIFT, SCATTER, WALK, *ERRORS, *QUANTITIES)
+SWITCH_ON = "switch_on"
+SOURCES = (NOISE, DRIFT, SWITCH_ON, SCATTER, WALK, *ERRORS, *QUANTITIES)
 
 
 @dataclass(frozen=True)
@@ -64,8 +64,14 @@ class Model:
             return replace(self, equations=replace(equations, blocks=blocks))
         if source == DRIFT:
             drift = equations.measured
-            switched = None if drift.switch_on is None else factor * drift.switch_on
-            larger = MeasuredDrift(factor * drift.instability, factor * drift.walk, switched)
+            larger = replace(
+                drift, instability=factor * drift.instability, walk=factor * drift.walk
+            )
+            return replace(self, equations=replace(equations, measured=larger))
+        if source == SWITCH_ON:
+            drift = equations.measured
+            assert drift.switch_on is not None  # else it has no such errors
+            larger = replace(drift, switch_on=factor * drift.switch_on)
             return replace(self, equations=replace(equations, measured=larger))
         sigma = {
             name: (factor if name[0] in own else 1.0) * size
@@ -80,6 +86,7 @@ class Model:
         there = {
             NOISE: True,
             DRIFT: bool(self.equations.measured),
+            SWITCH_ON: self.equations.measured.differs([s for _, s in self.equations.blocks]),
             SCATTER: self.scatter > 0,
             WALK: self.walk > 0,
         }

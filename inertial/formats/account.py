@@ -55,9 +55,11 @@ class Account:
             self.add(kind, name, lines, size)
 
     def __iter__(self) -> Iterator[tuple[str, str, int, int]]:
-        """Kind, name, number of lines, bytes; in the order of `KINDS`, then by name."""
+        """Kind, name, lines, bytes of what there is; in the order of `KINDS`, then by name."""
         for kind, name in sorted(self._sums, key=lambda key: (KINDS.index(key[0]), key[1])):
-            yield kind, name, *self._sums[kind, name]
+            lines, size = self._sums[kind, name]
+            if lines or size:
+                yield kind, name, lines, size
 
 
 def quoted(text: bytes) -> str:

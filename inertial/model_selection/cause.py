@@ -12,6 +12,7 @@ Array = NDArray[np.float64]
 FOUND = "found"
 ONE_OF_CLASS = "one_of_class"
 UNKNOWN_STRUCTURE = "unknown_structure"
+LAW = "law"  # of no effect of the catalogue
 
 
 @dataclass(frozen=True)

@@ -40,6 +40,7 @@ class Visible:
 
 def visible(evidence: Evidence, effects: Sequence[SearchedEffect]) -> list[Visible]:
     """For every parameter of every effect five sigma; the median over a scan."""
+    evidence = evidence.observable()
     return [
         _of_parameter(effect, parameter, [each[parameter] for each in of_candidates])
         for effect in effects

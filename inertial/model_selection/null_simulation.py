@@ -154,7 +154,7 @@ def chance(
     """
     candidates = Candidates(effects)
     rng = np.random.default_rng(seed)
-    right = _noise(information, draws, rng)
+    right = noise(information, draws, rng)
     drops, degrees = candidates.drops(information, right)
     tails = []
     smallest = np.ones(draws)
@@ -182,7 +182,7 @@ def _share(smallest: Array, level: float) -> float:
     return float(np.quantile(smallest, counted) * np.log1p(-level) / np.log1p(-counted))
 
 
-def _noise(information: Array, draws: int, rng: np.random.Generator) -> Array:
+def noise(information: Array, draws: int, rng: np.random.Generator) -> Array:
     """b ~ N(0, F), (k, draws)."""
     size = np.sqrt(np.maximum(np.diag(information), 0.0))
     shown = np.flatnonzero(size)

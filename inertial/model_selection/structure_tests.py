@@ -171,7 +171,7 @@ TESTS: dict[str, FunctionFamily] = {
 # I − H, H the projection of the fit, and so the functions T are tested by T'e ~ N(0, T'(I − H)T),
 # Rao's score test. What the fit has already absorbed does not count.
 
-LEVEL = 0.01  # accepted probability that any test detects a structure where the model is right
+SIMULATED = 0.01  # chance from which that of a scan of dependent trials is simulated
 DRAWS = 2000
 
 
@@ -230,9 +230,7 @@ class Structure:
         ) @ self.equations.right[chosen]
 
 
-def structures(
-    equations: Sequence[ScoreEquations], level: float = LEVEL, seed: int = 0
-) -> list[Structure]:
+def structures(equations: Sequence[ScoreEquations], level: float, seed: int = 0) -> list[Structure]:
     """The six tests; any detects in a share `level` of the campaigns whose model is right."""
     tests: dict[str, list[Structure]] = {kind: [] for kind in TESTS}
     for of_axis in equations:
@@ -264,8 +262,8 @@ def _test(equations: ScoreEquations, seed: int) -> Structure | None:
     alone = _alone(drop, count, equations)
     searched = min(alone * int(np.sum(degrees > 0)), 1.0)
     # With a larger chance it is no structure, however few the trials of a scan are.
-    if len(tested.groups) > 1 and not tested.independent and alone < LEVEL:
-        law = chance(equations.information, [effect], LEVEL, DRAWS, seed).tails[0]
+    if len(tested.groups) > 1 and not tested.independent and alone < SIMULATED:
+        law = chance(equations.information, [effect], SIMULATED, DRAWS, seed).tails[0]
         searched = float(law(chi2_isf(alone, law.degrees)))
     scan_value = float(tested.scan_values[best])
     return Structure(

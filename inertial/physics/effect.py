@@ -78,13 +78,15 @@ class Parameter:
 class Scan:
     """A nonlinear parameter of an effect, searched over a grid.
 
-    `between`: whether the true value may lie between two values of the grid.
+    `between`: whether the true value may lie between two values of the grid; `smooth`: whether what
+    the effect adds to the readings, the same whatever is sensed, has a derivative by it.
     """
 
     name: str
     unit: str
     meaning: str
     between: bool = True
+    smooth: bool = False
 
 
 @dataclass(frozen=True)
@@ -176,6 +178,13 @@ class Effect(ABC):
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         """The reading with this effect in it; `values` follow `parameters`."""
         return reading
+
+    def added(self, truth: Truth, motion: Motion) -> Reading | None:
+        """What `reads` adds per unit of each parameter, where it is in proportion to them.
+
+        gyro and accel, (n, 3, number of parameters) each; none: differences tell.
+        """
+        return None
 
     def signature(self, motion: Motion) -> Reading | None:
         """Change of the readings per unit of each parameter, where it needs no forward model.

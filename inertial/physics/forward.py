@@ -90,6 +90,8 @@ def signatures(
     def signature(effect: Effect) -> Reading:
         if (known := effect.signature(motion)) is not None:
             return known
+        if (added := effect.added(truth, motion)) is not None:
+            return Reading(*np.nan_to_num([added.gyro, added.accel]))
         derivatives = np.zeros((2, len(motion.rate), 3, len(effect.parameters)))
         for i, parameter in enumerate(effect.parameters if not effect.blind(motion) else ()):
             step = np.zeros(len(effect.parameters))

@@ -99,7 +99,8 @@ class Motion:
     `temperature`: (n,), K, and `vibration`: (n, 3), m/s², the standard deviation of the samples of
     specific force; `peaks`: (n, 3), m/s², the last extreme of specific force along each axis on the
     way to the manoeuvre; `senses`: (n, 3), ±1, in which it last turned about each axis on that way.
-    These four are NaN where they are not known.
+    These four are NaN where they are not known. `tumbled`: (n, 3), rad, the angle through which a
+    tumble has turned the table to the position since its start, along its axis; else 0.
     """
 
     time: Array
@@ -118,6 +119,7 @@ class Motion:
     vibration: Array
     peaks: Array
     senses: Array
+    tumbled: Array
 
     @property
     def omega(self) -> Array:
@@ -197,6 +199,7 @@ def turning(
         np.zeros(n, bool),
         np.full(n, np.nan),
         *(np.full((n, 3), np.nan),) * 3,
+        np.zeros((n, 3)),
     )
 
 
@@ -214,6 +217,7 @@ def stretches(time: Array, seconds: Array, temperature: Array) -> Motion:
         np.zeros(n, bool),
         temperature,
         *(unknown, unknown, unknown),
+        np.zeros((n, 3)),
     )
 
 

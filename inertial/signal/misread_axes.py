@@ -60,7 +60,7 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
             axes=reads_in_words(misread.axes),
             spans=counted(misread.spans, "span"),
             handed=""
-            if determinant(misread.axes) > 0
+            if _determinant_of_all(misread, recorded) > 0
             else _(" So their triad is left-handed, which no mounting does."),
         )
     else:
@@ -120,6 +120,12 @@ def determinant(axes: Permutation) -> int:
     matrix = np.zeros((3, 3))
     matrix[range(3), axes.sources] = axes.signs
     return round(float(np.linalg.det(matrix)))
+
+
+def _determinant_of_all(misread: Misread, recorded: Recorded) -> int:
+    """That of a triad with all that is misread of it: plan and gravity may show an axis each."""
+    own = [m for m in recorded.misread if (m.sensor, m.log) == (misread.sensor, misread.log)]
+    return int(np.prod([determinant(each.axes) for each in own]))
 
 
 def reads_in_words(axes: Permutation) -> str:

@@ -38,7 +38,12 @@ MOTION_READINGS = 64  # readings of a block that decides whether the IMU is move
 MIN_MOTION_RATIO = 3.0  # times the scatter of the quiet stretches
 MAX_SPIKE_READINGS = 3  # readings of a spike
 MIN_SLOPE_SCATTER = 3.0  # scatters between the medians before and after
+MIN_BEND_SCATTER = 3.0  # scatters by which twice the median between them is off their sum
 MAX_MISSING_INTERVALS = 8  # intervals that are missing: what lies beyond is no neighbour
+# Places beyond the readings of a spike, and what a parabola through them reads in their middle.
+BESIDE = np.arange(MAX_SPIKE_READINGS, MEDIAN_WIDTH)
+AROUND = np.concatenate([-BESIDE, BESIDE])
+PARABOLA_AT_MIDDLE = np.linalg.pinv(np.vander(AROUND, 3))[-1]
 
 
 @dataclass(frozen=True)
@@ -101,7 +106,8 @@ def _off(values: Array, least: Array) -> Array:
     far off by its scatter, `least`, is compared once more, the slope between the medians before
     and after taken off, and the smaller distance holds. At the corner of a ramp, where what is
     beside lies on one side, it must be off the straight lines through five readings before and
-    five after as well.
+    five after as well; at the turning point of a bend, such as gravity's while the IMU is tilted
+    over, where the median lies inside of the bend, off a parabola through six before and six after.
     """
     course = running_median(values)
     off = values - course
@@ -116,6 +122,11 @@ def _off(values: Array, least: Array) -> Array:
         beyond = values[np.clip(far[:, None] + side * np.arange(half, MEDIAN_WIDTH), 0, last)]
         steep = np.abs(slope) * (after - before) > MIN_SLOPE_SCATTER * least[far]
         distances.append(np.where(steep, values[far] - _continued(beyond), off[far]))
+    bend = np.abs(course[before] - 2 * course[far] + course[after])
+    bent = bend > MIN_BEND_SCATTER * least[far]
+    bent &= (far >= MEDIAN_WIDTH) & (far <= last - MEDIAN_WIDTH)
+    around = values[np.clip(far[:, None] + AROUND, 0, last)]
+    distances.append(np.where(bent, values[far] - around @ PARABOLA_AT_MIDDLE, off[far]))
     one_side = np.all(np.sign(distances) == np.sign(off[far]), axis=0)
     off[far] = np.where(one_side, np.sign(off[far]) * np.min(np.abs(distances), axis=0), 0.0)
     return off

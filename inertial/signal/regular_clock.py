@@ -27,6 +27,8 @@ MAX_DELAY_S = 1.0  # s: a host that is busy for longer has lost samples
 MIN_WINDOW = 8  # samples in which some arrive without delay
 MIN_SHIFT = 0.75  # intervals: what is nearer to one missing sample than to none
 MIN_SHIFT_SIGMA = 6.0
+MAX_APART = 4  # windows: one gap in eight lies within half of the distances
+REFINEMENTS = 3  # of the interval by the samples that arrive without delay
 MIN_WINDOWS = 4  # through whose least values a line is laid
 
 
@@ -77,7 +79,7 @@ def regular_clock(time: Array) -> RegularClock | None:
     if (interval := _slope(even, count // 4)) <= 0:
         return None
     window = int(np.clip(MAX_DELAY_S / interval, MIN_WINDOW, max(count // MIN_WINDOWS, 1)))
-    interval = max(_slope(even, window), 0.0) or interval
+    interval = _between_least(even, max(_slope(even, window), 0.0) or interval, window)
     missing = _set_back(even, interval, window)
     delay = even - interval * _numbers(missing)
     shortest = _shortest_gap(delay, interval, window)
@@ -119,6 +121,23 @@ def _least(delay: Array, window: int) -> Integers:
     k = len(delay) // window
     places = delay[: k * window].reshape(k, window).argmin(axis=1)
     return np.asarray(np.arange(k) * window + places)
+
+
+def _between_least(time: Array, interval: float, window: int) -> float:
+    """The median interval between samples that arrive without delay, s, a few windows apart.
+
+    That between all samples is off where packets do not divide the window: most are then as far
+    apart as a whole number of packets, which is more or less than the window.
+    """
+    for _ in range(REFINEMENTS):
+        least = _least(time - interval * np.arange(len(time)), window)
+        if len(least) < MIN_WINDOWS:
+            break
+        apart = min(max(len(least) // MIN_WINDOW, 1), MAX_APART)
+        first, last = least[:-apart], least[apart:]
+        slope = float(np.median((time[last] - time[first]) / (last - first)))
+        interval = slope if slope > 0 else interval
+    return interval
 
 
 def _set_back(time: Array, interval: float, window: int) -> Integers:

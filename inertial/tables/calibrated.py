@@ -1,6 +1,6 @@
 """Compensated samples, their checks, and the archive of calibrations."""
 
-from inertial.tables.shared import AXIS, MOUNT, QUANTITY, SENSOR, channels
+from inertial.tables.shared import AXIS, MOUNT, PHASES, QUANTITY, SENSOR, channels
 from inertial.tables.table import (
     DOUBLE,
     INTEGER,
@@ -65,6 +65,20 @@ CHECKS = Table(
     ),
 )
 
+RESIDUALS = Table(
+    "residuals",
+    1,
+    (
+        MOUNT,
+        Column("manoeuvre", TEXT, "", "as in manoeuvres; a rest in blocks, a turn in seconds"),
+        Column("phase", TEXT, "", PHASES),
+        Column("time", DOUBLE, "s", "middle of the mean", nullable=True),
+        Column("seconds", DOUBLE, "s", "recorded in it"),
+        *channels("read less predicted by the result that counts", prefix="residual_"),
+        *channels("of white noise alone in such a mean", prefix="sigma_"),
+    ),
+)
+
 CHARACTERISTICS = Table(
     "characteristics",
     2,
@@ -122,9 +136,10 @@ UNCERTAINTY_BUDGET = Table(
             "source",
             TEXT,
             "",
-            "noise: white noise; drift: bias instability and random walk by the noise; scatter,"
-            " random_walk: between manoeuvres, by the fit; position, angle: of the table;"
-            " interpolation: of gaps; azimuth: unknown direction of north; gravity; latitude",
+            "noise: white noise; drift: bias instability and random walk by the noise; switch_on:"
+            " bias from switch-on to switch-on; scatter, random_walk: between manoeuvres, by the"
+            " fit; position, angle: of the table; interpolation: of gaps; azimuth: unknown"
+            " direction of north; gravity; latitude",
         ),
         Column("sigma", DOUBLE, "as unit", "its part of the standard deviation, root of variance"),
         Column("unit", TEXT, "", "unit of sigma, SI"),
@@ -145,7 +160,7 @@ def _rows(*fields: tuple[str, str, str]) -> tuple[Column, ...]:
 # version up writes how the older files are read.
 CALIBRATION = Table(
     "calibration",
-    4,
+    5,
     (
         Column("campaign", TEXT, "", "name of the campaign's folder"),
         Column("simulated", TRUTH, "", "recorded by the simulated laboratory"),
@@ -188,6 +203,18 @@ CALIBRATION = Table(
             ),
             "product of the units",
             "of the result that counts",
+        ),
+        Column(
+            "references",
+            _rows(
+                ("mount", TEXT, "as in parameters"),
+                ("sensor", TEXT, "accel or gyro"),
+                ("parameter", TEXT, "of the result that counts"),
+                ("reference", TEXT, "its name, the same wherever its error is in both alike"),
+                ("sigma", DOUBLE, "what of the parameter's sigma is its error"),
+            ),
+            "as unit",
+            "what of the sigmas other calibrations may contain alike; none in older ones",
         ),
         Column(
             "verdicts",

@@ -27,6 +27,8 @@ class Declared:
     A table listed in `streams` is handed over unread, to be read batch by batch; an input listed
     in `files` is no table, and is handed over as the list of its paths. `documents` are the
     endings of files that a stage writes for people and other programs instead of tables.
+    `unfolded`: tables of which each row is a file too, named `file` and with `text` in it, in a
+    folder of the table's name.
     """
 
     reads: Mapping[str, From] = field(default_factory=dict)
@@ -34,3 +36,4 @@ class Declared:
     streams: Sequence[str] = ()
     files: Sequence[str] = ()
     documents: Sequence[str] = ()
+    unfolded: Sequence[str] = ()

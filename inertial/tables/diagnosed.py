@@ -137,7 +137,7 @@ CAUSES = Table(
     (
         Column("id", TEXT, "", "stable identifier; no code reads anything from it"),
         Column("cause", TEXT, "", "what is wrong: an effect of the catalogue or a fault"),
-        Column("verdict", TEXT, "", "found, one_of_class, or unknown_structure"),
+        Column("verdict", TEXT, "", "found, one_of_class, law, or unknown_structure"),
         MOUNT,
         SENSOR,
         AXIS,
@@ -266,5 +266,16 @@ WARM_UP = Table(
         ),
         Column("sigma", DOUBLE, "s", "its standard deviation; none at the start", nullable=True),
         Column("sentence", SENTENCE, "", "the same in words"),
+    ),
+)
+
+PROPOSED = Table(
+    "proposed",
+    1,
+    (
+        MOUNT,
+        Column("effect", TEXT, "", "the law, as in effects"),
+        Column("file", TEXT, "", "name of its file in extension/proposed"),
+        Column("text", TEXT, "", "the file: an effect in the form of the catalogue"),
     ),
 )

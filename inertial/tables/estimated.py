@@ -218,6 +218,20 @@ POSITIONS = Table(
         Column("unit", TEXT, "", "unit of value and sigma"),
     ),
 )
+SWITCH_ONS = Table(
+    "switch_ons",
+    1,
+    (
+        MOUNT,
+        SENSOR,
+        METHOD,
+        Column("switch_on", INTEGER, "1", "as in manoeuvres"),
+        Column("axis", TEXT, "", "x, y or z"),
+        Column("value", DOUBLE, "as unit", "bias after it, less that of the campaign", BODY),
+        Column("sigma", DOUBLE, "as unit", "its standard deviation"),
+        Column("unit", TEXT, "", "unit of value and sigma"),
+    ),
+)
 AVERAGING = Table(
     "averaging",
     2,

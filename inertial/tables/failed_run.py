@@ -4,6 +4,7 @@ How Snakemake called them, and where in the Snakefile, is in the full log.
 """
 
 import logging
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,7 +15,13 @@ MAX_LINES = 30  # of a stage's log
 RULE = "=" * 80
 _FAILED = ("JOB_ERROR", "GROUP_ERROR")  # events of Snakemake
 _CALL = "CalledProcessError"
-_OTHERS = ("Exiting because", "Elapsed time", "At least one job did not complete")
+_OTHERS = (
+    "Exiting because",
+    "Elapsed time",
+    "At least one job did not complete",
+    "Complete log(s)",
+)
+FULL_LOG = _("The full log: {path}")
 
 
 class FailedRun(logging.Filter):
@@ -41,11 +48,18 @@ class FailedRun(logging.Filter):
             return False
         return not (self._logs and any(other in text for other in _OTHERS))
 
-    def shown(self) -> str:
-        """What each failed stage said, between two rules."""
-        return visible(
-            "\n".join(["", *(line for log in self._logs for line in self._box(log)), ""])
-        )
+    def shown(self, full_log: str) -> str:
+        """What each failed stage said, between two rules, and where the full log is.
+
+        That is left to `make`, which ends with the content of the file that $ENDED names.
+        """
+        lines = [line for log in self._logs for line in self._box(log)]
+        last = FULL_LOG.format(path=full_log)
+        if lines and (ended := os.environ.get("ENDED")):
+            Path(ended).write_text(last, encoding="utf-8")
+        else:
+            lines.append(last)
+        return visible("\n".join(["", *lines, ""]))
 
     def _box(self, log: str) -> Iterator[str]:
         text = Path(log).read_text("utf-8", "replace") if Path(log).is_file() else ""

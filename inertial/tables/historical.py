@@ -16,7 +16,7 @@ REPEATABILITY = Table(
             "component",
             TEXT,
             "",
-            "within: rms of the sigmas that the calibrations state; repeatability: standard"
+            "within: rms of the calibrations' sigmas, shared errors out; repeatability: standard"
             " deviation of all values (JJF 1535-2015, 3.2; IEEE Std 528); day, mounting, switch_on:"
             " what values that share one have in common, beyond within; with + what the"
             " calibrations do not tell apart; power_cycle: between the switch-ons of this campaign,"

@@ -19,6 +19,8 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
+import pyarrow.parquet as pq
+
 from inertial.tables.code import code_of, hash_of, hash_of_file
 from inertial.tables.declared import Declared
 from inertial.tables.errors import Refusal
@@ -133,6 +135,8 @@ class Stage:
                 result = self.result(inputs)
                 for name, rows in result.items() if isinstance(result, Mapping) else result:
                     writer.write(name, rows)
+            for name in self.declared.unfolded:
+                _unfold(output / name)
 
     def command_line(self, arguments: Sequence[str] | None = None) -> None:
         """The folder of the campaign, `--settings JSON`, and `--NAME PATH` for files."""
@@ -162,3 +166,13 @@ def _hashes(files: Sequence[Path]) -> dict[str, str]:
     return {
         f"{path.parent.name}/{path.name}": hash_of_file(path) for path in files if path.is_file()
     }
+
+
+def _unfold(folder: Path) -> None:
+    """The rows of a table beside the folder as files in it, in place of those of an earlier run."""
+    for old in folder.glob("*"):
+        old.unlink()
+    rows = pq.read_table(f"{folder}.parquet", columns=["file", "text"]).to_pylist()
+    if rows:
+        folder.mkdir(exist_ok=True)
+        write_whole({folder / row["file"]: row["text"].encode() for row in rows})

@@ -44,7 +44,7 @@ EFFECT_FINDINGS = Table(
     5,
     (
         *FINDINGS.columns,
-        Column("verdict", TEXT, "", "found, one_of_class, unknown_structure", nullable=True),
+        Column("verdict", TEXT, "", "found, one_of_class, law, unknown_structure", nullable=True),
         Column(
             "statistic",
             DOUBLE,
@@ -194,7 +194,9 @@ SCORES = Table(
             nullable=True,
         ),
         Column("named", TRUTH, "", "whether the effect is named"),
-        Column("verdict", TEXT, "", "found, one_of_class, unknown_structure; empty: not needed"),
+        Column(
+            "verdict", TEXT, "", "found, one_of_class, law, unknown_structure; empty: not needed"
+        ),
         Column("snr", DOUBLE, "1", "signal-to-noise ratio of a named effect", nullable=True),
         Column(
             "scan_value",
@@ -343,6 +345,46 @@ STRUCTURE_POINTS = Table(
         Column("sigma", DOUBLE, "as unit", "its standard deviation"),
         Column("structure", DOUBLE, "as unit", "the same by the functions of the test, fitted"),
         Column("unit", TEXT, "", "rad/s or m/s²"),
+    ),
+)
+
+
+# ---- What a campaign says of effects too small for it alone, for fleets of campaigns.
+
+EFFECT_COLUMN = (
+    MOUNT,
+    Column("effect", TEXT, "", "name in the catalogue, of an effect without a scan"),
+    Column("parameter", TEXT, "", "name within the effect"),
+)
+SCORE_VECTOR = Table(
+    "score_vector",
+    1,
+    (
+        *EFFECT_COLUMN,
+        Column("unit", TEXT, "", "unit of the parameter, SI"),
+        Column(
+            "score",
+            DOUBLE,
+            "1/unit",
+            "b, derivative of the log-likelihood by the parameter where all effects are zero: of"
+            " all sensors, parameters and errors fitted, and named effects that are not in this"
+            " table; b ~ N(F β, F) for effects of size β",
+        ),
+    ),
+)
+INFORMATION_MATRIX = Table(
+    "information_matrix",
+    1,
+    (
+        *EFFECT_COLUMN,
+        Column("with_effect", TEXT, "", "of the column; rows and columns as in score_vector"),
+        Column("with_parameter", TEXT, "", "of the column; the upper triangle is stored"),
+        Column(
+            "information",
+            DOUBLE,
+            "1/(unit of row · unit of column)",
+            "entry of F, the Fisher information; those that are missing are zero",
+        ),
     ),
 )
 

@@ -104,7 +104,47 @@ NAMES = {
     "wrong_scale_factor": _("wrong count size or unit"),
 }
 
+# The names of laws: <sensor>_<axis>_<family>_of_<state>, or of two states with _and_ between.
+STATES = {
+    "time": _("time"),
+    "run_time": _("time since switch-on"),
+    "angle": _("the angle of the table"),
+    "rate": _("the rate"),
+    "force_x": _("the x force"),
+    "force_y": _("the y force"),
+    "force_z": _("the z force"),
+    "temperature": _("the temperature"),
+    "temperature_rate": _("the rate of the temperature"),
+}
+FAMILIES = {
+    "polynomial": _("polynomial of {state}"),
+    "power": _("power of {state}"),
+    "odd_power": _("power of {state} with its sign"),
+    "harmonic": _("sine of {state}"),
+    "exponential": _("exponential of {state}"),
+    "ramp": _("ramp that begins later"),
+    "telegraph": _("two levels in turn"),
+    "hysteresis": _("hysteresis of {state}"),
+    "product": _("proportion to {state}"),
+}
+IN_ONE_AXIS = {
+    "gyro": _("{law} in the {axis} gyro"),
+    "accel": _("{law} in the {axis} accelerometer"),
+}
+IN_ALL_AXES = {"gyro": _("{law} in the gyros"), "accel": _("{law} in the accelerometers")}
+
 
 def in_words(cause: str) -> str:
     """The name of a cause or an effect as it is read."""
-    return NAMES.get(cause) or shortened(cause.replace("_", " "), 60)
+    return NAMES.get(cause) or _law(cause) or shortened(cause.replace("_", " "), 60)
+
+
+def _law(cause: str) -> str:
+    """The name of a law; empty for others."""
+    place, of, named = cause.partition("_of_")
+    sensor, axis, family = (*place.split("_", 2), "", "")[:3]
+    states = [STATES[state] for state in named.split("_and_") if state in STATES]
+    if not of or sensor not in IN_ONE_AXIS or family not in FAMILIES or not states:
+        return ""
+    law = FAMILIES[family].format(state=_(" times ").join(states))
+    return (IN_ALL_AXES if axis == "all" else IN_ONE_AXIS)[sensor].format(law=law, axis=axis)

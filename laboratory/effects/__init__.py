@@ -22,27 +22,36 @@ from laboratory.effects.accel_warm_up import AccelWarmUp
 from laboratory.effects.bias_random_walk import BiasRandomWalk
 from laboratory.effects.clock_scale import ClockScale
 from laboratory.effects.clock_step import ClockStep
+from laboratory.effects.cyclic_drift import CyclicDrift
 from laboratory.effects.earth_rate_omitted import EarthRateOmitted
 from laboratory.effects.effect import Effect
 from laboratory.effects.gravity_error import GravityError
 from laboratory.effects.gyro_accel_misalignment import GyroAccelMisalignment
+from laboratory.effects.gyro_anisoelasticity import GyroAnisoelasticity
 from laboratory.effects.gyro_bias_jump import GyroBiasJump
 from laboratory.effects.gyro_bias_ramp import GyroBiasRamp
 from laboratory.effects.gyro_bias_temperature import GyroBiasTemperature
 from laboratory.effects.gyro_cubic_drift import GyroCubicDrift
 from laboratory.effects.gyro_dead_band import GyroDeadBand
+from laboratory.effects.gyro_disturbance import GyroDisturbance
 from laboratory.effects.gyro_flicker import GyroFlicker
 from laboratory.effects.gyro_g2_sensitivity import GyroG2Sensitivity
 from laboratory.effects.gyro_g_sensitivity import GyroGSensitivity
 from laboratory.effects.gyro_hysteresis import GyroHysteresis
+from laboratory.effects.gyro_late_drift import GyroLateDrift
 from laboratory.effects.gyro_latency import GyroLatency
+from laboratory.effects.gyro_rate_power import GyroRatePower
+from laboratory.effects.gyro_remanence import GyroRemanence
 from laboratory.effects.gyro_saturation import GyroSaturation
 from laboratory.effects.gyro_scale_asymmetry import GyroScaleAsymmetry
 from laboratory.effects.gyro_scale_cubic import GyroScaleCubic
+from laboratory.effects.gyro_scale_drift import GyroScaleDrift
 from laboratory.effects.gyro_scale_g_dependence import GyroScaleGDependence
 from laboratory.effects.gyro_scale_quadratic import GyroScaleQuadratic
 from laboratory.effects.gyro_scale_temperature import GyroScaleTemperature
+from laboratory.effects.gyro_stray_field import GyroStrayField
 from laboratory.effects.gyro_telegraph import GyroTelegraph
+from laboratory.effects.gyro_temperature_rate import GyroTemperatureRate
 from laboratory.effects.gyro_warm_up import GyroWarmUp
 from laboratory.effects.heading_error import HeadingError
 from laboratory.effects.latitude_error import LatitudeError
@@ -92,17 +101,25 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "gyro_accel_misalignment": GyroAccelMisalignment.specified,
     "gyro_g_sensitivity": GyroGSensitivity.specified,
     "gyro_g2_sensitivity": GyroG2Sensitivity.specified,
+    "gyro_anisoelasticity": GyroAnisoelasticity.specified,
+    "gyro_remanence": GyroRemanence.specified,
     "gyro_scale_asymmetry": GyroScaleAsymmetry.specified,
     "gyro_scale_quadratic": GyroScaleQuadratic.specified,
     "gyro_scale_cubic": GyroScaleCubic.specified,
     "gyro_scale_g_dependence": GyroScaleGDependence.specified,
     "gyro_scale_temperature": GyroScaleTemperature.specified,
+    "gyro_scale_drift": GyroScaleDrift.specified,
+    "gyro_rate_power": GyroRatePower.specified,
+    "gyro_stray_field": GyroStrayField.specified,
     "gyro_dead_band": GyroDeadBand.specified,
     "gyro_bias_ramp": GyroBiasRamp.specified,
     "gyro_cubic_drift": GyroCubicDrift.specified,
+    "gyro_late_drift": GyroLateDrift.specified,
     "gyro_warm_up": GyroWarmUp.specified,
     "gyro_bias_temperature": GyroBiasTemperature.specified,
+    "gyro_temperature_rate": GyroTemperatureRate.specified,
     "gyro_bias_jump": GyroBiasJump.specified,
+    "gyro_disturbance": GyroDisturbance.specified,
     "gyro_telegraph": GyroTelegraph.specified,
     "gyro_hysteresis": GyroHysteresis.specified,
     "gyro_flicker": GyroFlicker.specified,
@@ -110,6 +127,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "gyro_latency": GyroLatency.specified,
     # both
     "turn_on_bias": TurnOnBias.specified,
+    "cyclic_drift": CyclicDrift.specified,
     "temperature_curves": TemperatureCurves.specified,
     "temperature_hysteresis": TemperatureHysteresis.specified,
     # the accelerometers

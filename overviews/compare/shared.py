@@ -3,28 +3,20 @@
 A reference of error e moves a parameter of both results by s₁ e and s₂ e, so that their difference
 has the variance
 
-    σ₁² + σ₂² − 2 Σ s₁ s₂ σ_e²        over the shared references.
-
-The uncertainty budget of a campaign gives the share h of a reference in the variance of each
-parameter, |s| σ_e = σ √h. That s₁ and s₂ have one sign is certain for gravity and scale factors,
-which read gravity in both, and where both plans are the same.
+    σ₁² + σ₂² − 2 Σ s₁ s₂ σ_e²        over the shared references, see `references`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import isclose, sqrt
+from math import sqrt
 
+from inertial.campaign.references import References, references_of
 from inertial.text.messages import _
-from inertial.text.parameters import SCALE
-from stages.report.tables import Record, Tables
+from stages.report.tables import Tables
 
-SAME = 1e-9  # relative, within which two stated numbers are one
-NAMELESS = ("by hand", "not named")  # of the column table: it may be any
 TABLE_SOURCES = ("position", "angle")
-POSE = ("do", "mount", "angle", *(f"{of}_{a}" for of in ("up", "mark", "about") for a in "xyz"))
-DECIMALS = 6  # of a set direction or angle
 Key = tuple[str, str, str]  # mount, sensor and quantity
 
 
@@ -36,18 +28,34 @@ class Shared:
     positions, whose errors repeat as far as they are not chance, which nobody states.
     """
 
-    sites: tuple[str, ...]
-    table: bool
-    same_plan: bool
+    references: tuple[References, References]
     shares: tuple[Mapping[tuple[Key, str], float], Mapping[tuple[Key, str], float]]
+
+    @property
+    def sites(self) -> tuple[str, ...]:
+        """In the order of the first."""
+        first, second = self.references
+        return tuple(s for s, name in first.sites.items() if second.sites.get(s) == name)
+
+    @property
+    def same_plan(self) -> bool:
+        """Whether both set the same in the same order."""
+        return self.references[0].plan == self.references[1].plan
+
+    @property
+    def table(self) -> bool:
+        """See above."""
+        first, second = self.references
+        return self.same_plan and first.table is not None and first.table == second.table
 
     def covariance(self, key: Key, sigmas: tuple[float, float], *, table: bool = False) -> float:
         """Of the two values of a parameter; `table`: as if all errors of the table repeated."""
-        sources = (*self.sites, *(TABLE_SOURCES if table and self.table else ()))
+        first, second = self.references
+        _mount, *of = key
+        alike = [s for s in self.sites if first.name(s, *of) == second.name(s, *of)]
         return sum(
-            sigmas[0] * sigmas[1] * sqrt(self._share(0, key, of) * self._share(1, key, of))
-            for of in sources
-            if self.same_plan or (of == "gravity" and key[2] in SCALE)
+            sigmas[0] * sigmas[1] * sqrt(self._share(0, key, source) * self._share(1, key, source))
+            for source in (*alike, *(TABLE_SOURCES if table and self.table else ()))
         )
 
     def _share(self, which: int, key: Key, source: str) -> float:
@@ -56,41 +64,9 @@ class Shared:
 
 def shared_by(first: Tables, second: Tables) -> Shared:
     """What two campaigns share, as far as their plans say."""
-    about = (first.row("campaign"), second.row("campaign"))
-    place = all(
-        about[0][key] is not None and _same(about[0][key], about[1][key])
-        for key in ("latitude", "height")
-    )
-    known = [{row["quantity"]: row for row in tables.rows("known")} for tables in (first, second)]
-    sites = []
-    if place and _same_known(known[0].get("gravity"), known[1].get("gravity")):
-        sites.append("gravity")
-    if place and _same_known(known[0].get("earth_rate_up"), known[1].get("earth_rate_up")):
-        sites.append("latitude")
-    same_plan = _poses(first) == _poses(second)
-    one_table = about[0]["table"] == about[1]["table"] and about[0]["table"] not in NAMELESS
-    return Shared(
-        tuple(sites), one_table and same_plan, same_plan, (_shares(first), _shares(second))
-    )
-
-
-def _same(one: float, other: float) -> bool:
-    return isclose(one, other, rel_tol=SAME, abs_tol=0.0)
-
-
-def _same_known(one: Record | None, other: Record | None) -> bool:
-    """Whether both take the same value as known; its error is then one, whatever it is."""
-    if one is None or other is None or one["value"] is None or other["value"] is None:
-        return False
-    return _same(one["value"], other["value"])
-
-
-def _poses(tables: Tables) -> list[tuple[object, ...]]:
-    """What was set in each manoeuvre, in the order of the plan."""
-    return [
-        tuple(round(v, DECIMALS) if isinstance(v := row[key], float) else v for key in POSE)
-        for row in tables.rows("manoeuvres")
-    ]
+    both = (first, second)
+    of = [references_of(t.row("campaign"), t.rows("known"), t.rows("manoeuvres")) for t in both]
+    return Shared((of[0], of[1]), (_shares(first), _shares(second)))
 
 
 def _shares(tables: Tables) -> dict[tuple[Key, str], float]:

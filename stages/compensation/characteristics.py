@@ -2,7 +2,7 @@
 
 Readings have bias, M and the effects of the result taken out, but for those effects that are a
 function of the sensor's own input: they are what the figures describe. The composite error is that
-of the whole result.
+of the whole result. After each switch-on the bias is that of it.
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,7 +16,7 @@ from inertial import tables
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.measurement import Measurement, SensorResult
 from inertial.campaign.rate_segments import Recorded, position_of
-from inertial.campaign.records import Row, with_mount
+from inertial.campaign.records import Manoeuvre, Row, with_mount
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_observations import Position
 from inertial.estimation.input_output import (
@@ -158,7 +158,8 @@ def _accelerometers(data: CampaignData, whole: Measurement, own: Measurement) ->
     gravity, triad = data.gravity.number, whole.accelerometer.triad
     assert triad is not None  # else there is no result
     for position in data.accelerometer_positions[0]:
-        read, all_out = force_at(position, own), force_at(position, whole)
+        now = position.manoeuvre
+        read, all_out = (force_at(position, _since(each, now, data)) for each in (own, whole))
         noise, up = position.over()[1], position.up_now
         for axis, unit in enumerate(np.eye(3)):
             level = np.sqrt(max(1 - up[axis] ** 2, 0.0))
@@ -179,7 +180,12 @@ def _gyros(data: CampaignData, whole: Measurement, own: Measurement) -> Iterator
             check
             for measurement, force in zip((own, whole), forces, strict=True)
             for check in rate_check(
-                position, measurement, triad, force.get(position.label, UNKNOWN), data, 0.0
+                position,
+                _since(measurement, position.manoeuvre, data),
+                triad,
+                force.get(position.label, UNKNOWN),
+                data,
+                np.zeros(3),
             )
         ]
         if len(checked) == 2:
@@ -196,7 +202,16 @@ def _gyros(data: CampaignData, whole: Measurement, own: Measurement) -> Iterator
 
 def _forces(data: CampaignData, measurement: Measurement) -> dict[str, Array]:
     """The specific force in each static position of the accelerometers, (3,), by its label."""
-    return {p.label: force_at(p, measurement) for p in data.accelerometer_positions[0]}
+    return {
+        p.label: force_at(p, _since(measurement, p.manoeuvre, data))
+        for p in data.accelerometer_positions[0]
+    }
+
+
+def _since(measurement: Measurement, m: Manoeuvre, data: CampaignData) -> Measurement:
+    """The measurement equation with the biases of a manoeuvre's switch-on: they are no error."""
+    deviations = {} if data.solution is None else data.solution.deviations
+    return measurement.since(m.switch_on, deviations)
 
 
 def _axis(direction: Array) -> tuple[int, float] | None:
@@ -218,7 +233,9 @@ def _whole_turn(
     checked = [
         check
         for measurement in (own, whole)
-        for check in angle_check(rotation, measurement, triad, data)
+        for check in angle_check(
+            rotation, _since(measurement, rotation.plan, data), triad, data, np.zeros(3)
+        )
     ]
     seconds = float(rotation.weights @ rotation.blocks.seconds)
     if len(checked) == 2 and rotation.done.complete:
@@ -235,7 +252,7 @@ def _steady_turn(
     motion = stretches(blocks.time, blocks.seconds, blocks.temperature)
     earth, earth_sigma = earth_along(m.axis, position_of(m, data.heading), data.earth)
     means = []
-    for measurement in (own, whole):
+    for measurement in (_since(own, m, data), _since(whole, m, data)):
         rates = measurement.rate(blocks.gyro, motion, measurement.force(blocks.accel, motion))
         means.append(float(np.average(rates @ m.axis, weights=blocks.counts)) - earth)
     noise = data.noise.of(m.name, "steady", tables.GYRO) / np.sqrt(blocks.seconds.sum())
@@ -271,7 +288,8 @@ def _drifts(data: CampaignData, measurement: Measurement, reason: str) -> Iterat
             reading, noise = position.over()
             earth, spread = earth_along(unit, _position_now(position, data), data.earth)
             force = forces.get(position.label, UNKNOWN)
-            (rate,) = own.rate(reading[None], motion_of(position), force[None])
+            after = _since(own, position.manoeuvre, data)
+            (rate,) = after.rate(reading[None], motion_of(position), force[None])
             rates[i] = rate[axis] + triad.bias[axis] - earth
             sigmas[i] = np.hypot(noise_along(unit, triad, noise), spread)
         known = np.isfinite(rates + sigmas)

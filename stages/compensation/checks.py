@@ -41,7 +41,7 @@ UNITS = {
 }
 SI = {"gravity": "m/s²", "force_up": "m/s²", "rate_up": "rad/s", "angle": "rad"}
 SENSORS = {"accel": "accelerometer", "gyro": "gyro"}
-NO_SCATTER = (0.0, 0.0)
+NO_SCATTER = (np.zeros(3), np.zeros(3))
 ICE_POINT = 273.15  # K
 MAX_EXPECTED_SIGMAS = 3.0  # sigmas, above which the parameters do not explain the check
 
@@ -105,11 +105,12 @@ class Check:
 
 
 def checks(
-    data: CampaignData, measurement: Measurement, scatter: tuple[float, float] = NO_SCATTER
+    data: CampaignData, measurement: Measurement, scatter: tuple[Array, Array] = NO_SCATTER
 ) -> Iterator[Check]:
     """Every static position and every whole rotation of one mount.
 
-    `scatter`: of accelerometers and gyros between positions by hand, m/s² and rad/s.
+    `scatter`: of accelerometers and gyros between positions by hand, or from one switch-on to the
+    next, (3,) each, m/s² and rad/s.
     """
     positions = data.accelerometer_positions[0]
     forces = {position.label: force_at(position, measurement) for position in positions}
@@ -122,7 +123,7 @@ def checks(
             yield from rate_check(position, measurement, triad, force, data, scatter[1])
         for rotation in data.gyro_inputs.usable:
             if rotation.plan.recorded == "whole" and rotation.done.complete:
-                yield from angle_check(rotation, measurement, triad, data)
+                yield from angle_check(rotation, measurement, triad, data, scatter[1])
 
 
 def not_compensated(result: SensorResult, mount: str) -> Iterator[Row]:
@@ -215,7 +216,7 @@ def force_at(position: StaticPosition, measurement: Measurement) -> Array:
 
 
 def _forces(
-    position: StaticPosition, force: Array, triad: Triad, data: CampaignData, scatter: float
+    position: StaticPosition, force: Array, triad: Triad, data: CampaignData, scatter: Array
 ) -> Iterator[Check]:
     """|f|, which no tilt changes, and the force along up, which tilt lessens by its square.
 
@@ -257,7 +258,7 @@ def rate_check(
     triad: Triad,
     force: Array,
     data: CampaignData,
-    scatter: float,
+    scatter: Array,
 ) -> Iterator[Check]:
     """The rate along up; a tilt turns part of the level earth rate into it."""
     reading, noise = position.over()
@@ -288,7 +289,7 @@ def noise_along(direction: Array, triad: Triad, sigma: Array) -> float:
 
 
 def angle_check(
-    rotation: Recorded, measurement: Measurement, triad: Triad, data: CampaignData
+    rotation: Recorded, measurement: Measurement, triad: Triad, data: CampaignData, scatter: Array
 ) -> Iterator[Check]:
     """The angle of a whole turn about its axis, with the earth's rate taken out.
 
@@ -307,7 +308,8 @@ def angle_check(
     after = turned - earth * time
     if not np.isfinite(after):
         return
-    noise = noise_along(m.axis, triad, data.noise.of(m.name, "rest", GYRO) * np.sqrt(time))
+    own = np.hypot(data.noise.of(m.name, "rest", GYRO) * np.sqrt(time), scatter * time)
+    noise = noise_along(m.axis, triad, own)
     yield Check(
         m.name,
         "angle",

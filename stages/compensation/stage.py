@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.campaign import findings as findings
@@ -20,10 +21,13 @@ from inertial.tables.stage import Pieces, Stage
 from inertial.text.messages import _
 from inertial.text.parameters import FREE
 from stages.compensation.characteristics import characteristics
-from stages.compensation.checks import NO_SCATTER, checks, not_compensated, table_of
+from stages.compensation.checks import checks, not_compensated, table_of
 from stages.compensation.correction import NOTHING, CompensatedStream, envelope, mounted
 from stages.compensation.declared import DECLARED
+from stages.compensation.residuals import residuals
 from stages.compensation.uncertainty_budget import budget_rows
+
+Array = NDArray[np.float64]
 
 ALREADY = Finding(
     id="compensation/already_compensated/campaign",
@@ -45,6 +49,7 @@ ALREADY = Finding(
 def compensation(
     mounts: Sequence[CampaignData],
     samples: Stream,
+    simulated: Stream,
     traces: pd.DataFrame,
     masks: pd.DataFrame,
     channel_repairs: pd.DataFrame,
@@ -85,10 +90,10 @@ def compensation(
         if data.mount in measurements:
             course = (data.blocks[name].to_numpy(np.float64) for name in ("time", "temperature"))
             measurements[data.mount] = measurements[data.mount].along(*course)
-    for data in mounts:
+    attitudes = [_by_hand(data, measurements.get(data.mount, NOTHING)) for data in mounts]
+    for data, by_hand in zip(mounts, attitudes, strict=True):
         measurement = measurements.get(data.mount, NOTHING)
-        by_hand = _by_hand(data, measurement)
-        scatter = _scatters(fits, data.mount) if by_hand.by_hand else NO_SCATTER
+        scatter = _scatters(fits, data.mount) if by_hand.by_hand else _between_switch_ons(data)
         rows += [check.row(data.mount) for check in checks(by_hand, measurement, scatter)]
         figures += characteristics(data, measurement)
         shares += budget_rows(data, measurement, fits)
@@ -97,6 +102,8 @@ def compensation(
     yield "checks", table_of(rows)
     yield "characteristics", tables.CHARACTERISTICS.frame(figures)
     yield "uncertainty_budget", tables.UNCERTAINTY_BUDGET.frame(shares)
+    for left in residuals(attitudes, measurements, simulated):
+        yield "residuals", left
     repairs = Repairs(channel_repairs)
     parts = mounted(mounts, measurements, segments)
     compensated = CompensatedStream(samples.path, parts, Masks(masks, repairs), repairs)
@@ -113,11 +120,18 @@ def _by_hand(data: CampaignData, measurement: Measurement) -> CampaignData:
     return with_attitudes(data, triad)
 
 
-def _scatters(fits: Sequence[Row], mount: str) -> tuple[float, float]:
+def _between_switch_ons(data: CampaignData) -> tuple[Array, Array]:
+    """What biases differ by between switch-ons, of accelerometers and gyros; the result has one."""
+    sizes = (data.drift(sensor).switch_on for sensor in ("accel", "gyro"))
+    accel, gyro = (np.zeros(3) if size is None else size for size in sizes)
+    return accel, gyro
+
+
+def _scatters(fits: Sequence[Row], mount: str) -> tuple[Array, Array]:
     """What positions by hand differ by beyond noise, of accelerometers and gyros."""
     own = [r for r in fits if (r["mount"], r["method"]) == (mount, FREE)]
     accel, gyro = (
-        max((r["scatter"] or 0.0 for r in own if r["sensor"] == sensor), default=0.0)
+        np.full(3, max((r["scatter"] or 0.0 for r in own if r["sensor"] == sensor), default=0.0))
         for sensor in ("accel", "gyro")
     )
     return accel, gyro

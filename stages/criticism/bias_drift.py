@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.stats import chi2
 
 from inertial.campaign.equations import PRIOR_SIZE, Campaign
 from inertial.campaign.scatter_of_positions import likely_walk
@@ -32,21 +33,30 @@ def likely_random_walk(campaign: Campaign, sensor: str, effects: Sequence[Effect
 
 @dataclass(frozen=True)
 class Walk:
-    """A random walk of the biases of a sensor, and its sigma, rad/s/√s or m/s²/√s."""
+    """A random walk of the biases of a sensor, and its sigma, rad/s/√s or m/s²/√s.
+
+    p_value: that chance makes one of either sensor so much likelier than none.
+    """
 
     size: float
     sigma: float
+    p_value: float
 
 
 def random_walks_with_sigmas(campaign: Campaign, effects: Sequence[Effect]) -> dict[str, Walk]:
     """The random walks in the equations of a campaign, by sensor."""
-    return {
-        sensor: Walk(
-            size, sigma_of(campaign.deviance_of_random_walk(sensor, effects, PRIOR_SIZE), size)
-        )
-        for sensor, size in zip(SENSORS, campaign.solution.random_walks, strict=True)
-        if size
-    }
+    sizes = zip(SENSORS, campaign.solution.random_walks, strict=True)
+    return {sensor: _walk(campaign, sensor, size, effects) for sensor, size in sizes if size}
+
+
+def _walk(campaign: Campaign, sensor: str, size: float, effects: Sequence[Effect]) -> Walk:
+    """A size is never below 0, so half of all draws without a walk have none (Self & Liang 1987).
+
+    Two sensors are searched, which makes that up.
+    """
+    deviance = campaign.deviance_of_random_walk(sensor, effects, PRIOR_SIZE)
+    drop = max(deviance(0.0) - deviance(size), 0.0)
+    return Walk(size, sigma_of(deviance, size), len(SENSORS) * float(chi2.sf(drop, 1)) / 2)
 
 
 def walk_evidence(campaign: Campaign, sensor: str, size: float, effects: Sequence[Effect]) -> float:

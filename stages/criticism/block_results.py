@@ -5,10 +5,16 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from inertial.campaign.equations import Campaign
-from inertial.effects import CATALOGUE, KNOWN, TEMPERATURE_MODELS
+from inertial.effects import CATALOGUE, KNOWN, LAWS, TEMPERATURE_MODELS
 from inertial.estimation.random_walk import MeasuredDrift
-from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
-from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause, EffectTest
+from inertial.model_selection.cause import (
+    FOUND,
+    LAW,
+    ONE_OF_CLASS,
+    UNKNOWN_STRUCTURE,
+    Cause,
+    EffectTest,
+)
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.model_selection.size_after_selection import corrected
 from inertial.physics.effect import Array, Effect
@@ -29,10 +35,11 @@ from stages.criticism.finding_rows import (
     member_rows,
     parameter_row,
 )
+from stages.criticism.law_sentences import law_action
 from stages.criticism.selection import Selection
 from stages.criticism.without_law import WithoutLaw
 
-NAMED = (FOUND, ONE_OF_CLASS)
+NAMED = (FOUND, ONE_OF_CLASS, LAW)
 MAX_RIVAL_DROP = 6.0  # of chi-squared between two positions that are both possible: 95 % of 2
 WALK = "gyro_random_walk"
 WALK_UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
@@ -169,7 +176,7 @@ class BlockResults:
             )
 
     def _finding(self, number: int, cause: Cause) -> Iterator[TableRow]:
-        split = self.extended.splitting(number)
+        split = None if cause.effect in LAWS else self.extended.splitting(number)
         free = cause.effect not in self.selection.families
         effect = None if free else self.selection.effect(cause.effect, cause.value)
         parameters = [] if effect is None else self._parameters(effect, cause.value)
@@ -177,6 +184,8 @@ class BlockResults:
         identifier = finding_id(cause.effect, self.mount)
         clear = cause.verdict in NAMED
         action = sentences.ACTION + sentences.split_sentence(split)
+        if cause.effect in LAWS:
+            action = law_action(cause.effect, self.mount)
         yield (
             "findings",
             {
@@ -272,7 +281,7 @@ class BlockResults:
             step = min(filter(None, distances), default=0.0)
             sigma = step / 12**0.5 if scan.between else None  # uniform within a step
             parameters.append(Estimated(scan.name, scan.unit, scan.meaning, at, sigma))
-        elif effect.name in TEMPERATURE_MODELS:
+        elif effect.name in TEMPERATURE_MODELS or effect.name in LAWS:
             parameters += [
                 Estimated(one.name, one.unit, one.meaning, one.value)
                 for one in effect.constants(self.campaign.motion)
@@ -354,6 +363,7 @@ def random_walk_rows(
             "count": 1,
             "size": walk.size,
             "unit": unit,
+            "p_value": walk.p_value,
             "severity": 1,
             "sentence": sentence,
             "consequence": WALK_CONSEQUENCE,
@@ -374,7 +384,8 @@ def walk_at_rest_rows(
 ) -> Iterator[TableRow]:
     """The random walk that the noise at rest shows, where the stretches differ by no more.
 
-    `sizes`: K of the three axes. That of the equations is beyond it, and 0.
+    `sizes`: K of the three axes. That of the equations is beyond it, and 0. Where it stands for a
+    structure of the residuals, the p-value is that of the structure.
     """
     cause, unit = f"{sensor}_random_walk", WALK_UNITS[sensor]
     identifier = finding_id(cause, mount)
@@ -389,6 +400,7 @@ def walk_at_rest_rows(
             "count": 1,
             "size": size,
             "unit": unit,
+            "p_value": lawless.structured.get(sensor),
             "severity": 1,
             "sentence": WALK_AT_REST.format(sensors=SENSORS[sensor], sizes=_sizes(sizes, unit)),
             "consequence": WALK_CONSEQUENCE,
@@ -421,14 +433,19 @@ def _walk_size(sensor: str, walk: Walk) -> str:
     return f"{' ± '.join(with_sigma(value, sigma, decimals_of(sigma)))} {unit.name}"
 
 
-def unexplained_rows(selection: Selection, lawless: WithoutLaw, mount: str) -> Iterator[TableRow]:
-    """A finding for each sensor whose residuals nothing explains, with a law or without."""
+def unexplained_rows(
+    selection: Selection, lawless: WithoutLaw, level: float, mount: str
+) -> Iterator[TableRow]:
+    """A finding for each sensor whose residuals nothing explains, with a law or without.
+
+    `level`: accepted probability of any where there is none.
+    """
     chosen = list(dict.fromkeys(i for cause in selection.named.causes for i in cause.columns))
     for sensor, reduced in zip(selection.evidence.labels, selection.evidence.sensors, strict=True):
         if sensor in lawless.owner:
             continue
         rest, degrees, p_value = selection.evidence.residual(reduced, chosen)
-        if p_value >= MIN_CONSISTENT_P_VALUE or rest <= MIN_EXCESS * degrees:
+        if p_value * len(SENSORS) >= level or rest <= MIN_EXCESS * degrees:
             continue
         ratio = float(np.sqrt(rest / degrees))
         yield (

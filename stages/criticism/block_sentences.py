@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from inertial.effects.law import Law
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, Cause, EffectTest
 from inertial.model_selection.detection_limits import (
     ABSORBED,
@@ -17,6 +18,7 @@ from inertial.text.numbers import decimals_of, p_is, significant, with_sigma
 from inertial.text.units import quantity
 from stages.criticism.class_splitting import TURNED_OVER, Splitting
 from stages.criticism.finding_rows import Estimated
+from stages.criticism.law_sentences import law_sentence
 
 MIN_SIGMAS = 3.0  # from which a parameter is given in a sentence, if any reaches it
 REASONS = {
@@ -91,6 +93,8 @@ def cause_sentence(
         return DRIFT.format(
             nearest=_("; nearest is {others}", others=", ".join(others)) if others else ""
         )
+    if isinstance(effect, Law):
+        return law_sentence(cause, effect, parameters)
     values = {
         "effect": title,
         "place": _(" at {positions}", positions=_(" or ").join(positions)) if positions else "",

@@ -89,8 +89,13 @@ class Point:
     structure: float
 
 
-def structure_tests(campaign: Campaign, named: Sequence[Effect], noise_degrees: float) -> Tested:
-    """The tests of the residuals given the named effects."""
+def structure_tests(
+    campaign: Campaign, named: Sequence[Effect], noise_degrees: float, level: float
+) -> Tested:
+    """The tests of the residuals given the named effects.
+
+    `level`: accepted probability that any detects a structure where there is none.
+    """
     equations = [
         equation
         for sensor in SOLVED
@@ -98,7 +103,7 @@ def structure_tests(campaign: Campaign, named: Sequence[Effect], noise_degrees: 
         for degrees in [campaign.noise_degrees(sensor, noise_degrees)]
         for equation in _equations(campaign, named, sensor, axis, degrees)
     ]
-    return Tested(campaign, named, structures(equations))
+    return Tested(campaign, named, structures(equations, level))
 
 
 def points(tested: Tested, test: Structure) -> Iterator[Point]:

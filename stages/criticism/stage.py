@@ -25,17 +25,20 @@ from stages.criticism.block_results import (
 from stages.criticism.class_splitting import ExtendedCampaigns, ExtendedPlan, extended_plans
 from stages.criticism.declared import DECLARED
 from stages.criticism.finding_rows import Row, TableRow
+from stages.criticism.law_selection import with_laws
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations, shifts, without_lines
+from stages.criticism.pooled_evidence import pooled_evidence_rows
 from stages.criticism.residual_structure import structure_rows, structure_tests
 from stages.criticism.selection import SENSORS
 from stages.criticism.temperature_findings import temperature_rows
 from stages.criticism.temperature_selection import select_with_temperature
 from stages.criticism.without_law import without_law
 
-# Of the accepted probability of a false name; the rest is that of the spectrum, and of the
-# functions of temperature.
-BLOCKS_SHARE, SPECTRUM_SHARE = 0.8, 0.1
+# Of the accepted probability of any false finding: what names effects, tests the residuals for
+# structure, compares them with the noise, searches the spectrum, and functions of temperature.
+BLOCKS_SHARE, STRUCTURE_SHARE, UNEXPLAINED_SHARE = 0.5, 0.2, 0.1
+SPECTRUM_SHARE, TEMPERATURE_SHARE = 0.1, 0.1
 
 
 def criticism(
@@ -47,7 +50,7 @@ def criticism(
 ) -> Tables:
     """Scores and parameters of every effect of the catalogue, detection limits, and findings.
 
-    `level` is the accepted probability of naming any effect where the model is complete.
+    `level` is the accepted probability of any finding where the model is complete.
     """
     rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     for data in mounts:
@@ -72,16 +75,18 @@ def _of_mount(
     # A jump or a warm-up within a stretch looks like a random walk there. So effects are weighed
     # against a random walk between stretches that is estimated beside them, see `select_effects`.
     measured = campaign_of(replace(data, blocks=quiet))
-    campaign = replace(measured, drifts=dict.fromkeys(SENSORS, NO_DRIFT))
+    campaign = measured.without_drift_at_rest()
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
     selection = select_with_temperature(
         campaign,
         in_blocks,
         level * BLOCKS_SHARE,
-        level * (1 - BLOCKS_SHARE - SPECTRUM_SHARE),
+        level * TEMPERATURE_SHARE,
         degrees,
     )
-    tested = structure_tests(selection.campaign, selection.fitted, degrees)
+    tested = structure_tests(selection.campaign, selection.fitted, degrees, level * STRUCTURE_SHARE)
+    levels = (level * BLOCKS_SHARE, level * STRUCTURE_SHARE)
+    selection, tested = with_laws(selection, tested, campaign, in_blocks, *levels, degrees)
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
     random_walks = random_walks_with_sigmas(selection.campaign, selection.fitted)
     plans = {} if data.by_hand else extended_plans(data.plan, data.performed, quiet)
@@ -103,8 +108,9 @@ def _of_mount(
     shown = NO_DRIFT if "gyro" in lawful else measured.drifts["gyro"]
     yield from other_scores(random_walks.get("gyro"), shown, mount)
     yield from structure_rows(tested, lawless.reported_structures, mount)
-    yield from unexplained_rows(selection, lawless, mount)
+    yield from unexplained_rows(selection, lawless, level * UNEXPLAINED_SHARE, mount)
     yield from temperature_rows(data.blocks, data.plan, level, mount)
+    yield from pooled_evidence_rows(selection, mount)
 
 
 def _with(plan: Callable[[], ExtendedPlan], data: CampaignData) -> Campaign:

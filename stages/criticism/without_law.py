@@ -22,13 +22,13 @@ OF_WALKS = ("time", "change")  # structures that a bias without a law has, whate
 class WithoutLaw:
     """What each sensor has without a law.
 
-    `owner`: by sensor the cause of the finding that reports all of it; `structured`: the
-    sensors whose residuals have a structure; `members`: by sensor the
+    `owner`: by sensor the cause of the finding that reports all of it; `structured`: the p-value of
+    the structure of its residuals, by sensor that has one; `members`: by sensor the
     effects with which the data are no more than consistent.
     """
 
     owner: Mapping[str, str]
-    structured: Collection[str]
+    structured: Mapping[str, float]
     members: Mapping[str, tuple[str, ...]]
 
     @property
@@ -58,5 +58,9 @@ def without_law(selection: Selection, walks: Collection[str], tested: Tested) ->
         elif drift_name(sensor) in drifts:
             owner[sensor] = drift_name(sensor)
         members[sensor] = tuple(dict.fromkeys(selection.consistent()[sensor]))
-    structured = [sensor for sensor in SENSORS if tested.of(sensor)]
+    structured = {
+        sensor: min(test.p_value for test in tested.of(sensor))
+        for sensor in SENSORS
+        if tested.of(sensor)
+    }
     return WithoutLaw(owner, structured, members)

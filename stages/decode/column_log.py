@@ -8,6 +8,7 @@ import numpy as np
 
 from inertial.formats.columns import column_reader
 from inertial.formats.columns.column_layout import ticks_per_second
+from inertial.signal.signed_counts import signed
 from inertial.tables import AXES
 from inertial.text.campaign_units import CHANNEL_UNITS
 from inertial.text.units import ICE_POINT
@@ -91,6 +92,8 @@ class ColumnLog:
         if triad is None:
             return {}
         size = CHANNEL_UNITS[triad["unit"]] / np.asarray(triad.get("counts_per_unit", 1.0))
+        if bits := triad.get("signed_bits"):
+            values = signed(values, bits)
         in_units = (values - np.asarray(triad.get("zero_counts", 0.0))) * size
         axes = self._layout.get("axes", {}).get(sensor, AXES)
         return dict(on_axis(sensor, axis, in_units[:, i]) for i, axis in enumerate(axes))

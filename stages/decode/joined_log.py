@@ -80,11 +80,22 @@ class _Readings:
         return cls(time, np.concatenate(values), *places, refused, account)
 
 
+def of_both_sensors(layout: Mapping[str, Any], file: str) -> dict[str, Any] | None:
+    """The layout of a log whose rows hold either sensor, as of a log of each; None of others."""
+    timed = (layout.get("time") or {}).get("column") is not None
+    if not (timed and all("rows" in layout.get(key, {}) for key in ("accelerometer", "gyro"))):
+        return None
+    own = {key: value for key, value in layout.items() if key != "gyro"}
+    gyro = {key: value for key, value in layout.items() if key not in ("accelerometer", "label")}
+    return own | {"gyro_log": {"file": file, "layout": gyro, "offset": 0.0}}
+
+
 class JoinedLog:
     """The log of the accelerometers with that of the gyros; named after the former.
 
     Records count the samples of the slower sensor; lines and offsets are those of the
-    accelerometers' log, in which the nearest reading stands.
+    accelerometers' log, in which the nearest reading stands. Both may be one file, whose rows hold
+    either sensor.
 
     Raises
     ------
@@ -117,6 +128,12 @@ class JoinedLog:
         self._values = _joined(both[slower].time, both[faster])
         self._places = _nearest_lines(both[slower].time, both["accel"])
         self._kept = np.asarray(np.isfinite(self._values).any(axis=1))
+        self._in_one_file = gyro_path == path
+        if self._in_one_file:
+            for kind, name, lines, size in self.gyros.account:
+                if kind == DECODED:
+                    self._account.add(DECODED, name, lines, size)
+                    self._account.add(NOT_SELECTED, name, -lines, -size)
         if left := int(np.count_nonzero(~self._kept)):
             both[slower].account.add(DECODED, "", -left, 0)
             both[slower].account.add(NOT_SELECTED, "", left, 0)
@@ -137,6 +154,8 @@ class JoinedLog:
         first = 0
         for piece in self._log.decoded(origin):
             rows = slice(first, first + len(piece.samples["record"]))
+            if self._in_one_file:  # rows of the other sensor are no records of this one
+                piece.samples["record"] = np.arange(rows.start, rows.stop)
             values, kept, first = self._values[rows], self._kept[rows], rows.stop
             samples = {
                 name: column if column is None else column[kept]

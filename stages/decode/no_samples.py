@@ -108,7 +108,16 @@ def _all_refused(file: str, layout: Mapping[str, Any], count: int, first: Refuse
 
 def _described(layout: Mapping[str, Any]) -> str:
     """The keys of a format that say how a line is read."""
-    keys = ("delimiter", "decimal", "header_lines", "comment", "message", "time", *_SENSORS)
+    keys = (
+        "delimiter",
+        "decimal",
+        "header_lines",
+        "comment",
+        "labelled",
+        "message",
+        "time",
+        *_SENSORS,
+    )
     stated = {key: layout[key] for key in keys if key in layout}
     for sensor in _SENSORS:
         if sensor in stated:

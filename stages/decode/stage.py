@@ -27,7 +27,7 @@ from stages.decode.decoded import (
     refused_rows,
     sample_rows,
 )
-from stages.decode.joined_log import JoinedLog
+from stages.decode.joined_log import JoinedLog, of_both_sensors
 from stages.decode.no_samples import no_samples
 from stages.decode.receiver_log import ReceiverLog
 from stages.decode.table_angle import TableAngle
@@ -60,7 +60,7 @@ def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
         size = log.path.stat().st_size
         yield from _pieces_of(log, row, origin, table)
         refuse_grown(log.path, size)
-        if isinstance(log, JoinedLog):
+        if isinstance(log, JoinedLog) and log.gyro_path != log.path:
             of_gyros[log.gyro_path.name] = log
     for name, joined in of_gyros.items():
         yield from account_of(name, joined.gyros.account, joined.gyros.refused)
@@ -71,6 +71,7 @@ def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
 def _open(row: Mapping[str, str], raw: list[Path]) -> AnyLog:
     """The log of one row of the table logs."""
     layout, path = json.loads(row["layout"]), path_of(row["file"], raw)
+    layout = of_both_sensors(layout, row["file"]) or layout
     if "gyro_log" in layout:
         return JoinedLog(row["log"], path, layout, path_of(layout["gyro_log"]["file"], raw))
     return (ReceiverLog if layout["kind"] == "rawimus" else ColumnLog)(row["log"], path, layout)

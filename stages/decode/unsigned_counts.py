@@ -1,10 +1,11 @@
-"""Unsigned counts that were not said to be unsigned: refused, with the zero that they have."""
+"""Unsigned counts that were not said to be unsigned: refused, with their zero or their bits."""
 
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from inertial.signal.signed_counts import bits_without_sign
 from inertial.tables.errors import Refusal
 from inertial.text.campaign_units import CHANNEL_UNITS
 from inertial.text.messages import _
@@ -19,7 +20,7 @@ def refuse_unsigned(file: str, sensor: str, triad: Mapping[str, Any], values: Re
 
     All three channels then lie in the middle half of a converter's counts: no gyro turns so about
     all its axes at once. Accelerometers could, so their |f| must be nearer to gravity with that
-    zero than without. A stated `zero_counts`, 0 included, is believed.
+    zero than without. A stated `zero_counts`, 0 included, or `signed_bits` is believed.
 
     Raises
     ------
@@ -27,8 +28,19 @@ def refuse_unsigned(file: str, sensor: str, triad: Mapping[str, Any], values: Re
         where they are such counts
     """
     values = values[np.isfinite(values).all(axis=1)]
-    if "zero_counts" in triad or not len(values):
+    if "zero_counts" in triad or "signed_bits" in triad or not len(values):
         return
+    if "counts_per_unit" in triad and (size := bits_without_sign([values])) is not None:
+        raise Refusal(
+            file,
+            sensor,
+            _(
+                "counts that leap between 0 and {most:g}: they are written without their sign",
+                most=2**size - 1,
+            ),
+            _("counts with their sign, or signed_bits"),
+            _("add signed_bits: {size} to {sensor} in its format", size=size, sensor=sensor),
+        )
     for zero, bits in ZEROS.items():
         usual = np.median(values, axis=0)
         inside = values.min() >= 0 and values.max() < 2 * zero

@@ -10,6 +10,7 @@ from inertial.campaign.explanations import Explained
 from inertial.campaign.hypotheses import (
     COUNTS,
     FOUND,
+    LAW,
     MODEL,
     ONE_OF_CLASS,
     RECORDING,
@@ -95,6 +96,8 @@ class Cause:
     @property
     def verdict(self) -> str:
         """How sure its name is."""
+        if self.main.verdict == LAW and self.cure != MODELLED:  # other manoeuvres do not confirm it
+            return UNKNOWN_STRUCTURE
         if self.main.stage == MODEL:
             return self.main.verdict or UNKNOWN_STRUCTURE
         return ONE_OF_CLASS if self.main.rivals else FOUND

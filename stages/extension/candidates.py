@@ -14,30 +14,38 @@ from stages.extension.models import names_of
 class Candidate:
     """A model of one sensor.
 
-    `effects`: those of the model that the sensor shows; `findings`: by the name of an effect;
-    `columns`: of the effects in its equations; `probability`: of the members of classes, those of
-    the joint fit being the members that this sensor does not show.
+    `effects`: those of the model that the sensor shows or absorbs; `findings`: by the name of an
+    effect; `columns`: of the effects that it shows, in its equations; `absorbed`: of those that its
+    parameters absorb, whose size the other sensor tells; `probability`: of the members of classes,
+    those of the joint fit being the members that this sensor does not show.
     """
 
     method: str
     effects: tuple[Effect, ...] = ()
     findings: dict[str, str] = field(default_factory=dict)
     columns: tuple[str, ...] = ()
+    absorbed: tuple[str, ...] = ()
     probability: float = 0.0
 
 
-def candidates_of(combinations: Sequence[Combination], shown: frozenset[str]) -> list[Candidate]:
+def candidates_of(
+    combinations: Sequence[Combination],
+    shown: frozenset[str],
+    absorbed: frozenset[str] = frozenset(),
+) -> list[Candidate]:
     """The different models that the combinations make of one sensor, the joint fit first.
 
     A member that the sensor does not show leaves it without an effect, and so does one that no
     equation of the means can hold, such as a random walk; beside other effects that one is no
-    candidate. `shown`: the columns of effects that the sensor shows.
+    candidate. `shown`: the columns of effects that the sensor shows; `absorbed`: that its
+    parameters absorb.
     """
     models: dict[tuple[str, ...], Candidate] = {
         (): Candidate(JOINT, probability=0.0 if combinations else 1.0)
     }
     for number, combination in enumerate(combinations):
-        effects = tuple(e for e in combination.effects if shown.intersection(names_of(e)))
+        own = shown | absorbed
+        effects = tuple(e for e in combination.effects if own.intersection(names_of(e)))
         if effects and any(e.sought_in != "blocks" for e in combination.effects):
             continue
         key = tuple(sorted(effect.label for effect in effects))
@@ -47,9 +55,11 @@ def candidates_of(combinations: Sequence[Combination], shown: frozenset[str]) ->
                 for effect, finding in zip(combination.effects, combination.findings, strict=True)
                 if effect in effects
             }
-            columns = tuple(name for e in effects for name in names_of(e) if name in shown)
+            every = [name for effect in effects for name in names_of(effect)]
+            columns = tuple(name for name in every if name in shown)
+            taken = tuple(name for name in every if name in absorbed)
             method = f"member_{number}" if number else EXTENDED
-            models[key] = Candidate(method, effects, findings, columns)
+            models[key] = Candidate(method, effects, findings, columns, taken)
         probability = models[key].probability + combination.probability
         models[key] = replace(models[key], probability=probability)
     return list(models.values())

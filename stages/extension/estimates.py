@@ -9,7 +9,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.estimates import UNIT, described, switch_on_columns
+from inertial.campaign.estimates import UNIT, described
 from inertial.campaign.records import with_mount
 from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.triad import UNKNOWNS, errors_of, linear_names
@@ -78,7 +78,7 @@ class Solved:
             columns=[column.name for column in tables.COVARIANCE.columns],
         )
 
-    def fit_row(self, noise_degrees: float, scatter: float) -> Row:
+    def fit_row(self, noise_degrees: float, scatter: float) -> dict[str, Any]:
         """How well the model describes the data, with a scatter beyond noise."""
         return {
             "mount": self.mount,
@@ -91,7 +91,6 @@ class Solved:
             "unit": UNIT[self.stage],
             "random_walk": self.random_walk,
             "random_walk_sigma": None,
-            **switch_on_columns(None),
         }
 
 
@@ -115,8 +114,9 @@ def solved(
     unknowns = [(name, *described(stage, name)) for name in linear_names()]
     for effect in candidate.effects:
         for parameter in effect.parameters:
-            place = system.column("effect", f"{effect.label}.{parameter.name}")
-            if place is not None and estimate.determined[place]:
+            label = f"{effect.label}.{parameter.name}"
+            place = system.column("effect", label)
+            if place is not None and (estimate.determined[place] or label in candidate.absorbed):
                 places.append(place)
                 effects.append(effect.name)
                 name = f"{effect.name}.{parameter.name}"
@@ -146,7 +146,7 @@ def solved(
     rows: list[Row] = []
     for place, described_as in zip(places, unknowns, strict=True):
         rows.append(row(*described_as, effect_of.get(place)))
-        if estimate.determined[place]:
+        if estimate.determined[place] or place in effect_of:
             value, sigma = float(values[place]), float(estimate.sigma[place])
             rows[-1] = {**rows[-1], "value": value, "sigma": sigma, "reason": ""}
     constants = [

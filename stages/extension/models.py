@@ -1,6 +1,6 @@
 """The joint model of one mount and the extended one."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -71,6 +71,26 @@ class Models:
         )
         return gyro, accel
 
+    @cached_property
+    def absorbed(self) -> tuple[frozenset[str], frozenset[str]]:
+        """The columns that the parameters of a sensor absorb, and that the other sensor shows."""
+        gyro, accel = self.shown
+        some = {name for e in self.effects if e.absorbed_by for name in names_of(e)}
+        return frozenset(some & (accel - gyro)), frozenset(some & (gyro - accel))
+
+    def complete(self) -> list[System | None]:
+        """The equations with the effects that each sensor shows or absorbs; None where none is."""
+        return [
+            with_columns(system, own) if system is not None and own else None
+            for system, shown, absorbed in zip(
+                self.extended.systems(self.effects, PRIOR_SIGMA),
+                self.shown,
+                self.absorbed,
+                strict=True,
+            )
+            for own in [shown | absorbed]
+        ]
+
     def systems(self, only: set[str] | None = None) -> list[System | None]:
         """The equations with the effects that each sensor shows; None where it shows none."""
         systems = self.extended.systems(self.effects, PRIOR_SIGMA, only)
@@ -123,6 +143,15 @@ def _shown(system: System | None, largest: Array) -> frozenset[str]:
     determined = information > MIN_INFORMATION_SHARE * system.raw_information()
     observable = largest * np.sqrt(np.maximum(information, 0.0)) > MIN_OBSERVABLE_SIGMAS
     return frozenset(np.array(reduced.names)[determined & observable].tolist())
+
+
+def given(system: System, estimates: Mapping[str, tuple[float, float]]) -> System:
+    """The equations with columns of effects whose values and sigmas the other sensor tells."""
+    prior, sigma = system.prior.copy(), system.prior_sigma.copy()
+    for i, (kind, name) in enumerate(system.names):
+        if kind == "effect" and name in estimates:
+            prior[i], sigma[i] = estimates[name]
+    return replace(system, prior=prior, prior_sigma=sigma)
 
 
 def with_columns(system: System, shown: frozenset[str]) -> System:

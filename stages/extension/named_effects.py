@@ -4,13 +4,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from inertial.effects import KNOWN
+from inertial.effects import KNOWN, LAWS
 from inertial.model_selection.size_after_selection import NOT_SELECTED, Selected, selected
 from inertial.physics.effect import Effect
 
 Row = Mapping[str, Any]
 
-NAMED = ("found", "one_of_class")
+NAMED = ("found", "one_of_class", "law")
 
 
 class Member(NamedTuple):
@@ -101,7 +101,11 @@ def _class_of(
     others = [
         Member(KNOWN[effect], probability[effect])
         for effect in probability
-        if effect in KNOWN and effect != name and KNOWN[effect].sought_in == "blocks"
+        if effect in KNOWN
+        and effect != name
+        and KNOWN[effect].sought_in == "blocks"
+        # Of another law no shape is known.
+        and effect not in LAWS
     ]
     named = Member(KNOWN[name].as_named(values), probability.get(name))
     return NamedClass(finding, (named, *others))

@@ -9,14 +9,15 @@ import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.equations import campaign_of
+from inertial.campaign.estimates import switch_on_columns
 from inertial.campaign.records import rows_of
 from inertial.campaign.scatter_of_positions import scattered
 from inertial.campaign.solution import joint_rows
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.estimation.least_squares import System
-from inertial.estimation.random_walk import NO_DRIFT
+from inertial.estimation.switch_ons import SwitchOns
 from inertial.estimation.triad import linear_names
-from inertial.physics.motion import Motion
+from inertial.physics.effect import Effect
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.parameters import EXTENDED, FREE, JOINT
@@ -26,9 +27,19 @@ from stages.extension.cross_validation import CrossValidation, Trainings, cross_
 from stages.extension.declared import DECLARED
 from stages.extension.estimates import Solved, moved, solved
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
-from stages.extension.models import SENSORS, Models, models_of, with_columns
+from stages.extension.models import (
+    PRIOR_SIGMA,
+    SENSORS,
+    Models,
+    given,
+    models_of,
+    names_of,
+    with_columns,
+)
 from stages.extension.named_effects import Named, named_of
 from stages.extension.navigation_error import change_of, worth
+from stages.extension.proposed import proposed_rows
+from stages.extension.scanned_values import with_scanned_values
 from stages.extension.selected_sizes import SelectedSizes, selected_sizes
 from stages.extension.sentences import sentence_of
 from stages.extension.warm_up import warm_up_rows
@@ -144,9 +155,12 @@ class Extension:
         self.data, self.named, self.joint, self.bands = data, named, joint, bands
         self.random_walks = random_walks
         self.scatters: dict[str, float] = {}
+        self.switch_ons: dict[str, SwitchOns] = {}
 
     def rows(self, simulated: Stream) -> Iterator[tuple[str, Any]]:
         """The rows of all tables; of `covariance` tables."""
+        for row in proposed_rows(self.named.classes, self.data.mount):
+            yield "proposed", row
         if self.named.classes:
             yield from self._of_blocks()
         else:
@@ -159,10 +173,12 @@ class Extension:
         data, mount = self.data, self.data.mount
         # The random walks of criticism were estimated beside the effects, without the drift that is
         # measured at rest: a jump or a warm-up within a stretch would be counted again in it.
-        campaign = replace(campaign_of(data), drifts=dict.fromkeys(SENSORS, NO_DRIFT))
+        campaign = campaign_of(data).without_drift_at_rest()
+        named = [c.members[0].effect for c in self.named.classes]
+        known = [effect for effect in named if effect.scan is None or effect.at is not None]
+        self.switch_ons = campaign.switch_ons(known)
+        campaign = campaign.with_switch_ons(self.switch_ons)
         if campaign.by_hand:
-            named = [c.members[0].effect for c in self.named.classes]
-            known = [effect for effect in named if effect.scan is None or effect.at is not None]
             campaign = scattered(campaign, known, data.noise.degrees)
         if by_hand := campaign.by_hand:
             self.scatters = {"gyro": by_hand.scatter.rate, "accel": by_hand.force_scatter}
@@ -174,29 +190,41 @@ class Extension:
         sizes = selected_sizes(trainings.whole, classes)
         likeliest: dict[str, Solved] = {}
         validated: dict[str, CrossValidation] = {}
-        for number, (sensor, system) in enumerate(zip(SENSORS, models.systems(), strict=True)):
-            candidates = candidates_of(combinations, models.shown[number])
+        solutions: dict[str, Solved] = {}
+        tested: dict[str, CrossValidation] = {}
+        systems = models.complete()
+        # A sensor that absorbs an effect comes after the one that shows how large it is.
+        for number in sorted(range(len(SENSORS)), key=lambda n: len(models.absorbed[n])):
+            sensor, system = SENSORS[number], systems[number]
+            candidates = candidates_of(combinations, models.shown[number], models.absorbed[number])
+            shown, of_shown = solutions, tested
             solutions = {
                 candidate.method: solution
                 for candidate in candidates
                 if system is not None
-                and candidate.columns
+                and candidate.effects
                 and (
-                    solution := self._solved(sensor, system, candidate, campaign.motion, sizes)
+                    solution := self._solved(sensor, system, candidate, models, sizes, shown)
                 ).effects
             }
             tested = {
                 candidate.method: validation
                 for candidate in candidates
                 if candidate.method in solutions
-                and (validation := cross_validate(trainings, sensor, candidate.columns))
+                and (
+                    validation := cross_validate(trainings, sensor, candidate.columns)
+                    if candidate.columns
+                    else of_shown.get(candidate.method)
+                )
             }
             there = [c for c in candidates if c.method in (JOINT, *solutions)]
             yield from self._candidates(sensor, there, solutions, tested, trainings)
             for solution in solutions.values():
                 yield from self._solution(solution)
             if EXTENDED in solutions:
-                likeliest[sensor], validated[sensor] = solutions[EXTENDED], tested[EXTENDED]
+                likeliest[sensor] = solutions[EXTENDED]
+                if tested[EXTENDED].sensor == sensor:
+                    validated[sensor] = tested[EXTENDED]
                 (own,) = (each.effects for each in candidates if each.method == EXTENDED)
                 for row in warm_up_rows(
                     solutions[EXTENDED], own, campaign.motion, self.bands[sensor]
@@ -211,19 +239,36 @@ class Extension:
         sensor: str,
         system: System,
         candidate: Candidate,
-        motion: Motion,
+        models: Models,
         sizes: SelectedSizes,
+        shown: Mapping[str, Solved],
     ) -> Solved:
-        own = with_columns(system, frozenset(candidate.columns))
+        """`shown`: by method the fits of the sensor that shows what this one absorbs."""
+        told = shown[candidate.method].of_effects if candidate.method in shown else []
+        sized = {row["parameter"]: (row["value"], row["sigma"]) for row in told if row["sigma"]}
+        sized = {name: sized[name] for name in candidate.absorbed if name in sized}
+        columns = frozenset({*candidate.columns, *sized})
+        own = given(with_columns(system, columns), sized)
         walk = self.random_walks[SENSORS.index(sensor)]
-        return solved(sensor, own, candidate, motion, walk, sizes, self.data.mount)
+        motion = models.extended.motion
+        solution = solved(sensor, own, candidate, motion, walk, sizes, self.data.mount)
+
+        def system_of(further: Sequence[Effect]) -> System:
+            every = models.extended.system(sensor, [*candidate.effects, *further], PRIOR_SIGMA)
+            assert every is not None  # there is one without them
+            names = {name for effect in further for name in names_of(effect)}
+            return given(with_columns(every, columns | names), sized)
+
+        return with_scanned_values(solution, candidate.effects, system_of)
 
     def _solution(self, solution: Solved) -> Iterator[tuple[str, Any]]:
         """The rows of a fit, and of the likeliest how far its parameters move."""
         sensor, mount = solution.sensor, self.data.mount
         yield "covariance", solution.covariance_rows()
         yield from (("parameters", row) for row in (*solution.rows, *solution.constants))
-        yield "fit", solution.fit_row(self.data.noise.degrees, self.scatters.get(sensor, 0.0))
+        between = switch_on_columns(self.switch_ons.get(sensor))
+        scatter = self.scatters.get(sensor, 0.0)
+        yield "fit", solution.fit_row(self.data.noise.degrees, scatter) | between
         for row in self.joint[sensor].manoeuvres:
             yield "fit_manoeuvres", {**row, "method": solution.method}
         if solution.method == EXTENDED:

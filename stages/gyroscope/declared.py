@@ -19,6 +19,7 @@ DECLARED = Declared(
         "fit_manoeuvres": tables.FIT_MANOEUVRES,
         "averaging": tables.AVERAGING,
         "positions": tables.POSITIONS,
+        "switch_ons": tables.SWITCH_ONS,
         "wanted": tables.WANTED,
         "findings": tables.FINDINGS,
     },

@@ -24,6 +24,7 @@ from inertial.text.parameters import EXTENDED, JOINT, SENSOR_OF
 
 SIMULATED = "simulated"  # folder of simulated calibrations; no instrument's folder has this name
 RESULT = "diagnosis"  # stage of the rows that are the result that counts
+REFERENCES = "references"  # column of what of each sigma is the error of a reference
 SHARED = ("mounting", "switch_on")  # labels that calibrations may have in common
 COMPARABLE_BY = ("instrument", "serial", "compensated")  # equal where calibrations are compared
 FILE_HASH_DIGITS = 12
@@ -124,10 +125,16 @@ class Archive:
 
 
 def results(entry: Entry) -> list[Row]:
-    """The parameters of the result that counted in an archived calibration, with its verdict."""
+    """The parameters of the result that counted in an archived calibration, with its verdict.
+
+    `shared`: by reference, what of a sigma is its error.
+    """
     verdicts = {(row["mount"], row["sensor"]): row for row in entry.row["verdicts"]}
     origin = {"campaign": entry.row["campaign"], "date": entry.row["date"], "file": entry.file}
     nothing: Row = {"verdict": None, "condition": None}
+    shared: dict[tuple[str, str, str], dict[str, float]] = {}
+    for row in entry.row[REFERENCES]:
+        shared.setdefault(_key(row), {})[row["reference"]] = row["sigma"]
     rows = []
     for row in entry.row["parameters"]:
         if row["stage"] == RESULT and row["effect"] is None and row["value"] is not None:
@@ -135,7 +142,7 @@ def results(entry: Entry) -> list[Row]:
             rows.append(
                 origin
                 | {key: row[key] for key in ("id", "mount", "sensor", "value", "sigma", "unit")}
-                | {"quantity": row["parameter"]}
+                | {"quantity": row["parameter"], "shared": shared.get(_key(row), {})}
                 | {key: verdict[key] for key in nothing}
             )
     return rows
@@ -202,7 +209,12 @@ def _of_version_2(row: Row) -> Row:
 
 def _of_version_3(row: Row) -> Row:
     """A row of version 3, which did not say what it shares with other calibrations."""
-    return row | dict.fromkeys(SHARED)
+    return _of_version_4(row | dict.fromkeys(SHARED))
+
+
+def _of_version_4(row: Row) -> Row:
+    """A row of version 4, which did not say what its sigmas have in common with others."""
+    return row | {REFERENCES: []}
 
 
 def _key(row: Row) -> tuple[str, str, str]:
@@ -210,6 +222,7 @@ def _key(row: Row) -> tuple[str, str, str]:
 
 
 OLDER = {
+    4: _of_version_4,
     3: _of_version_3,
     2: _of_version_2,
     1: _of_version_1,
@@ -241,6 +254,11 @@ def content_hash(calibration: Row) -> str:
     }
     if shared := {key: calibration[key] for key in SHARED if calibration.get(key)}:
         content["shared"] = shared  # without them the hash is that of older versions
+    if len(references := calibration.get(REFERENCES, ())):
+        content[REFERENCES] = sorted(
+            [row[key] for key in ("mount", "sensor", "parameter", "reference", "sigma")]
+            for row in references
+        )
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 

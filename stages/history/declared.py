@@ -19,6 +19,9 @@ DECLARED = Declared(
         "growing": From("studies", tables.WINDOWS, "growing"),
         "motions": From("studies", tables.MOTIONS),
         "blocks": From("segment", tables.BLOCKS),
+        "known": From("plan", tables.KNOWN),
+        "manoeuvres": From("segment", tables.MANOEUVRES),
+        "uncertainty_budget": From("compensation", tables.UNCERTAINTY_BUDGET),
     },
     writes={
         "archived": tables.ARCHIVED,

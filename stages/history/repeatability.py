@@ -1,7 +1,7 @@
 """How well the parameters of one IMU repeat over its calibrations, and what the next may be."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import date, timedelta
 
 import numpy as np
@@ -27,6 +27,7 @@ from inertial.text.parameters import JOINT, PARTS
 Array = NDArray[np.float64]
 
 YEAR = 365.25  # days
+LEAST_OWN = 1e-3  # of a sigma: no less than rounding leaves where nearly all is a reference's
 MEAN_SECONDS = 10.0  # s, of the means of which the bias stability is the scatter
 MIN_MEANS = 6
 LONGEST_AHEAD = 10.0  # years, within which a due date is sought
@@ -44,7 +45,10 @@ ONE_DAY = _("all calibrations are of one day")
 
 @dataclass(frozen=True)
 class Observed:
-    """One value of a parameter: of a calibration and mount, with its sigma."""
+    """One value of a parameter: of a calibration and mount, with its sigma.
+
+    `shared`: by reference, what of the sigma is its error, which others may contain alike.
+    """
 
     campaign: str
     date: str
@@ -52,6 +56,7 @@ class Observed:
     switch_on: str
     value: float
     sigma: float
+    shared: Mapping[str, float] = field(default_factory=dict)
 
 
 Series = dict[tuple[str, str], list[Observed]]  # by sensor and parameter
@@ -77,6 +82,7 @@ def series_of(calibrations: Sequence[tuple[Row, Sequence[Row]]]) -> Series:
                 _label(facts.get("switch_on"), facts["campaign"]),
                 float(row["value"]),
                 float(row["sigma"]),
+                row.get("shared", {}),
             )
             series.setdefault((row["sensor"], row["quantity"]), []).append(observed)
     return series
@@ -93,7 +99,7 @@ def repeatability_rows(series: Series, blocks: pd.DataFrame) -> Iterator[Row]:
         key = _key(sensor, quantity, len(values))
         if len(values) < 2:
             continue
-        y, own = _arrays(values)
+        y, own, shared = _arrays(values)
         within = float(np.sqrt(np.mean(own**2)))
         yield key | {"component": "within", "groups": len(values), "value": within}
         spread = float(np.std(y, ddof=1))
@@ -104,7 +110,7 @@ def repeatability_rows(series: Series, blocks: pd.DataFrame) -> Iterator[Row]:
             "mounting": [v.mounting for v in values],
             "switch_on": [v.switch_on for v in values],
         }
-        found = components(y, own, alike)
+        found = components(y, own, alike, shared)
         for component in found.found:
             yield key | _component(component)
         for name in found.one:
@@ -175,8 +181,14 @@ def _stability(blocks: pd.DataFrame) -> Iterator[Row]:
                 }
 
 
-def _arrays(values: Sequence[Observed]) -> tuple[Array, Array]:
-    return np.array([v.value for v in values]), np.array([v.sigma for v in values])
+def _arrays(values: Sequence[Observed]) -> tuple[Array, Array, Array]:
+    """n values, their own sigmas, and what the errors of r references add to these, (n, r)."""
+    references = list(dict.fromkeys(name for v in values for name in v.shared))
+    rows = [[v.shared.get(name, 0.0) for name in references] for v in values]
+    shared = np.array(rows, np.float64).reshape(len(values), len(references))
+    sigma = np.array([v.sigma for v in values])
+    own = np.sqrt(np.maximum(sigma**2 - np.sum(shared**2, axis=1), (LEAST_OWN * sigma) ** 2))
+    return np.array([v.value for v in values]), own, shared
 
 
 # ---- Jumps, and what the next calibration may find.
@@ -310,9 +322,9 @@ def _day(value: Observed) -> date:
 
 
 def _history(values: Sequence[Observed], jumped: Jump | None = None) -> History:
-    y, own = _arrays(values)
+    y, own, shared = _arrays(values)
     times = np.array([_day(v).toordinal() for v in values], np.float64) / YEAR
     step = None
     if jumped is not None:
         step = (np.arange(len(y)) > jumped.before).astype(np.float64)
-    return History(y, own, times, step)
+    return History(y, own, times, step, shared)

@@ -10,6 +10,7 @@ import pandas as pd
 from inertial.campaign.differences import Difference, table_of
 from inertial.campaign.measurement import measurements_of
 from inertial.campaign.records import Row, rows_of
+from inertial.campaign.references import reference_rows, references_of
 from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
 from stages.history.archive import Archive, results
@@ -54,6 +55,9 @@ def history(
     growing: pd.DataFrame,
     motions: pd.DataFrame,
     blocks: pd.DataFrame,
+    known: pd.DataFrame,
+    manoeuvres: pd.DataFrame,
+    uncertainty_budget: pd.DataFrame,
     provenance: Mapping[str, Mapping[str, Any]],
     *,
     level: float,
@@ -69,9 +73,11 @@ def history(
     """
     (facts,) = rows_of(campaign)
     methods = rows_of(gyroscope_parameters)
+    references = references_of(facts, rows_of(known), rows_of(manoeuvres))
     calibration = facts | {
         "parameters": [*rows_of(accelerometer_parameters), *methods, *rows_of(result)],
         "covariance": rows_of(covariance),
+        "references": reference_rows(references, rows_of(uncertainty_budget)),
         "verdicts": rows_of(verdict),
         "inputs": rows_of(inputs),
         "made_by": _made_by(made for name, made in provenance.items() if name in KEPT),

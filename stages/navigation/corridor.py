@@ -27,7 +27,7 @@ from inertial.physics.error_growth import (
 from inertial.physics.motion import stretches
 from inertial.physics.strapdown import Start
 from inertial.tables import ACCEL, GYRO
-from inertial.text.parameters import PARTS
+from inertial.text.parameters import BIAS, PARTS
 
 Array = NDArray[np.float64]
 Source = tuple[str, str]  # family and source, as in the table of shares
@@ -82,10 +82,13 @@ def uncertain(
     rows: Sequence[Row],
     covariance: pd.DataFrame,
     along: Callable[[Measurement], Measurement],
+    switch_ons: Mapping[str, Array | None],
 ) -> Uncertain | None:
     """The result of a mount by its rows; none where M and bias of a sensor are not determined.
 
     along : puts a measurement into the campaign's course of time and temperature
+    switch_ons : by sensor, by what biases differ between switch-ons, (3,), none where that is not
+        known; navigation has those of another one than the result
     """
     measurement = along(measurement_of(rows))
     if measurement.accelerometer.triad is None or measurement.gyro.triad is None:
@@ -99,7 +102,8 @@ def uncertain(
     # A row of the covariance that is missing leaves the sigma that its parameter has.
     diagonal = np.diagonal(matrix).copy()
     stated = np.array([row["sigma"] ** 2 for row in free])
-    np.fill_diagonal(matrix, np.where(diagonal > 0, diagonal, stated))
+    others = np.array([_between_switch_ons(row, switch_ons) ** 2 for row in free])
+    np.fill_diagonal(matrix, np.where(diagonal > 0, diagonal, stated) + others)
     sigma = np.sqrt(np.diagonal(matrix))
     shifted = [
         along(
@@ -110,6 +114,13 @@ def uncertain(
         for one, s in zip(free, sigma, strict=True)
     ]
     return Uncertain(measurement, shifted, [source_of(row) for row in free], matrix)
+
+
+def _between_switch_ons(row: Row, sizes: Mapping[str, Array | None]) -> float:
+    """By what a parameter differs from one switch-on to the next; 0 but for a bias."""
+    own = sizes.get(row["sensor"])
+    known = own is not None and row["effect"] is None and row["parameter"] in BIAS
+    return float(own[BIAS.index(row["parameter"])]) if own is not None and known else 0.0
 
 
 def source_of(row: Row) -> Source:

@@ -19,6 +19,8 @@ DECLARED = Declared(
         "clocks": From("decode", tables.CLOCKS),
         "result": From("diagnosis", tables.PARAMETERS, "result"),
         "covariance": From("diagnosis", tables.COVARIANCE),
+        "accelerometer_fit": From("accelerometer", tables.FIT),
+        "gyroscope_fit": From("gyroscope", tables.FIT),
     },
     writes={
         "navigation_errors": tables.NAVIGATION_ERRORS,

@@ -17,6 +17,7 @@ from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.measurement import Measurement
 from inertial.campaign.records import Part, Row, rows_of
+from inertial.campaign.solution import switch_ons_of
 from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Triad
 from inertial.tables.parquet import Stream
@@ -41,6 +42,8 @@ def navigation(
     published: pd.DataFrame,
     result: pd.DataFrame,
     covariance: pd.DataFrame,
+    accelerometer_fit: pd.DataFrame,
+    gyroscope_fit: pd.DataFrame,
 ) -> Tables:
     """Errors after 60 s, 10 min and whole turns; the longest course; the shares of the sources."""
     rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
@@ -49,8 +52,12 @@ def navigation(
     repairs = Repairs(channel_repairs)
     for data in mounts:
         own = [row for row in rows_of(result) if row["mount"] == data.mount]
-        known = None if facts["compensated"] else uncertain(own, covariance, _along(data))
-        if known is None:
+        between = {
+            "accel": switch_ons_of(accelerometer_fit, data.mount),
+            "gyro": switch_ons_of(gyroscope_fit, data.mount),
+        }
+        known = uncertain(own, covariance, _along(data), between)
+        if known is None or facts["compensated"]:
             reason = ALREADY if facts["compensated"] else why_not(own, data.gravity.number)
             rows["navigation_errors"] += reason_rows([Part("", None, reason)], data.mount)
             continue

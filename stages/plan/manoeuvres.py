@@ -63,6 +63,7 @@ def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
         "rate": None,
         "rate_sigma": None,
         "acceleration": in_si(item.get("accel_deg_s2"), DEGREE),
+        **{f"tumbled_{axis}": None for axis in tables.AXES},
         **_temperature(file, key, item),
     }
     up, mark = _direction(file, [*key, "up"], item), _direction(file, [*key, "mark"], item)
@@ -248,4 +249,5 @@ def _tumble(
             name = f"{item['id']}{way}-{number:02d}"
             position = f"{item['position']}-{number:02d}" if "position" in item else name
             named = {"manoeuvre": name, "position": position, "do": "rest"}
-            yield row | named | _vectors(ups, marks, None)
+            tumbled = {f"tumbled_{axis}": angle * about[i] for i, axis in enumerate(tables.AXES)}
+            yield row | named | tumbled | _vectors(ups, marks, None)

@@ -3,6 +3,13 @@
   const box = document.getElementById("origin");
   if (!box.showPopover) return;
   const origins = JSON.parse(document.getElementById("origins").textContent);
+  let shown;
+  const place = () => {
+    const at = shown.getBoundingClientRect();
+    const below = at.bottom + box.offsetHeight < innerHeight;
+    box.style.left = `${Math.max(4, Math.min(at.left, innerWidth - box.offsetWidth - 4))}px`;
+    box.style.top = `${Math.max(4, below ? at.bottom : at.top - box.offsetHeight)}px`;
+  };
   const open = (number) => {
     const id = number.dataset.id;
     const lines = [id, ...(origins[id.slice(0, id.lastIndexOf("/"))] ?? [])];
@@ -12,10 +19,8 @@
       return p;
     }));
     box.showPopover();
-    const at = number.getBoundingClientRect();
-    const below = at.bottom + box.offsetHeight < innerHeight;
-    box.style.left = `${Math.max(4, Math.min(at.left, innerWidth - box.offsetWidth - 4))}px`;
-    box.style.top = `${Math.max(4, below ? at.bottom : at.top - box.offsetHeight)}px`;
+    shown = number;
+    place();
   };
   const numberAt = (event) => event.target.closest?.(".traced");
   document.addEventListener("click", (event) => numberAt(event) && open(numberAt(event)));
@@ -29,5 +34,5 @@
     if (numberAt(event)) open(numberAt(event));
     else if (!box.contains(event.target)) box.hidePopover();
   });
-  addEventListener("scroll", () => box.hidePopover(), { passive: true });
+  addEventListener("scroll", () => shown && place(), { passive: true }); // Tab may still scroll
 })();

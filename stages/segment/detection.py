@@ -23,6 +23,7 @@ from inertial.signal.plan_detector import (
 )
 from inertial.tables import STATIC_PHASES
 from stages.segment.explanations import (
+    BY_GRAVITY,
     Exchanged,
     Explained,
     axes_step,
@@ -254,6 +255,7 @@ def _told(
     place = [manoeuvre] if manoeuvre else [deviation.log] if deviation.log else []
     # A sensor as a whole may be concerned as well as the other one.
     place = [*place, deviation.sensor] if detector.sensor is None and deviation.sensor else place
+    place += [BY_GRAVITY] if deviation.repair.endswith(BY_GRAVITY) else []
     finding = Finding(
         id="/".join([stage, detector.name, *(str(part) for part in place)]),
         cause=detector.name,

@@ -34,6 +34,7 @@ MIN_UPRIGHT_SHARE = 0.9  # share of the vertical in an axis that points up
 MIN_EARTH_SIGMA = 4.0  # sigmas to which the earth's rate must be seen to half of itself
 MAX_EXCHANGED = 4  # manoeuvres of a log for which an exchange with every other one is tried
 MAX_RIVAL_AXES = 2  # axes of a permutation that is a rival of exchanged names
+BY_GRAVITY = "by-gravity"  # the end of a repair's id that gravity shows, whatever the plan says
 MIN_GAIN_OF_BOTH = 3  # the same, for both sensors of one log: it may have had another attitude
 
 

@@ -219,7 +219,7 @@ def position_parts(
         free = not stretch.moves and place not in matched.values()
         if free and seconds >= (m.seconds or 0.0):
             number += 1
-            yield rest_part(binned, stretch, f"{m.name}-{number:02d}", margin)
+            yield rest_part(binned, stretch, m.detected_rest(number), margin)
 
 
 def between_parts(rests: Sequence[Part]) -> Iterator[Part]:

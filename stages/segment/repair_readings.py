@@ -25,7 +25,7 @@ from inertial.signal.scale_factor import (
     factors_near,
 )
 from inertial.text.messages import _
-from stages.segment.explanations import Explained, Step, axes_step
+from stages.segment.explanations import BY_GRAVITY, Explained, Step, axes_step
 from stages.segment.matching import AS_NAMED, Located, motion
 from stages.segment.windows import Binned
 
@@ -68,7 +68,7 @@ def step_of(misread: Misread) -> Step:
 
 def _step(sensor: str, axes: Permutation) -> Step:
     step = axes_step(sensor, axes)
-    return Step(f"{step.id}/by-gravity", step.repair, sensor, axes)
+    return Step(f"{step.id}/{BY_GRAVITY}", step.repair, sensor, axes)
 
 
 def _of_accelerometers(gyros: Permutation) -> Permutation:

@@ -16,8 +16,10 @@ DECLARED = Declared(
         "clocks": From("decode", tables.CLOCKS),
         "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
         "accelerometer_positions": From("accelerometer", tables.POSITIONS),
+        "accelerometer_switch_ons": From("accelerometer", tables.SWITCH_ONS),
         "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
         "gyroscope_positions": From("gyroscope", tables.POSITIONS),
+        "gyroscope_switch_ons": From("gyroscope", tables.SWITCH_ONS),
     },
     writes={
         "simulated": tables.SIMULATED,

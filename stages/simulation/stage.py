@@ -93,7 +93,8 @@ def _rests(data: CampaignData) -> Iterator[tuple[Simulated, float]]:
     for position, static in positions.items():
         name = position.manoeuvre
         indices = rows[name, position.phase]
-        predicted = _predicted(at_rest(data, static, 0.0), data.result)
+        solution = data.result.since(static.manoeuvre.switch_on)
+        predicted = _predicted(at_rest(data, static, 0.0), solution)
         row = np.concatenate([predicted.accel[0], predicted.gyro[0]])
         repeated = np.tile(row, (len(indices), 1))
         part = Simulated(
@@ -152,7 +153,7 @@ def _turn(
     increments = readings[:, len(GYRO) :] * step
     steady = phase == "steady"
     motion, how = in_samples(data, m, increments, step, steady, parts["time"])
-    predicted = _predicted(motion, data.result)
+    predicted = _predicted(motion, data.result.since(m.switch_on))
     both = np.hstack([predicted.accel, predicted.gyro])
     return Simulated(m.name, m.log, phase, record, parts["time"], both, readings), how
 

@@ -127,18 +127,18 @@ def test_interleaved_rows_of_accelerometer_and_gyro(recordings):
     path = recordings / "softdream_sixpos" / "gyro_rotation1.txt"
     tables = one(path, layout)
     samples = tables["samples"]
-    words = [line.split()[0] for line in path.read_text().splitlines()]
-    assert len(words) == len(samples["record"])
-    for row, word in enumerate(words):
-        assert (samples["accel_x"][row] is None) == (word == "gyro")
-        assert (samples["gyro_z"][row] is None) == (word == "acc")
-    assert samples["accel_z"][0] == pytest.approx(0.969238 * G)
-    assert samples["gyro_x"][1] == pytest.approx(0.290076 * DEGREE)
-    assert samples["time"][2] == pytest.approx(0.012)
+    lines = [line.split() for line in path.read_text().splitlines()]
+    assert len(samples["record"]) == len(lines) / 2  # a sample has a reading of either
+    for row, line in enumerate(samples["line"][:100]):
+        assert lines[line - 1][0] == "acc"
+        assert samples["accel_x"][row] == pytest.approx(float(lines[line - 1][2]) * G)
+    # The gyros are read up to 12 ms later; at the same rate each sample has a reading unchanged.
+    read = [float(line[2]) * DEGREE for line in lines if line[0] == "gyro"]
+    np.testing.assert_allclose(samples["gyro_x"], read)
+    assert samples["time"][1] == pytest.approx(0.012)
     assert 0.011 <= tables["clocks"]["interval"][0] <= 0.012
-    turning = [row for row, word in enumerate(words) if word == "gyro"]
-    rates = np.array([samples["gyro_x"][row] for row in turning]) / DEGREE
-    times = np.array([samples["time"][row] for row in turning])
+    assert tables["accounts"]["lines"][tables["accounts"]["kind"].index("decoded")] == len(lines)
+    rates, times = np.array(samples["gyro_x"]) / DEGREE, np.array(samples["time"])
     turned = ((rates - rates[:100].mean())[1:] * np.diff(times)).sum()
     assert turned == pytest.approx(-89.6, abs=3)  # SOURCE.md
 

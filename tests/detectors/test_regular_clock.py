@@ -85,6 +85,17 @@ def test_packets_are_a_regular_clock_without_gaps(seed):
     assert 0.01 < clock.scatter < 0.03  # of a packet's 0 to 60 ms
 
 
+@pytest.mark.parametrize("size", [3, 7, 8, 13, 16, 32])
+def test_packets_need_not_divide_a_second(size):
+    """Samples of a packet arrive 0.1 ms apart; 5000 of them, of which one packet is lost."""
+    number = np.arange(5000) + size * (np.arange(5000) >= 2000 // size * size)
+    waits = np.random.default_rng(size).uniform(0, 2e-3, number[-1] // size + 1)
+    sent = (number // size + 1) * size * INTERVAL
+    found = clock_of(sent + number % size * 1e-4 + waits[number // size])
+    assert found.interval == pytest.approx(INTERVAL, rel=5e-5)
+    np.testing.assert_array_equal(found.number - found.number[0], number)
+
+
 @pytest.mark.parametrize("seconds", [0.1, 0.3, 0.7])
 def test_a_host_that_is_busy_makes_no_gap(seconds):
     clock = clock_of(packets(taken(6000), 1, stall=(20, 20 + seconds)))

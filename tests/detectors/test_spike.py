@@ -64,6 +64,19 @@ def test_a_spike_in_a_steady_turn_and_on_a_ramp_is_found():
     assert places(values) == [(0, 2600, 2601), (5, 1200, 1201), (5, 2500, 2501)]
 
 
+def test_gravity_while_the_case_is_tilted_over_has_no_spike_at_its_turning_point():
+    values = rest(60_000)
+    tops = np.arange(500, 59_500, 500)
+    speeds = np.linspace(0.5, 3.0, len(tops))  # rad/s
+    for top, speed in zip(tops, speeds, strict=True):
+        angle = np.clip(speed * INTERVAL * np.arange(-200, 200), -np.pi / 2, np.pi / 2)
+        values[top - 200 : top + 200, 1] += GRAVITY * np.cos(angle)
+    assert places(values) == []
+    spoilt = tops[::4]
+    values[spoilt, 1] -= 2.0
+    assert places(values) == [(1, first, first + 1) for first in spoilt]
+
+
 def test_a_spike_in_an_oscillation_is_found_if_it_is_a_gross_one():
     values = turn()
     time = np.arange(len(values)) * INTERVAL

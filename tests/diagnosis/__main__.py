@@ -11,10 +11,9 @@ import sys
 from pathlib import Path
 
 import resumable
-from diagnosis_bars import bars
 from diagnosis_draws import names, places, sigmas
 from diagnosis_outcomes import code, outcome
-from diagnosis_page import write
+from diagnosis_page import terminal, write
 from hidden_plans import PLANS
 from hidden_sizes import reference
 
@@ -26,11 +25,7 @@ def main(folder: Path, words: list[str]) -> None:
         reference(plan), sigmas(plan), places(plan)
     jobs = [(name,) for name in names() if all(word in name for word in words)]
     found = resumable.drawn(folder / "diagnosis.jsonl", code(), ("name",), outcome, jobs)
-    if words:
-        lines = (f"{bar.verdict.strip('*'):9} {bar.words}: {bar.measured}\n" for bar in bars(found))
-        sys.stdout.write("".join(lines))
-    else:
-        sys.stdout.write(write(found))
+    sys.stdout.write(terminal(found) if words else write(found))
 
 
 if __name__ == "__main__":

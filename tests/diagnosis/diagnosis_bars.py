@@ -23,14 +23,14 @@ def bars(outcomes: Sequence[Outcome]) -> Iterator[Bar]:
         f"{len(errors)} of {len(outcomes)}",
         not errors if outcomes else None,
     )
-    for ratio in RATIOS:
-        own = of(outcomes, "effect", ratio)
-        yield _share(f"effects at SNR {ratio:g}: one row, the right one or its class", own)
-    for sigma in SIGMAS:
-        own = [one for one in of(outcomes, "fault") if one["size"] == sigma]
-        yield _share(f"faults that move a result by {sigma:g} sigma: one row, the right one", own)
-    own = [one for one in of(outcomes, "fault") if one["size"] is None]
-    yield _share("faults without a size: one row, the right one", own)
+    every = [*of(outcomes, "effect"), *of(outcomes, "fault")]
+    right = sum(map(good, every))
+    yield Bar(
+        "effects and faults of every size: exactly one row, the right one or its class",
+        f"≥ {RIGHT}",
+        _counts(right, len(every)),
+        right >= RIGHT * len(every) if every else None,
+    )
     silent = of(outcomes, "absorbed")
     quiet = [one for one in silent if not one.get("rows", 1)]
     yield Bar(
@@ -57,6 +57,17 @@ def bars(outcomes: Sequence[Outcome]) -> Iterator[Bar]:
         loud * CLEAN <= ROWS * len(clean) if clean else None,
     )
     yield from _of_results(outcomes)
+
+
+def shares(outcomes: Sequence[Outcome]) -> Iterator[tuple[str, str]]:
+    """The same by size, in words and counts."""
+    for ratio in RATIOS:
+        yield f"effects at SNR {ratio:g}", _right(of(outcomes, "effect", ratio))
+    faults = of(outcomes, "fault")
+    for sigma in SIGMAS:
+        own = [one for one in faults if one["size"] == sigma]
+        yield f"faults that move a result by {sigma:g} sigma", _right(own)
+    yield "faults without a size", _right([one for one in faults if one["size"] is None])
 
 
 def of(outcomes: Sequence[Outcome], part: str, size: float | None = None) -> list[Outcome]:
@@ -93,14 +104,8 @@ def _of_results(outcomes: Sequence[Outcome]) -> Iterator[Bar]:
     )
 
 
-def _share(words: str, own: Sequence[Outcome]) -> Bar:
-    right = sum(good(one) for one in own)
-    return Bar(
-        words,
-        f"≥ {RIGHT}",
-        _counts(right, len(own)),
-        right >= RIGHT * len(own) if own else None,
-    )
+def _right(own: Sequence[Outcome]) -> str:
+    return _counts(sum(map(good, own)), len(own))
 
 
 def _counts(count: int, number: int) -> str:

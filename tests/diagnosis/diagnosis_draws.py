@@ -20,7 +20,7 @@ from hidden_draws import COMMON, _hide
 from hidden_elsewhere import ELSEWHERE
 from hidden_plans import PLANS, sensors
 from hidden_sizes import KEPT, code, reference, size
-from hidden_ways import ABSORBED, WAYS
+from hidden_ways import ABSORBED, WAYS, absorbed
 
 from inertial.effects import CATALOGUE
 from inertial.text.parameters import STAGES
@@ -80,7 +80,8 @@ def _faults() -> Iterator[str]:
 def _absorbed() -> Iterator[str]:
     for number in range(SILENT):
         for name in filter(_absorbed_by_all, ABSORBED):
-            yield from (f"absorbed|{plan}|{name}|{number}" for plan in PLANS)
+            plans = (plan for plan in PLANS if absorbed(name, plan))
+            yield from (f"absorbed|{plan}|{name}|{number}" for plan in plans)
 
 
 def _absorbed_by_all(name: str) -> bool:

@@ -6,7 +6,8 @@ from pathlib import Path
 import chain
 import jinja2
 import numpy as np
-from diagnosis_bars import bars, good, of, pulls
+from diagnosis_bars import bars, good, of, pulls, shares
+from diagnosis_left import left
 from diagnosis_outcomes import Outcome
 
 PAGE = chain.ROOT / "docs/diagnosis.md"
@@ -24,6 +25,8 @@ def write(outcomes: Sequence[Outcome], page: Path = PAGE) -> str:
         "code": ", ".join(sorted({one["code"] for one in outcomes})),
         "hours": f"{sum(one['seconds'] for one in outcomes) / 3600:.1f}",
         "bars": [(bar.words, bar.wanted, bar.measured, bar.verdict) for bar in told],
+        "shares": list(shares(outcomes)),
+        "left": list(left()),
         "effects": list(_by_size(of(outcomes, "effect"))),
         "faults": list(_by_size(of(outcomes, "fault"))),
         "absorbed": list(_by_size(of(outcomes, "absorbed"), sized=False)),
@@ -33,8 +36,15 @@ def write(outcomes: Sequence[Outcome], page: Path = PAGE) -> str:
     }
     text = TEMPLATE.read_text(encoding="utf-8")
     page.write_text(jinja2.Template(text, keep_trailing_newline=True).render(figures), "utf-8")
-    lines = [f"{bar.verdict.strip('*'):9} {bar.words}: {bar.measured}\n" for bar in told]
-    return "".join([*lines, f"The page: {page}\n"])
+    return terminal(outcomes) + f"The page: {page}\n"
+
+
+def terminal(outcomes: Sequence[Outcome]) -> str:
+    """The demands, what is measured by size, and what is not right."""
+    lines = [f"{bar.verdict.strip('*'):9} {bar.words}: {bar.measured}" for bar in bars(outcomes)]
+    lines += [f"          {words}: {counts}" for words, counts in shares(outcomes)]
+    lines += [" | ".join(row) for row in _wrong(outcomes)]
+    return "".join(f"{line}\n" for line in lines)
 
 
 def _by_size(outcomes: Sequence[Outcome], *, sized: bool = True) -> Iterator[Row]:

@@ -68,7 +68,17 @@ def test_what_has_no_law_is_one_cause_of_a_sensor():
         "unknown_structure": {"gyro_random_walk", "gyro_bias_ramp", "unexplained"}
     }
     accel = finding("criticism", "unexplained", "accel")
-    assert len(list(compete([walk, accel]))) == 2
+    assert len(list(compete([demoted, accel]))) == 2
+
+
+@pytest.mark.parametrize(("p_value", "named"), [(None, False), (0.02, False), (1e-6, True)])
+def test_a_random_walk_that_chance_may_make_is_noise_and_no_cause(p_value, named):
+    """Nor is one that only the noise at rest shows, which has no p-value."""
+    walk = effect("gyro_random_walk", "gyro", "unknown_structure", "gyro_random_walk")
+    walk.row["p_value"] = p_value
+    assert bool(causes(walk)) == named
+    rest = finding("criticism", "unexplained", "gyro")
+    assert causes(walk, rest) == {"gyro_random_walk": {"unexplained"}}
 
 
 def test_a_named_effect_explains_no_remaining_misfit():

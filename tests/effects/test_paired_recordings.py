@@ -40,7 +40,7 @@ GROUPS = (
         *("gyro_bias_ramp", "accel_quadratic", "accel_bias_ramp", "size_effect", "latitude_error"),
         *("table_axis_non_orthogonality", "heading_error"),
     ),
-    ("table_wobble",),
+    ("table_wobble", "table_angle_scale"),
 )
 FAST = GROUPS[:1]  # the others draw as many campaigns again
 

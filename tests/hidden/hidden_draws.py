@@ -15,7 +15,7 @@ from hidden_courses import scanned
 from hidden_elsewhere import ELSEWHERE, HARD, Random
 from hidden_outside import OUTSIDE, course_size, recorded
 from hidden_plans import PLANS, SPANS, sensors
-from hidden_ways import ABSORBED, MATES, POSITIVE, WAYS
+from hidden_ways import ABSORBED, MATES, POSITIVE, WAYS, absorbed
 
 from inertial.effects import CATALOGUE
 
@@ -138,7 +138,8 @@ def _decoy(turn: int, random: Random, size: Size, number: int) -> dict[str, Any]
         return {"plan": plan, "sort": "mates"} | _hide({name: ("ratio", ratio)}, plan, random, size)
     names = list(ABSORBED)
     name = names[half % len(names)]
-    plan = COMMON[half // len(names) % len(COMMON)]
+    plans = [plan for plan in COMMON if absorbed(name, plan)]
+    plan = plans[half // len(names) % len(plans)]
     much = float(random.choice([-1, 1]) * np.exp(random.uniform(np.log(0.3), np.log(3))))
     effects = {name: ABSORBED[name](much)}
     return {"plan": plan, "sort": "absorbed", "hidden": (name,), "effects": effects}

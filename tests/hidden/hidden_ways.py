@@ -103,6 +103,7 @@ WAYS: Mapping[str, Way] = {
     "table_tilt": _level("north", "east"),
     "table_axis_non_orthogonality": Way(("lean", "quarter"), _leaning, RATES),
     "table_wobble": _level("north", "east"),
+    "table_angle_scale": _one("scale_ppm", PPM, "e", plans=RATES),
     "latitude_error": _one("error_deg", DEGREE, "dphi", plans=TURNS),
     "heading_error": _one("error_deg", DEGREE, "dpsi", plans=TURNS),
     "earth_rate_omitted": _one("share", 1.0, "s", plans=TURNS),
@@ -111,7 +112,8 @@ WAYS: Mapping[str, Way] = {
 POSITIVE = ("earth_rate_omitted",)
 
 # Each is a decoy: every calibration estimates something that does the same, or the equations know
-# it not at all, so silence is right, and so is the truth. Usual sizes of the catalogue.
+# it not at all, so silence is right, and so is the truth; but for plans of `WAYS` that show it.
+# Usual sizes of the catalogue.
 ABSORBED: Mapping[str, Callable[[float], dict[str, Any]]] = {
     "gravity_error": lambda u: {"error_mgal": 5 * u},
     "clock_scale": lambda u: {"fast_ppm": 20 * u},
@@ -127,6 +129,12 @@ ABSORBED: Mapping[str, Callable[[float], dict[str, Any]]] = {
         "to_s": 1410,
     },
 }
+
+
+def absorbed(name: str, plan: str) -> bool:
+    """Whether an effect is a decoy in a plan."""
+    return name in ABSORBED and not (name in WAYS and plan in WAYS[name].plans)
+
 
 # Effects that are alike in some plan: one of them is there, in that plan.
 MATES: tuple[tuple[str, str], ...] = (

@@ -15,10 +15,11 @@ Array = NDArray[np.float64]
 ROWS = rows_of("c")
 TIME = (ROWS.time - ROWS.time[0]) / np.ptp(ROWS.time)
 N = len(TIME)
+LEVEL = 0.01
 
 
 def heard_of(fits: Sequence[Residuals]) -> list[Structure]:
-    return structures([answer for fit in fits for answer in fit.answers()])
+    return structures([answer for fit in fits for answer in fit.answers()], LEVEL)
 
 
 def heard(signal: Array, seed: int) -> dict[str, Structure]:

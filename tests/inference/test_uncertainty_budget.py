@@ -1,8 +1,10 @@
-"""Parts of the variances in closed form: six positions of accelerometers along their axes."""
+"""Parts of the variances in closed form: six positions of accelerometers, switch-ons of gyros."""
 
+import chain
 import numpy as np
 import pytest
 
+from inertial.campaign.equations import PRIOR_SIZE, campaign_of
 from inertial.estimation.accelerometers import StaticForce, drifting
 from inertial.estimation.uncertainty_budget import Model, budget
 from inertial.physics.forward import Triad
@@ -53,3 +55,18 @@ def test_a_bias_weighs_upright_positions_against_level_ones(parts):
     noise = NOISE**2 * ((1 - share) ** 2 / 2 + share**2 / 4)
     assert each["noise"][BIAS_X] == pytest.approx(noise, rel=1e-3)
     assert each["position"][BIAS_X] == pytest.approx(tilted * share**2 / 4, rel=1e-3)
+
+
+def test_a_bias_has_the_mean_over_its_switch_ons():
+    """Eight switch-ons of equal weight: the variance of a bias has τ²/8 of each."""
+    document = chain.laboratory.read(chain.ROOT / "data/simulated/power-cycles.yaml").document
+    made = chain.in_memory_of(document)
+    (data,) = chain.mounts(made)
+    equations = campaign_of(data).equations("gyro", [], PRIOR_SIZE)
+    assert equations is not None
+    whole, shares = budget(Model(equations))
+    assert sum(shares.values()) == pytest.approx(whole, rel=1e-3)
+    fit = made["gyroscope/fit"].set_index("method").loc["joint"]
+    size = np.array([fit[f"switch_on_{axis}"] for axis in "xyz"])
+    student = size * 2.3646 / 1.9600  # of 7 degrees, two-sided 95 %
+    assert np.sqrt(shares["switch_on"][9:]) == pytest.approx(student / np.sqrt(8), rel=0.1)

@@ -61,6 +61,30 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
     "gyro_dead_band": ({"width_deg_h": ZERO}, {"width_deg_h": [10] * 3}),
     "gyro_bias_ramp": ({"ramp_deg_h_h": ZERO}, {"ramp_deg_h_h": [100] * 3}),
     "gyro_cubic_drift": ({"k_deg_h_h3": ZERO}, {"k_deg_h_h3": [1e5] * 3}),
+    "gyro_late_drift": (
+        {"ramp_deg_h_h": ZERO, "from_s": 9},
+        {"ramp_deg_h_h": [1e3] * 3, "from_s": 9},
+    ),
+    "gyro_disturbance": (
+        {"size_deg_h": ZERO, "from_s": 5, "to_s": 9},
+        {"size_deg_h": ONE, "from_s": 5, "to_s": 9},
+    ),
+    "gyro_anisoelasticity": ({"k_deg_h_g2": ZERO}, {"k_deg_h_g2": [100] * 3}),
+    "gyro_remanence": ({"offset_deg_h": ZERO}, {"offset_deg_h": ONE}),
+    "gyro_scale_drift": ({"k_ppm_h": ZERO}, {"k_ppm_h": [1e4] * 3}),
+    "gyro_rate_power": (
+        {"at_10_deg_s_deg_h": ZERO, "power": 1.5},
+        {"at_10_deg_s_deg_h": ONE, "power": 1.5},
+    ),
+    "gyro_stray_field": (
+        {"size_deg_h": ZERO, "order": 2.4, "phase_deg": 40},
+        {"size_deg_h": ONE, "order": 2.4, "phase_deg": 40},
+    ),
+    "gyro_temperature_rate": ({"k_deg_h_k_min": ZERO}, {"k_deg_h_k_min": [100] * 3}),
+    "cyclic_drift": (
+        {"gyro_deg_h": ZERO, "period_s": 20, "phase_deg": 40},
+        {"gyro_deg_h": ONE, "accelerometer_micro_g": ONE, "period_s": 20, "phase_deg": 40},
+    ),
     "gyro_warm_up": (
         {"start_deg_h": ZERO, "time_constant_s": 50},
         {"start_deg_h": ONE, "time_constant_s": 50},

@@ -82,6 +82,30 @@ BY_HAND: list[tuple[str, Document, Document, list[float], list[float]]] = [
         [0] * 3,
         [0, 0, 16e-6 * radians(40) * (1 + 3 * UP / radians(40))],
     ),
+    # 2 deg/h at 10 deg/s, eight times as much at 40 deg/s, backward as forward
+    (
+        "gyro_rate_power",
+        {"at_10_deg_s_deg_h": [0, 0, 2], "power": 1.5},
+        turn(-40),
+        [0] * 3,
+        [0, 0, 2 * DEG_H * ((radians(40) - UP) / radians(10)) ** 1.5],
+    ),
+    # 3 deg/h/g² of x times z, both half of the root of two
+    (
+        "gyro_anisoelasticity",
+        {"k_deg_h_g2": [1, 3, 2]},
+        rest([sqrt(0.5), 0, sqrt(0.5)]),
+        [0] * 3,
+        [0, 3 * G**2 / 2 * DEG_H, 0],
+    ),
+    # the strain of +g less that of −g is twice the offset: at first relaxed, then upright
+    (
+        "gyro_remanence",
+        {"offset_deg_h": [1, 2, 3]},
+        rest("-z"),
+        [0] * 3,
+        [0, 0, -3 * (G - 0.9) / 0.1 * DEG_H],
+    ),
     # 100 ppm of the magnitude, forward and backward alike
     (
         "gyro_scale_asymmetry",
@@ -237,6 +261,24 @@ def deviation(recording: Recording, log: str, sensor: str) -> Any:
             "gyro",
             lambda t: 1000 * DEG_H * (t / 3600) ** 3,
         ),
+        (
+            "gyro_late_drift",
+            {"ramp_deg_h_h": [0, 0, 360], "from_s": 90},
+            "gyro",
+            lambda t: 0.1 * DEG_H * np.maximum(t - 90, 0),
+        ),
+        (
+            "gyro_disturbance",
+            {"size_deg_h": [0, 0, 3], "from_s": 10, "to_s": 90},
+            "gyro",
+            lambda t: 3 * DEG_H * ((t > 10) & (t < 90)),
+        ),
+        (
+            "cyclic_drift",
+            {"accelerometer_micro_g": [0, 0, 7], "period_s": 40, "phase_deg": 90},
+            "accelerometer",
+            lambda t: 7 * MICRO_G * np.cos(2 * np.pi * t / 40),
+        ),
     ],
 )
 def test_biases_go_on_through_the_pause(
@@ -250,6 +292,36 @@ def test_biases_go_on_through_the_pause(
         off = deviation(recording, log, sensor)
         assert off[:, 2] == pytest.approx(course(middle), rel=1e-6, abs=1e-11)
         assert np.abs(off[:, :2]).max() < 1e-11
+
+
+def test_a_bias_follows_the_rate_of_the_temperature(performed: Performed) -> None:
+    """2 °/h per K/min at 36 K/h, 0.6 K/min."""
+    also = {"temperature": {"start_deg_c": 20, "slope_k_h": 36}}
+    effects = {"gyro_temperature_rate": {"k_deg_h_k_min": [0, 0, 2]}}
+    off = deviation(performed(rest(), effects=effects, also=also), "still", "gyro")
+    assert off[:, 2] == pytest.approx(1.2 * DEG_H, rel=1e-6)
+
+
+def test_a_scale_factor_drifts_with_time(performed: Performed) -> None:
+    """3600 ppm/h are 1 ppm/s: at 100 s 100 ppm of what the earth turns."""
+    plan = [rest(name=name, seconds=20) for name in ("one", "two")]
+    recording = performed(*plan, effects={"gyro_scale_drift": {"k_ppm_h": [0, 0, 3600]}})
+    middle = recording.truth["two"].time[1:] - 0.005
+    off = deviation(recording, "two", "gyro")[:, 2]
+    assert off == pytest.approx(1e-6 * middle * UP, rel=1e-5)
+
+
+def test_a_stray_field_goes_with_the_angle_of_a_turn(performed: Performed) -> None:
+    """At 40 °/s and 2.5 periods per revolution the period is 3.6 s; it ends with the turn."""
+    move = turn(40) | {"rate_deg_s": 40, "degrees": 720, "log": "turn", "id": "turn"}
+    del move["seconds"]
+    told = {"size_deg_h": [5, 0, 0], "order": 2.5, "phase_deg": 0}
+    recording = performed(move, rest(), effects={"gyro_stray_field": told})
+    off = deviation(recording, "turn", "gyro")[:, 0]
+    steady = off[1400:1760]
+    assert np.abs(steady).max() == pytest.approx(5 * DEG_H, rel=1e-3)
+    assert steady == pytest.approx(-off[1580:1940], abs=1e-3 * DEG_H)  # half a period later
+    assert deviation(recording, "still", "gyro") == pytest.approx(0, abs=1e-12)
 
 
 def test_a_temperature_warms_up_drifts_and_jumps(performed: Performed) -> None:

@@ -26,7 +26,7 @@ answers what only a person can know (the rate of logs without a clock, gravity w
 states one), and runs the chain. Known is what the source of a recording publishes, none of it with
 a sigma: each has a method, a gravity and rounding of its own. Ours has one sigma, which contains
 the guesses of the draft: gravity anywhere on earth is 0.3 % of a scale, an angle by hand 5 to 10°.
-Time is that of draft and chain together, s.
+Time is processor time of draft and chain together, s.
 
 | recording | quantity | known x, y, z | ours x, y, z | verdict | causes named | time |
 |---|---|---|---|---|---|---|
@@ -54,10 +54,10 @@ def main() -> None:
 def rows(recording: Recording, folder: Path) -> Iterator[str]:
     """The rows of one recording in the table."""
     with tempfile.TemporaryDirectory() as place:
-        start = time.monotonic()
+        start = time.process_time()
         campaign = recording.drafted(folder, Path(place) / "data")
         results = chain.run(campaign, Path(place) / "derived", "diagnosis")
-        seconds = f"{time.monotonic() - start:.0f}"
+        seconds = f"{time.process_time() - start:.0f}"
         causes = Counter(map(in_words, results["diagnosis/causes"]["cause"]))
         named = ", ".join(f"{cause} ({n})" if n > 1 else cause for cause, n in causes.items())
         verdicts = results["diagnosis/verdict"]

@@ -44,14 +44,14 @@ def report_on(made: dict[str, Any]) -> dict[str, str]:
     return whole.report(**{**made, "provenance": provenance_of(made)})
 
 
-def section_on(made: dict[str, Any], section: Section) -> str:
-    """One of its sections as HTML: the page of this section alone, without fonts."""
+def section_on(made: dict[str, Any], *sections: Section) -> str:
+    """Some of its sections as HTML: the page of these alone, without fonts."""
     with (
-        mock.patch.multiple(whole, EVIDENCE=(section,), ANNEXES=()),
+        mock.patch.multiple(whole, EVIDENCE=sections, ANNEXES=()),
         mock.patch("stages.report.page._fonts", return_value=()),
     ):
         html = report_on(made)["html"]
-    return html[html.index("<section id") : html.index("</section>")]
+    return html[html.index("<section id") : html.rindex("</section>")]
 
 
 @cache
@@ -166,6 +166,7 @@ def _campaign(logs: tuple[str, ...] | None) -> dict[str, Any]:
     made["attitude_errors"] = rows_as(tables.ATTITUDE_ERRORS, alignment.attitude_errors())
     made["modulation_gains"] = rows_as(tables.MODULATION_GAINS, alignment.modulation_gains())
     made["checks"] = rows_as(tables.CHECKS, estimates.checks(manoeuvres))
+    made["residuals"] = rows_as(tables.RESIDUALS, estimates.residuals(manoeuvres, generator))
     made["characteristics"] = rows_as(tables.CHARACTERISTICS, estimates.characteristics())
     for name, rows in (estimates.navigation() | estimates.repeated()).items():
         made[name] = rows_as(getattr(tables, name.upper()), rows)

@@ -200,6 +200,22 @@ def checks(manoeuvres: Rows) -> Rows:
     return rows
 
 
+def residuals(manoeuvres: Rows, generator: np.random.Generator) -> Rows:
+    """Sixty means of each manoeuvre, of which noise alone is left; the z gyro has twice its σ."""
+    rows = []
+    for row in manoeuvres:
+        phase = "steady" if row["do"] == "turn" else "rest"
+        for second in range(60):
+            one = {"manoeuvre": row["manoeuvre"], "phase": phase, "time": 5.0 * second}
+            for channel in tables.CHANNELS:
+                sigma = 5e-5 if channel.startswith("accel") else 2e-6
+                size = 2 * sigma if channel == "gyro_z" else sigma
+                one[f"residual_{channel}"] = generator.normal(0, size)
+                one[f"sigma_{channel}"] = sigma
+            rows.append({"mount": "", "seconds": 5.0, **one})
+    return rows
+
+
 def characteristics() -> Rows:
     """A linearity error of 30 ppm of 10 °/s, and why there is none of another axis."""
     row = {

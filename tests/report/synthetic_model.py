@@ -46,11 +46,19 @@ def of_the_model(
         ),
         "extended_parameters": rows_as(tables.PARAMETERS, _extended(parameters)),
         "extended_fit": rows_as(tables.FIT, _extended_fit()),
+        "gyroscope_switch_ons": rows_as(tables.SWITCH_ONS, _switch_ons()),
+        "accelerometer_switch_ons": tables.SWITCH_ONS.empty(),
         "extended_fit_manoeuvres": rows_as(tables.FIT_MANOEUVRES, _extended_manoeuvres()),
         "accelerometer_findings": tables.FINDINGS.empty(),
         "gyroscope_findings": tables.FINDINGS.empty(),
         "compensation_findings": tables.FINDINGS.empty(),
     }
+
+
+def _switch_ons() -> list[dict[str, Any]]:
+    """Of one switch-on, two axes of three."""
+    row = {"mount": "", "sensor": "gyro", "method": "joint", "unit": "rad/s", "switch_on": 0}
+    return [row | {"axis": axis, "value": 1e-6, "sigma": 2e-7} for axis in "xy"]
 
 
 def _simulated(row: dict[str, Any], generator: np.random.Generator) -> pd.DataFrame:

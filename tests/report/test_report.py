@@ -41,7 +41,8 @@ TITLES = [
     "Parameters",
     "Undetermined parameters",
     "What shows each cause",
-    "Residuals of each turn",
+    "What shows each effect",
+    "Residuals of the joint fit",
     "Checks of the compensated readings",
     "Sensor characteristics",
     "Parameters against averaging time",
@@ -451,7 +452,7 @@ def test_a_campaign_that_gave_nothing_says_so_in_words() -> None:
     headings = [heading.partition(" ")[2] for heading in page.headings]
     # Where no parameter depends on the temperature nothing is said of it; so of figures.
     silent = ("Temperature", "Sensor characteristics")
-    silent += ("Residuals of each turn", "Checks of the compensated readings")
+    silent += ("What shows each effect", "Checks of the compensated readings")
     silent += ("Worth in navigation", "Alignment and rotation modulation", "Uncertainty budget")
     silent += ("Repeatability and drift",)
     assert headings == [title for title in TITLES if title not in silent]

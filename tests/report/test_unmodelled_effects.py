@@ -20,12 +20,13 @@ CAUSE = re.compile(r'<article class="finding cause[^"]*" id="effect/([^"]+)">(.*
 
 @cache
 def of(make: Callable[..., dict[str, Any]], *arguments: str) -> str:
-    """The section of a synthetic campaign."""
+    """The sections of a synthetic campaign."""
     return on(make(*arguments))
 
 
 def on(made: dict[str, Any]) -> str:
-    return synthetic.section_on(made, unmodelled_effects.SECTION)
+    sections = (unmodelled_effects.SECTION, unmodelled_effects.EFFECTS)
+    return synthetic.section_on(made, *sections)
 
 
 def blocks(html: str) -> dict[str, str]:

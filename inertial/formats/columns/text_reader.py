@@ -1,9 +1,9 @@
 """Reader of a text log of columns: one data row per sample.
 
-The fields of a row stand between delimiters, by default any white space; blanks around a value
-do not count. Numbers have the units of the file. A row is refused that has another number of
-fields than the others, or no finite number where the layout requires one. Where every row ends
-with a delimiter the nothing after it is no field.
+The fields of a row stand between delimiters, by default any white space; blanks and quotation marks
+around a value do not count. Numbers have the units of the file. A row is refused that has another
+number of fields than the others, or no finite number where the layout requires one. Where every
+row ends with a delimiter the nothing after it is no field.
 
 pyarrow parses a chunk of lines at once. Lines with another number of fields, and chunks that it
 cannot parse as the layout requires, are examined line by line.
@@ -11,7 +11,7 @@ cannot parse as the layout requires, are examined line by line.
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -37,6 +37,7 @@ from inertial.formats.columns.column_layout import (
 )
 from inertial.formats.columns.column_values import ColumnValues, NumberValues, TextValues
 from inertial.formats.columns.data_rows import Place, Reading, sort_rows
+from inertial.formats.columns.labelled_fields import LabelledLines
 from inertial.formats.columns.text_lines import (
     CHUNK_BYTES,
     MAX_LINE_BYTES,
@@ -48,6 +49,7 @@ from inertial.formats.columns.text_lines import (
 from inertial.text.messages import _
 
 FIRST_ROWS = 1000  # that determine the number of fields
+QUOTE = b'"'
 SEPARATOR = b"\x1f"  # between the fields of rows that are examined one by one
 
 
@@ -62,6 +64,8 @@ class _Sorter(Protocol):
 def _sorter(layout: Mapping[str, Any]) -> _Sorter:
     if "message" in layout:
         return vectornav_lines.MessageLines(layout)
+    if layout.get("labelled"):
+        return LabelledLines(layout)
     return HeaderLines(layout)
 
 
@@ -87,10 +91,17 @@ def read(
     records = 0
     sorter = _sorter(layout)
     for chunk in text_chunks(path, chunk_bytes):
-        lines = sorter.rows_of(chunk)
+        lines = _unquoted(sorter.rows_of(chunk))
         rows = _rows(lines.chunk, delimiter, columns, fields)
         yield _reading(lines, rows, columns, records)
         records += len(rows.lines) + len(rows.reasons) + lines.all_lost
+
+
+def _unquoted(lines: RowLines) -> RowLines:
+    """The same with blanks for quotation marks, which some programs write around numbers."""
+    if QUOTE not in lines.chunk.data:
+        return lines
+    return replace(lines, chunk=replace(lines.chunk, data=lines.chunk.data.replace(QUOTE, b" ")))
 
 
 def _beginning(

@@ -137,12 +137,6 @@ def _not_compared(rows: Sequence[Record]) -> str:
     return _("Not compared. {each}", each=numbers.shortened(" ".join(each), 900)) if rows else ""
 
 
-def _what(row: Record) -> str:
-    """The parameter, and whole sentences where it differs by more than chance."""
-    sentence = str(row["sentence"])
-    return sentence if _beyond(row) else sentence.partition(": ")[0]
-
-
 def _difference(row: Record, sigma: str) -> outline.Row:
     kind = str(row["kind"])
     unit = units.quantity(row["quantity"], row["unit"]).shown
@@ -153,7 +147,7 @@ def _difference(row: Record, sigma: str) -> outline.Row:
     )
     return outline.table_row(
         with_mount(KINDS.get(kind, numbers.shortened(kind, 60)), row["mount"]),
-        capital(numbers.shortened(_what(row), 600)),
+        capital(numbers.shortened(str(row["sentence"]).partition(": ")[0], 600)),
         *(first, second, unit.name, sigma, numbers.probability(row["p_value"])),
         anchor=row["id"],
         tone="fair" if _beyond(row) else "",

@@ -16,7 +16,7 @@ from inertial.text import numbers, units
 from inertial.text.messages import _
 from stages.report import drawing, outline
 from stages.report.drawing import Array
-from stages.report.tables import Record, Tables
+from stages.report.tables import Record, Tables, once
 from stages.report.words import SENSOR, capital
 
 MAX_SIGMAS = 3.0  # from which a check is marked
@@ -44,22 +44,22 @@ CHECKED = {
 
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
-    """The checks in sum, and up to two figures."""
+    """The checks in sum, and a manoeuvre before and after, a rotation where there is one."""
     for row in tables.rows("compensation_findings"):
         yield outline.Paragraph(numbers.shortened(row["sentence"], 900), "fair")
     yield _summary(_by_quantity(tables))
     for row in tables.rows("checks"):
         if row["quantity"] not in CHECKED:
             yield outline.Paragraph(numbers.shortened(row["sentence"], 900), "fair")
-    yield outline.Heading(_("Before, after and difference"))
-    figures = list(_figures(tables))
-    yield from figures
+    figures = _figures(tables)
+    yield from figures[-1:]
     if not figures:
-        yield outline.Paragraph(_("None: no compensated log could be drawn."))
+        yield outline.Paragraph(_("No compensated log could be drawn."))
 
 
 def check_parts(tables: Tables) -> Iterator[outline.Part]:
-    """Every check of a quantity, a table each."""
+    """Every check of a quantity, a table each, and the other manoeuvre before and after."""
+    yield from _figures(tables)[:-1]
     for checked, own in _by_quantity(tables).items():
         if checked.in_full:
             yield _table(checked, own)
@@ -99,7 +99,7 @@ CHECKS = outline.Section(
     _("Checks of the compensated readings"),
     _("The known value and the readings' difference from it, manoeuvre by manoeuvre."),
     "",
-    ("checks",),
+    ("checks", "traces", "compensated_traces", "segments", "manoeuvres"),
     check_parts,
 )
 
@@ -218,8 +218,13 @@ class Compensated:
     turning: bool
 
 
-def _figures(tables: Tables) -> Iterator[outline.Figure]:
+@once
+def _figures(tables: Tables) -> list[outline.Figure]:
     """A rest with an axis up or down, and a turn about the same, where an axis has both."""
+    return list(_drawn(tables))
+
+
+def _drawn(tables: Tables) -> Iterator[outline.Figure]:
     number = 0
     for view, plan in _chosen(tables).items():
         compensated = _compensated(tables, plan)

@@ -14,11 +14,12 @@ from stages.report.results import Shift, quantity_of
 from stages.report.tables import Record, Tables, once
 from stages.report.words import SENSORS, listed, with_mount
 
-Kind = Literal["found", "class", "structure", "consistent", "walk", "unexplained"]
+Kind = Literal["found", "class", "law", "structure", "consistent", "walk", "unexplained"]
 # The clearest first, each with its words in a line.
 GRADES: dict[Kind, str] = {
     "found": _("identified"),
     "class": _("one of a class"),
+    "law": _("a law that no effect of the catalogue has"),
     "structure": _("not identified"),
     "consistent": _("consistent, not identified"),
     "walk": _("consistent, not identified"),
@@ -86,7 +87,7 @@ def kind_of(row: Record) -> Kind:
         return "walk"
     if row["cause"] == "unknown_structure":
         return "structure"
-    verdicts: dict[str, Kind] = {"found": "found", "one_of_class": "class"}
+    verdicts: dict[str, Kind] = {"found": "found", "one_of_class": "class", "law": "law"}
     return verdicts.get(row.get("verdict") or "", "consistent")
 
 
@@ -130,6 +131,11 @@ def certainty(row: Record) -> str:
         "class": _(
             "One of a class: this campaign cannot distinguish {names}.", names=listed(names)
         ),
+        "law": _(
+            "The form is known, its physical cause is not: no effect of the catalogue has it. "
+            "Laws that these data do not distinguish: {names}.",
+            names=listed(names),
+        ),
         "structure": _("Not identified: no effect of the catalogue explains this structure."),
         "consistent": _("Consistent with the data, but not identified: the name is not certain."),
         "walk": _(
@@ -155,6 +161,8 @@ def summary(rows: Sequence[Record]) -> Iterator[str]:
     for row in groups["class"]:
         either = _or(name_of(row), row)
         yield _("Detected: {either}, which this campaign cannot distinguish.", either=either)
+    for row in groups["law"]:
+        yield str(row["sentence"])
     if own := groups["structure"]:
         yield _(
             "The residuals of the {own} have a structure that is not identified.", own=_sensors(own)

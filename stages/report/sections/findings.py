@@ -188,7 +188,7 @@ SECTION = Section(
     _(
         "Left, the whole log, where a wedge marks the place; right, the samples there. p is the "
         "probability of such a size if nothing is wrong. What concerns the model alone stands "
-        "in “Unmodelled effects”."
+        "in “What shows each effect”."
     ),
     (
         *FINDING_TABLES,

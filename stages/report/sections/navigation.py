@@ -75,7 +75,8 @@ SECTION = outline.Section(
         "Errors are root mean squares over the manoeuvres, of all three axes. Predicted is what "
         "the covariance of the result and the noise lead to; in brackets its part by the "
         "parameters alone, which were estimated from these same data, so that the error found "
-        "may be smaller. Attitude is its drift since the start."
+        "may be smaller. Where the campaign states power cycles, it contains that a bias differs "
+        "from switch-on to switch-on. Attitude is its drift since the start."
     ),
     ("navigation_errors", "navigation_courses", "navigation_shares"),
     parts,

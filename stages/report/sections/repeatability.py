@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from inertial.tables import AXES, UNITS
 from inertial.text import numbers
 from inertial.text.messages import _
+from inertial.text.parameters import JOINT
 from inertial.text.units import Unit, quantity
 from stages.report import outline
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR
+from stages.report.words import SENSOR, capital
 
 FIRST = ("repeatability", "within")  # columns; what is left are components
 NAMES = {
@@ -39,6 +41,7 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
         yield from _forecast(forecast)
     if cycles := [row for row in rows if row["component"] == "power_cycle"]:
         yield _power_cycles(cycles)
+        yield from _switch_ons(tables)
     if stability := [row for row in rows if row["component"] == "stability"]:
         yield _stability(stability)
 
@@ -55,11 +58,16 @@ SECTION = outline.Section(
     ),
     _(
         "A component is value ± σ by restricted likelihood, the sigmas within campaigns taken off, "
-        "or below its 95 % limit. Components joined by + divide these calibrations in the same "
-        "way, so they are one number. Campaigns that share a mounting or a switch-on say so in "
-        "their files; parts of one campaign are those between its power cycles."
+        "or below its 95 % limit. Gravity and latitude that calibrations share are the same error "
+        "in all of them, so these are in no difference and in no σ here. Components joined by + "
+        "divide these calibrations in the same way, so they are one number. Campaigns that share "
+        "a mounting or a switch-on say so in their files; parts of one campaign are those between "
+        "its power cycles."
     ),
-    ("repeatability", "jumps", "forecast"),
+    (
+        *("repeatability", "jumps", "forecast", "manoeuvres"),
+        *("gyroscope_switch_ons", "accelerometer_switch_ons"),
+    ),
     parts,
 )
 
@@ -177,11 +185,57 @@ def _power_cycles(rows: Sequence[Record]) -> outline.Table:
             for row in rows
         ],
         note=_(
-            "The noise is taken off. The σ of a bias of the result contains it: it is that of the "
-            "mean over these switch-ons, and the bias of the next one differs by the standard "
-            "deviation of this table."
+            "The noise is taken off. The σ of a bias of the result is that of the mean over these "
+            "switch-ons, by Student's distribution for so few; the bias after the next one differs "
+            "from it by the standard deviation of this table."
         ),
     )
+
+
+def _switch_ons(tables: Tables) -> Iterator[outline.Table]:
+    """The bias after each switch-on, of each sensor that has several."""
+    first: dict[int, str] = {}
+    for row in tables.rows("manoeuvres"):
+        first.setdefault(row["switch_on"], row["manoeuvre"])
+    for sensor, table in (("gyro", "gyroscope"), ("accel", "accelerometer")):
+        found = {
+            (row["switch_on"], row["axis"]): row
+            for row in tables.rows(f"{table}_switch_ons")
+            if row["method"] == JOINT
+        }
+        unit = quantity("bias_x", UNITS[sensor]).shown
+        if not found:
+            continue
+        yield outline.Table(
+            _(
+                "{sensor}: bias after each switch-on less that of the joint fit, {unit}.",
+                sensor=capital(SENSOR[sensor]),
+                unit=unit.name,
+            ),
+            (
+                outline.Column(_("switch-on before"), "name"),
+                *(column for axis in AXES for column in outline.value_and_sigma(axis)),
+            ),
+            [
+                outline.table_row(
+                    numbers.shortened(name, 60),
+                    *(
+                        cell
+                        for axis in AXES
+                        for cell in _value_and_sigma(found.get((number, axis)), unit)
+                    ),
+                )
+                for number, name in first.items()
+            ],
+            note=_("σ is that of the difference, so it contains that of the mean over all."),
+        )
+
+
+def _value_and_sigma(row: Record | None, unit: Unit) -> tuple[str, str]:
+    if row is None:
+        return "—", "—"
+    value, sigma = unit.of(row["value"]), unit.of(row["sigma"])
+    return numbers.with_sigma(value, sigma, numbers.decimals_of(sigma))
 
 
 def _stability(rows: Sequence[Record]) -> outline.Table:

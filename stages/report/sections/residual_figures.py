@@ -1,4 +1,4 @@
-"""Residuals of the joint model: by manoeuvre, without and with effects, and their structure."""
+"""Residuals by manoeuvre: of the joint model, without and with effects, and their structure."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawn
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
@@ -72,7 +73,7 @@ def mean_residuals(tables: Tables) -> dict[str, list[Residual]]:
         if name not in sums:
             continue
         values, counts = (np.concatenate(each) for each in zip(*sums[name], strict=True))
-        pieces = [np.arange(len(values))] if (counts > 1).any() else _pieces(len(values))
+        pieces = [np.arange(len(values))] if (counts > 1).any() else pieces_of(len(values))
         totals, counts = (
             np.array([np.nansum(each[piece], axis=0) for piece in pieces])
             for each in (values, counts)
@@ -85,7 +86,7 @@ def mean_residuals(tables: Tables) -> dict[str, list[Residual]]:
     return by_sensor
 
 
-def _pieces(blocks: int) -> list[NDArray[np.int64]]:
+def pieces_of(blocks: int) -> list[NDArray[np.int64]]:
     """The blocks of a rest in a few pieces of equal length."""
     return [piece for piece in np.array_split(np.arange(blocks), PIECES) if len(piece)]
 
@@ -120,11 +121,8 @@ def by_manoeuvre(tables: Tables, finding: Record, mount: str, key: str) -> Figur
             "turns that were {scope}; dashed: noise alone.",
             scope=scope,
         )
-    named = len(shown) <= MOST_NAMES
-    margins = drawing.Margins(top=0.2, bottom=0.75 if named else 0.4, left=0.5, across=0.5)
     with drawing.style():
-        drawn, panels = drawing.side_by_side([2.6, 1.0] if changes else [1.0], 1.35, margins)
-        _manoeuvres(panels[0], sensor, shown, named)
+        drawn, panels = draw_by_manoeuvre(sensor, shown, beside=1.0 if changes else 0.0)
         if changes:
             _axes(panels[1], changes)
         picture = drawing.svg(drawn, key)
@@ -144,8 +142,29 @@ def _changes(gain: Sequence[Record], sensor: str) -> dict[str, Record]:
     return {axis: changes[axis] for axis in AXES if axis in changes}
 
 
-def _manoeuvres(panel: Axes, sensor: str, shown: Sequence[Residual], named: bool) -> None:
+def draw_by_manoeuvre(
+    sensor: str, shown: Sequence[Residual], *, beside: float = 0.0, band: float = 0.0
+) -> tuple[Drawn, list[Axes]]:
+    """The residuals of each manoeuvre in a panel, with a second one for something else.
+
+    `beside`: the width of the second; `band`: how many σ of noise are shaded.
+    """
+    named = len(shown) <= MOST_NAMES
+    margins = drawing.Margins(top=0.2, bottom=0.75 if named else 0.4, left=0.5, across=0.5)
+    drawn, panels = drawing.side_by_side([2.6, beside] if beside else [1.0], 1.35, margins)
+    _manoeuvres(panels[0], sensor, shown, named, band)
+    return drawn, panels
+
+
+def _manoeuvres(
+    panel: Axes, sensor: str, shown: Sequence[Residual], named: bool, band: float
+) -> None:
     unit = UNIT[sensor]
+    for number, residual in enumerate(shown if band else ()):
+        edge = band * np.nanmax(residual.sigma) / unit.size
+        panel.fill_between(
+            [number - 0.46, number + 0.46], -edge, edge, color=drawing.RULE, linewidth=0.0
+        )
     for column, axis in enumerate(AXES):
         for number, residual in enumerate(shown):
             pieces = len(residual.mean)

@@ -1,4 +1,4 @@
-"""Residuals: whole turns sample by sample, and the size of the residuals over that of the noise."""
+"""Residuals of the joint fit: whole turns sample by sample, and their size over the noise."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ from stages.report.outline import (
     table_row,
 )
 from stages.report.sections.periodic_figures import turns_about
-from stages.report.tables import Record, Tables, once
+from stages.report.tables import Record, Tables
 from stages.report.words import SENSORS, capital, term
 
 AT_REST = _("at rest")
@@ -58,33 +58,8 @@ Ratios = Mapping[tuple[str, str], dict[str, float]]  # by profile and manoeuvre,
 
 
 def parts(tables: Tables) -> Iterator[Part]:
-    """The residuals over the noise as a table, and the turn whose residuals are largest."""
-    fidelity = tables.rows("fidelity")
-    drawn = _drawn(tables)
-    if not drawn:
-        yield Paragraph(_("No whole turn was simulated."), "fair")
-    else:
-        ratios = {row["manoeuvre"]: _largest(row["manoeuvre"], fidelity) for row in fidelity}
-        worst = max(drawn, key=lambda envelope: ratios.get(envelope.turn.name, 0.0))
-        yield _figure(worst, "simulated-worst")
-    yield Heading(_("Ratio of residual to noise"))
-    yield _table(fidelity)
-
-
-def _largest(manoeuvre: str, fidelity: Sequence[Record]) -> float:
-    """The largest ratio of residual to noise of a manoeuvre's channels."""
-    own = (row for row in fidelity if row["manoeuvre"] == manoeuvre and row["noise_rms"])
-    return max((row["residual_rms"] / row["noise_rms"] for row in own), default=0.0)
-
-
-@once
-def _drawn(tables: Tables) -> list[Envelope]:
-    return envelopes(tables.stream("simulated"), drawn_turns(tables))
-
-
-def turn_parts(tables: Tables) -> Iterator[Part]:
-    """One figure per turn that is drawn."""
-    drawn = _drawn(tables)
+    """One figure per turn that is drawn, and the residuals over the noise as a table."""
+    drawn = envelopes(tables.stream("simulated"), drawn_turns(tables))
     for number, envelope in enumerate(drawn, 1):
         yield _figure(envelope, f"simulated-{number}")
     fidelity = tables.rows("fidelity")
@@ -92,14 +67,18 @@ def turn_parts(tables: Tables) -> Iterator[Part]:
     if drawn and len(every) > len(drawn):
         others = counted(len(every) - len(drawn), _("further turn"))
         yield Paragraph(_("{others} simulated but not drawn.", others=others))
+    if not drawn:
+        yield Paragraph(_("No whole turn was simulated."), "fair")
+    yield Heading(_("Ratio of residual to noise"))
+    yield _table(fidelity)
 
 
 SECTION = Section(
-    "residuals",
-    _("Residuals"),
+    "residuals-of-turns",
+    _("Residuals of the joint fit"),
     _(
-        "Measured readings less those simulated from the joint parameters and the "
-        "motion of the table."
+        "Measured readings less those simulated from the joint parameters, without effects, and "
+        "the motion of the table."
     ),
     _(
         "Left: the gyro along the axis of rotation, measured (band) and simulated "
@@ -112,14 +91,6 @@ SECTION = Section(
     ),
     ("simulated", "fidelity", "manoeuvres", "segments"),
     parts,
-)
-TURNS = Section(
-    "residuals-of-turns",
-    _("Residuals of each turn"),
-    _("The same for each whole turn, drawn as in “Residuals”."),
-    "",
-    ("simulated", "fidelity", "manoeuvres", "segments"),
-    turn_parts,
 )
 
 

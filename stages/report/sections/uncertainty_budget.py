@@ -25,6 +25,7 @@ from stages.report.words import SENSOR, capital, with_mount
 SOURCES = {
     "noise": _("white noise"),
     "drift": _("drift of the bias in the noise"),
+    "switch_on": _("bias from switch-on to switch-on"),
     "scatter": _("scatter of manoeuvres"),
     "random_walk": _("random walk of the bias"),
     "position": _("table, position"),

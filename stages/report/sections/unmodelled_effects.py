@@ -37,7 +37,7 @@ from stages.report.words import capital, count_in_words
 POSITION = "table_position_error"  # what an effect of the accelerometers may look like
 LINES = {"oscillation", "table_ripple", "table_eccentricity"}  # periodic in turns, all of them
 MIN_SPLIT_SIGMA = 3.3  # at which the likelier member is right in 95 of 100 campaigns
-IDENTIFIED = frozenset({"found", "class"})
+IDENTIFIED = frozenset({"found", "class", "law"})
 
 
 @once
@@ -53,14 +53,10 @@ def effect_findings(tables: Tables) -> list[Record]:
 
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
-    """A block for each finding, the tests for structure, and the detection limits."""
+    """What was found, the tests for structure, and the detection limits."""
     yield _summary(tables)
     yield from _decisions(tables)
-    tests = list(effect_tables.structure_tests(tables.rows("structures")))
-    firing = any(row["detected"] for row in tables.rows("structures"))
-    yield from () if firing else tests
-    yield from _blocks(tables)
-    yield from tests if firing else ()
+    yield from effect_tables.structure_tests(tables.rows("structures"))
     if missed := list(_not_detected(tables)):
         yield outline.Heading(_("Detection limits"))
         yield from effect_tables.detection_limits(tables.rows("detection_limits"), missed)
@@ -70,26 +66,14 @@ SECTION = outline.Section(
     "unmodelled-effects",
     _("Unmodelled effects"),
     _(
-        "Physical effects beyond bias, scale and cross-axis terms that the data reveal: "
-        "how certain each is, what it does and what to do; and the detection limits of "
-        "those not detected."
+        "Physical effects beyond bias, scale and cross-axis terms that the data reveal, and the "
+        "detection limits of those not detected."
     ),
-    _(
-        "The clearest comes first. Identified: significant, and no other effect of the "
-        "catalogue has the same signature. One of a class: others have the same "
-        "signature in these data. Consistent: the name is not certain. The reduction of "
-        "χ² is stated for the data that were fitted and for held-out data, where each "
-        "manoeuvre is predicted from the others with and without the effects; an effect "
-        "that only fits noise reduces nothing there. The attainable reduction is that "
-        "of exactly known effects. Sizes are least-squares estimates less what they are on "
-        "average too large because an effect is only named where it is large enough; ten "
-        "sigma above zero nothing of that is left."
-    ),
+    "",
     (
         *RESULT_TABLES,
         *FINDING_TABLES,
-        *("manoeuvres", "segments", "simulated", "fidelity", "scores", "lines", "worth"),
-        *("detection_limits", "structures", "structure_points", *CAUSE_TABLES[1:], *GAIN_TABLES),
+        *("scores", "detection_limits", "structures", *CAUSE_TABLES[1:], *GAIN_TABLES),
     ),
     parts,
 )
@@ -183,6 +167,31 @@ def _blocks(tables: Tables) -> Iterator[outline.Finding]:
             tone="" if kind_of(row) == "walk" else "fair",
             model=True,
         )
+
+
+EFFECTS = outline.Section(
+    "effects",
+    _("What shows each effect"),
+    _("The unmodelled effects one by one: how certain each is, what it does and what to do."),
+    _(
+        "The clearest comes first. Identified: significant, and no other effect of the "
+        "catalogue has the same signature. One of a class: others have the same "
+        "signature in these data. Consistent: the name is not certain. The reduction of "
+        "χ² is stated for the data that were fitted and for held-out data, where each "
+        "manoeuvre is predicted from the others with and without the effects; an effect "
+        "that only fits noise reduces nothing there. The attainable reduction is that "
+        "of exactly known effects. Sizes are least-squares estimates less what they are on "
+        "average too large because an effect is only named where it is large enough; ten "
+        "sigma above zero nothing of that is left."
+    ),
+    (
+        *RESULT_TABLES,
+        *FINDING_TABLES,
+        *("manoeuvres", "segments", "simulated", "fidelity", "scores", "lines", "worth"),
+        *("structures", "structure_points", *CAUSE_TABLES[1:], *GAIN_TABLES),
+    ),
+    _blocks,
+)
 
 
 def _title(row: Record) -> str:

@@ -68,6 +68,7 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
 SURE = {
     "found": _("identified: no other cause explains these data as well"),
     "one_of_class": _("one of a class whose members these data do not distinguish"),
+    "law": _("a law that no effect of the catalogue has; its physical cause is not known"),
     "unknown_structure": _("certain to be there; its nature is not known"),
 }
 CURED = {

@@ -1,0 +1,105 @@
+"""A law that no effect of the catalogue has: a function of one state, of one axis or of all."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import product
+from typing import Self
+
+import numpy as np
+
+from inertial.physics.effect import Array, Constant, Effect, Parameter, Reading, Truth, by_grade
+from inertial.physics.laws import AXES, LAWS, functions, unknown
+from inertial.physics.motion import Motion
+from inertial.text.messages import _
+from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
+
+SENSORS = {"gyro": ("rad/s", DEGREE_PER_HOUR), "accel": ("m/s²", 1e-5 * STANDARD_GRAVITY)}
+WIDE = 1e3  # of the usual size, which of a shape that is far from 1 says nothing
+ALL = "all"  # axes, each with a size of its own
+
+
+class Law(Effect):
+    """Reading of an axis += Σ k_j u_j, u_j the functions of a family of one state.
+
+    `axis`: x, y, z, or `all`; `family`, `state`, `shape`: as in `physics.laws.functions`.
+    """
+
+    cause = _("a law that no effect of the catalogue has")
+    source = "sparse regression (Brunton, Proctor & Kutz 2016), with the evidence of each form"
+    stays = _("its physical cause is not known, so it is not taken out of readings")
+    thinkable = 1e6
+
+    def __init__(
+        self, sensor: str, axis: str, family: str, state: str, shape: Sequence[float] = ()
+    ) -> None:
+        self.sensor, self.axis, self.family, self.state = sensor, axis, family, state
+        self.shape = tuple(shape)
+        self.name = law_name(sensor, axis, family, state)  # type: ignore[misc]
+        unit, size = SENSORS[sensor]
+        self.sizes = by_grade(size, 0.1, 1, 10, 100)  # type: ignore[misc]
+        self.parameters = tuple(  # type: ignore[misc]
+            Parameter(
+                f"k{j}_{i}", unit, WIDE * size, _("size of the law in the {axis} reading", axis=i)
+            )
+            for i in self.axes
+            for j in self._terms
+        )
+
+    @property
+    def axes(self) -> str:
+        """Those that have it."""
+        return AXES if self.axis == ALL else self.axis
+
+    @property
+    def _terms(self) -> Sequence[str]:
+        """What distinguishes the functions of one axis."""
+        if self.family == "polynomial":
+            return [str(k) for k in range(1, round(self.shape[0] if self.shape else 2) + 1)]
+        return ("_cos", "_sin") if self.family == "harmonic" else ("",)
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        return self.name, self.shape
+
+    @property
+    def label(self) -> str:
+        return f"{self.name}@{','.join(f'{value:.6g}' for value in self.shape)}"
+
+    def blind(self, motion: Motion) -> str:
+        return unknown(self.state, motion)
+
+    def constants(self, motion: Motion) -> Sequence[Constant]:
+        return [
+            Constant(f"shape_{i}", "1", _("shape of the law"), value)
+            for i, value in enumerate(self.shape, 1)
+        ]
+
+    def with_constants(self, values: Mapping[str, float]) -> Self:
+        shape = [values[f"shape_{i}"] for i in range(1, 100) if f"shape_{i}" in values]
+        return type(self)(self.sensor, self.axis, self.family, self.state, shape)
+
+    def as_named(self, values: Mapping[str, float]) -> Effect:
+        return self.with_constants(values)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        added = np.zeros((len(motion.time), 3))
+        for axis, own in zip(self.axes, np.split(values, len(self.axes)), strict=True):
+            i = AXES.index(axis)
+            added[:, i] = functions(self.family, self.state, self.shape, motion, i) @ own
+        if self.sensor == "gyro":
+            return replace(reading, gyro=reading.gyro + added)
+        return replace(reading, accel=reading.accel + added)
+
+
+def law_name(sensor: str, axis: str, family: str, state: str) -> str:
+    """The name of a law as an effect."""
+    return f"{sensor}_{axis}_{family}_of_{state.replace('*', '_and_')}"
+
+
+def every_law() -> dict[str, Law]:
+    """All laws that may be named, by name; their shapes are those of a campaign."""
+    laws = (
+        Law(sensor, axis, family, state)
+        for sensor, axis, (family, state) in product(SENSORS, (*AXES, ALL), LAWS)
+    )
+    return {law.name: law for law in laws}

@@ -1,0 +1,272 @@
+"""Variance components of what campaigns share: by type, table and IMU, and of each campaign.
+
+Campaign j says of p quantities b_j ~ N(F_j β_j, F_j), where
+
+    β_j = μ_type + u_table + v_imu + w_j,     each N(0, θ I) with the variance θ of its level.
+
+The campaigns' own part is eliminated in each campaign and the IMUs' in each IMU, so that the
+restricted likelihood costs the same for each campaign; types and tables, which are few, are solved
+together (Searle, Casella & McCulloch, Variance Components, 1992, chapter 7).
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+LEVELS = ("type", "table", "imu", "campaign")
+FLAT = 1e8  # variance of the mean of a type that is free, in variances of the values
+SMALLEST, LARGEST = 1e-7, 1e3  # variances that are sought, in variances of the values
+STARTS = (0.01, 0.3)
+STEP = 0.05  # relative, of standard deviations, for the curvature of the likelihood
+MIN_SHOWN = 1e-5  # of the variance of the values: a component of less is zero
+ADAPTING, DRAWS = 1000, 4000  # of the sampler
+ACCEPTED = 0.3  # share of its steps
+SCALES = (0.2, 1.0, 3.0)  # of its steps, by chance: components differ in how well they are known
+TOTALS = (1e-3, 1e3)  # range of the mean square of an effect, in units of its first estimate
+
+
+@dataclass(frozen=True)
+class Solved:
+    """Given all variances: −2 log likelihood, and the parts of types and tables with covariance.
+
+    `types`: (y, p); `tables`: (t, p); `covariance`: of both, (y + t) p square.
+    """
+
+    deviance: float
+    types: Array
+    tables: Array
+    covariance: Array
+
+
+class Sharing:
+    """The evidence of c campaigns on p quantities.
+
+    Parameters
+    ----------
+    information, right : F (c, p, p) and b (c, p)
+    labels : of each level but the last the group of each campaign
+    """
+
+    def __init__(
+        self, information: Array, right: Array, labels: Mapping[str, Sequence[str]]
+    ) -> None:
+        self.information, self.right = information, right
+        self.of = {
+            level: np.unique(np.array(labels[level]), return_inverse=True)[1]
+            for level in LEVELS[:-1]
+        }
+        self.of[LEVELS[-1]] = np.arange(len(right))
+
+    def distinct(self) -> dict[str, tuple[str, ...]]:
+        """The levels that divide the campaigns differently, each with those that do as it does."""
+        divisions: dict[bytes, list[str]] = {}
+        for level in LEVELS:
+            _, first = np.unique(self.of[level], return_index=True)
+            order = np.argsort(np.argsort(first))
+            divisions.setdefault(order[self.of[level]].tobytes(), []).append(level)
+        return {levels[0]: tuple(levels) for levels in divisions.values()}
+
+    def solved(self, variance: Mapping[str, float]) -> Solved:
+        """The likelihood of the variances of the levels, none: zero."""
+        information, right, deviance = _eliminated(
+            self.information, self.right, variance.get("campaign", 0.0)
+        )
+        p, own = right.shape[1], self.of["imu"]
+        count = {level: int(self.of[level].max()) + 1 for level in ("type", "table")}
+        size = p * sum(count.values())
+        imus, spread = int(own.max()) + 1, variance.get("imu", 0.0)
+        of_imu, score = np.zeros((imus, p, p)), np.zeros((imus, p))
+        np.add.at(of_imu, own, information)
+        np.add.at(score, own, right)
+        across = np.zeros((imus, size, p))
+        matrix, vector = np.zeros((size, size)), np.zeros(size)
+        start = {"type": 0, "table": p * count["type"]}
+        for level, first in start.items():
+            at = first + p * self.of[level][:, None] + np.arange(p)
+            np.add.at(across, (own[:, None], at), information)
+            np.add.at(vector, at, right)
+            for other, second in start.items():
+                beside = second + p * self.of[other][:, None] + np.arange(p)
+                np.add.at(matrix, (at[:, :, None], beside[:, None, :]), information)
+        # (F + 1/θ)⁻¹ = θ (1 + θ F)⁻¹
+        inverse = spread * np.linalg.inv(np.eye(p) + spread * of_imu)
+        deviance += float(np.sum(np.linalg.slogdet(np.eye(p) + spread * of_imu)[1]))
+        deviance -= float(np.einsum("np,npq,nq->", score, inverse, score))
+        matrix -= np.einsum("nap,npq,nbq->ab", across, inverse, across)
+        vector -= np.einsum("nap,npq,nq->a", across, inverse, score)
+        root = np.sqrt(
+            np.repeat(
+                [variance.get(level, 0.0) for level in ("type", "table")],
+                [p * count["type"], p * count["table"]],
+            )
+        )
+        scaled = np.eye(size) + root[:, None] * matrix * root
+        covariance = root[:, None] * np.linalg.inv(scaled) * root
+        values = covariance @ vector
+        deviance += float(np.linalg.slogdet(scaled)[1] - vector @ values)
+        split = p * count["type"]
+        return Solved(
+            deviance, values[:split].reshape(-1, p), values[split:].reshape(-1, p), covariance
+        )
+
+
+def _eliminated(information: Array, right: Array, variance: float) -> tuple[Array, Array, float]:
+    """F (1 + θ F)⁻¹ and (1 + θ F)⁻¹ b of each campaign, and what that adds to the deviance."""
+    if not variance:
+        return information, right, 0.0
+    grown = np.eye(right.shape[1]) + variance * information
+    inverse = np.linalg.inv(grown)
+    deviance = float(np.sum(np.linalg.slogdet(grown)[1]))
+    kept = np.einsum("cpq,cq->cp", inverse, right)
+    return information @ inverse, kept, deviance - variance * float(np.sum(right * kept))
+
+
+# ---- Shares of an effect.
+
+
+def shares(sharing: Sharing, seed: int = 0) -> dict[tuple[str, ...], tuple[float, float]]:
+    """Which share of the mean square of an effect each level has, with sigma.
+
+    Levels that divide the campaigns in the same way have one share together. Mean and standard
+    deviation of the posterior, all shares being equally probable beforehand and the mean square
+    uniform in its logarithm; by random-walk Metropolis sampling, the steps adapted at first.
+    """
+    levels = sharing.distinct()
+    random = np.random.default_rng(seed)
+    first = _mean_square(sharing)
+    low, high = np.log(first) + np.log(TOTALS)
+
+    def logarithm(sizes: Array) -> float:
+        """Of the posterior density of the logarithms of the variances."""
+        total = float(np.logaddexp.reduce(sizes))
+        if not low < total < high:
+            return -np.inf
+        deviance = sharing.solved(dict(zip(levels, np.exp(sizes).tolist(), strict=True))).deviance
+        return float(np.sum(sizes - total)) - deviance / 2
+
+    place = np.full(len(levels), np.log(first / len(levels)))
+    here, step = logarithm(place), 1.0
+    drawn = []
+    for number in range(ADAPTING + DRAWS):
+        trial = place + step * random.normal(size=len(place)) * random.choice(SCALES, len(place))
+        there = logarithm(trial)
+        accepted = np.log(random.random()) < there - here
+        if accepted:
+            place, here = trial, there
+        if number < ADAPTING:
+            step *= np.exp((float(accepted) - ACCEPTED) / np.sqrt(number + 1))
+        else:
+            drawn.append(np.exp(place - np.logaddexp.reduce(place)))
+    mean, sigma = np.mean(drawn, axis=0), np.std(drawn, axis=0)
+    return {
+        names: (float(m), float(s))
+        for names, m, s in zip(levels.values(), mean, sigma, strict=True)
+    }
+
+
+def _mean_square(sharing: Sharing) -> float:
+    """A first estimate of the mean square of a parameter of the effect."""
+    count, quantities = sharing.right.shape
+    alone = np.linalg.pinv(sharing.information, hermitian=True)
+    excess = float(np.einsum("cp,cpq,cq->", sharing.right, alone, sharing.right)) / (
+        count * quantities
+    )
+    information = float(np.trace(sharing.information.sum(axis=0))) / (count * quantities)
+    return float(max(excess - 1, 1 / count) / information)
+
+
+# ---- Mean and spread of a quantity.
+
+
+@dataclass(frozen=True)
+class Spread:
+    """A standard deviation between the groups of some levels that the campaigns do not tell apart.
+
+    `sigma`: NaN where the largest likelihood is at zero.
+    """
+
+    levels: tuple[str, ...]
+    groups: int
+    value: float
+    sigma: float
+
+
+@dataclass(frozen=True)
+class Population:
+    """A quantity of a type: mean with sigma, and its spreads; `tables`: the part of each table."""
+
+    mean: float
+    mean_sigma: float
+    spreads: tuple[Spread, ...]
+    tables: Array
+
+
+def population(values: Array, sigma: Array, labels: Mapping[str, Sequence[str]]) -> Population:
+    """Mean and spreads of a quantity over the campaigns of one type, by restricted likelihood.
+
+    `values`, `sigma`: (c,), of each campaign, independent. The spread between types is not sought.
+    """
+    scale = max(float(np.var(values)), float(np.median(sigma**2)))
+    information = (scale / sigma**2)[:, None, None]
+    right = (values - np.median(values))[:, None] * np.sqrt(scale) / sigma[:, None] ** 2
+    sharing = Sharing(information, right, labels)
+    levels = {
+        first: names
+        for first, names in sharing.distinct().items()
+        if not sharing.of[first].max() < 1
+    }
+
+    def with_mean(sizes: Array) -> dict[str, float]:
+        return {"type": FLAT, **dict(zip(levels, np.exp(sizes).tolist(), strict=True))}
+
+    def deviance(sizes: Array) -> float:
+        return sharing.solved(with_mean(sizes)).deviance
+
+    bounds = [(np.log(SMALLEST), np.log(LARGEST))] * len(levels)
+    best = min(
+        (minimize(deviance, np.full(len(levels), np.log(s)), bounds=bounds) for s in STARTS),
+        key=lambda found: float(found.fun),
+    )
+    sizes = np.where(np.exp(best.x) < MIN_SHOWN, -np.inf, best.x)
+    solved = sharing.solved(with_mean(sizes))
+    sigmas = _sigmas(deviance, sizes)
+    root = float(np.sqrt(scale))
+    spreads = tuple(
+        Spread(names, int(sharing.of[first].max()) + 1, root * float(np.exp(size / 2)), root * s)
+        for (first, names), size, s in zip(levels.items(), sizes, sigmas, strict=True)
+    )
+    return Population(
+        float(np.median(values)) + root * float(solved.types[0, 0]),
+        root * float(np.sqrt(solved.covariance[0, 0])),
+        spreads,
+        root * solved.tables[:, 0],
+    )
+
+
+def _sigmas(deviance: Callable[[Array], float], sizes: Array) -> Array:
+    """Sigmas of the standard deviations by the curvature of the likelihood, NaN of those at 0."""
+    shown = np.flatnonzero(np.isfinite(sizes))
+    sigmas = np.full(len(sizes), np.nan)
+
+    def at(steps: Array) -> float:
+        changed = sizes.copy()
+        changed[shown] = changed[shown] + 2 * np.log1p(STEP * steps)
+        return deviance(changed)
+
+    unit = np.eye(len(shown))
+    curvature = (
+        np.array(
+            [[at(i + j) + at(-i - j) - at(i - j) - at(j - i) for j in unit] for i in unit]
+        ).reshape(len(shown), len(shown))
+        / (2 * STEP) ** 2
+    )
+    if len(shown) and np.all(np.linalg.eigvalsh(curvature) > 0):
+        relative = np.sqrt(2 * np.diag(np.linalg.inv(curvature)))
+        sigmas[shown] = np.exp(sizes[shown] / 2) * relative
+    return sigmas

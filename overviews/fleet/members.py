@@ -1,0 +1,229 @@
+"""The campaigns of a fleet: what each says of effects, and the parameters that it found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial import tables
+from inertial.campaign.references import NAMELESS
+from inertial.estimation.triad import linear_names
+from inertial.estimation.type_population import Campaigns
+from inertial.model_selection.fleet_evidence import FleetEvidence
+from inertial.tables.errors import Refusal
+from inertial.text.messages import _
+from inertial.text.parameters import SCALE
+
+Array = NDArray[np.float64]
+Place = tuple[str, str]  # an effect and its parameter; or a sensor and its parameter
+
+READ = {
+    "campaign": ("plan/campaign.parquet", tables.CAMPAIGN),
+    "inputs": ("plan/inputs.parquet", tables.INPUTS),
+    "known": ("plan/known.parquet", tables.KNOWN),
+    "score": ("criticism/score_vector.parquet", tables.SCORE_VECTOR),
+    "information": ("criticism/information_matrix.parquet", tables.INFORMATION_MATRIX),
+    "result": ("diagnosis/result.parquet", tables.PARAMETERS),
+    "covariance": ("diagnosis/covariance.parquet", tables.COVARIANCE),
+}
+UNKNOWN = "unknown"  # serial number
+PARAMETERS: tuple[Place, ...] = tuple(
+    (sensor, name) for sensor in ("accel", "gyro") for name in linear_names()
+)
+
+ACCEL_SCALES = {("accel", name) for name in SCALE}
+MAX_GRAVITY_SHARE = 0.9999  # of the variance of a scale factor
+
+
+@dataclass(frozen=True)
+class Member:
+    """One mount of one campaign.
+
+    `score` by effect and parameter, `information` rows of the table; `values`: (24,) in the order
+    of PARAMETERS, NaN where not determined, with `covariance`; `gravity`: as the campaign takes it
+    as known, m/s², with sigma; `reason`: why it is not pooled.
+    """
+
+    campaign: str
+    mount: str
+    type: str
+    imu: str
+    table: str
+    simulated: bool
+    logs: frozenset[str]
+    score: Mapping[Place, float]
+    units: Mapping[Place, str]
+    information: pd.DataFrame
+    values: Array
+    covariance: Array
+    gravity: tuple[float, float]
+    reason: str = ""
+
+    @property
+    def name(self) -> str:
+        """Campaign and mount."""
+        return f"{self.campaign}/{self.mount}" if self.mount else self.campaign
+
+
+def members_of(names: Sequence[str], derived: Path) -> list[Member]:
+    """The campaigns with what they say; one of the same logs as another is not pooled.
+
+    Raises
+    ------
+    Refusal
+        where a table is missing or damaged, or simulated and real campaigns are mixed
+    """
+    members: list[Member] = []
+    of_logs: dict[str, str] = {}
+    for name in names:
+        for member in _members(name, derived / name):
+            twin = next((of_logs[log] for log in member.logs if of_logs.get(log, name) != name), "")
+            members.append(
+                replace(member, reason=_("same logs as {name}", name=twin) if twin else "")
+            )
+            of_logs.update(dict.fromkeys(member.logs, name) if not twin else {})
+    if len({member.simulated for member in members}) > 1:
+        real, simulated = (
+            next(m.campaign for m in members if m.simulated == which) for which in (False, True)
+        )
+        raise Refusal(
+            "SELECT",
+            "",
+            _("{real} is real and {simulated} simulated", real=real, simulated=simulated),
+            _("campaigns of one kind"),
+            _("name the campaigns one by one"),
+        )
+    return members
+
+
+def _members(name: str, folder: Path) -> Iterator[Member]:
+    frames = {key: table.read(folder / place) for key, (place, table) in READ.items()}
+    about = frames["campaign"].iloc[0]
+    compensated = _(", compensated logs") if about["compensated"] else ""
+    kind = f"{about['instrument']}{compensated}"
+    imu = (
+        f"{kind} {about['serial']}" if about["serial"] != UNKNOWN else _("IMU of {name}", name=name)
+    )
+    table = about["table"]
+    if table in NAMELESS:
+        table = _("table of {name}", name=name)
+    inputs = frames["inputs"]
+    logs = frozenset(inputs.loc[inputs["file"] != "campaign.yaml", "sha256"])
+    result = frames["result"]
+    result = result[result["effect"].isna() & result["value"].notna() & result["sigma"].notna()]
+    covariance = {
+        pair: value
+        for first, second, value in frames["covariance"].itertuples(index=False)
+        for pair in ((first, second), (second, first))
+    }
+    for mount in sorted({*frames["score"]["mount"], *result["mount"]}):
+        score, information, own = (
+            frame[frame["mount"] == mount]
+            for frame in (frames["score"], frames["information"], result)
+        )
+        places = list(zip(score["effect"], score["parameter"], strict=True))
+        yield Member(
+            name,
+            mount,
+            kind,
+            imu,
+            str(table),
+            bool(about["simulated"]),
+            logs,
+            dict(zip(places, score["score"], strict=True)),
+            dict(zip(places, score["unit"], strict=True)),
+            information,
+            *_parameters(own, covariance),
+            _gravity(frames["known"]),
+        )
+
+
+def _parameters(rows: pd.DataFrame, known: Mapping[tuple[str, str], float]) -> tuple[Array, Array]:
+    by_place = {(row.sensor, row.parameter): row for row in rows.itertuples()}
+    found: list[Any] = [by_place.get(place) for place in PARAMETERS]
+    values = np.array([np.nan if row is None else row.value for row in found])
+    covariance = np.zeros((len(found), len(found)))
+    for i, one in enumerate(found):
+        for j, other in enumerate(found):
+            if one is not None and other is not None:
+                covariance[i, j] = known.get((one.id, other.id), 0.0)
+        covariance[i, i] = one.sigma**2 if one is not None else 1.0
+    return values, covariance
+
+
+def _gravity(known: pd.DataFrame) -> tuple[float, float]:
+    row = known[known["quantity"] == "gravity"].iloc[0]
+    return float(row["value"]), float(np.nan_to_num(row["sigma"]))
+
+
+def labels_of(members: Sequence[Member]) -> dict[str, list[str]]:
+    """The groups of the levels."""
+    return {
+        "type": [m.type for m in members],
+        "table": [m.table for m in members],
+        "imu": [m.imu for m in members],
+        "campaign": [m.name for m in members],
+    }
+
+
+def evidence_of(members: Sequence[Member]) -> tuple[FleetEvidence, dict[str, list[Place]]]:
+    """The evidence of all, and the parameters of each effect."""
+    effects: dict[str, dict[Place, None]] = {}
+    for member in members:
+        for place in member.score:
+            effects.setdefault(place[0], {})[place] = None
+    every = [place for own in effects.values() for place in own]
+    column = {place: i for i, place in enumerate(every)}
+    information = np.zeros((len(members), len(every), len(every)))
+    right = np.zeros((len(members), len(every)))
+    for number, member in enumerate(members):
+        for place, value in member.score.items():
+            right[number, column[place]] = value
+        table = member.information
+        rows = [column[p] for p in zip(table["effect"], table["parameter"], strict=True)]
+        beside = zip(table["with_effect"], table["with_parameter"], strict=True)
+        columns = [column[p] for p in beside]
+        information[number, rows, columns] = table["information"]
+        information[number, columns, rows] = table["information"]
+    of_effect = {name: [column[place] for place in own] for name, own in effects.items()}
+    places = {name: list(own) for name, own in effects.items()}
+    return FleetEvidence(of_effect, information, right, labels_of(members)), places
+
+
+# ---- The error of gravity: campaigns that take the same value as known contain it alike.
+
+
+def campaigns_of_type(members: Sequence[Member]) -> Campaigns:
+    """The parameters of the campaigns of one type, the error of gravity taken out of their sigmas.
+
+    A relative error ε of gravity is −ε of each scale factor of the accelerometers.
+    """
+    covariance = np.array([m.covariance for m in members])
+    moved = np.array([_by_gravity(m) for m in members])
+    return Campaigns(
+        np.array([m.values for m in members]),
+        covariance - moved[:, :, None] * moved[:, None, :],
+        labels_of(members),
+    )
+
+
+def of_gravity(members: Sequence[Member]) -> Array:
+    """Sigma of the means by the error of gravity, (24,): one for each value that is known."""
+    variance = np.zeros(len(PARAMETERS))
+    for gravity in {m.gravity for m in members}:
+        own = np.array([_by_gravity(m) * (m.gravity == gravity) for m in members])
+        variance += own.mean(axis=0) ** 2
+    return np.sqrt(variance)
+
+
+def _by_gravity(member: Member) -> Array:
+    value, sigma = member.gravity
+    most = np.sqrt(np.diag(member.covariance) * MAX_GRAVITY_SHARE)
+    of = np.array([place in ACCEL_SCALES for place in PARAMETERS])
+    return np.where(of & np.isfinite(member.values), np.minimum(sigma / value, most), 0.0)

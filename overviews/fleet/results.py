@@ -1,0 +1,190 @@
+"""What the campaigns of a fleet show together, as rows of its tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from math import atanh, sqrt
+from typing import Any
+
+import numpy as np
+
+from inertial.estimation.consistency import normal_p_value
+from inertial.estimation.sharing import LEVELS, shares
+from inertial.estimation.type_population import of_new_imu, type_population
+from inertial.model_selection.fleet_evidence import EVERY, FleetEvidence, Shared
+from inertial.model_selection.fleet_search import Finding, FleetSearch, fleet_law
+from inertial.tables.fleet import FLEET
+from inertial.tables.shared import UNITS
+from overviews.fleet.members import (
+    PARAMETERS,
+    Member,
+    Place,
+    campaigns_of_type,
+    evidence_of,
+    of_gravity,
+)
+
+Row = dict[str, Any]
+Rows = dict[str, list[Row]]
+EQUAL = 0.9999  # a correlation of what is equal by a convention, as the axes of a case by hand
+OF_FISHER_Z = 3  # degrees of freedom that a correlation takes
+
+
+def results_of(
+    members: Sequence[Member], *, false_discoveries: float, outliers: float
+) -> tuple[Rows, int]:
+    """The rows of all tables, and how many hypotheses were searched.
+
+    Parameters
+    ----------
+    false_discoveries : accepted share of false ones among the findings
+    outliers : accepted probability of calling any IMU of a type an outlier
+    """
+    rows: Rows = {name: [] for name in FLEET}
+    rows["campaigns"] = [
+        {
+            "campaign": m.campaign,
+            "mount": m.mount,
+            "type": m.type,
+            "imu": m.imu,
+            "table": m.table,
+            "pooled": not m.reason,
+            "reason": m.reason,
+        }
+        for m in members
+    ]
+    pooled = [member for member in members if not member.reason]
+    showing = [member for member in pooled if member.score]
+    searched = 0
+    if len(showing) > 1:
+        evidence, places = evidence_of(showing)
+        law = fleet_law(evidence, false_discoveries)
+        searched = law.hypotheses
+        found = FleetSearch(evidence, law).found()
+        units = {place: unit for member in showing for place, unit in member.units.items()}
+        for name, row in _effects(evidence, found, places, units):
+            rows[name].append(row)
+    for kind in dict.fromkeys(member.type for member in pooled):
+        for name, row in _population([m for m in pooled if m.type == kind], outliers):
+            rows[name].append(row)
+    return rows, searched
+
+
+# ---- Effects.
+
+
+def _effects(
+    evidence: FleetEvidence,
+    found: Sequence[Finding],
+    places: Mapping[str, Sequence[Place]],
+    units: Mapping[Place, str],
+) -> Iterator[tuple[str, Row]]:
+    names = evidence.names
+    model = [one.hypothesis for one in found]
+    ids = [_id(evidence, one) for one in model]
+    for identifier, one in zip(ids, found, strict=True):
+        own = one.hypothesis
+        yield (
+            "findings",
+            {
+                "finding": identifier,
+                "effect": names[own.effect],
+                "level": own.level,
+                "group": _group(evidence, own),
+                "statistic": one.statistic,
+                "degrees": one.degrees,
+                "p_value": one.p_value,
+            },
+        )
+        for effect, weight in one.members.items():
+            row = {"finding": identifier, "effect": names[effect], "probability": weight}
+            yield "members", row
+        for level, weight in one.sharings.items():
+            row = {"finding": identifier, "level": level, "probability": weight}
+            yield "sharings", row | {"possible": level in one.levels}
+    for effect in dict.fromkeys(one.effect for one in model):
+        for levels, (share, sigma) in shares(evidence.sharing(model, effect)).items():
+            row = {"effect": names[effect], "levels": " + ".join(levels)}
+            yield "shares", row | {"share": share, "sigma": sigma}
+    if model:
+        yield from _sizes(evidence, ids, model, places, units)
+
+
+def _sizes(
+    evidence: FleetEvidence,
+    ids: Sequence[str],
+    model: Sequence[Shared],
+    places: Mapping[str, Sequence[Place]],
+    units: Mapping[Place, str],
+) -> Iterator[tuple[str, Row]]:
+    values, covariance = evidence.estimate(model)
+    numbers = zip(values.tolist(), np.sqrt(np.diag(covariance)).tolist(), strict=True)
+    for identifier, one in zip(ids, model, strict=True):
+        for group in evidence.groups_of(one):
+            for place in places[evidence.names[one.effect]]:
+                value, sigma = next(numbers)
+                if sigma:
+                    row = {"finding": identifier, "parameter": place[1], "unit": units[place]}
+                    row |= {"group": evidence.levels[one.level].labels[group]}
+                    yield "sizes", row | {"value": value, "sigma": sigma}
+
+
+def _group(evidence: FleetEvidence, one: Shared) -> str | None:
+    return None if one.group == EVERY else evidence.levels[one.level].labels[one.group]
+
+
+def _id(evidence: FleetEvidence, one: Shared) -> str:
+    return "/".join((evidence.names[one.effect], one.level, _group(evidence, one) or "each"))
+
+
+# ---- The population of a type.
+
+
+def _population(members: Sequence[Member], level: float) -> Iterator[tuple[str, Row]]:
+    kind = members[0].type
+    found = type_population(campaigns_of_type(members), level)
+    left_out = {one.imu for one in found.outliers}
+    for odd in found.outliers:
+        row = _place(kind, PARAMETERS[odd.parameter])
+        yield "outliers", row | {"imu": odd.imu, "size": odd.size, "p_value": odd.p_value}
+    kept = [member for member in members if member.imu not in left_out]
+    for place, one, common, values in zip(
+        PARAMETERS,
+        found.parameters,
+        of_gravity(kept),
+        np.array([m.values for m in kept]).T,
+        strict=True,
+    ):
+        if one is None:
+            continue
+        of = replace(one, mean_sigma=float(np.hypot(one.mean_sigma, common)))
+        unit = UNITS[place[0]] if place[1].startswith("bias") else "1"
+        imus = {m.imu for m, value in zip(kept, values, strict=True) if np.isfinite(value)}
+        row = _place(kind, place) | {"imus": len(imus), "unit": unit}
+        row |= {"mean": of.mean, "mean_sigma": of.mean_sigma}
+        sigma, degrees = of_new_imu(of) or (None, np.inf)
+        row |= {"prior_sigma": sigma, "prior_degrees": degrees if np.isfinite(degrees) else None}
+        yield "population", row
+        for spread in of.spreads:
+            row = _place(kind, place) | {"levels": _levels(spread.levels), "unit": unit}
+            row |= {"groups": spread.groups, "value": spread.value}
+            yield "spreads", row | {"sigma": None if np.isnan(spread.sigma) else spread.sigma}
+    for i, j in zip(*np.triu_indices(len(PARAMETERS), 1), strict=True):
+        r = float(found.correlation[i, j])
+        if np.isfinite(r) and abs(r) < EQUAL and found.imus > OF_FISHER_Z:
+            row = {"instrument": kind, "first": " ".join(PARAMETERS[i])}
+            row |= {"second": " ".join(PARAMETERS[j]), "correlation": r}
+            row |= {"sigma": (1 - r**2) / sqrt(found.imus - 1)}
+            yield (
+                "correlations",
+                row | {"p_value": normal_p_value(atanh(r) * sqrt(found.imus - OF_FISHER_Z))},
+            )
+
+
+def _levels(levels: Sequence[str]) -> str:
+    return " + ".join(level for level in LEVELS if level in levels)
+
+
+def _place(kind: str, place: Place) -> Row:
+    return {"instrument": kind, "sensor": place[0], "parameter": place[1]}

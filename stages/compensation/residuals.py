@@ -1,0 +1,160 @@
+"""Readings less what the result that counts predicts: static positions and steady rotation.
+
+A static position is predicted in its blocks, by the forward model with all effects of the result.
+The rate in a rotation is that of `simulated`, of which M and bias of the joint fit are undone; the
+effects are those that a reading tells, so that one of the table stays in.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial import tables
+from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.measurement import Measurement, SensorResult
+from inertial.campaign.motions import CampaignMotions
+from inertial.campaign.static_positions import StaticPosition
+from inertial.physics.forward import Site, Triad, predict
+from inertial.physics.motion import Motion, stretches
+from inertial.tables import ACCEL, CHANNELS, GYRO
+from inertial.tables.parquet import Stream
+
+Array = NDArray[np.float64]
+
+SECONDS = 1.0  # of a mean in a rotation
+MIN_SHARE = 0.98  # of it that is recorded, so that a vibration averages out as in the others
+MIN_COSINE = 0.5  # to an axis from which its sensor shows an error along a direction
+UNKNOWN = Triad(np.full((3, 3), np.nan), np.full(3, np.nan))
+LEFT = [f"residual_{channel}" for channel in GYRO]
+
+
+def residuals(
+    mounts: Sequence[CampaignData], measurements: Mapping[str, Measurement], simulated: Stream
+) -> Iterator[pd.DataFrame]:
+    """The table of residuals in pieces; nothing of a mount without a result."""
+    turns = _turns(mounts, simulated)
+    for data in mounts:
+        if (measurement := measurements.get(data.mount)) is None:
+            continue
+        sensors = [(ACCEL, measurement.accelerometer, data.accelerometer_positions[0])]
+        if not data.by_hand:  # which way the earth turns is not known there
+            known = data.gyro_inputs.of_known_attitude.static_positions
+            sensors.append((GYRO, measurement.gyro, known))
+        motions = CampaignMotions(data)
+        for channels, result, positions in sensors:
+            for position in positions:
+                yield _at_rest(data, position, motions.at_rest(position), channels, result)
+        yield from (
+            _in_rotation(data, name, turn, measurement)
+            for name, turn in turns.items()
+            if name in {m.name for m in data.plan}
+        )
+
+
+def _at_rest(
+    data: CampaignData,
+    position: StaticPosition,
+    rest: Motion,
+    channels: Sequence[str],
+    result: SensorResult,
+) -> pd.DataFrame:
+    """A static position in its blocks; by hand it tells of |f| alone, along the vertical."""
+    count = len(position.seconds)
+    same = {f.name: getattr(rest, f.name).repeat(count, axis=0) for f in fields(rest)[2:]}
+    own = {"time": position.time, "seconds": position.seconds, "temperature": position.temperature}
+    motion = replace(rest, **(same | own))
+    left = position.means - _predicted(motion, data.result.site, channels, result)
+    if data.by_hand:
+        left[:, np.abs(position.up_now) < MIN_COSINE] = np.nan
+    return _frame(
+        data,
+        (position.manoeuvre.name, position.part.phase),
+        (position.time, position.seconds),
+        dict(zip(channels, left.T, strict=True)),
+        dict(zip(channels, position.density[:, None] / np.sqrt(position.seconds), strict=True)),
+    )
+
+
+def _predicted(motion: Motion, site: Site, channels: Sequence[str], result: SensorResult) -> Array:
+    """The readings of one sensor by its result, (n, 3)."""
+    triad = result.triad or UNKNOWN
+    values = {one.effect.label: one.values for one in result.effects}
+    effects = [one.effect for one in result.effects]
+    reading = predict(motion, site, triad, triad, effects, values)
+    return reading.accel if channels is ACCEL else reading.gyro
+
+
+def _turns(mounts: Sequence[CampaignData], simulated: Stream) -> dict[str, pd.DataFrame]:
+    """Means over a second each of the gyros in steady rotations: predicted, residuals, and time.
+
+    `rows`: the number of samples in each.
+    """
+    step = {m.name: data.clocks[m.log].step for data in mounts for m in data.plan if m.do == "turn"}
+    parts: dict[str, list[pd.DataFrame]] = {}
+    columns = [*CHANNELS, *LEFT]
+    for batch in simulated.columns(["manoeuvre", "phase", "record", "time", *columns]):
+        rows = batch.to_pandas()
+        rows = rows[(rows["phase"] == "steady") & rows[LEFT].notna().all(axis=1)]
+        for name, own in rows.groupby("manoeuvre", sort=False):
+            second = own["time"].fillna(own["record"] * step[str(name)]) // SECONDS
+            sums = own[["time", *columns]].assign(rows=1.0).groupby(second).sum(min_count=1)
+            parts.setdefault(str(name), []).append(sums)
+    means = {}
+    for name, own in parts.items():
+        sums = pd.concat(own).groupby(level=0).sum(min_count=1)
+        whole = sums[sums["rows"] * step[name] >= MIN_SHARE * SECONDS]
+        means[name] = whole.div(whole["rows"], axis=0).assign(rows=whole["rows"])
+    return means
+
+
+def _in_rotation(
+    data: CampaignData, name: str, means: pd.DataFrame, measurement: Measurement
+) -> pd.DataFrame:
+    """The gyros in a steady rotation, in means of a second."""
+    (m,) = (m for m in data.plan if m.name == name)
+    predicted, left, time = (means[n].to_numpy(np.float64) for n in (GYRO, LEFT, "time"))
+    seconds = means["rows"].to_numpy(np.float64) * data.clocks[m.log].step
+    blocks = data.blocks[data.blocks["manoeuvre"] == name]
+    temperature = np.interp(time, *blocks[["time", "temperature"]].to_numpy(np.float64).T)
+    joint, gyro = data.result.gyro, measurement.gyro.triad
+    rates = np.full((len(means), 3), np.nan)
+    if joint is not None and gyro is not None:
+        known = (predicted - joint.bias) @ np.linalg.inv(joint.matrix).T
+        motion = stretches(time, seconds, temperature)
+        read = measurement.rate(predicted + left, motion, _force(data, means))
+        rates = (read - known) @ gyro.matrix.T
+    if m.rate is None or m.acceleration is None:  # then the rate is what the gyros read
+        rates[:, np.abs(m.axis) > MIN_COSINE] = np.nan
+    sigma = data.noise.of(name, "rest", GYRO) / np.sqrt(seconds)[:, None]
+    return _frame(
+        data,
+        (name, "steady"),
+        (time, seconds),
+        dict(zip(GYRO, rates.T, strict=True)),
+        dict(zip(GYRO, sigma.T, strict=True)),
+    )
+
+
+def _force(data: CampaignData, means: pd.DataFrame) -> Array:
+    """The specific force that the simulation had, (n, 3); NaN without accelerometers."""
+    joint = data.result.accelerometer or UNKNOWN
+    return (means[ACCEL].to_numpy(np.float64) - joint.bias) @ np.linalg.inv(joint.matrix).T
+
+
+def _frame(
+    data: CampaignData,
+    place: tuple[str, str | None],
+    times: tuple[Array, Array],
+    left: Mapping[str, Array],
+    sigma: Mapping[str, Array],
+) -> pd.DataFrame:
+    (manoeuvre, phase), (time, seconds) = place, times
+    shared = {"mount": data.mount, "manoeuvre": manoeuvre, "phase": phase}
+    frame = pd.DataFrame({"time": time, "seconds": seconds}).assign(**shared)
+    for prefix, values in (("residual_", left), ("sigma_", sigma)):
+        for channel in CHANNELS:
+            frame[prefix + channel] = values.get(channel, np.nan)
+    return frame[[column.name for column in tables.RESIDUALS.columns]]

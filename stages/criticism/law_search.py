@@ -1,0 +1,347 @@
+"""The law of what no effect of the catalogue explains in one sensor.
+
+Weighed are: a law, with all, one or none of the effects that were named in this sensor beside it;
+these effects alone; a random walk of the biases, with these effects and without. All by evidence in
+the same equations, without a random walk in their covariance. Every effect of the catalogue is as
+likely beforehand, and so is every law.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from inertial.campaign.equations import Campaign
+from inertial.effects import LAWS
+from inertial.effects.law import ALL, Law, law_name
+from inertial.model_selection import walk_odds
+from inertial.model_selection.evidence import SearchedEffect, searched_effect
+from inertial.model_selection.laws import (
+    LawOdds,
+    best_paths,
+    chance_of,
+    law_class,
+    law_odds,
+    log_paths,
+)
+from inertial.model_selection.walk_odds import Equations
+from inertial.physics import laws
+from inertial.physics.effect import Array, Effect
+from stages.criticism.bias_drift import half_waves, likely_random_walk, walk_evidence
+from stages.criticism.residual_structure import MIN_INFORMATION, PRIOR_SIGMA, Functions
+from stages.criticism.selection import (
+    MAX_LOG_ODDS,
+    SENSORS,
+    Selection,
+    columns_of,
+    walk_name,
+)
+
+AXES = "xyz"
+TELEGRAPH = ("telegraph", "time")
+FINER = (-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75)  # of the step of a grid
+UNMOVED = FINER.index(0.0)
+ROUNDS = 3
+Shape = tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class FoundLaw:
+    """A law of one sensor.
+
+    `members`: the laws that may replace it, the most probable first, with their shares and what
+    they capture of it; `p_value`: probability that noise alone reaches such odds; `odds`:
+    logarithm, against everything else; `walk`: the random walk that is as likely, or none.
+    """
+
+    law: Law
+    members: tuple[str, ...]
+    weights: tuple[float, ...]
+    captured: tuple[float, ...]
+    p_value: float
+    odds: float
+    walk: str = ""
+
+
+@dataclass(frozen=True)
+class Columns:
+    """The equations of a sensor on all laws.
+
+    `laws`, `shapes`: the columns and the shapes of the candidates of each; `steps`: the columns of
+    a step at each of `times`, h, in each axis; `waves`: of the half waves of each axis.
+    """
+
+    equations: Equations
+    place: dict[str, int]
+    laws: tuple[SearchedEffect, ...]
+    shapes: tuple[Sequence[Shape], ...]
+    steps: tuple[Sequence[int], ...]
+    times: Array
+    waves: tuple[Sequence[int], ...]
+
+    def given(self, effects: Sequence[Effect]) -> Equations:
+        """The equations given some effects, without what these contain."""
+        own = [self.place[name] for effect in effects for name in columns_of(effect)]
+        return without(self.equations, own)
+
+
+def find_law(selection: Selection, sensor: str, level: float) -> FoundLaw | None:
+    """The law of a sensor; None where something else is likelier, or noise."""
+    campaign = selection.campaign.without_random_walks()
+    if campaign.handled or not np.isfinite(campaign.motion.time).all():
+        return None
+    if sensor not in selection.evidence.labels:
+        return None
+    own = [c.effect for c in selection.named.causes if selection.sensor(c) == sensor]
+    named = [effect for effect in selection.effects if effect.name in own]
+    others = [effect for effect in selection.fitted if effect not in named]
+    columns = columns_with(campaign, sensor, others, named)
+    prior = {e.name: _prior(e, campaign, len(selection.searched)) for e in named}
+    tried = []
+    for beside in _subsets(named):
+        found = searched(columns, columns.given(beside))
+        tried.append((_catalogue(columns, beside, prior) + found.odds.total, found, beside))
+    score, found, beside = max(tried, key=lambda one: one[0])
+    alone = _catalogue(columns, named, prior)
+    walk = max(_walk(campaign, columns, sensor, others), alone + _walk_beside(columns, named))
+    if score - alone < MAX_LOG_ODDS or score - walk < -MAX_LOG_ODDS:
+        return None
+    p_value = chance_of(found.equations, found.odds, found.paths)
+    if p_value > level:
+        return None
+    group = law_class(found.equations, found.odds)
+    first = group.members[0]
+    shape = found.shapes[first][int(found.odds.candidates.value[found.odds.best[first]])]
+    law = _shaped(LAWS[found.laws[first].name], shape)
+    return FoundLaw(
+        refined(campaign, law, [*others, *beside]),
+        tuple(found.laws[i].name for i in group.members),
+        group.weights,
+        group.captured,
+        p_value,
+        score - max(walk, alone),
+        walk_name(SENSORS.index(sensor)) if score - walk < MAX_LOG_ODDS else "",
+    )
+
+
+def _shaped(law: Law, shape: Shape) -> Law:
+    return Law(law.sensor, law.axis, law.family, law.state, shape)
+
+
+# ---- The equations on all laws.
+
+
+def columns_with(
+    campaign: Campaign, sensor: str, others: Sequence[Effect], named: Sequence[Effect]
+) -> Columns:
+    """The equations given the `others`; on named effects, half waves, and laws."""
+    motion, part = campaign.motion, campaign.stretches(sensor)
+    times, waves = laws.steps(motion, laws.STEPS), list(half_waves(sensor))
+    before = [*others, *named, *waves]
+    first = sum(len(effect.parameters) for effect in before)
+    found: list[Functions] = []
+    steps: list[Sequence[int]] = []
+    places: dict[tuple[str, str], dict[str, list[list[int]]]] = {}  # by axis, of each shape
+    shapes: dict[tuple[str, str], Sequence[Shape]] = {}
+    for i, axis in enumerate(AXES):
+        values: list[Array] = []
+        for law in laws.LAWS:
+            if law == TELEGRAPH or not laws.known(law[1], motion, i):
+                continue
+            shapes[law] = laws.grid(*law, motion, i)
+            own = places.setdefault(law, {}).setdefault(axis, [])
+            for shape in shapes[law]:
+                values.append(laws.functions(*law, shape, motion, i))
+                own.append(list(range(first, first + values[-1].shape[1])))
+                first += values[-1].shape[1]
+        values += [laws.after(motion, float(time))[:, None] for time in times]
+        steps.append(range(first, first + len(times)))
+        first += len(times)
+        found.append(_functions(sensor, i, values, part))
+    equations, place = _equations(campaign, sensor, [*before, *found])
+    made: list[SearchedEffect] = []
+    of_each: list[Sequence[Shape]] = []
+    for law, axes in places.items():
+        joint = [[i for one in every for i in one] for every in zip(*axes.values(), strict=True)]
+        together = {ALL: joint} if len(axes) == len(AXES) else {}
+        for axis, candidates in (axes | together).items():
+            made.append(searched_effect(law_name(sensor, axis, *law), *candidates))
+            of_each.append(shapes[law])
+    known = [place[name] for effect in others for name in columns_of(effect)]
+    return Columns(
+        without(equations, known),
+        place,
+        tuple(made),
+        tuple(of_each),
+        tuple(steps),
+        times,
+        tuple([place[f"{wave.label}.c_{axis}"] for wave in waves] for axis in AXES),
+    )
+
+
+def _functions(sensor: str, axis: int, values: Sequence[Array], part: slice) -> Functions:
+    """The functions, of the stretches of the sensor."""
+    every = np.hstack(values)
+    whole = np.zeros_like(every)
+    whole[part] = every[part]
+    return Functions(sensor, axis, f"law_{AXES[axis]}", whole)
+
+
+def _equations(
+    campaign: Campaign, sensor: str, effects: Sequence[Effect]
+) -> tuple[Equations, dict[str, int]]:
+    """The normal equations of a sensor on effects, zero of what is fitted already."""
+    system = campaign.system(sensor, effects, PRIOR_SIGMA)
+    assert system is not None  # the sensor has equations
+    reduced, raw = system.effect_information(), system.raw_information()
+    kept = np.diag(reduced.information) > MIN_INFORMATION * raw
+    equations = Equations(reduced.information * np.outer(kept, kept), reduced.right * kept)
+    return equations, {name: i for i, name in enumerate(reduced.names)}
+
+
+def without(equations: Equations, columns: Sequence[int]) -> Equations:
+    """The equations given some columns, zero of what these contain."""
+    rest = equations.given(columns)
+    kept = np.diag(rest.information) > MIN_INFORMATION * np.diag(equations.information)
+    return Equations(rest.information * np.outer(kept, kept), rest.right * kept)
+
+
+# ---- The search, given some effects.
+
+
+@dataclass(frozen=True)
+class Searched:
+    """The odds of all laws, with the best paths of telegraphs as further columns; see `Columns`."""
+
+    equations: Equations
+    laws: tuple[SearchedEffect, ...]
+    shapes: tuple[Sequence[Shape], ...]
+    paths: Array
+    odds: LawOdds
+
+
+def searched(columns: Columns, equations: Equations) -> Searched:
+    """The odds of all laws in these equations.
+
+    Two levels in all axes have the path of one of them.
+    """
+    sensor, size = columns.laws[0].name.partition("_")[0], len(equations.right)
+    count = len(columns.times)
+    paths = {axis: _path(equations, steps) for axis, steps in zip(AXES, columns.steps, strict=True)}
+    made, shapes = list(columns.laws), list(columns.shapes)
+    ways = [0.0] * len(made)
+    added = np.zeros((len(AXES) ** 2, size))
+    for number, (axis, path) in enumerate(paths.items()):
+        first = len(AXES) * number
+        for row, steps in enumerate(columns.steps, first):
+            added[row, [steps[i] for i in path]] = (-1.0) ** np.arange(len(path))
+        own, every = [size + first + number], range(size + first, size + first + len(AXES))
+        for name, places in ((axis, own), (ALL, every)):
+            made.append(searched_effect(law_name(sensor, name, *TELEGRAPH), places))
+            shapes.append([tuple(float(columns.times[i]) for i in path)])
+            ways.append(log_paths(count, len(path)))
+    across = added @ equations.information
+    equations = Equations(
+        np.block([[equations.information, across.T], [across, across @ added.T]]),
+        np.append(equations.right, added @ equations.right),
+    )
+    odds = law_odds(equations, made, np.array(ways))
+    return Searched(equations, tuple(made), tuple(shapes), np.array(ways), odds)
+
+
+def _path(equations: Equations, steps: Sequence[int]) -> tuple[int, ...]:
+    """The most probable path of a telegraph."""
+    found = best_paths(equations, steps)
+    return max(found, key=lambda path: found[path] / 2 - log_paths(len(steps), len(path)))
+
+
+# ---- The rivals.
+
+
+def _subsets(named: Sequence[Effect]) -> list[Sequence[Effect]]:
+    """None of the effects, each, and all."""
+    return [[], *([effect] for effect in named), *([named] if len(named) > 1 else [])]
+
+
+def _prior(effect: Effect, campaign: Campaign, count: int) -> float:
+    """Log prior of an effect of the catalogue of `count`, and of the value of what it scans."""
+    return -float(np.log(count * max(len(effect.grid(campaign.motion)), 1)))
+
+
+def _catalogue(columns: Columns, kept: Sequence[Effect], prior: Mapping[str, float]) -> float:
+    """The log evidence of some of the named effects."""
+    total, rest = 0.0, columns.equations
+    for effect in kept:
+        own = [columns.place[name] for name in columns_of(effect)]
+        odds = walk_odds.law(rest, [own], np.ones(1))
+        total, rest = total + odds.log_evidence + prior[effect.name], odds.rest
+    return total
+
+
+def _walk(campaign: Campaign, columns: Columns, sensor: str, others: Sequence[Effect]) -> float:
+    """The log evidence of a random walk alone, by half waves or by the readings themselves."""
+    odds = walk_odds.walk(columns.equations, columns.waves).log_evidence
+    if size := likely_random_walk(campaign, sensor, others):
+        odds = max(odds, walk_evidence(campaign, sensor, size, others))
+    return odds
+
+
+def _walk_beside(columns: Columns, named: Sequence[Effect]) -> float:
+    """That of a random walk beside the named effects."""
+    return walk_odds.walk(columns.given(named), columns.waves).log_evidence
+
+
+# ---- The shape of a law between the values of its grid.
+
+
+def refined(campaign: Campaign, law: Law, beside: Sequence[Effect]) -> Law:
+    """The law with each value of its shape moved within a step of its grid while that is better."""
+    part, axes = campaign.stretches(law.sensor), [AXES.index(axis) for axis in law.axes]
+    grid = (
+        [(float(time),) for time in laws.steps(campaign.motion, laws.STEPS)]
+        if law.family == TELEGRAPH[0]
+        else laws.grid(law.family, law.state, campaign.motion, axes[0])
+    )
+    if not law.shape or law.family == "polynomial" or len(grid) < 2:
+        return law
+    values = np.array(grid)[:, 0]
+    scale = 1.0
+    for _round in range(ROUNDS):
+        for k in range(len(law.shape)):
+            near = np.sort(np.abs(values - law.shape[k]))
+            step = scale * float(near[near > 1e-9 * np.ptp(values)][0])
+            tried = [
+                _shaped(law, (*law.shape[:k], law.shape[k] + share * step, *law.shape[k + 1 :]))
+                for share in FINER
+            ]
+            law = _best(campaign, tried, beside, part, axes)
+        scale /= 4
+    return law
+
+
+def _best(
+    campaign: Campaign,
+    tried: Sequence[Law],
+    beside: Sequence[Effect],
+    part: slice,
+    axes: Sequence[int],
+) -> Law:
+    """The one that explains most."""
+    motion, found, first = campaign.motion, [], sum(len(e.parameters) for e in beside)
+    columns: list[list[int]] = [[] for _ in tried]
+    for axis in axes:
+        values = [laws.functions(o.family, o.state, o.shape, motion, axis) for o in tried]
+        for own, one in zip(columns, values, strict=True):
+            own += range(first, first + one.shape[1])
+            first += one.shape[1]
+        found.append(_functions(tried[0].sensor, axis, values, part))
+    equations, place = _equations(campaign, tried[0].sensor, [*beside, *found])
+    equations = without(equations, [place[n] for e in beside for n in columns_of(e)])
+    candidates = law_odds(
+        equations, [searched_effect("", own) for own in columns], np.zeros(len(tried))
+    )
+    odds = candidates.of_each
+    best = int(np.argmax(odds))
+    # A power of the grid, such as 3, is simpler than one between.
+    simple = tried[best].family.endswith("power") and odds[best] < odds[UNMOVED] + MAX_LOG_ODDS
+    return tried[UNMOVED if simple else best]

@@ -1,0 +1,82 @@
+"""A law as a file in the form of the catalogue, for whoever finds its physical cause."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from inertial.effects.law import SENSORS, Law
+from inertial.physics.laws import AXES
+from inertial.text.cause_names import in_words
+from stages.extension.named_effects import NamedClass
+
+TEMPLATE = '''"""{title}: a law that a calibration found, whose physical cause is not known.
+
+Copy this file into inertial/effects/, add the class to the catalogue there, write its cause and its
+source, and where readings are to be compensated its terms; the tests of the catalogue do the rest.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.physics.laws import functions, unknown
+from inertial.physics.motion import Motion
+from inertial.text.messages import _
+
+
+class {cls}(Effect):
+    """Reading of an axis += Σ k_j u_j, u_j the {family} of {state}: shape {shape}."""
+
+    name = "{name}"
+    cause = _("{title}")
+    source = "found in the residuals of a calibration"
+    parameters = (
+{parameters}
+    )
+    sizes = by_grade({size!r}, 0.1, 1, 10, 100)
+
+    def blind(self, motion: Motion) -> str:
+        return unknown("{state}", motion)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        added = np.zeros((len(motion.time), 3))
+        for i, own in zip({axes}, np.split(values, {count}), strict=True):
+            added[:, i] = functions("{family}", "{state}", {shape}, motion, i) @ own
+        return replace(reading, {sensor}=reading.{sensor} + added)
+'''
+
+
+def proposed_rows(classes: Sequence[NamedClass], mount: str) -> Iterator[dict[str, Any]]:
+    """The laws among the named effects, each with the text of its file."""
+    for each in classes:
+        law = each.members[0].effect
+        if isinstance(law, Law):
+            yield {
+                "mount": mount,
+                "effect": law.name,
+                "file": f"{law.name}{f'-{mount}' if mount else ''}.py",
+                "text": text_of(law),
+            }
+
+
+def text_of(law: Law) -> str:
+    """The file of a law."""
+    parameters = "\n".join(
+        f'        Parameter("{p.name}", "{p.unit}", {p.typical!r}, '
+        f'_("size in the {p.name[-1]} reading")),'
+        for p in law.parameters
+    )
+    axes = tuple(AXES.index(axis) for axis in law.axes)
+    return TEMPLATE.format(
+        title=in_words(law.name),
+        cls="".join(word.capitalize() for word in law.name.split("_")),
+        name=law.name,
+        family=law.family,
+        state=law.state,
+        shape=tuple(float(value) for value in law.shape),
+        parameters=parameters,
+        size=float(SENSORS[law.sensor][1]),
+        axes=axes,
+        count=len(axes),
+        sensor=law.sensor,
+    )

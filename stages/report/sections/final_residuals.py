@@ -1,0 +1,164 @@
+"""Residuals of the result that counts: by manoeuvre with 3 σ, and as a histogram."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from inertial.tables import AXES
+from inertial.text.messages import _
+from inertial.text.numbers import fixed, whole
+from stages.report import drawing
+from stages.report.drawing import Array
+from stages.report.outline import (
+    Column,
+    Figure,
+    Paragraph,
+    Part,
+    Section,
+    Table,
+    columns,
+    table_row,
+)
+from stages.report.sections.residual_figures import UNIT, Residual, draw_by_manoeuvre, pieces_of
+from stages.report.tables import Tables, once
+from stages.report.words import SENSORS, capital
+
+STEADY = "steady"
+MAX_SIGMAS = 3.0
+REACH, BIN = 4.5, 0.25  # σ, of the histogram
+MAX_RATIO = 1.2  # from which it is marked
+
+
+@once
+def final_residuals(tables: Tables) -> dict[str, list[Residual]]:
+    """By sensor, in the order of the plan: fifths of static positions, whole steady rotations."""
+    frame = tables.frame("residuals")
+    each = dict(list(frame.groupby("manoeuvre")))
+    by_sensor: dict[str, list[Residual]] = {}
+    for sensor in UNIT:
+        names = [[f"{of}_{sensor}_{axis}" for axis in AXES] for of in ("residual", "sigma")]
+        by_sensor[sensor] = []
+        for name in tables.frame("manoeuvres")["manoeuvre"]:
+            if name not in each:
+                continue
+            own = each[name][each[name]["phase"].isin(["rest", STEADY])]
+            left, sigma = (own[own_columns].to_numpy(np.float64) for own_columns in names)
+            there = np.isfinite(left).any(axis=1)
+            if not there.any():
+                continue
+            turns = (own["phase"] == STEADY).all()
+            count = int(there.sum())
+            places = [np.arange(count)] if turns else pieces_of(count)
+            weights = np.where(np.isfinite(left), sigma**-2.0, 0.0)[there]
+            sums = np.nan_to_num(left)[there] * weights
+            with np.errstate(invalid="ignore", divide="ignore"):
+                total = np.array([weights[place].sum(axis=0) for place in places])
+                mean = np.array([sums[place].sum(axis=0) for place in places]) / total
+                by_sensor[sensor].append(Residual(name, mean, total**-0.5))
+    return by_sensor
+
+
+def parts(tables: Tables) -> Iterator[Part]:
+    """A figure of each sensor, and how the residuals compare with the noise."""
+    if tables.frame("residuals").empty:
+        yield Paragraph(_("None: no result counts, or no attitude is known."), "fair")
+        return
+    for sensor, shown in final_residuals(tables).items():
+        if shown:
+            yield _figure(tables, sensor, shown)
+    yield _table(tables)
+
+
+SECTION = Section(
+    "residuals",
+    _("Residuals"),
+    _(
+        "Measured readings less those that the result predicts, effects included: what the result "
+        "that counts leaves over."
+    ),
+    _(
+        "Left: fifths of each static position and whole steady rotations, with σ of white noise; "
+        "the band is ±3 σ. Right: the residuals over their σ, blocks of static positions and "
+        "seconds of steady rotation, with the normal distribution. Noise alone gives a ratio of "
+        "1.00 and leaves 0.3 % beyond 3 σ. A vibration averages out within a second, and drift of "
+        "the bias stays in."
+    ),
+    ("residuals", "manoeuvres"),
+    parts,
+)
+
+
+def _figure(tables: Tables, sensor: str, shown: Sequence[Residual]) -> Figure:
+    with drawing.style():
+        drawn, panels = draw_by_manoeuvre(sensor, shown, beside=1.0, band=MAX_SIGMAS)
+        _histogram(panels[1], tables, sensor)
+        picture = drawing.svg(drawn, f"residuals-{sensor}")
+    sensors = SENSORS[sensor]
+    return Figure(
+        _(
+            "Residuals of the {sensors} by manoeuvre, with ±3 σ of the noise, and their "
+            "distribution.",
+            sensors=sensors,
+        ),
+        picture,
+        _("Mean residuals of the {sensors} by manoeuvre, and their histogram.", sensors=sensors),
+    )
+
+
+def _ratios(tables: Tables, sensor: str, axis: str) -> tuple[Array, Array]:
+    """Residuals over σ: those at rest, those in rotation."""
+    frame = tables.frame("residuals")
+    left = frame[f"residual_{sensor}_{axis}"] / frame[f"sigma_{sensor}_{axis}"]
+    turning = (frame["phase"] == STEADY).to_numpy()
+    values = left.to_numpy(np.float64)
+    rest, turn = values[~turning], values[turning]
+    return rest[np.isfinite(rest)], turn[np.isfinite(turn)]
+
+
+def _histogram(panel: Axes, tables: Tables, sensor: str) -> None:
+    edges = np.arange(-REACH, REACH + BIN / 2, BIN)
+    for axis in AXES:
+        values = np.concatenate(_ratios(tables, sensor, axis))
+        if len(values):  # what is beyond the ends is in the outermost bins
+            counts, _edges = np.histogram(np.clip(values, edges[0], edges[-1]), edges)
+            density = counts / len(values) / BIN
+            panel.stairs(density, edges, color=drawing.AXIS_COLOUR[axis], linewidth=0.9)
+    x = np.linspace(-REACH, REACH, 121)
+    panel.plot(x, np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi), color=drawing.INK, linewidth=0.7)
+    for limit in (-MAX_SIGMAS, MAX_SIGMAS):
+        panel.axvline(limit, color=drawing.QUIET, linewidth=0.6, dashes=(3, 2))
+    panel.set_xlim(-REACH, REACH)
+    panel.set_ylim(bottom=0.0)
+    panel.set_yticks([])
+    panel.set_xticks([-3, 0, 3])
+    panel.set_title(_("Distribution, in σ"), pad=4)
+
+
+def _table(tables: Tables) -> Table:
+    rows = []
+    for sensor in UNIT:
+        for axis in AXES:
+            cells, high = [], False
+            for values in _ratios(tables, sensor, axis):
+                if not len(values):
+                    cells += ["0", "—", "—"]
+                    continue
+                ratio = float(np.sqrt(np.mean(values**2)))
+                beyond = int((np.abs(values) > MAX_SIGMAS).sum())
+                cells += [whole(len(values)), fixed(ratio, 2), whole(beyond)]
+                high = high or ratio > MAX_RATIO
+            name = f"{capital(SENSORS[sensor])}, {axis}"
+            rows.append(table_row(name, *cells, tone="fair" if high else ""))
+    headings = (_("means"), _("rms, in σ"), _("beyond 3 σ"))
+    return Table(
+        _("Root mean square of the residuals over σ, and how many are beyond 3 σ."),
+        (
+            Column(_("Sensor")),
+            *columns("number", *headings, group=_("Static positions")),
+            *columns("number", *headings, group=_("Steady rotation")),
+        ),
+        rows,
+    )

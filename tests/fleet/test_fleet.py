@@ -1,0 +1,256 @@
+"""Fleets: sums, search, what an effect belongs to, populations; numbers by other ways."""
+
+import time
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from inertial.estimation.sharing import Sharing, population, shares
+from inertial.estimation.type_population import Campaigns, of_new_imu, type_population
+from inertial.model_selection.fleet_evidence import EVERY, FleetEvidence, Shared
+from inertial.model_selection.fleet_search import FleetSearch, fleet_law
+
+EFFECTS = {"drift": [0], "curve": [1, 2], "tilt": [3, 4, 5]}
+ALL = [i for columns in EFFECTS.values() for i in columns]
+LEVEL, RARE = 0.05, 0.01
+IMUS, TABLES = 5, 3
+
+
+def designs(campaigns, seed):
+    """White equations of each campaign, (c, rows, k)."""
+    return np.random.default_rng(seed).normal(size=(campaigns, 40, len(ALL)))
+
+
+def labels(imus=IMUS, each=3, tables=TABLES):
+    """IMU i comes to table i, i + 1, … in turn."""
+    rows = [(i, (i + n) % tables) for i in range(imus) for n in range(each)]
+    return {
+        "type": ["type"] * len(rows),
+        "table": [f"table {t}" for _, t in rows],
+        "imu": [f"imu {i}" for i, _ in rows],
+        "campaign": [str(n) for n in range(len(rows))],
+    }
+
+
+def fleet(own, beta, seed, noise=1.0):
+    """The evidence of equations y = X β + e of each campaign."""
+    x = designs(len(own["type"]), 1)
+    random = np.random.default_rng(seed)
+    y = np.einsum("crk,ck->cr", x, beta) + noise * random.normal(size=x.shape[:2])
+    information, right = np.einsum("crk,crl->ckl", x, x), np.einsum("crk,cr->ck", x, y)
+    return FleetEvidence(EFFECTS, information, right, own), x, y
+
+
+def sizes(own, level, group, columns, ratio, seed):
+    """β of an effect that a group shares, of a pooled signal-to-noise ratio."""
+    members = np.array([label == group for label in own[level]])
+    x = designs(len(members), 1)[members][:, :, columns].reshape(-1, len(columns))
+    direction = np.random.default_rng(seed).normal(size=len(columns))
+    direction *= ratio / np.linalg.norm(x @ direction)
+    beta = np.zeros((len(members), len(ALL)))
+    beta[np.ix_(members, columns)] = direction
+    return beta
+
+
+# ---- Sums and drops.
+
+
+@pytest.mark.parametrize(
+    ("one", "beside"),
+    [
+        (Shared(1, "type", 0), ()),
+        (Shared(2, "table", 1), (Shared(0, "type", 0), Shared(1, "imu", 2))),
+        (Shared(1, "imu", EVERY), (Shared(1, "type", 0), Shared(0, "table", EVERY))),
+        (Shared(2, "campaign", EVERY), (Shared(2, "table", 0),)),
+    ],
+)
+def test_a_drop_is_that_of_a_fit_to_all_samples(one, beside):
+    own = labels()
+    evidence, x, y = fleet(own, np.zeros((len(own["type"]), len(ALL))), 2)
+
+    def columns(model):
+        every = []
+        for each in model:
+            names = list(dict.fromkeys(own[each.level]))
+            for group in names if each.group == EVERY else [names[each.group]]:
+                members = np.array([label == group for label in own[each.level]])
+                of_effect = list(EFFECTS.values())[each.effect]
+                every.append((members[:, None, None] * x[:, :, of_effect]).reshape(y.size, -1))
+        return np.hstack(every) if every else np.zeros((y.size, 0))
+
+    def left(design):
+        return np.sum((y.ravel() - design @ np.linalg.lstsq(design, y.ravel())[0]) ** 2)
+
+    smaller, larger = columns(beside), columns([*beside, one])
+    drops, degrees = evidence.drops(one.effect, one.level, evidence.given(beside))
+    assert drops[one.group] == pytest.approx(left(smaller) - left(larger), rel=1e-6)
+    rank = np.linalg.matrix_rank(larger) - (np.linalg.matrix_rank(smaller) if beside else 0)
+    assert degrees[one.group] == rank
+
+
+def test_adding_a_campaign_changes_the_sums_of_its_groups_alone():
+    own = labels()
+    whole, _, _ = fleet(own, np.zeros((len(own["type"]), len(ALL))), 3)
+    less = FleetEvidence(
+        EFFECTS,
+        whole.information[:-1],
+        whole.right[:-1],
+        {level: of[:-1] for level, of in own.items()},
+    )
+    for level in ("type", "table", "imu"):
+        before, after = less.levels[level], whole.levels[level]
+        changed = [
+            label
+            for g, label in enumerate(before.labels)
+            if not np.array_equal(before.information[g], after.information[g])
+        ]
+        assert changed == [own[level][-1]]
+
+
+def test_the_cost_of_a_campaign_does_not_grow_with_their_number():
+    def seconds(imus):
+        own = labels(imus)
+        evidence, _, _ = fleet(own, np.zeros((len(own["type"]), len(ALL))), 4)
+        start = time.process_time()
+        for _ in range(3):
+            again = FleetEvidence(EFFECTS, evidence.information, evidence.right, own)
+            for effect in range(len(EFFECTS)):
+                for level in ("type", "table", "imu", "campaign"):
+                    again.drops(effect, level, again.given((Shared(0, "type", 0),)))
+        return (time.process_time() - start) / len(own["type"])
+
+    seconds(50)
+    assert seconds(1600) < 2 * seconds(200)
+
+
+# ---- The search.
+
+
+def test_noise_alone_gives_findings_as_rarely_as_wanted():
+    own = labels()
+    evidence, _, _ = fleet(own, np.zeros((len(own["type"]), len(ALL))), 0)
+    law = fleet_law(evidence, LEVEL)
+    count = 0
+    for seed in range(300):
+        clean, _, _ = fleet(own, np.zeros((len(own["type"]), len(ALL))), 100 + seed)
+        count += bool(FleetSearch(clean, law).found())
+    assert count <= stats.binom.isf(1e-3, 300, LEVEL)
+    assert count > 0  # the level is used
+
+
+@pytest.mark.parametrize(
+    ("level", "group"), [("type", "type"), ("table", "table 1"), ("imu", "imu 3")]
+)
+@pytest.mark.parametrize("effect", EFFECTS)
+def test_what_an_effect_belongs_to_is_told(level, group, effect):
+    own = labels()
+    beta = sizes(own, level, group, EFFECTS[effect], 25.0, 5)
+    evidence, _, _ = fleet(own, beta, 6)
+    found = FleetSearch(evidence, fleet_law(evidence, RARE)).found()
+    (one,) = found
+    assert evidence.names[one.hypothesis.effect] == effect
+    assert one.levels == (level,)
+    assert evidence.levels[level].labels[one.hypothesis.group] == group
+    values, covariance = evidence.estimate([one.hypothesis])
+    truth = beta[own[level].index(group), EFFECTS[effect]]
+    error = values - truth
+    assert error @ np.linalg.solve(covariance, error) < stats.chi2.isf(1e-3, len(truth))
+
+
+def test_an_effect_of_one_campaign_is_not_said_to_belong_to_its_imu():
+    own = labels()
+    beta = sizes(own, "campaign", "4", EFFECTS["curve"], 25.0, 7)
+    evidence, _, _ = fleet(own, beta, 8)
+    (one,) = FleetSearch(evidence, fleet_law(evidence, RARE)).found()
+    assert one.hypothesis == Shared(1, "campaign", 4)
+    assert one.levels == ("campaign",)
+
+
+def test_what_one_table_cannot_tell_is_named_together():
+    own = labels(tables=1)
+    beta = sizes(own, "type", "type", EFFECTS["curve"], 25.0, 9)
+    evidence, _, _ = fleet(own, beta, 10)
+    (one,) = FleetSearch(evidence, fleet_law(evidence, RARE)).found()
+    assert set(one.levels) == {"type", "table"}
+    assert one.sharings["type"] == pytest.approx(one.sharings["table"])
+
+
+def test_one_imu_on_one_table_tells_nothing_apart():
+    own = labels(imus=1, each=6, tables=1)
+    beta = sizes(own, "type", "type", EFFECTS["curve"], 25.0, 11)
+    evidence, _, _ = fleet(own, beta, 12)
+    (one,) = FleetSearch(evidence, fleet_law(evidence, RARE)).found()
+    assert set(one.levels) == {"type", "table", "imu"}
+
+
+def test_an_effect_of_type_and_table_has_a_share_of_each():
+    own = labels(imus=6, each=4, tables=6)
+    beta = sizes(own, "type", "type", EFFECTS["tilt"], 40.0, 13)
+    for table in range(6):
+        beta += sizes(own, "table", f"table {table}", EFFECTS["tilt"], 16.0, 20 + table)
+    evidence, _, _ = fleet(own, beta, 15)
+    found = FleetSearch(evidence, fleet_law(evidence, RARE)).found()
+    assert {evidence.names[one.hypothesis.effect] for one in found} == {"tilt"}
+    of_effect = shares(evidence.sharing([one.hypothesis for one in found], 2))
+    assert min(of_effect["type",][0], of_effect["table",][0]) > 0.2
+    assert max(of_effect["imu",][0], of_effect["campaign",][0]) < 0.1
+
+
+# ---- Shares and spreads.
+
+
+@pytest.mark.parametrize("level", ["type", "table", "imu", "campaign"])
+def test_shares_are_those_of_what_was_drawn(level):
+    own = labels(imus=12, each=3, tables=6)
+    of = np.unique(own[level], return_inverse=True)[1]
+    drawn = np.random.default_rng(16).normal(size=(of.max() + 1, 3))[of]
+    information = np.tile(400 * np.eye(3), (len(of), 1, 1))
+    noise = 20 * np.random.default_rng(17).normal(size=drawn.shape)
+    found = shares(Sharing(information, 400 * drawn + noise, own))
+    assert sum(share for share, _ in found.values()) == pytest.approx(1)
+    share, sigma = found[(level,)]
+    assert share == max(one for one, _ in found.values())
+    assert abs(1 - share) < 3 * sigma
+
+
+def test_spreads_are_those_of_an_analysis_of_variance():
+    """Of balanced data REML and ANOVA are one (Searle, Casella & McCulloch, 1992, 3.8)."""
+    each, imus = 4, 9
+    random = np.random.default_rng(18)
+    values = 3 * np.repeat(random.normal(size=imus), each) + random.normal(size=each * imus)
+    own = labels(imus=imus, each=each, tables=1)
+    table = values.reshape(imus, each)
+    between = each * table.mean(axis=1).var(ddof=1)
+    within = table.var(axis=1, ddof=1).mean()
+    known = 0.3
+    found = population(values, np.full(len(values), known), own)
+    spread = {one.levels: one.value for one in found.spreads}
+    assert spread["imu",] == pytest.approx(np.sqrt((between - within) / each), rel=2e-3)
+    assert spread["campaign",] == pytest.approx(np.sqrt(within - known**2), rel=2e-3)
+    assert found.mean == pytest.approx(values.mean(), rel=1e-6)
+    assert found.mean_sigma == pytest.approx(np.sqrt(between / each / imus), rel=2e-3)
+    sigma, degrees = of_new_imu(found)
+    assert sigma == pytest.approx(
+        np.sqrt(sum(s**2 for s in spread.values()) + between / 36), rel=2e-3
+    )
+    assert degrees < each * imus
+
+
+def test_one_imu_is_no_population():
+    own = labels(imus=1, each=4, tables=1)
+    assert of_new_imu(population(np.arange(4.0), np.ones(4), own)) is None
+
+
+def test_an_outlier_is_named_and_left_out():
+    own = labels(imus=12, each=2, tables=2)
+    of = np.repeat(np.arange(12), 2)
+    random = np.random.default_rng(19)
+    values = 2 * random.normal(size=(12, 2))[of] + 0.1 * random.normal(size=(24, 2))
+    clean = type_population(Campaigns(values, np.tile(0.01 * np.eye(2), (24, 1, 1)), own), 0.01)
+    assert not clean.outliers
+    values[of == 5, 1] += 25
+    found = type_population(Campaigns(values, np.tile(0.01 * np.eye(2), (24, 1, 1)), own), 0.01)
+    assert [(one.imu, one.parameter) for one in found.outliers] == [("imu 5", 1)]
+    kept = values[of != 5, 1]
+    assert found.parameters[1].mean == pytest.approx(kept.mean(), abs=0.05)

@@ -1,0 +1,283 @@
+"""An effect or a fault put into the bytes of a real recording, and what the stages say of it.
+
+The recording is drafted and run as it is; its equations say how large an effect is there, so the
+injected one has a drawn signal-to-noise ratio by this recording's own noise. What the laboratory
+makes of the effect, by the readings as the truth, is added to the numbers of the log, which keep
+their decimals; all else of the log keeps its bytes.
+"""
+
+import os
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import chain
+import numpy as np
+from hidden_sizes import BESIDE, LEVEL
+from hidden_ways import WAYS, Array
+from recordings.known import RECORDINGS, told
+
+from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.effect_evidence import evidence
+from inertial.campaign.equations import Campaign, campaign_of
+from inertial.effects import CATALOGUE
+from inertial.model_selection.naming import law_of
+from inertial.model_selection.null_simulation import power
+from inertial.physics.effect import Effect
+from inertial.tables import ACCEL, GYRO
+from inertial.tables.code import code_of, hash_of
+from injections.rewritten_logs import lines_of, rewritten, unit_of, write
+from laboratory.effects import EFFECTS
+from laboratory.sensor import Sensors, Triad
+from stages.criticism.selection import Selection, select_with_scatter
+
+SEED = 104_729
+# Logs of text with whole manoeuvres, by hand; the others are means, containers, or in pieces.
+INTO = (
+    *(f"mikoff-{number}" for number in range(1, 6)),
+    *(f"snu-{number}" for number in range(1, 4)),
+    *("imucal-labelled", "imucal-continuous", "cuyo"),
+)
+# Read off the recordings as they are and written down before the first injection: impacts and
+# stamps are there to see, and what is not known to be there is named as such.
+THERE: Mapping[str, frozenset[str]] = {
+    "mikoff-1": frozenset({"impact"}),
+    "mikoff-2": frozenset({"impact", "table_moving", "bias_jump"}),
+    "mikoff-3": frozenset({"table_moving"}),
+    "mikoff-4": frozenset({"impact", "spike"}),
+    "mikoff-5": frozenset({"impact", "oscillation", "table_moving"}),
+    "snu-1": frozenset({"arrival_stamps", "table_moving"}),
+    "snu-2": frozenset({"arrival_stamps", "table_moving"}),
+    "snu-3": frozenset({"arrival_stamps", "oscillation", "table_moving"}),
+    "imucal-labelled": frozenset({"unknown_structure", "accel_random_walk"}),
+    "imucal-continuous": frozenset({"gyro_random_walk", "accel_random_walk"}),
+    "cuyo": frozenset({"saturation", "quantisation"}),
+}
+HIDDEN = (
+    *("gyro_g_sensitivity", "gyro_g2_sensitivity", "gyro_bias_jump", "gyro_bias_ramp"),
+    *("gyro_warm_up", "accel_quadratic", "accel_scale_asymmetry", "accel_cross_products"),
+    *("accel_cubic", "accel_bias_jump", "accel_bias_ramp", "accel_warm_up"),
+)
+RATIOS = (5.0, 8.0, 12.0, 20.0)
+FAULTS: Mapping[str, frozenset[str]] = {
+    "spikes": frozenset({"spike"}),
+    "dead axis": frozenset({"dead_axis"}),
+    "repeated lines": frozenset({"duplicate", "held_record"}),
+}
+FAULT_EVERY = 5  # injections, of which one is a fault
+SPIKES, SPIKE_SIGMAS, REPEATED_LINES = 12, 60.0, 40
+AS_SHARES = (0.15, 0.5)  # of the recording, a time constant
+CHANNELS = {"accelerometer": ACCEL, "gyro": GYRO}
+UNIT = Sensors(Triad(np.eye(3), np.zeros(3)), Triad(np.eye(3), np.zeros(3)))
+
+Outcome = dict[str, Any]
+
+
+@cache
+def code() -> str:
+    """A hash of all that an outcome rests on."""
+    files = {file for stage in chain.ORDER for file in code_of(stage)}
+    files |= {*(chain.ROOT / "laboratory/effects").glob("*.py"), chain.ROOT / "config.yaml"}
+    files |= {*Path(__file__).parent.glob("*ed*.py"), *(chain.ROOT / "commands/draft").glob("*.py")}
+    return hash_of(sorted(files))[:16]
+
+
+def folder_of_recordings() -> Path:
+    """Where the real recordings are, which are not part of the project."""
+    return Path(os.environ.get("RECORDINGS", chain.ROOT.parent / "shared/recordings"))
+
+
+@dataclass(frozen=True)
+class Recording:
+    """One as it is: its campaign, results, causes, and what its equations say of every effect.
+
+    `law`: what noise alone brings forth; `time`: s, of every sample since the first.
+    """
+
+    name: str
+    campaign: Path
+    results: chain.Results
+    selection: Selection
+
+    @property
+    def layout(self) -> Mapping[str, Any]:
+        """How its log is to be read, by the campaign file."""
+        layout: Mapping[str, Any] = told(self.campaign)["instrument"]["format"]
+        return layout
+
+    @property
+    def log(self) -> Path:
+        """Its only log."""
+        (log,) = (path for path in self.campaign.iterdir() if path.name != "campaign.yaml")
+        return log
+
+    @property
+    def equations(self) -> Campaign:
+        """Its equations, scatter and random walks included."""
+        return self.selection.campaign
+
+    def ratio(self, effect: Effect, values: Array) -> float:
+        """The signal-to-noise ratio of an effect, all else fitted."""
+        information = evidence(self.equations, [effect]).total.information
+        return float(np.sqrt(values @ information @ values))
+
+    def limit(self, name: str, ratio: float) -> float:
+        """The power at a ratio that no search of the catalogue exceeds on this recording."""
+        said = self.selection.evidence.observable()
+        searched = self.selection.searched
+        law = law_of(said, searched, LEVEL)
+        number = [one.name for one in searched].index(name)
+        if law is None or not law.tails[number].degrees:
+            return 0.0
+        sensor = said.sensor_of([i for one in searched[number].candidates for i in one])
+        threshold = law.threshold(number, said.noise_degrees_of(sensor))
+        return float(power(ratio, law.tails[number].degrees, threshold))
+
+
+def as_it_is(name: str, place: Path) -> Recording:
+    """A recording, drafted and run into a folder."""
+    (one,) = (one for one in RECORDINGS if one.name == name)
+    campaign = one.drafted(folder_of_recordings(), place / "data")
+    results = chain.run(campaign, place / "derived", "diagnosis", BESIDE)
+    (data,) = chain.mounts(results)
+    return Recording(name, campaign, results, _selected(data))
+
+
+def _selected(data: CampaignData) -> Selection:
+    """What criticism selects among the effects of block means."""
+    campaign = campaign_of(data).without_drift_at_rest()
+    effects = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
+    return select_with_scatter(campaign, effects, LEVEL, data.noise.degrees)
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What a number draws: where it is put, what it is, and how large."""
+
+    recording: str
+    name: str
+    ratio: float
+    random: np.random.Generator
+
+    @property
+    def is_fault(self) -> bool:
+        """Whether it is a fault of the recording, no effect."""
+        return self.name in FAULTS
+
+
+def drawn(number: int) -> Drawn:
+    """The injection of a number."""
+    random = np.random.default_rng([SEED, number])
+    recording = INTO[number % len(INTO)]
+    if number // len(INTO) % FAULT_EVERY == 0:
+        return Drawn(recording, str(random.choice(list(FAULTS))), np.nan, random)
+    name = str(random.choice(HIDDEN))
+    return Drawn(recording, name, float(random.choice(RATIOS)), random)
+
+
+def outcome(number: int) -> Outcome:
+    """What is said of one injection; a number below zero is a recording as it is."""
+    with tempfile.TemporaryDirectory() as place:
+        if number < 0:
+            name = INTO[number]
+            causes = _causes(as_it_is(name, Path(place)).results)
+            false = [cause for cause, members in causes if not members & THERE[name]]
+            return {"number": number, "code": code(), "recording": name, "false": false}
+        what = drawn(number)
+        before = as_it_is(what.recording, Path(place))
+        told_of = {"number": number, "code": code(), "recording": what.recording}
+        told_of |= {"name": what.name, "ratio": what.ratio}
+        if what.is_fault:
+            wanted, limit = FAULTS[what.name], np.nan
+            _damage(before, what)
+        else:
+            wanted, limit = frozenset({what.name}), before.limit(what.name, what.ratio)
+            if not (effect := _hide(before, what)):
+                return told_of | {"limit": 0.0, "found": False, "beside": [], "shown": False}
+            told_of |= {"values": effect}
+        own = _causes(before.results)
+        after = chain.run(before.campaign, Path(place) / "again", "diagnosis", BESIDE)
+        rows = _causes(after)
+        known = {cause for cause, _ in own}
+        found = [members for _, members in rows if members & wanted]
+        beside = [c for c, members in rows if not members & wanted and c not in known]
+        return told_of | {
+            "limit": limit,
+            "found": bool(found),
+            "beside": beside,
+            "shown": True,
+        }
+
+
+def _causes(results: chain.Results) -> list[tuple[str, frozenset[str]]]:
+    """The rows of the diagnosis, each with all that it may be."""
+    members = results["diagnosis/members"].groupby("cause")["member"].agg(set).to_dict()
+    rows = results["diagnosis/causes"].to_dict("records")
+    return [
+        (str(row["cause"]), frozenset({row["cause"], *members.get(row["id"], ())})) for row in rows
+    ]
+
+
+def _hide(recording: Recording, what: Drawn) -> dict[str, float]:
+    """Put an effect into the log; its values, none where this recording does not show it."""
+    way, samples = WAYS[what.name], recording.results["decode/samples"]
+    time = samples["time"].to_numpy(float)
+    time = time - time[0]
+    values = what.random.standard_normal(len(way.names))
+    effect, parameters = CATALOGUE[what.name], {}
+    if way.scan is not None:
+        key, low, high = way.scan
+        low, high = (low, high) if way.share else AS_SHARES
+        at = float(what.random.uniform(low, high) * time[-1])
+        effect, parameters = effect.fixed(at), {key: at}
+    unit = recording.ratio(effect, values)
+    if not unit > 0 or not np.isfinite(unit) or recording.limit(what.name, 20.0) == 0:
+        return {}
+    values = values * what.ratio / unit
+    hidden = EFFECTS[what.name](way.told(values) | parameters)
+    readings = {sensor: samples[columns].to_numpy(float) for sensor, columns in CHANNELS.items()}
+    instants = SimpleNamespace(since=lambda moment: (time >= moment).astype(float))
+    truth = SimpleNamespace(
+        force=readings["accelerometer"],
+        rate=readings["gyro"],
+        time=time,
+        motion=SimpleNamespace(instants=instants),
+    )
+    error = hidden.reading_error(truth, UNIT)
+    added = {
+        sensor: getattr(error, sensor) / unit_of(recording.layout, sensor) for sensor in CHANNELS
+    }
+    rewritten(recording.log, recording.layout, samples["line"].tolist(), added)
+    return {name: float(value) for name, value in zip(way.names, values, strict=True)} | parameters
+
+
+def _damage(recording: Recording, what: Drawn) -> None:
+    """Put a fault into the log."""
+    samples, random = recording.results["decode/samples"], what.random
+    lines = samples["line"].tolist()
+    if what.name == "repeated lines":
+        text = lines_of(recording.log)
+        first = int(random.integers(len(lines) // 4, len(lines) // 2))
+        some = slice(lines[first] - 1, lines[first + REPEATED_LINES] - 1)
+        text[some.stop : some.stop] = text[some]
+        write(recording.log, text)
+        return
+    sensor = str(random.choice(list(CHANNELS)))
+    axis = int(random.integers(3))
+    readings = samples[CHANNELS[sensor]].to_numpy(float)
+    error = np.zeros_like(readings)
+    if what.name == "spikes":
+        step = np.diff(readings[:, axis])
+        size = SPIKE_SIGMAS * 1.4826 * float(np.median(np.abs(step))) / np.sqrt(2)
+        places = random.choice(np.arange(10, len(lines) - 10), SPIKES, replace=False)
+        error[places, axis] = size * random.choice([-1.0, 1.0], SPIKES)
+    else:
+        first = int(random.integers(len(lines) // 3, 2 * len(lines) // 3))
+        error[first:, axis] = readings[first, axis] - readings[first:, axis]
+    other = {name: np.zeros_like(readings) for name in CHANNELS}
+    added = other | {sensor: error / unit_of(recording.layout, sensor)}
+    rewritten(recording.log, recording.layout, lines, added)

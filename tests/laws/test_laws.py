@@ -1,0 +1,121 @@
+"""Laws of no effect of the catalogue: found with their form, proposed as effects; silence."""
+
+import chain
+import numpy as np
+import pytest
+from hidden_plans import PLANS
+
+from inertial.effects import LAWS
+from inertial.model_selection.evidence import searched_effect
+from inertial.model_selection.laws import best_paths, chance_of, law_odds
+from inertial.model_selection.walk_odds import Equations
+from inertial.physics import laws
+from inertial.physics.motion import stretches
+from inertial.text.units import DEGREE_PER_HOUR, HOUR
+
+BESIDE = ("studies", "comparison", "compensation")
+
+
+def named_law(plan, name, **told):
+    """The only cause, its law, and the sizes by parameter."""
+    document = PLANS[plan](seed=4711, effects={name: told})
+    results = chain.in_memory_of(document, "diagnosis", BESIDE)
+    (cause,) = results["diagnosis/causes"].to_dict("records")
+    effects = results["criticism/effects"]
+    own = effects[effects["effect"] == cause["cause"]].set_index("parameter")
+    return results, cause, own
+
+
+def test_a_cubic_drift_of_one_gyro():
+    results, cause, sizes = named_law("positions", "gyro_cubic_drift", k_deg_h_h3=[0, 4, 0])
+    assert (cause["cause"], cause["verdict"]) == ("gyro_y_power_of_time", "law")
+    assert sizes.loc["shape_1", "value"] == pytest.approx(3, abs=0.5)
+    size, sigma = sizes.loc["k_y", ["value", "sigma"]] / DEGREE_PER_HOUR
+    assert size == pytest.approx(4, abs=4 * sigma + 0.5) and sigma < 0.5
+    assert cause["sentence"].startswith("y gyro: ")
+    assert cause["held_out_drop"] > 0 and cause["gain"]
+    (verdict,) = results["diagnosis/verdict"].query("sensor == 'gyro'").to_dict("records")
+    assert verdict["method"] == "extended"  # the 24 parameters are those with the law in the model
+
+
+def test_a_telegraph_of_one_gyro():
+    told = {"height_deg_h": [0, 0, 0.5], "dwell_s": 400.0}
+    _results, cause, sizes = named_law("positions", "gyro_telegraph", **told)
+    assert (cause["cause"], cause["verdict"]) == ("gyro_z_telegraph_of_time", "law")
+    apart, sigma = sizes.loc["k_z", ["value", "sigma"]] / DEGREE_PER_HOUR
+    assert abs(apart) == pytest.approx(1.0, abs=4 * sigma)  # from −0.5 to 0.5 °/h
+
+
+def test_a_sine_of_the_angle_of_no_whole_order():
+    told = {"size_deg_h": [0, 1.5, 0], "order": 2.4, "phase_deg": 30.0}
+    _results, cause, sizes = named_law("stops", "gyro_stray_field", **told)
+    assert (cause["cause"], cause["verdict"]) == ("gyro_y_harmonic_of_angle", "law")
+    assert sizes.loc["shape_1", "value"] == pytest.approx(2.4, abs=0.05)
+    both = sizes.loc[["k_cos_y", "k_sin_y"], "value"] / DEGREE_PER_HOUR
+    assert both.tolist() == pytest.approx(
+        1.5 * np.array([np.sin(np.pi / 6), np.cos(np.pi / 6)]), abs=0.3
+    )
+
+
+def test_a_power_of_the_rate():
+    told = {"at_10_deg_s_deg_h": [0, 1, 0], "power": 1.5}
+    _results, cause, sizes = named_law("rates", "gyro_rate_power", **told)
+    assert (cause["cause"], cause["verdict"]) == ("gyro_y_power_of_rate", "law")
+    assert sizes.loc["shape_1", "value"] == pytest.approx(1.5, abs=0.1)
+    assert sizes.loc["k_y", "value"] / DEGREE_PER_HOUR == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize("walk", [0.0, 0.3])
+def test_a_clean_campaign_and_a_random_walk_have_no_law(walk):
+    document = PLANS["positions"](seed=99)
+    document["noise"] = document["noise"] | {"gyro_rate_random_walk_deg_h_sqrt_h": walk}
+    results = chain.in_memory_of(document, "criticism", BESIDE)
+    assert not set(results["criticism/findings"]["cause"]) & set(LAWS)
+
+
+# ---- Functions, and their search.
+
+
+def test_the_files_are_written_beside_the_tables(tmp_path):
+    document = PLANS["positions"](
+        seed=4711, effects={"gyro_cubic_drift": {"k_deg_h_h3": [0, 4, 0]}}
+    )
+    derived = tmp_path / "derived"
+    chain.run(chain.simulate(document, tmp_path / "raw"), derived, "extension", BESIDE)
+    (file,) = (derived / "extension/proposed").iterdir()
+    assert file.name == "gyro_y_power_of_time.py"
+
+
+def test_means_of_functions_over_stretches():
+    motion = stretches(np.array([100.0, 300.0]), np.array([200.0, 200.0]), np.full(2, np.nan))
+    (cubic,) = laws.functions("power", "time", (3.0,), motion, 0).T
+    exact = np.diff(np.array([0.0, 200.0, 400.0]) ** 4) / (4 * 200 * HOUR**3)
+    np.testing.assert_allclose(cubic, exact, rtol=1e-9)
+    (ramp,) = laws.functions("ramp", "time", (250 / HOUR,), motion, 0).T
+    np.testing.assert_allclose(ramp * HOUR, [0.0, 150**2 / 2 / 200], rtol=1e-9)
+    (levels,) = laws.functions("telegraph", "time", (50 / HOUR, 250 / HOUR), motion, 0).T
+    np.testing.assert_allclose(levels, [0.75, 0.25], rtol=1e-9)
+
+
+def test_noise_reaches_the_odds_as_often_as_said():
+    """By campaigns of two hundred readings of noise, and laws that are random functions."""
+    random = np.random.default_rng(3)
+    columns = random.normal(size=(200, 60))
+    searched = [searched_effect(str(i), *([3 * i + k] for k in range(3))) for i in range(20)]
+    none, chances = np.zeros(20), []
+    for _ in range(200):
+        right = columns.T @ random.normal(size=200)
+        equations = Equations(columns.T @ columns, right)
+        chances.append(chance_of(equations, law_odds(equations, searched, none), none))
+    assert np.mean(np.array(chances) < 0.1) == pytest.approx(0.1, abs=0.065)  # three sigma
+
+
+def test_the_path_of_a_telegraph():
+    random = np.random.default_rng(5)
+    place = np.arange(600)
+    levels = np.isin(place // 5, [*range(20, 41), *range(66, 90)]) * 1.0
+    steps = (place[:, None] >= 5 * np.arange(120)).astype(float)
+    right = steps.T @ (levels + random.normal(size=600) / 3)
+    found = best_paths(Equations(9 * steps.T @ steps, 9 * right), range(120))
+    (path,) = (path for path in found if len(path) == 4)
+    assert np.abs(np.array(path) - [20, 41, 66, 90]).max() <= 1
