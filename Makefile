@@ -60,8 +60,8 @@
 #   make mutants                  puts faults into the physics, one at a time, and reports which of them the
 #                                 tests see, in docs/mutants.md; 1200 faults take an hour on two cores,
 #                                 can be resumed; with DRAWS=100 so many of them
-#   make cluster-test             docs/scale.md: campaigns through a Slurm of two nodes on this machine, one
-#                                 of which dies, and the cost of a year; also with DRAWS=6 campaigns
+#   make cluster-test             campaigns through a Slurm of two nodes on this machine, one of which dies;
+#                                 some minutes; it needs root, and Debian's slurm-wlm and munge
 #   make docs                     docs/tables.md, docs/theory.md and the catalogues of messages, from the code
 #   make recordings               docs/recordings.md: the real recordings, which are not part of the
 #                                 project, drafted and compared with what is known of them; 15 minutes
@@ -304,7 +304,7 @@ cluster-test: .venv/complete
 		"$${may[@]}" DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends \
 			slurm-wlm munge > /dev/null || true
 	fi
-	PYTHONPATH=tests:tests/cluster OPENBLAS_NUM_THREADS=1 $(BIN)/python -m cluster $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",40)
+	$(BIN)/python -m pytest --numprocesses=0 -m slow tests/cluster
 
 recordings: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m recordings

@@ -11,6 +11,9 @@ import pytest
 PROGRAM = "turntable-calibration"
 
 
+pytestmark = pytest.mark.slow  # it builds the wheel and installs it
+
+
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The wheel, built and installed; what it depends on is that of this environment."""
@@ -61,11 +64,10 @@ def test_a_campaign_elsewhere_is_checked(installed: Path, tmp_path: Path) -> Non
     refused = call(installed, "check", "june", cwd=tmp_path)
     assert refused.returncode == 1
     assert "decode: x-up.asc\n  found:    a page of HTML" in refused.stderr
-    before, _, _log = refused.stderr.rpartition("Complete log(s): ")
+    before, _, _log = refused.stderr.rpartition("The full log: ")
     assert before.endswith(f"{'=' * 80}\n")
 
 
-@pytest.mark.slow
 def test_a_report_is_made_elsewhere(installed: Path, tmp_path: Path) -> None:
     chain.simulate(chain.short(), tmp_path / "there/data/raw/june")
     made = call(installed, "--folder", "there", "report", "june", cwd=tmp_path)

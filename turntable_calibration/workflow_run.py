@@ -19,11 +19,14 @@ LOCK = ".snakemake/turntable-calibration.lock"
 def snakemake(folder: Path, cores: int, targets: Sequence[str], more: Sequence[str] = ()) -> int:
     """Make the targets on a folder that holds data/; its exit status.
 
-    Two runs on one folder wait for each other. The kernel releases the lock when a run is killed;
-    Snakemake's own would stay and stop the next run. What Snakemake started has it too.
+    Two runs on one folder wait for each other; in a checkout those of `make`, too, which lock the
+    Snakefile. The kernel releases the lock when a run is killed; Snakemake's own would stay and
+    stop the next run. What Snakemake started has it too.
     """
-    lock = folder / LOCK
-    lock.parent.mkdir(parents=True, exist_ok=True)
+    lock = folder / "Snakefile"
+    if not lock.exists():
+        lock = folder / LOCK
+        lock.parent.mkdir(parents=True, exist_ok=True)
     with lock.open("a") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -43,7 +46,8 @@ def command(module: str, arguments: Sequence[str], folder: Path) -> int:
     if str(WORKFLOW) not in sys.path:
         sys.path.insert(0, str(WORKFLOW))
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy is loaded: matrices are small
-    main: Callable[[Sequence[str]], int] = importlib.import_module(f"commands.{module}").main
+    part = ".__main__" if (WORKFLOW / "commands" / module).is_dir() else ""
+    main: Callable[[Sequence[str]], int] = importlib.import_module(f"commands.{module}{part}").main
     return main(["--data", str(folder / "data"), *arguments])
 
 

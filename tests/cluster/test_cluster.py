@@ -12,6 +12,7 @@ GOALS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(bool(missing()), reason=f"needs Debian's slurm-wlm and munge: {missing()}")
 @pytest.mark.skipif(os.geteuid() != 0, reason="slurmd and munged run as root here")
 def test_a_dead_node_and_a_job_over_its_memory_lose_nothing(tmp_path: Path) -> None:
