@@ -72,7 +72,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new design trace index compare fleet fleets test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings screenshots cluster-test clean setup pango campaign
+.PHONY: report check draft new design trace index compare fleet fleets test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings screenshots cluster-test clean setup pango
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -113,16 +113,14 @@ export CAMPAIGN ID ONLY DRAWS LOG NAME RATE PLAN INSTRUMENT TABLE MINUTES CRITER
 PYTHON ?= python3
 BIN := .venv/bin
 PANGO := libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0
-# The kernel releases the lock of flock when a run is killed; Snakemake's own would stay and stop
-# the next run.
-SNAKEMAKE := flock Snakefile $(BIN)/snakemake --nolock --cores 2 --quiet host reason --
+COMMAND := $(BIN)/python -m turntable_calibration
 
-# Behind a recipe that fails GNU make says "Error 1". What a person calls is therefore done by try-…,
-# whose failure is ignored, in silence, and remembered by $(try); $(ended) then stops make with
-# status 2, and its one line is the place of the full log, where there is one.
-CALLED := report check draft new design trace index compare fleet campaign
+# What a person calls is the command turntable-calibration. Behind a recipe that fails GNU make says
+# "Error 1": so it is done by try-…, whose failure is ignored, in silence, and remembered by $(try);
+# $(ended) then stops make with status 2 and one line, the place of the full log where there is one.
+CALLED := report check draft new design trace index compare fleet
 ENDED := $(shell mktemp --dry-run --suffix=.make)
-export ENDED
+$(CALLED:%=try-%): export ENDED := $(ENDED)
 try = -trap '(( $$? == 0 )) || [[ -s $$ENDED ]] || echo "what is wrong stands above" > $$ENDED' EXIT
 ended = $(if $(file < $(ENDED)),$(error $(shell cat $(ENDED); rm $(ENDED))))
 
@@ -130,25 +128,13 @@ ended = $(if $(file < $(ENDED)),$(error $(shell cat $(ENDED); rm $(ENDED))))
 $(CALLED): %: try-%
 	$(ended)
 
-try-report: campaign setup
+try-report: setup
 	$(try)
-	kinds=(html)
-	if [[ -e .venv/pango ]]; then kinds+=(pdf); fi
-	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
-	$(SNAKEMAKE) "$${kinds[@]/#/reports/$$CAMPAIGN.}" "reports/$$CAMPAIGN.calibration.json"
-	echo
-	sed '/^Campaign:/,$$d' "reports/$$CAMPAIGN.txt"
-	echo "For other programs:" reports/$$CAMPAIGN.{calibration.json,calibration.yaml,calibration.h,dcc.xml,kalibr.yaml,ros.yaml,px4.params,ardupilot.param}
-	echo "The report:" "$${kinds[@]/#/reports/$$CAMPAIGN.}"
+	$(COMMAND) report -- "$$CAMPAIGN"
 
-# By hand `python -m commands.check --campaign=<name>` ends with 1 where something spoils a result or
-# a sensor gets none, as make does with its 2.
-try-check: campaign .venv/complete
+try-check: .venv/complete
 	$(try)
-	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
-	$(SNAKEMAKE) "data/derived/$$CAMPAIGN/diagnosis/verdict.parquet"
-	echo
-	$(BIN)/python -m commands.check "--campaign=$$CAMPAIGN"
+	$(COMMAND) check -- "$$CAMPAIGN"
 
 # A name with a blank is quoted: LOG="'my log.csv' other.csv"; a pattern is expanded: LOG="june/*.csv".
 try-draft: .venv/complete
@@ -162,70 +148,36 @@ try-draft: .venv/complete
 	done
 	options=()
 	if [[ $$RATE ]]; then options+=("--rate=$$RATE"); fi
-	$(BIN)/python -m commands.draft "$${options[@]}" "--name=$$NAME" -- "$${logs[@]}"
+	$(COMMAND) draft "$${options[@]}" "--name=$$NAME" -- "$${logs[@]}"
 
 try-new: .venv/complete
 	$(try)
-	$(BIN)/python -m commands.new "--plan=$$PLAN" "--name=$$NAME"
+	$(COMMAND) new -- "$$PLAN" "$$NAME"
 
-try-design: campaign .venv/complete
+try-design: .venv/complete
 	$(try)
 	if [[ $$INSTRUMENT ]]; then
 		of=("--instrument=$$INSTRUMENT" "--minutes=$$MINUTES" "--criterion=$$CRITERION")
 	else
-		$(SNAKEMAKE) data/derived/$$CAMPAIGN/criticism/findings.parquet
 		of=("--campaign=$$CAMPAIGN" "--want=$$WANT")
 	fi
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m commands.design "$${of[@]}" "--table=$$TABLE" "--name=$$NAME"
+	$(COMMAND) design "$${of[@]}" "--table=$$TABLE" "--name=$$NAME"
 
-try-trace: campaign setup
+try-trace: .venv/complete
 	$(try)
-	$(BIN)/python -m commands.trace "--campaign=$$CAMPAIGN" "--id=$$ID"
+	$(COMMAND) trace -- "$$CAMPAIGN" "$$ID"
 
-# Ends with 2 where $$CAMPAIGN is no name of a campaign, or there is none of this name.
-define named
-	LC_ALL=C # a-z without ä
-	if [[ ! $$CAMPAIGN =~ ^[a-z0-9][a-z0-9-]*$$ ]]; then
-		printf 'make: CAMPAIGN=%q is no name of a campaign: ' "$$CAMPAIGN"
-		echo "small letters a-z, digits and hyphens, a letter or digit first"
-		exit 2
-	fi >&2
-	if [[ ! -e data/raw/$$CAMPAIGN/campaign.yaml && ! -e data/simulated/$$CAMPAIGN.yaml ]]; then
-		echo "make: there is no campaign $$CAMPAIGN: data/raw/$$CAMPAIGN/campaign.yaml is missing"
-		exit 2
-	fi >&2
-endef
-
-try-campaign:
-	$(try)
-	$(named)
-
-# The pages of all campaigns that have a result; where one is refused now, a second run is without it.
 try-index: .venv/complete
 	$(try)
-	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
-	for goal in histories reports/index.html; do
-		$(SNAKEMAKE) $$goal || $(SNAKEMAKE) $$goal
-	done
-	echo "All campaigns: reports/index.html; each IMU: reports/history/"
+	$(COMMAND) index
 
 try-compare: .venv/complete
 	$(try)
-	for CAMPAIGN in "$$A" "$$B"; do
-	$(named)
-	done
-	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
-	$(SNAKEMAKE) "reports/compare-$$A-$$B.html"
-	echo
-	cat "reports/compare-$$A-$$B.txt"
-	echo "The comparison: reports/compare-$$A-$$B.html"
+	$(COMMAND) compare -- "$$A" "$$B"
 
 try-fleet: .venv/complete
 	$(try)
-	fleet=$$($(BIN)/python -m overviews.fleet.selection "$$SELECT" "--name=$$NAME")
-	flock --nonblock Snakefile true || echo "Another run is at work here; this one waits for it."
-	$(SNAKEMAKE) "reports/fleet-$$fleet.html"
-	echo "The fleet: reports/fleet-$$fleet.html; its tables: data/derived/.fleets/$$fleet/"
+	$(COMMAND) fleet "--name=$$NAME" -- "$$SELECT"
 
 test: setup
 	$(BIN)/python -m pytest

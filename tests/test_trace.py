@@ -363,8 +363,6 @@ def test_changed_code_is_noticed(trace, monkeypatch: pytest.MonkeyPatch) -> None
 def test_make_hands_the_identifier_on_word_for_word(tmp_path: Path, identifier: str) -> None:
     """With a Python that only notes its arguments."""
     shutil.copy(chain.ROOT / "Makefile", tmp_path)
-    (tmp_path / "data/raw/demo").mkdir(parents=True)
-    (tmp_path / "data/raw/demo/campaign.yaml").touch()
     (tmp_path / ".venv/bin").mkdir(parents=True)
     (tmp_path / "requirements.lock").touch()
     (tmp_path / ".venv/complete").touch()
@@ -377,5 +375,5 @@ def test_make_hands_the_identifier_on_word_for_word(tmp_path: Path, identifier: 
     done = subprocess.run(make, cwd=tmp_path, env=env, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     given = (tmp_path / "arguments").read_text().split("\0")[:-1]
-    assert given == ["-m", "commands.trace", "--campaign=demo", f"--id={identifier}"]
+    assert given == ["-m", "turntable_calibration", "trace", "--", "demo", identifier]
     assert not (tmp_path / "run").exists()

@@ -4,15 +4,17 @@ Exit status: 0 where all was done; 1 where a stage refused its input, or `check`
 what spoils a result; 2 where the command cannot be carried out as it was given.
 """
 
+import re
 from ctypes.util import find_library
 from pathlib import Path
 
 import click
 from click.shell_completion import CompletionItem, get_completion_class
 
-from turntable_calibration.workflow_run import WORKFLOW, campaigns, command, snakemake
+from turntable_calibration.workflow_run import WORKFLOW, campaigns, command, part_of, snakemake
 
 PROGRAM = "turntable-calibration"
+NAME = re.compile("[a-z0-9][a-z0-9-]*")
 EXPORTS = (
     *("calibration.json", "calibration.yaml", "calibration.h", "dcc.xml"),
     *("kalibr.yaml", "ros.yaml", "px4.params", "ardupilot.param"),
@@ -27,6 +29,11 @@ class Campaign(click.ParamType[str]):
 
     def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """The name, where there is such a campaign."""
+        if not NAME.fullmatch(value):
+            self.fail(
+                f"{value!r} is no name of a campaign: "
+                "small letters a-z, digits and hyphens, a letter or digit first"
+            )
         if value not in (known := campaigns(_folder(ctx))):
             self.fail(f"there is no campaign {value}; there are: {', '.join(known) or 'none'}")
         return value
@@ -94,7 +101,7 @@ def check(of: tuple[Path, int], campaign: str) -> int:
 def draft(of: tuple[Path, int], logs: tuple[str, ...], name: str, rate: float | None) -> int:
     """Write a first campaign file from the logs alone."""
     rates = [] if rate is None else ["--rate", str(rate)]
-    return command("draft", ["--name", name, *rates, "--", *logs], of[0])
+    return command("draft", [f"--name={name}", *rates, "--", *logs], of[0])
 
 
 @main.command()
@@ -103,7 +110,7 @@ def draft(of: tuple[Path, int], logs: tuple[str, ...], name: str, rate: float | 
 @click.pass_obj
 def new(of: tuple[Path, int], plan: str, name: str) -> int:
     """Write a plan to record by, as the campaign NAME."""
-    return command("new", ["--plan", plan, "--name", name], of[0])
+    return command("new", ["--plan", plan, f"--name={name}"], of[0])
 
 
 @main.command()
@@ -112,7 +119,7 @@ def new(of: tuple[Path, int], plan: str, name: str) -> int:
 @click.pass_obj
 def trace(of: tuple[Path, int], campaign: str, number: str) -> int:
     """Follow NUMBER, such as gyroscope/joint/bias_x, back to the lines of the logs."""
-    return command("trace", ["--campaign", campaign, "--id", number], of[0])
+    return command("trace", ["--campaign", campaign, f"--id={number}"], of[0])
 
 
 @main.command()
@@ -137,15 +144,16 @@ def design(
     """Design what to record: the best plan from nothing, or what to add to a campaign."""
     folder, cores = of
     if instrument:
-        what = ["--instrument", instrument, "--minutes", minutes, "--criterion", criterion]
+        of_it = {"instrument": instrument, "minutes": minutes, "criterion": criterion}
     elif campaign:
         goal = f"data/derived/{campaign}/criticism/findings.parquet"
         if status := snakemake(folder, cores, [goal]):
             return status
-        what = ["--campaign", campaign, "--want", want]
+        of_it = {"campaign": campaign, "want": want}
     else:
         raise click.UsageError("name an instrument or a campaign")
-    return command("design", [*what, "--table", table, "--name", name], folder)
+    of_it |= {"table": table, "name": name}
+    return command("design", [f"--{option}={value}" for option, value in of_it.items()], folder)
 
 
 @main.command()
@@ -160,6 +168,25 @@ def compare(of: tuple[Path, int], first: str, second: str) -> int:
         return status
     click.echo(f"\n{(folder / f'{page}.txt').read_text(encoding='utf-8')}")
     click.echo(f"The comparison: {page}.html")
+    return 0
+
+
+@main.command()
+@click.argument("selection")
+@click.option("--name", default="", help="Of the page; left out: of the selection.")
+@click.pass_obj
+def fleet(of: tuple[Path, int], selection: str, name: str) -> int:
+    """Put several campaigns together: by serial=, instrument= or table=, or their names."""
+    folder, cores = of
+    selections, errors = part_of("overviews.fleet.selection"), part_of("inertial.tables.errors")
+    try:
+        kept = selections.keep(selection, name, folder / selections.FLEETS)
+    except errors.Refusal as refusal:
+        click.echo(f"fleet: {refusal}", err=True)
+        return 2
+    if status := snakemake(folder, cores, [f"reports/fleet-{kept}.html"]):
+        return status
+    click.echo(f"The fleet: reports/fleet-{kept}.html; its tables: data/derived/.fleets/{kept}/")
     return 0
 
 

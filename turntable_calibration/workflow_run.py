@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from types import ModuleType
 
 import click
 
@@ -41,13 +42,18 @@ def snakemake(folder: Path, cores: int, targets: Sequence[str], more: Sequence[s
         return subprocess.run(command, pass_fds=[file.fileno()], check=False).returncode
 
 
-def command(module: str, arguments: Sequence[str], folder: Path) -> int:
-    """What `python -m commands.<module>` does, on a folder that holds data/; its exit status."""
+def part_of(name: str) -> ModuleType:
+    """A module of the workflow."""
     if str(WORKFLOW) not in sys.path:
         sys.path.insert(0, str(WORKFLOW))
+    return importlib.import_module(name)
+
+
+def command(module: str, arguments: Sequence[str], folder: Path) -> int:
+    """What `python -m commands.<module>` does, on a folder that holds data/; its exit status."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy is loaded: matrices are small
     part = ".__main__" if (WORKFLOW / "commands" / module).is_dir() else ""
-    main: Callable[[Sequence[str]], int] = importlib.import_module(f"commands.{module}{part}").main
+    main: Callable[[Sequence[str]], int] = part_of(f"commands.{module}{part}").main
     return main(["--data", str(folder / "data"), *arguments])
 
 

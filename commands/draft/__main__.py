@@ -2,12 +2,11 @@
 
     python -m commands.draft --name june session.csv
 
-It writes data/raw/<name>/campaign.yaml and links or copies the logs beside it. It ends with 0, or
+It writes data/raw/<name>/campaign.yaml and copies the logs beside it. It ends with 0, or
 with 2 where a log cannot be used or the name is taken.
 """
 
 import argparse
-import os
 import re
 import shutil
 import sys
@@ -71,10 +70,9 @@ def draft(logs: Sequence[Path], name: str, data: Path, rate: float | None = None
     text = campaign_file(kinds, plan, name)
     folder.mkdir(parents=True)
     for path in logs:
-        try:
-            os.link(path.resolve(), folder / path.name)
-        except OSError:  # another file system
-            shutil.copy(path, folder / path.name)
+        shutil.copy(
+            path, folder / path.name
+        )  # a link would be the same bytes
     (folder / "campaign.yaml").write_text(text, encoding="utf-8")
     return folder
 

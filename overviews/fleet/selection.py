@@ -1,15 +1,10 @@
 """Which campaigns a fleet is of: by serial number, type of IMU or table, or by their names.
 
-python -m overviews.fleet.selection '<selection>' [--name=<name>]
-
-keeps the selection as data/fleets/<name>.txt, from which the workflow makes the page, and prints
-the name.
+A selection is kept as data/fleets/<name>.txt, from which the workflow makes the page.
 """
 
-import argparse
 import re
 import shlex
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -17,7 +12,7 @@ from inertial import tables
 from inertial.tables.errors import Refusal
 from inertial.tables.whole_files import write_whole
 from inertial.text.messages import _
-from inertial.text.numbers import shortened, visible
+from inertial.text.numbers import shortened
 from overviews.fleet.members import READ
 
 FLEETS = Path("data/fleets")
@@ -110,24 +105,19 @@ def _meets(conditions: Mapping[str, str], campaign: Path) -> bool:
     return all(row[key] == value for key, value in conditions.items())
 
 
-def main() -> None:
-    """Keep a selection, and print its name."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("selection")
-    parser.add_argument("--name", default="")
-    given = parser.parse_args()
-    name = given.name or name_of(given.selection)
-    try:
-        parts(given.selection)
-        if name != name_of(name):
-            raise Refusal(
-                "NAME", name, _("another character"), _("a-z, digits, hyphens"), _("rename it")
-            )
-        write_whole({FLEETS / f"{name}.txt": f"{given.selection}\n".encode()})
-    except Refusal as refusal:
-        sys.exit(visible(f"fleet: {refusal}"))
-    sys.stdout.write(f"{name}\n")
+def keep(selection: str, name: str, fleets: Path = FLEETS) -> str:
+    """Keep a selection, by this name or one made of it; the name.
 
-
-if __name__ == "__main__":
-    main()
+    Raises
+    ------
+    Refusal
+        where it is no selection, or the name is none
+    """
+    name = name or name_of(selection)
+    parts(selection)
+    if name != name_of(name):
+        raise Refusal(
+            "NAME", name, _("another character"), _("a-z, digits, hyphens"), _("rename it")
+        )
+    write_whole({fleets / f"{name}.txt": f"{selection}\n".encode()})
+    return name
