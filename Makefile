@@ -62,6 +62,8 @@
 #                                 can be resumed; with DRAWS=100 so many of them
 #   make cluster-test             campaigns through a Slurm of two nodes on this machine, one of which dies;
 #                                 some minutes; it needs root, and Debian's slurm-wlm and munge
+#   make scale                    what campaigns cost, many and long ones, in docs/scale.md; an hour
+#                                 on two cores, can be resumed; with DRAWS=5 so many small campaigns
 #   make docs                     docs/tables.md, docs/theory.md and the catalogues of messages, from the code
 #   make recordings               docs/recordings.md: the real recordings, which are not part of the
 #                                 project, drafted and compared with what is known of them; 15 minutes
@@ -72,7 +74,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new design trace index compare fleet fleets test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings screenshots cluster-test clean setup pango
+.PHONY: report check draft new design trace index compare fleet fleets test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings screenshots cluster-test scale clean setup pango
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -234,6 +236,9 @@ fleets: .venv/complete
 
 designs: .venv/complete
 	PYTHONPATH=tests:tests/hidden:tests/bounds OPENBLAS_NUM_THREADS=1 $(BIN)/python -m design data/derived/design $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
+
+scale: .venv/complete
+	PYTHONPATH=tests CORES=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m scale data/derived/scale $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
 
 mutants: .venv/complete
 	PYTHONPATH=tests:tests/mutants OPENBLAS_NUM_THREADS=1 $(BIN)/python -m mutants "$$DRAWS" data/derived/mutants

@@ -32,6 +32,7 @@ MEAN_SECONDS = 10.0  # s, of the means of which the bias stability is the scatte
 MIN_MEANS = 6
 LONGEST_AHEAD = 10.0  # years, within which a due date is sought
 DATES_AHEAD = 40
+LATEST = 60  # calibrations in which jumps are sought and by which the next is predicted: n³ of work
 SEED = 20261123  # of histories without a jump: the same data give the same numbers
 UNKNOWN = "unknown"
 ONE_GROUP = _("all calibrations share one {name}, so nothing is known of it")
@@ -314,7 +315,8 @@ def _due(tolerance: float | None, last: Observed, day: date, prediction: Predict
 
 
 def _dated(values: Sequence[Observed]) -> list[Observed]:
-    return [v for v in values if v.date != UNKNOWN]
+    """The latest values with a date."""
+    return [v for v in values if v.date != UNKNOWN][-LATEST:]
 
 
 def _day(value: Observed) -> date:
