@@ -32,7 +32,7 @@ MEAN_SECONDS = 10.0  # s, of the means of which the bias stability is the scatte
 MIN_MEANS = 6
 LONGEST_AHEAD = 10.0  # years, within which a due date is sought
 DATES_AHEAD = 40
-LATEST = 60  # calibrations in which jumps are sought and by which the next is predicted: n³ of work
+LATEST = 60  # calibrations of which components, jumps and the next one are found: n³ of work
 SEED = 20261123  # of histories without a jump: the same data give the same numbers
 UNKNOWN = "unknown"
 ONE_GROUP = _("all calibrations share one {name}, so nothing is known of it")
@@ -96,7 +96,8 @@ def _label(stated: object, otherwise: str) -> str:
 
 def repeatability_rows(series: Series, blocks: pd.DataFrame) -> Iterator[Row]:
     """The rows of the table: components between calibrations, and stability within this one."""
-    for (sensor, quantity), values in series.items():
+    for (sensor, quantity), every in series.items():
+        values = every[-LATEST:]
         key = _key(sensor, quantity, len(values))
         if len(values) < 2:
             continue

@@ -18,7 +18,7 @@ from scale_page import write
 
 SMALL = 20  # campaigns
 LONG = (1_000_000, 10_000_000)  # samples
-ARCHIVED = (1, 100, 1000)  # earlier calibrations of an IMU
+ARCHIVED = (1, 100, 500)  # earlier calibrations of an IMU
 FOLDER = (1, 1000, 10_000)  # campaigns of a folder of which one is planned
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from datetime import date, timedelta
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import process_time
@@ -28,6 +29,7 @@ KEPT = {  # what one campaign leaves, by its pattern in the folder
 Outcome = dict[str, Any]
 
 
+@cache
 def code() -> str:
     """A hash of the code that an outcome rests on, as it was at the start."""
     files = {file for stage in ORDER for file in code_of(stage)}
