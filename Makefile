@@ -2,6 +2,8 @@
 #
 #   make report                   the demo, recorded by the simulated laboratory
 #   make report CAMPAIGN=<name>   the campaign in data/raw/<name>/
+#   make crate                    a campaign with all that made it as one file, a Run-RO-Crate,
+#                                 reports/<campaign>.crate.zip; also with CAMPAIGN=<name>
 #   make check                    faults of the recording within a minute, before the set-up is
 #                                 dismantled; also with CAMPAIGN=<name>
 #   make draft LOG="<logs>"       a first campaign file from the logs alone, data/raw/<name>/; also with
@@ -74,7 +76,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new design trace index compare fleet fleets test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings screenshots cluster-test scale clean setup pango
+.PHONY: report crate check draft new design trace index compare fleet fleets test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings screenshots cluster-test scale clean setup pango
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -120,7 +122,7 @@ COMMAND := $(BIN)/python -m turntable_calibration
 # What a person calls is the command turntable-calibration. Behind a recipe that fails GNU make says
 # "Error 1": so it is done by try-…, whose failure is ignored, in silence, and remembered by $(try);
 # $(ended) then stops make with status 2 and one line, the place of the full log where there is one.
-CALLED := report check draft new design trace index compare fleet
+CALLED := report crate check draft new design trace index compare fleet
 ENDED := $(shell mktemp --dry-run --suffix=.make)
 $(CALLED:%=try-%): export ENDED := $(ENDED)
 try = -trap '(( $$? == 0 )) || [[ -s $$ENDED ]] || echo "what is wrong stands above" > $$ENDED' EXIT
@@ -133,6 +135,10 @@ $(CALLED): %: try-%
 try-report: setup
 	$(try)
 	$(COMMAND) report -- "$$CAMPAIGN"
+
+try-crate: setup
+	$(try)
+	$(COMMAND) crate -- "$$CAMPAIGN"
 
 try-check: .venv/complete
 	$(try)
