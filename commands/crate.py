@@ -124,8 +124,9 @@ def _done(folder: Path, campaign: str, raw: Sequence[Path]) -> Iterator[Done]:
         read = [derived / source.place for source in declared.reads.values()]
         if {"raw", "campaign"} & set(declared.files):
             read += raw
-        if not read:  # the PDF, of the page
-            read = [folder / f"reports/{campaign}.html"]
+        if "html" in declared.files:  # the PDF, of the page and what is attached to it
+            ends = ("html", "calibration.json", "dcc.xml")
+            read = [folder / f"reports/{campaign}.{ending}" for ending in ends]
         # Snakemake writes the file at the end of the job; its first column are seconds.
         seconds = float(measured.read_text().splitlines()[-1].split("\t")[0])
         end = datetime.fromtimestamp(measured.stat().st_mtime, UTC)
