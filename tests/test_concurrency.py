@@ -18,7 +18,7 @@ from turntable_calibration.workflow_run import LOCK
 
 pytestmark = pytest.mark.workflow
 
-PATIENCE = 300  # s
+PATIENCE = 900  # s
 ESTIMATED = ("accelerometer", "gyroscope")
 WAITS = "Another run is at work here; this one waits for it."
 KILLS = 20
