@@ -7,7 +7,7 @@ from hidden_plans import PLANS
 
 import laboratory
 from inertial.campaign.effect_evidence import evidence
-from inertial.campaign.equations import campaign_of
+from inertial.campaign.observations import campaign_of
 from inertial.effects import CATALOGUE
 
 TILT = 120.0  # arcsec, sixty times what the gyros resolve
