@@ -42,6 +42,17 @@ SAMPLES = Table(
         Column("label", LABEL, "", "label that the plan selects by", nullable=True),
     ),
 )
+MEAN_SIGMAS = Table(
+    "mean_sigmas",
+    1,
+    (
+        LOG,
+        Column("record", INTEGER, "1", "as in samples, where records are means"),
+        SENSOR,
+        AXIS,
+        Column("sigma", DOUBLE, AS_CHANNEL, "standard deviation of the mean, as the log states it"),
+    ),
+)
 REFUSED = Table(
     "refused",
     1,

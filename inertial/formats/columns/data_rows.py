@@ -25,6 +25,9 @@ class Rows:
     table_angle: Reals | None  # as it stands in the file, (n,)
     temperature: Reals | None  # likewise
     label: list[str] | None  # "column=value; …" of the columns that the plan selects by, (n,)
+    # Of rows that are means: their standard deviations, as they stand in the file, (n, 3).
+    accelerometer_sigma: Reals | None = None
+    gyro_sigma: Reals | None = None
 
 
 @dataclass(frozen=True)
@@ -71,7 +74,7 @@ def sort_rows(
     intact = np.ones(count, bool)
     intact[list(reasons)] = False
     exact = columns.exact_time
-    required = dict.fromkeys([*columns.of_every_row, *columns.axes])
+    required = dict.fromkeys([*columns.of_every_row, *columns.axes, *columns.sigmas])
     numbers = {each: fields[each.index].numbers() for each in required if each != exact}
     held = [_held(triad, fields, numbers, count) for triad in columns.triads]
     selected = _selected(columns, held)
@@ -96,6 +99,14 @@ def sort_rows(
         refuse(exact, selected & ~known, whole)
     for column, needed in wanted:
         refuse(column, needed & ~np.isfinite(numbers[column]), _("a finite number"))
+    for triad, holds in zip(columns.triads, held, strict=True):
+        axes = _axes(triad, numbers, holds)
+        for axis, column in enumerate(triad.sigmas):
+            if column is not None:
+                sigma = numbers[column]
+                unusable = ~np.isfinite(sigma) | (sigma <= 0)
+                expected = _("the standard deviation of a mean, above 0")
+                refuse(column, np.isfinite(axes[:, axis]) & unusable, expected)
     taken = intact & selected
 
     def ticks() -> Reals | Integers | None:
@@ -105,6 +116,13 @@ def sort_rows(
 
     def of(column: Column | None) -> Reals | None:
         return None if column is None else numbers[column][taken]
+
+    def sigmas(triad: Triad) -> Reals | None:
+        if not any(triad.sigmas):
+            return None
+        unknown = np.full(int(taken.sum()), np.nan)
+        own = [unknown if column is None else numbers[column][taken] for column in triad.sigmas]
+        return np.column_stack(own)
 
     record = place.record[taken]
     accelerometer, gyro = (
@@ -122,6 +140,8 @@ def sort_rows(
         table_angle=of(columns.table_angle),
         temperature=of(columns.temperature),
         label=_label(columns.label, fields, taken),
+        accelerometer_sigma=sigmas(columns.accelerometer),
+        gyro_sigma=sigmas(columns.gyro),
     )
     return SortedRows(rows, taken, intact & ~selected, reasons)
 
