@@ -130,7 +130,8 @@ def _stated_levels(blocks: pd.DataFrame, mean_sigmas: pd.DataFrame) -> dict[_Lev
     both = both[both["phase"].isin(list(PHASES))]
     both = both.assign(phase=both["phase"].map(PHASES), square=(both["count"] * both["sigma"]) ** 2)
     sums = both.groupby(["manoeuvre", "phase", "channel"])[["count", "square"]].sum()
-    return dict((sums["square"] / sums["count"]).pow(0.5).items())
+    levels = (sums["square"] / sums["count"]) ** 0.5
+    return dict(zip(levels.index.to_list(), levels.to_list(), strict=True))
 
 
 class _Spectra:
