@@ -579,6 +579,48 @@ def test_logs_without_common_time_are_refused(simple, tmp_path):
     chain.run(tmp_path / "raw", tmp_path / "derived", "decode")
 
 
+# ---- stamps of arrival
+
+
+def test_the_rate_of_a_clock_by_stamps_of_arrival_is_in_the_scale_factors(tmp_path):
+    """The IMU samples at 100.03 Hz; a host fetches and stamps what waits every 20 to 60 ms.
+
+    A scale factor by a turn either way is off by the mean error of their two clocks.
+    """
+    rate = 100.03
+    exact = chain.simulate(in_columns(rate_hz=rate), tmp_path / "exact/raw")
+    known = chain.run(exact, tmp_path / "exact/derived").parameters("gyroscope")
+    turns = [m for m in told(exact)["plan"] if m["do"] == "turn"]
+    scales, pulls = [f"scale_{axis}" for axis in "xyz"], []
+    for seed in range(4):
+        random = np.random.default_rng(seed)
+        raw = tmp_path / f"raw-{seed}"
+        raw.mkdir()
+        tell(raw, told(exact))
+        for log in sorted(exact.glob("*.asc")):
+            rows = numbers(log).copy()
+            fetched = rows[0, 0] + np.cumsum(random.uniform(0.02, 0.06, len(rows)))
+            rows[:, 0] = fetched[np.searchsorted(fetched, rows[:, 0])]
+            write(raw / log.name, rows)
+        results = chain.run(raw, tmp_path / f"derived-{seed}")
+        clocks = results["decode/clocks"].set_index("log")
+        sigma = clocks["interval_sigma"] / clocks["interval"]
+        assert sigma.between(20e-6, 1e-3).all()
+        errors = (clocks["interval"] * rate - 1) / sigma
+        assert np.abs(errors).max() < 4.5 and np.sqrt(np.mean(errors**2)) < 1.5
+        joint = results.parameters("gyroscope")
+        for axis, scale in zip("xyz", scales, strict=True):
+            own = [sigma[m["log"]] for m in turns if m["up"][1] == axis]
+            assert len(own) == 2
+            expected = 1 / np.sqrt(np.sum(np.power(own, -2.0)))  # the better clock weighs more
+            added = np.sqrt(joint.loc[scale, "sigma"] ** 2 - known.loc[scale, "sigma"] ** 2)
+            assert added == pytest.approx(expected, rel=0.25)
+            pulls.append((joint.loc[scale, "value"] - known.loc[scale, "value"]) / expected)
+    # Twelve pulls: their rms scatters by 20 %.
+    assert 0.5 < np.sqrt(np.mean(np.square(pulls))) < 1.6
+    assert np.abs(pulls).max() < MAX_SIGMA
+
+
 # ---- real recordings that need them
 
 

@@ -78,7 +78,7 @@ ACCOUNTS = Table(
 )
 CLOCKS = Table(
     "clocks",
-    4,
+    5,
     (
         LOG,
         Column(
@@ -96,6 +96,13 @@ CLOCKS = Table(
             DOUBLE,
             "s",
             "mean sample interval: what a sample counts for in a sum over time",
+            nullable=True,
+        ),
+        Column(
+            "interval_sigma",
+            DOUBLE,
+            "s",
+            "standard deviation of the interval of the regular clock; null: stamps are used",
             nullable=True,
         ),
         Column(

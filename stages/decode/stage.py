@@ -111,6 +111,7 @@ def _pieces_of(
         "to_record": to_record,
         "interval": log.interval,
         "integration_step": log.step,
+        "interval_sigma": log.arrival and log.arrival.clock.interval_sigma,
         "stamp_scatter": log.arrival and log.arrival.clock.scatter,
         "shortest_gap": log.arrival and log.arrival.clock.shortest_gap,
     }
