@@ -241,7 +241,8 @@ def _format(kind: Kind, sensors: Sequence[str], indent: str) -> Iterator[str]:
         return
     guess = _guess(timing.evidence) if timing.guessed else ""
     if kind.means:
-        yield f"{indent}mean_of: null{_guess(timing.evidence)}"
+        number = "null" if columns.mean_of is None else scalar(columns.mean_of)
+        yield f"{indent}mean_of: {number}{_guess(timing.evidence)}"
     else:
         yield f"{indent}time: {flow(**_time(kind, file))}{guess}"
     if columns.temperature is not None and file == 0:
@@ -355,6 +356,8 @@ def _seen(m: Manoeuvre) -> str:
         )
     if m.up is None:
         return _guess(_("no axis points up"))
+    if m.seconds is None:
+        return "  # " + _("{count} means", count=m.count)
     return "  # " + _("{seconds:.1f} s", seconds=m.seconds)
 
 
