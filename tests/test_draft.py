@@ -1,5 +1,6 @@
 """`make draft`: what it says of logs whose truth is known, and what the chain makes of it."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -207,6 +208,24 @@ def test_gyros_wired_otherwise_are_seen(tmp_path):
     folder = drafted({"log.txt": written([time, log.force, rate])}, tmp_path)
     assert told(folder)["instrument"]["gyro"]["axes"] == ["y", "-x", "z"]
     assert "gyro.axes" in (folder / "campaign.yaml").read_text(encoding="utf-8")
+
+
+def test_the_report_of_a_draft_tells_that_two_gyros_are_reversed(tmp_path):
+    log = by_hand_log(2)
+    rate = log.rate * [-1, -1, 1]
+    time = np.arange(len(rate)) / RATE
+    folder = drafted({"log.txt": written([time, log.force, rate])}, tmp_path)
+    campaign = told(folder)
+    assert campaign["instrument"]["gyro"]["axes"] == ["-x", "-y", "z"]
+    shares = re.findall(r"([xyz]) (−?[\d.]+) ± ([\d.]+\d)", campaign["notes"])
+    for (axis, share, sigma), sign in zip(shares, (-1, -1, 1), strict=True):
+        value = float(share.replace("−", "-"))
+        assert float(sigma) < 0.1 and value == pytest.approx(sign, abs=0.1), axis
+    assert "x reads −x and y reads −y" in campaign["notes"]
+    assert "A reversed z axis of the accelerometers would look the same" in campaign["notes"]
+    (tmp_path / "plain").mkdir()
+    plain = drafted({"log.txt": written([time, log.force, log.rate])}, tmp_path / "plain")
+    assert "notes" not in told(plain)
 
 
 def test_text_as_programs_of_other_countries_write_it(tmp_path):
