@@ -17,10 +17,13 @@ MOST_DECIMALS = 15
 
 
 def fixed(value: float | None, decimals: int) -> str:
-    """`value` with so many decimals and a true minus sign; — where there is none."""
+    """`value` with so many decimals and a true minus sign; — where there is none.
+
+    Decimals below zero are places before the point: −2 is to hundreds.
+    """
     if value is None or not isfinite(value):
         return "—"
-    text = f"{value:.{max(decimals, 0)}f}"
+    text = f"{round(value, decimals) if decimals < 0 else value:.{max(decimals, 0)}f}"
     return text.removeprefix("-") if float(text) == 0 else text.replace("-", "−")
 
 
@@ -43,27 +46,36 @@ def raised(exponent: int) -> str:
 
 
 def decimals_of(sigma: float | None, digits: int = DIGITS_OF_SIGMA) -> int | None:
-    """Decimals that show `digits` significant digits of `sigma`; none without a sigma."""
+    """Decimals that show `digits` significant digits of `sigma`, below zero where these end
+    before the point; none without a sigma."""
     if sigma is None or not isfinite(sigma) or sigma <= 0:
         return None
     exponent = floor(log10(float(f"{sigma:.{digits - 1}e}")))
-    return min(max(digits - 1 - exponent, 0), MOST_DECIMALS)
+    return min(digits - 1 - exponent, MOST_DECIMALS)
 
 
 def common_decimals(sigmas: Iterable[float | None]) -> int | None:
     """Decimals for numbers that stand below each other: those of the smallest sigma.
 
     They are at most two more than those of the largest, so that one very sure
-    number does not clothe the others in digits that mean nothing.
+    number does not clothe the others in digits that mean nothing. What ends before the
+    point, `with_sigma` rounds by its own sigma.
     """
     each = [decimals for sigma in sigmas if (decimals := decimals_of(sigma)) is not None]
-    return min(max(each), min(each) + 2) if each else None
+    return min(max(each), max(min(each), 0) + 2) if each else None
 
 
 def with_sigma(value: float | None, sigma: float | None, decimals: int | None) -> tuple[str, str]:
-    """A value and its sigma with the same decimals; to five digits where no sigma is known."""
+    """A value and its sigma with the same decimals; to five digits where no sigma is known.
+
+    What its own sigma does not know before the point is rounded, whatever the decimals (GUM,
+    7.2.6).
+    """
     if decimals is None:
         return significant(value, 5), "—"
+    own = decimals_of(sigma)
+    if own is not None and own < 0:
+        decimals = min(decimals, own)
     return fixed(value, decimals), fixed(sigma, decimals)
 
 

@@ -315,7 +315,7 @@ def _cells(row: Record) -> tuple[str, str]:
         return _("as set"), numbers.significant(sigma, 2) if sigma else "—"
     if decimals is None:
         return numbers.significant(value, 7), "—"
-    return numbers.fixed(value, decimals), numbers.fixed(sigma, decimals)
+    return numbers.with_sigma(value, sigma, decimals)
 
 
 def provenance_parts(tables: Tables) -> Iterator[Part]:

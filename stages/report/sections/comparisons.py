@@ -142,8 +142,7 @@ def _difference(row: Record, sigma: str) -> outline.Row:
     unit = units.quantity(row["quantity"], row["unit"]).shown
     decimals = numbers.decimals_of(unit.of(row["sigma"]))
     first, second = (
-        numbers.significant(value, 5) if decimals is None else numbers.fixed(value, decimals)
-        for value in (unit.of(row["first_value"]), unit.of(row["second_value"]))
+        _value(unit.of(row[key]), decimals) for key in ("first_value", "second_value")
     )
     return outline.table_row(
         with_mount(KINDS.get(kind, numbers.shortened(kind, 60)), row["mount"]),
@@ -152,6 +151,14 @@ def _difference(row: Record, sigma: str) -> outline.Row:
         anchor=row["id"],
         tone="fair" if _beyond(row) else "",
     )
+
+
+def _value(value: float | None, decimals: int | None) -> str:
+    """As far as the sigma of the difference goes, but at least to two digits: it may be surer."""
+    if value is None or decimals is None:
+        return numbers.significant(value, 5)
+    own = numbers.decimals_of(abs(value))
+    return numbers.fixed(value, decimals if own is None else max(decimals, min(own, 0)))
 
 
 # ---- earlier calibrations of the same instrument
