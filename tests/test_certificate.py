@@ -156,5 +156,5 @@ def test_a_value_stands_with_twice_its_sigma():
     own = (made["result"]["sensor"] == "gyro") & (made["result"]["parameter"] == "scale_x")
     made["result"].loc[own, ["value", "sigma"]] = 6.151e-4, 2.2e-6
     row = re.search(r"<i>s</i><sub>x</sub>.*", section_on(made, SECTION)).group()
-    cells = [re.sub("<[^>]*>", "", cell) for cell in row.split("</td>")]
+    cells = [re.sub("<[^>]*>", "", cell).rstrip("\u2007\u2008") for cell in row.split("</td>")]
     assert cells[5:8] == ["615.1", "±\u202f4.4", "ppm"]

@@ -11,7 +11,7 @@ from itertools import groupby
 from typing import Literal
 
 from inertial.text.messages import LOCALES, _, language
-from inertial.text.numbers import whole
+from inertial.text.numbers import aligned, whole
 from stages.report.tables import Tables
 
 # What a column holds, hence how it is set: text; name (in one line); number (digits under
@@ -63,6 +63,11 @@ class Traced(str):
         made = super().__new__(cls, text)
         made.id = id
         return made
+
+
+def _as(cell: str, text: str) -> str:
+    """`text`, traced as the cell is."""
+    return Traced(text, cell.id) if isinstance(cell, Traced) else text
 
 
 @dataclass(frozen=True)
@@ -118,6 +123,17 @@ class Table(Part):
     empty: str = _("None.")
     note: str = ""
     sortable: bool = False
+
+    @property
+    def padded(self) -> tuple[tuple[str, ...], ...]:
+        """The cells of each row, numbers of a column with their points below each other."""
+        own = [row.cells for row in self.rows if not row.heads]
+        columns = [
+            map(_as, cells, aligned(cells)) if column.kind in ("number", "sigma") else cells
+            for column, cells in zip(self.columns, zip(*own, strict=True), strict=False)
+        ]
+        rows = iter(zip(*columns, strict=True))
+        return tuple(row.cells if row.heads else next(rows) for row in self.rows)
 
     @property
     def groups(self) -> tuple[tuple[str, int], ...]:

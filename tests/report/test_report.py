@@ -347,7 +347,7 @@ def test_checks_stand_before_and_after() -> None:
 def test_the_figures_of_the_standards_stand_beside_what_noise_explains() -> None:
     page = Page(synthetic.documents()["html"])
     cells = page.rows["compensation/gyro/linearity_error_x"]
-    assert cells == ["x", "30.0", "±\u202f4.0", "11.0", "ppm", "10.0 °/s", "8"]
+    assert cells == ["x", "30.0", "±\u202f4.0", "11", "ppm", "10.0 °/s", "8"]
     assert "y gyro, linearity error: not determined, for nothing was applied." in page.text
 
 

@@ -232,7 +232,7 @@ def _values(results: Sequence[Estimate], mount: str, earlier: Mapping[str, Recor
         rows,
         _("None: no parameter was determined."),
         _("—: not determined; “Undetermined parameters” says why.")
-        if any("—" in row.cells for row in rows)
+        if any(len(texts) < len(names) for texts in written)
         else "",
     )
 
@@ -242,19 +242,19 @@ def _name(row: Record) -> str:
 
 
 def _with_uncertainty(rows: Sequence[Record]) -> dict[str, tuple[str, str, str]]:
-    """Value, U and unit of each, with common decimals for those of one kind."""
-    by_kind: dict[str, list[Record]] = {}
-    for row in rows:
-        by_kind.setdefault(kind_of(row["parameter"]), []).append(row)
+    """Value, U and unit of each, to two digits of its U."""
     written: dict[str, tuple[str, str, str]] = {}
-    for own in by_kind.values():
-        unit = quantity_of(own[0]).shown
-        decimals = numbers.common_decimals([_expanded(row, unit) for row in own])
-        for row in own:
-            if row["value"] is not None:
-                pair = numbers.with_sigma(unit.of(row["value"]), _expanded(row, unit), decimals)
-                written[_name(row)] = (Traced(pair[0], row["id"]), pair[1], unit.name)
+    for row in rows:
+        if row["value"] is not None:
+            unit = quantity_of(row).shown
+            value, spread = _pair(row, unit)
+            written[_name(row)] = (Traced(value, row["id"]), spread, unit.name)
     return written
+
+
+def _pair(row: Record, unit: Unit) -> tuple[str, str]:
+    spread = _expanded(row, unit)
+    return numbers.with_sigma(unit.of(row["value"]), spread, numbers.decimals_of(spread))
 
 
 def _expanded(row: Record, unit: Unit) -> float | None:
@@ -268,11 +268,8 @@ def _effects(rows: Sequence[Record]) -> Table:
         for row in rows:
             if row["effect"] == effect and row["value"] is not None:
                 unit = quantity_of(row).shown
-                spread = _expanded(row, unit)
-                value, spread_text = numbers.with_sigma(
-                    unit.of(row["value"]), spread, numbers.decimals_of(spread)
-                )
-                cells = (Traced(value, row["id"]), spread_text, unit.name, row["meaning"])
+                value, spread = _pair(row, unit)
+                cells = (Traced(value, row["id"]), spread, unit.name, row["meaning"])
                 lines.append(table_row(symbol(row["parameter"]), *cells))
     return Table(
         _("Effects that the result contains beside them; they hold together with it."),

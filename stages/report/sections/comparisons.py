@@ -102,7 +102,6 @@ def _differences(rows: Sequence[Record], none: str) -> outline.Table:
     apart = [row for row in rows if row["in_sigmas"] is None and not _fencepost(row)]
     rows = [row for row in rows if row not in apart]
     shown = rows[:MOST_DIFFERENCES]
-    sigmas = numbers.aligned([numbers.fixed(row["in_sigmas"], 1) for row in shown])
     return outline.Table(
         _("Differences: {counted} of values.", counted=numbers.counted(len(rows), "pair")),
         (
@@ -111,7 +110,7 @@ def _differences(rows: Sequence[Record], none: str) -> outline.Table:
             outline.Column(_("unit"), "unit", _("Values")),
             *outline.columns("number", _("in σ"), "p"),
         ),
-        [_difference(row, sigma) for row, sigma in zip(shown, sigmas, strict=True)],
+        [_difference(row) for row in shown],
         none,
         " ".join(
             filter(
@@ -137,17 +136,16 @@ def _not_compared(rows: Sequence[Record]) -> str:
     return _("Not compared. {each}", each=numbers.shortened(" ".join(each), 900)) if rows else ""
 
 
-def _difference(row: Record, sigma: str) -> outline.Row:
+def _difference(row: Record) -> outline.Row:
     kind = str(row["kind"])
     unit = units.quantity(row["quantity"], row["unit"]).shown
     decimals = numbers.decimals_of(unit.of(row["sigma"]))
-    first, second = (
-        _value(unit.of(row[key]), decimals) for key in ("first_value", "second_value")
-    )
+    first, second = (_value(unit.of(row[key]), decimals) for key in ("first_value", "second_value"))
     return outline.table_row(
         with_mount(KINDS.get(kind, numbers.shortened(kind, 60)), row["mount"]),
         capital(numbers.shortened(str(row["sentence"]).partition(": ")[0], 600)),
-        *(first, second, unit.name, sigma, numbers.probability(row["p_value"])),
+        *(first, second, unit.name, numbers.fixed(row["in_sigmas"], 1)),
+        numbers.probability(row["p_value"]),
         anchor=row["id"],
         tone="fair" if _beyond(row) else "",
     )

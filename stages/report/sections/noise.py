@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from inertial.tables import AXES
 from inertial.text.messages import _
-from inertial.text.numbers import aligned, common_decimals, shortened, significant, with_sigma
+from inertial.text.numbers import common_decimals, shortened, significant, with_sigma
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import outline
 from stages.report.sections.noise_figures import allan_figure, spectrum_figure
@@ -125,7 +125,7 @@ def _terms_table(sensor: str, rows: Sequence[Record], note: str) -> outline.Tabl
         shown = next((v for v in stated.values() if v is not None), None)
         cells.append([*values, significant(units[term].of(shown), 3) if shown else ""])
         cells.append([*sigmas, ""])
-    by_row = list(zip(*(aligned(column) for column in cells), strict=True))
+    by_row = list(zip(*cells, strict=True))
     seconds = {row["channel"][-1]: row["seconds"] for row in rows}
     lines = [
         outline.table_row(axis, *own, significant(seconds[axis], 3))
