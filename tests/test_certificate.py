@@ -17,6 +17,7 @@ from inertial.estimation.conformity import (
 )
 from inertial.tables.errors import Refusal
 from inertial.tables.yaml_file import YamlFile
+from stages.diagnosis.conformity import conformity_rows
 from stages.plan.certificate import Statements
 from stages.report.sections.certificate import SECTION
 from tests.report.synthetic import campaign, section_on
@@ -136,6 +137,18 @@ def test_a_campaign_with_tolerances_is_assessed(tmp_path):
     assert [*rows["quantity"]] == ["bias_x", "bias_y", "bias_z"]
     assert [*rows["statement"]] == [DOES_NOT_CONFORM, DOES_NOT_CONFORM, CONFORMS]
     assert rows["risk"].max() < 1e-3
+
+
+def test_nothing_conforms_of_a_sensor_that_is_not_usable():
+    """A value far within its limit says nothing where a cause that is not removed moves it."""
+    row = {"sensor": "gyro", "mount": "", "effect": None, "parameter": "bias_x"}
+    result = [row | {"value": 1e-6, "sigma": 1e-8}, row | {"sensor": "accel"}]
+    limit = {"kind": "bias", "limit": 1e-5, "unit": "rad/s", "decision_rule": GUARD_BAND}
+    limits = [limit | {"sensor": "gyro"}]
+    (usable,) = conformity_rows(result, limits, ())
+    (unusable,) = conformity_rows(result, limits, {("gyro", "")})
+    assert usable["statement"] == CONFORMS
+    assert unusable["statement"] == "not_assessed" and unusable["risk"] is None
 
 
 # ---- In the report

@@ -24,7 +24,7 @@ TERMS = {
     "at rest": _("at rest"),
     "amplitude": _("amplitude"),
     "blank": _("blank"),
-    "body": _("body"),
+    "body": _("case"),  # its axes
     "compensated": _("compensated"),
     "decoded": _("decoded"),
     "frequency": _("frequency"),

@@ -50,7 +50,7 @@ def test_a_line_without_points_leaves_the_picture_whole() -> None:
         panel.plot([], [], marker="o")
         panel.plot([0, 1], [0, 1], marker="o")
         pictures = svg(figure, "test")
-    element = ElementTree.fromstring(pictures[: pictures.index("</svg>") + len("</svg>")])
+    element = ElementTree.XML(pictures[: pictures.index("</svg>") + len("</svg>")])
     assert element.tag.endswith("svg")  # a strict reader, as that of the PDF is, takes it
 
 

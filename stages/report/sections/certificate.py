@@ -47,7 +47,7 @@ from stages.report.results import (
 from stages.report.sections.axes_of_case import axes_of_case
 from stages.report.sections.verdict import LEVELS, verdict_sentences, worst
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSOR, capital, term
+from stages.report.words import SENSOR, SENSORS, capital, term, with_mount
 
 ITEMS = {  # of the left and of the right column, each with the items that it joins
     _("Laboratory"): ("laboratory.name", "laboratory.address", "laboratory.accreditation"),
@@ -94,6 +94,17 @@ def parts(tables: Tables) -> Iterator[Part]:
         yield _values(own, mount, earlier)
         if effects := [row for result in own for row in result.effects]:
             yield _effects(effects)
+    for row in tables.rows("verdict"):
+        if row["verdict"] == "not_usable":
+            sensor = capital(with_mount(SENSORS[row["sensor"]], row["mount"]))
+            yield Paragraph(
+                _(
+                    "{sensor}: not usable. The values above are evidence, not for use; none is "
+                    "assessed or exported.",
+                    sensor=sensor,
+                ),
+                "poor",
+            )
     yield from _conformity(tables)
     yield Sentences(tuple(_statements(tables, earlier)))
     yield Signatures(
@@ -132,7 +143,9 @@ def _facts(tables: Tables) -> Iterator[tuple[str, str]]:
     item = [campaign["instrument"], _("serial {serial}", serial=campaign["serial"])]
     item += [_("part {part}", part=part)] if part else []
     item += [_("firmware {firmware}", firmware=firmware)] if firmware else []
-    yield _("Item"), ", ".join([*([maker] if maker else []), *item])
+    if maker and not str(campaign["instrument"]).lower().startswith(maker.lower()):
+        item.insert(0, maker)
+    yield _("Item"), ", ".join(item)
     for name, items in ITEMS.items():
         texts = [stated[one] for one in items if one in stated]
         if texts or not IF_STATED.issuperset(items):
@@ -281,6 +294,9 @@ def _effects(rows: Sequence[Record]) -> Table:
             Column(_("meaning"), "note"),
         ),
         lines,
+        note=_("Where a parameter depends on the temperature, the value above is that at T0.")
+        if any(symbol(row["parameter"]) == "T0" for row in rows)
+        else "",
     )
 
 
@@ -377,8 +393,9 @@ def _statements(tables: Tables, earlier: Mapping[str, Record]) -> Iterator[str]:
     if earlier:
         before = next(iter(earlier.values()))
         yield _(
-            "Change: this result less that of {date} ({campaign}), which is the error as found of "
-            "an IMU that was used with that one; as left it is this result.",
+            "Change: this result less that of {date} ({campaign}). Of an IMU that was used with "
+            "the earlier result, the change is the error as found; as left, this result is its "
+            "own.",
             date=before["date"],
             campaign=before["campaign"],
         )

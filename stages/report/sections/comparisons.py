@@ -98,9 +98,11 @@ def _beyond(row: Record) -> bool:
     return bool(row["significant"]) or _fencepost(row)
 
 
-def _differences(rows: Sequence[Record], none: str) -> outline.Table:
+def _differences(rows: Sequence[Record], none: str) -> outline.Part:
     apart = [row for row in rows if row["in_sigmas"] is None and not _fencepost(row)]
     rows = [row for row in rows if row not in apart]
+    if not rows:
+        return outline.Paragraph(" ".join(filter(None, (none, _not_compared(apart)))))
     shown = rows[:MOST_DIFFERENCES]
     return outline.Table(
         _("Differences: {counted} of values.", counted=numbers.counted(len(rows), "pair")),
@@ -111,8 +113,7 @@ def _differences(rows: Sequence[Record], none: str) -> outline.Table:
             *outline.columns("number", _("in σ"), "p"),
         ),
         [_difference(row) for row in shown],
-        none,
-        " ".join(
+        note=" ".join(
             filter(
                 None,
                 (

@@ -80,8 +80,11 @@ def parts(tables: Tables) -> Iterator[Part]:
     yield Heading(_("By method"))
     yield Paragraph(BY_METHOD)
     yield _fits(estimates(tables))
+    counted_ones = {result.method for result in final_results(tables)}
     for _place, own in groupby(estimates(tables), lambda estimate: estimate.place):
         methods = [estimate for estimate in own if estimate.determined]
+        if len(methods) == 1 and methods[0].method in counted_ones:
+            continue  # it stands above as the result
         for first in range(0, len(methods), MAX_METHODS):
             yield _side_by_side(methods[first : first + MAX_METHODS])
     yield from extended(tables)
