@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from inertial.text.messages import ENGLISH, _, language
 from inertial.text.numbers import shortened
+from inertial.text.parameters import PARTS
 from inertial.text.typography import CHINESE
 
 SENSOR = {"gyro": _("gyro"), "accel": _("accelerometer")}
@@ -50,6 +51,14 @@ TERMS = {
     "unknown": _("unknown"),
 }
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+
+
+def parameter(sensor: str, quantity: str) -> str:
+    """A parameter of a sensor in words: gyro, scale x."""
+    if quantity not in PARTS:
+        return f"{SENSOR[sensor]} {quantity}"
+    kind, axes = PARTS[quantity]
+    return _("{sensor}, {kind} {axes}", sensor=SENSOR[sensor], kind=KINDS[kind], axes=axes)
 
 
 def listed(names: Sequence[str], last: str = "and") -> str:

@@ -66,6 +66,7 @@ ITEMS = {  # of the left and of the right column, each with the items that it jo
     _("Measured with"): ("conditions.measured_with",),
 }
 IF_STATED = {"laboratory.place", "item.axes", "conditions.humidity", "conditions.measured_with"}
+NOT_USABLE = "not_usable"  # the verdict
 KNOWN = ("gravity", "latitude")  # of the known quantities what results rest on
 
 
@@ -95,7 +96,7 @@ def parts(tables: Tables) -> Iterator[Part]:
         if effects := [row for result in own for row in result.effects]:
             yield _effects(effects)
     for row in tables.rows("verdict"):
-        if row["verdict"] == "not_usable":
+        if row["verdict"] == NOT_USABLE:
             sensor = capital(with_mount(SENSORS[row["sensor"]], row["mount"]))
             yield Paragraph(
                 _(
@@ -305,13 +306,14 @@ def _effects(rows: Sequence[Record]) -> Table:
 
 @once
 def _earlier(tables: Tables) -> Mapping[str, Record]:
-    """The parameters of the latest earlier calibration, by sensor, mount and name."""
-    rows = [row for row in tables.rows("earlier") if row["date"][:1].isdigit()]
-    latest = max((row["date"] for row in rows), default="")
+    """The parameters of the latest earlier calibration that is usable, by sensor, mount, name."""
+    dated = [row for row in tables.rows("earlier") if row["date"][:1].isdigit()]
+    rows = [row for row in dated if row["verdict"] != NOT_USABLE]
+    latest = max(((row["date"], row["file"]) for row in rows), default=None)
     return {
         _key(row["sensor"], row["mount"], row["quantity"]): row
         for row in rows
-        if row["date"] == latest
+        if (row["date"], row["file"]) == latest
     }
 
 

@@ -16,7 +16,7 @@ from stages.report import outline
 from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks
 from stages.report.results import KIND
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, SENSOR_OF_STAGE, capital, with_mount
+from stages.report.words import SENSOR, SENSOR_OF_STAGE, capital, parameter, with_mount
 
 KINDS = {
     "static_against_turns": _("Static, rotation"),
@@ -258,17 +258,17 @@ def _calibrations(calibrations: Sequence[Sequence[Record]], now: Calibration) ->
 
 def _calibration(rows: Sequence[Record], now: Calibration) -> outline.Row:
     changes = [
-        (abs(like["value"] - row["value"]) / both, row["id"])
+        (abs(like["value"] - row["value"]) / both, parameter(row["sensor"], row["quantity"]))
         for row in rows
         if (like := now.get(_key(row))) and (both := hypot(row["sigma"], like["sigma"] or 0.0)) > 0
     ]
-    largest, identifier = max(changes, default=(None, ""))
+    largest, name = max(changes, default=(None, ""))
     return outline.table_row(
         numbers.shortened(rows[0]["date"], 20),
         numbers.shortened(rows[0]["campaign"], 80),
         numbers.whole(len(rows)),
         numbers.fixed(largest, 1),
-        numbers.shortened(identifier, 80) or "—",
+        name or "—",
         _verdicts(rows),
         numbers.shortened(rows[0]["file"], 200),
     )
