@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from inertial.text.messages import ENGLISH, _, language
@@ -29,9 +30,11 @@ TERMS = {
     "compensated": _("compensated"),
     "decoded": _("decoded"),
     "frequency": _("frequency"),
+    "east": _("east"),
     "gravity": _("gravity"),
     "latitude": _("latitude"),
     "header": _("header"),
+    "north": _("north"),
     "not selected": _("not selected"),
     "other message": _("other message"),
     "period": _("period"),
@@ -50,7 +53,13 @@ TERMS = {
     "turn": _("turn"),
     "unknown": _("unknown"),
 }
+PHASE = re.compile(r"\((rest-before|rest-after|spin-up|steady|spin-down)\)")
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+
+
+def phases_in_words(text: str) -> str:
+    """A text with names of manoeuvres, each phase in brackets behind them as a term."""
+    return PHASE.sub(lambda phase: f"({term(phase[1])})", text)
 
 
 def parameter(sensor: str, quantity: str) -> str:

@@ -49,7 +49,7 @@ from stages.report.results import (
 )
 from stages.report.sections.effect_tables import extended
 from stages.report.tables import Record, Tables
-from stages.report.words import capital, term
+from stages.report.words import capital, phases_in_words, term
 
 BY_METHOD = _(
     "What follows is no result of its own: the same parameters by each method, side by side. How "
@@ -312,8 +312,8 @@ def undetermined_parts(tables: Tables) -> Iterator[Part]:
         [
             table_row(
                 estimate.name,
-                shortened(labels(estimate.manoeuvres) or _("none"), 1500),
-                shortened(omissions(estimate.manoeuvres) or _("none"), 1500),
+                shortened(phases_in_words(labels(estimate.manoeuvres)) or _("none"), 1500),
+                shortened(phases_in_words(omissions(estimate.manoeuvres)) or _("none"), 1500),
                 tone="fair" if omissions(estimate.manoeuvres) else "",
             )
             for estimate in estimates(tables)
