@@ -65,11 +65,6 @@ class Traced(str):
         return made
 
 
-def _as(cell: str, text: str) -> str:
-    """`text`, traced as the cell is."""
-    return Traced(text, cell.id) if isinstance(cell, Traced) else text
-
-
 @dataclass(frozen=True)
 class Row:
     """A row of a table; one with `heads` stands above the rows it names.
@@ -125,15 +120,17 @@ class Table(Part):
     sortable: bool = False
 
     @property
-    def padded(self) -> tuple[tuple[str, ...], ...]:
-        """The cells of each row, numbers of a column with their points below each other."""
+    def paddings(self) -> tuple[tuple[str, ...], ...]:
+        """What follows each cell, so that points of a column stand below each other."""
         own = [row.cells for row in self.rows if not row.heads]
         columns = [
-            map(_as, cells, aligned(cells)) if column.kind in ("number", "sigma") else cells
+            [padded[len(cell) :] for cell, padded in zip(cells, aligned(cells), strict=True)]
+            if column.kind in ("number", "sigma")
+            else [""] * len(cells)
             for column, cells in zip(self.columns, zip(*own, strict=True), strict=False)
         ]
         rows = iter(zip(*columns, strict=True))
-        return tuple(row.cells if row.heads else next(rows) for row in self.rows)
+        return tuple(("",) if row.heads else next(rows) for row in self.rows)
 
     @property
     def groups(self) -> tuple[tuple[str, int], ...]:
