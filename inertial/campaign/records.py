@@ -190,7 +190,7 @@ def omissions(parts: Iterable[Part]) -> str:
     for part in parts:
         if part.reason:
             alike.setdefault(part.reason, []).append(part)
-    return "; ".join(_omission(left_out) for left_out in alike.values())
+    return "; ".join(_omission(left_out).rstrip(".") for left_out in alike.values())
 
 
 def _omission(alike: Sequence[Part]) -> str:

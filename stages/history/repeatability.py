@@ -37,7 +37,7 @@ SEED = 20261123  # of histories without a jump: the same data give the same numb
 UNKNOWN = "unknown"
 ONE_GROUP = _("all calibrations share one {name}, so nothing is known of it")
 NAMES = {"day": _("day"), "mounting": _("mounting"), "switch_on": _("switch-on")}
-TOO_FEW = _("there are {count} dated calibrations, and a prediction needs {least}")
+TOO_FEW = _("a prediction needs {least} dated calibrations")
 NO_TOLERANCE = _("no tolerance is stated, by may_change of the campaign or in config.yaml")
 NOT_DUE = _("the interval stays within the tolerance for ten years")
 ALREADY_DUE = _("the tolerance is smaller than what is known to vary by the last calibration")
@@ -267,7 +267,7 @@ def forecast_rows(
         distinct = sorted({_day(v) for v in values})
         if len(values) < MIN_VALUES or len(distinct) < 2:
             few = len(values) < MIN_VALUES
-            reason = TOO_FEW.format(count=len(values), least=MIN_VALUES) if few else ONE_DAY
+            reason = TOO_FEW.format(least=MIN_VALUES) if few else ONE_DAY
             yield _NOTHING | key | {"reason": reason}
             continue
         found = jumps.get((sensor, quantity))
