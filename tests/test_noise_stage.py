@@ -68,6 +68,8 @@ def of_stretches(values: np.ndarray, **changes: Any) -> dict[str, Any]:
     ]
     return {
         "samples": Batches(pa.table(samples)),
+        "mean_sigmas": tables.MEAN_SIGMAS.empty(),
+        "blocks": tables.BLOCKS.empty(),
         "segments": pd.DataFrame(segments),
         "clocks": pd.DataFrame([clock]),
         "gaps": pd.DataFrame({"log": [], "record": []}),
