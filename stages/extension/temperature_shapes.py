@@ -11,6 +11,7 @@ coefficients of powers and of bends, whose covariance holds what the shapes diff
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import product
 from math import prod
 
@@ -144,9 +145,23 @@ class _Equations:
             if kind == "effect" and name not in {*own, *self.named.values()}
         ]
 
+    @cached_property
+    def before(self) -> Estimate:
+        """The fit as it was named."""
+        return self.fit(list(self.named.values()))
+
+    @property
+    def excess(self) -> float:
+        """Of the variance over that of the noise."""
+        return max(1.0, self.before.chi_squared / max(self.before.degrees, 1))
+
     def fit(self, columns: Sequence[str]) -> Estimate:
         """With some columns of these functions, beside all other effects."""
         return with_columns(self.system, frozenset([*self.others, *columns])).solve_shared()
+
+    def beside(self, f: str) -> list[str]:
+        """The columns of the other functions, as they were named."""
+        return [n for p, n in self.named.items() if p.function != f and p.power != SHIFT]
 
     def columns(self, f: str, shape: Shape) -> list[str]:
         """The columns of a shape, in the order of its pieces."""
@@ -157,15 +172,14 @@ class _Equations:
 
     def shapes(self, f: str, motion: Motion) -> list[Shape]:
         """The shapes of a function by their probabilities, the others as they were named."""
-        others = [n for p, n in self.named.items() if p.function != f and p.power != SHIFT]
+        others = self.beside(f)
         line = self.fit([*others, f"{self.smooth.label}.{Piece(f, 1).name}"])
         tried = [
             *(Shape(degree, 1.0) for degree in range(2, MAX_ORDER + 1)),
             *(Shape(1, 1.0, BEND, at) for at in self.knots[f]),
         ]
         fits = [self.fit([*others, *self.columns(f, shape)]) for shape in tried]
-        excess = max(1.0, min(fit.chi_squared / max(fit.degrees, 1) for fit in fits))
-        drops = np.array([(line.chi_squared - fit.chi_squared) / excess for fit in fits])
+        drops = np.array([line.chi_squared - fit.chi_squared for fit in fits]) / self.excess
         further = np.array([max(shape.degree - 1, 1) for shape in tried])
         odds = log_evidence(drops, further)
         for i, (shape, fit) in enumerate(zip(tried, fits, strict=True)):
@@ -199,7 +213,7 @@ class _Equations:
         place = {piece: len(kept) + i for i, piece in enumerate(pieces)}
         size = len(kept) + len(pieces)
 
-        def embedded(columns: Mapping[str, int]) -> tuple[Array, Array]:
+        def embedded(columns: Mapping[str, int]) -> tuple[Array, Array, float]:
             """Values and covariance of the rows that are kept, and of columns at their places."""
             fit = self.fit(list(columns))
             column = {name: i for i, (kind, name) in enumerate(fit.names) if kind == "effect"}
@@ -208,7 +222,7 @@ class _Equations:
             values, covariance = np.zeros(size), np.zeros((size, size))
             values[to] = fit.values[own]
             covariance[np.ix_(to, to)] = fit.covariance[np.ix_(own, own)]
-            return values, covariance
+            return values, covariance, fit.chi_squared
 
         fits = [
             embedded(
@@ -220,11 +234,22 @@ class _Equations:
             )
             for one in chosen
         ]
+        values, covariances, together = (np.array(each) for each in zip(*fits, strict=True))
+        alone = {
+            (f, shape): self.fit([*self.beside(f), *self.columns(f, shape)]).chi_squared
+            for f, own in shapes.items()
+            for shape in own
+        }
+        expected = [
+            sum(alone[f, shape] for f, shape in zip(shapes, one, strict=True)) for one in chosen
+        ]
+        # More or less likely together than each by itself, in the noise that they leave.
+        log_odds = (np.array(expected) - together) / 2 / self.excess
         weights = np.array([_probability(one) for one in chosen])
-        values, covariances = (np.array(each) for each in zip(*fits, strict=True))
+        weights = weights * np.exp(log_odds - log_odds.max())
         mean, spread = mixture(values, covariances, weights)
         # What the sizes of effects and scanned values have changed in the fit stays.
-        before = self.fit(list(self.named.values()))
+        before = self.before
         column = {name: i for i, (kind, name) in enumerate(before.names) if kind == "effect"}
         own = [*range(UNKNOWNS), *(column[name] for name in wanted)]
         old = len(kept)
