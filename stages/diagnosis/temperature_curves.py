@@ -10,7 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.records import Row
-from inertial.effects.temperature_model import BEND, BENDS, EVERY, Piece, degree_name, knot_name
+from inertial.effects.temperature_model import (
+    BEND,
+    BENDS,
+    EVERY,
+    Piece,
+    degree_name,
+    knot_name,
+    probability_name,
+)
 from inertial.physics.effect import COLDEST, MEAN_TEMPERATURE, WARMEST
 from stages.diagnosis.result import Result
 
@@ -53,6 +61,7 @@ def curve_rows(result: Result) -> Iterator[Row]:
                 "unit": own["unit"],
                 "order": degree,
                 "knot": numbers[knot_name(own["parameter"])] if bent else None,
+                "probability": numbers.get(probability_name(own["parameter"])),
                 "relative_to": None,
                 "not_separated": None,
             }

@@ -259,7 +259,10 @@ class _Equations:
         sigma = np.sqrt(np.maximum(np.diag(spread), 0.0))
         template = next(row for row in rows if row["parameter"] in dropped)
         known = {_named(self.model, p): p for p in pieces}
-        model = _of_shapes(self.model, pieces, shapes)
+        likeliest = {
+            f: _likeliest([one[i].degree for one in chosen], weights) for i, f in enumerate(shapes)
+        }
+        model = _of_shapes(self.model, pieces, shapes, likeliest)
         described = {parameter.name: parameter for parameter in model.parameters}
         written = [rows[i] for i in kept] + [
             _renamed(template, name, described[piece.name].unit, described[piece.name].meaning)
@@ -303,7 +306,10 @@ def _three(
 
 
 def _of_shapes(
-    model: TemperatureModel, pieces: Sequence[Piece], shapes: Shapes
+    model: TemperatureModel,
+    pieces: Sequence[Piece],
+    shapes: Shapes,
+    likeliest: Mapping[str, tuple[int, float]],
 ) -> TemperatureModel:
     """The model of the mean: that of all pieces, with the knots and the likeliest shapes."""
     smooth = [piece for piece in model.pieces if piece.function not in shapes]
@@ -315,17 +321,14 @@ def _of_shapes(
         if piece.power in BENDS
     }
     mean = TemperatureModel(model.sensor, [*smooth, *pieces], knots, model.lag)
-    mean.likeliest = {f: _likeliest(own) for f, own in shapes.items()}
+    mean.likeliest = likeliest
     return mean
 
 
-def _likeliest(shapes: Sequence[Shape]) -> tuple[int, float]:
-    """The degree of the likeliest shape, 1 with a knot, and its probability."""
-    shares = {degree: 0.0 for degree in (1, *range(2, MAX_ORDER + 1))}
-    for shape in shapes:
-        shares[shape.degree] += shape.probability
-    degree = max(shares, key=lambda one: shares[one])
-    return degree, shares[degree] / sum(shares.values())
+def _likeliest(degrees: Sequence[int], weights: Array) -> tuple[int, float]:
+    """The degree that is likeliest in many fits, and its probability."""
+    shares = np.bincount(degrees, weights) / weights.sum()
+    return int(np.argmax(shares)), float(shares.max())
 
 
 def _probability(combination: Sequence[Shape]) -> float:

@@ -9,8 +9,8 @@ from soaks import ICE_POINT, MIDDLE
 
 from inertial.effects import CATALOGUE, KNOWN, TEMPERATURE_MODELS
 from inertial.effects.temperature_model import (
-    BEND,
     FUNCTIONS,
+    NAMES,
     SHIFT,
     Piece,
     TemperatureModel,
@@ -340,14 +340,18 @@ def test_a_knot_is_told_from_a_parabola_and_a_cubic(shape, is_knot):
 # ---- what the model adds to a reading
 
 
-KNOTS = {"bias_x": ICE_POINT + 27, "cross_yz": ICE_POINT + 31}
+KNOTS = {
+    f"{function}{side}": ICE_POINT + at + off
+    for function, at in (("bias_x", 27), ("cross_yz", 31))
+    for side, off in (("_below", -3), ("", 0), ("_above", 2))
+}
 
 
 @pytest.mark.parametrize("sensor", ["accel", "gyro"])
 def test_its_terms_say_in_text_what_is_read(sensor):
     pieces = [
         *polynomials(dict.fromkeys(FUNCTIONS, 3)),
-        *(Piece(f, power) for power in (BEND, SHIFT) for f in KNOTS),
+        *(Piece(f, power) for power in NAMES for f in ("bias_x", "cross_yz")),
     ]
     effect: Effect = TemperatureModel(sensor, pieces, KNOTS)
     rng = np.random.default_rng(2)
@@ -379,7 +383,7 @@ def test_nothing_is_extrapolated(name):
     effect = KNOWN[name].with_constants({c.name: c.value for c in KNOWN[name].constants(campaign)})
     own = stretches(np.zeros(4), np.ones(4), np.array([278.0, 279.5, 310.5, 312.0]))
     values = np.ones(len(effect.parameters)) * np.array(
-        [not p.name.endswith(("bend", "shift")) for p in effect.parameters]
+        [not p.name.endswith(tuple(NAMES.values())) for p in effect.parameters]
     )
     ones = np.ones((4, 3))
     read = effect.reads(Reading(ones, ones), Truth(ones, ones), own, values)
